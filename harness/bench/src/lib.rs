@@ -1,0 +1,1 @@
+//! Scenarios, runs, records, gates, reports and the command line.

@@ -1,0 +1,93 @@
+use super::*;
+use crate::conformance;
+
+/// A light quarter plane x >= 1, y >= 1: the pixel's edges, and so the corner, lie at (0.5, 0.5) from the pixel (`cx`, `cy`).
+fn quarter_plane(side: usize, cx: usize, cy: usize) -> Image {
+    Image::from_fn(side, side, |x, y| if x > cx && y > cy { 0.9 } else { 0.1 })
+}
+
+/// Closed form of Eq. 5 with Sobel gradients for that corner, from the corner itself, px.
+///
+/// With the vertical smoothing (1, 2, 1) a step gives `s = 1, 3, 4, 4, ...` in rows 0, 1, 2, ... (0 above), so `gx = s(y)` in the two columns
+/// 0 and 1 beside the edge, and `gy = s(x)` in the rows 0 and 1. With `m` rows (columns) from 2 to the window's end:
+/// `sum gx^2 = 2 (1 + 9 + 16 m)`, `sum gx gy = (1 + 3)^2 = 16`, and, from the corner, `sum (x gx^2 + y gx gy) = 0 + (1 + 3) (3 - 1) / 2 = 4`.
+fn closed_form(window: i64, start: (i64, i64)) -> (f64, f64) {
+    let beyond = |s: i64| (s + window / 2 - 1) as f64;
+    let (rows, columns) = (beyond(start.1), beyond(start.0));
+    let (gxx, gyy, gxy) = (20.0 + 32.0 * rows, 20.0 + 32.0 * columns, 16.0);
+    let determinant = gxx * gyy - gxy * gxy;
+    (4.0 * (gyy - gxy) / determinant, 4.0 * (gxx - gxy) / determinant)
+}
+
+#[test]
+fn axis_aligned_corner_has_its_closed_form_bias() {
+    let (cx, cy) = (20_i64, 22_i64);
+    let image = quarter_plane(48, 20, 22);
+    for window in (5..=31).step_by(2) {
+        for start in [(0, 0), (1, 1), (1, 0), (2, 1), (-1, 1)] {
+            let (dx, dy) = closed_form(window, start);
+            let at = PixelPoint::new((cx + start.0) as f64, (cy + start.1) as f64);
+            let found = Forstner::new(window as usize).measure(&image, &Start::at(at)).unwrap().position;
+            let (ex, ey) = (found.x - (cx as f64 + 0.5) - dx, found.y - (cy as f64 + 0.5) - dy);
+            // Grey values 0.1 and 0.9 in f32: 1e-8 relative.
+            assert!(ex.abs() < 1e-8 && ey.abs() < 1e-8, "window {window}, start {start:?}: {ex:e} {ey:e}");
+        }
+    }
+}
+
+#[test]
+fn nearest_start_gives_one_over_nine_plus_eight_m() {
+    let (dx, dy) = closed_form(11, (1, 1));
+    assert!((dx - 1.0 / 49.0).abs() < 1e-15 && (dy - 1.0 / 49.0).abs() < 1e-15);
+}
+
+#[test]
+fn conforms_at_every_window() {
+    for window in (3..=31).step_by(2) {
+        conformance::check(&Forstner::new(window), 1e-6);
+    }
+}
+
+#[test]
+fn kernel_agrees_with_plain_sums() {
+    let image = conformance::textured_corner(64);
+    for window in (3..=31_usize).step_by(2) {
+        let sums = kernel::sums(&image, 9, 11, window);
+        let half = (window / 2) as f64;
+        let g = |x: usize, y: usize| f64::from(image.at(9 + x, 11 + y));
+        let (mut gxx, mut bx, mut c) = (0.0, 0.0, 0.0);
+        for y in 0..window {
+            for x in 0..window {
+                let gx = g(x + 2, y) + 2.0 * g(x + 2, y + 1) + g(x + 2, y + 2) - g(x, y) - 2.0 * g(x, y + 1) - g(x, y + 2);
+                let gy = g(x, y + 2) + 2.0 * g(x + 1, y + 2) + g(x + 2, y + 2) - g(x, y) - 2.0 * g(x + 1, y) - g(x + 2, y);
+                let t = gx * (x as f64 - half) + gy * (y as f64 - half);
+                gxx += gx * gx;
+                bx += gx * t;
+                c += t * t;
+            }
+        }
+        assert!((sums.gxx - gxx).abs() < 1e-12 * gxx, "{window}");
+        assert!((sums.bx - bx).abs() < 1e-12 * (gxx * c).sqrt(), "{window}");
+        assert!((sums.c - c).abs() < 1e-12 * c, "{window}");
+    }
+}
+
+#[test]
+fn an_edge_is_no_corner() {
+    for angle in [0.0_f64, 0.3, 1.1, 2.0] {
+        let (sin, cos) = angle.sin_cos();
+        let image = Image::from_fn(41, 41, |x, y| ((((x as f64 - 20.0) * cos + (y as f64 - 20.0) * sin) * 0.7).tanh()) as f32);
+        let found = Forstner::new(11).measure(&image, &Start::at(PixelPoint::new(20.0, 20.0)));
+        assert_eq!(found.unwrap_err(), Rejection::NoCorner, "{angle}");
+    }
+}
+
+#[test]
+fn covariance_is_that_of_weak_noise_within_its_own_theory() {
+    // A corner whose edge lines all pass through the point has no scatter; a rounded one has, and more of it far from the point.
+    let sharp = quarter_plane(41, 20, 20);
+    let found = Forstner::new(11).measure(&sharp, &Start::at(PixelPoint::new(20.0, 20.0))).unwrap();
+    let covariance = found.covariance.unwrap();
+    assert!(covariance.is_valid() && covariance.sxx > 0.0);
+    assert!((covariance.sxx - covariance.syy).abs() < 1e-12, "the corner is symmetric about its diagonal");
+}

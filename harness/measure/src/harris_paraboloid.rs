@@ -1,0 +1,148 @@
+//! `harris_paraboloid`: the maximum of the Harris strength, refined by a paraboloid.
+
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+
+use crate::harris::{Harris, Strengths};
+use crate::operator::{Operator, window_centre};
+use crate::paraboloid::Paraboloid;
+use crate::parameter::{Domain, Parameter, Settings};
+use crate::registry::{Build, Method};
+
+/// Harris paraboloid: the strongest pixel of the window, refined by the maximum of a paraboloid through its 3 x 3 strengths.
+///
+/// The window of odd side, px, is centred on the pixel nearest to the start: it is where the strongest pixel is sought. The paper detects on
+/// the whole image; an approximation says which of its detections is meant. The strength looks `3 sigma + 1` px past it, and one more for the fit.
+///
+/// Source: Zhu et al. 2007, Eq. 1, 4, 9 to 13.
+pub struct HarrisParaboloid {
+    half: usize,
+    k: f64,
+    harris: Harris,
+}
+
+/// The method's entry.
+pub fn method() -> Method {
+    const PARAMETERS: &[Parameter] = &[
+        Parameter {
+            name: "window",
+            about: "side of the window in which the strongest pixel is sought, px",
+            domain: Domain::Odd { min: 3, max: 31 },
+            default: 11.0,
+            always_shown: true,
+        },
+        Parameter {
+            name: "k",
+            about: "scale of the weights exp(-d^2/k^2) of the fit, px",
+            domain: Domain::Real { min: 1e-3, max: 1e3 },
+            default: 0.2,
+            always_shown: false,
+        },
+        Parameter {
+            name: "sigma",
+            about: "standard deviation of the integration Gaussian, px",
+            domain: Domain::Real { min: 0.1, max: 10.0 },
+            default: 1.0,
+            always_shown: false,
+        },
+        Parameter {
+            name: "alpha",
+            about: "weight of the squared trace in the strength",
+            domain: Domain::Real { min: 0.0, max: 0.24 },
+            default: 0.04,
+            always_shown: false,
+        },
+    ];
+    Method {
+        name: "harris_paraboloid",
+        about: "maximum of the Harris strength in the window, refined by a paraboloid through its 3x3 strengths",
+        source: "Zhu et al. 2007, Eq. 1, 4, 9 to 13",
+        version: "1".into(),
+        parameters: PARAMETERS,
+        build: Build::With(|settings| Box::new(HarrisParaboloid::new(settings))),
+    }
+}
+
+impl HarrisParaboloid {
+    fn new(settings: &Settings) -> Self {
+        let harris = Harris::new(settings.get("alpha"), settings.get("sigma"));
+        Self { half: settings.whole("window") / 2, k: settings.get("k"), harris }
+    }
+}
+
+impl Operator for HarrisParaboloid {
+    /// # Errors
+    /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when no strength in the window is positive or the paraboloid has no
+    /// maximum, [`Rejection::NoMaximum`] when the strength still grows at the window's border, [`Rejection::LeftWindow`] when the paraboloid's
+    /// maximum is more than a pixel from the strongest one.
+    fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
+        let ring = self.half + 1;
+        let (x, y) = window_centre(image, start, (ring + self.harris.reach()) as i64)?;
+        let strengths = self.harris.strengths(image, x, y, ring)?;
+        let (column, row) = strongest(&strengths, start.position, (x, y))?;
+        let (dx, dy) = Paraboloid::fit(&strengths.around(column, row), self.k).maximum().ok_or(Rejection::NoCorner)?;
+        if dx.abs() > 1.0 || dy.abs() > 1.0 {
+            return Err(Rejection::LeftWindow);
+        }
+        let whole = |index: usize, centre: i64| (centre + index as i64 - ring as i64) as f64;
+        Ok(Measurement { position: PixelPoint::new(whole(column, x) + dx, whole(row, y) + dy), covariance: None })
+    }
+}
+
+/// The strongest pixel inside the outermost ring of `strengths`; of equally strong ones that nearest to the start.
+fn strongest(strengths: &Strengths, start: PixelPoint, centre: (i64, i64)) -> Result<(usize, usize), Rejection> {
+    let middle = (strengths.side() / 2) as f64;
+    let (fx, fy) = (start.x - centre.0 as f64 + middle, start.y - centre.1 as f64 + middle);
+    let distance = |(column, row): (usize, usize)| (column as f64 - fx).hypot(row as f64 - fy);
+    let inner = 1..strengths.side() - 1;
+    let mut best = (1, 1);
+    for (column, row) in inner.clone().flat_map(|row| inner.clone().map(move |column| (column, row))) {
+        let (new, old) = (strengths.at(column, row), strengths.at(best.0, best.1));
+        if new > old || (new == old && distance((column, row)) < distance(best)) {
+            best = (column, row);
+        }
+    }
+    let peak = strengths.at(best.0, best.1);
+    if peak <= 0.0 {
+        return Err(Rejection::NoCorner);
+    }
+    let grows = strengths.around(best.0, best.1).iter().flatten().any(|&neighbour| neighbour > peak);
+    if grows { Err(Rejection::NoMaximum) } else { Ok(best) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance;
+    use crate::registry::Registry;
+
+    fn operator(spec: &str) -> Box<dyn Operator> {
+        Registry::builtin().parse(spec).unwrap().operator.unwrap()
+    }
+
+    #[test]
+    fn conforms_at_several_settings() {
+        for spec in ["window=11", "window=5,k=1", "window=7,sigma=2,k=100", "window=31,alpha=0.06"] {
+            conformance::check(&*operator(&format!("harris_paraboloid:{spec}")), 1e-7);
+        }
+    }
+
+    #[test]
+    fn a_symmetric_blob_is_found_at_its_centre() {
+        for (cx, cy) in [(20.0, 20.0), (20.3, 19.8)] {
+            let image = Image::from_fn(41, 41, |x, y| {
+                let r2 = (x as f64 - cx).powi(2) + (y as f64 - cy).powi(2);
+                (-r2 / 8.0).exp() as f32
+            });
+            let found = operator("harris_paraboloid:sigma=2").measure(&image, &Start::at(PixelPoint::new(21.0, 18.0))).unwrap();
+            // The strength of a blob is nearly a paraboloid at its top; its third-order part costs some hundredths.
+            assert!(found.position.distance(PixelPoint::new(cx, cy)) < 0.02, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn strength_that_grows_outwards_is_no_maximum() {
+        let image = Image::from_fn(61, 61, |x, y| if x > 36 && y > 30 { 1.0 } else { 0.0 });
+        let found = operator("harris_paraboloid:window=5").measure(&image, &Start::at(PixelPoint::new(33.0, 30.0)));
+        assert_eq!(found.unwrap_err(), Rejection::NoMaximum);
+    }
+}

@@ -1,0 +1,20 @@
+//! Images to image coordinates: one operator a file.
+//!
+//! An operator sees an image and a [`Start`](calibench_model::Start) and nothing else: this crate does not depend on the one that knows the truth.
+//! To add one, write its file, name it in [`builtin`](registry::Registry::builtin), and call [`conformance::check`] on it.
+
+pub mod board;
+pub mod conformance;
+pub mod forstner;
+pub mod harris;
+pub mod harris_paraboloid;
+pub mod operator;
+pub mod paraboloid;
+pub mod parameter;
+pub mod pixel;
+pub mod registry;
+
+pub use board::{Board, BoardDetector};
+pub use operator::Operator;
+pub use parameter::{Parameter, Settings};
+pub use registry::{Configured, Method, MethodError, Registry};

@@ -1,0 +1,128 @@
+//! Parameters of operators: declared once, checked here, described in `list` and in the scenario schema.
+
+use crate::registry::MethodError;
+
+/// What a parameter may be. Every domain excludes NaN and infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Domain {
+    /// An odd number of px from `min` to `max`: a window.
+    Odd {
+        /// Smallest.
+        min: u32,
+        /// Largest.
+        max: u32,
+    },
+    /// A whole number from `min` to `max`.
+    Whole {
+        /// Smallest.
+        min: u32,
+        /// Largest.
+        max: u32,
+    },
+    /// A number from `min` to `max`.
+    Real {
+        /// Smallest.
+        min: f64,
+        /// Largest.
+        max: f64,
+    },
+}
+
+impl Domain {
+    /// Is `value` one of these?
+    pub fn holds(self, value: f64) -> bool {
+        let (min, max) = self.range();
+        let right_form = match self {
+            Self::Odd { .. } => value.fract() == 0.0 && value.rem_euclid(2.0) == 1.0,
+            Self::Whole { .. } => value.fract() == 0.0,
+            Self::Real { .. } => true,
+        };
+        value.is_finite() && value >= min && value <= max && right_form
+    }
+
+    /// Smallest and largest.
+    pub fn range(self) -> (f64, f64) {
+        match self {
+            Self::Odd { min, max } | Self::Whole { min, max } => (f64::from(min), f64::from(max)),
+            Self::Real { min, max } => (min, max),
+        }
+    }
+
+    /// In words, for an error or a table.
+    pub fn describe(self) -> String {
+        let (min, max) = self.range();
+        match self {
+            Self::Odd { .. } => format!("an odd number from {min} to {max}"),
+            Self::Whole { .. } => format!("a whole number from {min} to {max}"),
+            Self::Real { .. } => format!("a number from {min} to {max}"),
+        }
+    }
+}
+
+/// A declared parameter of a method.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Its key.
+    pub name: &'static str,
+    /// What it means, with its unit.
+    pub about: &'static str,
+    /// What it may be.
+    pub domain: Domain,
+    /// What it is when nobody sets it.
+    pub default: f64,
+    /// Is it part of the method's label even at its default?
+    pub always_shown: bool,
+}
+
+/// Checked values of all parameters of one method, in the order of their declaration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    values: Vec<(&'static str, f64)>,
+}
+
+impl Settings {
+    /// The defaults of `parameters`, changed by `given`.
+    ///
+    /// # Errors
+    /// An unknown key, a key given twice, a value outside its domain.
+    pub fn resolve(method: &str, parameters: &[Parameter], given: &[(String, f64)]) -> Result<Self, MethodError> {
+        let mut values: Vec<(&'static str, f64)> = parameters.iter().map(|p| (p.name, p.default)).collect();
+        for (index, (key, value)) in given.iter().enumerate() {
+            let Some(position) = parameters.iter().position(|p| p.name == key) else {
+                let known = parameters.iter().map(|p| p.name.to_owned()).collect();
+                return Err(MethodError::UnknownParameter { method: method.to_owned(), key: key.clone(), known });
+            };
+            if given[..index].iter().any(|(earlier, _)| earlier == key) {
+                return Err(MethodError::Twice { method: method.to_owned(), key: key.clone() });
+            }
+            let domain = parameters[position].domain;
+            if !domain.holds(*value) {
+                let expected = domain.describe();
+                return Err(MethodError::Domain { method: method.to_owned(), key: key.clone(), expected, found: value.to_string() });
+            }
+            values[position].1 = *value;
+        }
+        Ok(Self { values })
+    }
+
+    /// The value of parameter `name`.
+    ///
+    /// # Panics
+    /// If the method did not declare it: a mistake in the operator's file that its first test finds.
+    pub fn get(&self, name: &str) -> f64 {
+        self.values.iter().find(|(key, _)| *key == name).unwrap_or_else(|| panic!("no parameter `{name}` was declared")).1
+    }
+
+    /// A window or another whole number.
+    ///
+    /// # Panics
+    /// As [`Self::get`].
+    pub fn whole(&self, name: &str) -> usize {
+        self.get(name) as usize
+    }
+
+    /// All values, in the order of their declaration.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
+        self.values.iter().copied()
+    }
+}

@@ -1,0 +1,97 @@
+//! A grey-value image.
+
+/// Grey values, row by row, as fractions of full scale: 0 is black, 1 is white.
+///
+/// f32 tells all levels of a 16-bit image apart. Pixel (column, row) has its centre at [`crate::PixelPoint`] (column, row).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    width: usize,
+    height: usize,
+    grey: Vec<f32>,
+}
+
+impl Image {
+    /// An image of `width` x `height` px.
+    ///
+    /// # Panics
+    /// If `grey` does not hold `width * height` values: a mistake of the caller's.
+    pub fn new(width: usize, height: usize, grey: Vec<f32>) -> Self {
+        assert_eq!(grey.len(), width * height, "an image of {width} x {height} px");
+        Self { width, height, grey }
+    }
+
+    /// An image whose grey value at (column, row) is `grey(column, row)`.
+    pub fn from_fn(width: usize, height: usize, mut grey: impl FnMut(usize, usize) -> f32) -> Self {
+        let values = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| grey(x, y)).collect();
+        Self::new(width, height, values)
+    }
+
+    /// Columns.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// All grey values, row by row.
+    pub fn grey(&self) -> &[f32] {
+        &self.grey
+    }
+
+    /// All grey values, to be changed.
+    pub fn grey_mut(&mut self) -> &mut [f32] {
+        &mut self.grey
+    }
+
+    /// The grey values of row `y`.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    pub fn row(&self, y: usize) -> &[f32] {
+        &self.grey[y * self.width..(y + 1) * self.width]
+    }
+
+    /// The grey value of pixel (`x`, `y`).
+    ///
+    /// # Panics
+    /// If there is no such pixel.
+    pub fn at(&self, x: usize, y: usize) -> f32 {
+        self.row(y)[x]
+    }
+
+    /// Does the square of half-width `reach` px around pixel (`x`, `y`) lie inside the image?
+    pub fn holds(&self, x: i64, y: i64, reach: i64) -> bool {
+        x >= reach && y >= reach && x + reach < self.width as i64 && y + reach < self.height as i64
+    }
+
+    /// The square of half-width `reach` around pixel (`x`, `y`), row by row; `None` if it leaves the image.
+    pub fn rows_around(&self, x: i64, y: i64, reach: i64) -> Option<impl Iterator<Item = &[f32]>> {
+        if !self.holds(x, y, reach) {
+            return None;
+        }
+        let columns = (x - reach) as usize..=(x + reach) as usize;
+        Some(((y - reach) as usize..=(y + reach) as usize).map(move |row| &self.row(row)[columns.clone()]))
+    }
+
+    /// 8-bit grey values, rounded and clipped. NaN becomes black.
+    pub fn to_u8(&self) -> Vec<u8> {
+        self.grey.iter().map(|&g| (g.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_around_stop_at_the_border() {
+        let image = Image::from_fn(5, 4, |x, y| (10 * y + x) as f32);
+        assert!(image.rows_around(0, 1, 1).is_none());
+        assert!(image.rows_around(3, 3, 1).is_none());
+        let rows: Vec<_> = image.rows_around(3, 2, 1).unwrap().collect();
+        assert_eq!(rows, [[12.0, 13.0, 14.0], [22.0, 23.0, 24.0], [32.0, 33.0, 34.0]]);
+    }
+}

@@ -1,0 +1,13 @@
+//! The vocabulary of calibench: frames, images, targets, observations. No I/O, no randomness.
+
+pub mod frames;
+pub mod image;
+pub mod observation;
+pub mod scene;
+pub mod target;
+
+pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
+pub use image::Image;
+pub use observation::{Measurement, Rejection, Start};
+pub use scene::{Polygon, Scene, SceneTarget};
+pub use target::{Affine, TargetKind};

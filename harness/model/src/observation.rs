@@ -1,0 +1,80 @@
+//! What an operator is given and what it returns.
+
+use std::fmt;
+
+use crate::{Affine, Covariance, PixelPoint, TargetKind};
+
+/// Where an operator starts: an approximate position and, for operators that need one, a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// Approximate position.
+    pub position: PixelPoint,
+    /// What is pictured, if known.
+    pub kind: Option<TargetKind>,
+    /// The affine start of its picture, if known.
+    pub affine: Option<Affine>,
+}
+
+impl Start {
+    /// A start of which only the position is known.
+    pub const fn at(position: PixelPoint) -> Self {
+        Self { position, kind: None, affine: None }
+    }
+}
+
+/// A measured image point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// Its position.
+    pub position: PixelPoint,
+    /// Its covariance (px^2) as the operator itself estimates it, where theory gives one.
+    pub covariance: Option<Covariance>,
+}
+
+/// Why a point was not measured. A missed point is data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Rejection {
+    /// The operator's window leaves the image.
+    Border,
+    /// A grey value in the window, or the start itself, is not a number.
+    NotFinite,
+    /// The window holds no corner: it is flat, or holds a single edge.
+    NoCorner,
+    /// The strength has no maximum inside the window.
+    NoMaximum,
+    /// The solution lies outside the window.
+    LeftWindow,
+}
+
+impl Rejection {
+    /// Every reason.
+    pub const ALL: [Self; 5] = [Self::Border, Self::NotFinite, Self::NoCorner, Self::NoMaximum, Self::LeftWindow];
+
+    /// The name in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Border => "border",
+            Self::NotFinite => "not_finite",
+            Self::NoCorner => "no_corner",
+            Self::NoMaximum => "no_maximum",
+            Self::LeftWindow => "left_window",
+        }
+    }
+
+    /// The reason in words.
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Border => "the window leaves the image",
+            Self::NotFinite => "a grey value in the window, or the start, is not a number",
+            Self::NoCorner => "the window is flat or holds a single edge",
+            Self::NoMaximum => "the strength has no maximum inside the window",
+            Self::LeftWindow => "the solution lies outside the window",
+        }
+    }
+}
+
+impl fmt::Display for Rejection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

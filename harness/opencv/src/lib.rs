@@ -1,0 +1,1 @@
+//! OpenCV's methods, and the full `calibench` binary.

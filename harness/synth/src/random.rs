@@ -1,0 +1,72 @@
+//! Random streams, keyed by what they are for and never by the order of calls.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+/// What a stream's numbers are used for. The number is part of the key: never reuse one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum Purpose {
+    /// The sub-pixel position of the scene in a trial.
+    Phase = 1,
+    /// The grey-value noise of an image.
+    GreyNoise = 2,
+    /// The hand that points at a target.
+    Pointing = 3,
+}
+
+/// Which stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Key<'a> {
+    /// The scenario's seed.
+    pub seed: u64,
+    /// The scenario's name: two scenarios with one seed share no numbers.
+    pub scenario: &'a str,
+    /// Counted from 0.
+    pub trial: u64,
+    /// The image's name, or "" for what concerns all of them.
+    pub view: &'a str,
+    /// The target's name, or "" for what concerns the whole image.
+    pub target: &'a str,
+}
+
+/// The stream of `key` for `purpose`: the same numbers whenever and on whatever thread it is opened.
+pub fn stream(key: Key<'_>, purpose: Purpose) -> ChaCha8Rng {
+    let mut hasher = blake3::Hasher::new();
+    for number in [key.seed, key.trial, purpose as u64] {
+        hasher.update(&number.to_le_bytes());
+    }
+    for text in [key.scenario, key.view, key.target] {
+        // The length keeps ("ab", "c") apart from ("a", "bc").
+        hasher.update(&(text.len() as u64).to_le_bytes());
+        hasher.update(text.as_bytes());
+    }
+    ChaCha8Rng::from_seed(*hasher.finalize().as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+
+    const KEY: Key<'_> = Key { seed: 1, scenario: "s", trial: 2, view: "ab", target: "c" };
+
+    fn first(key: Key<'_>, purpose: Purpose) -> u64 {
+        stream(key, purpose).random()
+    }
+
+    #[test]
+    fn a_stream_depends_on_every_part_of_its_key_and_on_nothing_else() {
+        let reference = first(KEY, Purpose::Phase);
+        assert_eq!(reference, first(KEY, Purpose::Phase));
+        let others = [
+            first(Key { seed: 2, ..KEY }, Purpose::Phase),
+            first(Key { scenario: "t", ..KEY }, Purpose::Phase),
+            first(Key { trial: 3, ..KEY }, Purpose::Phase),
+            first(Key { view: "a", target: "bc", ..KEY }, Purpose::Phase),
+            first(Key { target: "d", ..KEY }, Purpose::Phase),
+            first(KEY, Purpose::Pointing),
+        ];
+        assert!(others.iter().all(|&other| other != reference));
+    }
+}
