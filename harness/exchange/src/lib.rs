@@ -1,1 +1,10 @@
-//! Files of other tools: image coordinates, photographs.
+//! Files of other tools: image coordinates and photographs.
+
+pub mod atomic;
+pub mod photo;
+pub mod points;
+pub mod points_write;
+
+pub use photo::{PhotoError, read_photo, write_png};
+pub use points::{PointFileError, PointRow, read_points};
+pub use points_write::{MeasuredRow, write_measured};

@@ -1,0 +1,62 @@
+use super::*;
+use proptest::prelude::*;
+
+fn parse(text: &str) -> Result<Vec<PointRow>, PointFileError> {
+    parse_points("p.csv", text.as_bytes())
+}
+
+fn error(text: &str) -> String {
+    parse(text).unwrap_err().to_string()
+}
+
+#[test]
+fn four_columns_are_enough_and_order_does_not_matter() {
+    let rows = parse("target,y,x,image\nA,2.5,1.5,left.jpg\n").unwrap();
+    assert_eq!(rows.len(), 1);
+    assert_eq!((rows[0].image.as_str(), rows[0].target.as_str()), ("left.jpg", "A"));
+    assert_eq!(rows[0].start, Start::at(PixelPoint::new(1.5, 2.5)));
+    assert_eq!(rows[0].covariance, None);
+}
+
+#[test]
+fn optional_groups_are_read_or_left_empty() {
+    let header = "image,target,x,y,sxx,sxy,syy,kind,axx,axy,ayx,ayy\n";
+    let rows = parse(&format!("{header}i,1,1,2,.1,0,.2,chess_corner,20,1,-1,19\ni,2,1,2,,,,,,,,\n")).unwrap();
+    assert_eq!(rows[0].covariance, Some(Covariance { sxx: 0.1, sxy: 0.0, syy: 0.2 }));
+    assert_eq!(rows[0].start.kind, Some(TargetKind::ChessCorner));
+    assert_eq!(rows[0].start.affine, Some(Affine { axx: 20.0, axy: 1.0, ayx: -1.0, ayy: 19.0 }));
+    assert_eq!((rows[1].covariance, rows[1].start.kind, rows[1].start.affine), (None, None, None));
+}
+
+#[test]
+fn mistakes_name_line_and_column() {
+    for (text, expected) in [
+        ("image,target,x\ni,1,2\n", "p.csv:1, column `y`: missing"),
+        ("image,target,x,y,sxx\ni,1,2,3,4\n", "p.csv:1, column `sxy`: missing in the header; these go together"),
+        ("image,target,x,y,z\ni,1,2,3,4\n", "p.csv:1, column `z`: unknown"),
+        ("image,target,x,y,x\ni,1,2,3,4\n", "p.csv:1, column `x`: stands in the header twice"),
+        ("image,target,x,y\ni,1,2\n", "p.csv:2: expected 4 cells as in the header, found 3"),
+        ("image,target,x,y\n\ni,1,2,NaN\n", "p.csv:3, column `y`: expected a finite number"),
+        ("image,target,x,y\ni,1,\"2,5\",3\n", "p.csv:2, column `x`: expected a finite number with a decimal point, found `2,5`"),
+        ("image,target,x,y\ni,1,,3\n", "p.csv:2, column `x`: is empty"),
+        ("image,target,x,y\ni,,2,3\n", "p.csv:2, column `target`: is empty"),
+        ("image,target,x,y\ni,1,2,3\ni,1,2,3\n", "p.csv:3: target `1` of image `i` is already on line 2"),
+        ("image,target,x,y\n", "p.csv: holds no point"),
+        ("image,target,x,y,kind\ni,1,2,3,chess\n", "p.csv:2, column `kind`: no kind of target is called `chess`"),
+        ("image,target,x,y,sxx,sxy,syy\ni,1,2,3,1,2,1\n", "p.csv:2, column `sxx`: no covariance"),
+        ("image,target,x,y,sxx,sxy,syy\ni,1,2,3,1,,1\n", "p.csv:2, column `sxy`: is empty"),
+    ] {
+        let found = error(text);
+        assert!(found.starts_with(expected), "expected: {expected}\n   found: {found}");
+    }
+    assert!(parse_points("p.csv", &b"image,target,x,y\n\xff\xfe,1,2,3\n"[..]).unwrap_err().to_string().contains("UTF-8"));
+    assert!(error("").contains("missing in the header"));
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_read_or_refused(text in "\\PC*") {
+        let _ = parse(&text);
+        let _ = parse(&format!("image,target,x,y\n{text}"));
+    }
+}
