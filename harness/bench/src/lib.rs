@@ -1,1 +1,7 @@
 //! Scenarios, runs, records, gates, reports and the command line.
+
+pub mod data;
+pub mod records;
+pub mod results;
+pub mod run;
+pub mod scenario;

@@ -10,4 +10,4 @@ pub mod pointing;
 pub mod random;
 pub mod render;
 
-pub use render::render;
+pub use render::{draw, render};

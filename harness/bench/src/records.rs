@@ -1,0 +1,274 @@
+//! Records: one tidy CSV a scenario. What measuring leaves for scoring and reporting.
+
+use std::io::{Read, Write};
+use std::sync::Arc;
+
+use calibench_model::{PixelPoint, Rejection};
+use csv::StringRecord;
+use thiserror::Error;
+
+use crate::results::{MethodInfo, Outcome, PointResult, Trial};
+
+/// The columns of a records file.
+pub const COLUMNS: [&str; 13] =
+    ["scenario", "trial", "view", "target", "method", "version", "metric", "value", "unit", "status", "reason", "seed", "revision"];
+
+/// What all rows of a file share.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RunInfo {
+    /// The scenario's name.
+    pub scenario: String,
+    /// The seed of the run.
+    pub seed: u64,
+    /// The code's revision.
+    pub revision: String,
+}
+
+/// Writes records, trial by trial.
+pub struct RecordWriter<W: Write> {
+    csv: csv::Writer<W>,
+    run: RunInfo,
+    methods: Vec<MethodInfo>,
+}
+
+impl<W: Write> RecordWriter<W> {
+    /// Starts a file with its header and a row for each unavailable method.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn new(output: W, run: RunInfo, methods: Vec<MethodInfo>) -> Result<Self, csv::Error> {
+        let mut csv = csv::Writer::from_writer(output);
+        csv.write_record(COLUMNS)?;
+        let mut writer = Self { csv, run, methods };
+        for method in 0..writer.methods.len() {
+            if let Some(why) = writer.methods[method].unavailable.clone() {
+                writer.row(["", "", ""], method, ["", "", ""], "unavailable", &why)?;
+            }
+        }
+        Ok(writer)
+    }
+
+    /// Adds a trial: for each measured point its metrics x and y, and dx and dy where the truth is known; for each rejected one a row.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn trial(&mut self, trial: &Trial) -> Result<(), csv::Error> {
+        let number = trial.number.to_string();
+        for (view, why) in &trial.missed_views {
+            self.row([&number, view, ""], usize::MAX, ["", "", ""], "missed", why)?;
+        }
+        for point in &trial.points {
+            let place = [&*number, &*point.view, &*point.target];
+            match point.outcome {
+                Outcome::Rejected(why) => self.row(place, point.method, ["x", "", "px"], "rejected", why.name())?,
+                Outcome::Measured { position, error } => {
+                    let status = if point.outcome.is_lost() { "lost" } else { "measured" };
+                    let metrics =
+                        [("x", Some(position.x)), ("y", Some(position.y)), ("dx", error.map(|e| e.0)), ("dy", error.map(|e| e.1))];
+                    for (metric, value) in metrics {
+                        if let Some(value) = value {
+                            self.row(place, point.method, [metric, &value.to_string(), "px"], status, "")?;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes what is buffered.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn finish(mut self) -> Result<(), csv::Error> {
+        Ok(self.csv.flush()?)
+    }
+
+    fn row(&mut self, place: [&str; 3], method: usize, metric: [&str; 3], status: &str, reason: &str) -> Result<(), csv::Error> {
+        let (label, version) = self.methods.get(method).map_or(("", ""), |m| (&*m.label, &*m.version));
+        let seed = self.run.seed.to_string();
+        let [trial, view, target] = place;
+        let [metric, value, unit] = metric;
+        self.csv.write_record([
+            &self.run.scenario,
+            trial,
+            view,
+            target,
+            label,
+            version,
+            metric,
+            value,
+            unit,
+            status,
+            reason,
+            &seed,
+            &self.run.revision,
+        ])
+    }
+}
+
+/// A records file that is none.
+#[derive(Debug, Error)]
+pub enum RecordError {
+    /// Not the CSV that it should be.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+    /// A row that means nothing.
+    #[error("line {line}: {problem}; these records were not written by this version, run the scenario again")]
+    Row {
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// What a records file holds besides its trials.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordHead {
+    /// What all rows share.
+    pub run: RunInfo,
+    /// The methods, in the order of their first row.
+    pub methods: Vec<MethodInfo>,
+}
+
+/// Reads records and hands on one trial after the other; the methods of a trial's points index the returned head.
+///
+/// # Errors
+/// A file that was not written by [`RecordWriter`].
+pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial)) -> Result<RecordHead, RecordError> {
+    let mut csv = csv::Reader::from_reader(input);
+    if csv.headers()?.iter().ne(COLUMNS) {
+        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", COLUMNS.join(",")) });
+    }
+    let mut head = RecordHead { run: RunInfo { scenario: String::new(), seed: 0, revision: String::new() }, methods: Vec::new() };
+    let mut trial: Option<Trial> = None;
+    for record in csv.records() {
+        let record = record?;
+        let row = Row(&record);
+        if head.run.scenario.is_empty() {
+            head.run = RunInfo { scenario: row.text(0).into(), seed: row.parse(11)?, revision: row.text(12).into() };
+        }
+        let method = method_index(&mut head.methods, &row);
+        if row.text(9) == "unavailable" {
+            head.methods[method.unwrap_or_default()].unavailable = Some(row.text(10).to_owned());
+            continue;
+        }
+        let number = row.parse(1)?;
+        if trial.as_ref().is_some_and(|trial| trial.number != number) {
+            trial.take().into_iter().for_each(&mut sink);
+        }
+        let trial = trial.get_or_insert_with(|| Trial { number, ..Trial::default() });
+        match method {
+            None => trial.missed_views.push((row.text(2).into(), row.text(10).into())),
+            Some(method) => add(trial, &row, method)?,
+        }
+    }
+    trial.into_iter().for_each(sink);
+    Ok(head)
+}
+
+fn method_index(methods: &mut Vec<MethodInfo>, row: &Row<'_>) -> Option<usize> {
+    let (label, version) = (row.text(4), row.text(5));
+    if label.is_empty() {
+        return None;
+    }
+    let place = methods.iter().position(|m| &*m.label == label);
+    Some(place.unwrap_or_else(|| {
+        methods.push(MethodInfo { label: label.into(), version: version.into(), unavailable: None });
+        methods.len() - 1
+    }))
+}
+
+/// Adds a row to a trial; the rows of one point follow each other.
+fn add(trial: &mut Trial, row: &Row<'_>, method: usize) -> Result<(), RecordError> {
+    let (view, target) = (row.text(2), row.text(3));
+    if row.text(9) == "rejected" {
+        let why = Rejection::ALL.into_iter().find(|why| why.name() == row.text(10));
+        let why = why.ok_or_else(|| row.wrong("unknown reason"))?;
+        trial.points.push(PointResult { view: view.into(), target: target.into(), method, outcome: Outcome::Rejected(why) });
+        return Ok(());
+    }
+    let value: f64 = row.parse(7)?;
+    if row.text(6) == "x" {
+        let share = |old: Option<&Arc<str>>, new: &str| old.filter(|old| &***old == new).cloned().unwrap_or_else(|| new.into());
+        let view = share(trial.points.last().map(|p| &p.view), view);
+        let outcome = Outcome::Measured { position: PixelPoint::new(value, f64::NAN), error: None };
+        trial.points.push(PointResult { view, target: target.into(), method, outcome });
+        return Ok(());
+    }
+    let last = trial.points.last_mut().filter(|p| p.method == method && &*p.target == target && &*p.view == view);
+    let Some(PointResult { outcome: Outcome::Measured { position, error }, .. }) = last else {
+        return Err(row.wrong("a metric without its point"));
+    };
+    match row.text(6) {
+        "y" => position.y = value,
+        "dx" => *error = Some((value, f64::NAN)),
+        "dy" => *error = error.map(|(dx, _)| (dx, value)),
+        _ => return Err(row.wrong("unknown metric")),
+    }
+    Ok(())
+}
+
+struct Row<'a>(&'a StringRecord);
+
+impl Row<'_> {
+    fn text(&self, column: usize) -> &str {
+        self.0.get(column).unwrap_or_default()
+    }
+
+    fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, RecordError> {
+        self.text(column).parse().map_err(|_| self.wrong(&format!("column `{}` holds `{}`", COLUMNS[column], self.text(column))))
+    }
+
+    fn wrong(&self, problem: &str) -> RecordError {
+        RecordError::Row { line: self.0.position().map_or(0, csv::Position::line), problem: problem.to_owned() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn example() -> (Vec<MethodInfo>, Vec<Trial>) {
+        let info =
+            |label: &str, why: Option<&str>| MethodInfo { label: label.into(), version: "1".into(), unavailable: why.map(str::to_owned) };
+        let point = |method, target: &str, outcome| PointResult { view: "v".into(), target: target.into(), method, outcome };
+        let measured = |x: f64, error| Outcome::Measured { position: PixelPoint::new(x, 1.0 / 3.0), error };
+        let trials = vec![
+            Trial {
+                number: 0,
+                points: vec![
+                    point(1, "a", measured(0.1 + 0.2, Some((1e-17, -3.5)))),
+                    point(1, "b", Outcome::Rejected(Rejection::NoCorner)),
+                    point(2, "a", measured(7.0, None)),
+                ],
+                missed_views: vec![("w".into(), "no board, sorry".into())],
+            },
+            Trial { number: 3, points: vec![point(2, "a", measured(-1.0, Some((0.5, 0.25))))], missed_views: Vec::new() },
+        ];
+        (vec![info("absent", Some("not built")), info("m:w=1,k=2", None), info("n", None)], trials)
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_to_the_last_bit() {
+        let (methods, trials) = example();
+        let run = RunInfo { scenario: "f/s".into(), seed: 9, revision: "abc".into() };
+        let mut bytes = Vec::new();
+        let mut writer = RecordWriter::new(&mut bytes, run.clone(), methods.clone()).unwrap();
+        trials.iter().for_each(|trial| writer.trial(trial).unwrap());
+        writer.finish().unwrap();
+        let mut again = Vec::new();
+        let head = read_records(&bytes[..], |trial| again.push(trial)).unwrap();
+        assert_eq!(head, RecordHead { run, methods });
+        assert_eq!(again, trials);
+        assert!(String::from_utf8(bytes).unwrap().contains(",lost,"), "3.5 px off is lost");
+    }
+
+    #[test]
+    fn other_files_are_refused() {
+        assert!(read_records(&b"a,b\n1,2\n"[..], |_| ()).is_err());
+        let text = format!("{}\ns,0,v,t,m,1,dx,1,px,measured,,0,r\n", COLUMNS.join(","));
+        assert!(read_records(text.as_bytes(), |_| ()).unwrap_err().to_string().contains("line 2: a metric without its point"));
+    }
+}

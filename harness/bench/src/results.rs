@@ -1,0 +1,80 @@
+//! What a run yields: outcomes of points, by trial.
+
+use std::sync::Arc;
+
+use calibench_model::{PixelPoint, Rejection};
+
+/// A point more than this far from the truth, px, is lost: something else was measured.
+pub const LOST: f64 = 1.0;
+
+/// A method of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MethodInfo {
+    /// Its label, as in `forstner:window=11`.
+    pub label: Arc<str>,
+    /// Its version.
+    pub version: Arc<str>,
+    /// Why it measured nothing, if so.
+    pub unavailable: Option<String>,
+}
+
+/// What became of one point in the hands of one method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointResult {
+    /// The image.
+    pub view: Arc<str>,
+    /// The target.
+    pub target: Arc<str>,
+    /// The method's place in the list of methods.
+    pub method: usize,
+    /// Measured or rejected.
+    pub outcome: Outcome,
+}
+
+/// Measured or rejected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// Measured.
+    Measured {
+        /// Where.
+        position: PixelPoint,
+        /// Measured less true position (dx, dy), px, where the truth is known.
+        error: Option<(f64, f64)>,
+    },
+    /// Rejected by the operator.
+    Rejected(Rejection),
+}
+
+impl Outcome {
+    /// The error (dx, dy) of a point that was measured and not lost.
+    pub fn kept_error(&self) -> Option<(f64, f64)> {
+        match self {
+            Self::Measured { error: Some((dx, dy)), .. } if dx.hypot(*dy) <= LOST => Some((*dx, *dy)),
+            _ => None,
+        }
+    }
+
+    /// Was it measured more than [`LOST`] px from the truth?
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Measured { error: Some((dx, dy)), .. } if dx.hypot(*dy) > LOST)
+    }
+
+    /// The measured position, lost or not.
+    pub fn position(&self) -> Option<PixelPoint> {
+        match self {
+            Self::Measured { position, .. } => Some(*position),
+            Self::Rejected(_) => None,
+        }
+    }
+}
+
+/// One trial: every point of every view, by method and then in the order of the scenario.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trial {
+    /// Counted from 0.
+    pub number: u64,
+    /// All points of all available methods.
+    pub points: Vec<PointResult>,
+    /// Views without approximate positions, and why.
+    pub missed_views: Vec<(Arc<str>, String)>,
+}

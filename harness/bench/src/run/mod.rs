@@ -1,0 +1,113 @@
+//! Scenarios to results: truth-blind measuring, scored against the truth at the end.
+
+mod photographs;
+mod scene;
+
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::PhotoError;
+use calibench_measure::{BoardDetector, Configured, Operator};
+use calibench_model::{Image, Rejection, Start};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::results::{MethodInfo, Trial};
+use crate::scenario::{Scenario, Subject};
+
+pub use scene::{trial_image, trial_truth};
+
+/// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
+const BATCH: u64 = 32;
+
+/// How a scenario is run.
+pub struct Plan<'a> {
+    /// The scenario.
+    pub scenario: &'a Scenario,
+    /// The methods: the scenario's or others.
+    pub methods: &'a [Configured],
+    /// The seed: the scenario's or another.
+    pub seed: u64,
+    /// How many trials: the scenario's number or another.
+    pub trials: u64,
+    /// Finds chessboards, where this build can.
+    pub detector: Option<&'a dyn BoardDetector>,
+    /// Where photographs are.
+    pub data: PathBuf,
+    /// Where the images of the first trial are written, if anywhere.
+    pub images: Option<&'a Path>,
+}
+
+/// A run that cannot be completed.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A photograph that is there and cannot be read, or an image that cannot be written.
+    #[error(transparent)]
+    Photo(#[from] PhotoError),
+    /// Results that cannot be written.
+    #[error("{0}")]
+    Output(#[from] std::io::Error),
+}
+
+impl<'a> Plan<'a> {
+    /// The scenario as its file says, with no images kept.
+    pub fn new(scenario: &'a Scenario, detector: Option<&'a dyn BoardDetector>, data: PathBuf) -> Self {
+        Self { scenario, methods: &scenario.methods, seed: scenario.seed, trials: scenario.trials, detector, data, images: None }
+    }
+
+    /// The methods as results list them.
+    pub fn method_infos(&self) -> Vec<MethodInfo> {
+        let missing = self.missing();
+        let info = |method: &Configured| MethodInfo {
+            label: method.label.as_str().into(),
+            version: method.version.as_str().into(),
+            unavailable: missing.clone().or_else(|| method.operator.as_ref().err().map(|why| (*why).to_owned())),
+        };
+        self.methods.iter().map(info).collect()
+    }
+
+    /// How many steps [`Plan::run`] reports.
+    pub fn steps(&self) -> u64 {
+        match &self.scenario.subject {
+            Subject::Scene(_) => self.trials,
+            Subject::Photographs(photographs) => photographs.files.len() as u64,
+        }
+    }
+
+    /// Why nothing at all can be measured, if so.
+    pub fn missing(&self) -> Option<String> {
+        match &self.scenario.subject {
+            Subject::Scene(_) => None,
+            Subject::Photographs(subject) => photographs::missing(self, subject),
+        }
+    }
+
+    /// Runs all trials and hands them to `sink` in their order; `step` is called after each step, on any thread.
+    ///
+    /// # Errors
+    /// Photographs that cannot be read, or what `sink` returns.
+    pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
+        match &self.scenario.subject {
+            Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
+            Subject::Scene(subject) => {
+                for first in (0..self.trials).step_by(BATCH as usize) {
+                    let batch = first..(first + BATCH).min(self.trials);
+                    let trial = |number| {
+                        let trial = scene::run_trial(self, subject, number);
+                        step();
+                        trial
+                    };
+                    for trial in batch.into_par_iter().map(trial).collect::<Result<Vec<_>, _>>()? {
+                        sink(trial)?;
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Every available method on one image: (method, results in the order of `starts`).
+    fn measure(&self, image: &Image, starts: &[Start]) -> Vec<(usize, Vec<Result<calibench_model::Measurement, Rejection>>)> {
+        let available = self.methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_ref().ok()?)));
+        available.map(|(index, operator): (usize, &Box<dyn Operator>)| (index, operator.measure_all(image, starts))).collect()
+    }
+}

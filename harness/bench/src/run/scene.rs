@@ -1,0 +1,82 @@
+//! Trials of a rendered scene.
+
+use std::sync::Arc;
+
+use calibench_exchange::write_png;
+use calibench_model::{Image, Scene, Start};
+use calibench_synth::noise::{add_grey_noise, quantise};
+use calibench_synth::random::{Key, Purpose, stream};
+use calibench_synth::{draw, render};
+use rand::RngExt;
+
+use super::{Plan, RunError};
+use crate::results::{Outcome, PointResult, Trial};
+use crate::scenario::{Phase, Pixels, SceneSubject, Starts};
+
+/// The name of the only view.
+const VIEW: &str = "image";
+
+pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, number: u64) -> Result<Trial, RunError> {
+    let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };
+    let truth = trial_truth(subject, key);
+    let image = trial_image(subject, &truth, key);
+    if let Some(folder) = plan.images.filter(|_| number == 0) {
+        write_png(&folder.join(format!("{VIEW}.png")), &image, subject.bits.is_none_or(|bits| bits > 8))?;
+    }
+    let starts = starts(subject, &truth, key);
+    let view: Arc<str> = VIEW.into();
+    let targets: Vec<Arc<str>> = truth.targets.iter().map(|target| target.id.as_str().into()).collect();
+    let mut points = Vec::new();
+    for (method, results) in plan.measure(&image, &starts) {
+        for ((target, truth), result) in targets.iter().zip(&truth.targets).zip(results) {
+            let outcome = match result {
+                Ok(found) => {
+                    let error = (found.position.x - truth.at.x, found.position.y - truth.at.y);
+                    Outcome::Measured { position: found.position, error: Some(error) }
+                }
+                Err(rejection) => Outcome::Rejected(rejection),
+            };
+            points.push(PointResult { view: view.clone(), target: target.clone(), method, outcome });
+        }
+    }
+    Ok(Trial { number, points, missed_views: Vec::new() })
+}
+
+/// The scene of a trial, where its phase put it.
+pub fn trial_truth(subject: &SceneSubject, key: Key<'_>) -> Scene {
+    match subject.phase {
+        Phase::Fixed => subject.scene.clone(),
+        Phase::Uniform => {
+            let mut rng = stream(key, Purpose::Phase);
+            let (dx, dy) = (rng.random::<f64>() - 0.5, rng.random::<f64>() - 0.5);
+            subject.scene.shifted(dx, dy)
+        }
+    }
+}
+
+/// The image of a trial: rendered, spoiled, quantised.
+pub fn trial_image(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Image {
+    let mut image = match subject.pixels {
+        Pixels::Area => render(truth),
+        Pixels::Centre => draw(truth),
+    };
+    add_grey_noise(&mut image, subject.grey_noise, &mut stream(key, Purpose::GreyNoise));
+    if let Some(bits) = subject.bits {
+        quantise(&mut image, bits);
+    }
+    image
+}
+
+fn starts(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Vec<Start> {
+    let positions: Vec<_> = match &subject.starts {
+        Starts::Given(positions) => positions.clone(),
+        Starts::Pointed(hand) => {
+            let point = |target: &calibench_model::SceneTarget| {
+                hand.point(target.at, &mut stream(Key { target: &target.id, ..key }, Purpose::Pointing))
+            };
+            truth.targets.iter().map(point).collect()
+        }
+    };
+    let with_kind = |(position, target): (_, &calibench_model::SceneTarget)| Start { kind: Some(target.kind), ..Start::at(position) };
+    positions.into_iter().zip(&truth.targets).map(with_kind).collect()
+}

@@ -1,0 +1,237 @@
+//! From the tables of a file to a checked scenario. All mistakes that can be told apart are reported together.
+
+use std::ops::Range;
+
+use calibench_measure::{Board, Registry};
+use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
+use calibench_synth::overlap::{crosses_itself, overlap};
+use calibench_synth::pointing::Hand;
+use toml::Spanned;
+use toml::de::DeTable;
+
+use super::methods::methods;
+use super::problem::{Problem, Problems};
+use super::section::Section;
+use super::wire::{Coordinate, Head, PhotographsWire, PolygonWire, SceneWire, TargetWire};
+use super::{PhotographsSubject, Scenario, SceneSubject, Starts, Subject};
+
+/// The largest image, px: 400 megapixels take about 8 GB to render.
+const MOST_PIXELS: usize = 400_000_000;
+
+/// The keys of the file's top level that are tables of their own.
+pub const TOP_TABLES: [&str; 3] = ["method", "scene", "photographs"];
+/// The keys of `[scene]` that are lists of tables.
+pub const SCENE_TABLES: [&str; 2] = ["polygon", "target"];
+
+/// Reads a scenario called `name` from the `text` of `file`, with the methods of `registry`.
+///
+/// # Errors
+/// Every mistake with its place in the text.
+pub fn parse(name: &str, file: &str, text: &str, registry: &Registry) -> Result<Scenario, Problems> {
+    let mut problems = Vec::new();
+    let scenario = read(name, text, registry, &mut problems);
+    match scenario {
+        Some(scenario) if problems.is_empty() => Ok(scenario),
+        _ => {
+            problems.sort_by_key(|problem| problem.span.start);
+            Err(Problems { file: file.to_owned(), text: text.to_owned(), problems })
+        }
+    }
+}
+
+fn read(name: &str, text: &str, registry: &Registry, problems: &mut Vec<Problem>) -> Option<Scenario> {
+    let (root, errors) = DeTable::parse_recoverable(text);
+    if !errors.is_empty() {
+        problems.extend(errors.iter().map(|error| Problem::new(error.span().unwrap_or(0..0), error.message())));
+        return None;
+    }
+    let mut root = Section { name: "the scenario", span: 0..text.lines().next().map_or(0, str::len), table: root.into_inner() };
+    let listed = root.take_tables("method", "[[method]]", problems);
+    let methods_missing = listed.as_ref().is_none_or(Vec::is_empty);
+    let scene = root.take_table("scene", "[scene]", problems);
+    let photographs = root.take_table("photographs", "[photographs]", problems);
+    let start = root.span.clone();
+    if methods_missing && problems.is_empty() {
+        problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
+    }
+    let methods = methods(listed.unwrap_or_default(), registry, problems);
+    let head: Option<Head> = root.read(&TOP_TABLES, problems);
+    let subject = match (scene, photographs) {
+        (Some(scene), None) => read_scene(scene, problems).map(Subject::Scene),
+        (None, Some(photographs)) => read_photographs(photographs, problems).map(Subject::Photographs),
+        (Some(_), Some(second)) => {
+            problems.push(Problem::new(second.span, "both [scene] and [photographs]: expected one of them"));
+            None
+        }
+        (None, None) => {
+            problems.push(Problem::new(start, "the scenario has nothing to measure").help("add a [scene] or a [photographs] table"));
+            None
+        }
+    };
+    let (head, subject) = (head?, subject?);
+    let trials_span = head.trials.as_ref().map(Spanned::span);
+    let trials = head.trials.map_or(1, |trials| trials.into_inner().0);
+    let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));
+    let scenario = Scenario { name: name.to_owned(), why, source, seed: head.seed.0, trials, methods, subject, text: text.to_owned() };
+    if trials > 1 && scenario.is_deterministic() {
+        let problem = Problem::new(trials_span.unwrap_or(0..0), format!("{trials} trials of a scenario in which nothing is random"));
+        problems.push(problem.help("expected 1, or `grey_noise`, `phase = \"uniform\"` or [scene.pointing]"));
+    }
+    Some(scenario)
+}
+
+fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> String {
+    if value.get_ref().trim().is_empty() {
+        problems.push(Problem::new(value.span(), format!("`{key}` is empty: expected a sentence")));
+    }
+    value.into_inner()
+}
+
+fn read_photographs(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<PhotographsSubject> {
+    let wire: PhotographsWire = section.read(&[], problems)?;
+    let files_span = wire.files.span();
+    let files = wire.files.into_inner();
+    if files.is_empty() {
+        problems.push(Problem::new(files_span, "`files` is empty: expected at least one photograph"));
+        return None;
+    }
+    if let Some(twice) = files.iter().enumerate().find(|(i, file)| files[..*i].contains(file)) {
+        problems.push(Problem::new(files_span, format!("photograph `{}` is listed twice; expected each once", twice.1)));
+    }
+    let board = wire.board.get_ref().parse::<Board>();
+    let board = board.map_err(|error| problems.push(Problem::new(wire.board.span(), error.to_string()))).ok()?;
+    Some(PhotographsSubject { folder: wire.folder.into_inner(), files, board })
+}
+
+fn read_scene(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<SceneSubject> {
+    let polygons = section.take_tables("polygon", "[[scene.polygon]]", problems).unwrap_or_default();
+    let targets = section.take_tables("target", "[[scene.target]]", problems).unwrap_or_default();
+    let span = section.span.clone();
+    for (missing, list) in [("polygon", polygons.is_empty()), ("target", targets.is_empty())] {
+        if list {
+            problems.push(Problem::new(span.clone(), format!("[scene] has no {missing}")).help(format!("add a [[scene.{missing}]] table")));
+        }
+    }
+    let read = |sections: Vec<Section<'_>>, problems: &mut Vec<Problem>| {
+        sections.into_iter().filter_map(|s| s.read::<PolygonWire>(&[], problems)).collect::<Vec<_>>()
+    };
+    let polygons = read(polygons, problems);
+    let targets: Vec<TargetWire> = targets.into_iter().filter_map(|s| s.read(&[], problems)).collect();
+    let wire: SceneWire = section.read(&SCENE_TABLES, problems)?;
+    unique(polygons.iter().map(|p| &p.id), "polygon", problems);
+    unique(targets.iter().map(|t| &t.id), "target", problems);
+    check_size(&wire, problems);
+    let (width, height) = (wire.width.get_ref().0, wire.height.get_ref().0);
+    let areas = areas(&polygons, problems);
+    let mut scene = Scene { width, height, background: wire.background.0, polygons: areas, targets: Vec::new() };
+    let mut given = Vec::new();
+    let hand = wire.pointing.as_ref().map(|p| Hand { sigma: p.get_ref().sigma.0, whole_pixels: p.get_ref().whole_pixels });
+    for target in &targets {
+        given.extend(check_start(target, hand.is_some(), problems));
+        scene.targets.extend(check_target(target, &scene, problems));
+    }
+    let phase = wire.phase.unwrap_or_default();
+    if phase == super::Phase::Uniform && hand.is_none() {
+        problems
+            .push(Problem::new(span, "`phase = \"uniform\"` moves the targets: their starts must move too").help("add [scene.pointing]"));
+    }
+    let starts = hand.map_or(Starts::Given(given), Starts::Pointed);
+    let pixels = wire.pixels.unwrap_or_default();
+    Some(SceneSubject {
+        scene,
+        starts,
+        pixels,
+        bits: wire.bits.map(|bits| bits.0),
+        grey_noise: wire.grey_noise.map_or(0.0, |n| n.0),
+        phase,
+    })
+}
+
+fn unique<'a>(ids: impl Iterator<Item = &'a Spanned<String>>, what: &str, problems: &mut Vec<Problem>) {
+    let mut seen: Vec<&str> = Vec::new();
+    for id in ids {
+        if seen.contains(&id.get_ref().as_str()) {
+            problems.push(Problem::new(id.span(), format!("{what} `{}` stands here a second time; expected each id once", id.get_ref())));
+        }
+        seen.push(id.get_ref());
+    }
+}
+
+fn check_size(wire: &SceneWire, problems: &mut Vec<Problem>) {
+    let (width, height) = (wire.width.get_ref().0, wire.height.get_ref().0);
+    if width * height > MOST_PIXELS {
+        let gigabytes = width as f64 * height as f64 * 20.0 / 1e9;
+        let message = format!("an image of {width} x {height} px needs about {gigabytes:.0} GB: expected at most 400 megapixels");
+        problems.push(Problem::new(span_of_both(wire.width.span(), wire.height.span()), message));
+    }
+}
+
+fn span_of_both(a: Range<usize>, b: Range<usize>) -> Range<usize> {
+    a.start.min(b.start)..a.end.max(b.end)
+}
+
+fn point(at: &[Coordinate; 2]) -> PixelPoint {
+    PixelPoint::new(at[0].0, at[1].0)
+}
+
+fn areas(wires: &[PolygonWire], problems: &mut Vec<Problem>) -> Vec<Polygon> {
+    let mut areas: Vec<Polygon> = Vec::new();
+    for wire in wires {
+        let vertices: Vec<PixelPoint> = wire.vertices.get_ref().iter().map(point).collect();
+        let (span, count) = (wire.vertices.span(), vertices.len());
+        let area = Polygon { id: wire.id.get_ref().clone(), vertices, grey: wire.grey.0 };
+        let wrong = if count < 3 {
+            Some(format!("a polygon has at least 3 vertices, found {count}"))
+        } else if area.doubled_area().abs() < 1e-9 {
+            Some("the polygon has no area".to_owned())
+        } else if let Some(at) = crosses_itself(&area) {
+            Some(format!("the polygon crosses or touches itself at ({}, {})", at.x, at.y))
+        } else {
+            let met = areas.iter().find_map(|other| overlap(&area, other).map(|at| (other, at)));
+            met.map(|(other, at)| format!("polygon `{}` overlaps polygon `{}` at ({:.3}, {:.3})", area.id, other.id, at.x, at.y))
+        };
+        match wrong {
+            Some(message) => problems.push(Problem::new(span, message)),
+            None => areas.push(area),
+        }
+    }
+    areas
+}
+
+fn check_start(wire: &TargetWire, pointed: bool, problems: &mut Vec<Problem>) -> Option<PixelPoint> {
+    match (&wire.start, pointed) {
+        (Some(start), false) => Some(point(start.get_ref())),
+        (None, true) => None,
+        (Some(start), true) => {
+            problems.push(Problem::new(start.span(), "`start` beside [scene.pointing]: expected one of them"));
+            None
+        }
+        (None, false) => {
+            let problem = Problem::new(wire.id.span(), format!("target `{}` has no `start`", wire.id.get_ref()));
+            problems.push(problem.help("give its `start`, or say in [scene.pointing] how a hand points at it"));
+            None
+        }
+    }
+}
+
+fn check_target(wire: &TargetWire, scene: &Scene, problems: &mut Vec<Problem>) -> Option<SceneTarget> {
+    let at = point(wire.at.get_ref());
+    let kind = wire.kind.get_ref().parse::<TargetKind>();
+    let kind = kind.map_err(|error| {
+        let names = TargetKind::ALL.map(TargetKind::name);
+        problems.push(Problem::new(wire.kind.span(), error.to_string()).nearest(wire.kind.get_ref(), names));
+    });
+    let corner = at.to_corner();
+    if corner.x < 0.0 || corner.y < 0.0 || corner.x > scene.width as f64 || corner.y > scene.height as f64 {
+        let message = format!("target `{}` lies outside the image of {} x {} px", wire.id.get_ref(), scene.width, scene.height);
+        problems.push(Problem::new(wire.at.span(), message));
+    } else if matches!(kind, Ok(TargetKind::Corner | TargetKind::ChessCorner)) {
+        let vertices = scene.polygons.iter().flat_map(|polygon| &polygon.vertices);
+        let nearest = vertices.min_by(|a, b| a.distance(at).total_cmp(&b.distance(at)));
+        if let Some(vertex) = nearest.filter(|vertex| vertex.distance(at) > 1e-9) {
+            let message = format!("target `{}` at ({}, {}) is no vertex of a polygon", wire.id.get_ref(), at.x, at.y);
+            problems.push(Problem::new(wire.at.span(), message).help(format!("the nearest vertex is ({}, {})", vertex.x, vertex.y)));
+        }
+    }
+    Some(SceneTarget { id: wire.id.get_ref().clone(), kind: kind.ok()?, at })
+}

@@ -1,0 +1,94 @@
+//! Scenarios: what is run, and why. TOML files, checked once into these types.
+
+pub mod catalogue;
+mod check;
+mod methods;
+pub mod problem;
+pub mod schema;
+mod section;
+mod wire;
+
+use calibench_measure::{Board, Configured};
+use calibench_model::{PixelPoint, Scene};
+use calibench_synth::pointing::Hand;
+
+pub use check::parse;
+pub use problem::{Problem, Problems};
+pub use wire::{Phase, Pixels};
+
+/// A checked scenario.
+pub struct Scenario {
+    /// Its name: its path below the scenario folder without `.toml`.
+    pub name: String,
+    /// What it is to show.
+    pub why: String,
+    /// Where it comes from.
+    pub source: String,
+    /// The seed of all its random numbers.
+    pub seed: u64,
+    /// How many trials.
+    pub trials: u64,
+    /// The methods, with distinct labels.
+    pub methods: Vec<Configured>,
+    /// What is measured.
+    pub subject: Subject,
+    /// The text of its file.
+    pub text: String,
+}
+
+/// What a scenario measures.
+pub enum Subject {
+    /// A rendered scene, whose truth is known.
+    Scene(SceneSubject),
+    /// Photographs, of which no truth is known.
+    Photographs(PhotographsSubject),
+}
+
+/// A rendered scene and how its images come about.
+pub struct SceneSubject {
+    /// The scene of phase zero.
+    pub scene: Scene,
+    /// Where measuring starts.
+    pub starts: Starts,
+    /// How the scene becomes pixels.
+    pub pixels: Pixels,
+    /// Quantisation.
+    pub bits: Option<u32>,
+    /// Standard deviation of the grey-value noise, fraction of full scale.
+    pub grey_noise: f64,
+    /// Where the scene lies on the pixel grid.
+    pub phase: Phase,
+}
+
+/// Approximate positions.
+pub enum Starts {
+    /// One for each target, as the scenario gives them.
+    Given(Vec<PixelPoint>),
+    /// Pointed at anew in each trial.
+    Pointed(Hand),
+}
+
+/// Photographs of a chessboard.
+pub struct PhotographsSubject {
+    /// Their folder, as written.
+    pub folder: String,
+    /// Their names.
+    pub files: Vec<String>,
+    /// The board.
+    pub board: Board,
+}
+
+impl Scenario {
+    /// Is there nothing random in it? Its figures are then the same in every trial and for every seed.
+    pub fn is_deterministic(&self) -> bool {
+        match &self.subject {
+            Subject::Scene(scene) => scene.grey_noise == 0.0 && scene.phase == Phase::Fixed && matches!(scene.starts, Starts::Given(_)),
+            Subject::Photographs(_) => true,
+        }
+    }
+
+    /// The part of the name before the first `/`: the folder, and the report.
+    pub fn family(&self) -> &str {
+        self.name.split('/').next().unwrap_or(&self.name)
+    }
+}

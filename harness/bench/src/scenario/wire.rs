@@ -1,0 +1,218 @@
+//! The tables of a scenario file as they are written. The docs of fields become the descriptions of the JSON Schema.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use toml::Spanned;
+
+/// A number or count with bounds, NaN excluded; the bounds are part of the error and of the schema.
+macro_rules! bounded {
+    ($($(#[$doc:meta])* $name:ident($inner:ty), $wire:ident $text:literal, $min:expr, $max:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Deserialize)]
+        #[serde(try_from = $text)]
+        pub struct $name(pub $inner);
+
+        impl TryFrom<$wire> for $name {
+            type Error = String;
+
+            fn try_from(value: $wire) -> Result<Self, String> {
+                let (min, max): ($wire, $wire) = ($min, $max);
+                let form = if $text == "i64" { "whole number" } else { "number" };
+                if value >= min && value <= max {
+                    Ok(Self(value as $inner))
+                } else {
+                    Err(format!("expected a {form} from {min} to {max}, found {value}"))
+                }
+            }
+        }
+
+        impl JsonSchema for $name {
+            fn inline_schema() -> bool {
+                true
+            }
+
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                let form = if $text == "i64" { "integer" } else { "number" };
+                let (min, max): ($wire, $wire) = ($min, $max);
+                json_schema!({ "type": form, "minimum": min, "maximum": max })
+            }
+        }
+    )*};
+}
+
+bounded! {
+    /// A grey value as a fraction of full scale.
+    Grey(f64), f64 "f64", 0.0, 1.0;
+    /// A standard deviation of grey values, fraction of full scale.
+    GreyNoise(f64), f64 "f64", 0.0, 1.0;
+    /// An image coordinate, px.
+    Coordinate(f64), f64 "f64", -1e6, 1e6;
+    /// A standard deviation of pointing, px.
+    HandSigma(f64), f64 "f64", 0.0, 100.0;
+    /// Columns or rows.
+    Side(usize), i64 "i64", 1, 1_000_000;
+    /// How many trials.
+    Trials(u64), i64 "i64", 1, 1_000_000;
+    /// A seed.
+    Seed(u64), i64 "i64", 0, i64::MAX;
+}
+
+/// A scenario: what is measured with which methods, and why.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Head {
+    /// What this scenario is to show, in a sentence or two.
+    #[schemars(with = "String")]
+    pub why: Spanned<String>,
+    /// Where it comes from: paper, figure, table, data set.
+    #[schemars(with = "String")]
+    pub source: Spanned<String>,
+    /// Seed of all random numbers, chosen before looking at results and never changed to pass.
+    pub seed: Seed,
+    /// Number of trials; each has its own phase, noise and pointing. Default 1.
+    #[schemars(with = "Option<Trials>")]
+    pub trials: Option<Spanned<Trials>>,
+}
+
+/// Areas of constant grey on a uniform background, rendered exactly.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SceneWire {
+    /// Columns of the image.
+    #[schemars(with = "Side")]
+    pub width: Spanned<Side>,
+    /// Rows of the image.
+    #[schemars(with = "Side")]
+    pub height: Spanned<Side>,
+    /// Grey value between the polygons, fraction of full scale.
+    pub background: Grey,
+    /// `area` (default): a pixel is the exact mean over its area. `centre`: it has the grey value at its centre, as drawing programs make it.
+    pub pixels: Option<Pixels>,
+    /// Quantisation: 8, 12 or 16 bits. Default: none.
+    pub bits: Option<Bits>,
+    /// Standard deviation of the white Gaussian grey-value noise, fraction of full scale. Default 0.
+    pub grey_noise: Option<GreyNoise>,
+    /// `fixed` (default), or `uniform`: each trial moves the whole scene by a random part of a pixel.
+    pub phase: Option<Phase>,
+    /// How a hand points at the targets. Without it, every target gives its `start`.
+    #[schemars(with = "Option<PointingWire>")]
+    pub pointing: Option<Spanned<PointingWire>>,
+}
+
+/// Bits of a grey value.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "i64")]
+pub struct Bits(pub u32);
+
+impl TryFrom<i64> for Bits {
+    type Error = String;
+
+    fn try_from(bits: i64) -> Result<Self, String> {
+        match bits {
+            8 | 12 | 16 => Ok(Self(bits as u32)),
+            _ => Err(format!("expected 8, 12 or 16 bits, found {bits}")),
+        }
+    }
+}
+
+impl JsonSchema for Bits {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Bits".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "enum": [8, 12, 16] })
+    }
+}
+
+/// How the scene becomes pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum Pixels {
+    /// The exact mean over the pixel's area.
+    #[default]
+    Area,
+    /// The grey value at the pixel's centre.
+    Centre,
+}
+
+/// Where the scene lies on the pixel grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum Phase {
+    /// As given.
+    #[default]
+    Fixed,
+    /// Moved in each trial by a uniform random part of a pixel, per axis from -0.5 to 0.5 px.
+    Uniform,
+}
+
+/// A hand that points at targets.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
+pub struct PointingWire {
+    /// Standard deviation of the hand per axis, px.
+    pub sigma: HandSigma,
+    /// Does the pointer stop at whole pixels?
+    pub whole_pixels: bool,
+}
+
+/// An area of constant grey.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PolygonWire {
+    /// Its name.
+    #[schemars(with = "String")]
+    pub id: Spanned<String>,
+    /// Its grey value, fraction of full scale.
+    pub grey: Grey,
+    /// Its vertices [x, y], px; pixel centres are whole numbers, y points down. At least three, not crossing itself or another polygon.
+    #[schemars(with = "Vec<[Coordinate; 2]>")]
+    pub vertices: Spanned<Vec<[Coordinate; 2]>>,
+}
+
+/// A point to be measured.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetWire {
+    /// Its name in records and tables.
+    #[schemars(with = "String")]
+    pub id: Spanned<String>,
+    /// What it is: corner or chess_corner (a vertex of a polygon), junction, cross, disc, square or triangle.
+    #[schemars(with = "String")]
+    pub kind: Spanned<String>,
+    /// Its true position [x, y], px.
+    #[schemars(with = "[Coordinate; 2]")]
+    pub at: Spanned<[Coordinate; 2]>,
+    /// Where measuring starts [x, y], px. Only without `[scene.pointing]`.
+    #[schemars(with = "Option<[Coordinate; 2]>")]
+    pub start: Option<Spanned<[Coordinate; 2]>>,
+}
+
+/// Photographs of a chessboard that somebody took: without truth.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PhotographsWire {
+    /// Folder of the photographs, below the data folder (see the README) or absolute. If it is absent the scenario is `unavailable`.
+    #[schemars(with = "String")]
+    pub folder: Spanned<String>,
+    /// File names, in the order of the report.
+    #[schemars(with = "Vec<String>")]
+    pub files: Spanned<Vec<String>>,
+    /// The chessboard's inner corners, as in `9x6`.
+    #[schemars(with = "String")]
+    pub board: Spanned<String>,
+}
