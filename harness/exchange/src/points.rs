@@ -71,15 +71,18 @@ pub fn read_points(path: &Path) -> Result<Vec<PointRow>, PointFileError> {
 ///
 /// # Errors
 /// As [`read_points`].
-pub fn parse_points(file: &str, input: impl Read) -> Result<Vec<PointRow>, PointFileError> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(input);
+pub fn parse_points(file: &str, mut input: impl Read) -> Result<Vec<PointRow>, PointFileError> {
+    let mut text = Vec::new();
+    let unreadable = |e: std::io::Error| PointFileError { file: file.to_owned(), line: None, column: None, problem: e.to_string() };
+    input.read_to_end(&mut text).map_err(unreadable)?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
     let header = reader.headers().map_err(|error| csv_error(file, &error))?.clone();
     let columns = Columns::new(file, &header)?;
     let mut seen: HashMap<(String, String), u64> = HashMap::new();
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| csv_error(file, &error))?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let line = line_of(&text, &record);
         let row = Cells { file, columns: &columns, record: &record, line }.row()?;
         if let Some(earlier) = seen.insert((row.image.clone(), row.target.clone()), line) {
             let problem = format!("target `{}` of image `{}` is already on line {earlier}; expected each once", row.target, row.image);
@@ -92,6 +95,13 @@ pub fn parse_points(file: &str, input: impl Read) -> Result<Vec<PointRow>, Point
         return Err(PointFileError { file: file.to_owned(), line: None, column: None, problem });
     }
     Ok(rows)
+}
+
+/// The line of a record: the reader's own count starts at the empty lines before it.
+fn line_of(text: &[u8], record: &StringRecord) -> u64 {
+    let Some(position) = record.position() else { return 0 };
+    let before = text[position.byte() as usize..].iter().take_while(|byte| matches!(byte, b'\n' | b'\r'));
+    position.line() + before.filter(|byte| **byte == b'\n').count() as u64
 }
 
 fn csv_error(file: &str, error: &csv::Error) -> PointFileError {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use calibench_model::{Measurement, Rejection};
+use calibench_model::{Measurement, Rejection, Start};
 
 use crate::points::{COVARIANCE, PointRow, REQUIRED, RESULT, SHAPE};
 
@@ -43,6 +43,27 @@ pub fn write_measured<'a>(output: impl Write, rows: impl IntoIterator<Item = Mea
     writer.flush()
 }
 
+/// Writes a point file without covariances: image, target, x, y and the shape.
+///
+/// # Errors
+/// What the output refuses.
+pub fn write_points<'a>(output: impl Write, rows: impl IntoIterator<Item = &'a PointRow>) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(output);
+    writer.write_record([&REQUIRED[..], &SHAPE].concat())?;
+    for row in rows {
+        let mut cells = vec![row.image.clone(), row.target.clone()];
+        numbers(&mut cells, Some([row.start.position.x, row.start.position.y]));
+        shape(&mut cells, &row.start);
+        writer.write_record(cells)?;
+    }
+    writer.flush()
+}
+
+fn shape(cells: &mut Vec<String>, start: &Start) {
+    cells.push(start.kind.map_or(String::new(), |kind| kind.to_string()));
+    numbers(cells, start.affine.map(|a| [a.axx, a.axy, a.ayx, a.ayy]));
+}
+
 fn cells(row: &MeasuredRow<'_>) -> Vec<String> {
     let mut cells = vec![row.given.image.clone(), row.given.target.clone()];
     let (position, covariance, status, reason) = match &row.outcome {
@@ -50,11 +71,9 @@ fn cells(row: &MeasuredRow<'_>) -> Vec<String> {
         Outcome::Rejected(rejection) => (None, None, "rejected", rejection.to_string()),
         Outcome::Unavailable(why) => (None, None, "unavailable", why.clone()),
     };
-    let start = &row.given.start;
     numbers(&mut cells, position.map(|p| [p.x, p.y]));
     numbers(&mut cells, covariance.map(|s| [s.sxx, s.sxy, s.syy]));
-    cells.push(start.kind.map_or(String::new(), |kind| kind.to_string()));
-    numbers(&mut cells, start.affine.map(|a| [a.axx, a.axy, a.ayx, a.ayy]));
+    shape(&mut cells, &row.given.start);
     cells.extend([row.method.to_owned(), status.to_owned(), reason]);
     cells
 }
@@ -86,6 +105,9 @@ mod tests {
         let mut text = Vec::new();
         write_measured(&mut text, [row(Outcome::Rejected(Rejection::Border)), row(Outcome::Unavailable("no".into()))]).unwrap();
         let text = String::from_utf8(text).unwrap();
+        let mut points = Vec::new();
+        write_points(&mut points, &given).unwrap();
+        assert_eq!(parse_points("r", &points[..]).unwrap(), given);
         assert!(text.contains("\"m:k=1,j=2\",rejected,border\n") && text.contains("unavailable,no\n"), "{text}");
     }
 }
