@@ -1,7 +1,12 @@
 //! Scenarios, runs, records, gates, reports and the command line.
 
+pub mod cli;
 pub mod data;
+pub mod published;
 pub mod records;
+pub mod report;
 pub mod results;
 pub mod run;
 pub mod scenario;
+pub mod score;
+pub mod store;

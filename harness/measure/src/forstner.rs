@@ -25,15 +25,17 @@ pub struct Forstner {
     window: usize,
 }
 
+/// Its parameters; every operator that works on one window has the same.
+pub const PARAMETERS: &[Parameter] = &[Parameter {
+    name: "window",
+    about: "side of the window, px",
+    domain: Domain::Odd { min: 3, max: 31 },
+    default: 11.0,
+    always_shown: true,
+}];
+
 /// The method's entry.
 pub fn method() -> Method {
-    const PARAMETERS: &[Parameter] = &[Parameter {
-        name: "window",
-        about: "side of the window, px",
-        domain: Domain::Odd { min: 3, max: 31 },
-        default: 11.0,
-        always_shown: true,
-    }];
     Method {
         name: "forstner",
         about: "point closest to all edge lines of the window, weighted by the squared Sobel gradient, one pass",

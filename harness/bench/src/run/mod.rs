@@ -14,7 +14,7 @@ use thiserror::Error;
 use crate::results::{MethodInfo, Trial};
 use crate::scenario::{Scenario, Subject};
 
-pub use scene::{trial_image, trial_truth};
+pub use scene::{VIEW, trial_image, trial_truth};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 const BATCH: u64 = 32;

@@ -14,7 +14,7 @@ use crate::results::{Outcome, PointResult, Trial};
 use crate::scenario::{Phase, Pixels, SceneSubject, Starts};
 
 /// The name of the only view.
-const VIEW: &str = "image";
+pub const VIEW: &str = "image";
 
 pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };

@@ -1,0 +1,107 @@
+//! `calibench detect`: a chessboard's corners as approximate positions.
+
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::{PointRow, read_photo, write_points};
+use calibench_measure::{Board, BoardDetector};
+use calibench_model::{Affine, PixelPoint, Start, TargetKind};
+use clap::Args;
+use rayon::prelude::*;
+
+use super::Failure;
+use super::context::Context;
+use super::progress::Progress;
+
+#[derive(Args)]
+pub struct Detect {
+    /// Photographs: PNG, JPEG, TIFF or PNM, 8 or 16 bits
+    #[arg(required = true, value_name = "PHOTO")]
+    photos: Vec<PathBuf>,
+    /// The chessboard's inner corners, as in 9x6
+    #[arg(long, value_name = "COLUMNSxROWS")]
+    chessboard: Board,
+    /// Where the points go [default: standard output]
+    #[arg(short, long, value_name = "CSV")]
+    output: Option<PathBuf>,
+}
+
+impl Detect {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let detector = context.toolbox.detector.as_deref();
+        let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
+        let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
+        let one = |path: &PathBuf| {
+            let rows = rows(detector, path, self.chessboard);
+            progress.step();
+            rows
+        };
+        let found = self.photos.par_iter().map(one).collect::<Result<Vec<_>, Failure>>()?;
+        let seen = found.iter().filter(|rows| !rows.is_empty()).count();
+        progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
+        for (path, rows) in self.photos.iter().zip(&found) {
+            if rows.is_empty() {
+                eprintln!("{}: no board of {} x {} inner corners found", path.display(), self.chessboard.columns, self.chessboard.rows);
+            }
+        }
+        if seen == 0 {
+            return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
+        }
+        match &self.output {
+            Some(path) => {
+                let write = write_atomically(path, |file| write_points(file, found.iter().flatten()));
+                write.map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+            }
+            None => {
+                let mut bytes = Vec::new();
+                write_points(&mut bytes, found.iter().flatten())?;
+                super::print(&String::from_utf8_lossy(&bytes))
+            }
+        }
+    }
+}
+
+fn rows(detector: &dyn BoardDetector, path: &Path, board: Board) -> Result<Vec<PointRow>, Failure> {
+    let image = read_photo(path)?;
+    let corners = detector.detect(&image, board).unwrap_or_default();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let row = |(index, position): (usize, &PixelPoint)| PointRow {
+        image: name.clone().into_owned(),
+        target: board.target(index),
+        start: Start { position: *position, kind: Some(TargetKind::ChessCorner), affine: Some(affine(&corners, board, index)) },
+        covariance: None,
+    };
+    Ok(corners.iter().enumerate().map(row).collect())
+}
+
+/// One square along the rows and one along the columns, px, from the neighbouring corners.
+fn affine(corners: &[PixelPoint], board: Board, index: usize) -> Affine {
+    let (column, row) = (index % board.columns, index / board.columns);
+    let at = |column: usize, row: usize| corners[row * board.columns + column];
+    let step = |low: PixelPoint, high: PixelPoint, squares: usize| {
+        let n = squares.max(1) as f64;
+        ((high.x - low.x) / n, (high.y - low.y) / n)
+    };
+    let (west, east) = (column.saturating_sub(1), (column + 1).min(board.columns - 1));
+    let (north, south) = (row.saturating_sub(1), (row + 1).min(board.rows - 1));
+    let (axx, ayx) = step(at(west, row), at(east, row), east - west);
+    let (axy, ayy) = step(at(column, north), at(column, south), south - north);
+    Affine { axx, axy, ayx, ayy }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_affine_start_is_one_square() {
+        let board: Board = "4x3".parse().unwrap();
+        let corners: Vec<PixelPoint> = (0..12)
+            .map(|i| (f64::from(i % 4), f64::from(i / 4)))
+            .map(|(u, v)| PixelPoint::new(20.0 * u - 3.0 * v, 2.0 * u + 18.0 * v))
+            .collect();
+        for index in 0..12 {
+            assert_eq!(affine(&corners, board, index), Affine { axx: 20.0, axy: -3.0, ayx: 2.0, ayy: 18.0 });
+        }
+    }
+}

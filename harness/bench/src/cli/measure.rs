@@ -1,0 +1,120 @@
+//! `calibench measure`: points in a user's own photographs.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::{MeasuredRow, Outcome, PointRow, read_photo, read_points, write_measured};
+use calibench_measure::Configured;
+use calibench_model::Start;
+use clap::Args;
+use rayon::prelude::*;
+
+use super::Failure;
+use super::context::Context;
+use super::progress::Progress;
+
+#[derive(Args)]
+pub struct Measure {
+    /// Photographs: PNG, JPEG, TIFF or PNM, 8 or 16 bits
+    #[arg(required = true, value_name = "PHOTO")]
+    photos: Vec<PathBuf>,
+    /// Approximate positions: CSV with image,target,x,y, and optionally sxx,sxy,syy and kind,axx,axy,ayx,ayy
+    #[arg(long, value_name = "CSV")]
+    points: PathBuf,
+    /// The method, as in forstner:window=15; several are measured one after the other
+    #[arg(short, long = "method", value_name = "METHOD", default_value = "forstner")]
+    methods: Vec<String>,
+    /// Where the result goes [default: standard output]
+    #[arg(short, long, value_name = "CSV")]
+    output: Option<PathBuf>,
+}
+
+impl Measure {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let methods = self.methods.iter().map(|text| context.method(text)).collect::<Result<Vec<_>, _>>()?;
+        if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {
+            return Err(Failure::input(format!("-m {}: unavailable: {why}", method.label)));
+        }
+        let points = read_points(&self.points)?;
+        let photos = by_name(&self.photos)?;
+        let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
+        let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); points.len()];
+        for (index, outcome) in measure(&points, &photos, &methods, &progress)? {
+            outcomes[index] = outcome;
+        }
+        let rows = (0..methods.len()).flat_map(|m| {
+            let label = methods[m].label.as_str();
+            let outcome = |i: usize| outcomes[i].get(m).cloned().unwrap_or_else(|| not_given(&points[i]));
+            points.iter().enumerate().map(move |(i, given)| MeasuredRow { given, method: label, outcome: outcome(i) }).collect::<Vec<_>>()
+        });
+        match &self.output {
+            Some(path) => {
+                write_atomically(path, |file| write_measured(file, rows)).map_err(|e| Failure::input(format!("{}: {e}", path.display())))?
+            }
+            None => {
+                let mut bytes = Vec::new();
+                write_measured(&mut bytes, rows)?;
+                super::print(&String::from_utf8_lossy(&bytes))?;
+            }
+        }
+        progress.finish(&summary(&outcomes, &points));
+        Ok(())
+    }
+}
+
+fn not_given(point: &PointRow) -> Outcome {
+    Outcome::Unavailable(format!("photograph {} was not given", point.image))
+}
+
+/// Photographs by file name, which is what point files call them.
+fn by_name(paths: &[PathBuf]) -> Result<HashMap<String, &Path>, Failure> {
+    let mut photos: HashMap<String, &Path> = HashMap::new();
+    for path in paths {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        let name = name.ok_or_else(|| Failure::input(format!("{}: is no photograph", path.display())))?;
+        if let Some(other) = photos.insert(name.clone(), path) {
+            let (a, b) = (other.display(), path.display());
+            return Err(Failure::input(format!(
+                "two photographs are called {name}: {a} and {b}; point files tell them apart by file name"
+            )));
+        }
+    }
+    Ok(photos)
+}
+
+/// (index of the point, one outcome a method). One photograph a thread is in memory.
+fn measure(
+    points: &[PointRow],
+    photos: &HashMap<String, &Path>,
+    methods: &[Configured],
+    progress: &Progress,
+) -> Result<Vec<(usize, Vec<Outcome>)>, Failure> {
+    let one = |(name, path): (&String, &&Path)| -> Result<Vec<(usize, Vec<Outcome>)>, Failure> {
+        let wanted: Vec<usize> = (0..points.len()).filter(|&i| points[i].image == *name).collect();
+        // Read even if no point asks for it: a photograph that cannot be read is a mistake.
+        let image = read_photo(path)?;
+        let starts: Vec<Start> = wanted.iter().map(|&i| points[i].start).collect();
+        let mut outcomes: Vec<(usize, Vec<Outcome>)> = wanted.into_iter().map(|i| (i, Vec::new())).collect();
+        for operator in methods.iter().filter_map(|method| method.operator.as_ref().ok()) {
+            for ((_, outcome), result) in outcomes.iter_mut().zip(operator.measure_all(&image, &starts)) {
+                outcome.push(result.map_or_else(Outcome::Rejected, Outcome::Measured));
+            }
+        }
+        progress.step();
+        Ok(outcomes)
+    };
+    Ok(photos.par_iter().map(one).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+fn summary(outcomes: &[Vec<Outcome>], points: &[PointRow]) -> String {
+    let count = |wanted: fn(&Outcome) -> bool| outcomes.iter().flatten().filter(|o| wanted(o)).count();
+    let measured = count(|o| matches!(o, Outcome::Measured(_)));
+    let rejected = count(|o| matches!(o, Outcome::Rejected(_)));
+    let absent = outcomes.iter().filter(|outcome| outcome.is_empty()).count();
+    let mut text = format!("{measured} measured, {rejected} rejected");
+    if absent > 0 {
+        text.push_str(&format!(", {absent} of {} points are of photographs that were not given", points.len()));
+    }
+    text
+}

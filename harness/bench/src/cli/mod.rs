@@ -1,0 +1,134 @@
+//! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
+
+mod context;
+mod detect;
+mod list;
+mod measure;
+mod progress;
+mod report;
+mod run;
+mod show;
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use calibench_measure::{BoardDetector, Registry};
+use clap::{Parser, Subcommand};
+
+use crate::scenario::Problems;
+use crate::scenario::catalogue::CatalogueError;
+
+/// What a build of calibench can do.
+pub struct Toolbox {
+    /// Its methods.
+    pub registry: Registry,
+    /// Its chessboard detector, if it has one.
+    pub detector: Option<Box<dyn BoardDetector>>,
+}
+
+/// Compares camera calibration methods on images whose truth is known exactly, and on photographs.
+#[derive(Parser)]
+#[command(name = "calibench", version, max_term_width = 110)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// The project's folder, which holds scenarios/ and reference/ [default: found from the current folder upwards]
+    #[arg(long, global = true, value_name = "DIR", env = "CALIBENCH_ROOT")]
+    root: Option<PathBuf>,
+    /// Number of threads [default: all cores]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// No progress, only results and errors
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List what there is
+    List {
+        /// What to list
+        what: list::What,
+    },
+    /// Show a scenario as it is resolved, and write a preview of its image
+    Show(show::Show),
+    /// Run scenarios and write their records
+    Run(run::Run),
+    /// Write reports from records alone; runs nothing
+    Report(report::Report),
+    /// Measure points in photographs
+    Measure(measure::Measure),
+    /// Find a chessboard's corners in photographs: approximate positions for `measure`
+    Detect(detect::Detect),
+    /// Print the JSON Schema of scenario files, for editors
+    Schema,
+}
+
+/// Why a command ends with another exit code than 0.
+enum Failure {
+    /// Bad input, or output that cannot be written: exit code 2.
+    Input(String),
+}
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl Failure {
+    fn input(message: impl Into<String>) -> Self {
+        Self::Input(message.into())
+    }
+}
+
+/// Runs the command line of this process.
+pub fn main(toolbox: &Toolbox) -> ExitCode {
+    let arguments = Arguments::parse();
+    let threads = usize::from(arguments.threads.unwrap_or(0));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Input(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
+    let context = context::Context { root: arguments.root, quiet: arguments.quiet, toolbox };
+    match arguments.command {
+        Command::List { what } => list::list(&context, what),
+        Command::Show(show) => show.run(&context),
+        Command::Run(run) => run.run(&context),
+        Command::Report(report) => report.run(&context),
+        Command::Measure(measure) => measure.run(&context),
+        Command::Detect(detect) => detect.run(&context),
+        Command::Schema => print(&format!("{:#}\n", crate::scenario::schema::schema(&toolbox.registry))),
+    }
+}
+
+/// Prints to standard output; a reader that went away is no error.
+fn print(text: &str) -> Result<(), Failure> {
+    use std::io::{ErrorKind, Write, stdout};
+    match stdout().write_all(text.as_bytes()).and_then(|()| stdout().flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other?),
+    }
+}
+
+/// A scenario's problems as a picture of the lines that they are about.
+fn scenario_failure(error: CatalogueError) -> Failure {
+    match error {
+        CatalogueError::Problems(problems) => Failure::Input(picture(&problems)),
+        other => other.into(),
+    }
+}
+
+fn picture(problems: &Problems) -> String {
+    let count = problems.problems.len();
+    let noun = if count == 1 { "mistake" } else { "mistakes" };
+    format!("{count} {noun} in {}\n{}", problems.file, problems.picture(std::io::stderr().is_terminal()))
+}

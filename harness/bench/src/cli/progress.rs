@@ -1,0 +1,43 @@
+//! Progress: a bar on a terminal, a line elsewhere, nothing when quiet. All on standard error.
+
+use std::io::IsTerminal;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// The progress of one task.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    line: Option<String>,
+}
+
+impl Progress {
+    /// Starts a task of `steps` steps.
+    pub fn start(name: &str, steps: u64, quiet: bool) -> Self {
+        if quiet {
+            return Self { bar: None, line: None };
+        }
+        if !std::io::stderr().is_terminal() {
+            return Self { bar: None, line: Some(name.to_owned()) };
+        }
+        let style = ProgressStyle::with_template("{msg:40} {bar:30} {pos}/{len} {eta}").unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(steps).with_style(style).with_message(name.to_owned());
+        Self { bar: Some(bar), line: None }
+    }
+
+    /// A step is done; from any thread.
+    pub fn step(&self) {
+        self.bar.iter().for_each(|bar| bar.inc(1));
+    }
+
+    /// The task is done, with this to say of it.
+    pub fn finish(self, result: &str) {
+        if let Some(bar) = self.bar {
+            let name = bar.message();
+            bar.finish_and_clear();
+            eprintln!("{name}: {result}");
+        }
+        if let Some(name) = self.line {
+            eprintln!("{name}: {result}");
+        }
+    }
+}

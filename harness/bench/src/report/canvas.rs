@@ -1,0 +1,165 @@
+//! Pictures: enlarged images with marks on them.
+
+use std::io;
+use std::path::Path;
+use std::sync::Once;
+
+use calibench_exchange::atomic::write_atomically;
+use calibench_model::Image;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use plotters::prelude::*;
+use plotters::style::register_font;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Colours that a colour-blind reader can tell apart (Okabe & Ito 2008), dark enough for white paper, in the order of use.
+pub const COLOURS: [RGBColor; 6] = [
+    RGBColor(213, 94, 0),
+    RGBColor(0, 114, 178),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+];
+
+/// The shape of a mark; no two methods of a picture share shape and colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// A hollow square: an approximate position.
+    Square,
+    /// A long upright cross: the truth.
+    Plus,
+    /// A diagonal cross.
+    Cross,
+    /// A circle.
+    Circle,
+    /// A triangle.
+    Triangle,
+    /// A square on its corner.
+    Diamond,
+}
+
+/// The marks of methods, in the order of use.
+pub const METHOD_MARKS: [Mark; 4] = [Mark::Cross, Mark::Circle, Mark::Triangle, Mark::Diamond];
+
+/// Half the size of a mark, px of the picture.
+const MARK: i32 = 7;
+
+/// A picture under way: RGB, 8 bits, white.
+pub struct Canvas {
+    width: u32,
+    height: u32,
+    pixels: Vec<u8>,
+}
+
+impl Canvas {
+    /// A white picture.
+    pub fn new(width: u32, height: u32) -> Self {
+        static FONT: Once = Once::new();
+        FONT.call_once(|| {
+            // The font is compiled in; it is whole.
+            let _ = register_font("sans-serif", FontStyle::Normal, ttf_noto_sans::REGULAR);
+        });
+        Self { width, height, pixels: vec![255; (width * height * 3) as usize] }
+    }
+
+    /// Puts the part of `image` of `side` px from pixel (`left`, `top`) at (`x`, `y`), each pixel `zoom` px wide. Outside the image: hatched white.
+    pub fn enlarge(&mut self, image: &Image, (left, top): (i64, i64), (columns, rows): (u32, u32), zoom: u32, (x, y): (u32, u32)) {
+        for row in 0..rows * zoom {
+            for column in 0..columns * zoom {
+                let (from_x, from_y) = (left + i64::from(column / zoom), top + i64::from(row / zoom));
+                let level = if image.holds(from_x, from_y, 0) {
+                    (image.at(from_x as usize, from_y as usize).clamp(0.0, 1.0) * 255.0).round() as u8
+                } else if (column + row) % 8 == 0 {
+                    200
+                } else {
+                    255
+                };
+                if x + column < self.width && y + row < self.height {
+                    let at = (((y + row) * self.width + x + column) * 3) as usize;
+                    self.pixels[at..at + 3].fill(level);
+                }
+            }
+        }
+    }
+
+    /// A mark at (`x`, `y`), on a white rim so that it shows on any grey.
+    pub fn mark(&mut self, mark: Mark, colour: RGBColor, (x, y): (f64, f64)) {
+        let (x, y) = (x.round() as i32, y.round() as i32);
+        self.outline(mark, &WHITE, 5, (x, y));
+        self.outline(mark, &colour, 2, (x, y));
+    }
+
+    fn outline(&mut self, mark: Mark, colour: &RGBColor, width: u32, (x, y): (i32, i32)) {
+        let lines: Vec<Vec<(i32, i32)>> = match mark {
+            Mark::Square => vec![vec![(-MARK, -MARK), (MARK, -MARK), (MARK, MARK), (-MARK, MARK), (-MARK, -MARK)]],
+            Mark::Plus => vec![vec![(-2 * MARK, 0), (2 * MARK, 0)], vec![(0, -2 * MARK), (0, 2 * MARK)]],
+            Mark::Cross => vec![vec![(-MARK, -MARK), (MARK, MARK)], vec![(-MARK, MARK), (MARK, -MARK)]],
+            Mark::Triangle => vec![vec![(0, -MARK), (MARK, MARK), (-MARK, MARK), (0, -MARK)]],
+            Mark::Diamond => vec![vec![(0, -MARK - 2), (MARK + 2, 0), (0, MARK + 2), (-MARK - 2, 0), (0, -MARK - 2)]],
+            Mark::Circle => {
+                let circle = (0..=24).map(|i| f64::from(i) * std::f64::consts::TAU / 24.0);
+                vec![circle.map(|a| ((f64::from(MARK) * a.cos()).round() as i32, (f64::from(MARK) * a.sin()).round() as i32)).collect()]
+            }
+        };
+        let style = ShapeStyle::from(colour).stroke_width(width);
+        self.paint(|area| {
+            for line in &lines {
+                let line: Vec<_> = line.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
+                area.draw(&PathElement::new(line, style)).ok();
+            }
+        });
+    }
+
+    /// A thin dark frame.
+    pub fn frame(&mut self, (x, y): (u32, u32), (width, height): (u32, u32)) {
+        let corners = [(x as i32, y as i32), ((x + width) as i32, (y + height) as i32)];
+        self.paint(|area| {
+            area.draw(&Rectangle::new(corners, BLACK.mix(0.6))).ok();
+        });
+    }
+
+    /// Black text, its left middle at (`x`, `y`).
+    pub fn text(&mut self, text: &str, size: u32, (x, y): (u32, u32)) {
+        self.write_text(text, size, &BLACK, (x as i32, y as i32));
+    }
+
+    /// Black text with a white rim, readable on any grey.
+    pub fn label(&mut self, text: &str, size: u32, (x, y): (u32, u32)) {
+        let (x, y) = (x as i32, y as i32);
+        for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
+            self.write_text(text, size, &WHITE, (x + dx, y + dy));
+        }
+        self.write_text(text, size, &BLACK, (x, y));
+    }
+
+    fn write_text(&mut self, text: &str, size: u32, colour: &RGBColor, at: (i32, i32)) {
+        let style = ("sans-serif", size).into_font().color(colour).pos(Pos::new(HPos::Left, VPos::Center));
+        self.paint(|area| {
+            area.draw(&Text::new(text, at, style)).ok();
+        });
+    }
+
+    /// Its width, px.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    // Drawing into memory can only fail outside the picture, where nothing is to be seen.
+    fn paint(&mut self, draw: impl FnOnce(&DrawingArea<BitMapBackend<'_>, plotters::coord::Shift>)) {
+        let area = BitMapBackend::with_buffer(&mut self.pixels, (self.width, self.height)).into_drawing_area();
+        draw(&area);
+        area.present().ok();
+    }
+
+    /// Writes the picture as PNG.
+    ///
+    /// # Errors
+    /// What the file system refuses.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        write_atomically(path, |file| {
+            let encoder = PngEncoder::new_with_quality(file, CompressionType::Default, FilterType::Adaptive);
+            encoder.write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8).map_err(io::Error::other)
+        })
+    }
+}

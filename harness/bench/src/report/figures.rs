@@ -1,0 +1,133 @@
+//! The two kinds of figure: an overview of an image, and panels that zoom in on points.
+
+use calibench_model::{Image, PixelPoint};
+use plotters::style::{BLACK, RGBColor};
+
+use super::canvas::{COLOURS, Canvas, METHOD_MARKS, Mark};
+
+/// Marks of one kind: their name in the legend, their look.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    /// In the legend.
+    pub name: String,
+    /// Its shape.
+    pub mark: Mark,
+    /// Its colour.
+    pub colour: RGBColor,
+}
+
+impl Layer {
+    /// The truth.
+    pub fn truth() -> Self {
+        Self { name: "truth".into(), mark: Mark::Plus, colour: BLACK }
+    }
+
+    /// Approximate positions.
+    pub fn start() -> Self {
+        Self { name: "approximate position".into(), mark: Mark::Square, colour: BLACK }
+    }
+
+    /// The results of the method in place `index`.
+    pub fn method(label: &str, index: usize) -> Self {
+        Self { name: label.to_owned(), mark: METHOD_MARKS[index % METHOD_MARKS.len()], colour: COLOURS[index % COLOURS.len()] }
+    }
+}
+
+/// A point in a picture: which layer, and where.
+#[derive(Clone, Debug)]
+pub struct MarkAt {
+    /// Index of the layer.
+    pub layer: usize,
+    /// Position in the image.
+    pub at: PixelPoint,
+}
+
+/// A panel: what it shows, and the marks on it.
+pub struct Panel<'a> {
+    /// Its title.
+    pub title: String,
+    /// Its image.
+    pub image: &'a Image,
+    /// Its middle.
+    pub centre: PixelPoint,
+    /// Its marks.
+    pub marks: Vec<MarkAt>,
+}
+
+const LINE: u32 = 26;
+const GAP: u32 = 14;
+
+/// Where `at` lies in a picture that shows the image from pixel (`left`, `top`) with `zoom`.
+fn place(at: PixelPoint, (left, top): (i64, i64), zoom: u32, (x, y): (u32, u32)) -> (f64, f64) {
+    let corner = at.to_corner();
+    let zoom = f64::from(zoom);
+    (f64::from(x) + (corner.x - left as f64) * zoom, f64::from(y) + (corner.y - top as f64) * zoom)
+}
+
+/// The whole image with marks, and a label beside each of `labels`.
+pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], labels: &[(String, PixelPoint)]) -> Canvas {
+    let size = (image.width() as u32, image.height() as u32);
+    let (width, height) = (size.0 * zoom, size.1 * zoom);
+    let (legend_rows, columns) = legend_size(layers, width);
+    let mut canvas = Canvas::new(width + 2 * GAP, height + 2 * GAP + legend_rows * LINE);
+    canvas.enlarge(image, (0, 0), size, zoom, (GAP, GAP));
+    canvas.frame((GAP, GAP), (width, height));
+    for mark in marks {
+        let layer = &layers[mark.layer];
+        canvas.mark(layer.mark, layer.colour, place(mark.at, (0, 0), zoom, (GAP, GAP)));
+    }
+    for (text, at) in labels {
+        let (x, y) = place(*at, (0, 0), zoom, (GAP, GAP));
+        // Below right of the mark, or to its left near the right side.
+        let room = 9 * text.chars().count() as u32 + 14;
+        let left = if x as u32 + room > width { (x as u32).saturating_sub(room + 4) } else { x as u32 + 12 };
+        canvas.label(text, 17, (left, y as u32 + 20));
+    }
+    legend(&mut canvas, layers, columns, height + GAP + GAP / 2);
+    canvas
+}
+
+/// Panels side by side, each showing `side` px (odd) enlarged `zoom` times, `across` in a row, with a legend below.
+pub fn panels(panels: &[Panel<'_>], layers: &[Layer], side: u32, zoom: u32, across: usize) -> Canvas {
+    let across = across.min(panels.len().max(1));
+    let edge = side * zoom;
+    let rows = panels.len().div_ceil(across) as u32;
+    let width = across as u32 * (edge + GAP) + GAP;
+    let (legend_rows, columns) = legend_size(layers, width - 2 * GAP);
+    let mut canvas = Canvas::new(width, rows * (edge + LINE + GAP) + GAP + legend_rows * LINE);
+    for (index, panel) in panels.iter().enumerate() {
+        let x = GAP + (index % across) as u32 * (edge + GAP);
+        let y = GAP + (index / across) as u32 * (edge + LINE + GAP);
+        canvas.text(&panel.title, 16, (x, y + LINE / 2 - 4));
+        let Some((column, row)) = panel.centre.nearest_pixel() else { continue };
+        let first = (column - i64::from(side / 2), row - i64::from(side / 2));
+        canvas.enlarge(panel.image, first, (side, side), zoom, (x, y + LINE));
+        canvas.frame((x, y + LINE), (edge, edge));
+        for mark in &panel.marks {
+            let layer = &layers[mark.layer];
+            let at = place(mark.at, first, zoom, (x, y + LINE));
+            if at.0 >= f64::from(x) && at.0 <= f64::from(x + edge) && at.1 >= f64::from(y + LINE) && at.1 <= f64::from(y + LINE + edge) {
+                canvas.mark(layer.mark, layer.colour, at);
+            }
+        }
+    }
+    legend(&mut canvas, layers, columns, rows * (edge + LINE + GAP) + GAP);
+    canvas
+}
+
+/// Rows of the legend, and the width of one of its columns.
+fn legend_size(layers: &[Layer], width: u32) -> (u32, u32) {
+    let longest = layers.iter().map(|layer| layer.name.chars().count() as u32).max().unwrap_or(0);
+    let column = longest * 9 + 44;
+    let across = (width / column).max(1);
+    ((layers.len() as u32).div_ceil(across), column)
+}
+
+fn legend(canvas: &mut Canvas, layers: &[Layer], column: u32, top: u32) {
+    let across = (canvas.width() / column).max(1);
+    for (index, layer) in (0_u32..).zip(layers) {
+        let (x, y) = (GAP + index % across * column, top + index / across * LINE + LINE / 2);
+        canvas.mark(layer.mark, layer.colour, (f64::from(x) + 14.0, f64::from(y)));
+        canvas.text(&layer.name, 16, (x + 36, y));
+    }
+}

@@ -1,0 +1,101 @@
+//! Records, read for a report.
+
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::read_photo;
+use calibench_measure::Registry;
+use calibench_model::Image;
+use thiserror::Error;
+
+use crate::records::{RecordError, RecordHead, read_records};
+use crate::results::Trial;
+use crate::scenario::{self, Scenario};
+use crate::score::Scores;
+use crate::store::{RECORDS, SCENARIO};
+
+/// All that a report needs of one scenario. Its size does not grow with the number of trials.
+pub struct Loaded {
+    /// The scenario as it was run.
+    pub scenario: Scenario,
+    /// Run and methods.
+    pub head: RecordHead,
+    /// The figures of all trials.
+    pub scores: Scores,
+    /// The first trial, point by point.
+    pub first: Trial,
+    /// Where the images of the first trial are.
+    pub folder: PathBuf,
+}
+
+/// Records that cannot be read.
+#[derive(Debug, Error)]
+pub enum LoadError {
+    /// There are none.
+    #[error("no records of `{0}`: run it first with `calibench run {0}`")]
+    None(String),
+    /// A file that cannot be read.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A file that is not what it should be.
+    #[error("{}: {source}", path.display())]
+    Records {
+        /// Which.
+        path: PathBuf,
+        /// What is wrong.
+        source: RecordError,
+    },
+    /// The scenario as it was run no longer passes the checks.
+    #[error("{0}\nthese records are of an older scenario format: run the scenario again")]
+    Scenario(#[from] scenario::Problems),
+}
+
+/// Reads the records of scenario `name` below the records folder.
+///
+/// # Errors
+/// Records that are absent or not of this version.
+pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, LoadError> {
+    let folder = records.join(name);
+    let path = folder.join(RECORDS);
+    let in_file = |path: PathBuf| move |source| LoadError::File { path, source };
+    let file = match File::open(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(LoadError::None(name.to_owned())),
+        other => other.map_err(in_file(path.clone()))?,
+    };
+    let text_path = folder.join(SCENARIO);
+    let text = std::fs::read_to_string(&text_path).map_err(in_file(text_path.clone()))?;
+    let scenario = scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
+    let mut scores = Scores::default();
+    let mut first = None;
+    let head = read_records(BufReader::new(file), |trial| {
+        scores.add(&trial);
+        first.get_or_insert(trial);
+    });
+    let head = head.map_err(|source| LoadError::Records { path, source })?;
+    scores.methods.resize_with(head.methods.len(), Default::default);
+    Ok(Loaded { scenario, head, scores, first: first.unwrap_or_default(), folder })
+}
+
+impl Loaded {
+    /// The image of view `view` in the first trial, if it was kept.
+    pub fn image(&self, view: &str) -> Option<Image> {
+        read_photo(&self.folder.join(view).with_extension("png")).ok()
+    }
+
+    /// The place of the method with this label.
+    pub fn method(&self, label: &str) -> Option<usize> {
+        self.head.methods.iter().position(|method| &*method.label == label)
+    }
+
+    /// Why nothing was measured, if so: the reason that all methods share.
+    pub fn unavailable(&self) -> Option<&str> {
+        let first = self.head.methods.first()?.unavailable.as_deref()?;
+        self.head.methods.iter().all(|method| method.unavailable.is_some()).then_some(first)
+    }
+}

@@ -1,0 +1,87 @@
+//! Markdown pieces.
+
+use std::fmt::Write;
+
+/// A table; the first column is left-aligned, the others as their content asks.
+pub struct MarkdownTable {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl MarkdownTable {
+    /// An empty table.
+    pub fn new(header: &[&str]) -> Self {
+        Self { header: header.iter().map(|h| (*h).to_owned()).collect(), rows: Vec::new() }
+    }
+
+    /// Adds a row; missing cells stay empty.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// The table as Markdown, with its columns aligned so that the text reads well too.
+    pub fn render(&self) -> String {
+        let escaped = |cell: &str| cell.replace('|', "\\|").replace('\n', " ");
+        let cell = |row: &[String], column: usize| escaped(row.get(column).map_or("", String::as_str));
+        let columns = self.header.len();
+        let numeric = |column: usize| {
+            let mut filled = self.rows.iter().map(|row| cell(row, column)).filter(|c| !c.is_empty()).peekable();
+            column > 0 && filled.peek().is_some() && filled.all(|c| c.starts_with(|ch: char| ch.is_ascii_digit() || "-+−–<".contains(ch)))
+        };
+        let rows = || std::iter::once(&self.header).chain(&self.rows);
+        let widths: Vec<usize> = (0..columns).map(|c| rows().map(|row| cell(row, c).chars().count()).max().unwrap_or(0).max(3)).collect();
+        let mut text = String::new();
+        for (index, row) in rows().enumerate() {
+            for column in 0..columns {
+                let (content, width) = (cell(row, column), widths[column]);
+                // Writing to a String cannot fail.
+                let _ = if numeric(column) { write!(text, "| {content:>width$} ") } else { write!(text, "| {content:<width$} ") };
+            }
+            text.push_str("|\n");
+            if index == 0 {
+                for (column, width) in widths.iter().enumerate() {
+                    let dashes = "-".repeat(width - 1);
+                    let _ = if numeric(column) { write!(text, "| {dashes}: ") } else { write!(text, "| {dashes}- ") };
+                }
+                text.push_str("|\n");
+            }
+        }
+        text
+    }
+}
+
+/// A number with `digits` decimals and a real minus sign kept as `-`; never `-0.000`.
+pub fn fixed(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    if text.starts_with('-') && text[1..].chars().all(|c| c == '0' || c == '.') { text[1..].to_owned() } else { text }
+}
+
+/// As [`fixed`] with a sign.
+pub fn signed(value: f64, digits: usize) -> String {
+    let text = fixed(value, digits);
+    if text.starts_with('-') { text } else { format!("+{text}") }
+}
+
+/// The fraction of a pixel that `px` is, as in `1/18.9`.
+pub fn fraction(px: f64) -> String {
+    if px > 0.0 { format!("1/{:.1}", 1.0 / px) } else { "0".to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_aligned_and_bars_escaped() {
+        let mut table = MarkdownTable::new(&["method", "px"]);
+        table.row(["a|b".to_owned(), "0.1".to_owned()]);
+        table.row(["c".to_owned(), "-12.5".to_owned()]);
+        assert_eq!(table.render(), "| method |    px |\n| ------ | ----: |\n| a\\|b   |   0.1 |\n| c      | -12.5 |\n");
+    }
+
+    #[test]
+    fn numbers_have_no_negative_zero() {
+        assert_eq!((fixed(-0.0004, 3), signed(-0.0004, 3), signed(-0.5, 1)), ("0.000".into(), "+0.000".into(), "-0.5".into()));
+        assert_eq!(fraction(0.0529), "1/18.9");
+    }
+}

@@ -1,0 +1,150 @@
+//! Reports: Markdown and PNG, a pure function of records and published tables.
+
+mod canvas;
+mod figures;
+mod load;
+mod markdown;
+mod photographs;
+mod published_section;
+mod scene_figures;
+mod scores_section;
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::FolderWriter;
+use calibench_measure::Registry;
+use thiserror::Error;
+
+use crate::published::{self, PublishedError};
+use crate::scenario::Subject;
+pub use canvas::Canvas;
+pub use load::{LoadError, Loaded, load};
+pub use scene_figures::preview;
+
+/// The file name of a report's page.
+const PAGE: &str = "README.md";
+
+/// Where a report's material is and where reports go.
+#[derive(Clone, Debug)]
+pub struct Places {
+    /// Records, one folder a scenario.
+    pub records: PathBuf,
+    /// Published tables, one folder a paper.
+    pub published: PathBuf,
+    /// Reports, one folder a family of scenarios.
+    pub reports: PathBuf,
+}
+
+/// A report that cannot be made.
+#[derive(Debug, Error)]
+pub enum ReportError {
+    /// Its records.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// Its published tables.
+    #[error(transparent)]
+    Published(#[from] PublishedError),
+    /// Its files.
+    #[error("{0}")]
+    Output(#[from] io::Error),
+}
+
+/// Writes the report of `family` from the records of `scenarios`, in place of the older one, and returns its page's path.
+///
+/// # Errors
+/// Records or tables that cannot be read; the older report is then as it was.
+pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Registry) -> Result<PathBuf, ReportError> {
+    let loaded = scenarios.iter().map(|name| load(&places.records, name, registry)).collect::<Result<Vec<_>, _>>()?;
+    let tables = published::tables(&places.published, family)?;
+    let mut page = Page::new(family);
+    for (_, table) in &tables {
+        let by_name = |name: &str| match loaded.iter().find(|l| l.scenario.name == name) {
+            Some(_) => Ok(()),
+            None => Err(LoadError::None(name.to_owned())),
+        };
+        by_name(&table.scenario)?;
+        table.beside.iter().try_for_each(|name| by_name(name))?;
+        let main = load(&places.records, &table.scenario, registry)?;
+        let beside = table.beside.iter().map(|name| load(&places.records, name, registry)).collect::<Result<Vec<_>, _>>()?;
+        page.text.push_str(&published_section::section(table, &main, &beside));
+    }
+    loaded.iter().for_each(|loaded| page.scenario(loaded));
+    let writer = FolderWriter::new(&places.reports)?;
+    writer.replace(family, |folder| page.write(folder))?;
+    Ok(places.reports.join(family).join(PAGE))
+}
+
+/// Writes the page that lists the reports that are there.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_index(reports: &Path) -> io::Result<()> {
+    let mut names: Vec<String> = Vec::new();
+    for entry in fs::read_dir(reports)? {
+        let entry = entry?;
+        if entry.path().join(PAGE).is_file() {
+            names.extend(entry.file_name().into_string());
+        }
+    }
+    names.sort();
+    let lines: String = names.iter().map(|name| format!("- [{name}]({name}/{PAGE})\n")).collect();
+    let text = format!(
+        "# Reports\n\nMade by `calibench report` from the records of `calibench run` and the published tables; nothing here is written by hand.\n\n{lines}"
+    );
+    calibench_exchange::atomic::write_atomically(&reports.join(PAGE), |file| io::Write::write_all(file, text.as_bytes()))
+}
+
+struct Page {
+    text: String,
+    pictures: Vec<(String, Canvas)>,
+}
+
+impl Page {
+    fn new(family: &str) -> Self {
+        let text = format!(
+            "# {family}\n\nMade by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. \
+             Some of the methods compared here are our own, `forstner` and `harris_paraboloid` among them: each gets the same images, the same starts and the same score.\n\n"
+        );
+        Self { text, pictures: Vec::new() }
+    }
+
+    fn scenario(&mut self, loaded: &Loaded) {
+        let scenario = &loaded.scenario;
+        let stem = scenario.name.split('/').skip(1).collect::<Vec<_>>().join("-");
+        self.text.push_str(&format!(
+            "## Scenario `{}`\n\n{}\n\nSource: {}.\n\n",
+            scenario.name,
+            scenario.why.trim(),
+            scenario.source.trim_end_matches('.')
+        ));
+        match &scenario.subject {
+            Subject::Photographs(_) => {
+                let (text, pictures) = photographs::section(loaded);
+                self.text.push_str(&text);
+                self.pictures.extend(pictures);
+            }
+            Subject::Scene(_) => {
+                self.text.push_str(&scores_section::section(loaded));
+                self.text.push('\n');
+                if let Some((overview, panels)) = scene_figures::figures(loaded) {
+                    self.text.push_str(&format!(
+                        "The image of the first trial with approximate positions and truth, and 11 x 11 px around each target, enlarged 28 times, with all results:\n\n\
+                         ![Image, approximations and truth]({stem}.png)\n\n![Each target with all results]({stem}-targets.png)\n\n"
+                    ));
+                    self.pictures.push((format!("{stem}.png"), overview));
+                    self.pictures.push((format!("{stem}-targets.png"), panels));
+                }
+            }
+        }
+    }
+
+    fn write(&self, folder: &Path) -> io::Result<()> {
+        for (name, picture) in &self.pictures {
+            picture.write(&folder.join(name))?;
+        }
+        let text = self.text.trim_end().to_owned() + "\n";
+        fs::write(folder.join(PAGE), text)
+    }
+}

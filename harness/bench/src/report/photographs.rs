@@ -1,0 +1,157 @@
+//! Photographs: how far the operators differ, where they refuse, and pictures of both.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use calibench_model::{Image, PixelPoint};
+
+use super::canvas::Canvas;
+use super::figures::{Layer, MarkAt, Panel, panels};
+use super::load::Loaded;
+use super::markdown::{MarkdownTable, fixed};
+use super::scores_section::reasons;
+
+type PointKey = (Arc<str>, Arc<str>);
+
+/// One point in the hands of all methods.
+struct Compared {
+    key: PointKey,
+    positions: Vec<Option<PixelPoint>>,
+}
+
+impl Compared {
+    /// The largest distance between two operators, px; 0 if fewer than two measured it.
+    fn spread(&self, operators: &[usize]) -> f64 {
+        let found: Vec<PixelPoint> = operators.iter().filter_map(|&m| self.positions[m]).collect();
+        found.iter().flat_map(|a| found.iter().map(|b| a.distance(*b))).fold(0.0, f64::max)
+    }
+}
+
+/// The text of the section, and its pictures with their file names.
+pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
+    if let Some(why) = loaded.unavailable() {
+        return (
+            format!(
+                "**unavailable**: {why}.\n\nThe photographs are not part of this project; the README says where they come from and where to put them.\n"
+            ),
+            Vec::new(),
+        );
+    }
+    let points = compared(loaded);
+    let operators: Vec<usize> = (0..loaded.head.methods.len()).filter(|&m| &*loaded.head.methods[m].label != "pixel").collect();
+    let mut text = seen(loaded, &points);
+    text.push_str(&counts(loaded));
+    text.push_str(&differences(loaded, &points));
+    let mut ranked: Vec<&Compared> = points.iter().filter(|p| p.positions.iter().flatten().count() > 1).collect();
+    ranked.sort_by(|a, b| b.spread(&operators).total_cmp(&a.spread(&operators)));
+    let mut pictures = Vec::new();
+    let refused: Vec<&Compared> = points.iter().filter(|p| operators.iter().any(|&m| p.positions[m].is_none())).take(10).collect();
+    let middle = ranked.len().saturating_sub(5) / 2;
+    let typical: Vec<&Compared> = ranked.iter().copied().skip(middle).take(5).collect();
+    let worst: Vec<&Compared> = ranked.iter().copied().take(10).collect();
+    for (name, title, about, chosen) in [
+        ("worst", "Where they differ most", "The ten points on which two operators are furthest apart.", worst),
+        ("typical", "Where they differ as usual", "Five points in the middle of that ranking.", typical),
+        ("rejected", "Where one refuses", "The first points that at least one operator rejected.", refused),
+    ] {
+        if let Some(picture) = picture(loaded, &chosen, &operators) {
+            text.push_str(&format!("### {title}\n\n{about} Enlarged 8 times; the title gives photograph, corner and the largest distance between two operators.\n\n![{title}]({name}.png)\n\n"));
+            pictures.push((format!("{name}.png"), picture));
+        }
+    }
+    (text, pictures)
+}
+
+fn compared(loaded: &Loaded) -> Vec<Compared> {
+    let methods = loaded.head.methods.len();
+    let mut places: BTreeMap<PointKey, usize> = BTreeMap::new();
+    let mut points: Vec<Compared> = Vec::new();
+    for point in &loaded.first.points {
+        let key = (point.view.clone(), point.target.clone());
+        let place = *places.entry(key.clone()).or_insert_with(|| {
+            points.push(Compared { key, positions: vec![None; methods] });
+            points.len() - 1
+        });
+        points[place].positions[point.method] = point.outcome.position();
+    }
+    points
+}
+
+fn seen(loaded: &Loaded, points: &[Compared]) -> String {
+    let mut views: Vec<&str> = points.iter().map(|p| &*p.key.0).collect();
+    views.dedup();
+    views.sort_unstable();
+    views.dedup();
+    let missed = &loaded.first.missed_views;
+    let mut text =
+        format!("The board was found in {} of {} photographs, {} corners in all.", views.len(), views.len() + missed.len(), points.len());
+    for (view, why) in missed {
+        text.push_str(&format!(" `{view}`: {why}."));
+    }
+    text.push_str(
+        " Every operator starts from the same whole pixels: the detected corners, rounded. The truth is not known; a small difference \
+         between two operators does not say that either is right.\n\n",
+    );
+    text
+}
+
+fn counts(loaded: &Loaded) -> String {
+    let mut rows = MarkdownTable::new(&["method", "version", "points", "measured", "rejected"]);
+    for (info, score) in loaded.head.methods.iter().zip(&loaded.scores.methods) {
+        let label = format!("`{}`", info.label);
+        match &info.unavailable {
+            Some(why) => rows.row([label, info.version.to_string(), "unavailable".into(), why.clone()]),
+            None => rows.row([label, info.version.to_string(), score.points().to_string(), score.measured.to_string(), reasons(score)]),
+        }
+    }
+    format!("### How many points each measured\n\n{}\n", rows.render())
+}
+
+fn differences(loaded: &Loaded, points: &[Compared]) -> String {
+    let mut rows = MarkdownTable::new(&["between", "points", "median px", "95 % px", "worst px", "worst point"]);
+    let label = |m: usize| &loaded.head.methods[m].label;
+    let methods = loaded.head.methods.len();
+    for (a, b) in (0..methods).flat_map(|a| (a + 1..methods).map(move |b| (a, b))) {
+        let distance = |p: &Compared| Some((p.positions[a]?.distance(p.positions[b]?), p.key.clone()));
+        let mut found: Vec<(f64, PointKey)> = points.iter().filter_map(distance).collect();
+        found.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let Some((worst, (view, target))) = found.last() else { continue };
+        rows.row([
+            format!("`{}` and `{}`", label(a), label(b)),
+            found.len().to_string(),
+            fixed(quantile(&found, 0.5), 4),
+            fixed(quantile(&found, 0.95), 4),
+            fixed(*worst, 4),
+            format!("{target} of {view}"),
+        ]);
+    }
+    format!(
+        "### How far they differ\n\nDistances between the positions of two operators, over the points that both measured. `pixel` is the start.\n\n{}\n",
+        rows.render()
+    )
+}
+
+/// The quantile of sorted values: the smallest that at least the share `q` does not exceed.
+fn quantile(sorted: &[(f64, PointKey)], q: f64) -> f64 {
+    let rank = (q * sorted.len() as f64).ceil() as usize;
+    sorted[rank.clamp(1, sorted.len()) - 1].0
+}
+
+fn picture(loaded: &Loaded, chosen: &[&Compared], operators: &[usize]) -> Option<Canvas> {
+    let available: Vec<usize> = operators.iter().copied().filter(|&m| loaded.head.methods[m].unavailable.is_none()).collect();
+    let mut layers = vec![Layer::start()];
+    layers.extend(available.iter().enumerate().map(|(i, &m)| Layer::method(&loaded.head.methods[m].label, i)));
+    let start = loaded.method("pixel");
+    let images: BTreeMap<&str, Image> = chosen.iter().filter_map(|p| Some((&*p.key.0, loaded.image(&p.key.0)?))).collect();
+    let panel = |point: &&Compared| {
+        let image = images.get(&*point.key.0)?;
+        let mut marks: Vec<MarkAt> = start.and_then(|m| point.positions[m]).map(|at| MarkAt { layer: 0, at }).into_iter().collect();
+        marks.extend(available.iter().enumerate().filter_map(|(i, &m)| Some(MarkAt { layer: i + 1, at: point.positions[m]? })));
+        let centre = start.and_then(|m| point.positions[m]).or_else(|| point.positions.iter().copied().flatten().next())?;
+        let name = point.key.0.split('.').next().unwrap_or_default();
+        let title = format!("{name} {}: {} px", point.key.1, fixed(point.spread(operators), 2));
+        Some(Panel { title, image, centre, marks })
+    };
+    let found: Vec<Panel<'_>> = chosen.iter().filter_map(panel).collect();
+    (!found.is_empty()).then(|| panels(&found, &layers, 31, 8, 5))
+}

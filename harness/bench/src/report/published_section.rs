@@ -1,0 +1,195 @@
+//! A published table, its cells beside ours.
+
+use std::fmt::Write;
+
+use super::load::Loaded;
+use super::markdown::{MarkdownTable, fixed, fraction, signed};
+use crate::published::{Cell, Metric, Printed, Table, Verdict};
+use crate::results::PointResult;
+
+/// The errors (dx, dy) of one method's points in the first trial, px, by target; rejected points are left out.
+fn errors<'a>(loaded: &'a Loaded, method: usize, except: &'a [String]) -> impl Iterator<Item = (f64, f64)> + 'a {
+    points(loaded, method).filter(|p| !except.iter().any(|id| **id == *p.target)).filter_map(|p| match p.outcome {
+        crate::results::Outcome::Measured { error, .. } => error,
+        crate::results::Outcome::Rejected(_) => None,
+    })
+}
+
+fn points(loaded: &Loaded, method: usize) -> impl Iterator<Item = &PointResult> {
+    loaded.first.points.iter().filter(move |point| point.method == method)
+}
+
+/// Our figure for `metric`, px.
+fn figure(loaded: &Loaded, method: usize, metric: Metric, target: Option<&str>, except: &[String]) -> Option<f64> {
+    let position = || points(loaded, method).find(|point| Some(&*point.target) == target)?.outcome.position();
+    let mean = |value: fn((f64, f64)) -> f64| {
+        let values: Vec<f64> = errors(loaded, method, except).map(value).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    match metric {
+        Metric::X => position().map(|p| p.x),
+        Metric::Y => position().map(|p| p.y),
+        Metric::MeanDx => mean(|e| e.0),
+        Metric::MeanDy => mean(|e| e.1),
+        Metric::RmseX => mean(|e| e.0 * e.0).map(f64::sqrt),
+        Metric::RmseY => mean(|e| e.1 * e.1).map(f64::sqrt),
+        Metric::MeanDistance => mean(|e| e.0.hypot(e.1)),
+        Metric::RmseXy => mean(|e| e.0 * e.0 + e.1 * e.1).map(f64::sqrt),
+    }
+}
+
+/// The section of a table: printed beside ours, what was found out, and every method on the same points.
+pub fn section(table: &Table, main: &Loaded, beside: &[Loaded]) -> String {
+    let mut text = format!("## {}\n\n{}. Unit: {}.\n\n", table.title, table.source, table.unit);
+    match main.method(&table.method) {
+        Some(method) => text.push_str(&comparison(table, main, method)),
+        None => {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "The records of `{}` hold no method `{}`: nothing to compare.\n", table.scenario, table.method);
+        }
+    }
+    if !table.findings.is_empty() {
+        text.push_str("### What was found out\n\n");
+        for finding in &table.findings {
+            let _ = writeln!(text, "- {}", finding.trim().replace('\n', " "));
+        }
+        text.push('\n');
+    }
+    text.push_str("### Every method on the same points\n\n");
+    text.push_str(
+        "Distances from the truth in px, and as fractions of a pixel. One image without noise: the figures have no scatter. `dx` is \
+         positive to the right, `dy` downwards.\n\n",
+    );
+    for loaded in std::iter::once(main).chain(beside) {
+        let _ = writeln!(text, "**`{}`**\n\n{}", loaded.scenario.name, every_method(table, loaded));
+    }
+    text
+}
+
+fn comparison(table: &Table, main: &Loaded, method: usize) -> String {
+    let mut header = vec!["row".to_owned()];
+    for column in &table.columns {
+        header.extend([format!("{column} printed"), format!("{column} ours")]);
+    }
+    header.extend(["verdict".to_owned(), "why".to_owned()]);
+    let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    let mut tally = [0, 0, 0];
+    let mut labels: Vec<&str> = Vec::new();
+    for cell in &table.cells {
+        if !labels.contains(&cell.row.as_str()) {
+            labels.push(&cell.row);
+        }
+    }
+    for label in labels {
+        let mut cells = vec![label.to_owned()];
+        let mut verdicts = Vec::new();
+        for column in &table.columns {
+            let Some(cell) = table.cells.iter().find(|cell| cell.row == label && cell.column == *column) else {
+                cells.extend([String::new(), String::new()]);
+                continue;
+            };
+            let ours = figure(main, method, cell.metric, cell.target.as_deref(), &cell.except);
+            let verdict = cell.verdict(ours);
+            tally[place(&verdict)] += 1;
+            cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);
+            verdicts.push(verdict);
+        }
+        // A row is as good as its worst cell.
+        let worst = verdicts.into_iter().max_by_key(|verdict| [0, 2, 1][place(verdict)]);
+        let (word, why) = worst.map_or((String::new(), String::new()), |verdict| words(&verdict));
+        cells.extend([word, why]);
+        rows.row(cells);
+    }
+    let [reproduces, differs, not_comparable] = tally;
+    format!(
+        "Printed beside ours (`{}`, `{}`). A cell *reproduces* when the two differ by no more than one unit of the last printed digit: half for the \
+         paper's rounding, half for that of what it was computed from.\n\n{}\nOf {} cells, {reproduces} reproduce, {differs} differ and {not_comparable} are not comparable.\n\n",
+        table.method,
+        table.scenario,
+        rows.render(),
+        reproduces + differs + not_comparable
+    )
+}
+
+/// Ours with one digit more than printed, in the form of the printed figure.
+fn like(cell: &Cell, value: f64) -> String {
+    if cell.printed.contains('/') {
+        return fraction(value);
+    }
+    let digits = Printed::parse(&cell.printed).map_or(4, |printed| (-printed.tolerance.log10()).round() as usize + 1);
+    fixed(value, digits)
+}
+
+fn place(verdict: &Verdict) -> usize {
+    match verdict {
+        Verdict::Reproduces => 0,
+        Verdict::Differs => 1,
+        Verdict::NotComparable(_) => 2,
+    }
+}
+
+fn words(verdict: &Verdict) -> (String, String) {
+    match verdict {
+        Verdict::Reproduces => ("reproduces".into(), String::new()),
+        Verdict::Differs => ("differs".into(), "more than one unit of the last printed digit".into()),
+        Verdict::NotComparable(why) => ("not comparable".into(), why.clone()),
+    }
+}
+
+fn every_method(table: &Table, loaded: &Loaded) -> String {
+    if let Some(why) = loaded.unavailable() {
+        return format!("unavailable: {why}\n");
+    }
+    let mut statistics = MarkdownTable::new(&["method", "points", "set", "mean dx", "mean dy", "mean distance", "", "RMSE", ""]);
+    for (method, info) in loaded.head.methods.iter().enumerate() {
+        if let Some(why) = &info.unavailable {
+            statistics.row([format!("`{}`", info.label), "unavailable".into(), why.clone()]);
+            continue;
+        }
+        for set in &table.sets {
+            let of = |metric| figure(loaded, method, metric, None, &set.except);
+            let px = |metric| of(metric).map_or("none".into(), |value| fixed(value, 4));
+            let part = |metric| of(metric).map_or(String::new(), fraction);
+            let count = errors(loaded, method, &set.except).count();
+            let mean = |metric| of(metric).map_or("none".into(), |value| signed(value, 4));
+            statistics.row([
+                format!("`{}`", info.label),
+                count.to_string(),
+                set.name.clone(),
+                mean(Metric::MeanDx),
+                mean(Metric::MeanDy),
+                px(Metric::MeanDistance),
+                part(Metric::MeanDistance),
+                px(Metric::RmseXy),
+                part(Metric::RmseXy),
+            ]);
+        }
+    }
+    let mut text = statistics.render();
+    text.push('\n');
+    text.push_str(&by_target(loaded));
+    text
+}
+
+/// One row a target: each method's error, or why there is none.
+fn by_target(loaded: &Loaded) -> String {
+    let available: Vec<usize> = (0..loaded.head.methods.len()).filter(|&m| loaded.head.methods[m].unavailable.is_none()).collect();
+    let mut header = vec!["target: (dx, dy)".to_owned()];
+    header.extend(available.iter().map(|&m| format!("`{}`", loaded.head.methods[m].label)));
+    let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    let mut targets: Vec<&str> = Vec::new();
+    for point in &loaded.first.points {
+        if !targets.contains(&&*point.target) {
+            targets.push(&point.target);
+        }
+    }
+    for target in targets {
+        let cell = |&method: &usize| match points(loaded, method).find(|p| &*p.target == target).map(|p| p.outcome) {
+            Some(crate::results::Outcome::Measured { error: Some((dx, dy)), .. }) => format!("{}, {}", signed(dx, 3), signed(dy, 3)),
+            Some(crate::results::Outcome::Rejected(why)) => why.to_string(),
+            _ => String::new(),
+        };
+        rows.row(std::iter::once(target.to_owned()).chain(available.iter().map(cell)));
+    }
+    rows.render()
+}

@@ -1,0 +1,84 @@
+//! The pictures of a rendered scene's first trial: the image with approximations and results, and a panel a target.
+
+use calibench_model::{Image, PixelPoint};
+
+use super::canvas::Canvas;
+use super::figures::{Layer, MarkAt, Panel, overview, panels};
+use super::load::Loaded;
+use crate::results::Outcome;
+
+/// The zoom at which a picture of a whole image is about 1100 px wide.
+fn zoom_for(image: &Image) -> u32 {
+    (1100 / image.width().max(1)).clamp(1, 6) as u32
+}
+
+/// An image with its targets, for a look at a scenario.
+pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
+    let marks: Vec<MarkAt> = targets.iter().map(|(_, at)| MarkAt { layer: 0, at: *at }).collect();
+    let layer = Layer { name: "target".into(), ..Layer::truth() };
+    overview(image, zoom_for(image), &[layer], &marks, targets)
+}
+
+/// Overview and panels, or `None` where no image was kept or nothing was measured.
+pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
+    let first = loaded.first.points.first()?;
+    let image = loaded.image(&first.view)?;
+    let targets = targets(loaded);
+    let (layers, layer_of) = layers(loaded);
+    let mut marks = Vec::new();
+    for (target, truth) in &targets {
+        marks.push((target.clone(), MarkAt { layer: 0, at: *truth }));
+        for point in loaded.first.points.iter().filter(|point| *point.target == **target) {
+            if let (Some(layer), Some(at)) = (layer_of[point.method], point.outcome.position()) {
+                marks.push((target.clone(), MarkAt { layer, at }));
+            }
+        }
+    }
+    // An overview shows starts and truth: the results would hide each other.
+    let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < 2).map(|(_, mark)| mark.clone()).collect();
+    let whole = overview(&image, zoom_for(&image), &layers[..2.min(layers.len())], &few, &targets);
+    let close: Vec<Panel<'_>> = targets
+        .iter()
+        .map(|(target, truth)| Panel {
+            title: format!("{target}: ({}, {})", round(truth.x), round(truth.y)),
+            image: &image,
+            centre: *truth,
+            marks: marks.iter().filter(|(id, _)| id == target).map(|(_, mark)| mark.clone()).collect(),
+        })
+        .collect();
+    Some((whole, panels(&close, &layers, 11, 28, 5)))
+}
+
+fn round(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
+
+/// Every target of the first trial with its true position: a measured position less its error.
+fn targets(loaded: &Loaded) -> Vec<(String, PixelPoint)> {
+    let mut targets: Vec<(String, PixelPoint)> = Vec::new();
+    for point in &loaded.first.points {
+        if let Outcome::Measured { position, error: Some((dx, dy)) } = point.outcome {
+            if !targets.iter().any(|(id, _)| *id == *point.target) {
+                targets.push((point.target.to_string(), PixelPoint::new(position.x - dx, position.y - dy)));
+            }
+        }
+    }
+    targets
+}
+
+/// The layers, truth and approximations first, and the layer of each method. `pixel` is the approximation.
+fn layers(loaded: &Loaded) -> (Vec<Layer>, Vec<Option<usize>>) {
+    let mut layers = vec![Layer::truth(), Layer::start()];
+    let mut of = Vec::new();
+    for info in &loaded.head.methods {
+        if info.unavailable.is_some() {
+            of.push(None);
+        } else if &*info.label == "pixel" {
+            of.push(Some(1));
+        } else {
+            layers.push(Layer::method(&info.label, layers.len() - 2));
+            of.push(Some(layers.len() - 1));
+        }
+    }
+    (layers, of)
+}
