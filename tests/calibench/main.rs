@@ -1,3 +1,11 @@
 //! Tests that cross crates.
 
-fn main() {}
+mod cli;
+mod determinism;
+mod diagnostics;
+mod galo;
+mod killed;
+mod measure;
+mod photographs;
+mod project;
+mod schema;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::results::{PointResult, Trial};
+use crate::results::{Outcome, PointResult, Trial};
 
 /// Running mean and variance (Welford).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,11 +62,34 @@ pub struct Score {
     pub dy: Running,
     /// Mean squared 2D error of a trial, px^2: over its trials.
     pub square: Running,
-    /// The same over the points that every method measured.
+    /// The same over all measured points, lost ones among them.
+    pub whole_square: Running,
+    /// The same as `square` over the points that every method measured.
     pub common_square: Running,
+    /// By target, in the order of the scenario.
+    pub targets: Vec<TargetScore>,
+}
+
+/// The figures of one method on one target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TargetScore {
+    /// The target.
+    pub target: Arc<str>,
+    /// Squared 2D errors of all measured points, lost ones among them, px^2.
+    pub square: Running,
+    /// Points that were lost or rejected.
+    pub failed: u64,
 }
 
 impl Score {
+    fn target(&mut self, target: &Arc<str>) -> &mut TargetScore {
+        let place = self.targets.iter().position(|score| score.target == *target).unwrap_or_else(|| {
+            self.targets.push(TargetScore { target: target.clone(), square: Running::default(), failed: 0 });
+            self.targets.len() - 1
+        });
+        &mut self.targets[place]
+    }
+
     /// All points that the method was given.
     pub fn points(&self) -> u64 {
         self.measured + self.lost + self.rejected.values().sum::<u64>()
@@ -114,9 +137,14 @@ impl Scores {
         let common = common_points(trial);
         for (index, score) in self.methods.iter_mut().enumerate() {
             let mut all = Running::default();
+            let mut whole = Running::default();
             let mut shared = Running::default();
             for point in trial.points.iter().filter(|point| point.method == index) {
                 count(score, point);
+                if let Outcome::Measured { error: Some((dx, dy)), .. } = point.outcome {
+                    whole.add(dx * dx + dy * dy);
+                    score.target(&point.target).square.add(dx * dx + dy * dy);
+                }
                 if let Some((dx, dy)) = point.outcome.kept_error() {
                     score.dx.add(dx);
                     score.dy.add(dy);
@@ -124,16 +152,18 @@ impl Scores {
                     if common.contains_key(&(point.view.clone(), point.target.clone())) {
                         shared.add(dx * dx + dy * dy);
                     }
+                } else {
+                    score.target(&point.target).failed += 1;
                 }
             }
             all.mean().into_iter().for_each(|square| score.square.add(square));
+            whole.mean().into_iter().for_each(|square| score.whole_square.add(square));
             shared.mean().into_iter().for_each(|square| score.common_square.add(square));
         }
     }
 }
 
 fn count(score: &mut Score, point: &PointResult) {
-    use crate::results::Outcome;
     match point.outcome {
         Outcome::Rejected(why) => *score.rejected.entry(why.name()).or_default() += 1,
         Outcome::Measured { .. } if point.outcome.is_lost() => score.lost += 1,
@@ -157,7 +187,6 @@ fn common_points(trial: &Trial) -> BTreeMap<(Arc<str>, Arc<str>), usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::Outcome;
     use calibench_model::{PixelPoint, Rejection};
 
     fn point(method: usize, target: &str, error: Option<(f64, f64)>) -> PointResult {
@@ -182,6 +211,8 @@ mod tests {
         let first = &scores.methods[0];
         assert_eq!((first.measured, first.lost, first.rejected["border"], first.points()), (1, 1, 1, 3));
         assert!((first.rmse().unwrap() - 0.5).abs() < 1e-15);
+        assert!((first.whole_square.mean().unwrap() - (0.25 + 25.0) / 2.0).abs() < 1e-12);
+        assert_eq!((first.targets[1].failed, first.targets[2].failed, first.targets[2].square.count()), (1, 1, 0));
         let second = &scores.methods[1];
         assert!((second.rmse().unwrap() - 0.5).abs() < 1e-15, "sqrt((0.01 + 0.49) / 2)");
         assert!((second.common_square.mean().unwrap() - 0.01).abs() < 1e-15, "only `a` is common");

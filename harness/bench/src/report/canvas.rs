@@ -39,11 +39,18 @@ pub enum Mark {
     Diamond,
 }
 
+impl Mark {
+    /// Width of its lines, px of the picture: the truth is a hairline below everything.
+    fn stroke(self) -> u32 {
+        if self == Self::Plus { 1 } else { 2 }
+    }
+}
+
 /// The marks of methods, in the order of use.
 pub const METHOD_MARKS: [Mark; 4] = [Mark::Cross, Mark::Circle, Mark::Triangle, Mark::Diamond];
 
 /// Half the size of a mark, px of the picture.
-const MARK: i32 = 7;
+const MARK: i32 = 6;
 
 /// A picture under way: RGB, 8 bits, white.
 pub struct Canvas {
@@ -83,18 +90,28 @@ impl Canvas {
         }
     }
 
-    /// A mark at (`x`, `y`), on a white rim so that it shows on any grey.
-    pub fn mark(&mut self, mark: Mark, colour: RGBColor, (x, y): (f64, f64)) {
-        let (x, y) = (x.round() as i32, y.round() as i32);
-        self.outline(mark, &WHITE, 5, (x, y));
-        self.outline(mark, &colour, 2, (x, y));
+    /// Marks, each on a white rim so that it shows on any grey. All rims are drawn before the first mark: none hides another.
+    pub fn marks(&mut self, marks: &[(Mark, RGBColor, (f64, f64))]) {
+        let whole = |(x, y): (f64, f64)| (x.round() as i32, y.round() as i32);
+        for (mark, _, at) in marks {
+            self.outline(*mark, &WHITE, mark.stroke() + 2, whole(*at));
+        }
+        for (mark, colour, at) in marks {
+            self.outline(*mark, colour, mark.stroke(), whole(*at));
+        }
     }
 
     fn outline(&mut self, mark: Mark, colour: &RGBColor, width: u32, (x, y): (i32, i32)) {
         let lines: Vec<Vec<(i32, i32)>> = match mark {
-            Mark::Square => vec![vec![(-MARK, -MARK), (MARK, -MARK), (MARK, MARK), (-MARK, MARK), (-MARK, -MARK)]],
+            Mark::Square => vec![vec![
+                (-MARK - 1, -MARK - 1),
+                (MARK + 1, -MARK - 1),
+                (MARK + 1, MARK + 1),
+                (-MARK - 1, MARK + 1),
+                (-MARK - 1, -MARK - 1),
+            ]],
             Mark::Plus => vec![vec![(-2 * MARK, 0), (2 * MARK, 0)], vec![(0, -2 * MARK), (0, 2 * MARK)]],
-            Mark::Cross => vec![vec![(-MARK, -MARK), (MARK, MARK)], vec![(-MARK, MARK), (MARK, -MARK)]],
+            Mark::Cross => vec![vec![(-MARK - 2, -MARK - 2), (MARK + 2, MARK + 2)], vec![(-MARK - 2, MARK + 2), (MARK + 2, -MARK - 2)]],
             Mark::Triangle => vec![vec![(0, -MARK), (MARK, MARK), (-MARK, MARK), (0, -MARK)]],
             Mark::Diamond => vec![vec![(0, -MARK - 2), (MARK + 2, 0), (0, MARK + 2), (-MARK - 2, 0), (0, -MARK - 2)]],
             Mark::Circle => {

@@ -64,6 +64,11 @@ fn place(at: PixelPoint, (left, top): (i64, i64), zoom: u32, (x, y): (u32, u32))
     (f64::from(x) + (corner.x - left as f64) * zoom, f64::from(y) + (corner.y - top as f64) * zoom)
 }
 
+/// Marks as a canvas draws them.
+fn drawn(layers: &[Layer], marks: &[MarkAt], place: impl Fn(PixelPoint) -> (f64, f64)) -> Vec<(Mark, RGBColor, (f64, f64))> {
+    marks.iter().map(|mark| (layers[mark.layer].mark, layers[mark.layer].colour, place(mark.at))).collect()
+}
+
 /// The whole image with marks, and a label beside each of `labels`.
 pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], labels: &[(String, PixelPoint)]) -> Canvas {
     let size = (image.width() as u32, image.height() as u32);
@@ -72,16 +77,13 @@ pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], la
     let mut canvas = Canvas::new(width + 2 * GAP, height + 2 * GAP + legend_rows * LINE);
     canvas.enlarge(image, (0, 0), size, zoom, (GAP, GAP));
     canvas.frame((GAP, GAP), (width, height));
-    for mark in marks {
-        let layer = &layers[mark.layer];
-        canvas.mark(layer.mark, layer.colour, place(mark.at, (0, 0), zoom, (GAP, GAP)));
-    }
+    canvas.marks(&drawn(layers, marks, |at| place(at, (0, 0), zoom, (GAP, GAP))));
     for (text, at) in labels {
         let (x, y) = place(*at, (0, 0), zoom, (GAP, GAP));
         // Below right of the mark, or to its left near the right side.
         let room = 9 * text.chars().count() as u32 + 14;
         let left = if x as u32 + room > width { (x as u32).saturating_sub(room + 4) } else { x as u32 + 12 };
-        canvas.label(text, 17, (left, y as u32 + 20));
+        canvas.label(text, 20, (left, y as u32 + 20));
     }
     legend(&mut canvas, layers, columns, height + GAP + GAP / 2);
     canvas
@@ -103,13 +105,11 @@ pub fn panels(panels: &[Panel<'_>], layers: &[Layer], side: u32, zoom: u32, acro
         let first = (column - i64::from(side / 2), row - i64::from(side / 2));
         canvas.enlarge(panel.image, first, (side, side), zoom, (x, y + LINE));
         canvas.frame((x, y + LINE), (edge, edge));
-        for mark in &panel.marks {
-            let layer = &layers[mark.layer];
-            let at = place(mark.at, first, zoom, (x, y + LINE));
-            if at.0 >= f64::from(x) && at.0 <= f64::from(x + edge) && at.1 >= f64::from(y + LINE) && at.1 <= f64::from(y + LINE + edge) {
-                canvas.mark(layer.mark, layer.colour, at);
-            }
-        }
+        let (left, right) = (f64::from(x), f64::from(x + edge));
+        let (top, bottom) = (f64::from(y + LINE), f64::from(y + LINE + edge));
+        let mut marks = drawn(layers, &panel.marks, |at| place(at, first, zoom, (x, y + LINE)));
+        marks.retain(|(_, _, at)| at.0 >= left && at.0 <= right && at.1 >= top && at.1 <= bottom);
+        canvas.marks(&marks);
     }
     legend(&mut canvas, layers, columns, rows * (edge + LINE + GAP) + GAP);
     canvas
@@ -127,7 +127,7 @@ fn legend(canvas: &mut Canvas, layers: &[Layer], column: u32, top: u32) {
     let across = (canvas.width() / column).max(1);
     for (index, layer) in (0_u32..).zip(layers) {
         let (x, y) = (GAP + index % across * column, top + index / across * LINE + LINE / 2);
-        canvas.mark(layer.mark, layer.colour, (f64::from(x) + 14.0, f64::from(y)));
+        canvas.marks(&[(layer.mark, layer.colour, (f64::from(x) + 14.0, f64::from(y)))]);
         canvas.text(&layer.name, 16, (x + 36, y));
     }
 }

@@ -130,7 +130,7 @@ impl Page {
                 self.text.push('\n');
                 if let Some((overview, panels)) = scene_figures::figures(loaded) {
                     self.text.push_str(&format!(
-                        "The image of the first trial with approximate positions and truth, and 11 x 11 px around each target, enlarged 28 times, with all results:\n\n\
+                        "The image of the first trial with truth, approximate positions and the results of one method, and 11 x 11 px around each target, enlarged 28 times, with all results:\n\n\
                          ![Image, approximations and truth]({stem}.png)\n\n![Each target with all results]({stem}-targets.png)\n\n"
                     ));
                     self.pictures.push((format!("{stem}.png"), overview));

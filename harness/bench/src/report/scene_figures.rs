@@ -7,6 +7,9 @@ use super::figures::{Layer, MarkAt, Panel, overview, panels};
 use super::load::Loaded;
 use crate::results::Outcome;
 
+/// The first layers, which an overview shows.
+const OVERVIEW: usize = 3;
+
 /// The zoom at which a picture of a whole image is about 1100 px wide.
 fn zoom_for(image: &Image) -> u32 {
     (1100 / image.width().max(1)).clamp(1, 6) as u32
@@ -34,9 +37,9 @@ pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
             }
         }
     }
-    // An overview shows starts and truth: the results would hide each other.
-    let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < 2).map(|(_, mark)| mark.clone()).collect();
-    let whole = overview(&image, zoom_for(&image), &layers[..2.min(layers.len())], &few, &targets);
+    // An overview shows truth, starts and one method: more would hide each other.
+    let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < OVERVIEW).map(|(_, mark)| mark.clone()).collect();
+    let whole = overview(&image, zoom_for(&image), &layers[..OVERVIEW.min(layers.len())], &few, &targets);
     let close: Vec<Panel<'_>> = targets
         .iter()
         .map(|(target, truth)| Panel {

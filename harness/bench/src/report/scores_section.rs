@@ -2,15 +2,26 @@
 
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed, signed};
-use crate::score::Score;
+use crate::score::{Score, TargetScore};
 
 /// The section's table and what its columns mean.
 pub fn section(loaded: &Loaded) -> String {
     if let Some(why) = loaded.unavailable() {
         return format!("**unavailable**: {why}.\n");
     }
-    let mut rows =
-        MarkdownTable::new(&["method", "points", "rejected", "lost", "bias x", "bias y", "scatter", "RMSE", "95 %", "RMSE, common points"]);
+    let mut rows = MarkdownTable::new(&[
+        "method",
+        "points",
+        "rejected",
+        "lost",
+        "bias x",
+        "bias y",
+        "scatter",
+        "RMSE",
+        "95 %",
+        "RMSE, lost too",
+        "RMSE, common points",
+    ]);
     let trials = loaded.scores.trials;
     for (info, score) in loaded.head.methods.iter().zip(&loaded.scores.methods) {
         match &info.unavailable {
@@ -22,12 +33,33 @@ pub fn section(loaded: &Loaded) -> String {
         if trials > 1 { "the interval holds the RMSE at 95 %, from its scatter between trials" } else { "one trial has no interval" };
     format!(
         "{}\n{trials} {}, seed {}. Errors in px: bias is the mean error, scatter the 2D standard deviation about it, RMSE `sqrt(mean(dx^2 + dy^2))`; \
-         {interval}. Lost points (more than 1 px off) and rejected ones are counted and not averaged; to compare methods, use the common points, \
-         which all of them measured, and the counts beside them.\n",
+         {interval}. Lost points (more than 1 px off) and rejected ones are counted and not averaged, except under `lost too`; to compare methods, use the common \
+         points, which all of them measured and none lost, and the counts beside them.\n\n{}",
         rows.render(),
         if trials == 1 { "trial" } else { "trials" },
-        loaded.head.run.seed
+        loaded.head.run.seed,
+        by_target(loaded)
     )
+}
+
+/// RMSE of each method on each target, lost points too, with the number of points that it lost or rejected there.
+fn by_target(loaded: &Loaded) -> String {
+    let available = || loaded.head.methods.iter().zip(&loaded.scores.methods).filter(|(info, _)| info.unavailable.is_none());
+    let mut header = vec!["RMSE by target, lost too".to_owned()];
+    header.extend(available().map(|(info, _)| format!("`{}`", info.label)));
+    let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    let targets = available().next().map_or(&[][..], |(_, score)| &score.targets);
+    for (index, target) in targets.iter().enumerate() {
+        let cell = |score: &Score| match score.targets.get(index) {
+            Some(TargetScore { square, failed, .. }) => {
+                let rmse = square.mean().map_or("none".to_owned(), |mean| fixed(mean.sqrt(), 4));
+                if *failed > 0 { format!("{rmse} ({failed} failed)") } else { rmse }
+            }
+            None => String::new(),
+        };
+        rows.row(std::iter::once(target.target.to_string()).chain(available().map(|(_, score)| cell(score))));
+    }
+    rows.render()
 }
 
 fn cells(label: &str, score: &Score) -> Vec<String> {
@@ -44,6 +76,7 @@ fn cells(label: &str, score: &Score) -> Vec<String> {
         px(score.scatter()),
         px(score.rmse()),
         interval,
+        px(score.whole_square.mean().map(f64::sqrt)),
         px(score.common_square.mean().map(f64::sqrt)),
     ]
 }

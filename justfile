@@ -1,0 +1,56 @@
+# calibench: `just` lists the recipes. On a fresh machine call them through `./bootstrap RECIPE`, which installs what is missing first.
+
+# One package set and one profile for everything: other sets resolve other features and build the world twice.
+everything := "--release --workspace"
+calibench := "./target/release/calibench"
+
+# List the recipes
+default:
+    @just --list --unsorted
+
+# Build everything
+build:
+    cargo build {{everything}} --quiet
+
+# Run every scenario and write reports/
+bench: build
+    {{calibench}} run --all
+    {{calibench}} report
+
+# Run all tests; the last line is their sum
+test:
+    #!/usr/bin/env bash
+    set -uo pipefail
+    mkdir -p target
+    cargo test {{everything}} --no-fail-fast 2>&1 | tee target/test.log
+    status=${PIPESTATUS[0]}
+    just summary
+    exit "$status"
+
+# The sum of the last test run
+summary:
+    @awk '/^test result:/ { passed += $4; failed += $6; skipped += $8 } END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' target/test.log
+
+# Compare accuracy with reference/baselines; exit 1 and a table if it regressed
+check: build
+    {{calibench}} check
+
+# Accept today's accuracy as the baseline, after looking
+bless: build
+    {{calibench}} bless
+
+# Formatting, lints and docs; every warning is an error
+lint:
+    cargo fmt --all --check
+    cargo clippy {{everything}} --all-targets --quiet -- -D warnings
+    RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
+    sh -n bootstrap
+
+# Points per second of every operator beside its peers
+perf:
+    cargo bench --workspace --bench perf
+
+# Write the JSON Schema of scenario files
+schema: build
+    {{calibench}} schema > scenarios/scenario.schema.json.new
+    mv scenarios/scenario.schema.json.new scenarios/scenario.schema.json

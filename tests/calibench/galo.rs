@@ -1,0 +1,97 @@
+//! What the report says of Galo's Table 1, searched for again.
+
+use calibench_measure::{Operator, forstner::Forstner};
+use calibench_model::{PixelPoint, Polygon, Scene, Start};
+use calibench_synth::draw;
+
+/// Columns and rows of the image around a corner, px; the corner lies near its middle.
+const SIDE: usize = 48;
+
+/// A printed point of Table 1: reference and estimate.
+struct Printed {
+    reference: (f64, f64),
+    estimate: (f64, f64),
+}
+
+const FIVE: Printed = Printed { reference: (93.5, 91.5), estimate: (93.532, 91.481) };
+const NINE: Printed = Printed { reference: (209.5, 151.0), estimate: (209.487, 151.066) };
+const TEN: Printed = Printed { reference: (178.0, 182.5), estimate: (178.099, 182.518) };
+
+impl Printed {
+    /// The smallest largest difference from the print, px, over starts within 3 px, for a wedge drawn between two directions.
+    fn best(&self, first: (i32, i32), second: (i32, i32)) -> f64 {
+        let offset = (self.reference.0.floor() - 23.0, self.reference.1.floor() - 23.0);
+        let apex = PixelPoint::new(self.reference.0 - offset.0, self.reference.1 - offset.1);
+        let far = |d: (i32, i32)| PixelPoint::new(apex.x + 100.0 * f64::from(d.0), apex.y + 100.0 * f64::from(d.1));
+        let wedge = Polygon { id: "wedge".into(), vertices: vec![apex, far(first), far(second)], grey: 0.2 };
+        let image = draw(&Scene { width: SIDE, height: SIDE, background: 0.8, polygons: vec![wedge], targets: Vec::new() });
+        let operator = Forstner::new(11);
+        let starts = (-3..=3).flat_map(|dx| (-3..=3).map(move |dy| (f64::from(dx), f64::from(dy))));
+        let off = starts.filter_map(|(dx, dy)| {
+            let start = Start::at(PixelPoint::new(apex.x.round() + dx, apex.y.round() + dy));
+            let found = operator.measure(&image, &start).ok()?.position;
+            let (ex, ey) = (found.x + offset.0 - self.estimate.0, found.y + offset.1 - self.estimate.1);
+            Some(ex.abs().max(ey.abs()))
+        });
+        off.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The wedges with whole-number directions up to `most` that come within 0.0007 px of the print.
+    fn search(&self, most: i32) -> Vec<[(i32, i32); 2]> {
+        let directions = directions(most);
+        let mut found = Vec::new();
+        for (i, &first) in directions.iter().enumerate() {
+            for &second in &directions[i + 1..] {
+                let straight = first.0 * second.1 == first.1 * second.0;
+                if !straight && self.best(first, second) < 7e-4 {
+                    found.push([first, second]);
+                }
+            }
+        }
+        found
+    }
+}
+
+/// Directions with coprime components up to `most`.
+fn directions(most: i32) -> Vec<(i32, i32)> {
+    let gcd = |mut a: i32, mut b: i32| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a.abs()
+    };
+    let all = (-most..=most).flat_map(|x| (-most..=most).map(move |y| (x, y)));
+    all.filter(|&(x, y)| gcd(x, y) == 1).collect()
+}
+
+#[test]
+fn table_1_determines_the_edges_at_5_9_and_10() {
+    assert_eq!(FIVE.search(3), [[(0, -1), (1, 0)]], "5: up and right, nothing else");
+    assert_eq!(NINE.search(3), [[(-1, 1), (0, -1)]], "9: down to 10 at 45 degrees, and straight up");
+    let ten = TEN.search(3);
+    assert!(ten.contains(&[(1, -1), (1, 1)]) && ten.len() == 2, "10: both edges at 45 degrees, or one odd alternative: {ten:?}");
+}
+
+#[test]
+fn a_square_on_its_corner_does_not_give_9_and_10() {
+    let (nine, ten) = (NINE.best((-1, 1), (-1, -1)), TEN.best((-1, -1), (1, -1)));
+    assert!(nine > 5e-3 && ten > 3e-2, "{nine} {ten}");
+}
+
+#[test]
+fn the_report_reproduces_what_is_comparable() {
+    let project = crate::project::copy();
+    for arguments in [&["run", "galo-2011/corners", "galo-2011/corners-drawn", "-q"][..], &["report", "galo-2011", "-q"]] {
+        let output = crate::project::run(project.path(), arguments);
+        assert!(output.status.success(), "{}", crate::project::stderr(&output));
+    }
+    let page = std::fs::read_to_string(project.path().join("reports/galo-2011/README.md")).unwrap();
+    assert!(page.contains("Of 32 cells, 16 reproduce, 0 differ and 16 are not comparable."), "{page}");
+    let row = |label: &str| page.lines().find(|line| line.starts_with(&format!("| {label} "))).unwrap_or_else(|| panic!("no row {label}"));
+    assert!(row("9").contains("| reproduces "), "{}", row("9"));
+    assert!(row("8").contains("| not comparable ") && row("8").contains("222.7792"), "{}", row("8"));
+    for picture in ["corners.png", "corners-targets.png", "corners-drawn.png", "corners-drawn-targets.png"] {
+        assert!(page.contains(&format!("({picture})")), "{picture} is shown");
+        assert!(image::open(project.path().join("reports/galo-2011").join(picture)).is_ok(), "{picture} is an image");
+    }
+}

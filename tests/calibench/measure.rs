@@ -1,0 +1,98 @@
+//! `measure`, on images of a user's own.
+
+use std::path::Path;
+
+use calibench_exchange::write_png;
+use calibench_model::{Image, PixelPoint, Polygon, Scene};
+use calibench_synth::render;
+
+use crate::project::{run, stderr, stdout};
+
+/// A chess corner at (30.25, 28.5) and (70.25, 28.5), of low contrast.
+fn corners(contrast: f64) -> Image {
+    let square = |x: f64, y: f64| Polygon {
+        id: "s".into(),
+        vertices: [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)].map(|(u, v)| PixelPoint::new(x + u, y + v)).to_vec(),
+        grey: 0.5 + contrast,
+    };
+    let polygons = [(10.25, 8.5), (30.25, 28.5), (50.25, 8.5), (70.25, 28.5)].map(|(x, y)| square(x, y)).to_vec();
+    render(&Scene { width: 100, height: 60, background: 0.5, polygons, targets: Vec::new() })
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    write_png(&folder.path().join("a.png"), &corners(0.3), false).unwrap();
+    write_png(&folder.path().join("deep.png"), &corners(0.002), true).unwrap();
+    folder
+}
+
+fn write(folder: &Path, name: &str, text: &str) {
+    std::fs::write(folder.join(name), text).unwrap();
+}
+
+const POINTS: &str = "image,target,x,y\ndeep.png,left,31,28\na.png,right,70,29\nb.png,gone,5,5\na.png,flat,90,10\na.png,left,30,29\na.png,edge,2,2\n";
+
+#[test]
+fn one_row_for_every_point_in_the_order_given() {
+    let folder = folder();
+    write(folder.path(), "p.csv", POINTS);
+    let arguments = ["measure", "a.png", "deep.png", "--points", "p.csv", "-m", "forstner:window=15", "-m", "opencv_subpix", "-o", "out.csv"];
+    let output = run(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = std::fs::read_to_string(folder.path().join("out.csv")).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "image,target,x,y,sxx,sxy,syy,kind,axx,axy,ayx,ayy,method,status,reason");
+    let head: Vec<String> = lines[1..].iter().map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",")).collect();
+    let given = ["deep.png,left", "a.png,right", "b.png,gone", "a.png,flat", "a.png,left", "a.png,edge"];
+    assert_eq!(head, [given, given].concat());
+    let tails = ["measured,", "measured,", "unavailable,photograph b.png was not given", "rejected,no_corner", "measured,", "rejected,border"];
+    for (line, (tail, method)) in lines[1..].iter().zip(tails.iter().map(|t| (t, "forstner:window=15")).chain(tails.iter().map(|t| (t, "opencv_subpix:window=11")))) {
+        assert!(line.ends_with(&format!(",{method},{tail}")), "{line}\nexpected {method},{tail}");
+    }
+}
+
+#[test]
+fn sixteen_bits_are_measured_as_such() {
+    let folder = folder();
+    write(folder.path(), "p.csv", "image,target,x,y\ndeep.png,left,30,29\n");
+    let text = stdout(&run(folder.path(), &["measure", "deep.png", "--points", "p.csv", "-m", "forstner", "-q"]));
+    let cells: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
+    let (x, y): (f64, f64) = (cells[2].parse().unwrap(), cells[3].parse().unwrap());
+    // 0.2 % of contrast is half a level of 8 bits and 131 levels of 16.
+    assert!((x - 30.25).hypot(y - 28.5) < 0.1, "{x} {y}");
+}
+
+#[test]
+fn the_output_can_be_the_next_input() {
+    let folder = folder();
+    write(folder.path(), "p.csv", "image,target,x,y\na.png,left,30,29\n");
+    assert!(run(folder.path(), &["measure", "a.png", "--points", "p.csv", "-o", "q.csv", "-q"]).status.success());
+    let again = run(folder.path(), &["measure", "a.png", "--points", "q.csv", "-m", "pixel", "-q"]);
+    assert!(again.status.success() && stdout(&again).contains(",pixel,measured,"), "{}", stderr(&again));
+}
+
+#[test]
+fn bad_input_is_named_and_leaves_the_old_output() {
+    let folder = folder();
+    write(folder.path(), "p.csv", "image,target,x,y\na.png,left,30,oops\n");
+    write(folder.path(), "out.csv", "old");
+    write(folder.path(), "text.png", "no image");
+    write(folder.path(), "good.csv", POINTS);
+    std::fs::create_dir(folder.path().join("sub")).unwrap();
+    write_png(&folder.path().join("sub/a.png"), &corners(0.1), false).unwrap();
+    for (arguments, expected) in [
+        (&["measure", "a.png", "--points", "p.csv"][..], "p.csv:2, column `y`: expected a finite number"),
+        (&["measure", "a.png", "text.png", "--points", "good.csv"], "text.png: not an image"),
+        (&["measure", "a.png", "sub/a.png", "--points", "good.csv"], "two photographs are called a.png"),
+        (&["measure", "a.png", "sub", "--points", "good.csv"], "sub: is a folder"),
+        (&["measure", "a.png", "--points", "good.csv", "-m", "forstner:window=10"], "odd number from 3 to 31"),
+    ] {
+        let output = run(folder.path(), &[arguments, &["-o", "out.csv"]].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
+        assert_eq!(std::fs::read_to_string(folder.path().join("out.csv")).unwrap(), "old", "{arguments:?}");
+    }
+    let output = run(folder.path(), &["measure", "a.png", "--points", "good.csv", "-o", "no/such/out.csv"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("no/such/out.csv"), "{}", stderr(&output));
+}

@@ -1,0 +1,67 @@
+//! Real photographs: OpenCV's samples, where they are.
+
+use crate::project::{copy, root, run, stderr, stdout};
+
+fn data() -> std::path::PathBuf {
+    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into)
+}
+
+#[test]
+#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+fn the_report_compares_all_operators_on_all_photographs() {
+    let project = copy();
+    assert!(run(project.path(), &["run", "photographs/opencv-left", "-q"]).status.success());
+    let output = run(project.path(), &["report", "photographs", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let folder = project.path().join("reports/photographs");
+    let page = std::fs::read_to_string(folder.join("README.md")).unwrap();
+    assert!(page.contains("The board was found in 13 of 13 photographs, 702 corners in all."), "{page}");
+    assert!(page.contains("| `forstner:window=11` and `opencv_subpix:window=11` |"), "{page}");
+    for picture in ["worst.png", "typical.png"] {
+        assert!(page.contains(&format!("({picture})")));
+        assert!(image::open(folder.join(picture)).is_ok(), "{picture}");
+    }
+}
+
+#[test]
+#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+fn detect_feeds_measure() {
+    let folder = tempfile::tempdir().unwrap();
+    let photo = data().join("opencv-left/left01.jpg");
+    let photo = photo.to_str().unwrap();
+    let output = run(folder.path(), &["detect", photo, "--chessboard", "9x6", "-o", "approx.csv"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let output = run(folder.path(), &["measure", photo, "--points", "approx.csv", "-m", "forstner:window=9", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(stdout(&output).matches(",forstner:window=9,measured,").count(), 54);
+    assert!(stdout(&output).contains("left01.jpg,r6c9,"));
+}
+
+#[test]
+fn without_photographs_the_scenario_is_unavailable_visibly() {
+    let project = copy();
+    let empty = tempfile::tempdir().unwrap();
+    let command = |arguments: &[&str]| {
+        let output = crate::project::program(project.path()).args(arguments).env("CALIBENCH_DATA", empty.path()).output().unwrap();
+        assert!(output.status.success(), "{}", stderr(&output));
+        stderr(&output) + &stdout(&output)
+    };
+    let why = "unavailable: 13 of 13 photographs are not in `opencv-left`";
+    assert!(command(&["run", "photographs/opencv-left"]).contains(why));
+    command(&["report", "photographs"]);
+    let page = std::fs::read_to_string(project.path().join("reports/photographs/README.md")).unwrap();
+    assert!(page.contains("**unavailable**: 13 of 13 photographs are not in `opencv-left`"), "{page}");
+    let records = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/records.csv")).unwrap();
+    assert_eq!(records.matches(",unavailable,").count(), 4, "a row for each method");
+    assert!(command(&["show", "photographs/opencv-left"]).contains("no preview, unavailable"));
+}
+
+#[test]
+fn a_photograph_without_a_board_is_said_to_have_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = calibench_model::Image::from_fn(320, 240, |x, y| ((x * 7919 + y * 104_729) % 251) as f32 / 250.0);
+    calibench_exchange::write_png(&folder.path().join("noise.png"), &noise, false).unwrap();
+    let output = run(folder.path(), &["detect", "noise.png", "--chessboard", "9x6"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("noise.png: no board of 9 x 6 inner corners found"), "{}", stderr(&output));
+}

@@ -1,0 +1,70 @@
+//! The project under test: its folder, a copy of it to write in, and the program.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The project's own folder.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ lies in the project").to_owned()
+}
+
+/// A temporary project with the real scenarios and references, and no records or reports.
+pub fn copy() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for part in ["scenarios", "reference"] {
+        copy_folder(&root().join(part), &folder.path().join(part));
+    }
+    folder
+}
+
+fn copy_folder(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let target = to.join(path.file_name().expect("a name"));
+        if path.is_dir() { copy_folder(&path, &target) } else { std::fs::copy(&path, &target).map(|_| ()).expect("a copy") }
+    }
+}
+
+/// The program, to be run in `folder`. Photographs are found as the tests find them.
+pub fn program(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_calibench-under-test"));
+    command.current_dir(folder).env_remove("CALIBENCH_ROOT");
+    let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from);
+    command.env("CALIBENCH_DATA", data);
+    command
+}
+
+/// Runs the program with `arguments` in `folder`.
+pub fn run(folder: &Path, arguments: &[&str]) -> Output {
+    program(folder).args(arguments).output().expect("the program starts")
+}
+
+/// What the program wrote to standard output.
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// What the program wrote to standard error.
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// All files below `folder` with their contents, by path; locks are left out.
+pub fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in std::fs::read_dir(&next).into_iter().flatten() {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if !path.ends_with(".calibench-lock") {
+                let content = std::fs::read(&path).expect("a file");
+                found.push((path.strip_prefix(folder).expect("below").to_owned(), content));
+            }
+        }
+    }
+    found.sort();
+    found
+}

@@ -1,1 +1,0 @@
-//! Tests that cross crates: see `calibench/main.rs`.
