@@ -17,7 +17,8 @@ fn kill(project: &Path, arguments: &[&str], folder: &str) {
         killed += u32::from(child.try_wait().unwrap().is_none());
         child.kill().unwrap();
         child.wait().unwrap();
-        let partial = |path: &Path| path.components().next().is_some_and(|c| c.as_os_str().to_string_lossy().starts_with(".calibench-partial-"));
+        let partial =
+            |path: &Path| path.components().next().is_some_and(|c| c.as_os_str().to_string_lossy().starts_with(".calibench-partial-"));
         let mut after = files(&project.join(folder));
         after.retain(|(path, _)| !partial(path));
         assert!(after == before, "{arguments:?} killed after {milliseconds} ms changed {folder}");

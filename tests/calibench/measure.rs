@@ -30,13 +30,15 @@ fn write(folder: &Path, name: &str, text: &str) {
     std::fs::write(folder.join(name), text).unwrap();
 }
 
-const POINTS: &str = "image,target,x,y\ndeep.png,left,31,28\na.png,right,70,29\nb.png,gone,5,5\na.png,flat,90,10\na.png,left,30,29\na.png,edge,2,2\n";
+const POINTS: &str =
+    "image,target,x,y\ndeep.png,left,31,28\na.png,right,70,29\nb.png,gone,5,5\na.png,flat,90,10\na.png,left,30,29\na.png,edge,2,2\n";
 
 #[test]
 fn one_row_for_every_point_in_the_order_given() {
     let folder = folder();
     write(folder.path(), "p.csv", POINTS);
-    let arguments = ["measure", "a.png", "deep.png", "--points", "p.csv", "-m", "forstner:window=15", "-m", "opencv_subpix", "-o", "out.csv"];
+    let arguments =
+        ["measure", "a.png", "deep.png", "--points", "p.csv", "-m", "forstner:window=15", "-m", "opencv_subpix", "-o", "out.csv"];
     let output = run(folder.path(), &arguments);
     assert!(output.status.success(), "{}", stderr(&output));
     let text = std::fs::read_to_string(folder.path().join("out.csv")).unwrap();
@@ -45,8 +47,11 @@ fn one_row_for_every_point_in_the_order_given() {
     let head: Vec<String> = lines[1..].iter().map(|line| line.split(',').take(2).collect::<Vec<_>>().join(",")).collect();
     let given = ["deep.png,left", "a.png,right", "b.png,gone", "a.png,flat", "a.png,left", "a.png,edge"];
     assert_eq!(head, [given, given].concat());
-    let tails = ["measured,", "measured,", "unavailable,photograph b.png was not given", "rejected,no_corner", "measured,", "rejected,border"];
-    for (line, (tail, method)) in lines[1..].iter().zip(tails.iter().map(|t| (t, "forstner:window=15")).chain(tails.iter().map(|t| (t, "opencv_subpix:window=11")))) {
+    let tails =
+        ["measured,", "measured,", "unavailable,photograph b.png was not given", "rejected,no_corner", "measured,", "rejected,border"];
+    for (line, (tail, method)) in
+        lines[1..].iter().zip(tails.iter().map(|t| (t, "forstner:window=15")).chain(tails.iter().map(|t| (t, "opencv_subpix:window=11"))))
+    {
         assert!(line.ends_with(&format!(",{method},{tail}")), "{line}\nexpected {method},{tail}");
     }
 }

@@ -1,1 +1,26 @@
-//! OpenCV's methods, and the full `calibench` binary.
+//! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them, and a chessboard detector.
+
+pub mod chessboard;
+pub mod subpix;
+
+use calibench_measure::{BoardDetector, Registry};
+
+/// Every method of this build: ours and OpenCV's.
+pub fn registry() -> Registry {
+    Registry::builtin().with(subpix::method())
+}
+
+/// The detector of chessboards.
+pub fn detector() -> impl BoardDetector {
+    chessboard::ChessboardDetector
+}
+
+/// OpenCV's own version, as in `4.6.0`: that of the library in use.
+pub fn version() -> String {
+    opencv::core::get_version_string().unwrap_or_else(|_| "unknown".into())
+}
+
+/// The command line with everything that this build can do.
+pub fn main() -> std::process::ExitCode {
+    calibench_bench::cli::main(&calibench_bench::cli::Toolbox { registry: registry(), detector: Some(Box::new(detector())) })
+}

@@ -1,1 +1,7 @@
-fn main() {}
+//! The `calibench` program.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    calibench_opencv::main()
+}

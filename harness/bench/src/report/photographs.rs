@@ -20,11 +20,30 @@ struct Compared {
 }
 
 impl Compared {
-    /// The largest distance between two operators, px; 0 if fewer than two measured it.
-    fn spread(&self, operators: &[usize]) -> f64 {
+    /// The middle of what the operators measured: the median of x and of y; `None` if fewer than two measured it.
+    fn middle(&self, operators: &[usize]) -> Option<PixelPoint> {
         let found: Vec<PixelPoint> = operators.iter().filter_map(|&m| self.positions[m]).collect();
-        found.iter().flat_map(|a| found.iter().map(|b| a.distance(*b))).fold(0.0, f64::max)
+        let median = |mut values: Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            let n = values.len();
+            f64::midpoint(values[(n - 1) / 2], values[n / 2])
+        };
+        (found.len() > 1).then(|| PixelPoint::new(median(found.iter().map(|p| p.x).collect()), median(found.iter().map(|p| p.y).collect())))
     }
+
+    /// How far method `method` is from that middle, px.
+    fn off(&self, method: usize, operators: &[usize]) -> Option<f64> {
+        Some(self.positions[method]?.distance(self.middle(operators)?))
+    }
+}
+
+/// How many points a picture shows of each operator, and how many an operator's refusals are shown by.
+const SHOWN: usize = 5;
+
+/// A point to be shown: whose, and what is said of it.
+struct Chosen<'a> {
+    point: &'a Compared,
+    title: String,
 }
 
 /// The text of the section, and its pictures with their file names.
@@ -42,24 +61,52 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
     let mut text = seen(loaded, &points);
     text.push_str(&counts(loaded));
     text.push_str(&differences(loaded, &points));
-    let mut ranked: Vec<&Compared> = points.iter().filter(|p| p.positions.iter().flatten().count() > 1).collect();
-    ranked.sort_by(|a, b| b.spread(&operators).total_cmp(&a.spread(&operators)));
+    let furthest = operators.iter().flat_map(|&m| ranked(loaded, &points, m, &operators).into_iter().take(SHOWN)).collect::<Vec<_>>();
+    let usual = operators.iter().flat_map(|&m| {
+        let ranked = ranked(loaded, &points, m, &operators);
+        let middle = ranked.len().saturating_sub(SHOWN) / 2;
+        ranked.into_iter().skip(middle).take(SHOWN)
+    });
+    let usual = usual.collect::<Vec<_>>();
+    let refused = operators.iter().flat_map(|&m| {
+        let refused = points.iter().filter(move |p| p.positions[m].is_none());
+        refused.take(SHOWN).map(move |point| Chosen { point, title: title(loaded, point, m, None) })
+    });
+    let refused = refused.collect::<Vec<_>>();
     let mut pictures = Vec::new();
-    let refused: Vec<&Compared> = points.iter().filter(|p| operators.iter().any(|&m| p.positions[m].is_none())).take(10).collect();
-    let middle = ranked.len().saturating_sub(5) / 2;
-    let typical: Vec<&Compared> = ranked.iter().copied().skip(middle).take(5).collect();
-    let worst: Vec<&Compared> = ranked.iter().copied().take(10).collect();
-    for (name, title, about, chosen) in [
-        ("worst", "Where they differ most", "The ten points on which two operators are furthest apart.", worst),
-        ("typical", "Where they differ as usual", "Five points in the middle of that ranking.", typical),
-        ("rejected", "Where one refuses", "The first points that at least one operator rejected.", refused),
+    for (name, heading, about, chosen) in [
+        (
+            "furthest",
+            "Where each is furthest from the others",
+            "For each operator the five points at which it is furthest from the middle of all.",
+            furthest,
+        ),
+        ("usual", "Where each is as usual", "For each operator five points in the middle of that ranking.", usual),
+        ("refused", "Where one refuses", "For each operator the first five points that it rejected.", refused),
     ] {
         if let Some(picture) = picture(loaded, &chosen, &operators) {
-            text.push_str(&format!("### {title}\n\n{about} Enlarged 8 times; the title gives photograph, corner and the largest distance between two operators.\n\n![{title}]({name}.png)\n\n"));
+            text.push_str(&format!(
+                "### {heading}\n\n{about} The middle is the median of x and of y over all operators. 31 x 31 px, enlarged 8 times; the title gives operator, \
+                 photograph, corner and distance.\n\n![{heading}]({name}.png)\n\n"
+            ));
             pictures.push((format!("{name}.png"), picture));
         }
     }
     (text, pictures)
+}
+
+/// The points that `method` measured, the one furthest from the others first.
+fn ranked<'a>(loaded: &Loaded, points: &'a [Compared], method: usize, operators: &[usize]) -> Vec<Chosen<'a>> {
+    let mut found: Vec<(f64, &Compared)> = points.iter().filter_map(|p| Some((p.off(method, operators)?, p))).collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    found.into_iter().map(|(off, point)| Chosen { point, title: title(loaded, point, method, Some(off)) }).collect()
+}
+
+fn title(loaded: &Loaded, point: &Compared, method: usize, off: Option<f64>) -> String {
+    let operator = loaded.head.methods[method].label.split(':').next().unwrap_or_default();
+    let photograph = point.key.0.split('.').next().unwrap_or_default();
+    let off = off.map_or(String::new(), |off| format!(" {} px", fixed(off, 2)));
+    format!("{operator}, {photograph} {}{off}", point.key.1)
 }
 
 fn compared(loaded: &Loaded) -> Vec<Compared> {
@@ -137,21 +184,19 @@ fn quantile(sorted: &[(f64, PointKey)], q: f64) -> f64 {
     sorted[rank.clamp(1, sorted.len()) - 1].0
 }
 
-fn picture(loaded: &Loaded, chosen: &[&Compared], operators: &[usize]) -> Option<Canvas> {
+fn picture(loaded: &Loaded, chosen: &[Chosen<'_>], operators: &[usize]) -> Option<Canvas> {
     let available: Vec<usize> = operators.iter().copied().filter(|&m| loaded.head.methods[m].unavailable.is_none()).collect();
     let mut layers = vec![Layer::start()];
     layers.extend(available.iter().enumerate().map(|(i, &m)| Layer::method(&loaded.head.methods[m].label, i)));
     let start = loaded.method("pixel");
-    let images: BTreeMap<&str, Image> = chosen.iter().filter_map(|p| Some((&*p.key.0, loaded.image(&p.key.0)?))).collect();
-    let panel = |point: &&Compared| {
-        let image = images.get(&*point.key.0)?;
-        let mut marks: Vec<MarkAt> = start.and_then(|m| point.positions[m]).map(|at| MarkAt { layer: 0, at }).into_iter().collect();
+    let images: BTreeMap<&str, Image> = chosen.iter().filter_map(|c| Some((&*c.point.key.0, loaded.image(&c.point.key.0)?))).collect();
+    let panel = |Chosen { point, title }: &Chosen<'_>| {
+        let started = start.and_then(|m| point.positions[m]);
+        let mut marks: Vec<MarkAt> = started.map(|at| MarkAt { layer: 0, at }).into_iter().collect();
         marks.extend(available.iter().enumerate().filter_map(|(i, &m)| Some(MarkAt { layer: i + 1, at: point.positions[m]? })));
-        let centre = start.and_then(|m| point.positions[m]).or_else(|| point.positions.iter().copied().flatten().next())?;
-        let name = point.key.0.split('.').next().unwrap_or_default();
-        let title = format!("{name} {}: {} px", point.key.1, fixed(point.spread(operators), 2));
-        Some(Panel { title, image, centre, marks })
+        let centre = started.or_else(|| point.positions.iter().copied().flatten().next())?;
+        Some(Panel { title: title.clone(), image: images.get(&*point.key.0)?, centre, marks })
     };
     let found: Vec<Panel<'_>> = chosen.iter().filter_map(panel).collect();
-    (!found.is_empty()).then(|| panels(&found, &layers, 31, 8, 5))
+    (!found.is_empty()).then(|| panels(&found, &layers, 31, 8, SHOWN))
 }

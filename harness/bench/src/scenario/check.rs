@@ -12,7 +12,7 @@ use toml::de::DeTable;
 use super::methods::methods;
 use super::problem::{Problem, Problems};
 use super::section::Section;
-use super::wire::{Coordinate, Head, PhotographsWire, PolygonWire, SceneWire, TargetWire};
+use super::wire::{Head, PhotographsWire, PolygonWire, Position, SceneWire, TargetWire};
 use super::{PhotographsSubject, Scenario, SceneSubject, Starts, Subject};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
@@ -170,8 +170,8 @@ fn span_of_both(a: Range<usize>, b: Range<usize>) -> Range<usize> {
     a.start.min(b.start)..a.end.max(b.end)
 }
 
-fn point(at: &[Coordinate; 2]) -> PixelPoint {
-    PixelPoint::new(at[0].0, at[1].0)
+fn point(at: &Position) -> PixelPoint {
+    PixelPoint::new(at.0, at.1)
 }
 
 fn areas(wires: &[PolygonWire], problems: &mut Vec<Problem>) -> Vec<Polygon> {

@@ -63,6 +63,36 @@ bounded! {
     Seed(u64), i64 "i64", 0, i64::MAX;
 }
 
+/// A position [x, y], px. (An array of two would take more numbers in silence.)
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "Vec<Coordinate>")]
+pub struct Position(pub f64, pub f64);
+
+impl TryFrom<Vec<Coordinate>> for Position {
+    type Error = String;
+
+    fn try_from(numbers: Vec<Coordinate>) -> Result<Self, String> {
+        match numbers[..] {
+            [x, y] => Ok(Self(x.0, y.0)),
+            _ => Err(format!("expected two numbers [x, y], found {}", numbers.len())),
+        }
+    }
+}
+
+impl JsonSchema for Position {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Position".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "minItems": 2, "maxItems": 2, "items": Coordinate::json_schema(generator) })
+    }
+}
+
 /// A scenario: what is measured with which methods, and why.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -180,8 +210,8 @@ pub struct PolygonWire {
     /// Its grey value, fraction of full scale.
     pub grey: Grey,
     /// Its vertices [x, y], px; pixel centres are whole numbers, y points down. At least three, not crossing itself or another polygon.
-    #[schemars(with = "Vec<[Coordinate; 2]>")]
-    pub vertices: Spanned<Vec<[Coordinate; 2]>>,
+    #[schemars(with = "Vec<Position>")]
+    pub vertices: Spanned<Vec<Position>>,
 }
 
 /// A point to be measured.
@@ -195,11 +225,11 @@ pub struct TargetWire {
     #[schemars(with = "String")]
     pub kind: Spanned<String>,
     /// Its true position [x, y], px.
-    #[schemars(with = "[Coordinate; 2]")]
-    pub at: Spanned<[Coordinate; 2]>,
+    #[schemars(with = "Position")]
+    pub at: Spanned<Position>,
     /// Where measuring starts [x, y], px. Only without `[scene.pointing]`.
-    #[schemars(with = "Option<[Coordinate; 2]>")]
-    pub start: Option<Spanned<[Coordinate; 2]>>,
+    #[schemars(with = "Option<Position>")]
+    pub start: Option<Spanned<Position>>,
 }
 
 /// Photographs of a chessboard that somebody took: without truth.
