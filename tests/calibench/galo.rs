@@ -101,3 +101,23 @@ fn the_report_reproduces_what_is_comparable() {
         assert!(image::open(project.path().join("reports/galo-2011").join(picture)).is_ok(), "{picture} is an image");
     }
 }
+
+#[test]
+fn rendered_right_angles_on_the_pixel_grid_have_the_closed_form_bias() {
+    let apex = PixelPoint::new(23.5, 23.5);
+    let corners = [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)];
+    for (sx, sy) in corners {
+        let vertices = [(0.0, 0.0), (sx * 90.0, 0.0), (sx * 90.0, sy * 90.0), (0.0, sy * 90.0)];
+        let vertices = vertices.map(|(dx, dy)| PixelPoint::new(apex.x + dx, apex.y + dy)).to_vec();
+        let polygons = vec![Polygon { id: "corner".into(), vertices, grey: 0.2 }];
+        let image = calibench_synth::render(&Scene { width: SIDE, height: SIDE, background: 0.8, polygons, targets: Vec::new() });
+        for window in [9, 11, 15, 21] {
+            // From the nearest pixel inside, m = window / 2 rows lie at least two pixels inside.
+            let start = Start::at(PixelPoint::new(apex.x + sx * 0.5, apex.y + sy * 0.5));
+            let found = Forstner::new(window).measure(&image, &start).unwrap().position;
+            let expected = 1.0 / (9.0 + 8.0 * (window / 2) as f64);
+            let (ex, ey) = (sx * (found.x - apex.x) - expected, sy * (found.y - apex.y) - expected);
+            assert!(ex.abs() < 1e-7 && ey.abs() < 1e-7, "{sx} {sy} {window}: {ex:e} {ey:e}");
+        }
+    }
+}
