@@ -2,6 +2,7 @@
 
 mod files;
 mod findings;
+mod requirement;
 
 use super::{Coordinates, Table};
 use crate::results::{MethodInfo, Outcome, PointResult, Trial};
