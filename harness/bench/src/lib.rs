@@ -2,6 +2,7 @@
 
 pub mod cli;
 pub mod data;
+pub mod gate;
 pub mod published;
 pub mod records;
 pub mod report;
