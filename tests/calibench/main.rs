@@ -4,6 +4,7 @@ mod cli;
 mod determinism;
 mod diagnostics;
 mod galo;
+mod gate;
 mod killed;
 mod measure;
 mod photographs;

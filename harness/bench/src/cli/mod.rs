@@ -1,5 +1,6 @@
 //! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
 
+mod check;
 mod context;
 mod detect;
 mod list;
@@ -57,6 +58,10 @@ enum Command {
     Run(run::Run),
     /// Write reports from records alone; runs nothing
     Report(report::Report),
+    /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
+    Check(check::Check),
+    /// Accept today's accuracy as the baseline: lists what gets worse, and asks
+    Bless(check::Bless),
     /// Measure points in photographs
     Measure(measure::Measure),
     /// Find a chessboard's corners in photographs: approximate positions for `measure`
@@ -67,6 +72,8 @@ enum Command {
 
 /// Why a command ends with another exit code than 0.
 enum Failure {
+    /// A gate failed and has said why: exit code 1.
+    Gate,
     /// Bad input, or output that cannot be written: exit code 2.
     Input(String),
 }
@@ -90,6 +97,7 @@ pub fn main(toolbox: &Toolbox) -> ExitCode {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {
         Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Gate) => ExitCode::from(1),
         Err(Failure::Input(message)) => {
             eprintln!("error: {message}");
             ExitCode::from(2)
@@ -104,6 +112,8 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Show(show) => show.run(&context),
         Command::Run(run) => run.run(&context),
         Command::Report(report) => report.run(&context),
+        Command::Check(check) => check.run(&context),
+        Command::Bless(bless) => bless.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
         Command::Schema => print(&format!("{:#}\n", crate::scenario::schema::schema(&toolbox.registry))),
