@@ -1,6 +1,6 @@
 //! Scenes to images whose truth is known exactly.
 //!
-//! [`render`] integrates a scene of polygons over each pixel's area, [`noise`] spoils the image as a sensor would, [`pointing`]
+//! [`render()`] integrates a scene of polygons over each pixel's area, [`noise`] spoils the image as a sensor would, [`pointing`]
 //! makes the approximate positions that a person would click. Every random number comes from [`random::stream`].
 
 pub mod coverage;

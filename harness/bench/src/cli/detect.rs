@@ -2,16 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::{PointRow, read_photo, write_points};
 use calibench_measure::{Board, BoardDetector};
 use calibench_model::{Affine, PixelPoint, Start, TargetKind};
 use clap::Args;
 use rayon::prelude::*;
 
-use super::Failure;
 use super::context::Context;
 use super::progress::Progress;
+use super::{Failure, deliver};
 
 #[derive(Args)]
 pub struct Detect {
@@ -47,17 +46,7 @@ impl Detect {
         if seen == 0 {
             return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
         }
-        match &self.output {
-            Some(path) => {
-                let write = write_atomically(path, |file| write_points(file, found.iter().flatten()));
-                write.map_err(|error| Failure::input(format!("{}: {error}", path.display())))
-            }
-            None => {
-                let mut bytes = Vec::new();
-                write_points(&mut bytes, found.iter().flatten())?;
-                super::print(&String::from_utf8_lossy(&bytes))
-            }
-        }
+        deliver(self.output.as_deref(), |file| write_points(file, found.iter().flatten()))
     }
 }
 

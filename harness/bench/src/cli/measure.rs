@@ -3,16 +3,15 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::{MeasuredRow, Outcome, PointRow, read_photo, read_points, write_measured};
 use calibench_measure::Configured;
 use calibench_model::Start;
 use clap::Args;
 use rayon::prelude::*;
 
-use super::Failure;
 use super::context::Context;
 use super::progress::Progress;
+use super::{Failure, deliver};
 
 #[derive(Args)]
 pub struct Measure {
@@ -48,16 +47,7 @@ impl Measure {
             let outcome = |i: usize| outcomes[i].get(m).cloned().unwrap_or_else(|| not_given(&points[i]));
             points.iter().enumerate().map(move |(i, given)| MeasuredRow { given, method: label, outcome: outcome(i) }).collect::<Vec<_>>()
         });
-        match &self.output {
-            Some(path) => {
-                write_atomically(path, |file| write_measured(file, rows)).map_err(|e| Failure::input(format!("{}: {e}", path.display())))?
-            }
-            None => {
-                let mut bytes = Vec::new();
-                write_measured(&mut bytes, rows)?;
-                super::print(&String::from_utf8_lossy(&bytes))?;
-            }
-        }
+        deliver(self.output.as_deref(), |file| write_measured(file, rows))?;
         progress.finish(&summary(&outcomes, &points));
         Ok(())
     }

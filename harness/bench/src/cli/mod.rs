@@ -10,10 +10,11 @@ mod report;
 mod run;
 mod show;
 
-use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use calibench_exchange::atomic::write_atomically;
 use calibench_measure::{BoardDetector, Registry};
 use clap::{Parser, Subcommand};
 
@@ -129,6 +130,18 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// Writes a result to `path`, whole or not at all, or to standard output.
+fn deliver(path: Option<&Path>, write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(), Failure> {
+    match path {
+        Some(path) => write_atomically(path, write).map_err(|error| Failure::input(format!("{}: {error}", path.display()))),
+        None => {
+            let mut bytes = Vec::new();
+            write(&mut bytes)?;
+            print(&String::from_utf8_lossy(&bytes))
+        }
+    }
+}
+
 /// A scenario's problems as a picture of the lines that they are about.
 fn scenario_failure(error: CatalogueError) -> Failure {
     match error {
@@ -140,5 +153,5 @@ fn scenario_failure(error: CatalogueError) -> Failure {
 fn picture(problems: &Problems) -> String {
     let count = problems.problems.len();
     let noun = if count == 1 { "mistake" } else { "mistakes" };
-    format!("{count} {noun} in {}\n{}", problems.file, problems.picture(std::io::stderr().is_terminal()))
+    format!("{count} {noun} in {}\n{}", problems.file, problems.picture(io::stderr().is_terminal()))
 }

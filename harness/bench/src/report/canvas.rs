@@ -94,14 +94,14 @@ impl Canvas {
     pub fn marks(&mut self, marks: &[(Mark, RGBColor, (f64, f64))]) {
         let whole = |(x, y): (f64, f64)| (x.round() as i32, y.round() as i32);
         for (mark, _, at) in marks {
-            self.outline(*mark, &WHITE, mark.stroke() + 2, whole(*at));
+            self.outline(*mark, WHITE, mark.stroke() + 2, whole(*at));
         }
         for (mark, colour, at) in marks {
-            self.outline(*mark, colour, mark.stroke(), whole(*at));
+            self.outline(*mark, *colour, mark.stroke(), whole(*at));
         }
     }
 
-    fn outline(&mut self, mark: Mark, colour: &RGBColor, width: u32, (x, y): (i32, i32)) {
+    fn outline(&mut self, mark: Mark, colour: RGBColor, width: u32, (x, y): (i32, i32)) {
         let lines: Vec<Vec<(i32, i32)>> = match mark {
             Mark::Square => vec![vec![
                 (-MARK - 1, -MARK - 1),
@@ -119,7 +119,7 @@ impl Canvas {
                 vec![circle.map(|a| ((f64::from(MARK) * a.cos()).round() as i32, (f64::from(MARK) * a.sin()).round() as i32)).collect()]
             }
         };
-        let style = ShapeStyle::from(colour).stroke_width(width);
+        let style = ShapeStyle::from(&colour).stroke_width(width);
         self.paint(|area| {
             for line in &lines {
                 let line: Vec<_> = line.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
@@ -138,20 +138,20 @@ impl Canvas {
 
     /// Black text, its left middle at (`x`, `y`).
     pub fn text(&mut self, text: &str, size: u32, (x, y): (u32, u32)) {
-        self.write_text(text, size, &BLACK, (x as i32, y as i32));
+        self.write_text(text, size, BLACK, (x as i32, y as i32));
     }
 
     /// Black text with a white rim, readable on any grey.
     pub fn label(&mut self, text: &str, size: u32, (x, y): (u32, u32)) {
         let (x, y) = (x as i32, y as i32);
         for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
-            self.write_text(text, size, &WHITE, (x + dx, y + dy));
+            self.write_text(text, size, WHITE, (x + dx, y + dy));
         }
-        self.write_text(text, size, &BLACK, (x, y));
+        self.write_text(text, size, BLACK, (x, y));
     }
 
-    fn write_text(&mut self, text: &str, size: u32, colour: &RGBColor, at: (i32, i32)) {
-        let style = ("sans-serif", size).into_font().color(colour).pos(Pos::new(HPos::Left, VPos::Center));
+    fn write_text(&mut self, text: &str, size: u32, colour: RGBColor, at: (i32, i32)) {
+        let style = ("sans-serif", size).into_font().color(&colour).pos(Pos::new(HPos::Left, VPos::Center));
         self.paint(|area| {
             area.draw(&Text::new(text, at, style)).ok();
         });

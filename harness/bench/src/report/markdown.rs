@@ -32,8 +32,8 @@ impl MarkdownTable {
         let widths: Vec<usize> = (0..columns).map(|c| rows().map(|row| cell(row, c).chars().count()).max().unwrap_or(0).max(3)).collect();
         let mut text = String::new();
         for (index, row) in rows().enumerate() {
-            for column in 0..columns {
-                let (content, width) = (cell(row, column), widths[column]);
+            for (column, &width) in widths.iter().enumerate() {
+                let content = cell(row, column);
                 // Writing to a String cannot fail.
                 let _ = if numeric(column) { write!(text, "| {content:>width$} ") } else { write!(text, "| {content:<width$} ") };
             }

@@ -59,16 +59,10 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
     let loaded = scenarios.iter().map(|name| load(&places.records, name, registry)).collect::<Result<Vec<_>, _>>()?;
     let tables = published::tables(&places.published, family)?;
     let mut page = Page::new(family);
+    let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).ok_or_else(|| LoadError::None(name.clone()));
     for (_, table) in &tables {
-        let by_name = |name: &str| match loaded.iter().find(|l| l.scenario.name == name) {
-            Some(_) => Ok(()),
-            None => Err(LoadError::None(name.to_owned())),
-        };
-        by_name(&table.scenario)?;
-        table.beside.iter().try_for_each(|name| by_name(name))?;
-        let main = load(&places.records, &table.scenario, registry)?;
-        let beside = table.beside.iter().map(|name| load(&places.records, name, registry)).collect::<Result<Vec<_>, _>>()?;
-        page.text.push_str(&published_section::section(table, &main, &beside));
+        let beside = table.beside.iter().map(by_name).collect::<Result<Vec<_>, _>>()?;
+        page.text.push_str(&published_section::section(table, by_name(&table.scenario)?, &beside));
     }
     loaded.iter().for_each(|loaded| page.scenario(loaded));
     let writer = FolderWriter::new(&places.reports)?;

@@ -5,13 +5,13 @@ use std::fmt::Write;
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed, fraction, signed};
 use crate::published::{Cell, Metric, Printed, Table, Verdict};
-use crate::results::PointResult;
+use crate::results::{Outcome, PointResult};
 
 /// The errors (dx, dy) of one method's points in the first trial, px, by target; rejected points are left out.
 fn errors<'a>(loaded: &'a Loaded, method: usize, except: &'a [String]) -> impl Iterator<Item = (f64, f64)> + 'a {
     points(loaded, method).filter(|p| !except.iter().any(|id| **id == *p.target)).filter_map(|p| match p.outcome {
-        crate::results::Outcome::Measured { error, .. } => error,
-        crate::results::Outcome::Rejected(_) => None,
+        Outcome::Measured { error, .. } => error,
+        Outcome::Rejected(_) => None,
     })
 }
 
@@ -39,7 +39,7 @@ fn figure(loaded: &Loaded, method: usize, metric: Metric, target: Option<&str>, 
 }
 
 /// The section of a table: printed beside ours, what was found out, and every method on the same points.
-pub fn section(table: &Table, main: &Loaded, beside: &[Loaded]) -> String {
+pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> String {
     let mut text = format!("## {}\n\n{}. Unit: {}.\n\n", table.title, table.source, table.unit);
     match main.method(&table.method) {
         Some(method) => text.push_str(&comparison(table, main, method)),
@@ -60,7 +60,7 @@ pub fn section(table: &Table, main: &Loaded, beside: &[Loaded]) -> String {
         "Distances from the truth in px, and as fractions of a pixel. One image without noise: the figures have no scatter. `dx` is \
          positive to the right, `dy` downwards.\n\n",
     );
-    for loaded in std::iter::once(main).chain(beside) {
+    for loaded in std::iter::once(main).chain(beside.iter().copied()) {
         let _ = writeln!(text, "**`{}`**\n\n{}", loaded.scenario.name, every_method(table, loaded));
     }
     text
@@ -185,8 +185,8 @@ fn by_target(loaded: &Loaded) -> String {
     }
     for target in targets {
         let cell = |&method: &usize| match points(loaded, method).find(|p| &*p.target == target).map(|p| p.outcome) {
-            Some(crate::results::Outcome::Measured { error: Some((dx, dy)), .. }) => format!("{}, {}", signed(dx, 3), signed(dy, 3)),
-            Some(crate::results::Outcome::Rejected(why)) => why.to_string(),
+            Some(Outcome::Measured { error: Some((dx, dy)), .. }) => format!("{}, {}", signed(dx, 3), signed(dy, 3)),
+            Some(Outcome::Rejected(why)) => why.to_string(),
             _ => String::new(),
         };
         rows.row(std::iter::once(target.to_owned()).chain(available.iter().map(cell)));

@@ -60,10 +60,9 @@ fn round(value: f64) -> f64 {
 fn targets(loaded: &Loaded) -> Vec<(String, PixelPoint)> {
     let mut targets: Vec<(String, PixelPoint)> = Vec::new();
     for point in &loaded.first.points {
-        if let Outcome::Measured { position, error: Some((dx, dy)) } = point.outcome {
-            if !targets.iter().any(|(id, _)| *id == *point.target) {
-                targets.push((point.target.to_string(), PixelPoint::new(position.x - dx, position.y - dy)));
-            }
+        let Outcome::Measured { position, error: Some((dx, dy)) } = point.outcome else { continue };
+        if !targets.iter().any(|(id, _)| *id == *point.target) {
+            targets.push((point.target.to_string(), PixelPoint::new(position.x - dx, position.y - dy)));
         }
     }
     targets

@@ -6,7 +6,7 @@ mod scene;
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::PhotoError;
-use calibench_measure::{BoardDetector, Configured, Operator};
+use calibench_measure::{BoardDetector, Configured};
 use calibench_model::{Image, Rejection, Start};
 use rayon::prelude::*;
 use thiserror::Error;
@@ -107,7 +107,7 @@ impl<'a> Plan<'a> {
 
     /// Every available method on one image: (method, results in the order of `starts`).
     fn measure(&self, image: &Image, starts: &[Start]) -> Vec<(usize, Vec<Result<calibench_model::Measurement, Rejection>>)> {
-        let available = self.methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_ref().ok()?)));
-        available.map(|(index, operator): (usize, &Box<dyn Operator>)| (index, operator.measure_all(image, starts))).collect()
+        let available = self.methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?)));
+        available.map(|(index, operator)| (index, operator.measure_all(image, starts))).collect()
     }
 }

@@ -13,12 +13,12 @@ pub fn schema(registry: &Registry) -> Value {
     root["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     root["title"] = json!("calibench scenario");
     let mut scene = table::<SceneWire>();
-    scene["properties"]["polygon"] = list(table::<PolygonWire>());
-    scene["properties"]["target"] = list(table::<TargetWire>());
+    scene["properties"]["polygon"] = list(&table::<PolygonWire>());
+    scene["properties"]["target"] = list(&table::<TargetWire>());
     require(&mut scene, &["polygon", "target"]);
     root["properties"]["scene"] = scene;
     root["properties"]["photographs"] = table::<PhotographsWire>();
-    root["properties"]["method"] = list(json!({ "oneOf": registry.methods().iter().map(method).collect::<Vec<_>>() }));
+    root["properties"]["method"] = list(&json!({ "oneOf": registry.methods().iter().map(method).collect::<Vec<_>>() }));
     require(&mut root, &["method"]);
     root["oneOf"] = json!([{ "required": ["scene"] }, { "required": ["photographs"] }]);
     root
@@ -33,7 +33,7 @@ fn table<T: JsonSchema>() -> Value {
     schema
 }
 
-fn list(items: Value) -> Value {
+fn list(items: &Value) -> Value {
     json!({ "type": "array", "minItems": 1, "items": items })
 }
 

@@ -41,11 +41,11 @@ impl<'i> Section<'i> {
             return None;
         };
         let mut sections = Vec::new();
-        for element in elements.iter() {
+        for element in elements {
             match element.get_ref() {
                 DeValue::Table(table) => sections.push(Section { name, span: element.span(), table: table.clone() }),
                 other => {
-                    problems.push(Problem::new(element.span(), format!("expected a table, {name}, found {}", article(other.type_str()))))
+                    problems.push(Problem::new(element.span(), format!("expected a table, {name}, found {}", article(other.type_str()))));
                 }
             }
         }
