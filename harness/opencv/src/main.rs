@@ -1,1 +1,2 @@
+//! The `calibench` command with OpenCV's methods.
 fn main() {}
