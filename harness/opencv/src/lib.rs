@@ -1,10 +1,21 @@
-//! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them.
+//! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them, and a chessboard detector.
 
+pub mod chessboard;
 pub mod subpix;
 
-use calibench_measure::Registry;
+use calibench_measure::{BoardDetector, Registry};
 
 /// Every method of this build: ours and OpenCV's.
 pub fn registry() -> Registry {
     Registry::builtin().with(subpix::method())
+}
+
+/// The detector of chessboards.
+pub fn detector() -> impl BoardDetector {
+    chessboard::ChessboardDetector
+}
+
+/// OpenCV's own version, as in `4.6.0`: that of the library in use.
+pub fn version() -> String {
+    opencv::core::get_version_string().unwrap_or_else(|_| "unknown".into())
 }

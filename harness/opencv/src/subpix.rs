@@ -61,7 +61,7 @@ pub fn method() -> Method {
         name: "opencv_subpix",
         about: "OpenCV's cornerSubPix: point orthogonal to all gradients of a weighted window, iterated",
         source: "Bradski 2000, OpenCV, cornerSubPix (its documentation cites no paper)",
-        version: opencv::core::get_version_string().unwrap_or_else(|_| "unknown".into()),
+        version: crate::version(),
         parameters: PARAMETERS,
         build: Build::With(|settings| Box::new(Subpix::new(settings))),
     }
