@@ -30,21 +30,25 @@ impl PixelPoint {
     }
 
     /// The same point counted from the outer corner of the top-left pixel.
+    #[inline]
     pub fn to_corner(self) -> CornerPoint {
         CornerPoint { x: self.x + HALF_PIXEL, y: self.y + HALF_PIXEL }
     }
 
     /// The pixel whose centre is nearest, as (column, row); a tie goes away from zero. `None` if the point is not finite.
+    #[inline]
     pub fn nearest_pixel(self) -> Option<(i64, i64)> {
         (self.x.is_finite() && self.y.is_finite()).then(|| (self.x.round() as i64, self.y.round() as i64))
     }
 
     /// Euclidean distance to `other`, px.
+    #[inline]
     pub fn distance(self, other: Self) -> f64 {
         (self.x - other.x).hypot(self.y - other.y)
     }
 
     /// Are both coordinates finite?
+    #[inline]
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite()
     }

@@ -27,16 +27,19 @@ impl Image {
     }
 
     /// Columns.
+    #[inline]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// Rows.
+    #[inline]
     pub fn height(&self) -> usize {
         self.height
     }
 
     /// All grey values, row by row.
+    #[inline]
     pub fn grey(&self) -> &[f32] {
         &self.grey
     }
@@ -50,6 +53,7 @@ impl Image {
     ///
     /// # Panics
     /// If there is no such row.
+    #[inline]
     pub fn row(&self, y: usize) -> &[f32] {
         &self.grey[y * self.width..(y + 1) * self.width]
     }
@@ -58,11 +62,13 @@ impl Image {
     ///
     /// # Panics
     /// If there is no such pixel.
+    #[inline]
     pub fn at(&self, x: usize, y: usize) -> f32 {
         self.row(y)[x]
     }
 
     /// Does the square of half-width `reach` px around pixel (`x`, `y`) lie inside the image?
+    #[inline]
     pub fn holds(&self, x: i64, y: i64, reach: i64) -> bool {
         x >= reach && y >= reach && x + reach < self.width as i64 && y + reach < self.height as i64
     }

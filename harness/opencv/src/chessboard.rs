@@ -12,9 +12,9 @@ use crate::subpix::pixel;
 
 /// Longer sides of the images that are searched, px, in this order. Larger ones only add noise that looks like squares, and time.
 const LEVELS: [i32; 5] = [320, 480, 640, 960, 1280];
-/// Half-widths of the refinement's window, px.
+/// Half-widths of the refinement's window, px. A much smaller one is caught by the texture of a blurred large image.
 const SMALLEST: f64 = 1.0;
-const LARGEST: f64 = 45.0;
+const LARGEST: f64 = 30.0;
 
 /// OpenCV's findChessboardCorners, searched from coarse to fine and refined in the full image.
 ///
@@ -24,7 +24,7 @@ const LARGEST: f64 = 45.0;
 /// Corners are then refined by cornerSubPix in the full image, with a window of half-width at most a third of a square.
 ///
 /// A board whose squares are smaller than about 8 px in a frame reduced to 1280 px is not seen, nor is one among many more quadrangles than
-/// its own. The order is OpenCV's: along the rows, from a corner that is ambiguous when the board is symmetric.
+/// its own, which noise in a large empty background makes too. The order is OpenCV's: along the rows, from a corner that is ambiguous when the board is symmetric.
 ///
 /// Source: OpenCV, findChessboardCorners (V. Vezhnevets), checkChessboard, cornerSubPix.
 #[derive(Clone, Copy, Debug, Default)]

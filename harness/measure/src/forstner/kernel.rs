@@ -5,8 +5,6 @@ use multiversion::multiversion;
 
 /// Columns that are summed side by side. Fixed, so that every instruction set adds in the same order and gives the same bits.
 const LANES: usize = 4;
-/// The largest window with its ring, rounded up to whole lanes, with the ring of the last lane.
-const STRIDE: usize = 31_usize.next_multiple_of(LANES) + 2;
 
 /// Sums over the window, with coordinates (x, y) from its centre and `t = gx x + gy y`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,73 +26,98 @@ pub(super) struct Sums {
 /// Sums over the window of `window` px whose ring of one pixel starts at (`left`, `top`); window and ring are inside the image.
 #[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
 pub(super) fn sums(image: &Image, left: usize, top: usize, window: usize) -> Sums {
-    let side = window + 2;
-    let mut rows = [[0.0_f64; STRIDE]; 33];
-    for (y, row) in rows[..side].iter_mut().enumerate() {
-        for (to, from) in row[..side].iter_mut().zip(&image.row(top + y)[left..left + side]) {
-            *to = f64::from(*from);
-        }
-    }
-    let half = (window / 2) as f64;
+    // A plain slice: a call into another crate for every row would cost more than the row.
+    let ring = Ring { grey: &image.grey()[top * image.width() + left..], stride: image.width() };
     let mut total = Sums::default();
-    for first in (0..window).step_by(LANES) {
-        let mut x = [0.0; LANES];
-        let mut inside = [0.0; LANES];
-        for lane in 0..LANES {
-            x[lane] = (first + lane) as f64 - half;
-            inside[lane] = if first + lane < window { 1.0 } else { 0.0 };
+    if window < LANES {
+        for column in 0..window {
+            add(&mut total, &columns::<1>(ring, column, window), column, 0, window);
         }
-        add(&mut total, &column_sums(&rows[..side], first, &x, &inside, half));
+        return total;
+    }
+    let mut done = 0;
+    while done < window {
+        // The last columns overlap those before them, so that nothing outside the ring is read.
+        let first = done.min(window - LANES);
+        add(&mut total, &columns::<LANES>(ring, first, window), first, done - first, window);
+        done = first + LANES;
     }
     total
 }
 
-type Lanes = [f64; LANES];
+/// Grey values from the ring's first on, and from row to row.
+#[derive(Clone, Copy)]
+struct Ring<'a> {
+    grey: &'a [f32],
+    stride: usize,
+}
 
-struct LaneSums {
-    gxx: Lanes,
-    gxy: Lanes,
-    gyy: Lanes,
-    bx: Lanes,
-    by: Lanes,
-    c: Lanes,
+/// Sums down each of `N` columns. The weights in x are the same for a whole column and wait for [`add`].
+struct Columns<const N: usize> {
+    gxx: [f64; N],
+    gxy: [f64; N],
+    gyy: [f64; N],
+    y_gxy: [f64; N],
+    y_gyy: [f64; N],
+    yy_gyy: [f64; N],
+}
+
+/// The horizontal halves of Sobel's operator in one row: its difference and its (1, 2, 1).
+#[derive(Clone, Copy)]
+struct Row<const N: usize> {
+    difference: [f64; N],
+    smooth: [f64; N],
 }
 
 #[inline(always)]
-fn column_sums(rows: &[[f64; STRIDE]], first: usize, x: &Lanes, inside: &Lanes, half: f64) -> LaneSums {
-    let zero = [0.0; LANES];
-    let mut s = LaneSums { gxx: zero, gxy: zero, gyy: zero, bx: zero, by: zero, c: zero };
-    for (index, three) in rows.windows(3).enumerate() {
+fn row<const N: usize>(ring: Ring<'_>, first: usize, y: usize) -> Row<N> {
+    let start = y * ring.stride + first;
+    let grey = &ring.grey[start..start + N + 2];
+    let mut row = Row { difference: [0.0; N], smooth: [0.0; N] };
+    for i in 0..N {
+        let (a, b, c) = (f64::from(grey[i]), f64::from(grey[i + 1]), f64::from(grey[i + 2]));
+        row.difference[i] = c - a;
+        row.smooth[i] = a + 2.0 * b + c;
+    }
+    row
+}
+
+#[inline(always)]
+fn columns<const N: usize>(ring: Ring<'_>, first: usize, window: usize) -> Columns<N> {
+    let half = (window / 2) as f64;
+    let zero = [0.0; N];
+    let mut s = Columns { gxx: zero, gxy: zero, gyy: zero, y_gxy: zero, y_gyy: zero, yy_gyy: zero };
+    let (mut above, mut middle) = (row::<N>(ring, first, 0), row::<N>(ring, first, 1));
+    for index in 0..window {
         let y = index as f64 - half;
-        let columns = first..first + LANES + 2;
-        let (above, middle, below) = (&three[0][columns.clone()], &three[1][columns.clone()], &three[2][columns]);
-        let mut smooth = [0.0; LANES + 2];
-        let mut slope = [0.0; LANES + 2];
-        for i in 0..LANES + 2 {
-            smooth[i] = above[i] + 2.0 * middle[i] + below[i];
-            slope[i] = below[i] - above[i];
+        let below = row::<N>(ring, first, index + 2);
+        for i in 0..N {
+            let gx = above.difference[i] + 2.0 * middle.difference[i] + below.difference[i];
+            let gy = below.smooth[i] - above.smooth[i];
+            let (gxx, gxy, gyy) = (gx * gx, gx * gy, gy * gy);
+            let y_gyy = y * gyy;
+            s.gxx[i] += gxx;
+            s.gxy[i] += gxy;
+            s.gyy[i] += gyy;
+            s.y_gxy[i] += y * gxy;
+            s.y_gyy[i] += y_gyy;
+            s.yy_gyy[i] += y * y_gyy;
         }
-        for i in 0..LANES {
-            let gx = (smooth[i + 2] - smooth[i]) * inside[i];
-            let gy = (slope[i] + 2.0 * slope[i + 1] + slope[i + 2]) * inside[i];
-            let t = gx * x[i] + gy * y;
-            s.gxx[i] += gx * gx;
-            s.gxy[i] += gx * gy;
-            s.gyy[i] += gy * gy;
-            s.bx[i] += gx * t;
-            s.by[i] += gy * t;
-            s.c[i] += t * t;
-        }
+        (above, middle) = (middle, below);
     }
     s
 }
 
+/// Adds the columns from `skip` on, of which number 0 is column `first` of the window.
 #[inline(always)]
-fn add(total: &mut Sums, lanes: &LaneSums) {
-    total.gxx += lanes.gxx.iter().sum::<f64>();
-    total.gxy += lanes.gxy.iter().sum::<f64>();
-    total.gyy += lanes.gyy.iter().sum::<f64>();
-    total.bx += lanes.bx.iter().sum::<f64>();
-    total.by += lanes.by.iter().sum::<f64>();
-    total.c += lanes.c.iter().sum::<f64>();
+fn add<const N: usize>(total: &mut Sums, s: &Columns<N>, first: usize, skip: usize, window: usize) {
+    for i in skip..N {
+        let x = (first + i) as f64 - (window / 2) as f64;
+        total.gxx += s.gxx[i];
+        total.gxy += s.gxy[i];
+        total.gyy += s.gyy[i];
+        total.bx += x * s.gxx[i] + s.y_gxy[i];
+        total.by += x * s.gxy[i] + s.y_gyy[i];
+        total.c += x * (x * s.gxx[i] + 2.0 * s.y_gxy[i]) + s.yy_gyy[i];
+    }
 }

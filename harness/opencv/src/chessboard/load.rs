@@ -1,15 +1,17 @@
 //! Whether OpenCV's search of an image would end soon.
 
 use calibench_measure::Board;
-use opencv::core::{Mat, MatTraitConst, Point, Vec4i, Vector};
+use opencv::core::{CV_32S, Mat, MatTraitConst, Point, Vec4i, Vector, bitwise_not_def};
 use opencv::imgproc::{
-    ADAPTIVE_THRESH_MEAN_C, CHAIN_APPROX_SIMPLE, RETR_CCOMP, THRESH_BINARY, adaptive_threshold, approx_poly_dp, bounding_rect, dilate_def,
-    equalize_hist, find_contours_with_hierarchy, is_contour_convex,
+    ADAPTIVE_THRESH_MEAN_C, CHAIN_APPROX_SIMPLE, RETR_CCOMP, THRESH_BINARY, adaptive_threshold, approx_poly_dp, bounding_rect,
+    connected_components, dilate_def, equalize_hist, find_contours_with_hierarchy, is_contour_convex,
 };
 
 /// Most work that a search may have: superfluous quadrangles times the square of all. OpenCV drops the superfluous one by one, and for each
 /// weighs all that are left. On one core of 3 GHz this much takes about a second.
 const MOST_WORK: usize = 1_500_000;
+/// Most dark areas of any form. Counting them is quick; following the outlines of the hundred thousand in noise takes seconds.
+const MOST_AREAS: i32 = 20_000;
 /// The smallest quadrangle that OpenCV takes up: area of its bounding box, px^2.
 const SMALLEST: i32 = 25;
 /// Tolerances at which OpenCV tries to see a contour as a quadrangle, px.
@@ -33,11 +35,16 @@ pub(super) fn is_bearable(image: &Mat, board: Board) -> opencv::Result<bool> {
 /// The most quadrangles that keep within [`MOST_WORK`]: at least the dark squares of the board.
 fn most_quadrangles(board: Board) -> usize {
     let dark = ((board.columns + 1) * (board.rows + 1)).div_ceil(2);
-    let too_many = |&n: &usize| (n - dark) * n * n > MOST_WORK;
-    (dark + 1..).find(too_many).map_or(dark, |n| n - 1)
+    let bearable = |superfluous: usize| superfluous * (dark + superfluous).pow(2) <= MOST_WORK;
+    dark + (1..MOST_WORK).take_while(|&superfluous| bearable(superfluous)).count()
 }
 
 fn exceeds(binary: &Mat, most: usize) -> opencv::Result<bool> {
+    let (mut dark, mut labels) = (Mat::default(), Mat::default());
+    bitwise_not_def(binary, &mut dark)?;
+    if connected_components(&dark, &mut labels, 8, CV_32S)? > MOST_AREAS {
+        return Ok(true);
+    }
     let (mut contours, mut hierarchy) = (Vector::<Vector<Point>>::new(), Vector::<Vec4i>::new());
     find_contours_with_hierarchy(binary, &mut contours, &mut hierarchy, RETR_CCOMP, CHAIN_APPROX_SIMPLE, Point::new(0, 0))?;
     let mut count = 0;

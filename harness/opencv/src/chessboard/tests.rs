@@ -103,25 +103,15 @@ fn all_thirteen_photographs_show_their_board_as_taken_and_enlarged() {
     for (name, photograph) in photographs() {
         let found = ChessboardDetector.detect(&photograph, BOARD).unwrap_or_else(|| panic!("{name}"));
         let large = enlarged(&photograph, 4000, 3000);
-        let clock = std::time::Instant::now();
         let again = ChessboardDetector.detect(&large, BOARD).unwrap_or_else(|| panic!("{name}, enlarged"));
-        println!("{name}: {:.3} s enlarged", clock.elapsed().as_secs_f64());
         let scale = 4000.0 / photograph.width() as f64;
         let back = |p: &PixelPoint| {
             let corner = p.to_corner();
             calibench_model::CornerPoint { x: corner.x / scale, y: corner.y / scale }.to_pixel()
         };
         let again: Vec<PixelPoint> = again.iter().map(back).collect();
-        println!("{name}: {:.3} px apart", farthest(&found, &again));
-        if std::env::var_os("DBG").is_some() {
-            for (i, (a, b)) in found.iter().zip(&again).enumerate() {
-                if a.distance(*b) > 0.4 {
-                    println!("{i} {a:?} {b:?}");
-                }
-            }
-            continue;
-        }
-        assert!(farthest(&found, &again) < 1.0, "{name}: {}", farthest(&found, &again));
+        // The windows differ in size, and the images are compressed.
+        assert!(farthest(&found, &again) < 0.5, "{name}: {}", farthest(&found, &again));
     }
 }
 

@@ -17,12 +17,10 @@ fn saddle(cx: f64, cy: f64) -> Image {
 
 #[test]
 fn conforms() {
-    // At the default epsilon the last step may leave as much as the steps after it would: iterated to the end, what remains is single precision.
-    for window in (5..=31).step_by(2) {
-        conformance::check(&*operator(&format!("window={window},iterations=100,epsilon=1e-6")), 1e-4);
-    }
-    for window in (5..=31).step_by(2) {
-        conformance::check(&*operator(&format!("window={window}")), 5e-3);
+    // One step of single precision at this place is 3.8e-6 px. The default epsilon needs no more: turned images take the same steps.
+    for window in (3..=31).step_by(2) {
+        conformance::check(&*operator(&format!("window={window}")), 1e-5);
+        conformance::check(&*operator(&format!("window={window},iterations=100,epsilon=1e-6")), 1e-5);
     }
 }
 
