@@ -83,11 +83,23 @@ fn an_edge_is_no_corner() {
 }
 
 #[test]
-fn covariance_is_that_of_weak_noise_within_its_own_theory() {
-    // A corner whose edge lines all pass through the point has no scatter; a rounded one has, and more of it far from the point.
-    let sharp = quarter_plane(41, 20, 20);
-    let found = Forstner::new(11).measure(&sharp, &Start::at(PixelPoint::new(20.0, 20.0))).unwrap();
+fn covariance_is_the_scatter_of_the_edge_lines_about_the_point() {
+    // sigma0^2 N^-1 with sigma0^2 = sum of (g . (p_i - p))^2 over the window, divided by m - 2: here added up as written.
+    let image = conformance::textured_corner(64);
+    let found = Forstner::new(9).measure(&image, &Start::at(PixelPoint::new(32.0, 32.0))).unwrap();
+    let at = |x: i32, y: i32| f64::from(image.at((32 + x) as usize, (32 + y) as usize));
+    let (mut omega, mut n) = (0.0, [0.0; 3]);
+    for (x, y) in (-4..=4).flat_map(|y| (-4..=4).map(move |x| (x, y))) {
+        let column = |x: i32| at(x, y - 1) + 2.0 * at(x, y) + at(x, y + 1);
+        let row = |y: i32| at(x - 1, y) + 2.0 * at(x, y) + at(x + 1, y);
+        let (gx, gy) = (column(x + 1) - column(x - 1), row(y + 1) - row(y - 1));
+        let (dx, dy) = (32.0 + f64::from(x) - found.position.x, 32.0 + f64::from(y) - found.position.y);
+        omega += (gx * dx + gy * dy).powi(2);
+        n = [n[0] + gx * gx, n[1] + gx * gy, n[2] + gy * gy];
+    }
+    let scale = omega / 79.0 / (n[0] * n[2] - n[1] * n[1]);
     let covariance = found.covariance.unwrap();
-    assert!(covariance.is_valid() && covariance.sxx > 0.0);
-    assert!((covariance.sxx - covariance.syy).abs() < 1e-12, "the corner is symmetric about its diagonal");
+    for (ours, expected) in [(covariance.sxx, scale * n[2]), (covariance.sxy, -scale * n[1]), (covariance.syy, scale * n[0])] {
+        assert!((ours - expected).abs() < 1e-10 * scale * (n[0] + n[2]), "{covariance:?}");
+    }
 }
