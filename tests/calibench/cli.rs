@@ -95,3 +95,31 @@ fn methods_trials_and_seed_can_be_changed() {
     let output = run(project.path(), &["run", "corners/noise", "--trials", "2", "--quiet"]);
     assert!(output.status.success() && stderr(&output).is_empty(), "{}", stderr(&output));
 }
+
+#[test]
+fn a_file_of_ones_own_is_run_and_reported() {
+    let project = copy();
+    let own = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(project.path().join("scenarios/corners/noise.toml")).unwrap();
+    let path = own.path().join("mine.toml");
+    std::fs::write(&path, text.replace("trials = 200", "trials = 5")).unwrap();
+    let output = run(project.path(), &["run", path.to_str().unwrap(), "--seed", "3"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let output = run(project.path(), &["report", "local"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let page = std::fs::read_to_string(project.path().join("reports/local/README.md")).unwrap();
+    assert!(page.contains("Not the scenario as its file says: seed 3 in place of 20110513"), "{page}");
+    assert!(page.contains("![Image, approximations and truth](mine.png)"), "{page}");
+}
+
+#[test]
+fn a_very_long_image_is_shown_in_part() {
+    let project = copy();
+    let text = "why = \"A long strip.\"\nsource = \"a test\"\nseed = 1\n[scene]\nwidth = 60\nheight = 900000\nbackground = 0.5\n\
+                [[scene.polygon]]\nid = \"a\"\ngrey = 0.1\nvertices = [[20, 20], [40, 20], [40, 40]]\n\
+                [[scene.target]]\nid = \"1\"\nkind = \"corner\"\nat = [20, 20]\nstart = [21, 20]\n[[method]]\nname = \"pixel\"\n";
+    std::fs::write(project.path().join("long.toml"), text).unwrap();
+    let output = run(project.path(), &["show", "long.toml", "-o", "long.png"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(image::open(project.path().join("long.png")).unwrap().height() < 10_000);
+}

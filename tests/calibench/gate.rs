@@ -77,3 +77,12 @@ fn a_broken_baseline_is_named_with_its_line() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("galo-2011--corners.csv: line 2"), "{}", stderr(&output));
 }
+
+#[test]
+fn another_seed_is_no_pairing() {
+    let project = copy();
+    change(project.path(), "corners/noise.toml", "seed = 20110513", "seed = 7");
+    let output = run(project.path(), &["check", "corners/noise", "-q"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stdout(&output).contains("the seed is 7 and was 20110513"), "{}", stdout(&output));
+}

@@ -1,12 +1,14 @@
 //! Tests that cross crates.
 
 mod cli;
+mod covariance;
 mod determinism;
 mod diagnostics;
 mod galo;
 mod gate;
 mod killed;
 mod measure;
+mod opencv_gate;
 mod photographs;
 mod project;
 mod schema;

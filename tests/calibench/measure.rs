@@ -70,10 +70,22 @@ fn sixteen_bits_are_measured_as_such() {
 #[test]
 fn the_output_can_be_the_next_input() {
     let folder = folder();
-    write(folder.path(), "p.csv", "image,target,x,y\na.png,left,30,29\n");
-    assert!(run(folder.path(), &["measure", "a.png", "--points", "p.csv", "-o", "q.csv", "-q"]).status.success());
-    let again = run(folder.path(), &["measure", "a.png", "--points", "q.csv", "-m", "pixel", "-q"]);
-    assert!(again.status.success() && stdout(&again).contains(",pixel,measured,"), "{}", stderr(&again));
+    write(folder.path(), "p.csv", POINTS);
+    assert!(run(folder.path(), &["measure", "a.png", "deep.png", "--points", "p.csv", "-o", "q.csv", "-q"]).status.success());
+    let again = run(folder.path(), &["measure", "a.png", "deep.png", "--points", "q.csv", "-m", "pixel", "-q"]);
+    assert!(again.status.success(), "{}", stderr(&again));
+    assert_eq!(stdout(&again).matches(",pixel,measured,").count(), 3);
+    assert!(stderr(&again).contains("3 rows without a position"), "{}", stderr(&again));
+    // `pixel` hands on what it was given, the covariance too.
+    let covariances = |text: &str| {
+        text.lines()
+            .filter(|l| l.contains(",measured,"))
+            .map(|l| l.split(',').skip(4).take(3).collect::<Vec<_>>().join(","))
+            .collect::<Vec<_>>()
+    };
+    let first = std::fs::read_to_string(folder.path().join("q.csv")).unwrap();
+    assert_eq!(covariances(&stdout(&again)), covariances(&first));
+    assert!(!covariances(&first)[0].starts_with(','));
 }
 
 #[test]

@@ -4,19 +4,12 @@ use std::process::ExitCode;
 
 use calibench_bench::cli::{Toolbox, main as run};
 use calibench_measure::Registry;
-use calibench_measure::registry::{Build, Method};
+use calibench_measure::external::opencv_subpix;
+use calibench_measure::registry::Build;
 
 const WHY: &str = "this build is without OpenCV";
 
 fn main() -> ExitCode {
-    // Its parameters are known only to the full build: scenarios that set them need that.
-    let absent = Method {
-        name: "opencv_subpix",
-        about: "OpenCV's cornerSubPix",
-        source: "OpenCV",
-        version: "none".into(),
-        parameters: calibench_measure::forstner::PARAMETERS,
-        build: Build::Unavailable(WHY),
-    };
+    let absent = opencv_subpix(Build::Unavailable(WHY), "none".into());
     run(&Toolbox { registry: Registry::builtin().with(absent), detector: None })
 }

@@ -80,6 +80,12 @@ pub enum Metric {
     X,
     /// Measured y of one target.
     Y,
+    /// Error in x of one target.
+    Dx,
+    /// Error in y of one target.
+    Dy,
+    /// Distance of one target from its true position.
+    Distance,
     /// Mean error in x.
     MeanDx,
     /// Mean error in y.
@@ -94,13 +100,25 @@ pub enum Metric {
     RmseXy,
 }
 
+impl Metric {
+    /// Is it a figure of one target?
+    pub fn is_of_one_target(self) -> bool {
+        matches!(self, Self::X | Self::Y | Self::Dx | Self::Dy | Self::Distance)
+    }
+
+    /// By how many units of the last digit ours may differ: a coordinate is rounded once; what is computed from rounded figures, once more.
+    pub fn units(self) -> f64 {
+        if matches!(self, Self::X | Self::Y) { 0.5 } else { 1.0 }
+    }
+}
+
 /// A printed number: its value and one unit of its last digit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Printed {
     /// Its value.
     pub value: f64,
-    /// By how much two figures may differ that both print like this: one unit of the last digit, half for each rounding.
-    pub tolerance: f64,
+    /// One unit of the last digit.
+    pub unit: f64,
 }
 
 impl Printed {
@@ -112,11 +130,11 @@ impl Printed {
             Some((value, 10_f64.powi(-(digits as i32))))
         };
         match text.split_once('/') {
-            None => decimal(text).map(|(value, unit)| Self { value, tolerance: unit }),
+            None => decimal(text).map(|(value, unit)| Self { value, unit }),
             Some((one, below)) => {
                 let ((numerator, _), (denominator, unit)) = (decimal(one)?, decimal(below)?);
                 let value = numerator / denominator;
-                (denominator > unit).then(|| Self { value, tolerance: (numerator / (denominator - unit) - value).abs() })
+                (denominator > unit).then(|| Self { value, unit: (numerator / (denominator - unit) - value).abs() })
             }
         }
     }
@@ -125,7 +143,7 @@ impl Printed {
 /// How ours compares with a printed cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within one unit of the last printed digit.
+    /// Within half a unit of the last printed digit for a coordinate, within one for what is computed from rounded figures.
     Reproduces,
     /// Further off.
     Differs,
@@ -143,7 +161,9 @@ impl Cell {
             (None, _) => Verdict::NotComparable("the printed figure cannot be read".into()),
             (_, None) => Verdict::NotComparable("no record of ours".into()),
             // Rounding of the decimal text itself must not decide.
-            (Some(printed), Some(ours)) if (ours - printed.value).abs() <= printed.tolerance * (1.0 + 1e-9) => Verdict::Reproduces,
+            (Some(printed), Some(ours)) if (ours - printed.value).abs() <= printed.unit * self.metric.units() * (1.0 + 1e-6) => {
+                Verdict::Reproduces
+            }
             _ => Verdict::Differs,
         }
     }
@@ -198,7 +218,10 @@ pub fn papers(folder: &Path) -> Vec<String> {
 fn parse(file: &str, text: &str) -> Result<Table, Problems> {
     let fail = |problem| Problems { file: file.to_owned(), text: text.to_owned(), problems: vec![problem] };
     let table: Table = toml::from_str(text).map_err(|e| fail(Problem::new(e.span().unwrap_or(0..0), e.message())))?;
-    for cell in &table.cells {
+    for (index, cell) in table.cells.iter().enumerate() {
+        if table.cells[..index].iter().any(|other| (&other.row, &other.column) == (&cell.row, &cell.column)) {
+            return Err(fail(Problem::new(0..0, format!("row `{}`, column `{}` is given twice", cell.row, cell.column))));
+        }
         let place = text.find(&cell.printed).unwrap_or(0);
         if !table.columns.contains(&cell.column) {
             let message =
@@ -209,8 +232,8 @@ fn parse(file: &str, text: &str) -> Result<Table, Problems> {
             let message = format!("`{}` is no number: expected digits as in 22.520 or 1/18.9, or `not_comparable`", cell.printed);
             return Err(fail(Problem::new(place..place + cell.printed.len(), message)));
         }
-        if matches!(cell.metric, Metric::X | Metric::Y) != cell.target.is_some() {
-            let message = format!("row `{}`: metrics x and y have a `target`, statistics have none", cell.row);
+        if cell.metric.is_of_one_target() != cell.target.is_some() {
+            let message = format!("row `{}`: figures of one target have a `target`, statistics have none", cell.row);
             return Err(fail(Problem::new(place..place, message)));
         }
     }
@@ -223,17 +246,17 @@ mod tests {
 
     #[test]
     fn printed_figures_carry_their_digits() {
-        assert_eq!(Printed::parse("22.520"), Some(Printed { value: 22.52, tolerance: 0.001 }));
-        assert_eq!(Printed::parse("-7"), Some(Printed { value: -7.0, tolerance: 1.0 }));
+        assert_eq!(Printed::parse("22.520"), Some(Printed { value: 22.52, unit: 0.001 }));
+        assert_eq!(Printed::parse("-7"), Some(Printed { value: -7.0, unit: 1.0 }));
         let fraction = Printed::parse("1/18.9").unwrap();
-        assert!((fraction.value - 1.0 / 18.9).abs() < 1e-15 && (fraction.tolerance - (1.0 / 18.8 - 1.0 / 18.9)).abs() < 1e-15);
+        assert!((fraction.value - 1.0 / 18.9).abs() < 1e-15 && (fraction.unit - (1.0 / 18.8 - 1.0 / 18.9)).abs() < 1e-15);
         for bad in ["", "x", "1/0", "1/0.1", "NaN", "1/2/3"] {
             assert_eq!(Printed::parse(bad), None, "{bad}");
         }
     }
 
     #[test]
-    fn a_cell_reproduces_within_one_unit_of_its_last_digit() {
+    fn a_coordinate_reproduces_within_half_a_unit_of_its_last_digit() {
         let cell = |printed: &str, why: Option<&str>| Cell {
             row: "1".into(),
             column: "x".into(),
@@ -243,8 +266,11 @@ mod tests {
             except: Vec::new(),
             not_comparable: why.map(str::to_owned),
         };
-        assert_eq!(cell("22.520", None).verdict(Some(22.521)), Verdict::Reproduces);
-        assert_eq!(cell("22.520", None).verdict(Some(22.5211)), Verdict::Differs);
+        assert_eq!(cell("22.520", None).verdict(Some(22.5205)), Verdict::Reproduces);
+        assert_eq!(cell("22.520", None).verdict(Some(22.520_51)), Verdict::Differs);
+        let computed = Cell { metric: Metric::Dx, ..cell("0.020", None) };
+        assert_eq!(computed.verdict(Some(0.021)), Verdict::Reproduces);
+        assert_eq!(computed.verdict(Some(0.0211)), Verdict::Differs);
         assert!(matches!(cell("22.520", None).verdict(None), Verdict::NotComparable(_)));
         assert_eq!(cell("22.520", Some("other scale")).verdict(Some(22.52)), Verdict::NotComparable("other scale".into()));
     }

@@ -14,7 +14,7 @@ pub const COLUMNS: [&str; 13] =
     ["scenario", "trial", "view", "target", "method", "version", "metric", "value", "unit", "status", "reason", "seed", "revision"];
 
 /// What all rows of a file share.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RunInfo {
     /// The scenario's name.
     pub scenario: String,
@@ -22,6 +22,8 @@ pub struct RunInfo {
     pub seed: u64,
     /// The code's revision.
     pub revision: String,
+    /// Name and version of the detector that gave the approximate positions, where one did.
+    pub detector: Option<(String, String)>,
 }
 
 /// Writes records, trial by trial.
@@ -39,6 +41,25 @@ impl<W: Write> RecordWriter<W> {
     pub fn new(output: W, run: RunInfo, methods: Vec<MethodInfo>) -> Result<Self, csv::Error> {
         let mut csv = csv::Writer::from_writer(output);
         csv.write_record(COLUMNS)?;
+        if let Some((name, version)) = &run.detector {
+            let (seed, nothing) = (run.seed.to_string(), "");
+            let (status, reason) = ("detector", "gave the approximate positions");
+            csv.write_record([
+                &run.scenario,
+                nothing,
+                nothing,
+                nothing,
+                name,
+                version,
+                nothing,
+                nothing,
+                nothing,
+                status,
+                reason,
+                &seed,
+                &run.revision,
+            ])?;
+        }
         let mut writer = Self { csv, run, methods };
         for method in 0..writer.methods.len() {
             if let Some(why) = writer.methods[method].unavailable.clone() {
@@ -55,7 +76,9 @@ impl<W: Write> RecordWriter<W> {
     pub fn trial(&mut self, trial: &Trial) -> Result<(), csv::Error> {
         let number = trial.number.to_string();
         for (view, why) in &trial.missed_views {
-            self.row([&number, view, ""], usize::MAX, ["", "", ""], "missed", why)?;
+            for method in (0..self.methods.len()).filter(|&m| self.methods[m].unavailable.is_none()).collect::<Vec<_>>() {
+                self.row([&number, view, ""], method, ["", "", ""], "missed", why)?;
+            }
         }
         for point in &trial.points {
             let place = [&*number, &*point.view, &*point.target];
@@ -132,22 +155,26 @@ pub struct RecordHead {
     pub methods: Vec<MethodInfo>,
 }
 
-/// Reads records and hands on one trial after the other; the methods of a trial's points index the returned head.
+/// Reads records and hands on one trial after the other with the methods met so far, which the trial's points index.
 ///
 /// # Errors
 /// A file that was not written by [`RecordWriter`].
-pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial)) -> Result<RecordHead, RecordError> {
+pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, RecordError> {
     let mut csv = csv::Reader::from_reader(input);
     if csv.headers()?.iter().ne(COLUMNS) {
         return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", COLUMNS.join(",")) });
     }
-    let mut head = RecordHead { run: RunInfo { scenario: String::new(), seed: 0, revision: String::new() }, methods: Vec::new() };
+    let mut head = RecordHead { run: RunInfo::default(), methods: Vec::new() };
     let mut trial: Option<Trial> = None;
     for record in csv.records() {
         let record = record?;
         let row = Row(&record);
         if head.run.scenario.is_empty() {
-            head.run = RunInfo { scenario: row.text(0).into(), seed: row.parse(11)?, revision: row.text(12).into() };
+            head.run = RunInfo { scenario: row.text(0).into(), seed: row.parse(11)?, revision: row.text(12).into(), detector: None };
+        }
+        if row.text(9) == "detector" {
+            head.run.detector = Some((row.text(4).into(), row.text(5).into()));
+            continue;
         }
         let method = method_index(&mut head.methods, &row);
         if row.text(9) == "unavailable" {
@@ -156,15 +183,21 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial)) -> Result<Rec
         }
         let number = row.parse(1)?;
         if trial.as_ref().is_some_and(|trial| trial.number != number) {
-            trial.take().into_iter().for_each(&mut sink);
+            trial.take().into_iter().for_each(|trial| sink(trial, &head.methods));
         }
         let trial = trial.get_or_insert_with(|| Trial { number, ..Trial::default() });
-        match method {
-            None => trial.missed_views.push((row.text(2).into(), row.text(10).into())),
-            Some(method) => add(trial, &row, method)?,
+        let method = method.ok_or_else(|| row.wrong("a row without a method"))?;
+        if row.text(9) == "missed" {
+            // One row a method: the view is missed once.
+            let missed = (row.text(2).into(), row.text(10).to_owned());
+            if !trial.missed_views.contains(&missed) {
+                trial.missed_views.push(missed);
+            }
+            continue;
         }
+        add(trial, &row, method)?;
     }
-    trial.into_iter().for_each(sink);
+    trial.into_iter().for_each(|trial| sink(trial, &head.methods));
     Ok(head)
 }
 
@@ -253,13 +286,14 @@ mod tests {
     #[test]
     fn what_is_written_is_read_again_to_the_last_bit() {
         let (methods, trials) = example();
-        let run = RunInfo { scenario: "f/s".into(), seed: 9, revision: "abc".into() };
+        let detector = Some(("board".into(), "2".into()));
+        let run = RunInfo { scenario: "f/s".into(), seed: 9, revision: "abc".into(), detector };
         let mut bytes = Vec::new();
         let mut writer = RecordWriter::new(&mut bytes, run.clone(), methods.clone()).unwrap();
         trials.iter().for_each(|trial| writer.trial(trial).unwrap());
         writer.finish().unwrap();
         let mut again = Vec::new();
-        let head = read_records(&bytes[..], |trial| again.push(trial)).unwrap();
+        let head = read_records(&bytes[..], |trial, _| again.push(trial)).unwrap();
         assert_eq!(head, RecordHead { run, methods });
         assert_eq!(again, trials);
         assert!(String::from_utf8(bytes).unwrap().contains(",lost,"), "3.5 px off is lost");
@@ -267,8 +301,8 @@ mod tests {
 
     #[test]
     fn other_files_are_refused() {
-        assert!(read_records(&b"a,b\n1,2\n"[..], |_| ()).is_err());
+        assert!(read_records(&b"a,b\n1,2\n"[..], |_, _| ()).is_err());
         let text = format!("{}\ns,0,v,t,m,1,dx,1,px,measured,,0,r\n", COLUMNS.join(","));
-        assert!(read_records(text.as_bytes(), |_| ()).unwrap_err().to_string().contains("line 2: a metric without its point"));
+        assert!(read_records(text.as_bytes(), |_, _| ()).unwrap_err().to_string().contains("line 2: a metric without its point"));
     }
 }

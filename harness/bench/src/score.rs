@@ -1,98 +1,85 @@
 //! Errors to figures, trial by trial, in memory that does not grow with their number.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::results::{Outcome, PointResult, Trial};
 
-/// Running mean and variance (Welford).
+/// A mean over points that come in clusters: the points of one trial share their phase and noise.
+///
+/// The mean is pooled over all points; its standard error comes from the scatter between trials (the ratio estimator of cluster sampling, Cochran
+/// 1977, Sect. 6.3 and 9A), and is right whatever the correlation within a trial and however many points a trial has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Running {
-    count: u64,
-    mean: f64,
-    squares: f64,
+pub struct Pooled {
+    trials: u64,
+    sum: f64,
+    count: f64,
+    /// Sums over trials of (sum in the trial)^2, sum * count, count^2.
+    moments: [f64; 3],
 }
 
-impl Running {
-    /// Adds a value.
-    pub fn add(&mut self, value: f64) {
-        self.count += 1;
-        let change = value - self.mean;
-        self.mean += change / self.count as f64;
-        self.squares += change * (value - self.mean);
+impl Pooled {
+    /// Adds a trial's values.
+    pub fn add(&mut self, values: &[f64]) {
+        if values.is_empty() {
+            return;
+        }
+        let (sum, count) = (values.iter().sum::<f64>(), values.len() as f64);
+        self.trials += 1;
+        self.sum += sum;
+        self.count += count;
+        for (moment, value) in self.moments.iter_mut().zip([sum * sum, sum * count, count * count]) {
+            *moment += value;
+        }
     }
 
     /// How many values.
     pub fn count(&self) -> u64 {
-        self.count
+        self.count as u64
     }
 
     /// Their mean; `None` of nothing.
     pub fn mean(&self) -> Option<f64> {
-        (self.count > 0).then_some(self.mean)
+        (self.count > 0.0).then(|| self.sum / self.count)
     }
 
-    /// Their standard deviation about the mean; `None` of fewer than two.
-    pub fn deviation(&self) -> Option<f64> {
-        (self.count > 1).then(|| (self.squares / (self.count - 1) as f64).sqrt())
+    /// The standard error of the mean; `None` of fewer than two trials.
+    pub fn standard_error(&self) -> Option<f64> {
+        let mean = self.mean().filter(|_| self.trials > 1)?;
+        let [ss, sn, nn] = self.moments;
+        let trials = self.trials as f64;
+        let squares = (ss - 2.0 * mean * sn + mean * mean * nn).max(0.0);
+        Some((squares * trials / (trials - 1.0)).sqrt() / self.count)
     }
 
-    /// The two-sided interval of the mean at `level` (0.95), by Student's t; `None` of fewer than two.
+    /// The two-sided interval of the mean at `level` (0.95), by Student's t; `None` of fewer than two trials.
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
-        let error = self.deviation()? / (self.count as f64).sqrt();
-        let t = StudentsT::new(0.0, 1.0, (self.count - 1) as f64).ok()?.inverse_cdf(f64::midpoint(1.0, level));
-        Some((self.mean - t * error, self.mean + t * error))
+        let (mean, error) = (self.mean()?, self.standard_error()?);
+        let t = StudentsT::new(0.0, 1.0, (self.trials - 1) as f64).ok()?.inverse_cdf(f64::midpoint(1.0, level));
+        Some((mean - t * error, mean + t * error))
     }
 }
 
-/// The figures of one method on one scenario. Lost and rejected points are counted and take no part in the errors.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Score {
-    /// Points measured within [`crate::results::LOST`] px of the truth, or, without truth, measured.
-    pub measured: u64,
-    /// Points measured further off.
-    pub lost: u64,
-    /// Points rejected, by reason.
-    pub rejected: BTreeMap<&'static str, u64>,
-    /// Errors in x, px.
-    pub dx: Running,
-    /// Errors in y, px.
-    pub dy: Running,
-    /// Mean squared 2D error of a trial, px^2: over its trials.
-    pub square: Running,
-    /// The same over all measured points, lost ones among them.
-    pub whole_square: Running,
-    /// The same as `square` over the points that every method measured.
-    pub common_square: Running,
-    /// By target, in the order of the scenario.
-    pub targets: Vec<TargetScore>,
+/// The errors of one method over some choice of points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Error in x, px.
+    pub dx: Pooled,
+    /// Error in y, px.
+    pub dy: Pooled,
+    /// Squared 2D error, px^2.
+    pub square: Pooled,
 }
 
-/// The figures of one method on one target.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TargetScore {
-    /// The target.
-    pub target: Arc<str>,
-    /// Squared 2D errors of all measured points, lost ones among them, px^2.
-    pub square: Running,
-    /// Points that were lost or rejected.
-    pub failed: u64,
-}
-
-impl Score {
-    fn target(&mut self, target: &Arc<str>) -> &mut TargetScore {
-        let place = self.targets.iter().position(|score| score.target == *target).unwrap_or_else(|| {
-            self.targets.push(TargetScore { target: target.clone(), square: Running::default(), failed: 0 });
-            self.targets.len() - 1
-        });
-        &mut self.targets[place]
-    }
-
-    /// All points that the method was given.
-    pub fn points(&self) -> u64 {
-        self.measured + self.lost + self.rejected.values().sum::<u64>()
+impl Errors {
+    /// Adds a trial's errors (dx, dy).
+    pub fn add(&mut self, errors: &[(f64, f64)]) {
+        let of = |value: fn(&(f64, f64)) -> f64| errors.iter().map(value).collect::<Vec<f64>>();
+        self.dx.add(&of(|e| e.0));
+        self.dy.add(&of(|e| e.1));
+        self.square.add(&of(|e| e.0 * e.0 + e.1 * e.1));
     }
 
     /// `sqrt(mean(dx^2 + dy^2))`, px.
@@ -105,11 +92,90 @@ impl Score {
         self.square.interval(0.95).map(|(low, high)| (low.max(0.0).sqrt(), high.sqrt()))
     }
 
-    /// The 2D standard deviation about the mean error, px.
+    /// The 2D scatter about the mean error, px: `sqrt(rmse^2 - bias^2)`, divided by n as the RMSE is.
     pub fn scatter(&self) -> Option<f64> {
-        Some(self.dx.deviation()?.hypot(self.dy.deviation()?))
+        let (dx, dy, square) = (self.dx.mean()?, self.dy.mean()?, self.square.mean()?);
+        Some((square - dx * dx - dy * dy).max(0.0).sqrt())
     }
 }
+
+/// The figures of one method on one scenario. Lost and rejected points are counted; lost ones take part only where it is said.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Score {
+    /// Points measured within [`crate::results::LOST`] px of the truth, or, without truth, measured.
+    pub measured: u64,
+    /// Points measured further off.
+    pub lost: u64,
+    /// Points rejected, by reason.
+    pub rejected: BTreeMap<&'static str, u64>,
+    /// Errors of the points that were measured and not lost.
+    pub kept: Errors,
+    /// Errors of all measured points, lost ones among them.
+    pub whole: Errors,
+    /// Errors of the points that every operator measured and none lost.
+    pub common: Errors,
+    /// By target, in the order of the scenario.
+    pub targets: Vec<TargetScore>,
+}
+
+/// The figures of one method on one target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TargetScore {
+    /// The target.
+    pub target: Arc<str>,
+    /// Errors of all its measured points, lost ones among them.
+    pub whole: Errors,
+    /// Points that were lost or rejected.
+    pub failed: u64,
+}
+
+impl Score {
+    /// All points that the method was given.
+    pub fn points(&self) -> u64 {
+        self.measured + self.lost + self.rejected.values().sum::<u64>()
+    }
+
+    fn target(&mut self, target: &Arc<str>) -> &mut TargetScore {
+        let place = self.targets.iter().position(|score| score.target == *target).unwrap_or_else(|| {
+            self.targets.push(TargetScore { target: target.clone(), whole: Errors::default(), failed: 0 });
+            self.targets.len() - 1
+        });
+        &mut self.targets[place]
+    }
+
+    fn add(&mut self, points: &[&PointResult], common: &BTreeSet<PointKey>) {
+        let mut errors: [Vec<(f64, f64)>; 3] = Default::default();
+        let mut targets: BTreeMap<&Arc<str>, Vec<(f64, f64)>> = BTreeMap::new();
+        for point in points {
+            match point.outcome {
+                Outcome::Rejected(why) => *self.rejected.entry(why.name()).or_default() += 1,
+                Outcome::Measured { .. } if point.outcome.is_lost() => self.lost += 1,
+                Outcome::Measured { .. } => self.measured += 1,
+            }
+            let target = self.target(&point.target);
+            let Outcome::Measured { error, .. } = point.outcome else {
+                target.failed += 1;
+                continue;
+            };
+            let Some(error) = error else { continue };
+            target.failed += u64::from(point.outcome.is_lost());
+            targets.entry(&point.target).or_default().push(error);
+            errors[0].push(error);
+            if !point.outcome.is_lost() {
+                errors[1].push(error);
+            }
+            if common.contains(&(point.view.clone(), point.target.clone())) {
+                errors[2].push(error);
+            }
+        }
+        self.whole.add(&errors[0]);
+        self.kept.add(&errors[1]);
+        self.common.add(&errors[2]);
+        targets.into_iter().for_each(|(target, errors)| self.target(target).whole.add(&errors));
+    }
+}
+
+type PointKey = (Arc<str>, Arc<str>);
 
 /// The scores of all methods of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -126,62 +192,30 @@ impl Scores {
         Self { methods: vec![Score::default(); methods], trials: 0 }
     }
 
-    /// Adds a trial.
-    pub fn add(&mut self, trial: &Trial) {
+    /// Adds a trial. `operators` are the methods whose points decide what is common: those that look at the image.
+    pub fn add(&mut self, trial: &Trial, operators: impl Fn(usize) -> bool) {
         self.trials += 1;
         // Records name a method when they first meet it.
         let most = trial.points.iter().map(|point| point.method + 1).max().unwrap_or(0);
         if most > self.methods.len() {
             self.methods.resize_with(most, Score::default);
         }
-        let common = common_points(trial);
+        let common = common_points(trial, operators);
         for (index, score) in self.methods.iter_mut().enumerate() {
-            let mut all = Running::default();
-            let mut whole = Running::default();
-            let mut shared = Running::default();
-            for point in trial.points.iter().filter(|point| point.method == index) {
-                count(score, point);
-                if let Outcome::Measured { error: Some((dx, dy)), .. } = point.outcome {
-                    whole.add(dx * dx + dy * dy);
-                    score.target(&point.target).square.add(dx * dx + dy * dy);
-                }
-                if let Some((dx, dy)) = point.outcome.kept_error() {
-                    score.dx.add(dx);
-                    score.dy.add(dy);
-                    all.add(dx * dx + dy * dy);
-                    if common.contains_key(&(point.view.clone(), point.target.clone())) {
-                        shared.add(dx * dx + dy * dy);
-                    }
-                } else {
-                    score.target(&point.target).failed += 1;
-                }
-            }
-            all.mean().into_iter().for_each(|square| score.square.add(square));
-            whole.mean().into_iter().for_each(|square| score.whole_square.add(square));
-            shared.mean().into_iter().for_each(|square| score.common_square.add(square));
+            let points: Vec<&PointResult> = trial.points.iter().filter(|point| point.method == index).collect();
+            score.add(&points, &common);
         }
     }
 }
 
-fn count(score: &mut Score, point: &PointResult) {
-    match point.outcome {
-        Outcome::Rejected(why) => *score.rejected.entry(why.name()).or_default() += 1,
-        Outcome::Measured { .. } if point.outcome.is_lost() => score.lost += 1,
-        Outcome::Measured { .. } => score.measured += 1,
-    }
-}
-
-/// The points that every method of the trial measured and did not lose.
-fn common_points(trial: &Trial) -> BTreeMap<(Arc<str>, Arc<str>), usize> {
-    let mut methods: Vec<usize> = trial.points.iter().map(|point| point.method).collect();
-    methods.sort_unstable();
-    methods.dedup();
-    let mut counts = BTreeMap::new();
-    for point in trial.points.iter().filter(|point| point.outcome.kept_error().is_some()) {
+/// The points that every operator of the trial measured and none lost.
+fn common_points(trial: &Trial, operators: impl Fn(usize) -> bool) -> BTreeSet<PointKey> {
+    let methods: BTreeSet<usize> = trial.points.iter().map(|point| point.method).filter(|m| operators(*m)).collect();
+    let mut counts: BTreeMap<PointKey, usize> = BTreeMap::new();
+    for point in trial.points.iter().filter(|point| operators(point.method) && point.outcome.kept_error().is_some()) {
         *counts.entry((point.view.clone(), point.target.clone())).or_insert(0) += 1;
     }
-    counts.retain(|_, count| *count == methods.len());
-    counts
+    counts.into_iter().filter(|(_, count)| *count == methods.len()).map(|(key, _)| key).collect()
 }
 
 #[cfg(test)]
@@ -199,35 +233,58 @@ mod tests {
 
     #[test]
     fn lost_and_rejected_points_are_counted_and_not_averaged() {
-        let mut scores = Scores::new(2);
+        let mut scores = Scores::new(3);
         let points = vec![
             point(0, "a", Some((0.3, 0.4))),
             point(0, "b", Some((3.0, 4.0))),
             point(0, "c", None),
             point(1, "a", Some((0.0, 0.1))),
             point(1, "b", Some((0.0, 0.7))),
+            point(2, "a", Some((9.0, 0.0))),
         ];
-        scores.add(&Trial { number: 0, points, missed_views: Vec::new() });
+        // Method 2 only points: what it loses is still common to the operators.
+        scores.add(&Trial { number: 0, points, missed_views: Vec::new() }, |method| method < 2);
         let first = &scores.methods[0];
         assert_eq!((first.measured, first.lost, first.rejected["border"], first.points()), (1, 1, 1, 3));
-        assert!((first.rmse().unwrap() - 0.5).abs() < 1e-15);
-        assert!((first.whole_square.mean().unwrap() - (0.25 + 25.0) / 2.0).abs() < 1e-12);
-        assert_eq!((first.targets[1].failed, first.targets[2].failed, first.targets[2].square.count()), (1, 1, 0));
+        assert!((first.kept.rmse().unwrap() - 0.5).abs() < 1e-15);
+        assert!((first.whole.square.mean().unwrap() - (0.25 + 25.0) / 2.0).abs() < 1e-12);
+        assert_eq!((first.targets[1].failed, first.targets[2].failed, first.targets[2].whole.dx.count()), (1, 1, 0));
         let second = &scores.methods[1];
-        assert!((second.rmse().unwrap() - 0.5).abs() < 1e-15, "sqrt((0.01 + 0.49) / 2)");
-        assert!((second.common_square.mean().unwrap() - 0.01).abs() < 1e-15, "only `a` is common");
-        assert_eq!(second.rmse_interval(), None, "one trial has no interval");
+        assert!((second.kept.rmse().unwrap() - 0.5).abs() < 1e-15, "sqrt((0.01 + 0.49) / 2)");
+        assert!((second.common.square.mean().unwrap() - 0.01).abs() < 1e-15, "only `a` is common");
+        assert_eq!(second.kept.rmse_interval(), None, "one trial has no interval");
+        assert_eq!(scores.methods[2].common.square.count(), 1);
     }
 
     #[test]
-    fn running_figures_are_those_of_the_textbook() {
-        let mut running = Running::default();
-        [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter().for_each(|v| running.add(v));
-        assert_eq!(running.mean(), Some(5.0));
-        assert!((running.deviation().unwrap() - (32.0_f64 / 7.0).sqrt()).abs() < 1e-15);
+    fn bias_and_scatter_make_the_rmse() {
+        let mut errors = Errors::default();
+        errors.add(&[(0.1, 0.2), (0.3, -0.1)]);
+        errors.add(&[(-0.2, 0.05)]);
+        let (dx, dy) = (errors.dx.mean().unwrap(), errors.dy.mean().unwrap());
+        let sum = dx * dx + dy * dy + errors.scatter().unwrap().powi(2);
+        assert!((sum.sqrt() - errors.rmse().unwrap()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn one_value_a_trial_is_the_textbook() {
+        let mut pooled = Pooled::default();
+        [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter().for_each(|v| pooled.add(&[v]));
+        assert_eq!(pooled.mean(), Some(5.0));
+        assert!((pooled.standard_error().unwrap() - (32.0_f64 / 7.0 / 8.0).sqrt()).abs() < 1e-14);
         // t(0.975, 7) = 2.364624.
-        let (low, high) = running.interval(0.95).unwrap();
+        let (low, high) = pooled.interval(0.95).unwrap();
         let half = 2.364_624_25 * (32.0_f64 / 7.0 / 8.0).sqrt();
         assert!((high - 5.0 - half).abs() < 1e-6 && (5.0 - low - half).abs() < 1e-6);
+    }
+
+    #[test]
+    fn points_that_repeat_each_other_add_no_certainty() {
+        let (mut single, mut repeated) = (Pooled::default(), Pooled::default());
+        for value in [0.3, -0.1, 0.4, 0.2, -0.3] {
+            single.add(&[value]);
+            repeated.add(&[value; 8]);
+        }
+        assert!((single.standard_error().unwrap() - repeated.standard_error().unwrap()).abs() < 1e-15);
     }
 }

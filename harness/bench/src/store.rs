@@ -21,7 +21,7 @@ pub const SCENARIO: &str = "scenario.toml";
 pub fn run(writer: &FolderWriter, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
     let name = plan.scenario.name.clone();
     writer.replace(&name, |folder: &Path| {
-        let info = RunInfo { scenario: name.clone(), seed: plan.seed, revision: revision.to_owned() };
+        let info = RunInfo { scenario: name.clone(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
         let file = BufWriter::new(File::create(folder.join(RECORDS))?);
         let mut records = RecordWriter::new(file, info, plan.method_infos()).map_err(std::io::Error::other)?;
         let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 const PARTIAL: &str = ".calibench-partial-";
 const LOCK: &str = ".calibench-lock";
+/// Where an old folder waits while two renames replace it, on file systems that cannot exchange two folders at once.
+const ASIDE: &str = ".calibench-aside-";
 
 /// The right to replace folders below a parent. One process at a time has it; it ends with this value, or with the process.
 #[derive(Debug)]
@@ -20,16 +22,20 @@ impl FolderWriter {
     /// # Errors
     /// Another process that writes there, or what the file system refuses.
     pub fn new(parent: &Path) -> io::Result<Self> {
-        fs::create_dir_all(parent)?;
-        let lock = File::create(parent.join(LOCK))?;
+        let at = |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", parent.display()));
+        fs::create_dir_all(parent).map_err(at)?;
+        let lock = File::create(parent.join(LOCK)).map_err(at)?;
         lock.try_lock().map_err(|error| match error {
             TryLockError::WouldBlock => io::Error::other(format!("another calibench writes to {}; wait until it ends", parent.display())),
             TryLockError::Error(error) => error,
         })?;
         for entry in fs::read_dir(parent)? {
             let entry = entry?;
-            if entry.file_name().to_string_lossy().starts_with(PARTIAL) {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if name.starts_with(PARTIAL) {
                 fs::remove_dir_all(entry.path())?;
+            } else if let Some(place) = name.strip_prefix(ASIDE) {
+                recover(&entry.path(), &parent.join(place.replace("--", "/")))?;
             }
         }
         Ok(Self { parent: parent.to_owned(), _lock: lock })
@@ -55,7 +61,8 @@ impl FolderWriter {
             fs::create_dir_all(folder)?;
         }
         if place.exists() {
-            exchange(partial.path(), &place)?;
+            let aside = self.parent.join(format!("{ASIDE}{}", name.replace('/', "--")));
+            exchange(partial.path(), &place, &aside)?;
         } else {
             fs::rename(partial.keep(), &place)?;
         }
@@ -64,7 +71,7 @@ impl FolderWriter {
 }
 
 /// Swaps two folders. The old one, now at `new`, is removed when its `TempDir` is dropped.
-fn exchange(new: &Path, old: &Path) -> io::Result<()> {
+fn exchange(new: &Path, old: &Path, aside: &Path) -> io::Result<()> {
     #[cfg(target_os = "linux")]
     {
         use rustix::fs::{CWD, RenameFlags, renameat_with};
@@ -74,10 +81,19 @@ fn exchange(new: &Path, old: &Path) -> io::Result<()> {
             result => return Ok(result?),
         }
     }
-    let aside = new.with_extension("old");
-    fs::rename(old, &aside)?;
+    by_renames(new, old, aside)
+}
+
+/// The same by three renames. Killed between them, the old folder is at `aside`, where the next writer finds it.
+fn by_renames(new: &Path, old: &Path, aside: &Path) -> io::Result<()> {
+    fs::rename(old, aside)?;
     fs::rename(new, old)?;
-    fs::rename(&aside, new)
+    fs::rename(aside, new)
+}
+
+/// Puts back an old folder that waits at `aside` if nothing has taken its place, and removes it otherwise.
+fn recover(aside: &Path, place: &Path) -> io::Result<()> {
+    if place.exists() { fs::remove_dir_all(aside) } else { fs::rename(aside, place) }
 }
 
 #[cfg(test)]
@@ -107,6 +123,28 @@ mod tests {
         writer.replace("a/b", write("new")).unwrap();
         assert_eq!(fs::read_to_string(parent.path().join("a/b/page")).unwrap(), "new");
         assert_eq!(visible(parent.path()), ["a"]);
+    }
+
+    #[test]
+    fn without_exchange_an_old_folder_is_never_lost() {
+        let parent = tempfile::tempdir().unwrap();
+        let at = |name: &str| parent.path().join(name);
+        let page = |folder: &str| fs::read_to_string(at(folder).join("page")).unwrap();
+        for (name, text) in [("a", "old"), ("new", "new")] {
+            fs::create_dir(at(name)).unwrap();
+            fs::write(at(name).join("page"), text).unwrap();
+        }
+        by_renames(&at("new"), &at("a"), &at(".calibench-aside-a")).unwrap();
+        assert_eq!((page("a"), page("new")), ("new".into(), "old".into()));
+        // Killed after the first rename: the next writer puts the old folder back.
+        fs::rename(at("a"), at(".calibench-aside-a")).unwrap();
+        drop(FolderWriter::new(parent.path()).unwrap());
+        assert_eq!(page("a"), "new");
+        // Killed after the second: the new one stays.
+        fs::rename(at("new"), at(".calibench-aside-a")).unwrap();
+        drop(FolderWriter::new(parent.path()).unwrap());
+        assert_eq!(page("a"), "new");
+        assert!(!at(".calibench-aside-a").exists());
     }
 
     #[test]

@@ -8,5 +8,5 @@ pub mod points_write;
 
 pub use folder::FolderWriter;
 pub use photo::{PhotoError, read_photo, write_png};
-pub use points::{PointFileError, PointRow, read_points};
+pub use points::{PointFile, PointFileError, PointRow, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};

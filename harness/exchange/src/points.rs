@@ -15,7 +15,7 @@ pub const REQUIRED: [&str; 4] = ["image", "target", "x", "y"];
 pub const COVARIANCE: [&str; 3] = ["sxx", "sxy", "syy"];
 /// What is pictured and its affine start: `kind` alone, or all five.
 pub const SHAPE: [&str; 5] = ["kind", "axx", "axy", "ayx", "ayy"];
-/// What `measure` adds; read over when its output is read again.
+/// What `measure` adds: when its output is read again, `status` says which rows have a position; the others are read over.
 pub const RESULT: [&str; 3] = ["method", "status", "reason"];
 
 /// One row of a point file.
@@ -25,10 +25,17 @@ pub struct PointRow {
     pub image: String,
     /// The target's name.
     pub target: String,
-    /// Position, kind and affine start.
+    /// Position, kind, affine start and covariance.
     pub start: Start,
-    /// Covariance of the position, px^2, where given.
-    pub covariance: Option<Covariance>,
+}
+
+/// The points of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointFile {
+    /// The rows with a position, in the order of the file.
+    pub rows: Vec<PointRow>,
+    /// How many rows had none because `measure` rejected them or could not try them: left out.
+    pub without_position: usize,
 }
 
 /// What is wrong with a point file, and where.
@@ -56,12 +63,13 @@ fn place(line: Option<u64>, column: Option<&str>) -> String {
 
 /// Reads a point file: header `image,target,x,y`, optionally `sxx,sxy,syy` and `kind,axx,axy,ayx,ayy`, in any order.
 ///
-/// Coordinates are px in the frame of [`PixelPoint`], covariances px^2. Empty optional cells mean "not given".
+/// Coordinates are px in the frame of [`PixelPoint`], covariances px^2. Empty optional cells mean "not given". The output of `measure` is read as well: its
+/// rejected and unavailable rows, which have no position, are counted and left out.
 ///
 /// # Errors
 /// The first mistake, with line and column: a missing or unknown column, a row of another length, a number that is none or not finite, an impossible covariance, an
 /// unknown kind, a point given twice, no point at all.
-pub fn read_points(path: &Path) -> Result<Vec<PointRow>, PointFileError> {
+pub fn read_points(path: &Path) -> Result<PointFile, PointFileError> {
     let name = path.display().to_string();
     let file = File::open(path).map_err(|e| PointFileError { file: name.clone(), line: None, column: None, problem: e.to_string() })?;
     parse_points(&name, file)
@@ -71,7 +79,7 @@ pub fn read_points(path: &Path) -> Result<Vec<PointRow>, PointFileError> {
 ///
 /// # Errors
 /// As [`read_points`].
-pub fn parse_points(file: &str, mut input: impl Read) -> Result<Vec<PointRow>, PointFileError> {
+pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, PointFileError> {
     let mut text = Vec::new();
     let unreadable = |e: std::io::Error| PointFileError { file: file.to_owned(), line: None, column: None, problem: e.to_string() };
     input.read_to_end(&mut text).map_err(unreadable)?;
@@ -80,21 +88,32 @@ pub fn parse_points(file: &str, mut input: impl Read) -> Result<Vec<PointRow>, P
     let columns = Columns::new(file, &header)?;
     let mut seen: HashMap<(String, String), u64> = HashMap::new();
     let mut rows = Vec::new();
+    let mut without_position = 0;
     for record in reader.records() {
         let record = record.map_err(|error| csv_error(file, &error))?;
         let line = line_of(&text, &record);
-        let row = Cells { file, columns: &columns, record: &record, line }.row()?;
+        let cells = Cells { file, columns: &columns, record: &record, line };
+        if matches!(cells.text("status"), Some("rejected" | "unavailable")) {
+            without_position += 1;
+            continue;
+        }
+        let row = cells.row()?;
         if let Some(earlier) = seen.insert((row.image.clone(), row.target.clone()), line) {
-            let problem = format!("target `{}` of image `{}` is already on line {earlier}; expected each once", row.target, row.image);
+            let problem = format!(
+                "target `{}` of image `{}` is already on line {earlier}; expected each once{}",
+                row.target,
+                row.image,
+                cells.several()
+            );
             return Err(PointFileError { file: file.to_owned(), line: Some(line), column: None, problem });
         }
         rows.push(row);
     }
-    if rows.is_empty() {
+    if rows.is_empty() && without_position == 0 {
         let problem = "holds no point; expected one row a point below the header".to_owned();
         return Err(PointFileError { file: file.to_owned(), line: None, column: None, problem });
     }
-    Ok(rows)
+    Ok(PointFile { rows, without_position })
 }
 
 /// The line of a record: the reader's own count starts at the empty lines before it.
@@ -164,8 +183,13 @@ impl Cells<'_> {
             let problem = format!("no covariance: expected sxx, syy >= 0 and sxy^2 <= sxx syy, found {sxx}, {sxy}, {syy}");
             return Err(self.wrong("sxx", problem));
         }
-        let start = Start { position, kind, affine };
-        Ok(PointRow { image: self.required_text("image")?, target: self.required_text("target")?, start, covariance })
+        let start = Start { position, kind, affine, covariance };
+        Ok(PointRow { image: self.required_text("image")?, target: self.required_text("target")?, start })
+    }
+
+    /// What to do about a point that stands twice because several methods measured it.
+    fn several(&self) -> &'static str {
+        if self.text("method").is_some() { " (the file holds the results of several methods: keep those of one)" } else { "" }
     }
 
     fn text(&self, column: &str) -> Option<&str> {

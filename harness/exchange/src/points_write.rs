@@ -93,21 +93,21 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() {
-        let given = parse_points("p", &b"image,target,x,y,kind,axx,axy,ayx,ayy\ni,\"a,b\",1,2,disc,3,4,5,6\n"[..]).unwrap();
+        let given = parse_points("p", &b"image,target,x,y,kind,axx,axy,ayx,ayy\ni,\"a,b\",1,2,disc,3,4,5,6\n"[..]).unwrap().rows;
         let found =
             Measurement { position: PixelPoint::new(0.1 + 0.2, -1e-9), covariance: Some(Covariance { sxx: 1e-7, sxy: 0.0, syy: 2.0 }) };
         let mut text = Vec::new();
         let row = |outcome| MeasuredRow { given: &given[0], method: "m:k=1,j=2", outcome };
         write_measured(&mut text, [row(Outcome::Measured(found))]).unwrap();
-        let again = parse_points("q", &text[..]).unwrap();
-        assert_eq!((again[0].start.position, again[0].covariance), (found.position, found.covariance));
+        let again = parse_points("q", &text[..]).unwrap().rows;
+        assert_eq!((again[0].start.position, again[0].start.covariance), (found.position, found.covariance));
         assert_eq!((&again[0].target, again[0].start.affine), (&given[0].target, given[0].start.affine));
         let mut text = Vec::new();
         write_measured(&mut text, [row(Outcome::Rejected(Rejection::Border)), row(Outcome::Unavailable("no".into()))]).unwrap();
         let text = String::from_utf8(text).unwrap();
         let mut points = Vec::new();
         write_points(&mut points, &given).unwrap();
-        assert_eq!(parse_points("r", &points[..]).unwrap(), given);
+        assert_eq!(parse_points("r", &points[..]).unwrap().rows, given);
         assert!(text.contains("\"m:k=1,j=2\",rejected,border\n") && text.contains("unavailable,no\n"), "{text}");
     }
 }

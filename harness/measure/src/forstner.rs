@@ -18,15 +18,16 @@ const EDGE: f64 = 5e-3;
 ///
 /// The window of odd side, in pixels, is centred on the pixel nearest to the start; gradients are Sobel, so the image must reach one pixel
 /// past the window. One pass: the window does not follow the result. The covariance (px^2) is `sigma0^2 N^-1` with
-/// `sigma0^2 = Omega / (m - 2)` from the scatter of the edge lines about the point.
+/// `sigma0^2 = Omega / (m - 2)` from the scatter of the edge lines about the point. On sharp corners that scatter is mostly the pixel
+/// grid's, not the noise's: the standard deviation is then several times too large at low noise (7 times at 0.5 % of full scale and a contrast of 60 %, 2 times at 2 %)
+/// and right to a factor 1.5 at 5 %.
 ///
 /// Source: Galo et al. 2011, Eq. 5; covariance: Förstner & Gülch 1987.
 pub struct Forstner {
     window: usize,
 }
 
-/// Its parameters; every operator that works on one window has the same.
-pub const PARAMETERS: &[Parameter] = &[Parameter {
+const PARAMETERS: &[Parameter] = &[Parameter {
     name: "window",
     about: "side of the window, px",
     domain: Domain::Odd { min: 3, max: 31 },

@@ -5,6 +5,7 @@
 
 pub mod board;
 pub mod conformance;
+pub mod external;
 pub mod forstner;
 pub mod harris;
 pub mod harris_paraboloid;

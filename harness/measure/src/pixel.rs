@@ -5,7 +5,7 @@ use calibench_model::{Image, Measurement, Rejection, Start};
 use crate::operator::{Operator, window_centre};
 use crate::registry::{Build, Method};
 
-/// Pointing: returns its start unchanged. What it is worth is what the start is worth; how starts come about is the scenario's to say.
+/// Pointing: returns its start unchanged, with the covariance that came with it. What it is worth is what the start is worth; how starts come about is the scenario's to say.
 pub struct Pixel;
 
 /// The method's entry.
@@ -25,7 +25,7 @@ impl Operator for Pixel {
     /// [`Rejection::NotFinite`] and [`Rejection::Border`] for a start that is no place in the image.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         window_centre(image, start, 0)?;
-        Ok(Measurement { position: start.position, covariance: None })
+        Ok(Measurement { position: start.position, covariance: start.covariance })
     }
 
     fn reads_grey_values(&self) -> bool {

@@ -13,12 +13,14 @@ pub struct Start {
     pub kind: Option<TargetKind>,
     /// The affine start of its picture, if known.
     pub affine: Option<Affine>,
+    /// The covariance of the approximate position, px^2, if known.
+    pub covariance: Option<Covariance>,
 }
 
 impl Start {
     /// A start of which only the position is known.
     pub const fn at(position: PixelPoint) -> Self {
-        Self { position, kind: None, affine: None }
+        Self { position, kind: None, affine: None, covariance: None }
     }
 }
 

@@ -6,7 +6,7 @@ use calibench_measure::{Board, BoardDetector};
 use calibench_model::{CornerPoint, Image, PixelPoint};
 use opencv::calib3d::{CALIB_CB_ADAPTIVE_THRESH, CALIB_CB_NORMALIZE_IMAGE, check_chessboard, find_chessboard_corners};
 use opencv::core::{CV_8U, Mat, MatTraitConst, Point2f, Size, TermCriteria, TermCriteria_COUNT, TermCriteria_EPS, Vector};
-use opencv::imgproc::{INTER_AREA, corner_sub_pix, resize};
+use opencv::imgproc::{INTER_AREA, THRESH_BINARY, THRESH_OTSU, corner_sub_pix, median_blur, resize, threshold};
 
 use crate::subpix::pixel;
 
@@ -23,8 +23,9 @@ const LARGEST: f64 = 30.0;
 /// checkChessboard sees black and white quadrangles of one size and the quadrangles are not too many for the board in question.
 /// Corners are then refined by cornerSubPix in the full image, with a window of half-width at most a third of a square.
 ///
-/// A board whose squares are smaller than about 8 px in a frame reduced to 1280 px is not seen, nor is one among many more quadrangles than
-/// its own, which noise in a large empty background makes too. The order is OpenCV's: along the rows, from a corner that is ambiguous when the board is symmetric.
+/// Where that fails, the level is searched once more in black and white, which faint noise does not survive.
+///
+/// A board whose squares are smaller than about 8 px in a frame reduced to 1280 px is not seen, nor is one among many more quadrangles than its own. The order is OpenCV's: along the rows, from a corner that is ambiguous when the board is symmetric.
 ///
 /// Source: OpenCV, findChessboardCorners (V. Vezhnevets), checkChessboard, cornerSubPix.
 #[derive(Clone, Copy, Debug, Default)]
@@ -92,15 +93,32 @@ fn reduce(full: &Mat, longer: i32) -> opencv::Result<Mat> {
     Ok(reduced)
 }
 
-/// The corners in the reduced image, if it is worth a search and that finds them.
+/// The corners in the reduced image as it is, or in black and white.
 fn search(reduced: &Mat, board: Board) -> opencv::Result<Option<Vector<Point2f>>> {
+    match search_one(reduced, board)? {
+        Some(corners) => Ok(Some(corners)),
+        None => search_one(&black_and_white(reduced)?, board),
+    }
+}
+
+/// The corners in an image, if it is worth a search and that finds them.
+fn search_one(image: &Mat, board: Board) -> opencv::Result<Option<Vector<Point2f>>> {
     let size = Size::new(board.columns as i32, board.rows as i32);
-    if !check_chessboard(reduced, size)? || !load::is_bearable(reduced, board)? {
+    if !check_chessboard(image, size)? || !load::is_bearable(image, board)? {
         return Ok(None);
     }
     let mut corners = Vector::<Point2f>::new();
-    let found = find_chessboard_corners(reduced, size, &mut corners, CALIB_CB_ADAPTIVE_THRESH | CALIB_CB_NORMALIZE_IMAGE)?;
+    let found = find_chessboard_corners(image, size, &mut corners, CALIB_CB_ADAPTIVE_THRESH | CALIB_CB_NORMALIZE_IMAGE)?;
     Ok((found && corners.len() == board.corners()).then_some(corners))
+}
+
+/// The image in two grey values, split by Otsu's threshold. OpenCV's search stretches the contrast, and faint noise in a wide plain background then
+/// looks like thousands of quadrangles; here it is gone.
+fn black_and_white(image: &Mat) -> opencv::Result<Mat> {
+    let (mut calm, mut binary) = (Mat::default(), Mat::default());
+    median_blur(image, &mut calm, 3)?;
+    threshold(&calm, &mut binary, 0.0, 255.0, THRESH_BINARY | THRESH_OTSU)?;
+    Ok(binary)
 }
 
 /// The same place in a larger version of the image: outer corners of pixels scale, their centres do not.

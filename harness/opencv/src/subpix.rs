@@ -1,9 +1,8 @@
 //! `opencv_subpix`: OpenCV's cornerSubPix, with the failures that it keeps to itself brought to light.
 
 use calibench_measure::operator::window_centre;
-use calibench_measure::parameter::Domain;
 use calibench_measure::registry::{Build, Method};
-use calibench_measure::{Operator, Parameter, Settings};
+use calibench_measure::{Operator, Settings};
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use opencv::boxed_ref::BoxedRef;
 use opencv::core::{Mat, Point2f, Size, TermCriteria, TermCriteria_COUNT, TermCriteria_EPS};
@@ -34,37 +33,7 @@ pub struct Subpix {
 
 /// The method's entry.
 pub fn method() -> Method {
-    const PARAMETERS: &[Parameter] = &[
-        Parameter {
-            name: "window",
-            about: "side of the window, px (OpenCV's winSize is half of it, rounded down)",
-            domain: Domain::Odd { min: 3, max: 31 },
-            default: 11.0,
-            always_shown: true,
-        },
-        Parameter {
-            name: "iterations",
-            about: "most steps (OpenCV does no more than 100)",
-            domain: Domain::Whole { min: 1, max: 100 },
-            default: 40.0,
-            always_shown: false,
-        },
-        Parameter {
-            name: "epsilon",
-            about: "step at which iteration ends, px",
-            domain: Domain::Real { min: 0.0, max: 1.0 },
-            default: 1e-3,
-            always_shown: false,
-        },
-    ];
-    Method {
-        name: "opencv_subpix",
-        about: "OpenCV's cornerSubPix: point orthogonal to all gradients of a weighted window, iterated",
-        source: "Bradski 2000, OpenCV, cornerSubPix (its documentation cites no paper)",
-        version: crate::version(),
-        parameters: PARAMETERS,
-        build: Build::With(|settings| Box::new(Subpix::new(settings))),
-    }
+    calibench_measure::external::opencv_subpix(Build::With(|settings| Box::new(Subpix::new(settings))), crate::version())
 }
 
 impl Subpix {

@@ -76,7 +76,11 @@ impl Context<'_> {
 
     /// The code's revision for records: that of the checkout, or the version of the program outside of one.
     pub fn revision(&self) -> Result<String, Failure> {
-        let git = Command::new("git").arg("-C").arg(self.root()?).args(["rev-parse", "--short=12", "HEAD"]).output();
+        let git = Command::new("git")
+            .arg("-C")
+            .arg(self.root()?)
+            .args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"])
+            .output();
         let revision =
             git.ok().filter(|output| output.status.success()).map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
         Ok(revision.unwrap_or_else(|| env!("CARGO_PKG_VERSION").to_owned()))

@@ -57,8 +57,7 @@ fn rows(detector: &dyn BoardDetector, path: &Path, board: Board) -> Result<Vec<P
     let row = |(index, position): (usize, &PixelPoint)| PointRow {
         image: name.clone().into_owned(),
         target: board.target(index),
-        start: Start { position: *position, kind: Some(TargetKind::ChessCorner), affine: Some(affine(&corners, board, index)) },
-        covariance: None,
+        start: Start { kind: Some(TargetKind::ChessCorner), affine: Some(affine(&corners, board, index)), ..Start::at(*position) },
     };
     Ok(corners.iter().enumerate().map(row).collect())
 }

@@ -1,9 +1,9 @@
 //! `calibench measure`: points in a user's own photographs.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{MeasuredRow, Outcome, PointRow, read_photo, read_points, write_measured};
+use calibench_exchange::{MeasuredRow, Outcome, PointFile, PointRow, read_photo, read_points, write_measured};
 use calibench_measure::Configured;
 use calibench_model::Start;
 use clap::Args;
@@ -35,7 +35,16 @@ impl Measure {
         if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {
             return Err(Failure::input(format!("-m {}: unavailable: {why}", method.label)));
         }
-        let points = read_points(&self.points)?;
+        if let Some(twice) = methods.iter().enumerate().find(|(i, m)| methods[..*i].iter().any(|earlier| earlier.label == m.label)) {
+            return Err(Failure::input(format!("-m {}: asked for twice", twice.1.label)));
+        }
+        let PointFile { rows: points, without_position } = read_points(&self.points)?;
+        if without_position > 0 {
+            eprintln!("{}: {without_position} rows without a position (rejected or unavailable) are left out", self.points.display());
+        }
+        if points.is_empty() {
+            return Err(Failure::input(format!("{}: no row has a position", self.points.display())));
+        }
         let photos = by_name(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); points.len()];
@@ -58,8 +67,8 @@ fn not_given(point: &PointRow) -> Outcome {
 }
 
 /// Photographs by file name, which is what point files call them.
-fn by_name(paths: &[PathBuf]) -> Result<HashMap<String, &Path>, Failure> {
-    let mut photos: HashMap<String, &Path> = HashMap::new();
+fn by_name(paths: &[PathBuf]) -> Result<BTreeMap<String, &Path>, Failure> {
+    let mut photos: BTreeMap<String, &Path> = BTreeMap::new();
     for path in paths {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
         let name = name.ok_or_else(|| Failure::input(format!("{}: is no photograph", path.display())))?;
@@ -76,7 +85,7 @@ fn by_name(paths: &[PathBuf]) -> Result<HashMap<String, &Path>, Failure> {
 /// (index of the point, one outcome a method). One photograph a thread is in memory.
 fn measure(
     points: &[PointRow],
-    photos: &HashMap<String, &Path>,
+    photos: &BTreeMap<String, &Path>,
     methods: &[Configured],
     progress: &Progress,
 ) -> Result<Vec<(usize, Vec<Outcome>)>, Failure> {

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::Failure;
 use super::context::Context;
-use crate::report;
+use crate::report::{self, Written};
 use crate::scenario::problem::nearest;
 
 #[derive(Args)]
@@ -19,22 +19,29 @@ pub struct Report {
 impl Report {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let mut families: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for name in context.catalogue()?.names()? {
+        let places = context.places()?;
+        let mut names = context.catalogue()?.names()?;
+        names.extend(report::recorded(&places.records).into_iter().filter(|name| name.starts_with("local/")));
+        names.sort();
+        names.dedup();
+        for name in names {
             families.entry(name.split('/').next().unwrap_or(&name).to_owned()).or_default().push(name);
         }
         for paper in &self.papers {
             if !families.contains_key(paper) {
                 let known: Vec<&str> = families.keys().map(String::as_str).collect();
-                let near = nearest(paper, known.iter().copied()).map_or(String::new(), |near| format!(", did you mean `{near}`?"));
+                let near = nearest(paper, known.iter().copied()).map_or(String::from("."), |near| format!(", did you mean `{near}`?"));
                 return Err(Failure::input(format!("no report is called `{paper}`{near} Known are {}.", known.join(", "))));
             }
         }
-        let places = context.places()?;
         for (family, scenarios) in &families {
             if self.papers.is_empty() || self.papers.contains(family) {
-                let page = report::write(&places, family, scenarios, &context.toolbox.registry)?;
-                if !context.quiet {
-                    eprintln!("{}", page.display());
+                match report::write(&places, family, scenarios, &context.toolbox.registry)? {
+                    Written::New(page) if !context.quiet => eprintln!("{}", page.display()),
+                    Written::Kept(page) if !context.quiet => {
+                        eprintln!("{}: kept as it is, nothing of it can be measured here", page.display());
+                    }
+                    _ => {}
                 }
             }
         }

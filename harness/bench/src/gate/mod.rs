@@ -64,6 +64,13 @@ impl Check {
         } else if deterministic || baseline.coordinates == Coordinates::Positions {
             self.findings.extend(exact::exact(baseline, current));
         } else {
+            if baseline.seed != current.seed {
+                let message = format!(
+                    "the seed is {} and was {}: the trials no longer share their random numbers; bless anew",
+                    current.seed, baseline.seed
+                );
+                self.findings.push(Finding::new(Verdict::Fails, &baseline.scenario, "all methods", "seed", message));
+            }
             let (tests, untested) = paired::tests(baseline, current);
             self.tests.extend(tests);
             self.findings.extend(untested);

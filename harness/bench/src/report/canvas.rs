@@ -67,7 +67,7 @@ impl Canvas {
             // The font is compiled in; it is whole.
             let _ = register_font("sans-serif", FontStyle::Normal, ttf_noto_sans::REGULAR);
         });
-        Self { width, height, pixels: vec![255; (width * height * 3) as usize] }
+        Self { width, height, pixels: vec![255; width as usize * height as usize * 3] }
     }
 
     /// Puts the part of `image` of `side` px from pixel (`left`, `top`) at (`x`, `y`), each pixel `zoom` px wide. Outside the image: hatched white.
@@ -83,7 +83,7 @@ impl Canvas {
                     255
                 };
                 if x + column < self.width && y + row < self.height {
-                    let at = (((y + row) * self.width + x + column) * 3) as usize;
+                    let at = ((y + row) as usize * self.width as usize + (x + column) as usize) * 3;
                     self.pixels[at..at + 3].fill(level);
                 }
             }

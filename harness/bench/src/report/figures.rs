@@ -27,11 +27,23 @@ impl Layer {
         Self { name: "approximate position".into(), mark: Mark::Square, colour: BLACK }
     }
 
-    /// The results of the method in place `index`.
-    pub fn method(label: &str, index: usize) -> Self {
-        Self { name: label.to_owned(), mark: METHOD_MARKS[index % METHOD_MARKS.len()], colour: COLOURS[index % COLOURS.len()] }
+    /// The results of methods: each has a look of its own, the same on every page as long as no other method of the picture claims it first.
+    pub fn methods<'a>(labels: impl Iterator<Item = &'a str>) -> Vec<Self> {
+        let mut taken = Vec::new();
+        let layer = |label: &str| {
+            let name = label.split(':').next().unwrap_or(label);
+            let wanted = USUAL.iter().position(|usual| *usual == name).unwrap_or(0);
+            let free = (0..METHOD_MARKS.len()).map(|step| (wanted + step) % METHOD_MARKS.len()).find(|place| !taken.contains(place));
+            let place = free.unwrap_or(wanted);
+            taken.push(place);
+            Self { name: label.to_owned(), mark: METHOD_MARKS[place], colour: COLOURS[place] }
+        };
+        labels.map(layer).collect()
     }
 }
+
+/// The methods whose looks are reserved, by place.
+const USUAL: [&str; 4] = ["forstner", "", "harris_paraboloid", "opencv_subpix"];
 
 /// A point in a picture: which layer, and where.
 #[derive(Clone, Debug)]
@@ -54,6 +66,8 @@ pub struct Panel<'a> {
     pub marks: Vec<MarkAt>,
 }
 
+/// Of larger images the upper left part of this size is shown, px.
+const MOST_SHOWN: u32 = 6000;
 const LINE: u32 = 26;
 const GAP: u32 = 14;
 
@@ -71,7 +85,7 @@ fn drawn(layers: &[Layer], marks: &[MarkAt], place: impl Fn(PixelPoint) -> (f64,
 
 /// The whole image with marks, and a label beside each of `labels`.
 pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], labels: &[(String, PixelPoint)]) -> Canvas {
-    let size = (image.width() as u32, image.height() as u32);
+    let size = ((image.width() as u32).min(MOST_SHOWN), (image.height() as u32).min(MOST_SHOWN));
     let (width, height) = (size.0 * zoom, size.1 * zoom);
     let (legend_rows, columns) = legend_size(layers, width);
     let mut canvas = Canvas::new(width + 2 * GAP, height + 2 * GAP + legend_rows * LINE);

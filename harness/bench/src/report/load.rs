@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::records::{RecordError, RecordHead, read_records};
 use crate::results::Trial;
+use crate::run::kept_image;
 use crate::scenario::{self, Scenario};
 use crate::score::Scores;
 use crate::store::{RECORDS, SCENARIO};
@@ -73,8 +74,9 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
     let scenario = scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
     let mut scores = Scores::default();
     let mut first = None;
-    let head = read_records(BufReader::new(file), |trial| {
-        scores.add(&trial);
+    // The methods of a file are named as they come; `pixel` is the one that does not look at the image.
+    let head = read_records(BufReader::new(file), |trial, methods| {
+        scores.add(&trial, |method| methods.get(method).is_some_and(|info| &*info.label != "pixel"));
         first.get_or_insert(trial);
     });
     let head = head.map_err(|source| LoadError::Records { path, source })?;
@@ -82,10 +84,29 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
     Ok(Loaded { scenario, head, scores, first: first.unwrap_or_default(), folder })
 }
 
+/// The names of all scenarios that have records, those of files elsewhere (`local/...`) among them.
+pub fn recorded(records: &Path) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut folders = vec![(records.to_owned(), String::new())];
+    while let Some((folder, name)) = folders.pop() {
+        if folder.join(RECORDS).is_file() {
+            names.push(name.clone());
+        }
+        for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten().filter(|entry| entry.path().is_dir()) {
+            let part = entry.file_name().to_string_lossy().into_owned();
+            if !part.starts_with('.') {
+                let below = if name.is_empty() { part } else { format!("{name}/{part}") };
+                folders.push((entry.path(), below));
+            }
+        }
+    }
+    names
+}
+
 impl Loaded {
     /// The image of view `view` in the first trial, if it was kept.
     pub fn image(&self, view: &str) -> Option<Image> {
-        read_photo(&self.folder.join(view).with_extension("png")).ok()
+        read_photo(&kept_image(&self.folder, view)).ok()
     }
 
     /// The place of the method with this label.

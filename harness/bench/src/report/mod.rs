@@ -20,7 +20,7 @@ use thiserror::Error;
 use crate::published::{self, PublishedError};
 use crate::scenario::Subject;
 pub use canvas::Canvas;
-pub use load::{LoadError, Loaded, load};
+pub use load::{LoadError, Loaded, load, recorded};
 pub use scene_figures::preview;
 
 /// The file name of a report's page.
@@ -51,12 +51,26 @@ pub enum ReportError {
     Output(#[from] io::Error),
 }
 
-/// Writes the report of `family` from the records of `scenarios`, in place of the older one, and returns its page's path.
+/// What became of a report, and the path of its page.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// It was made anew.
+    New(PathBuf),
+    /// Nothing of it could be measured here; the older one was left as it is.
+    Kept(PathBuf),
+}
+
+/// Writes the report of `family` from the records of `scenarios`, in place of the older one. One that could not be measured here at all does
+/// not replace one that was measured elsewhere.
 ///
 /// # Errors
 /// Records or tables that cannot be read; the older report is then as it was.
-pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Registry) -> Result<PathBuf, ReportError> {
+pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Registry) -> Result<Written, ReportError> {
     let loaded = scenarios.iter().map(|name| load(&places.records, name, registry)).collect::<Result<Vec<_>, _>>()?;
+    let page_path = places.reports.join(family).join(PAGE);
+    if page_path.is_file() && loaded.iter().all(|loaded| loaded.unavailable().is_some()) {
+        return Ok(Written::Kept(page_path));
+    }
     let tables = published::tables(&places.published, family)?;
     let mut page = Page::new(family);
     let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).ok_or_else(|| LoadError::None(name.clone()));
@@ -67,7 +81,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
     loaded.iter().for_each(|loaded| page.scenario(loaded));
     let writer = FolderWriter::new(&places.reports)?;
     writer.replace(family, |folder| page.write(folder))?;
-    Ok(places.reports.join(family).join(PAGE))
+    Ok(Written::New(page_path))
 }
 
 /// Writes the page that lists the reports that are there.
@@ -90,6 +104,27 @@ pub fn write_index(reports: &Path) -> io::Result<()> {
     calibench_exchange::atomic::write_atomically(&reports.join(PAGE), |file| io::Write::write_all(file, text.as_bytes()))
 }
 
+/// In what a run was not the scenario of the file: other trials, seed or methods.
+fn deviations(loaded: &Loaded) -> String {
+    let (scenario, head) = (&loaded.scenario, &loaded.head);
+    if loaded.unavailable().is_some() {
+        return String::new();
+    }
+    let mut found = Vec::new();
+    if loaded.scores.trials != scenario.trials {
+        found.push(format!("{} trials in place of {}", loaded.scores.trials, scenario.trials));
+    }
+    if head.run.seed != scenario.seed {
+        found.push(format!("seed {} in place of {}", head.run.seed, scenario.seed));
+    }
+    let has = |label: &str| head.methods.iter().any(|method| &*method.label == label);
+    let methods = scenario.methods.iter().filter(|method| !has(&method.label)).count();
+    if methods > 0 || head.methods.len() != scenario.methods.len() {
+        found.push("other methods".to_owned());
+    }
+    if found.is_empty() { String::new() } else { format!("**Not the scenario as its file says: {}.**\n\n", found.join(", ")) }
+}
+
 struct Page {
     text: String,
     pictures: Vec<(String, Canvas)>,
@@ -106,13 +141,20 @@ impl Page {
 
     fn scenario(&mut self, loaded: &Loaded) {
         let scenario = &loaded.scenario;
-        let stem = scenario.name.split('/').skip(1).collect::<Vec<_>>().join("-");
+        let stem = scenario.name.split_once('/').map_or(scenario.name.as_str(), |(_, rest)| rest).replace('/', "-");
         self.text.push_str(&format!(
             "## Scenario `{}`\n\n{}\n\nSource: {}.\n\n",
             scenario.name,
             scenario.why.trim(),
             scenario.source.trim_end_matches('.')
         ));
+        self.text.push_str(&deviations(loaded));
+        for note in &scenario.notes {
+            self.text.push_str(&format!("- {}\n", note.split_whitespace().collect::<Vec<_>>().join(" ")));
+        }
+        if !scenario.notes.is_empty() {
+            self.text.push('\n');
+        }
         match &scenario.subject {
             Subject::Photographs(_) => {
                 let (text, pictures) = photographs::section(loaded);

@@ -87,7 +87,7 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
         if let Some(picture) = picture(loaded, &chosen, &operators) {
             text.push_str(&format!(
                 "### {heading}\n\n{about} The middle is the median of x and of y over all operators. 31 x 31 px, enlarged 8 times; the title gives operator, \
-                 photograph, corner and distance.\n\n![{heading}]({name}.png)\n\n"
+                 photograph, corner and distance. Distances below a tenth of a pixel cannot be seen here; the table above has them.\n\n![{heading}]({name}.png)\n\n"
             ));
             pictures.push((format!("{name}.png"), picture));
         }
@@ -134,6 +134,9 @@ fn seen(loaded: &Loaded, points: &[Compared]) -> String {
         format!("The board was found in {} of {} photographs, {} corners in all.", views.len(), views.len() + missed.len(), points.len());
     for (view, why) in missed {
         text.push_str(&format!(" `{view}`: {why}."));
+    }
+    if let Some((name, version)) = &loaded.head.run.detector {
+        text.push_str(&format!(" Detector: `{name}`, version {version}."));
     }
     text.push_str(
         " Every operator starts from the same whole pixels: the detected corners, rounded. The truth is not known; a small difference \
@@ -187,7 +190,7 @@ fn quantile(sorted: &[(f64, PointKey)], q: f64) -> f64 {
 fn picture(loaded: &Loaded, chosen: &[Chosen<'_>], operators: &[usize]) -> Option<Canvas> {
     let available: Vec<usize> = operators.iter().copied().filter(|&m| loaded.head.methods[m].unavailable.is_none()).collect();
     let mut layers = vec![Layer::start()];
-    layers.extend(available.iter().enumerate().map(|(i, &m)| Layer::method(&loaded.head.methods[m].label, i)));
+    layers.extend(Layer::methods(available.iter().map(|&m| &*loaded.head.methods[m].label)));
     let start = loaded.method("pixel");
     let images: BTreeMap<&str, Image> = chosen.iter().filter_map(|c| Some((&*c.point.key.0, loaded.image(&c.point.key.0)?))).collect();
     let panel = |Chosen { point, title }: &Chosen<'_>| {

@@ -26,7 +26,14 @@ fn figure(loaded: &Loaded, method: usize, metric: Metric, target: Option<&str>, 
         let values: Vec<f64> = errors(loaded, method, except).map(value).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
+    let error = || match points(loaded, method).find(|point| Some(&*point.target) == target)?.outcome {
+        Outcome::Measured { error, .. } => error,
+        Outcome::Rejected(_) => None,
+    };
     match metric {
+        Metric::Dx => error().map(|e| e.0),
+        Metric::Dy => error().map(|e| e.1),
+        Metric::Distance => error().map(|e| e.0.hypot(e.1)),
         Metric::X => position().map(|p| p.x),
         Metric::Y => position().map(|p| p.y),
         Metric::MeanDx => mean(|e| e.0),
@@ -102,8 +109,8 @@ fn comparison(table: &Table, main: &Loaded, method: usize) -> String {
     }
     let [reproduces, differs, not_comparable] = tally;
     format!(
-        "Printed beside ours (`{}`, `{}`). A cell *reproduces* when the two differ by no more than one unit of the last printed digit: half for the \
-         paper's rounding, half for that of what it was computed from.\n\n{}\nOf {} cells, {reproduces} reproduce, {differs} differ and {not_comparable} are not comparable.\n\n",
+        "Printed beside ours (`{}`, `{}`). A coordinate *reproduces* when ours is within half a unit of the last printed digit; what the paper computed from rounded \
+         figures, within one unit.\n\n{}\nOf {} cells, {reproduces} reproduce, {differs} differ and {not_comparable} are not comparable.\n\n",
         table.method,
         table.scenario,
         rows.render(),
@@ -116,7 +123,7 @@ fn like(cell: &Cell, value: f64) -> String {
     if cell.printed.contains('/') {
         return fraction(value);
     }
-    let digits = Printed::parse(&cell.printed).map_or(4, |printed| (-printed.tolerance.log10()).round() as usize + 1);
+    let digits = Printed::parse(&cell.printed).map_or(4, |printed| (-printed.unit.log10()).round() as usize + 1);
     fixed(value, digits)
 }
 
@@ -131,7 +138,7 @@ fn place(verdict: &Verdict) -> usize {
 fn words(verdict: &Verdict) -> (String, String) {
     match verdict {
         Verdict::Reproduces => ("reproduces".into(), String::new()),
-        Verdict::Differs => ("differs".into(), "more than one unit of the last printed digit".into()),
+        Verdict::Differs => ("differs".into(), "further off than rounding explains".into()),
         Verdict::NotComparable(why) => ("not comparable".into(), why.clone()),
     }
 }

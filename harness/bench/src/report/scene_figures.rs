@@ -5,21 +5,26 @@ use calibench_model::{Image, PixelPoint};
 use super::canvas::Canvas;
 use super::figures::{Layer, MarkAt, Panel, overview, panels};
 use super::load::Loaded;
-use crate::results::Outcome;
+use crate::results::{MethodInfo, Outcome};
+
+/// More targets than this are not all labelled.
+const MOST_LABELS: usize = 24;
 
 /// The first layers, which an overview shows.
 const OVERVIEW: usize = 3;
 
 /// The zoom at which a picture of a whole image is about 1100 px wide.
 fn zoom_for(image: &Image) -> u32 {
-    (1100 / image.width().max(1)).clamp(1, 6) as u32
+    (1100 / image.width().max(image.height()).max(1)).clamp(1, 6) as u32
 }
 
 /// An image with its targets, for a look at a scenario.
 pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
     let marks: Vec<MarkAt> = targets.iter().map(|(_, at)| MarkAt { layer: 0, at: *at }).collect();
     let layer = Layer { name: "target".into(), ..Layer::truth() };
-    overview(image, zoom_for(image), &[layer], &marks, targets)
+    // Many labels would hide each other: the first and the last say which way the names run.
+    let ends: Vec<_> = targets.iter().take(1).chain(targets.last()).cloned().collect();
+    overview(image, zoom_for(image), &[layer], &marks, if targets.len() > MOST_LABELS { &ends } else { targets })
 }
 
 /// Overview and panels, or `None` where no image was kept or nothing was measured.
@@ -43,7 +48,7 @@ pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
     let close: Vec<Panel<'_>> = targets
         .iter()
         .map(|(target, truth)| Panel {
-            title: format!("{target}: ({}, {})", round(truth.x), round(truth.y)),
+            title: format!("{target}: ({}, {}) px", round(truth.x), round(truth.y)),
             image: &image,
             centre: *truth,
             marks: marks.iter().filter(|(id, _)| id == target).map(|(_, mark)| mark.clone()).collect(),
@@ -70,17 +75,13 @@ fn targets(loaded: &Loaded) -> Vec<(String, PixelPoint)> {
 
 /// The layers, truth and approximations first, and the layer of each method. `pixel` is the approximation.
 fn layers(loaded: &Loaded) -> (Vec<Layer>, Vec<Option<usize>>) {
+    let shown = |info: &&MethodInfo| info.unavailable.is_none() && &*info.label != "pixel";
     let mut layers = vec![Layer::truth(), Layer::start()];
-    let mut of = Vec::new();
-    for info in &loaded.head.methods {
-        if info.unavailable.is_some() {
-            of.push(None);
-        } else if &*info.label == "pixel" {
-            of.push(Some(1));
-        } else {
-            layers.push(Layer::method(&info.label, layers.len() - 2));
-            of.push(Some(layers.len() - 1));
-        }
-    }
+    layers.extend(Layer::methods(loaded.head.methods.iter().filter(shown).map(|info| &*info.label)));
+    let layer_of = |info: &MethodInfo| match &*info.label {
+        "pixel" => info.unavailable.is_none().then_some(1),
+        label => layers.iter().position(|layer| layer.name == label),
+    };
+    let of = loaded.head.methods.iter().map(layer_of).collect();
     (layers, of)
 }

@@ -2,14 +2,17 @@
 
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed, signed};
-use crate::score::{Score, TargetScore};
+use crate::score::{Errors, Pooled, Score};
 
-/// The section's table and what its columns mean.
+/// Fewer common points than this are not worth a figure.
+const FEW: u64 = 10;
+
+/// The section's tables and what their columns mean.
 pub fn section(loaded: &Loaded) -> String {
     if let Some(why) = loaded.unavailable() {
         return format!("**unavailable**: {why}.\n");
     }
-    let mut rows = MarkdownTable::new(&[
+    let header = [
         "method",
         "points",
         "rejected",
@@ -20,8 +23,10 @@ pub fn section(loaded: &Loaded) -> String {
         "RMSE",
         "95 %",
         "RMSE, lost too",
-        "RMSE, common points",
-    ]);
+        "RMSE, common",
+        "common points",
+    ];
+    let mut rows = MarkdownTable::new(&header);
     let trials = loaded.scores.trials;
     for (info, score) in loaded.head.methods.iter().zip(&loaded.scores.methods) {
         match &info.unavailable {
@@ -29,12 +34,16 @@ pub fn section(loaded: &Loaded) -> String {
             None => rows.row(cells(&info.label, score)),
         }
     }
-    let interval =
-        if trials > 1 { "the interval holds the RMSE at 95 %, from its scatter between trials" } else { "one trial has no interval" };
+    let uncertainty = if trials > 1 {
+        "After \u{b1} stands the standard error from the scatter between trials; the interval holds the RMSE at 95 %"
+    } else {
+        "One trial has no standard error and no interval"
+    };
     format!(
-        "{}\n{trials} {}, seed {}. Errors in px: bias is the mean error, scatter the 2D standard deviation about it, RMSE `sqrt(mean(dx^2 + dy^2))`; \
-         {interval}. Lost points (more than 1 px off) and rejected ones are counted and not averaged, except under `lost too`; to compare methods, use the common \
-         points, which all of them measured and none lost, and the counts beside them.\n\n{}",
+        "{}\n{trials} {}, seed {}. Errors in px: bias is the mean error over all targets, in which opposite ones cancel (see below by target), scatter the 2D deviation \
+         about it, RMSE `sqrt(mean(dx^2 + dy^2))`. {uncertainty}. Lost points (more than 1 px off) and rejected ones are counted and not averaged, except under `lost \
+         too`. `Common` are the points that every operator measured and none lost, whatever became of `pixel`: only there are operators compared on equal terms, and what \
+         the worst of them loses drops out for all; fewer than {FEW} are no basis.\n\n{}",
         rows.render(),
         if trials == 1 { "trial" } else { "trials" },
         loaded.head.run.seed,
@@ -42,47 +51,50 @@ pub fn section(loaded: &Loaded) -> String {
     )
 }
 
-/// RMSE of each method on each target, lost points too, with the number of points that it lost or rejected there.
-fn by_target(loaded: &Loaded) -> String {
-    let available = || loaded.head.methods.iter().zip(&loaded.scores.methods).filter(|(info, _)| info.unavailable.is_none());
-    let mut header = vec!["RMSE by target, lost too".to_owned()];
-    header.extend(available().map(|(info, _)| format!("`{}`", info.label)));
-    let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
-    let targets = available().next().map_or(&[][..], |(_, score)| &score.targets);
-    for (index, target) in targets.iter().enumerate() {
-        let cell = |score: &Score| match score.targets.get(index) {
-            Some(TargetScore { square, failed, .. }) => {
-                let rmse = square.mean().map_or("none".to_owned(), |mean| fixed(mean.sqrt(), 4));
-                if *failed > 0 { format!("{rmse} ({failed} failed)") } else { rmse }
-            }
-            None => String::new(),
-        };
-        rows.row(std::iter::once(target.target.to_string()).chain(available().map(|(_, score)| cell(score))));
+/// `value +- standard error`, with as many digits as asked.
+fn with_error(pooled: &Pooled, digits: usize) -> String {
+    match (pooled.mean(), pooled.standard_error()) {
+        (Some(mean), Some(error)) => format!("{} \u{b1} {}", signed(mean, digits), fixed(error, digits)),
+        (Some(mean), None) => signed(mean, digits),
+        _ => "none".into(),
     }
-    rows.render()
+}
+
+/// The RMSE and, by the delta method, its standard error.
+fn rmse_with_error(errors: &Errors, digits: usize) -> String {
+    match (errors.rmse(), errors.square.standard_error()) {
+        (Some(rmse), Some(error)) if rmse > 0.0 => format!("{} \u{b1} {}", fixed(rmse, digits), fixed(error / (2.0 * rmse), digits)),
+        (Some(rmse), _) => fixed(rmse, digits),
+        _ => "none".into(),
+    }
 }
 
 fn cells(label: &str, score: &Score) -> Vec<String> {
-    let px = |value: Option<f64>| value.map_or("none".into(), |value| fixed(value, 4));
-    let bias = |value: Option<f64>| value.map_or("none".into(), |value| signed(value, 4));
-    let interval = score.rmse_interval().map_or(String::new(), |(low, high)| format!("{} to {}", fixed(low, 4), fixed(high, 4)));
+    let interval = score.kept.rmse_interval().map_or(String::new(), |(low, high)| format!("{} to {}", fixed(low, 4), fixed(high, 4)));
+    let common = score.common.square.count();
     vec![
         format!("`{label}`"),
         score.points().to_string(),
         reasons(score),
         share(score.lost, score.points()),
-        bias(score.dx.mean()),
-        bias(score.dy.mean()),
-        px(score.scatter()),
-        px(score.rmse()),
+        with_error(&score.kept.dx, 4),
+        with_error(&score.kept.dy, 4),
+        score.kept.scatter().map_or("none".into(), |value| fixed(value, 4)),
+        score.kept.rmse().map_or("none".into(), |value| fixed(value, 4)),
         interval,
-        px(score.whole_square.mean().map(f64::sqrt)),
-        px(score.common_square.mean().map(f64::sqrt)),
+        rmse_with_error(&score.whole, 4),
+        if common < FEW { "too few".into() } else { rmse_with_error(&score.common, 4) },
+        common.to_string(),
     ]
 }
 
+/// A count and its share with the standard error of the binomial.
 fn share(count: u64, of: u64) -> String {
-    if count == 0 { "0".into() } else { format!("{count} ({:.1} %)", 100.0 * count as f64 / of as f64) }
+    if count == 0 || of == 0 {
+        return count.to_string();
+    }
+    let part = count as f64 / of as f64;
+    format!("{count} ({:.1} \u{b1} {:.1} %)", 100.0 * part, 100.0 * (part * (1.0 - part) / of as f64).sqrt())
 }
 
 /// Rejected points, by reason.
@@ -91,4 +103,30 @@ pub fn reasons(score: &Score) -> String {
         return "0".into();
     }
     score.rejected.iter().map(|(why, count)| format!("{count} {why}")).collect::<Vec<_>>().join(", ")
+}
+
+/// Bias and RMSE of each method on each target, lost points too.
+fn by_target(loaded: &Loaded) -> String {
+    let trials = loaded.scores.trials;
+    if trials < 2 {
+        return String::new();
+    }
+    let available = || loaded.head.methods.iter().zip(&loaded.scores.methods).filter(|(info, _)| info.unavailable.is_none());
+    let targets = available().next().map_or(&[][..], |(_, score)| &score.targets);
+    let table = |title: &str, cell: &dyn Fn(&Errors, u64) -> String| {
+        let mut header = vec![title.to_owned()];
+        header.extend(available().map(|(info, _)| format!("`{}`", info.label)));
+        let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+        for (index, target) in targets.iter().enumerate() {
+            let cells = available().map(|(_, score)| score.targets.get(index).map_or(String::new(), |t| cell(&t.whole, t.failed)));
+            rows.row(std::iter::once(target.target.to_string()).chain(cells));
+        }
+        rows.render()
+    };
+    let bias = table("bias x; bias y", &|errors, _| format!("{}; {}", with_error(&errors.dx, 3), with_error(&errors.dy, 3)));
+    let rmse = table("RMSE (failed)", &|errors, failed| {
+        let rmse = rmse_with_error(errors, 4);
+        if failed > 0 { format!("{rmse} ({failed})") } else { rmse }
+    });
+    format!("By target, lost points too, over {trials} trials; in brackets how many points were lost or rejected:\n\n{bias}\n{rmse}")
 }

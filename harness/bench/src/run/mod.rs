@@ -19,6 +19,11 @@ pub use scene::{VIEW, trial_image, trial_truth};
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 const BATCH: u64 = 32;
 
+/// Where the image of view `view` is kept in the folder of a scenario's records: under its full name, so that `a.jpg` and `a.png` do not meet.
+pub fn kept_image(folder: &Path, view: &str) -> PathBuf {
+    folder.join(format!("{view}.png"))
+}
+
 /// How a scenario is run.
 pub struct Plan<'a> {
     /// The scenario.
@@ -71,6 +76,12 @@ impl<'a> Plan<'a> {
             Subject::Scene(_) => self.trials,
             Subject::Photographs(photographs) => photographs.files.len() as u64,
         }
+    }
+
+    /// Name and version of the detector that gives the approximate positions, if one does.
+    pub fn detector_used(&self) -> Option<(String, String)> {
+        let used = matches!(self.scenario.subject, Subject::Photographs(_)) && self.missing().is_none();
+        self.detector.filter(|_| used).map(|detector| (detector.name().to_owned(), detector.version()))
     }
 
     /// Why nothing at all can be measured, if so.

@@ -52,7 +52,7 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
     let image = read_photo(path)?;
     let view: Arc<str> = file.into();
     if let Some(folder) = plan.images {
-        write_png(&folder.join(file).with_extension("png"), &image, false)?;
+        write_png(&super::kept_image(folder, file), &image, false)?;
     }
     let mut trial = Trial::default();
     let Some(corners) = plan.detector.and_then(|detector| detector.detect(&image, subject.board)) else {

@@ -21,7 +21,7 @@ pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, number: u64) ->
     let truth = trial_truth(subject, key);
     let image = trial_image(subject, &truth, key);
     if let Some(folder) = plan.images.filter(|_| number == 0) {
-        write_png(&folder.join(format!("{VIEW}.png")), &image, subject.bits.is_none_or(|bits| bits > 8))?;
+        write_png(&super::kept_image(folder, VIEW), &image, subject.bits.is_none_or(|bits| bits > 8))?;
     }
     let starts = starts(subject, &truth, key);
     let view: Arc<str> = VIEW.into();

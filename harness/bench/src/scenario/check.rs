@@ -1,6 +1,7 @@
 //! From the tables of a file to a checked scenario. All mistakes that can be told apart are reported together.
 
 use std::ops::Range;
+use std::path::{Component, Path};
 
 use calibench_measure::{Board, Registry};
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
@@ -12,7 +13,7 @@ use toml::de::DeTable;
 use super::methods::methods;
 use super::problem::{Problem, Problems};
 use super::section::Section;
-use super::wire::{Head, PhotographsWire, PolygonWire, Position, SceneWire, TargetWire};
+use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, Position, SceneWire, TargetWire};
 use super::{PhotographsSubject, Scenario, SceneSubject, Starts, Subject};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
@@ -20,8 +21,8 @@ const MOST_PIXELS: usize = 400_000_000;
 
 /// The keys of the file's top level that are tables of their own.
 pub const TOP_TABLES: [&str; 3] = ["method", "scene", "photographs"];
-/// The keys of `[scene]` that are lists of tables.
-pub const SCENE_TABLES: [&str; 2] = ["polygon", "target"];
+/// The keys of `[scene]` that are tables of their own.
+pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 
 /// Reads a scenario called `name` from the `text` of `file`, with the methods of `registry`.
 ///
@@ -72,7 +73,9 @@ fn read(name: &str, text: &str, registry: &Registry, problems: &mut Vec<Problem>
     let trials_span = head.trials.as_ref().map(Spanned::span);
     let trials = head.trials.map_or(1, |trials| trials.into_inner().0);
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));
-    let scenario = Scenario { name: name.to_owned(), why, source, seed: head.seed.0, trials, methods, subject, text: text.to_owned() };
+    let notes = head.notes.unwrap_or_default();
+    let scenario =
+        Scenario { name: name.to_owned(), why, source, notes, seed: head.seed.0, trials, methods, subject, text: text.to_owned() };
     if trials > 1 && scenario.is_deterministic() {
         let problem = Problem::new(trials_span.unwrap_or(0..0), format!("{trials} trials of a scenario in which nothing is random"));
         problems.push(problem.help("expected 1, or `grey_noise`, `phase = \"uniform\"` or [scene.pointing]"));
@@ -95,6 +98,11 @@ fn read_photographs(section: Section<'_>, problems: &mut Vec<Problem>) -> Option
         problems.push(Problem::new(files_span, "`files` is empty: expected at least one photograph"));
         return None;
     }
+    let plain =
+        |file: &String| matches!(Path::new(file).components().collect::<Vec<_>>()[..], [Component::Normal(name)] if name == file.as_str());
+    if let Some(file) = files.iter().find(|file| !plain(file)) {
+        problems.push(Problem::new(files_span.clone(), format!("`{file}` is no plain file name")).help("name the folder in `folder`"));
+    }
     if let Some(twice) = files.iter().enumerate().find(|(i, file)| files[..*i].contains(file)) {
         problems.push(Problem::new(files_span, format!("photograph `{}` is listed twice; expected each once", twice.1)));
     }
@@ -106,6 +114,9 @@ fn read_photographs(section: Section<'_>, problems: &mut Vec<Problem>) -> Option
 fn read_scene(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<SceneSubject> {
     let polygons = section.take_tables("polygon", "[[scene.polygon]]", problems).unwrap_or_default();
     let targets = section.take_tables("target", "[[scene.target]]", problems).unwrap_or_default();
+    let pointing = section.take_table("pointing", "[scene.pointing]", problems);
+    let pointed = pointing.is_some();
+    let pointing: Option<PointingWire> = pointing.and_then(|section| section.read(&[], problems));
     let span = section.span.clone();
     for (missing, list) in [("polygon", polygons.is_empty()), ("target", targets.is_empty())] {
         if list {
@@ -125,13 +136,13 @@ fn read_scene(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<S
     let areas = areas(&polygons, problems);
     let mut scene = Scene { width, height, background: wire.background.0, polygons: areas, targets: Vec::new() };
     let mut given = Vec::new();
-    let hand = wire.pointing.as_ref().map(|p| Hand { sigma: p.get_ref().sigma.0, whole_pixels: p.get_ref().whole_pixels });
+    let hand = pointing.map(|p| Hand { sigma: p.sigma.0, whole_pixels: p.whole_pixels });
     for target in &targets {
-        given.extend(check_start(target, hand.is_some(), problems));
+        given.extend(check_start(target, pointed, hand.is_some(), problems));
         scene.targets.extend(check_target(target, &scene, problems));
     }
     let phase = wire.phase.unwrap_or_default();
-    if phase == super::Phase::Uniform && hand.is_none() {
+    if phase == super::Phase::Uniform && !pointed {
         problems
             .push(Problem::new(span, "`phase = \"uniform\"` moves the targets: their starts must move too").help("add [scene.pointing]"));
     }
@@ -150,6 +161,9 @@ fn read_scene(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<S
 fn unique<'a>(ids: impl Iterator<Item = &'a Spanned<String>>, what: &str, problems: &mut Vec<Problem>) {
     let mut seen: Vec<&str> = Vec::new();
     for id in ids {
+        if id.get_ref().trim().is_empty() || id.get_ref().chars().any(char::is_control) {
+            problems.push(Problem::new(id.span(), format!("the id of a {what} is a name, found {:?}", id.get_ref())));
+        }
         if seen.contains(&id.get_ref().as_str()) {
             problems.push(Problem::new(id.span(), format!("{what} `{}` stands here a second time; expected each id once", id.get_ref())));
         }
@@ -198,10 +212,12 @@ fn areas(wires: &[PolygonWire], problems: &mut Vec<Problem>) -> Vec<Polygon> {
     areas
 }
 
-fn check_start(wire: &TargetWire, pointed: bool, problems: &mut Vec<Problem>) -> Option<PixelPoint> {
+/// The start that a target gives; `conflict` if one beside [scene.pointing] is to be reported, which a mistake in that table makes idle.
+fn check_start(wire: &TargetWire, pointed: bool, conflict: bool, problems: &mut Vec<Problem>) -> Option<PixelPoint> {
     match (&wire.start, pointed) {
         (Some(start), false) => Some(point(start.get_ref())),
         (None, true) => None,
+        (Some(_), true) if !conflict => None,
         (Some(start), true) => {
             problems.push(Problem::new(start.span(), "`start` beside [scene.pointing]: expected one of them"));
             None

@@ -34,7 +34,14 @@ fn method(mut section: Section<'_>, registry: &Registry, problems: &mut Vec<Prob
         return None;
     };
     let mut given = Vec::new();
+    // An unknown key first: what kind of value it has does not matter.
+    let known_keys = registry.methods().iter().find(|m| m.name == name).map_or(&[][..], |m| m.parameters);
+    let unknown = |key: &str| !known_keys.is_empty() && !known_keys.iter().any(|p| p.name == key);
     for (key, value) in &section.table {
+        if unknown(key.get_ref()) {
+            given.push((key.get_ref().to_string(), 0.0));
+            continue;
+        }
         match number(value.get_ref()) {
             Some(number) => given.push((key.get_ref().to_string(), number)),
             None => {

@@ -24,6 +24,8 @@ pub struct Scenario {
     pub why: String,
     /// Where it comes from.
     pub source: String,
+    /// What is to be known when its figures are read.
+    pub notes: Vec<String>,
     /// The seed of all its random numbers.
     pub seed: u64,
     /// How many trials.

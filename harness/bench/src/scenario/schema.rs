@@ -5,7 +5,7 @@ use calibench_measure::parameter::Domain;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
-use super::wire::{Head, PhotographsWire, PolygonWire, SceneWire, TargetWire};
+use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
 
 /// The schema, with the methods of `registry` and their parameters.
 pub fn schema(registry: &Registry) -> Value {
@@ -15,6 +15,7 @@ pub fn schema(registry: &Registry) -> Value {
     let mut scene = table::<SceneWire>();
     scene["properties"]["polygon"] = list(&table::<PolygonWire>());
     scene["properties"]["target"] = list(&table::<TargetWire>());
+    scene["properties"]["pointing"] = table::<PointingWire>();
     require(&mut scene, &["polygon", "target"]);
     root["properties"]["scene"] = scene;
     root["properties"]["photographs"] = table::<PhotographsWire>();

@@ -85,8 +85,14 @@ impl<'i> Section<'i> {
         }
         let span = self.span.clone();
         let whole = ValueDeserializer::from(Spanned::new(span.clone(), DeValue::Table(self.table)));
-        T::deserialize(whole).map_err(|error| problems.push(Problem::new(error.span().unwrap_or(span), error.message()))).ok()
+        T::deserialize(whole).map_err(|error| problems.push(Problem::new(error.span().unwrap_or(span), plain(error.message())))).ok()
     }
+}
+
+/// serde names Rust's types; a scenario's author knows numbers.
+fn plain(message: &str) -> String {
+    let words = [("i64", "a whole number"), ("u64", "a whole number"), (" as i128", ""), ("f64", "a number"), ("bool", "true or false")];
+    words.iter().fold(message.to_owned(), |text, (rust, word)| text.replace(rust, word))
 }
 
 fn article(kind: &str) -> String {

@@ -103,6 +103,8 @@ pub struct Head {
     /// Where it comes from: paper, figure, table, data set.
     #[schemars(with = "String")]
     pub source: Spanned<String>,
+    /// What is to be known when its figures are read: paragraphs of Markdown for its report.
+    pub notes: Option<Vec<String>>,
     /// Seed of all random numbers, chosen before looking at results and never changed to pass.
     pub seed: Seed,
     /// Number of trials; each has its own phase, noise and pointing. Default 1.
@@ -130,9 +132,6 @@ pub struct SceneWire {
     pub grey_noise: Option<GreyNoise>,
     /// `fixed` (default), or `uniform`: each trial moves the whole scene by a random part of a pixel.
     pub phase: Option<Phase>,
-    /// How a hand points at the targets. Without it, every target gives its `start`.
-    #[schemars(with = "Option<PointingWire>")]
-    pub pointing: Option<Spanned<PointingWire>>,
 }
 
 /// Bits of a grey value.

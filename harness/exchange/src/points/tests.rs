@@ -2,7 +2,7 @@ use super::*;
 use proptest::prelude::*;
 
 fn parse(text: &str) -> Result<Vec<PointRow>, PointFileError> {
-    parse_points("p.csv", text.as_bytes())
+    parse_points("p.csv", text.as_bytes()).map(|file| file.rows)
 }
 
 fn error(text: &str) -> String {
@@ -15,17 +15,17 @@ fn four_columns_are_enough_and_order_does_not_matter() {
     assert_eq!(rows.len(), 1);
     assert_eq!((rows[0].image.as_str(), rows[0].target.as_str()), ("left.jpg", "A"));
     assert_eq!(rows[0].start, Start::at(PixelPoint::new(1.5, 2.5)));
-    assert_eq!(rows[0].covariance, None);
+    assert_eq!(rows[0].start.covariance, None);
 }
 
 #[test]
 fn optional_groups_are_read_or_left_empty() {
     let header = "image,target,x,y,sxx,sxy,syy,kind,axx,axy,ayx,ayy\n";
     let rows = parse(&format!("{header}i,1,1,2,.1,0,.2,chess_corner,20,1,-1,19\ni,2,1,2,,,,,,,,\n")).unwrap();
-    assert_eq!(rows[0].covariance, Some(Covariance { sxx: 0.1, sxy: 0.0, syy: 0.2 }));
+    assert_eq!(rows[0].start.covariance, Some(Covariance { sxx: 0.1, sxy: 0.0, syy: 0.2 }));
     assert_eq!(rows[0].start.kind, Some(TargetKind::ChessCorner));
     assert_eq!(rows[0].start.affine, Some(Affine { axx: 20.0, axy: 1.0, ayx: -1.0, ayy: 19.0 }));
-    assert_eq!((rows[1].covariance, rows[1].start.kind, rows[1].start.affine), (None, None, None));
+    assert_eq!((rows[1].start.covariance, rows[1].start.kind, rows[1].start.affine), (None, None, None));
 }
 
 #[test]
@@ -51,6 +51,15 @@ fn mistakes_name_line_and_column() {
     }
     assert!(parse_points("p.csv", &b"image,target,x,y\n\xff\xfe,1,2,3\n"[..]).unwrap_err().to_string().contains("UTF-8"));
     assert!(error("").contains("missing in the header"));
+}
+
+#[test]
+fn rows_without_a_position_are_counted_and_left_out() {
+    let text = "image,target,x,y,method,status,reason\ni,1,2,3,m,measured,\ni,2,,,m,rejected,border\ni,3,,,m,unavailable,no\n";
+    let file = parse_points("p.csv", text.as_bytes()).unwrap();
+    assert_eq!((file.rows.len(), file.without_position), (1, 2));
+    let twice = error("image,target,x,y,method,status,reason\ni,1,2,3,m,measured,\ni,1,2,3,n,measured,\n");
+    assert!(twice.contains("keep those of one"), "{twice}");
 }
 
 proptest! {

@@ -121,3 +121,13 @@ fn enlarged(image: &Image, width: usize, height: usize) -> Image {
     resize(&header, &mut large, Size::new(width as i32, height as i32), 0.0, 0.0, INTER_CUBIC).unwrap();
     Image::new(width, height, large.data_typed::<f32>().unwrap().to_vec())
 }
+
+#[test]
+fn a_small_board_in_a_large_noisy_frame_is_found() {
+    for noise in [0.01_f32, 0.03, 0.06] {
+        let (image, truth) = drawn(4000, 3000, 60.0);
+        let noisy = Image::from_fn(4000, 3000, |x, y| image.at(x, y) + noise * (uniform(4000 * y + x) + uniform(4000 * y + x + 77) - 1.0));
+        let found = ChessboardDetector.detect(&noisy, BOARD).unwrap_or_else(|| panic!("noise {noise}"));
+        assert!(farthest(&found, &truth) < 0.5, "noise {noise}: {}", farthest(&found, &truth));
+    }
+}
