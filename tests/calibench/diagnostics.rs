@@ -51,8 +51,8 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
     let second_polygon = "\n[[scene.polygon]]\nid = \"b\"\ngrey = 0.1\nvertices = [[50, 40], [90, 40], [90, 70]]\n\n[[scene.target]]";
     let cases: &[(&str, &str, &str, &[&str])] = &[
         // (what is replaced, by what, place, parts of the message)
-        ("width = 100", "widht = 100\nwidth = 100", "6:1", &["unknown key `widht` in [scene]", "did you mean `width`"]),
-        ("seed = 1", "sede = 1\nseed = 1", "3:1", &["unknown key `sede`", "did you mean `seed`"]),
+        ("width = 100", "widht = 100", "6:1", &["unknown key `widht` in [scene]", "did you mean `width`"]),
+        ("seed = 1", "sede = 1", "3:1", &["unknown key `sede`", "did you mean `seed`"]),
         ("[scene]\n", "[scen]\na = 1\n[scene]\n", "5:2", &["unknown key `scen`", "did you mean `scene`"]),
         ("seed = 1", "", "1:1", &["has no `seed`", "Seed of all random numbers"]),
         ("seed = 1", "seed = \"one\"", "3:8", &["string \"one\"", "a whole number"]),

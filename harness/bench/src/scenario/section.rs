@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-use super::problem::Problem;
+use super::problem::{Problem, nearest};
 
 /// A table and where it stands.
 pub struct Section<'i> {
@@ -66,16 +66,19 @@ impl<'i> Section<'i> {
         let schema = schema_for!(T);
         let properties = schema.get("properties").and_then(|p| p.as_object());
         let known: Vec<&str> = properties.iter().flat_map(|p| p.keys()).map(String::as_str).chain(taken.iter().copied()).collect();
+        // A misspelt key is one mistake, not a missing one as well.
+        let mut meant: Vec<&str> = Vec::new();
         for (key, _) in &self.table {
             let name: &str = key.get_ref();
             if !known.contains(&name) {
                 let message = format!("unknown key `{name}` in {}: expected {}", self.name, listed(&known));
+                meant.extend(nearest(name, known.iter().copied()));
                 problems.push(Problem::new(key.span(), message).nearest(name, known.iter().copied()));
             }
         }
         let required = schema.get("required").and_then(|r| r.as_array());
         for key in required.into_iter().flatten().filter_map(|key| key.as_str()) {
-            if !self.table.contains_key(key) {
+            if !self.table.contains_key(key) && !meant.contains(&key) {
                 let about = properties.and_then(|p| p.get(key)?.get("description")?.as_str()).unwrap_or_default();
                 problems.push(Problem::new(self.span.clone(), format!("{} has no `{key}`", self.name)).help(format!("`{key}`: {about}")));
             }
