@@ -158,7 +158,8 @@ fn photographs_are_checked_too() {
         ("[\"a.jpg\"]", "[\"/etc/a.jpg\"]", "test.toml:6:9: `/etc/a.jpg` is no plain file name"),
         ("[\"a.jpg\"]", "[\"sub/a.jpg\"]", "test.toml:6:9: `sub/a.jpg` is no plain file name"),
         ("[\"a.jpg\"]", "[\"..\"]", "test.toml:6:9: `..` is no plain file name"),
-        ("folder =", "foldr =", "test.toml:4:2: [photographs] has no `folder`"),
+        ("folder =", "foldr =", "test.toml:5:1: unknown key `foldr` in [photographs]"),
+        ("folder = \"f\"\n", "", "test.toml:4:2: [photographs] has no `folder`"),
     ] {
         let found = problems(&base.replace(old, new)).to_string();
         assert!(found.starts_with(expected), "expected {expected}\n{found}");
