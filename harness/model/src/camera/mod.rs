@@ -3,17 +3,27 @@
 //! Each model is data behind one trait, [`CameraModel`]; each convention states its direction, its signs, its units and its pixel origin in its
 //! own file, and converts to [`Ray`] and [`PixelPoint`] there and nowhere else.
 
+pub mod agisoft;
+pub mod convention;
+pub mod ebner;
 mod newton;
 pub mod opencv;
+pub mod opencv_fisheye;
 pub mod photogrammetric;
+pub mod pix4d;
 mod ray;
 
 use thiserror::Error;
 
 use crate::PixelPoint;
 
+pub use agisoft::{Agisoft, AgisoftVersion};
+pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
+pub use ebner::Ebner;
 pub use opencv::OpenCv;
+pub use opencv_fisheye::OpenCvFisheye;
 pub use photogrammetric::Photogrammetric;
+pub use pix4d::Pix4d;
 pub use ray::Ray;
 
 /// Columns and rows of a camera's images.
@@ -59,6 +69,23 @@ pub enum NoCounterpart {
     /// A coordinate is not a number, or the iteration found no solution.
     #[error("no solution")]
     NoSolution,
+}
+
+/// Any camera: the models behind one dispatch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Camera {
+    /// The canonical interior orientation.
+    Photogrammetric(Photogrammetric),
+    /// With Ebner's additional parameters.
+    Ebner(Ebner),
+    /// OpenCV's pinhole camera.
+    OpenCv(OpenCv),
+    /// OpenCV's fisheye camera.
+    OpenCvFisheye(OpenCvFisheye),
+    /// Agisoft's.
+    Agisoft(Agisoft),
+    /// Pix4D's.
+    Pix4d(Pix4d),
 }
 
 /// A camera model. One conformance check serves all: derivatives against differences, round trips, corner values.
