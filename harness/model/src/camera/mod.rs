@@ -4,13 +4,20 @@
 //! own file, and converts to [`Ray`] and [`PixelPoint`] there and nowhere else.
 
 pub mod agisoft;
+mod any;
+pub mod conformance;
 pub mod convention;
 pub mod ebner;
+pub mod fold;
+mod measured;
+pub mod moniwa;
 mod newton;
 pub mod opencv;
 pub mod opencv_fisheye;
 pub mod photogrammetric;
+mod pinhole;
 pub mod pix4d;
+mod plane;
 mod ray;
 
 use thiserror::Error;
@@ -18,8 +25,11 @@ use thiserror::Error;
 use crate::PixelPoint;
 
 pub use agisoft::{Agisoft, AgisoftVersion};
+pub use any::{Camera, conventions};
 pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 pub use ebner::Ebner;
+pub use fold::{Fold, fold};
+pub use moniwa::Moniwa;
 pub use opencv::OpenCv;
 pub use opencv_fisheye::OpenCvFisheye;
 pub use photogrammetric::Photogrammetric;
@@ -71,23 +81,6 @@ pub enum NoCounterpart {
     NoSolution,
 }
 
-/// Any camera: the models behind one dispatch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Camera {
-    /// The canonical interior orientation.
-    Photogrammetric(Photogrammetric),
-    /// With Ebner's additional parameters.
-    Ebner(Ebner),
-    /// OpenCV's pinhole camera.
-    OpenCv(OpenCv),
-    /// OpenCV's fisheye camera.
-    OpenCvFisheye(OpenCvFisheye),
-    /// Agisoft's.
-    Agisoft(Agisoft),
-    /// Pix4D's.
-    Pix4d(Pix4d),
-}
-
 /// A camera model. One conformance check serves all: derivatives against differences, round trips, corner values.
 pub trait CameraModel {
     /// The size of its images.
@@ -105,7 +98,7 @@ pub trait CameraModel {
     /// Ray to pixel.
     ///
     /// # Errors
-    /// A ray that the model does not picture.
+    /// A ray that the model does not picture: behind the camera, or beyond a fold.
     fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart>;
 
     /// Pixel to ray, to 1e-9 px or better.
@@ -119,4 +112,12 @@ pub trait CameraModel {
     /// # Errors
     /// As [`Self::project`].
     fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart>;
+
+    /// The image of the first fold on the way from the axis, where the mapping stops being one to one, inside or outside the frame; `angle` is that in
+    /// the image at the axis, from x towards y, radians. See [`fold()`] for what is inside the frame.
+    fn fold_towards(&self, angle: f64) -> Option<PixelPoint>;
+}
+
+fn named(names: &[(&'static str, &'static str)], values: &[f64]) -> Vec<CameraParameter> {
+    names.iter().zip(values).map(|(&(name, unit), &value)| CameraParameter { name, unit, value }).collect()
 }

@@ -7,12 +7,18 @@ pub(super) type ValueAndDerivatives = ([f64; 2], [[f64; 2]; 2]);
 
 /// Steps at most; distortions of real lenses need four to six.
 const MOST_STEPS: usize = 60;
+/// A misclosure that counts as none, relative to the coordinates (at least 1): below 1e-9 px for any real camera.
+const CLOSED: f64 = 1e-13;
+
+pub(super) fn determinant(d: [[f64; 2]; 2]) -> f64 {
+    d[0][0] * d[1][1] - d[0][1] * d[1][0]
+}
 
 /// The solution of `f(x) = goal` from `start`, to the last bits: steps are halved until the residual falls, and the determinant stays positive, so
-/// that the iteration never crosses a fold.
+/// that no step ends beyond a fold.
 pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> ValueAndDerivatives) -> Result<[f64; 2], NoCounterpart> {
     let misclosure = |value: [f64; 2]| (goal[0] - value[0]).hypot(goal[1] - value[1]);
-    let determinant = |d: [[f64; 2]; 2]| d[0][0] * d[1][1] - d[0][1] * d[1][0];
+    let closed = CLOSED * goal[0].abs().max(goal[1].abs()).max(1.0);
     let mut x = start;
     let (mut value, mut slope) = f(x);
     let mut residual = misclosure(value);
@@ -34,7 +40,7 @@ pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> Val
                 break Some((next, next_value, next_slope));
             }
             share *= 0.5;
-            if share < 1e-6 {
+            if share < 1e-6 || residual <= closed {
                 break None;
             }
         };
@@ -43,6 +49,5 @@ pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> Val
         residual = misclosure(value);
     }
     // Nothing gets closer: rounding, or the edge of a fold.
-    let scale = goal[0].abs().max(goal[1].abs()).max(1.0);
-    if residual <= 1e-12 * scale { Ok(x) } else { Err(NoCounterpart::Fold) }
+    if residual <= closed { Ok(x) } else { Err(NoCounterpart::Fold) }
 }

@@ -1,8 +1,11 @@
 //! The canonical interior orientation: photogrammetric, a correction of measured coordinates.
 
-use super::newton::{self, ValueAndDerivatives};
-use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray};
-use crate::{Frame, PixelPoint, SensorPoint};
+use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
+use super::measured::{self, Correction};
+use super::newton::ValueAndDerivatives;
+use super::plane::{PlaneMap, is_contraction};
+use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray, named};
+use crate::PixelPoint;
 
 /// Interior orientation in mm, y up, from the centre of the frame. Direction: **measured to ideal**.
 ///
@@ -44,13 +47,23 @@ const NAMES: [(&str, &str); 10] = [
     ("b2", ""),
 ];
 
-impl Photogrammetric {
-    fn frame(&self) -> Result<Frame, NoCounterpart> {
-        Frame::new(self.size.width, self.size.height, self.pitch_um).map_err(|_| NoCounterpart::NoSolution)
-    }
+/// The convention of [`Photogrammetric`].
+pub const CONVENTION: Convention = Convention {
+    name: "photogrammetric",
+    about: "canonical: correction of measured coordinates, mm, k1 to k3, p1, p2, b1, b2",
+    version: "",
+    direction: Direction::MeasuredToIdeal,
+    pixel_origin: PixelOrigin::PixelCentre,
+    principal_point_from: PixelOrigin::FrameCentre,
+    y: Vertical::Up,
+    order: TangentialOrder::Brown,
+    normalisation: "none: mm from the principal point",
+    source: "Brown 1971; Fraser 1997; Galo et al. 2011, Eq. 8 and 9",
+    verification: Verification::Definition,
+};
 
-    /// Ideal coordinates (mm) of measured ones from the principal point, with their derivatives by these.
-    fn correct(&self, [x, y]: [f64; 2]) -> ValueAndDerivatives {
+impl PlaneMap for Photogrammetric {
+    fn map(&self, [x, y]: [f64; 2]) -> ValueAndDerivatives {
         let [k1, k2, k3] = self.k;
         let [p1, p2] = self.p;
         let [b1, b2] = self.b;
@@ -70,11 +83,28 @@ impl Photogrammetric {
         (value, by)
     }
 
-    /// Measured coordinates from the principal point, mm, of a ray.
-    fn measured(&self, ray: Ray) -> Result<[f64; 2], NoCounterpart> {
-        let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
-        let goal = [self.c * u, self.c * v];
-        newton::solve(goal, [0.0, 0.0], |at| self.correct(at))
+    fn is_surely_one_to_one(&self, radius: f64) -> bool {
+        is_contraction(radius, &self.k, &self.p, self.b[0].abs() + self.b[1].abs())
+    }
+}
+
+impl Correction for Photogrammetric {
+    fn base(&self) -> &Photogrammetric {
+        self
+    }
+
+    fn by_coefficients(&self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
+        let r2 = x * x + y * y;
+        let radial = |power: f64| [-x * power, -y * power];
+        vec![
+            radial(r2),
+            radial(r2 * r2),
+            radial(r2 * r2 * r2),
+            [-(r2 + 2.0 * x * x), -2.0 * x * y],
+            [-2.0 * x * y, -(r2 + 2.0 * y * y)],
+            [-x, 0.0],
+            [-y, 0.0],
+        ]
     }
 }
 
@@ -86,7 +116,7 @@ impl CameraModel for Photogrammetric {
     fn parameters(&self) -> Vec<CameraParameter> {
         let [k1, k2, k3] = self.k;
         let values = [self.c, self.x0, self.y0, k1, k2, k3, self.p[0], self.p[1], self.b[0], self.b[1]];
-        NAMES.iter().zip(values).map(|(&(name, unit), value)| CameraParameter { name, unit, value }).collect()
+        named(&NAMES, &values)
     }
 
     fn with_parameters(&self, values: &[f64]) -> Self {
@@ -95,57 +125,27 @@ impl CameraModel for Photogrammetric {
     }
 
     fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
-        let [x, y] = self.measured(ray)?;
-        Ok(self.frame()?.to_pixel(SensorPoint { x: x + self.x0, y: y + self.y0 }))
+        measured::project(self, ray)
     }
 
     fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
-        let measured = self.frame()?.to_sensor(point);
-        let at = [measured.x - self.x0, measured.y - self.y0];
-        let ([x, y], _) = self.correct(at);
-        // The correction is explicit; beyond a fold it leads to a ray that belongs to another pixel.
-        let back = newton::solve([x, y], [0.0, 0.0], |at| self.correct(at))?;
-        if (back[0] - at[0]).hypot(back[1] - at[1]) > 1e-9 * self.c.abs() {
-            return Err(NoCounterpart::Fold);
-        }
-        Ok(Ray::from_tangent(x / self.c, y / self.c))
+        measured::unproject(self, point)
     }
 
     fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
-        let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
-        let at @ [x, y] = self.measured(ray)?;
-        let (_, by) = self.correct(at);
-        let determinant = by[0][0] * by[1][1] - by[0][1] * by[1][0];
-        let per_mm = 1e3 / self.pitch_um;
-        // F(measured, parameters) = c tangent: d(measured) = F_m^-1 (d(c tangent) - F_parameters), then mm upwards to px downwards.
-        let pixel = |g: [f64; 2]| {
-            [per_mm * (by[1][1] * g[0] - by[0][1] * g[1]) / determinant, -per_mm * (by[0][0] * g[1] - by[1][0] * g[0]) / determinant]
-        };
-        let r2 = x * x + y * y;
-        let radial = |power: f64| pixel([x * power, y * power]);
-        let by_parameters = vec![
-            pixel([u, v]),
-            [per_mm, 0.0],
-            [0.0, -per_mm],
-            radial(r2),
-            radial(r2 * r2),
-            radial(r2 * r2 * r2),
-            pixel([r2 + 2.0 * x * x, 2.0 * x * y]),
-            pixel([2.0 * x * y, r2 + 2.0 * y * y]),
-            pixel([x, 0.0]),
-            pixel([y, 0.0]),
-        ];
-        let (by_u, by_v) = (pixel([self.c, 0.0]), pixel([0.0, self.c]));
-        let tangent = ray.tangent_derivatives();
-        let by_ray = std::array::from_fn(|row| std::array::from_fn(|axis| by_u[row] * tangent[0][axis] + by_v[row] * tangent[1][axis]));
-        let point = self.frame()?.to_pixel(SensorPoint { x: x + self.x0, y: y + self.y0 });
-        Ok(Derivatives { point, by_ray, by_parameters })
+        measured::derivatives(self, ray)
+    }
+
+    fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
+        measured::fold_towards(self, angle)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::conformance::{self, Shape};
+    use crate::camera::fold;
 
     fn camera() -> Photogrammetric {
         let size = ImageSize { width: 4272, height: 2848 };
@@ -154,41 +154,17 @@ mod tests {
     }
 
     #[test]
-    fn pixels_come_back() {
-        for (x, y) in [(0.0, 0.0), (4271.0, 2847.0), (2100.3, 1400.9), (100.0, 2800.0)] {
-            let point = PixelPoint::new(x, y);
-            let ray = camera().unproject(point).unwrap();
-            assert!(camera().project(ray).unwrap().distance(point) < 1e-9);
-        }
+    fn conforms() {
+        conformance::check(&camera(), Shape::Barrel);
     }
 
     #[test]
-    fn derivatives_are_differences() {
-        let camera = camera();
-        let ray = Ray { x: 0.41, y: -0.27, z: -1.13 };
-        let analytic = camera.derivatives(ray).unwrap();
-        let values: Vec<f64> = camera.parameters().iter().map(|p| p.value).collect();
-        for (i, by) in analytic.by_parameters.iter().enumerate() {
-            let h = [1e-5, 1e-5, 1e-5, 1e-8, 1e-10, 1e-12, 1e-7, 1e-7, 1e-6, 1e-6][i];
-            let at = |step: f64| {
-                let mut changed = values.clone();
-                changed[i] += step;
-                camera.with_parameters(&changed).project(ray).unwrap()
-            };
-            let (high, low) = (at(h), at(-h));
-            let found = [(high.x - low.x) / (2.0 * h), (high.y - low.y) / (2.0 * h)];
-            let scale = by[0].hypot(by[1]).max(1.0);
-            assert!((found[0] - by[0]).abs() < 1e-5 * scale && (found[1] - by[1]).abs() < 1e-5 * scale, "{i}: {found:?} {by:?}");
-        }
-        for axis in 0..3 {
-            let at = |h: f64| {
-                let step = |i: usize| if i == axis { h } else { 0.0 };
-                camera.project(Ray { x: ray.x + step(0), y: ray.y + step(1), z: ray.z + step(2) }).unwrap()
-            };
-            let (high, low) = (at(1e-6), at(-1e-6));
-            assert!(((high.x - low.x) / 2e-6 - analytic.by_ray[0][axis]).abs() < 1e-3, "{axis}");
-            assert!(((high.y - low.y) / 2e-6 - analytic.by_ray[1][axis]).abs() < 1e-3, "{axis}");
-        }
+    fn a_correction_is_subtracted_from_what_was_measured() {
+        // 1000 px right of the centre: x' = 5.15 mm, corrected by -k1 r^3 outwards.
+        let camera = Photogrammetric { k: [-4.61e-4, 0.0, 0.0], p: [0.0; 2], b: [0.0; 2], x0: 0.0, y0: 0.0, ..camera() };
+        let ray = camera.unproject(PixelPoint::new(2135.5 + 1000.0, 1423.5)).unwrap();
+        let expected = (5.15 + 4.61e-4 * 5.15_f64.powi(3)) / 19.213;
+        assert!((ray.tangent().unwrap().0 - expected).abs() < 1e-15);
     }
 
     #[test]
@@ -199,5 +175,16 @@ mod tests {
         assert_eq!(camera.project(Ray::from_tangent(0.5, 0.0)), Err(NoCounterpart::Fold));
         assert!(camera.project(Ray::from_tangent(0.1, 0.0)).is_ok());
         assert_eq!(camera.project(Ray { x: 0.0, y: 0.0, z: 1.0 }), Err(NoCounterpart::Behind));
+    }
+
+    #[test]
+    fn folds_are_located() {
+        let camera = Photogrammetric { k: [0.01, 0.0, 0.0], p: [0.0; 2], b: [0.0; 2], x0: 0.0, y0: 0.0, ..camera() };
+        let found = fold(&camera).unwrap();
+        let radius = 1.0 / 0.03_f64.sqrt() / 5.15e-3;
+        assert!((found.radius_px - radius).abs() < 1e-6, "{found:?} {radius}");
+        let share = 1.0 - std::f64::consts::PI * radius * radius / (4272.0 * 2848.0);
+        assert!((found.share - share).abs() < 0.01, "{found:?} {share}");
+        assert_eq!(fold(&self::camera()), None);
     }
 }

@@ -1,0 +1,61 @@
+use super::*;
+use crate::camera::conformance::{self, Shape};
+use crate::camera::{CameraModel, NoCounterpart, Ray, fold};
+
+const SIZE: ImageSize = ImageSize { width: 4000, height: 3000 };
+
+pub(super) fn camera(coefficients: usize) -> OpenCv {
+    let mut distortion = [-0.12, 0.09, 8e-4, -1.7e-3, -0.02, 0.02, -0.01, 0.003, 1e-3, -4e-4, -8e-4, 3e-4, 0.02, -0.03];
+    distortion[coefficients..].fill(0.0);
+    OpenCv { size: SIZE, fx: 3100.0, fy: 3110.0, cx: 2010.3, cy: 1490.8, distortion, coefficients }
+}
+
+#[test]
+fn conforms() {
+    for coefficients in [0, 4, 5, 8, 12, 14] {
+        let shape = if coefficients == 0 { Shape::Straight } else { Shape::Barrel };
+        conformance::check(&camera(coefficients), shape);
+    }
+}
+
+#[test]
+fn p2_belongs_to_x() {
+    let mut distortion = [0.0; 14];
+    distortion[3] = 1e-3;
+    let camera = OpenCv { distortion, ..camera(4) };
+    let found = camera.project(Ray::from_tangent(0.5, 0.0)).unwrap();
+    assert!(found.distance(PixelPoint::new(2010.3 + 3100.0 * (0.5 + 1e-3 * 0.75), 1490.8)) < 1e-9);
+}
+
+#[test]
+fn what_lies_beyond_a_fold_is_refused() {
+    // r (1 + k1 r^2) turns round at r = 1 / sqrt(-3 k1) = 0.577 and reaches 0.385 there.
+    let mut distortion = [0.0; 14];
+    distortion[0] = -1.0;
+    let camera = OpenCv { distortion, ..camera(4) };
+    assert_eq!(camera.project(Ray::from_tangent(0.6, 0.0)), Err(NoCounterpart::Fold));
+    assert_eq!(camera.project(Ray::from_tangent(5.0, 3.0)), Err(NoCounterpart::Fold));
+    assert_eq!(camera.unproject(PixelPoint::new(2010.3 + 3100.0 * 0.39, 1490.8)), Err(NoCounterpart::Fold));
+    let found = fold(&camera).unwrap();
+    assert!((found.radius_px - 3100.0 * 2.0 / 3.0 / 3_f64.sqrt()).abs() < 1e-6, "{found:?}");
+}
+
+#[test]
+fn a_dip_between_samples_is_found() {
+    // A polynomial that turns back on a very short way only.
+    let (a, width) = (0.3337_f64, 1e-6);
+    let f = |s: f64| (s - a) * (s - a) - width * width;
+    let found = crate::camera::plane::first_fold(f, 1.0, 96).unwrap();
+    assert!((found - (a - width)).abs() < 1e-9, "{found}");
+}
+
+#[test]
+fn a_pole_ends_the_branch() {
+    let mut distortion = [0.0; 14];
+    distortion[5] = -1.0;
+    let camera = OpenCv { distortion, coefficients: 8, ..camera(8) };
+    assert!(camera.project(Ray::from_tangent(0.9, 0.0)).is_ok());
+    assert_eq!(camera.project(Ray::from_tangent(1.1, 0.0)), Err(NoCounterpart::Fold));
+    let pixel = PixelPoint::new(9000.0, 1490.8);
+    assert!(camera.project(camera.unproject(pixel).unwrap()).unwrap().distance(pixel) < 1e-9);
+}
