@@ -1,6 +1,9 @@
 //! OpenCV's pinhole camera with up to fourteen distortion coefficients.
 
+mod lens;
+mod region;
 mod tilt;
+mod undistort;
 
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;

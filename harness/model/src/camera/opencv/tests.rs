@@ -59,3 +59,38 @@ fn a_pole_ends_the_branch() {
     let pixel = PixelPoint::new(9000.0, 1490.8);
     assert!(camera.project(camera.unproject(pixel).unwrap()).unwrap().distance(pixel) < 1e-9);
 }
+
+fn pixels() -> Vec<PixelPoint> {
+    (0..5000)
+        .map(|i| PixelPoint::new((f64::from(i) * 0.754_877_666).fract() * 3999.0, (f64::from(i) * 0.569_840_291).fract() * 2999.0))
+        .collect()
+}
+
+#[test]
+fn many_points_are_undistorted_as_one() {
+    for coefficients in [0, 4, 5, 8, 12, 14] {
+        let (camera, points) = (camera(coefficients), pixels());
+        let mut tangents = vec![[0.0; 2]; points.len()];
+        camera.undistort_all(&points, &mut tangents);
+        for (point, [x, y]) in points.iter().zip(&tangents) {
+            let back = camera.project(Ray::from_tangent(*x, -y)).unwrap();
+            assert!(back.distance(*point) < 1e-10, "{coefficients}: {point:?} {back:?}");
+        }
+    }
+}
+
+#[test]
+fn many_points_beyond_a_fold_are_refused() {
+    let mut distortion = [0.0; 14];
+    distortion[0] = -1.0;
+    let camera = OpenCv { distortion, ..camera(4) };
+    let points = pixels();
+    let mut tangents = vec![[0.0; 2]; points.len()];
+    camera.undistort_all(&points, &mut tangents);
+    for (point, [x, y]) in points.iter().zip(&tangents) {
+        match camera.unproject(*point) {
+            Ok(ray) => assert!(ray.angle_to(Ray::from_tangent(*x, -y)) < 1e-8),
+            Err(_) => assert!(x.is_nan() && y.is_nan()),
+        }
+    }
+}

@@ -53,6 +53,15 @@ impl Tilt {
 
     /// The matrix, row by row.
     pub(super) fn rows(&self) -> [[f64; 3]; 3] {
-        std::array::from_fn(|row| std::array::from_fn(|column| self.matrix[(row, column)]))
+        rows(&self.matrix)
     }
+
+    /// What undoes it, row by row; not numbers if nothing does.
+    pub(super) fn inverse_rows(&self) -> [[f64; 3]; 3] {
+        self.matrix.try_inverse().map_or([[f64::NAN; 3]; 3], |inverse| rows(&inverse))
+    }
+}
+
+fn rows(m: &Matrix3<f64>) -> [[f64; 3]; 3] {
+    std::array::from_fn(|row| std::array::from_fn(|column| m[(row, column)]))
 }
