@@ -70,7 +70,6 @@ fn calibration<'a, 'input>(sensor: Node<'a, 'input>) -> Result<Option<Node<'a, '
     let adjusted: Vec<_> = all.iter().copied().filter(|child| child.attribute("class") == Some("adjusted")).collect();
     match (&adjusted[..], &all[..]) {
         (&[one], _) | ([], &[one]) => Ok(Some(one)),
-        ([], []) => Ok(None),
         (_, &[.., last]) => Err(xml::at(last, CameraFileError::new("stands in `sensor` more than once; expected one that is adjusted"))),
         _ => Ok(None),
     }

@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn written_numbers_are_read_exactly() {
-        for value in [0.0, 1.0, -0.1, 4470.897_102_766_254_6, 1.237e-9, -2.2e-30, 6.02e23] {
+        for value in [0.0, 1.0, -0.1, 4_470.897_102_766_255, 1.237e-9, -2.2e-30, 6.02e23] {
             assert_eq!(scientific(value).parse(), Ok(value));
             assert_eq!(fixed(value).parse(), Ok(value));
         }

@@ -39,7 +39,7 @@ struct Lines<'a> {
 
 impl Lines<'_> {
     fn at(&mut self, byte: usize) -> usize {
-        self.line += self.text.as_bytes()[self.byte..byte].iter().filter(|&&b| b == b'\n').count();
+        self.line += self.text.get(self.byte..byte).map_or(0, |part| part.matches('\n').count());
         self.byte = byte;
         self.line
     }

@@ -20,6 +20,9 @@ pub static FORMATS: &[&CameraFormat] = &[
     &pix4d_pmatrix::FORMAT,
 ];
 
+/// Cameras to text.
+pub(super) type Writer = fn(&[NamedCamera]) -> Result<String, CameraFileError>;
+
 /// A format of camera files.
 pub struct CameraFormat {
     /// Its name here.
@@ -37,7 +40,7 @@ pub struct CameraFormat {
     /// Is this file one? If not, why?
     pub(super) recognise: fn(&Source<'_>) -> Result<(), String>,
     pub(super) read: fn(&Source<'_>, &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
-    pub(super) write: Option<fn(&[NamedCamera]) -> Result<String, CameraFileError>>,
+    pub(super) write: Option<Writer>,
 }
 
 impl CameraFormat {

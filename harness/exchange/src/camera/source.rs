@@ -23,7 +23,7 @@ impl<'a> Source<'a> {
     /// Checks that `bytes` are text, and reads its tree if it is XML.
     pub fn new(bytes: &'a [u8]) -> Result<Self, CameraFileError> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
-            let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
+            let line = 1 + String::from_utf8_lossy(&bytes[..error.valid_up_to()]).matches('\n').count();
             CameraFileError::new("expected text in UTF-8, found other bytes").on_line(line)
         })?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);

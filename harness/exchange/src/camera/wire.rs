@@ -46,6 +46,7 @@ pub(super) struct Image {
 
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
+#[expect(clippy::struct_field_names, reason = "a key says its unit")]
 pub(super) struct Orientation {
     pub c_mm: f64,
     pub x0_mm: f64,

@@ -105,6 +105,7 @@ fn p_matrices_come_apart_into_the_camera_they_were_made_of() {
 
 #[test]
 #[cfg_attr(not(camera_files), ignore = "no camera files")]
+#[allow(clippy::excessive_precision, reason = "the file's own digits")]
 fn the_oldest_photoscan_is_read() {
     let cameras = file("photoscan-old-cameras.xml");
     assert_eq!(cameras.format.name, "photoscan-cameras");
