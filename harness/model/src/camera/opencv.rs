@@ -1,6 +1,8 @@
 //! OpenCV's pinhole camera with up to fourteen distortion coefficients.
 
+mod jacobian;
 mod lens;
+mod project;
 mod region;
 mod tilt;
 mod undistort;
@@ -11,6 +13,8 @@ use super::pinhole::{Affinity, Pinhole};
 use super::plane::is_contraction;
 use super::{CameraParameter, ImageSize, named};
 use crate::PixelPoint;
+
+pub use jacobian::{CameraFromWorld, Jacobian};
 
 /// OpenCV's camera. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0); normalised by the focal length.
 ///

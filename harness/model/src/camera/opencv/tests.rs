@@ -94,3 +94,49 @@ fn many_points_beyond_a_fold_are_refused() {
         }
     }
 }
+
+/// Points before the camera, one beside it and one behind it, in a turned frame.
+fn scene() -> (CameraFromWorld, Vec<[f64; 3]>) {
+    let (sin, cos) = 0.3_f64.sin_cos();
+    let pose = CameraFromWorld { rotation: [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]], translation: [0.1, -0.2, -5.0] };
+    let coordinate = |i: i32, step: f64, half: f64| ((f64::from(i) * step).fract() - 0.5) * 2.0 * half;
+    let mut points: Vec<_> =
+        (0..1003).map(|i| [coordinate(i, 0.754_877_666, 2.4), coordinate(i, 0.569_840_291, 1.9), coordinate(i, 0.618, 0.5)]).collect();
+    points[17] = [40.0, 0.0, 0.0];
+    points[1002] = [0.0, 0.0, 9.0];
+    (pose, points)
+}
+
+fn ray_of(pose: &CameraFromWorld, point: &[f64; 3]) -> Ray {
+    let n: [f64; 3] = std::array::from_fn(|i| (0..3).map(|k| pose.rotation[i][k] * point[k]).sum::<f64>() + pose.translation[i]);
+    Ray { x: n[0], y: n[1], z: n[2] }
+}
+
+#[test]
+fn many_points_are_projected_as_one() {
+    for coefficients in [0, 4, 5, 8, 12, 14] {
+        let (camera, (pose, points)) = (camera(coefficients), scene());
+        let mut pixels = vec![PixelPoint::default(); points.len()];
+        let (mut again, mut jacobian) = (pixels.clone(), Jacobian::default());
+        camera.project_all(&pose, &points, &mut pixels);
+        camera.project_all_with_derivatives(&pose, &points, &mut again, &mut jacobian);
+        for (i, point) in points.iter().enumerate() {
+            let ray = ray_of(&pose, point);
+            let Ok(found) = camera.derivatives(ray) else {
+                assert!(pixels[i].x.is_nan() && again[i].y.is_nan() && jacobian.at(i, 0)[0].is_nan());
+                continue;
+            };
+            assert!(pixels[i].distance(found.point) < 1e-10 && again[i].distance(found.point) < 1e-10, "{coefficients} {i}");
+            let agree = |column: usize, [x, y]: [f64; 2]| {
+                let at = jacobian.at(i, column);
+                assert!((at[0] - x).hypot(at[1] - y) < 1e-9 * (1.0 + x.hypot(y)), "{coefficients}: {i}, {column}: {at:?} {x} {y}");
+            };
+            let by = |row: usize, [x, y, z]: [f64; 3]| found.by_ray[row][0] * x + found.by_ray[row][1] * y + found.by_ray[row][2] * z;
+            let turns = [[0.0, -ray.z, ray.y], [ray.z, 0.0, -ray.x], [-ray.y, ray.x, 0.0]];
+            turns.iter().enumerate().for_each(|(axis, turn)| agree(axis, [by(0, *turn), by(1, *turn)]));
+            (0..3).for_each(|axis| agree(3 + axis, [found.by_ray[0][axis], found.by_ray[1][axis]]));
+            found.by_parameters.iter().enumerate().for_each(|(k, by)| agree(6 + k, *by));
+            assert_eq!(jacobian.columns(), 6 + found.by_parameters.len());
+        }
+    }
+}

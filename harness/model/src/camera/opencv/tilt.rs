@@ -51,9 +51,9 @@ impl Tilt {
         [of(&self.by_x), of(&self.by_y)]
     }
 
-    /// The matrix, row by row.
-    pub(super) fn rows(&self) -> [[f64; 3]; 3] {
-        rows(&self.matrix)
+    /// The matrix and its derivatives by x and y, each row by row.
+    pub(super) fn all_rows(&self) -> [[[f64; 3]; 3]; 3] {
+        [rows(&self.matrix), rows(&self.by_x), rows(&self.by_y)]
     }
 
     /// What undoes it, row by row; not numbers if nothing does.
