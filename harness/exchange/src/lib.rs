@@ -1,11 +1,13 @@
-//! Files of other tools: image coordinates and photographs.
+//! Files of other tools: cameras, image coordinates and photographs.
 
 pub mod atomic;
+pub mod camera;
 pub mod folder;
 pub mod photo;
 pub mod points;
 pub mod points_write;
 
+pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use folder::FolderWriter;
 pub use photo::{PhotoError, read_photo, write_png};
 pub use points::{PointFile, PointFileError, PointRow, read_points};

@@ -1,5 +1,7 @@
 //! The vocabulary of calibench: frames, images, targets, observations. No I/O, no randomness.
 
+pub mod camera;
+pub mod convert;
 pub mod frames;
 pub mod image;
 pub mod observation;

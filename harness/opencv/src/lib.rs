@@ -1,5 +1,9 @@
 //! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them, and a chessboard detector.
 
+#[cfg(test)]
+mod camera_files;
+#[cfg(test)]
+mod cameras;
 pub mod chessboard;
 pub mod subpix;
 

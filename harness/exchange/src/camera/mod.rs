@@ -1,0 +1,227 @@
+//! Camera files of other tools, and our own: one file a format, found by content.
+//!
+//! A new format is one file with a `static` [`CameraFormat`] and one line in [`registry::FORMATS`].
+
+mod agisoft;
+mod error;
+mod metashape_calibration;
+mod metashape_cameras;
+mod number;
+mod opencv;
+mod opencv_xml;
+mod opencv_yaml;
+mod photogrammetric;
+mod photoscan_cameras;
+mod pix4d_cam;
+mod pix4d_inpho;
+mod pix4d_parameters;
+pub mod pix4d_pmatrix;
+pub mod registry;
+mod source;
+mod storage;
+mod wire;
+mod xml;
+
+use std::path::Path;
+
+use calibench_model::camera::{Camera, CameraModel, ImageSize};
+
+use crate::atomic::write_atomically;
+
+pub use error::CameraFileError;
+pub use registry::{CameraFormat, FORMATS, format_named};
+pub use source::LARGEST_FILE;
+use source::Source;
+
+/// What a camera file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraFile {
+    /// Its format.
+    pub format: &'static CameraFormat,
+    /// Its cameras, in the file's order; at least one.
+    pub cameras: Vec<NamedCamera>,
+}
+
+/// A camera of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedCamera {
+    /// Its name in the file: of a sensor or of an image; empty where the format has none.
+    pub name: String,
+    /// The camera.
+    pub camera: Camera,
+    /// Pixel pitch, um, where the file states it.
+    pub pitch_um: Option<f64>,
+    /// Where the camera stood, in files that say it.
+    pub pose: Option<Pose>,
+    /// Covariance of the parameters, where the file states it.
+    pub covariance: Option<ParameterCovariance>,
+    /// What the user should know: what was assumed, what was left out.
+    pub notes: Vec<String>,
+}
+
+impl NamedCamera {
+    /// A camera of which nothing else is known.
+    pub fn new(name: impl Into<String>, camera: Camera) -> Self {
+        Self { name: name.into(), camera, pitch_um: None, pose: None, covariance: None, notes: Vec::new() }
+    }
+}
+
+/// A camera's position and rotation, with the camera's axes of these tools: x right, y down, z forward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Rotation from the world's axes to the camera's, row by row.
+    pub camera_from_world: [[f64; 3]; 3],
+    /// Projection centre in the world, in its unit.
+    pub position: [f64; 3],
+}
+
+/// Covariance of a camera's parameters, in their own units. Parameters that are not named were held fixed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterCovariance {
+    /// Names, as in `CameraModel::parameters`.
+    pub parameters: Vec<String>,
+    /// Square and symmetric, row by row, in the order of `parameters`.
+    pub values: Vec<f64>,
+}
+
+impl ParameterCovariance {
+    /// Checked: square, finite, symmetric, no negative variance.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn new(parameters: Vec<String>, mut values: Vec<f64>) -> Result<Self, String> {
+        let n = parameters.len();
+        if values.len() != n * n {
+            return Err(format!("expected {n} x {n} numbers for {n} parameters, found {}", values.len()));
+        }
+        if let Some(twice) = parameters.iter().enumerate().find(|(i, name)| parameters[..*i].contains(name)) {
+            return Err(format!("parameter `{}` stands twice", twice.1));
+        }
+        for row in 0..n {
+            let variance = values[row * n + row];
+            if !(variance >= 0.0 && variance.is_finite()) {
+                return Err(format!("variance of `{}` is {variance}; expected zero or more", parameters[row]));
+            }
+            for column in 0..row {
+                let (low, high) = (values[row * n + column], values[column * n + row]);
+                let bound = (variance * values[column * n + column]).sqrt() * (1.0 + 1e-6);
+                if !((low - high).abs() <= 1e-6 * bound && low.abs() <= bound) {
+                    return Err(format!(
+                        "covariances of `{}` and `{}` are {low} and {high}: not those of anything",
+                        parameters[row], parameters[column]
+                    ));
+                }
+                values[column * n + row] = low;
+            }
+        }
+        Ok(Self { parameters, values })
+    }
+}
+
+/// What a file may leave open.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Size of the images, for files that do not state it; one that contradicts the file is an error.
+    pub size: Option<ImageSize>,
+    /// OpenCV's fisheye camera (true) or its pinhole camera (false), for files that do not say `fisheye_model`: without both, the pinhole.
+    pub fisheye: Option<bool>,
+}
+
+impl ReadOptions {
+    /// The size that the file states, or else the one given.
+    fn size_or(&self, stated: Option<ImageSize>) -> Result<ImageSize, CameraFileError> {
+        match (stated, self.size) {
+            (Some(file), Some(given)) if file != given => Err(CameraFileError::new(format!(
+                "the file says {} x {} px, {} x {} px were given",
+                file.width, file.height, given.width, given.height
+            ))),
+            (Some(size), _) | (None, Some(size)) => Ok(size),
+            (None, None) => Err(CameraFileError::new("does not state the size of the images; give it")),
+        }
+    }
+}
+
+/// Reads a camera file; the format is found by content.
+///
+/// # Errors
+/// The first mistake, with file, line and element; for an unknown format why each known one said no.
+pub fn read_camera(path: &Path) -> Result<CameraFile, CameraFileError> {
+    read_camera_with(path, &ReadOptions::default())
+}
+
+/// As [`read_camera`], with what the file leaves open.
+///
+/// # Errors
+/// As [`read_camera`].
+pub fn read_camera_with(path: &Path, options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
+    let name = path.display().to_string();
+    let bytes = source::read(path).map_err(|error| error.in_file(&name))?;
+    parse_camera(&name, &bytes, options)
+}
+
+/// As [`read_camera_with`], from bytes; `file` is their name in errors.
+///
+/// # Errors
+/// As [`read_camera`].
+pub fn parse_camera(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
+    parse(bytes, options).map_err(|error| error.in_file(file))
+}
+
+fn parse(bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
+    let source = Source::new(bytes)?;
+    let mut refusals = Vec::new();
+    for &format in FORMATS {
+        match (format.recognise)(&source) {
+            Ok(()) => {
+                let cameras = (format.read)(&source, options)?;
+                if cameras.is_empty() {
+                    return Err(CameraFileError::new(format!("{} without a camera; expected at least one", format.name)));
+                }
+                return Ok(CameraFile { format, cameras });
+            }
+            Err(why) => refusals.push(format!("{}: {why}", format.name)),
+        }
+    }
+    Err(CameraFileError::new(format!("no camera file that is known; tried {}", refusals.join("; "))))
+}
+
+/// The text of a camera file. Numbers have 17 significant digits or their shortest exact form.
+///
+/// # Errors
+/// A format that is only read, a camera of another model, more cameras than the format holds, a number that is not finite.
+pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
+    let Some(write) = format.write else {
+        return Err(CameraFileError::new(format!("{} is only read, not written", format.name)));
+    };
+    if cameras.is_empty() {
+        return Err(CameraFileError::new("no camera to write"));
+    }
+    if cameras.len() > 1 && !format.many {
+        return Err(CameraFileError::new(format!("{} holds one camera, found {}", format.name, cameras.len())));
+    }
+    for camera in cameras {
+        check(camera)?;
+    }
+    write(cameras)
+}
+
+/// Only what could be read again is written.
+fn check(camera: &NamedCamera) -> Result<(), CameraFileError> {
+    if let Some(wrong) = camera.camera.parameters().iter().find(|parameter| !parameter.value.is_finite()) {
+        return Err(CameraFileError::new(format!("is {}; expected a finite number", wrong.value)).of(wrong.name));
+    }
+    Ok(())
+}
+
+/// Writes a camera file, whole or not at all: [`camera_text`].
+///
+/// # Errors
+/// As [`camera_text`], and what the file system refuses.
+pub fn write_camera(path: &Path, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), CameraFileError> {
+    let name = path.display().to_string();
+    let text = camera_text(format, cameras).map_err(|error| error.in_file(&name))?;
+    write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(|error| CameraFileError::new(error.to_string()).in_file(&name))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,132 @@
+//! OpenCV's cameras in its FileStorage: what YAML and XML share.
+//!
+//! `camera_matrix`, `distortion_coefficients`, `image_width`, `image_height`, as OpenCV's calibration sample writes them, and the capitalised
+//! names of Metashape's export. The fisheye camera is told by the sample's own `fisheye_model: 1`; without it four coefficients are a pinhole
+//! camera's, for nothing else in the file tells them apart.
+
+use calibench_model::camera::{Camera, ImageSize, OpenCv, OpenCvFisheye};
+
+use super::number::pixels;
+use super::storage::{Entry, Matrix};
+use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+
+const CAMERA_MATRIX: [&str; 4] = ["camera_matrix", "Camera_Matrix", "cameraMatrix", "Camera_matrix"];
+const DISTORTION: [&str; 5] = ["distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "distortionCoefficients"];
+const WIDTH: [&str; 3] = ["image_width", "image_Width", "imageWidth"];
+const HEIGHT: [&str; 3] = ["image_height", "image_Height", "imageHeight"];
+const FISHEYE: [&str; 1] = ["fisheye_model"];
+const NAME: [&str; 1] = ["camera_name"];
+
+/// The camera of a FileStorage.
+pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
+    let required = |names: &[&str]| root.get(names)?.ok_or_else(|| root.wrong(&format!("has no `{}`", names[0])));
+    let (name, entry) = required(&CAMERA_MATRIX)?;
+    let k = entry.matrix(9).and_then(|matrix| camera_matrix(&matrix)).map_err(|error| placed(error, name, entry))?;
+    let (name, entry) = required(&DISTORTION)?;
+    let distortion = entry.matrix(14).and_then(|matrix| vector(&matrix)).map_err(|error| placed(error, name, entry))?;
+    let size = options.size_or(stated_size(root)?)?;
+    let mut notes = Vec::new();
+    let fisheye = is_fisheye(root, options)?;
+    if !fisheye && distortion.len() == 4 && options.fisheye.is_none() && root.get(&FISHEYE)?.is_none() {
+        notes.push("four coefficients without `fisheye_model`: read as the pinhole camera's k1, k2, p1, p2".into());
+    }
+    let camera = if fisheye { fisheye_camera(size, &k, &distortion) } else { pinhole(size, &k, &distortion) };
+    let camera = camera.map_err(|error| placed(error, name, entry))?;
+    let name = root.get(&NAME)?.map(|(_, entry)| entry.text()).transpose()?.unwrap_or("");
+    Ok(vec![NamedCamera { notes, ..NamedCamera::new(name, camera) }])
+}
+
+/// The error with the name of the matrix, and with its line if it has none of its own.
+fn placed(error: CameraFileError, name: &str, entry: &Entry) -> CameraFileError {
+    let line = error.line.unwrap_or(entry.line as u32);
+    let inner = error.element.as_ref().map_or(String::new(), |inner| format!(".{inner}"));
+    error.on_line(line as usize).of(format!("{name}{inner}"))
+}
+
+fn camera_matrix(matrix: &Matrix) -> Result<[f64; 9], CameraFileError> {
+    let k: [f64; 9] = match (matrix.rows, matrix.columns, <[f64; 9]>::try_from(matrix.data.as_slice())) {
+        (3, 3, Ok(k)) => k,
+        (rows, columns, _) => return Err(CameraFileError::new(format!("expected 3 x 3, found {rows} x {columns}"))),
+    };
+    if k[3] != 0.0 || k[6..] != [0.0, 0.0, 1.0] {
+        return Err(CameraFileError::new("expected fx, s, cx; 0, fy, cy; 0, 0, 1"));
+    }
+    if k[0] <= 0.0 || k[4] <= 0.0 {
+        return Err(CameraFileError::new(format!("expected focal lengths above zero, found {} and {}", k[0], k[4])));
+    }
+    Ok(k)
+}
+
+fn vector(matrix: &Matrix) -> Result<Vec<f64>, CameraFileError> {
+    if matrix.rows == 1 || matrix.columns == 1 {
+        return Ok(matrix.data.clone());
+    }
+    Err(CameraFileError::new(format!("expected one row or one column, found {} x {}", matrix.rows, matrix.columns)))
+}
+
+fn stated_size(root: &Entry) -> Result<Option<ImageSize>, CameraFileError> {
+    let side = |names: &[&str]| {
+        root.get(names)?.map(|(name, entry)| entry.text().and_then(pixels).map_err(|error| placed(error, name, entry))).transpose()
+    };
+    match (side(&WIDTH)?, side(&HEIGHT)?) {
+        (Some(width), Some(height)) => Ok(Some(ImageSize { width, height })),
+        (None, None) => Ok(None),
+        _ => Err(root.wrong("expected `image_width` and `image_height`, found one of them")),
+    }
+}
+
+fn is_fisheye(root: &Entry, options: &ReadOptions) -> Result<bool, CameraFileError> {
+    let Some((name, entry)) = root.get(&FISHEYE)? else { return Ok(options.fisheye.unwrap_or(false)) };
+    let stated = match entry.text()? {
+        "0" | "false" => false,
+        "1" | "true" => true,
+        _ => return Err(entry.wrong("expected 0 or 1").of(name)),
+    };
+    match options.fisheye {
+        Some(given) if given != stated => Err(entry.wrong("contradicts the model that was asked for").of(name)),
+        _ => Ok(stated),
+    }
+}
+
+fn pinhole(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {
+    if k[1] != 0.0 {
+        return Err(CameraFileError::new(format!("the camera matrix has a skew of {}; OpenCV's pinhole camera has none", k[1])));
+    }
+    if ![4, 5, 8, 12, 14].contains(&found.len()) {
+        return Err(CameraFileError::new(format!("expected 4, 5, 8, 12 or 14 coefficients, found {}", found.len())));
+    }
+    let mut distortion = [0.0; 14];
+    distortion[..found.len()].copy_from_slice(found);
+    Ok(Camera::OpenCv(OpenCv { size, fx: k[0], fy: k[4], cx: k[2], cy: k[5], distortion, coefficients: found.len() }))
+}
+
+fn fisheye_camera(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {
+    let Ok(coefficients) = <[f64; 4]>::try_from(found) else {
+        return Err(CameraFileError::new(format!("expected 4 coefficients of the fisheye camera, found {}", found.len())));
+    };
+    let camera = OpenCvFisheye { size, fx: k[0], fy: k[4], cx: k[2], cy: k[5], skew: k[1] / k[0], k: coefficients };
+    Ok(Camera::OpenCvFisheye(camera))
+}
+
+/// What both kinds of FileStorage write of a camera.
+pub(super) struct Written {
+    pub size: ImageSize,
+    pub fisheye: bool,
+    pub matrix: [f64; 9],
+    pub distortion: Vec<f64>,
+}
+
+/// The parts of a camera of OpenCV's.
+pub(super) fn written(camera: &Camera, format: &CameraFormat) -> Result<Written, CameraFileError> {
+    let matrix = |fx, skew, cx, fy, cy| [fx, skew, cx, 0.0, fy, cy, 0.0, 0.0, 1.0];
+    match *camera {
+        Camera::OpenCv(OpenCv { size, fx, fy, cx, cy, distortion, coefficients }) if [4, 5, 8, 12, 14].contains(&coefficients) => {
+            let distortion = distortion[..coefficients].to_vec();
+            Ok(Written { size, fisheye: false, matrix: matrix(fx, 0.0, cx, fy, cy), distortion })
+        }
+        Camera::OpenCvFisheye(OpenCvFisheye { size, fx, fy, cx, cy, skew, k }) => {
+            Ok(Written { size, fisheye: true, matrix: matrix(fx, fx * skew, cx, fy, cy), distortion: k.to_vec() })
+        }
+        _ => Err(format.other_model("a camera of OpenCV's models")),
+    }
+}

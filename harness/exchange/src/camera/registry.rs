@@ -1,0 +1,75 @@
+//! The camera files that are known.
+
+use super::source::Source;
+use super::{
+    CameraFileError, NamedCamera, ReadOptions, metashape_calibration, metashape_cameras, opencv_xml, opencv_yaml, photogrammetric,
+    photoscan_cameras, pix4d_cam, pix4d_inpho, pix4d_parameters, pix4d_pmatrix,
+};
+
+/// Every format, in the order in which they are tried.
+pub static FORMATS: &[&CameraFormat] = &[
+    &photogrammetric::FORMAT,
+    &opencv_yaml::FORMAT,
+    &opencv_xml::FORMAT,
+    &metashape_calibration::FORMAT,
+    &metashape_cameras::FORMAT,
+    &photoscan_cameras::FORMAT,
+    &pix4d_inpho::FORMAT,
+    &pix4d_cam::FORMAT,
+    &pix4d_parameters::FORMAT,
+    &pix4d_pmatrix::FORMAT,
+];
+
+/// Cameras to text.
+pub(super) type Writer = fn(&[NamedCamera]) -> Result<String, CameraFileError>;
+
+/// A format of camera files.
+pub struct CameraFormat {
+    /// Its name here.
+    pub name: &'static str,
+    /// The tool, or tools, that it belongs to.
+    pub tool: &'static str,
+    /// The tool's versions that it is known from.
+    pub versions: &'static str,
+    /// The usual ending of its file names, without a dot.
+    pub extension: &'static str,
+    /// Which of the tool's own numbers were reproduced; `None`: unverified.
+    pub verified: Option<&'static str>,
+    /// May it hold more than one camera?
+    pub many: bool,
+    /// Is this file one? If not, why?
+    pub(super) recognise: fn(&Source<'_>) -> Result<(), String>,
+    pub(super) read: fn(&Source<'_>, &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
+    pub(super) write: Option<Writer>,
+}
+
+impl CameraFormat {
+    /// Can it be written?
+    pub fn is_written(&self) -> bool {
+        self.write.is_some()
+    }
+
+    /// The error for a camera whose model the format does not hold.
+    pub(super) fn other_model(&self, model: &str) -> CameraFileError {
+        CameraFileError::new(format!("{} holds {model}; convert the camera first", self.name))
+    }
+}
+
+impl PartialEq for CameraFormat {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for CameraFormat {}
+
+impl std::fmt::Debug for CameraFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// The format called `name`.
+pub fn format_named(name: &str) -> Option<&'static CameraFormat> {
+    FORMATS.iter().copied().find(|format| format.name == name)
+}

@@ -1,0 +1,62 @@
+//! The text of a camera file, within limits.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use roxmltree::Document;
+
+use super::{CameraFileError, xml};
+
+/// The largest file that is read, bytes. Camera files of thousands of images have a few megabytes.
+pub const LARGEST_FILE: u64 = 64 << 20;
+
+/// A camera file's text; if it begins as XML does, its tree too.
+pub(super) struct Source<'a> {
+    /// All of it, without a byte order mark.
+    pub text: &'a str,
+    /// Its tree, if it is XML.
+    pub xml: Option<Document<'a>>,
+}
+
+impl<'a> Source<'a> {
+    /// Checks that `bytes` are text, and reads its tree if it is XML.
+    pub fn new(bytes: &'a [u8]) -> Result<Self, CameraFileError> {
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            let line = 1 + String::from_utf8_lossy(&bytes[..error.valid_up_to()]).matches('\n').count();
+            CameraFileError::new("expected text in UTF-8, found other bytes").on_line(line)
+        })?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if let Some(nul) = text.find('\0') {
+            return Err(CameraFileError::new("expected text, found a zero byte").on_line(1 + text[..nul].matches('\n').count()));
+        }
+        if text.trim().is_empty() {
+            return Err(CameraFileError::new("is empty; expected a camera"));
+        }
+        let xml = text.trim_start().starts_with('<').then(|| xml::parse(text)).transpose()?;
+        Ok(Self { text, xml })
+    }
+
+    /// The lines that hold something, with their numbers, counted from 1.
+    pub fn lines(&self) -> impl Iterator<Item = (usize, &'a str)> {
+        self.text.lines().enumerate().map(|(index, line)| (index + 1, line.trim())).filter(|(_, line)| !line.is_empty())
+    }
+}
+
+/// All bytes of a file that is no larger than [`LARGEST_FILE`].
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, CameraFileError> {
+    let unreadable = |error: std::io::Error| CameraFileError::new(error.to_string());
+    if path.is_dir() {
+        return Err(CameraFileError::new("is a folder; expected a camera file"));
+    }
+    let file = File::open(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    let too_large = || CameraFileError::new(format!("is larger than {} MB; expected a camera file", LARGEST_FILE >> 20));
+    if length > LARGEST_FILE {
+        return Err(too_large());
+    }
+    // What is no ordinary file has no length: it is read up to the limit.
+    let mut bytes = Vec::with_capacity(length as usize);
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > LARGEST_FILE { Err(too_large()) } else { Ok(bytes) }
+}

@@ -1,0 +1,131 @@
+//! All models behind one dispatch.
+
+use super::{
+    Agisoft, CameraModel, CameraParameter, Convention, Derivatives, Ebner, ImageSize, NoCounterpart, OpenCv, OpenCvFisheye,
+    Photogrammetric, Pix4d, Ray, agisoft, ebner, moniwa, opencv, opencv_fisheye, photogrammetric, pix4d,
+};
+use crate::PixelPoint;
+
+/// Any camera. A new model is a variant here, a line in each of the two tables below, and its own file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Camera {
+    /// The canonical interior orientation.
+    Photogrammetric(Photogrammetric),
+    /// With Ebner's additional parameters.
+    Ebner(Ebner),
+    /// OpenCV's pinhole camera.
+    OpenCv(OpenCv),
+    /// OpenCV's fisheye camera.
+    OpenCvFisheye(OpenCvFisheye),
+    /// Agisoft's.
+    Agisoft(Agisoft),
+    /// Pix4D's.
+    Pix4d(Pix4d),
+}
+
+macro_rules! each {
+    ($camera:expr, $model:ident => $work:expr) => {
+        match $camera {
+            Camera::Photogrammetric($model) => $work,
+            Camera::Ebner($model) => $work,
+            Camera::OpenCv($model) => $work,
+            Camera::OpenCvFisheye($model) => $work,
+            Camera::Agisoft($model) => $work,
+            Camera::Pix4d($model) => $work,
+        }
+    };
+}
+
+/// All conventions, in the order of lists.
+pub const fn conventions() -> &'static [&'static Convention] {
+    &[
+        &photogrammetric::CONVENTION,
+        &moniwa::CONVENTION,
+        &ebner::CONVENTION,
+        &pix4d::CONVENTION,
+        &agisoft::METASHAPE,
+        &agisoft::PHOTOSCAN,
+        &agisoft::LENS,
+        &opencv::CONVENTION,
+        &opencv_fisheye::CONVENTION,
+    ]
+}
+
+impl Camera {
+    /// What its numbers mean.
+    pub const fn convention(&self) -> &'static Convention {
+        match self {
+            Self::Photogrammetric(_) => &photogrammetric::CONVENTION,
+            Self::Ebner(_) => &ebner::CONVENTION,
+            Self::OpenCv(_) => &opencv::CONVENTION,
+            Self::OpenCvFisheye(_) => &opencv_fisheye::CONVENTION,
+            Self::Agisoft(camera) => camera.version.convention(),
+            Self::Pix4d(_) => &pix4d::CONVENTION,
+        }
+    }
+}
+
+impl CameraModel for Camera {
+    fn size(&self) -> ImageSize {
+        each!(self, camera => camera.size())
+    }
+
+    fn parameters(&self) -> Vec<CameraParameter> {
+        each!(self, camera => camera.parameters())
+    }
+
+    fn with_parameters(&self, values: &[f64]) -> Self {
+        each!(self, camera => camera.with_parameters(values).into())
+    }
+
+    fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
+        each!(self, camera => camera.project(ray))
+    }
+
+    fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
+        each!(self, camera => camera.unproject(point))
+    }
+
+    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+        each!(self, camera => camera.derivatives(ray))
+    }
+
+    fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
+        each!(self, camera => camera.fold_towards(angle))
+    }
+}
+
+macro_rules! from {
+    ($($model:ident),*) => {
+        $(impl From<$model> for Camera {
+            fn from(camera: $model) -> Self {
+                Self::$model(camera)
+            }
+        })*
+    };
+}
+
+from!(Photogrammetric, Ebner, OpenCv, OpenCvFisheye, Agisoft, Pix4d);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::conformance::{self, Shape};
+
+    #[test]
+    fn a_dispatched_camera_conforms() {
+        let mut distortion = [0.0; 14];
+        distortion[0] = 0.1;
+        let size = ImageSize { width: 640, height: 480 };
+        let camera = OpenCv { size, fx: 600.0, fy: 600.0, cx: 320.0, cy: 240.0, distortion, coefficients: 5 };
+        conformance::check(&Camera::from(camera), Shape::Pincushion);
+    }
+
+    #[test]
+    fn names_of_conventions_are_unique() {
+        let mut names: Vec<_> = conventions().iter().map(|convention| convention.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), conventions().len());
+    }
+}

@@ -1,0 +1,123 @@
+//! Cameras: how rays and pixels belong together, in the conventions of several tools.
+//!
+//! Each model is data behind one trait, [`CameraModel`]; each convention states its direction, its signs, its units and its pixel origin in its
+//! own file, and converts to [`Ray`] and [`PixelPoint`] there and nowhere else.
+
+pub mod agisoft;
+mod any;
+pub mod conformance;
+pub mod convention;
+pub mod ebner;
+pub mod fold;
+mod measured;
+pub mod moniwa;
+mod newton;
+pub mod opencv;
+pub mod opencv_fisheye;
+pub mod photogrammetric;
+mod pinhole;
+pub mod pix4d;
+mod plane;
+mod ray;
+
+use thiserror::Error;
+
+use crate::PixelPoint;
+
+pub use agisoft::{Agisoft, AgisoftVersion};
+pub use any::{Camera, conventions};
+pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
+pub use ebner::Ebner;
+pub use fold::{Fold, fold};
+pub use moniwa::Moniwa;
+pub use opencv::OpenCv;
+pub use opencv_fisheye::OpenCvFisheye;
+pub use photogrammetric::Photogrammetric;
+pub use pix4d::Pix4d;
+pub use ray::Ray;
+
+/// Columns and rows of a camera's images.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageSize {
+    /// Columns, px.
+    pub width: u32,
+    /// Rows, px.
+    pub height: u32,
+}
+
+/// A parameter of a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraParameter {
+    /// Its name in the convention.
+    pub name: &'static str,
+    /// Its unit, as in `mm^-2`; "" for a number.
+    pub unit: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+/// A projection with its derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derivatives {
+    /// The projected point.
+    pub point: PixelPoint,
+    /// d(x, y) / d(ray), px per unit of the ray's components: rows x, y.
+    pub by_ray: [[f64; 3]; 2],
+    /// d(x, y) / d(parameter), in the order of [`CameraModel::parameters`].
+    pub by_parameters: Vec<[f64; 2]>,
+}
+
+/// Why a ray or a pixel has no counterpart.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum NoCounterpart {
+    /// The ray points away from the image.
+    #[error("the ray points behind the camera")]
+    Behind,
+    /// The model folds over before it gets there: the mapping is not one to one.
+    #[error("the distortion folds over: the mapping is not one to one there")]
+    Fold,
+    /// A coordinate is not a number, or the iteration found no solution.
+    #[error("no solution")]
+    NoSolution,
+}
+
+/// A camera model. One conformance check serves all: derivatives against differences, round trips, corner values.
+pub trait CameraModel {
+    /// The size of its images.
+    fn size(&self) -> ImageSize;
+
+    /// Its parameters, in a fixed order.
+    fn parameters(&self) -> Vec<CameraParameter>;
+
+    /// The same camera with other values, in the order of [`Self::parameters`].
+    #[must_use]
+    fn with_parameters(&self, values: &[f64]) -> Self
+    where
+        Self: Sized;
+
+    /// Ray to pixel.
+    ///
+    /// # Errors
+    /// A ray that the model does not picture: behind the camera, or beyond a fold.
+    fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart>;
+
+    /// Pixel to ray, to 1e-9 px or better.
+    ///
+    /// # Errors
+    /// A pixel that no ray comes to on the branch of the mapping that holds the principal point.
+    fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart>;
+
+    /// [`Self::project`] with its analytic derivatives.
+    ///
+    /// # Errors
+    /// As [`Self::project`].
+    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart>;
+
+    /// The image of the first fold on the way from the axis, where the mapping stops being one to one, inside or outside the frame; `angle` is that in
+    /// the image at the axis, from x towards y, radians. See [`fold()`] for what is inside the frame.
+    fn fold_towards(&self, angle: f64) -> Option<PixelPoint>;
+}
+
+fn named(names: &[(&'static str, &'static str)], values: &[f64]) -> Vec<CameraParameter> {
+    names.iter().zip(values).map(|(&(name, unit), &value)| CameraParameter { name, unit, value }).collect()
+}

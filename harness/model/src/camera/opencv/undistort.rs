@@ -1,0 +1,174 @@
+//! Many pixels to ideal tangents at once.
+
+use multiversion::multiversion;
+use nalgebra::{SMatrix, SVector};
+
+use super::lens::{Five, Lens, Twelve};
+use super::region::{self, Region};
+use super::{OpenCv, tilt};
+use crate::PixelPoint;
+use crate::camera::{CameraModel, Ray};
+
+/// Points that are worked on together; the compiler takes as many at a time as the machine has lanes. Every point's arithmetic is its own, so the
+/// bits do not depend on it.
+const CHUNK: usize = 64;
+/// Coefficients of the first guess.
+const GUESS: usize = 8;
+/// Product of the last two steps, px times tangent: the error left is a small multiple of it.
+const CLOSED: f64 = 1e-11;
+
+/// What the loop needs of a camera.
+#[derive(Clone, Copy)]
+struct Job<L> {
+    lens: L,
+    /// Pixel to distorted tangents: offset and scale.
+    centre: [f64; 2],
+    scale: [f64; 2],
+    focal: f64,
+    /// Undoes the tilt.
+    untilt: Option<[[f64; 3]; 3]>,
+    /// ideal = distorted * polynomial of (distorted radius^2 / widest^2), without what is not radial.
+    guess: [f64; GUESS],
+    per_widest: f64,
+    /// Square of the ideal radius within which the camera is one to one.
+    safe: f64,
+}
+
+impl OpenCv {
+    /// Ideal tangents (x right, **y down**) of pixels, to 1e-9 px: [`CameraModel::unproject`] for many points, vectorised.
+    ///
+    /// A pixel without a ray gives not-a-numbers; [`CameraModel::unproject`] says why. Any machine gives the same bits.
+    ///
+    /// # Panics
+    /// If `tangents` is not as long as `points`.
+    pub fn undistort_all(&self, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
+        assert_eq!(points.len(), tangents.len(), "a tangent for every point");
+        let region = region::of(self);
+        if self.distortion[5..12].iter().all(|&more| more == 0.0) {
+            five(&job(self, region), self, points, tangents);
+        } else {
+            twelve(&job(self, region), self, points, tangents);
+        }
+    }
+}
+
+fn job<L: Lens>(camera: &OpenCv, region: Region) -> Job<L> {
+    let lens = L::of(camera);
+    let untilt = camera.is_tilted().then(|| tilt::Tilt::new(camera.distortion[12], camera.distortion[13]).inverse_rows());
+    Job {
+        lens,
+        centre: [camera.cx, camera.cy],
+        scale: [1.0 / camera.fx, 1.0 / camera.fy],
+        focal: camera.fx.abs().max(camera.fy.abs()),
+        untilt,
+        guess: guess(&lens, region.widest),
+        per_widest: 1.0 / region.widest_distorted(|r2| lens.factor(r2)).powi(2),
+        safe: region.safe * region.safe,
+    }
+}
+
+/// The polynomial that undoes the radial factor at nodes up to the ideal radius `widest`; zeros where there is none, and then no guess is any good.
+fn guess<L: Lens>(lens: &L, widest: f64) -> [f64; GUESS] {
+    let outer = widest * lens.factor(widest * widest);
+    let node = |i: usize| 0.5 - 0.5 * (std::f64::consts::PI * (i as f64 + 0.5) / GUESS as f64).cos();
+    let samples: [(f64, f64); GUESS] = std::array::from_fn(|i| {
+        let ideal = widest * node(i).sqrt();
+        let factor = lens.factor(ideal * ideal);
+        ((ideal * factor / outer).powi(2), 1.0 / factor)
+    });
+    let powers = SMatrix::<f64, GUESS, GUESS>::from_fn(|row, column| samples[row].0.powi(column as i32));
+    let values = SVector::<f64, GUESS>::from_fn(|row, _| samples[row].1);
+    powers.lu().solve(&values).map_or([0.0; GUESS], Into::into)
+}
+
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+fn five(job: &Job<Five>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
+    all(job, camera, points, tangents);
+}
+
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+fn twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
+    all(job, camera, points, tangents);
+}
+
+#[inline(always)]
+fn all<L: Lens>(job: &Job<L>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
+    for (points, tangents) in points.chunks(CHUNK).zip(tangents.chunks_mut(CHUNK)) {
+        let mut open = 0_u64;
+        match job.untilt {
+            None => {
+                for (point, tangent) in points.iter().zip(tangents.iter_mut()) {
+                    let (found, closed) = solve(job, distorted(job, point));
+                    *tangent = found;
+                    open += u64::from(!closed);
+                }
+            }
+            Some(rows) => {
+                for (point, tangent) in points.iter().zip(tangents.iter_mut()) {
+                    let (found, closed) = solve(job, project(&rows, distorted(job, point)));
+                    *tangent = found;
+                    open += u64::from(!closed);
+                }
+            }
+        }
+        if open > 0 {
+            one_by_one(job, camera, points, tangents);
+        }
+    }
+}
+
+#[inline(always)]
+fn distorted<L>(job: &Job<L>, point: &PixelPoint) -> [f64; 2] {
+    [(point.x - job.centre[0]) * job.scale[0], (point.y - job.centre[1]) * job.scale[1]]
+}
+
+#[inline(always)]
+fn project(rows: &[[f64; 3]; 3], [x, y]: [f64; 2]) -> [f64; 2] {
+    let [u, v, w] = rows.map(|[a, b, c]| a * x + b * y + c);
+    [u / w, v / w]
+}
+
+/// Ideal tangents of distorted ones, and whether they are certain. Newton's step, then a second one with the same derivatives: after a guess that is
+/// good to 1e-5 the error left is the product of both.
+#[inline(always)]
+fn solve<L: Lens>(job: &Job<L>, goal @ [gx, gy]: [f64; 2]) -> ([f64; 2], bool) {
+    let [x, y] = radial(job, goal);
+    let [rx, ry] = job.lens.rest([x, y]);
+    let [x, y] = radial(job, [gx - rx, gy - ry]);
+    let s = job.lens.slope([x, y]);
+    let inverse = 1.0 / (s.by[0][0] * s.by[1][1] - s.by[0][1] * s.by[1][0]);
+    let step = |value: [f64; 2]| {
+        let (ex, ey) = (gx - value[0], gy - value[1]);
+        [(s.by[1][1] * ex - s.by[0][1] * ey) * inverse, (s.by[0][0] * ey - s.by[1][0] * ex) * inverse]
+    };
+    let [dx, dy] = step(s.value);
+    let (x, y) = (x + dx, y + dy);
+    let q = job.lens.factor(x * x + y * y);
+    let [rx, ry] = job.lens.rest([x, y]);
+    let [ex, ey] = step([x * q + rx, y * q + ry]);
+    let (x, y) = (x + ex, y + ey);
+    let (first, second) = (dx.abs() + dy.abs(), ex.abs() + ey.abs());
+    let closed = (first * second * job.focal <= CLOSED) & (x * x + y * y <= job.safe) & (first <= 0.01);
+    ([x, y], closed)
+}
+
+#[inline(always)]
+fn radial<L>(job: &Job<L>, [x, y]: [f64; 2]) -> [f64; 2] {
+    let t = (x * x + y * y) * job.per_widest;
+    let [a, b, c, d, e, f, g, h] = job.guess;
+    let (t2, t4) = (t * t, t * t * t * t);
+    let factor = (a + b * t + (c + d * t) * t2) + (e + f * t + (g + h * t) * t2) * t4;
+    [x * factor, y * factor]
+}
+
+/// The points of a chunk that the loop could not settle.
+#[inline(never)]
+fn one_by_one<L: Lens>(job: &Job<L>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
+    for (point, tangent) in points.iter().zip(tangents) {
+        let goal = distorted(job, point);
+        let (_, closed) = solve(job, job.untilt.map_or(goal, |rows| project(&rows, goal)));
+        if !closed {
+            *tangent = camera.unproject(*point).ok().and_then(Ray::tangent).map_or([f64::NAN; 2], |(x, y)| [x, -y]);
+        }
+    }
+}

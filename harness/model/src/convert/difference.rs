@@ -1,0 +1,170 @@
+//! How far two cameras differ.
+
+use super::fit::{Problem, State};
+use super::grid::{Region, Sight, Spread, Vector, axis, nodes_in, normalise, spread};
+use super::rotation::between;
+use super::{COLUMNS, ConvertError, Rotation};
+use crate::PixelPoint;
+use crate::camera::{Camera, CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray};
+
+/// How to compare.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DifferenceOptions {
+    /// The part of the frame to compare over; a radius counts from the first camera's principal point.
+    pub region: Region,
+    /// Compare after the best rotation? A rotation of the camera cannot be told from one of its exterior orientation.
+    pub rotation: bool,
+    /// Say as well what is left after the best principal distance and point?
+    pub compensation: bool,
+    /// Columns of the grid; rows make it square.
+    pub columns: usize,
+}
+
+impl Default for DifferenceOptions {
+    fn default() -> Self {
+        Self { region: Region::Frame, rotation: true, compensation: false, columns: COLUMNS }
+    }
+}
+
+/// How far two cameras differ over the frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Size of the vectors.
+    pub spread: Spread,
+    /// At the pixels of the first camera: to where the second pictures their rays, after the rotation.
+    pub vectors: Vec<Vector>,
+    /// Share of the region that is not compared, because one of the cameras folds over or does not picture it, 0 to 1.
+    pub not_comparable: f64,
+    /// Rotation of the first camera's rays before the second pictures them; none unless asked for.
+    pub rotation: Rotation,
+    /// After a change of principal distance and point as well, if asked for.
+    pub compensated: Option<Compensated>,
+    /// Principal distance of the first camera at its axis, px.
+    pub focal_px: f64,
+}
+
+/// What is left after the best principal distance and point (and rotation, if that is free).
+///
+/// The second camera's image is scaled about its principal point and moved, its distortion with it: for models normalised by the focal length that is
+/// f, cx and cy; for photogrammetric ones the coefficients follow c.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compensated {
+    /// Size of what is left.
+    pub spread: Spread,
+    /// What is left.
+    pub vectors: Vec<Vector>,
+    /// Relative change of the second camera's principal distance.
+    pub scale: f64,
+    /// Change of the second camera's principal point, px: right, down.
+    pub shift: [f64; 2],
+    /// The rotation that goes with it.
+    pub rotation: Rotation,
+}
+
+impl Difference {
+    /// What so many px are on an object at a distance, in its unit, across the line of sight: `px * distance / focal_px`.
+    pub fn on_object(&self, px: f64, distance: f64) -> f64 {
+        px * distance / self.focal_px
+    }
+}
+
+/// How far `second` differs from `first`: pixels to rays by the first, a rotation, rays to pixels by the second.
+///
+/// With the roles exchanged the vectors change their sign, and else by terms of second order only: the difference times the change of scale between the two
+/// images. The rotation is the least-squares one over the pixels that both cameras see; these stay the same through the fit.
+///
+/// # Errors
+/// Cameras with images of different sizes, fewer than a handful of comparable pixels, a rotation that is not found.
+pub fn difference(first: &Camera, second: &Camera, options: &DifferenceOptions) -> Result<Difference, ConvertError> {
+    if first.size() != second.size() {
+        return Err(ConvertError::Target { fault: "the cameras' images differ in size" });
+    }
+    let nodes = nodes_in(first, options.region, options.columns)?;
+    let total: f64 = nodes.iter().map(|node| node.weight).sum();
+    let mut sights: Vec<Sight> =
+        nodes.into_iter().filter_map(|node| first.unproject(node.point).ok().map(|ray| Sight { node, ray })).collect();
+    let start = if options.rotation { between(&sights, second) } else { Rotation::identity() };
+    sights.retain(|sight| second.project(start.apply(sight.ray)).is_ok());
+    let compared: f64 = sights.iter().map(|sight| sight.node.weight).sum();
+    if sights.len() < 5 {
+        return Err(ConvertError::NotPictured { share: 1.0 });
+    }
+    normalise(&mut sights);
+    let problem = Problem { sights: &sights, free: &[], rotation: options.rotation };
+    let start = State { camera: *second, rotation: start };
+    let state = if options.rotation { problem.solve(start)? } else { start };
+    let vectors = problem.residuals(&state).ok_or(ConvertError::NotConverged)?;
+    let compensated = if options.compensation { Some(compensate(&sights, &state, options)?) } else { None };
+    let not_comparable = (1.0 - compared / total).max(0.0);
+    let (spread, rotation) = (spread(&sights, &vectors), state.rotation);
+    Ok(Difference { spread, vectors, not_comparable, rotation, compensated, focal_px: focal_px(first)? })
+}
+
+fn compensate(sights: &[Sight], state: &State<Camera>, options: &DifferenceOptions) -> Result<Compensated, ConvertError> {
+    let camera = Enlarged { camera: &state.camera, centre: axis(&state.camera)?, scale: 0.0, shift: [0.0; 2] };
+    let problem = Problem { sights, free: &[0, 1, 2], rotation: options.rotation };
+    let state = problem.solve(State { camera, rotation: state.rotation })?;
+    let vectors = problem.residuals(&state).ok_or(ConvertError::NotConverged)?;
+    let Enlarged { scale, shift, .. } = state.camera;
+    Ok(Compensated { spread: spread(sights, &vectors), vectors, scale, shift, rotation: state.rotation })
+}
+
+/// Geometric mean of the scales along the axes, px.
+fn focal_px(camera: &Camera) -> Result<f64, ConvertError> {
+    let [x, y] = camera.derivatives(Ray::from_tangent(0.0, 0.0))?.by_ray;
+    Ok((x[0] * y[1] - x[1] * y[0]).abs().sqrt())
+}
+
+/// A camera whose image is scaled about its principal point and moved.
+#[derive(Clone, Copy, Debug)]
+struct Enlarged<'a> {
+    camera: &'a Camera,
+    centre: PixelPoint,
+    scale: f64,
+    shift: [f64; 2],
+}
+
+impl Enlarged<'_> {
+    fn image(&self, point: PixelPoint) -> PixelPoint {
+        let s = 1.0 + self.scale;
+        PixelPoint::new(
+            self.centre.x + s * (point.x - self.centre.x) + self.shift[0],
+            self.centre.y + s * (point.y - self.centre.y) + self.shift[1],
+        )
+    }
+}
+
+impl CameraModel for Enlarged<'_> {
+    fn size(&self) -> ImageSize {
+        self.camera.size()
+    }
+
+    fn parameters(&self) -> Vec<CameraParameter> {
+        let parameter = |name, unit, value| CameraParameter { name, unit, value };
+        vec![parameter("scale", "", self.scale), parameter("dx", "px", self.shift[0]), parameter("dy", "px", self.shift[1])]
+    }
+
+    fn with_parameters(&self, values: &[f64]) -> Self {
+        Self { scale: values[0], shift: [values[1], values[2]], ..*self }
+    }
+
+    fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
+        self.camera.project(ray).map(|point| self.image(point))
+    }
+
+    fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
+        let back = |value: f64, centre: f64, shift: f64| centre + (value - shift - centre) / (1.0 + self.scale);
+        self.camera.unproject(PixelPoint::new(back(point.x, self.centre.x, self.shift[0]), back(point.y, self.centre.y, self.shift[1])))
+    }
+
+    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+        let inner = self.camera.derivatives(ray)?;
+        let by_ray = inner.by_ray.map(|row| row.map(|value| value * (1.0 + self.scale)));
+        let by_scale = [inner.point.x - self.centre.x, inner.point.y - self.centre.y];
+        Ok(Derivatives { point: self.image(inner.point), by_ray, by_parameters: vec![by_scale, [1.0, 0.0], [0.0, 1.0]] })
+    }
+
+    fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
+        self.camera.fold_towards(angle).map(|point| self.image(point))
+    }
+}

@@ -1,0 +1,242 @@
+//! Conversions between camera conventions, without loss and without silence.
+//!
+//! [`convert`] gives the same camera in another convention: by formula where the models are the same up to units, by a fit over the frame, whose residuals
+//! and region it reports, where they are not. [`naive()`] and [`Mistake`] are the conversions that go wrong, and [`difference()`] says what they cost.
+
+mod brown;
+mod covariance;
+mod difference;
+mod exact;
+mod fit;
+mod grid;
+mod mistake;
+mod naive;
+mod rotation;
+mod target;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::DMatrix;
+use thiserror::Error;
+
+use crate::PixelPoint;
+use crate::camera::{Camera, CameraModel, NoCounterpart};
+use fit::{Problem, State};
+use grid::{Sight, sights, spread};
+
+pub use difference::{Compensated, Difference, DifferenceOptions, difference};
+pub use grid::{Region, Spread, Vector};
+pub use mistake::{Mistake, Mistaken, mistaken};
+pub use naive::{Tangential, from_naive, naive};
+pub use rotation::Rotation;
+pub use target::Target;
+
+/// Largest residual that passes without a word, px.
+pub const WARNING_PX: f64 = 0.01;
+/// Largest residual that passes at all, px.
+pub const ERROR_PX: f64 = 0.5;
+/// Columns of the grid that a fit runs over. Twice as many change the fitted camera by less than a thousandth of its residuals.
+pub const COLUMNS: usize = 41;
+
+/// How to convert.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConvertOptions {
+    /// The part of the frame to fit over, and that the result holds for.
+    pub region: Region,
+    /// May a fit rotate the camera?
+    pub rotation: bool,
+    /// Largest residual that passes without a word, px.
+    pub warning_px: f64,
+    /// Largest residual that passes, px.
+    pub error_px: f64,
+    /// Take the result whatever the residuals?
+    pub accept: bool,
+    /// Columns of the grid; rows make it square.
+    pub columns: usize,
+    /// Covariance of the source's parameters, in their order and units.
+    pub covariance: Option<DMatrix<f64>>,
+}
+
+impl Default for ConvertOptions {
+    fn default() -> Self {
+        Self {
+            region: Region::Frame,
+            rotation: false,
+            warning_px: WARNING_PX,
+            error_px: ERROR_PX,
+            accept: false,
+            columns: COLUMNS,
+            covariance: None,
+        }
+    }
+}
+
+/// How a conversion was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// By formula: the same camera.
+    Exact,
+    /// By least squares over the region.
+    Fitted,
+}
+
+/// What the thresholds say of a conversion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Below both.
+    Good,
+    /// Above that of warnings.
+    Warning,
+    /// Above that of errors, and accepted.
+    Accepted,
+}
+
+/// A camera in another convention.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conversion {
+    /// The camera.
+    pub camera: Camera,
+    /// How it was found.
+    pub method: Method,
+    /// Residuals in the image over the region, on a grid twice as dense as the fit's: where the camera pictures a ray, against where the source does.
+    pub residual: Spread,
+    /// The residuals, for plots; empty if exact.
+    pub residuals: Vec<Vector>,
+    /// What it holds for.
+    pub region: Region,
+    /// Rotation of the source's rays before the camera pictures them: R in `pixel = camera(R ray)`.
+    pub rotation: Rotation,
+    /// Covariance of the camera's parameters, in their order and units, if the source had one. Without second derivatives (of the order of the
+    /// residuals); a fit's own misfit is not in it.
+    pub covariance: Option<DMatrix<f64>>,
+    /// What the thresholds say.
+    pub verdict: Verdict,
+}
+
+/// Why a camera cannot be converted or compared.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ConvertError {
+    /// The source is not one to one over the region.
+    #[error(
+        "the camera folds over {radius_px:.1} px from its principal point: {:.2} % of the frame have no ray; restrict the region to a smaller radius",
+        share * 100.0
+    )]
+    Fold {
+        /// Smallest distance of the fold from the principal point, px.
+        radius_px: f64,
+        /// Share of the frame beyond it, 0 to 1.
+        share: f64,
+    },
+    /// The target cannot picture rays of the source.
+    #[error("the target cannot picture {:.2} % of the region", share * 100.0)]
+    NotPictured {
+        /// Share of the region, 0 to 1.
+        share: f64,
+    },
+    /// The fit's residuals are too large.
+    #[error(
+        "the target differs by up to {max_px:.3} px (RMS {rms_px:.3} px) from the source, at ({:.0}, {:.0}); accept it to take it all the same", at.x, at.y
+    )]
+    Residual {
+        /// RMS, px.
+        rms_px: f64,
+        /// Largest, px.
+        max_px: f64,
+        /// Where the largest is.
+        at: PixelPoint,
+    },
+    /// The fit found no minimum.
+    #[error("the fit does not converge")]
+    NotConverged,
+    /// A parameter has no effect of its own.
+    #[error("parameter `{parameter}` cannot be estimated: the others have the same effect")]
+    NotEstimable {
+        /// Its name.
+        parameter: &'static str,
+    },
+    /// The target's shape makes no sense.
+    #[error("no such target: {fault}")]
+    Target {
+        /// What is wrong.
+        fault: &'static str,
+    },
+    /// The camera is not one of Table 2.
+    #[error("the naive conversion holds for cameras of OpenCV, Agisoft and Pix4D with k1 to k3, p1, p2 only")]
+    NotInTable,
+    /// The covariance is not that of the source.
+    #[error("the source has {expected} parameters, its covariance is {rows} x {columns}")]
+    CovarianceShape {
+        /// Parameters of the source.
+        expected: usize,
+        /// Rows given.
+        rows: usize,
+        /// Columns given.
+        columns: usize,
+    },
+    /// A ray or pixel without counterpart.
+    #[error(transparent)]
+    NoCounterpart(#[from] NoCounterpart),
+}
+
+/// `source` in the convention of `target`.
+///
+/// Exact where the target holds all terms of the source: then the region is not looked at, and a fold goes along. Otherwise least squares over a regular grid of
+/// pixels, with all parameters of the target's shape free, principal distance and point among them.
+///
+/// # Errors
+/// A source that folds over inside the region, a target that cannot picture it, residuals above `error_px` unless accepted, a covariance of another
+/// size, a parameter that the covariance asks for and the fit cannot estimate.
+pub fn convert(source: &Camera, target: Target, options: &ConvertOptions) -> Result<Conversion, ConvertError> {
+    target.check()?;
+    if let Some(camera) = exact::exact(source, &target) {
+        return exactly(source, camera, &target, options);
+    }
+    let sights = sights(source, options.region, options.columns)?;
+    let free = target.free(&target.blank(source.size()));
+    let problem = Problem { sights: &sights, free: &free, rotation: options.rotation };
+    let state = problem.solve(start(source, &target, &problem)?)?;
+    let (residual, residuals) = check(source, &state, options)?;
+    let verdict = judge(residual, options)?;
+    let propagate = |q: &DMatrix<f64>| covariance::propagate(&covariance::jacobian(&problem, &state, source)?, q);
+    let covariance = options.covariance.as_ref().map(propagate).transpose()?;
+    let (region, rotation) = (options.region, state.rotation);
+    Ok(Conversion { camera: state.camera, method: Method::Fitted, residual, residuals, region, rotation, covariance, verdict })
+}
+
+fn exactly(source: &Camera, camera: Camera, target: &Target, options: &ConvertOptions) -> Result<Conversion, ConvertError> {
+    let propagate = |q: &DMatrix<f64>| {
+        let jacobian = covariance::jacobian_of(|changed| exact::closed_form(changed, target), source).ok_or(ConvertError::NotConverged)?;
+        covariance::propagate(&jacobian, q)
+    };
+    let covariance = options.covariance.as_ref().map(propagate).transpose()?;
+    let residual = Spread { rms_px: 0.0, max_px: 0.0, at: PixelPoint::default() };
+    let (rotation, verdict) = (Rotation::identity(), Verdict::Good);
+    Ok(Conversion { camera, method: Method::Exact, residual, residuals: Vec::new(), region: Region::Frame, rotation, covariance, verdict })
+}
+
+/// The better of the camera without distortion and the one by the first-order formulas.
+fn start(source: &Camera, target: &Target, problem: &Problem) -> Result<State<Camera>, ConvertError> {
+    let state = |camera| State { camera, rotation: Rotation::identity() };
+    let plain = state(target.plain(source)?);
+    let Some(first_order) = naive::first_order(source, target).map(state) else { return Ok(plain) };
+    let cost = |state: &State<Camera>| problem.cost(state).unwrap_or(f64::INFINITY);
+    Ok(if cost(&first_order) < cost(&plain) { first_order } else { plain })
+}
+
+/// Residuals between the nodes of the fit as well.
+fn check(source: &Camera, state: &State<Camera>, options: &ConvertOptions) -> Result<(Spread, Vec<Vector>), ConvertError> {
+    let dense: Vec<Sight> = sights(source, options.region, 2 * options.columns.max(3) - 1)?;
+    let problem = Problem { sights: &dense, free: &[], rotation: false };
+    let residuals = problem.residuals(state).ok_or(ConvertError::NotPictured { share: 0.0 })?;
+    Ok((spread(&dense, &residuals), residuals))
+}
+
+fn judge(residual: Spread, options: &ConvertOptions) -> Result<Verdict, ConvertError> {
+    let Spread { rms_px, max_px, at } = residual;
+    match max_px {
+        max if max <= options.warning_px => Ok(Verdict::Good),
+        max if max <= options.error_px => Ok(Verdict::Warning),
+        _ if options.accept => Ok(Verdict::Accepted),
+        _ => Err(ConvertError::Residual { rms_px, max_px, at }),
+    }
+}

@@ -1,0 +1,151 @@
+//! Points per second of our OpenCV camera beside OpenCV's own functions. `cargo bench --workspace --bench cameras`.
+//!
+//! Rounds are interleaved (A B A B ...), so that a machine that is slower for a while is so for both; medians are printed.
+
+mod theirs;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use calibench_model::PixelPoint;
+use calibench_model::camera::opencv::{CameraFromWorld, Jacobian};
+use calibench_model::camera::{CameraModel, ImageSize, OpenCv};
+
+use theirs::Theirs;
+
+const POINTS: usize = 1_000_000;
+const ROUNDS: usize = 7;
+/// What an undistorted point may be off, px.
+const ACCURACY: f64 = 1e-9;
+
+fn main() -> opencv::Result<()> {
+    // Cargo asks for a list or a test run in some of its commands.
+    if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
+        return Ok(());
+    }
+    opencv::core::set_num_threads(1)?;
+    println!(
+        "{POINTS} points, five coefficients, one thread, medians of {ROUNDS} interleaved rounds, OpenCV {}",
+        calibench_opencv::version()
+    );
+    println!("{:<28} {:>14} {:>14} {:>8} {:>8}   largest deviation, px: ours, OpenCV's", "", "ours", "OpenCV", "ratio", "wanted");
+    let camera = camera();
+    let (pose, objects) = scene(&camera);
+    undistortion(&camera)?;
+    projection(&camera, &pose, &objects)?;
+    derivatives(&camera, &pose, &objects)
+}
+
+fn camera() -> OpenCv {
+    let mut distortion = [0.0; 14];
+    distortion[..5].copy_from_slice(&[-0.12, 0.09, 8e-4, -1.7e-3, -0.02]);
+    let size = ImageSize { width: 4000, height: 3000 };
+    OpenCv { size, fx: 3100.0, fy: 3110.0, cx: 2010.3, cy: 1490.8, distortion, coefficients: 5 }
+}
+
+fn places(camera: &OpenCv) -> Vec<PixelPoint> {
+    let along = |i: usize, step: f64, length: u32| (i as f64 * step).fract() * f64::from(length - 1);
+    (0..POINTS).map(|i| PixelPoint::new(along(i, 0.754_877_666, camera.size.width), along(i, 0.569_840_291, camera.size.height))).collect()
+}
+
+/// Object points that fill the frame of a turned and shifted camera.
+fn scene(camera: &OpenCv) -> (CameraFromWorld, Vec<[f64; 3]>) {
+    let (sin, cos) = 0.3_f64.sin_cos();
+    let pose = CameraFromWorld { rotation: [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]], translation: [0.1, -0.2, -5.0] };
+    let places = places(camera);
+    let mut tangents = vec![[0.0; 2]; places.len()];
+    camera.undistort_all(&places, &mut tangents);
+    let object = |(i, [x, y]): (usize, [f64; 2])| {
+        let depth = 4.5 + (i as f64 * 0.618_033_988_7).fract();
+        let n = [x * depth - 0.1, -y * depth + 0.2, -depth + 5.0];
+        [cos * n[0] - sin * n[1], sin * n[0] + cos * n[1], n[2]]
+    };
+    (pose, tangents.into_iter().enumerate().map(object).collect())
+}
+
+/// Points per second of both: medians of interleaved rounds, after one that warms up.
+fn race(mut ours: impl FnMut(), mut theirs: impl FnMut() -> opencv::Result<()>) -> opencv::Result<[f64; 2]> {
+    let mut times = [Vec::new(), Vec::new()];
+    for round in 0..=ROUNDS {
+        let clock = Instant::now();
+        ours();
+        let first = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        theirs()?;
+        if round > 0 {
+            times[0].push(first);
+            times[1].push(clock.elapsed().as_secs_f64());
+        }
+    }
+    Ok(times.map(|mut seconds| {
+        seconds.sort_by(f64::total_cmp);
+        POINTS as f64 / seconds[seconds.len() / 2]
+    }))
+}
+
+fn print(name: &str, [ours, theirs]: [f64; 2], wanted: f64, deviations: &str) {
+    let (million, ratio) = (1e-6, ours / theirs);
+    println!("{name:<28} {:>11.1} M/s {:>11.1} M/s {ratio:>8.1} {wanted:>8.1}   {deviations}", ours * million, theirs * million);
+}
+
+/// The largest distance between the images of `tangents` and `places`, px.
+fn residual(camera: &OpenCv, places: &[PixelPoint], tangents: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let off = |(place, [x, y]): (&PixelPoint, [f64; 2])| {
+        let pixel = camera.project(calibench_model::camera::Ray::from_tangent(x, -y));
+        pixel.map_or(f64::INFINITY, |pixel| pixel.distance(*place))
+    };
+    places.iter().zip(tangents).map(off).fold(0.0, f64::max)
+}
+
+fn undistortion(camera: &OpenCv) -> opencv::Result<()> {
+    let places = places(camera);
+    let mut ours = vec![[0.0; 2]; places.len()];
+    let mut theirs = Theirs::new(camera, &CameraFromWorld::IDENTITY, &[])?.with_places(&places);
+    // The fewest iterations with which OpenCV is as good.
+    let mut iterations = 5;
+    let reached = loop {
+        theirs.undistort(iterations)?;
+        let residual = residual(camera, &places, theirs.tangents());
+        if residual <= ACCURACY || iterations >= 200 {
+            break residual;
+        }
+        iterations += 1;
+    };
+    camera.undistort_all(&places, &mut ours);
+    let own = residual(camera, &places, ours.iter().copied());
+    let rates = race(|| camera.undistort_all(black_box(&places), &mut ours), || theirs.undistort(iterations))?;
+    print("undistortion", rates, 20.0, &format!("{own:.1e}, {reached:.1e} after {iterations} iterations"));
+    theirs.undistort(5)?;
+    let default = residual(camera, &places, theirs.tangents());
+    let rates = race(|| camera.undistort_all(black_box(&places), &mut ours), || theirs.undistort(5))?;
+    print("undistortion, OpenCV's default", rates, f64::NAN, &format!("{own:.1e}, {default:.1e} after 5 iterations"));
+    Ok(())
+}
+
+fn projection(camera: &OpenCv, pose: &CameraFromWorld, objects: &[[f64; 3]]) -> opencv::Result<()> {
+    let mut ours = vec![PixelPoint::default(); objects.len()];
+    let mut theirs = Theirs::new(camera, pose, objects)?;
+    let rates = race(|| camera.project_all(pose, black_box(objects), &mut ours), || theirs.project())?;
+    let off = ours.iter().zip(theirs.pixels()).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+    print("projection", rates, 3.0, &format!("{off:.1e} apart"));
+    Ok(())
+}
+
+fn derivatives(camera: &OpenCv, pose: &CameraFromWorld, objects: &[[f64; 3]]) -> opencv::Result<()> {
+    let (mut ours, mut jacobian) = (vec![PixelPoint::default(); objects.len()], Jacobian::default());
+    let mut theirs = Theirs::new(camera, pose, objects)?;
+    let rates = race(
+        || camera.project_all_with_derivatives(pose, black_box(objects), &mut ours, &mut jacobian),
+        || theirs.project_with_derivatives(),
+    )?;
+    // By fx to k3: the columns that mean the same.
+    let mut off = 0.0_f64;
+    for point in (0..objects.len()).step_by(997) {
+        for column in 6..15 {
+            let (a, b) = (jacobian.at(point, column), theirs.derivative(point, column)?);
+            off = off.max((a[0] - b[0]).hypot(a[1] - b[1]) / (1.0 + a[0].hypot(a[1])));
+        }
+    }
+    print("projection, derivatives", rates, 5.0, &format!("{off:.1e} apart, relative; {} columns each", jacobian.columns()));
+    Ok(())
+}

@@ -1,0 +1,82 @@
+//! OpenCV's functions on the same points.
+
+use calibench_model::PixelPoint;
+use calibench_model::camera::OpenCv;
+use calibench_model::camera::opencv::CameraFromWorld;
+use opencv::core::{Mat, MatTraitConst, Point2d, Point3d, TermCriteria, TermCriteria_COUNT, Vec3d, no_array};
+
+/// A camera, points, and places for results that are used again.
+pub(crate) struct Theirs {
+    matrix: Mat,
+    distortion: Mat,
+    rotation: Mat,
+    translation: Vec3d,
+    objects: Vec<Point3d>,
+    from: Vec<Point2d>,
+    to: Vec<Point2d>,
+    jacobian: Mat,
+}
+
+impl Theirs {
+    pub(crate) fn new(camera: &OpenCv, pose: &CameraFromWorld, objects: &[[f64; 3]]) -> opencv::Result<Self> {
+        let matrix = Mat::from_slice_2d(&[[camera.fx, 0.0, camera.cx], [0.0, camera.fy, camera.cy], [0.0, 0.0, 1.0]])?;
+        let distortion = Mat::from_slice(&camera.distortion[..camera.coefficients])?.try_clone()?;
+        // y down and z forward.
+        let [x, y, z] = pose.rotation;
+        let turned = Mat::from_slice_2d(&[x, y.map(|v| -v), z.map(|v| -v)])?;
+        let mut rotation = Mat::default();
+        opencv::calib3d::rodrigues_def(&turned, &mut rotation)?;
+        let [x, y, z] = pose.translation;
+        let translation = Vec3d::from([x, -y, -z]);
+        let objects: Vec<Point3d> = objects.iter().map(|[x, y, z]| Point3d::new(*x, *y, *z)).collect();
+        let to = vec![Point2d::default(); objects.len()];
+        Ok(Self { matrix, distortion, rotation, translation, objects, from: Vec::new(), to, jacobian: Mat::default() })
+    }
+
+    pub(crate) fn with_places(mut self, places: &[PixelPoint]) -> Self {
+        self.from = places.iter().map(|place| Point2d::new(place.x, place.y)).collect();
+        self.to = vec![Point2d::default(); places.len()];
+        self
+    }
+
+    pub(crate) fn undistort(&mut self, iterations: i32) -> opencv::Result<()> {
+        let criteria = TermCriteria::new(TermCriteria_COUNT, iterations, 0.0)?;
+        let mut to = Mat::from_slice_mut(&mut self.to)?;
+        opencv::calib3d::undistort_points_iter(
+            &Mat::from_slice(&self.from)?,
+            &mut to,
+            &self.matrix,
+            &self.distortion,
+            &no_array(),
+            &no_array(),
+            criteria,
+        )
+    }
+
+    pub(crate) fn tangents(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.to.iter().map(|point| [point.x, point.y])
+    }
+
+    pub(crate) fn pixels(&self) -> impl Iterator<Item = PixelPoint> {
+        self.to.iter().map(|point| PixelPoint::new(point.x, point.y))
+    }
+
+    pub(crate) fn project(&mut self) -> opencv::Result<()> {
+        let objects = Mat::from_slice(&self.objects)?;
+        let mut to = Mat::from_slice_mut(&mut self.to)?;
+        opencv::calib3d::project_points_def(&objects, &self.rotation, &self.translation, &self.matrix, &self.distortion, &mut to)
+    }
+
+    pub(crate) fn project_with_derivatives(&mut self) -> opencv::Result<()> {
+        let objects = Mat::from_slice(&self.objects)?;
+        let mut to = Mat::from_slice_mut(&mut self.to)?;
+        let Self { rotation, translation, matrix, distortion, jacobian, .. } = self;
+        opencv::calib3d::project_points(&objects, rotation, translation, matrix, distortion, &mut to, jacobian, 0.0)
+    }
+
+    /// d(x, y) / d(column): rotation vector, translation, fx, fy, cx, cy, coefficients.
+    pub(crate) fn derivative(&self, point: usize, column: usize) -> opencv::Result<[f64; 2]> {
+        let at = |row: usize| self.jacobian.at_2d::<f64>(row as i32, column as i32).copied();
+        Ok([at(2 * point)?, at(2 * point + 1)?])
+    }
+}
