@@ -4,7 +4,11 @@ use std::fmt::Write;
 
 use clap::ValueEnum;
 
+use calibench_exchange::camera::FORMATS;
+use calibench_model::camera::{Convention, Verification};
+
 use super::context::Context;
+use super::target::TARGETS;
 use super::{Failure, print};
 use crate::published;
 use calibench_measure::registry::Build;
@@ -16,6 +20,8 @@ pub enum What {
     Scenarios,
     /// Methods and their parameters
     Methods,
+    /// Conventions of cameras and formats of camera files, and what of them is verified
+    Conventions,
     /// Published tables and the scenarios behind them
     Tables,
 }
@@ -24,6 +30,7 @@ pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
     print(&match what {
         What::Scenarios => scenarios(context)?,
         What::Methods => methods(context),
+        What::Conventions => conventions(),
         What::Tables => tables(context)?,
     })
 }
@@ -49,6 +56,36 @@ fn methods(context: &Context<'_>) -> String {
         if let Build::Unavailable(why) = method.build {
             let _ = writeln!(text, "    unavailable: {why}");
         }
+    }
+    text
+}
+
+fn conventions() -> String {
+    let mut text = String::from("conventions\n");
+    for convention in calibench_model::camera::conventions() {
+        let Convention { name, about, version, direction, pixel_origin, y, order, normalisation, source, verification, .. } = convention;
+        let _ = writeln!(text, "  {name}: {about}");
+        let _ =
+            writeln!(text, "      {direction:?}, y {y:?}, origin {pixel_origin:?}, p1 and p2 in the order of {order:?}, {normalisation}");
+        if !version.is_empty() {
+            let _ = writeln!(text, "      versions: {version}");
+        }
+        let _ = writeln!(text, "      source: {source}");
+        let _ = match verification {
+            Verification::Verified(proof) => writeln!(text, "      verified: {proof}"),
+            Verification::Unverified(open) => writeln!(text, "      unverified: {open}"),
+            Verification::Definition => writeln!(text, "      a definition of its own"),
+        };
+    }
+    text.push_str("\nfile formats\n");
+    for format in FORMATS {
+        let access = if format.is_written() { "read and written" } else { "read" };
+        let _ = writeln!(text, "  {} (.{}): {}, {}; {access}", format.name, format.extension, format.tool, format.versions);
+        let _ = writeln!(text, "      {}", format.verified.map_or("unverified".to_owned(), |proof| format!("verified: {proof}")));
+    }
+    text.push_str("\ntargets of `convert --to`\n");
+    for (name, about) in TARGETS {
+        let _ = writeln!(text, "  {name}: {about}");
     }
     text
 }

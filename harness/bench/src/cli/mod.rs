@@ -1,7 +1,9 @@
 //! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
 
+mod camera;
 mod check;
 mod context;
+mod convert;
 mod detect;
 mod list;
 mod measure;
@@ -9,6 +11,7 @@ mod progress;
 mod report;
 mod run;
 mod show;
+mod target;
 
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -67,6 +70,12 @@ enum Command {
     Measure(measure::Measure),
     /// Find a chessboard's corners in photographs: approximate positions for `measure`
     Detect(detect::Detect),
+    /// Convert a camera file to another convention
+    Convert(convert::Convert),
+    /// Show what is in a camera file: parameters, field of view, distortion, fold-over
+    Camera(camera::CameraCommand),
+    /// Say how far two cameras differ, in px over the frame, after the best rotation
+    Diff(convert::Diff),
     /// Print the JSON Schema of scenario files, for editors
     Schema,
 }
@@ -117,6 +126,9 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Bless(bless) => bless.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
+        Command::Convert(convert) => convert.run(&context),
+        Command::Camera(camera) => camera.run(),
+        Command::Diff(diff) => diff.run(),
         Command::Schema => print(&format!("{:#}\n", crate::scenario::schema::schema(&toolbox.registry))),
     }
 }

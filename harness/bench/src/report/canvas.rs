@@ -163,7 +163,8 @@ impl Canvas {
     }
 
     // Drawing into memory can only fail outside the picture, where nothing is to be seen.
-    fn paint(&mut self, draw: impl FnOnce(&DrawingArea<BitMapBackend<'_>, plotters::coord::Shift>)) {
+    /// Draws into the picture.
+    pub fn paint(&mut self, draw: impl FnOnce(&DrawingArea<BitMapBackend<'_>, plotters::coord::Shift>)) {
         let area = BitMapBackend::with_buffer(&mut self.pixels, (self.width, self.height)).into_drawing_area();
         draw(&area);
         area.present().ok();

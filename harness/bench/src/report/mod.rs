@@ -1,6 +1,7 @@
 //! Reports: Markdown and PNG, a pure function of records and published tables.
 
 mod canvas;
+mod field;
 mod figures;
 mod load;
 mod markdown;
@@ -20,6 +21,7 @@ use thiserror::Error;
 use crate::published::{self, PublishedError};
 use crate::scenario::Subject;
 pub use canvas::Canvas;
+pub use field::{Field, plain};
 pub use load::{LoadError, Loaded, load, recorded};
 pub use scene_figures::preview;
 

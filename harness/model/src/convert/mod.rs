@@ -203,6 +203,11 @@ pub fn convert(source: &Camera, target: Target, options: &ConvertOptions) -> Res
     Ok(Conversion { camera: state.camera, method: Method::Fitted, residual, residuals, region, rotation, covariance, verdict })
 }
 
+/// The camera without distortion that agrees with `source` on its axis and beside it, as OpenCV's; `None` if there is none.
+pub fn without_distortion(source: &Camera) -> Option<Camera> {
+    Target::OpenCv { coefficients: 4 }.plain(source).ok()
+}
+
 fn exactly(source: &Camera, camera: Camera, target: &Target, options: &ConvertOptions) -> Result<Conversion, ConvertError> {
     let propagate = |q: &DMatrix<f64>| {
         let jacobian = covariance::jacobian_of(|changed| exact::closed_form(changed, target), source).ok_or(ConvertError::NotConverged)?;

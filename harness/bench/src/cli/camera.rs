@@ -1,0 +1,176 @@
+//! `calibench camera`: what is in a camera file.
+
+use std::path::PathBuf;
+
+use calibench_exchange::camera::{CameraFile, NamedCamera, ReadOptions, read_camera_with};
+use calibench_model::PixelPoint;
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
+use calibench_model::convert::without_distortion;
+use clap::Args;
+
+use super::{Failure, print};
+use crate::report::plain;
+
+/// What a camera file may leave open.
+#[derive(Args)]
+pub struct Reading {
+    /// Size of the images, for files that do not state it
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<ImageSize>,
+    /// The file's OpenCV camera is the fisheye, though it does not say so
+    #[arg(long)]
+    fisheye: bool,
+    /// Which camera of a file that holds several [default: the first]
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+}
+
+impl Reading {
+    pub fn file(&self, path: &std::path::Path) -> Result<CameraFile, Failure> {
+        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true) };
+        Ok(read_camera_with(path, &options)?)
+    }
+
+    /// The camera that is meant, with a word on standard error about what was assumed and left out.
+    pub fn one(&self, path: &std::path::Path) -> Result<NamedCamera, Failure> {
+        let file = self.file(path)?;
+        let count = file.cameras.len();
+        let chosen = match &self.camera {
+            None => file.cameras.into_iter().next(),
+            Some(name) => file.cameras.into_iter().find(|camera| camera.name == *name),
+        };
+        let chosen = chosen
+            .ok_or_else(|| Failure::input(format!("{}: no camera is called {}", path.display(), self.camera.as_deref().unwrap_or(""))))?;
+        if count > 1 && self.camera.is_none() {
+            eprintln!("{}: the first of {count} cameras, `{}`; choose with --camera NAME", path.display(), chosen.name);
+        }
+        for note in &chosen.notes {
+            eprintln!("{}: {note}", path.display());
+        }
+        Ok(chosen)
+    }
+}
+
+fn size(text: &str) -> Result<ImageSize, String> {
+    let side = |text: &str| text.parse().ok().filter(|n| *n > 0);
+    let size = text.split_once(['x', 'X']).and_then(|(w, h)| Some(ImageSize { width: side(w)?, height: side(h)? }));
+    size.ok_or_else(|| "expected columns x rows, as in 4272x2848".into())
+}
+
+#[derive(Args)]
+pub struct CameraCommand {
+    /// A camera file of any known format
+    file: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+impl CameraCommand {
+    pub fn run(&self) -> Result<(), Failure> {
+        let file = self.reading.file(&self.file)?;
+        let (format, count) = (file.format, file.cameras.len());
+        let camera = self.reading.one(&self.file)?;
+        let verified = format.verified.map_or("unverified".to_owned(), |proof| format!("verified: {proof}"));
+        let cameras = if count == 1 { "1 camera".to_owned() } else { format!("{count} cameras") };
+        let mut text = format!(
+            "{}\n  format      {} ({}, {}), {verified}\n  holds       {cameras}\n",
+            self.file.display(),
+            format.name,
+            format.tool,
+            format.versions
+        );
+        text.push_str(&card(&camera));
+        print(&text)
+    }
+}
+
+/// A readable card of a camera.
+pub fn card(named: &NamedCamera) -> String {
+    let camera = &named.camera;
+    let size = camera.size();
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| text.push_str(&format!("  {name:<11} {value}\n"));
+    if !named.name.is_empty() {
+        line("name", named.name.clone());
+    }
+    let convention = camera.convention();
+    line("convention", format!("{}: {}", convention.name, convention.about));
+    line("size", format!("{} x {} px", size.width, size.height));
+    if let Some(pitch) = named.pitch_um {
+        line(
+            "pitch",
+            format!(
+                "{} um, so the sensor is {} x {} mm",
+                plain(pitch),
+                plain(f64::from(size.width) * pitch * 1e-3),
+                plain(f64::from(size.height) * pitch * 1e-3)
+            ),
+        );
+    }
+    for parameter in camera.parameters() {
+        line(parameter.name, format!("{} {}", parameter.value, parameter.unit).trim_end().to_owned());
+    }
+    line("view", view(camera));
+    line("distortion", distortion(camera));
+    line("one to one", one_to_one(camera));
+    if let Some(covariance) = &named.covariance {
+        line("covariance", format!("of {}", covariance.parameters.join(", ")));
+    }
+    for note in &named.notes {
+        line("note", note.clone());
+    }
+    text
+}
+
+fn middles(size: ImageSize) -> (f64, f64) {
+    (f64::from(size.width - 1) / 2.0, f64::from(size.height - 1) / 2.0)
+}
+
+/// Angles between the rays of opposite sides and corners.
+fn view(camera: &Camera) -> String {
+    let size = camera.size();
+    let ((mx, my), (right, down)) = (middles(size), (f64::from(size.width - 1), f64::from(size.height - 1)));
+    let angle = |a: (f64, f64), b: (f64, f64)| {
+        let ray = |(x, y)| camera.unproject(PixelPoint::new(x, y)).ok();
+        ray(a).zip(ray(b)).map_or("no ray".to_owned(), |(a, b)| format!("{:.2}\u{b0}", a.angle_to(b).to_degrees()))
+    };
+    format!(
+        "{} wide, {} high, {} from corner to corner",
+        angle((0.0, my), (right, my)),
+        angle((mx, 0.0), (mx, down)),
+        angle((0.0, 0.0), (right, down))
+    )
+}
+
+/// How far the corners are from where the same camera without distortion pictures their rays.
+fn distortion(camera: &Camera) -> String {
+    let size = camera.size();
+    let Some(ideal) = without_distortion(camera) else {
+        return "not known: no camera without distortion agrees with it on its axis".into();
+    };
+    let (right, down) = (f64::from(size.width - 1), f64::from(size.height - 1));
+    let corner = |x: f64, y: f64| {
+        let at = PixelPoint::new(x, y);
+        let there = camera.unproject(at).and_then(|ray| ideal.project(ray));
+        there.map_or("no ray".to_owned(), |ideal| format!("{} px", plain(ideal.distance(at))))
+    };
+    format!(
+        "{}, {}, {}, {} in the corners (clockwise from top left)",
+        corner(0.0, 0.0),
+        corner(right, 0.0),
+        corner(right, down),
+        corner(0.0, down)
+    )
+}
+
+fn one_to_one(camera: &Camera) -> String {
+    let axis = camera.project(Ray::from_tangent(0.0, 0.0)).ok();
+    match (fold(camera), axis) {
+        (None, _) => "over the whole frame".into(),
+        (Some(fold), _) => format!(
+            "only to {} px from the image of the axis: there the distortion folds over; {:.2} % of the frame have no ray",
+            plain(fold.radius_px),
+            100.0 * fold.share
+        ),
+    }
+}

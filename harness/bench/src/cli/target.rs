@@ -1,0 +1,91 @@
+//! What `--to` names: a convention, its shape, and the file format that holds it.
+
+use std::path::Path;
+
+use calibench_exchange::camera::{CameraFormat, NamedCamera, format_named};
+use calibench_model::camera::{AgisoftVersion, CameraModel, TangentialOrder};
+use calibench_model::convert::Target;
+
+use super::Failure;
+use crate::scenario::problem::nearest;
+
+/// The names that `--to` knows, with what they mean.
+pub const TARGETS: [(&str, &str); 11] = [
+    ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
+    ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
+    ("opencv", "OpenCV with five coefficients; also opencv4, opencv5, opencv8, opencv12, opencv14"),
+    ("opencv4", "k1, k2, p1, p2"),
+    ("opencv8", "rational: k4 to k6 as well"),
+    ("opencv12", "thin prism: s1 to s4 as well"),
+    ("opencv14", "tilt as well"),
+    ("opencv-fisheye", "OpenCV's fisheye"),
+    ("metashape", "Metashape, PhotoScan from 1.2: k1 to k3, p1, p2, b1, b2"),
+    ("pix4d", "Pix4D's .cam (needs the pixel pitch)"),
+    ("pix4d-inpho", "Pix4D's .cam for INPHO (needs the pixel pitch)"),
+];
+
+/// A target and the format of its file.
+pub struct Goal {
+    /// The convention and its shape.
+    pub target: Target,
+    /// The file format.
+    pub format: &'static CameraFormat,
+}
+
+/// What decides a target besides its name.
+pub struct Given<'a> {
+    /// The camera to be converted.
+    pub source: &'a NamedCamera,
+    /// Pixel pitch, um, if the user gave it.
+    pub pitch_um: Option<f64>,
+    /// Spacing of Ebner's grid, mm, if given.
+    pub base_mm: Option<f64>,
+    /// Where the file goes: its ending decides between YAML and XML.
+    pub output: Option<&'a Path>,
+}
+
+impl Given<'_> {
+    fn pitch(&self, name: &str) -> Result<f64, Failure> {
+        self.pitch_um.or(self.source.pitch_um).ok_or_else(|| {
+            Failure::input(format!(
+                "--to {name} is in mm and the file states no pixel pitch: give it with --pitch UM (width of the sensor over columns)"
+            ))
+        })
+    }
+}
+
+/// The target called `name`.
+pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
+    let xml = given.output.is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")));
+    let opencv = if xml { "opencv-xml" } else { "opencv-yaml" };
+    let sensor_width = |pitch_um: f64| f64::from(given.source.camera.size().width) * pitch_um * 1e-3;
+    let (target, format) = match name {
+        "photogrammetric" => (Target::photogrammetric(given.pitch(name)?), "photogrammetric"),
+        "ebner" => {
+            let b_mm = given.base_mm.ok_or_else(|| Failure::input("--to ebner needs the spacing of the grid: give it with --base MM"))?;
+            (Target::Ebner { pitch_um: given.pitch(name)?, b_mm }, "photogrammetric")
+        }
+        "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
+        "metashape" => (Target::metashape(), "metashape"),
+        "pix4d" | "pix4d-inpho" => {
+            (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: TangentialOrder::OpenCv }, name)
+        }
+        "photoscan" | "agisoft-lens" => {
+            let version = if name == "photoscan" { AgisoftVersion::PhotoScan } else { AgisoftVersion::Lens };
+            let flag = "files of this version are read, not written; convert --to metashape";
+            return Err(Failure::input(format!("--to {name}: {flag} ({version:?})")));
+        }
+        _ => match name.strip_prefix("opencv").map(|n| if n.is_empty() { Ok(5) } else { n.parse() }) {
+            Some(Ok(coefficients @ (4 | 5 | 8 | 12 | 14))) => (Target::OpenCv { coefficients }, opencv),
+            _ => return Err(unknown(name)),
+        },
+    };
+    let format = format_named(format).ok_or_else(|| Failure::input(format!("no file format is called {format}")))?;
+    Ok(Goal { target, format })
+}
+
+fn unknown(name: &str) -> Failure {
+    let known = TARGETS.map(|(name, _)| name);
+    let near = nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    Failure::input(format!("--to {name}: no such target; known are {}{near}", known.join(", ")))
+}
