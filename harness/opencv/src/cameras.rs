@@ -79,7 +79,8 @@ fn undistorted_points_agree_with_opencv_s() {
 
 #[test]
 fn fisheye_projections_agree_with_opencv_s() {
-    let camera = OpenCvFisheye { size: SIZE, fx: 1500.0, fy: 1505.0, cx: 2010.3, cy: 1490.8, skew: 0.002, k: [-0.02, 0.006, -0.004, 0.0005] };
+    let camera =
+        OpenCvFisheye { size: SIZE, fx: 1500.0, fy: 1505.0, cx: 2010.3, cy: 1490.8, skew: 0.002, k: [-0.02, 0.006, -0.004, 0.0005] };
     // OpenCV divides by Z: rays before the camera only.
     let rays: Vec<Ray> = places().filter_map(|place| camera.unproject(place).ok()).filter(|ray| ray.z < -0.02).collect();
     assert!(rays.len() > POINTS / 2, "{}", rays.len());
