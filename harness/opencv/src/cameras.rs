@@ -2,7 +2,7 @@
 
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize, OpenCv, OpenCvFisheye, Ray};
-use opencv::core::{Mat, Point2d, Point3d, TermCriteria, TermCriteria_COUNT, Vec3d, no_array};
+use opencv::core::{Mat, MatTraitConst, Point2d, Point3d, TermCriteria, TermCriteria_COUNT, Vec3d, no_array};
 
 const POINTS: usize = 100_000;
 const SIZE: ImageSize = ImageSize { width: 4000, height: 3000 };

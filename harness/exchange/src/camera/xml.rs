@@ -115,6 +115,8 @@ pub(super) fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
+            // OpenCV refuses the bare character.
+            '\'' => out.push_str("&apos;"),
             '\t' | '\n' | '\r' => out.push_str(&format!("&#{};", c as u32)),
             // XML has no way to write other control characters.
             c if c.is_control() => out.push('\u{fffd}'),

@@ -3,7 +3,7 @@
 use calibench_model::PixelPoint;
 use calibench_model::camera::OpenCv;
 use calibench_model::camera::opencv::CameraFromWorld;
-use opencv::core::{Mat, MatTraitConst, Point2d, Point3d, TermCriteria, TermCriteria_COUNT, Vec3d, no_array};
+use opencv::core::{Mat, MatTraitConst, Point2d, Point3d, TermCriteria, TermCriteria_COUNT, TermCriteria_EPS, Vec3d, no_array};
 
 /// A camera, points, and places for results that are used again.
 pub(crate) struct Theirs {
@@ -39,8 +39,17 @@ impl Theirs {
         self
     }
 
+    /// A fixed number of iterations.
     pub(crate) fn undistort(&mut self, iterations: i32) -> opencv::Result<()> {
-        let criteria = TermCriteria::new(TermCriteria_COUNT, iterations, 0.0)?;
+        self.undistort_until(TermCriteria::new(TermCriteria_COUNT, iterations, 0.0)?)
+    }
+
+    /// Until OpenCV's own measure of accuracy is reached.
+    pub(crate) fn undistort_to(&mut self, accuracy: f64) -> opencv::Result<()> {
+        self.undistort_until(TermCriteria::new(TermCriteria_COUNT | TermCriteria_EPS, 200, accuracy)?)
+    }
+
+    fn undistort_until(&mut self, criteria: TermCriteria) -> opencv::Result<()> {
         let mut to = Mat::from_slice_mut(&mut self.to)?;
         opencv::calib3d::undistort_points_iter(
             &Mat::from_slice(&self.from)?,

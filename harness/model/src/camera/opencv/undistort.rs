@@ -3,18 +3,16 @@
 use multiversion::multiversion;
 use nalgebra::{SMatrix, SVector};
 
+use super::jacobian::LANES;
 use super::lens::{Five, Lens, Twelve};
 use super::region::{self, Region};
 use super::{OpenCv, tilt};
 use crate::PixelPoint;
 use crate::camera::{CameraModel, Ray};
 
-/// Points that are worked on together; the compiler takes as many at a time as the machine has lanes. Every point's arithmetic is its own, so the
-/// bits do not depend on it.
-const CHUNK: usize = 64;
 /// Coefficients of the first guess.
 const GUESS: usize = 8;
-/// Product of the last two steps, px times tangent: the error left is a small multiple of it.
+/// Product of the last two steps, px: the error left is a small multiple of it.
 const CLOSED: f64 = 1e-11;
 
 /// What the loop needs of a camera.
@@ -93,26 +91,27 @@ fn twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[PixelPoint], tangents: &
 
 #[inline(always)]
 fn all<L: Lens>(job: &Job<L>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
-    for (points, tangents) in points.chunks(CHUNK).zip(tangents.chunks_mut(CHUNK)) {
-        let mut open = 0_u64;
-        match job.untilt {
-            None => {
-                for (point, tangent) in points.iter().zip(tangents.iter_mut()) {
-                    let (found, closed) = solve(job, distorted(job, point));
-                    *tangent = found;
-                    open += u64::from(!closed);
-                }
-            }
-            Some(rows) => {
-                for (point, tangent) in points.iter().zip(tangents.iter_mut()) {
-                    let (found, closed) = solve(job, project(&rows, distorted(job, point)));
-                    *tangent = found;
-                    open += u64::from(!closed);
-                }
+    for (points, tangents) in points.chunks(LANES).zip(tangents.chunks_mut(LANES)) {
+        let mut goals = [[0.0; LANES]; 2];
+        for (lane, point) in points.iter().enumerate() {
+            [goals[0][lane], goals[1][lane]] = distorted(job, point);
+        }
+        if let Some(rows) = &job.untilt {
+            for lane in 0..LANES {
+                [goals[0][lane], goals[1][lane]] = project(rows, [goals[0][lane], goals[1][lane]]);
             }
         }
-        if open > 0 {
-            one_by_one(job, camera, points, tangents);
+        let (mut found, mut left) = ([[0.0; LANES]; 2], [0.0; LANES]);
+        for lane in 0..LANES {
+            let (at, misclosure) = solve(job, [goals[0][lane], goals[1][lane]]);
+            ([found[0][lane], found[1][lane]], left[lane]) = (at, misclosure);
+        }
+        for (lane, tangent) in tangents.iter_mut().enumerate() {
+            *tangent = [found[0][lane], found[1][lane]];
+        }
+        let closed = left.iter().fold(true, |all, left| all & (*left <= CLOSED));
+        if !closed {
+            one_by_one(camera, points, tangents, &left);
         }
     }
 }
@@ -128,14 +127,13 @@ fn project(rows: &[[f64; 3]; 3], [x, y]: [f64; 2]) -> [f64; 2] {
     [u / w, v / w]
 }
 
-/// Ideal tangents of distorted ones, and whether they are certain. Newton's step, then a second one with the same derivatives: after a guess that is
-/// good to 1e-5 the error left is the product of both.
+/// Ideal tangents of distorted ones, and about how far they may be off, px; infinite where the camera may fold. Newton's step, then a second one with
+/// the same derivatives: after a good guess the error left is the product of both.
 #[inline(always)]
-fn solve<L: Lens>(job: &Job<L>, goal @ [gx, gy]: [f64; 2]) -> ([f64; 2], bool) {
-    let [x, y] = radial(job, goal);
-    let [rx, ry] = job.lens.rest([x, y]);
-    let [x, y] = radial(job, [gx - rx, gy - ry]);
-    let s = job.lens.slope([x, y]);
+fn solve<L: Lens>(job: &Job<L>, goal @ [gx, gy]: [f64; 2]) -> ([f64; 2], f64) {
+    let [rx, ry] = job.lens.rest(radial(job, goal));
+    let guess @ [x, y] = radial(job, [gx - rx, gy - ry]);
+    let s = job.lens.slope(guess);
     let inverse = 1.0 / (s.by[0][0] * s.by[1][1] - s.by[0][1] * s.by[1][0]);
     let step = |value: [f64; 2]| {
         let (ex, ey) = (gx - value[0], gy - value[1]);
@@ -147,9 +145,8 @@ fn solve<L: Lens>(job: &Job<L>, goal @ [gx, gy]: [f64; 2]) -> ([f64; 2], bool) {
     let [rx, ry] = job.lens.rest([x, y]);
     let [ex, ey] = step([x * q + rx, y * q + ry]);
     let (x, y) = (x + ex, y + ey);
-    let (first, second) = (dx.abs() + dy.abs(), ex.abs() + ey.abs());
-    let closed = (first * second * job.focal <= CLOSED) & (x * x + y * y <= job.safe) & (first <= 0.01);
-    ([x, y], closed)
+    let left = (dx.abs() + dy.abs()) * (ex.abs() + ey.abs()) * job.focal;
+    ([x, y], if x * x + y * y <= job.safe { left } else { f64::INFINITY })
 }
 
 #[inline(always)]
@@ -163,11 +160,11 @@ fn radial<L>(job: &Job<L>, [x, y]: [f64; 2]) -> [f64; 2] {
 
 /// The points of a chunk that the loop could not settle.
 #[inline(never)]
-fn one_by_one<L: Lens>(job: &Job<L>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
-    for (point, tangent) in points.iter().zip(tangents) {
-        let goal = distorted(job, point);
-        let (_, closed) = solve(job, job.untilt.map_or(goal, |rows| project(&rows, goal)));
-        if !closed {
+fn one_by_one(camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]], left: &[f64]) {
+    for ((point, tangent), left) in points.iter().zip(tangents).zip(left) {
+        // Not a number is not settled either.
+        let settled = *left <= CLOSED;
+        if !settled {
             *tangent = camera.unproject(*point).ok().and_then(Ray::tangent).map_or([f64::NAN; 2], |(x, y)| [x, -y]);
         }
     }
