@@ -70,8 +70,9 @@ impl Context<'_> {
     /// Where records, published tables and reports are.
     pub fn places(&self) -> Result<Places, Failure> {
         let root = self.root()?;
-        let [records, published, reports] = ["records", "reference/published", "reports"].map(|folder| root.join(folder));
-        Ok(Places { records, published, reports })
+        let [records, published, cameras, reports] =
+            ["records", "reference/published", "reference/cameras", "reports"].map(|folder| root.join(folder));
+        Ok(Places { records, published, cameras, reports })
     }
 
     /// The code's revision for records: that of the checkout, or the version of the program outside of one.

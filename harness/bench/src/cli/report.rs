@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::Failure;
 use super::context::Context;
-use crate::report::{self, Written};
+use crate::report::{self, Written, conventions};
 use crate::scenario::problem::nearest;
 
 #[derive(Args)]
@@ -27,6 +27,7 @@ impl Report {
         for name in names {
             families.entry(name.split('/').next().unwrap_or(&name).to_owned()).or_default().push(name);
         }
+        families.insert(conventions::FAMILY.to_owned(), Vec::new());
         for paper in &self.papers {
             if !families.contains_key(paper) {
                 let known: Vec<&str> = families.keys().map(String::as_str).collect();
@@ -35,8 +36,16 @@ impl Report {
             }
         }
         for (family, scenarios) in &families {
-            if self.papers.is_empty() || self.papers.contains(family) {
-                match report::write(&places, family, scenarios, &context.toolbox.registry)? {
+            if !self.papers.is_empty() && !self.papers.contains(family) {
+                continue;
+            }
+            let written = if family == conventions::FAMILY {
+                Written::New(conventions::write(&places)?)
+            } else {
+                report::write(&places, family, scenarios, &context.toolbox.registry)?
+            };
+            {
+                match written {
                     Written::New(page) if !context.quiet => eprintln!("{}", page.display()),
                     Written::Kept(page) if !context.quiet => {
                         eprintln!("{}: kept as it is, nothing of it can be measured here", page.display());

@@ -68,7 +68,7 @@ impl Field {
         let stretch = stretch(width / ARROWS as f64 * 1.2, top);
         if longest > 1e-12 {
             canvas.paint(|area| self.arrows(area, map, stretch));
-            canvas.text(&format!("arrows {} times too long; longest {} px", plain(stretch), plain(longest)), 16, (LEFT, TOP + map.1 + 60));
+            canvas.text(&format!("arrows {stretch} times too long; longest {} px", plain(longest)), 16, (LEFT, TOP + map.1 + 60));
         } else {
             canvas.text("no difference", 16, (LEFT, TOP + map.1 + 60));
         }
@@ -108,7 +108,7 @@ impl Field {
 
     fn arrows(&self, area: &Area<'_>, map: (u32, u32), stretch: f64) {
         let (columns, rows) = self.grid;
-        let every = (columns.max(rows) / ARROWS).max(1);
+        let every = columns.max(rows).div_ceil(ARROWS).max(1);
         for row in (every / 2..rows).step_by(every) {
             for column in (every / 2..columns).step_by(every) {
                 let (at, Some((dx, dy))) = self.vectors[row * columns + column] else { continue };

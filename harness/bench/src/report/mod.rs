@@ -1,6 +1,7 @@
 //! Reports: Markdown and PNG, a pure function of records and published tables.
 
 mod canvas;
+pub mod conventions;
 mod field;
 mod figures;
 mod load;
@@ -35,6 +36,8 @@ pub struct Places {
     pub records: PathBuf,
     /// Published tables, one folder a paper.
     pub published: PathBuf,
+    /// Published cameras.
+    pub cameras: PathBuf,
     /// Reports, one folder a family of scenarios.
     pub reports: PathBuf,
 }
@@ -48,6 +51,12 @@ pub enum ReportError {
     /// Its published tables.
     #[error(transparent)]
     Published(#[from] PublishedError),
+    /// Its published cameras.
+    #[error(transparent)]
+    Cameras(crate::scenario::Problems),
+    /// Its conversions.
+    #[error(transparent)]
+    Convert(#[from] calibench_model::convert::ConvertError),
     /// Its files.
     #[error("{0}")]
     Output(#[from] io::Error),

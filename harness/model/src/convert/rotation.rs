@@ -27,7 +27,10 @@ impl Rotation {
 
     /// The angle, radians.
     pub fn angle(&self) -> f64 {
-        self.0.angle()
+        // From the antisymmetric part as well: the trace alone loses small angles.
+        let m = self.0.matrix();
+        let sine = Vector3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]).norm();
+        sine.atan2(m.trace() - 1.0)
     }
 
     /// The rotated ray.

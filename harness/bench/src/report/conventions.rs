@@ -1,0 +1,198 @@
+//! What each common mistake in converting a camera costs: px over the frame, mm on an object.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::FolderWriter;
+use calibench_model::camera::{Camera, Fold, ImageSize, Photogrammetric, fold};
+use calibench_model::convert::{
+    ConvertError, ConvertOptions, Difference, DifferenceOptions, Mistake, Region, Tangential, Target, Vector, difference, from_naive,
+    mistaken,
+};
+use serde::Deserialize;
+
+use super::canvas::Canvas;
+use super::field::{Field, plain};
+use super::markdown::MarkdownTable;
+use super::{PAGE, Places, ReportError};
+use crate::scenario::{Problem, Problems};
+
+/// The family of this report.
+pub const FAMILY: &str = "conventions";
+
+/// The cameras of a paper: `reference/cameras/*.toml`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Cameras {
+    title: String,
+    source: String,
+    width: u32,
+    height: u32,
+    pitch_um: f64,
+    wrong_pitch_um: f64,
+    distance_m: f64,
+    read_as: String,
+    camera: Vec<Printed>,
+}
+
+/// A camera as printed: photogrammetric by the direct conversion.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Printed {
+    name: String,
+    #[serde(default)]
+    note: Option<String>,
+    c_mm: f64,
+    x0_mm: f64,
+    y0_mm: f64,
+    k: [f64; 3],
+    p: [f64; 2],
+}
+
+/// Writes the report and returns its page's path.
+///
+/// # Errors
+/// A file of cameras that cannot be read, a camera that cannot be converted.
+pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
+    let mut text = String::from(INTRODUCTION);
+    let mut pictures = Vec::new();
+    for path in files(&places.cameras)? {
+        section(&read(&path)?, &mut text, &mut pictures)?;
+    }
+    let writer = FolderWriter::new(&places.reports)?;
+    writer.replace(FAMILY, |folder| -> Result<(), ReportError> {
+        for (name, picture) in &pictures {
+            picture.write(&folder.join(name))?;
+        }
+        Ok(fs::write(folder.join(PAGE), text.trim_end().to_owned() + "\n")?)
+    })?;
+    Ok(places.reports.join(FAMILY).join(PAGE))
+}
+
+const INTRODUCTION: &str = "# conventions\n\n\
+    Made by `calibench report conventions` from the published cameras. A calibration is worth nothing in the wrong convention: here each common mistake is made alone, \
+    on cameras of a published comparison, and priced. `calibench convert` makes none of them.\n\n\
+    For each camera the tool's own model (ideal to distorted) is taken as true. The pixels of the frame are led to rays by it, the rays back to pixels by the \
+    mistaken camera; the difference is given as it is, and after the best rotation, which no exterior orientation can tell from the camera. RMS and maximum over the frame, \
+    in px; and the maximum in mm on an object, across the line of sight.\n\n";
+
+fn files(folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    Ok(files)
+}
+
+fn read(path: &Path) -> Result<Cameras, ReportError> {
+    let text = fs::read_to_string(path)?;
+    toml::from_str(&text).map_err(|error| {
+        let problems = vec![Problem::new(error.span().unwrap_or(0..0), error.message())];
+        ReportError::Cameras(Problems { file: path.display().to_string(), text, problems })
+    })
+}
+
+fn section(cameras: &Cameras, text: &mut String, pictures: &mut Vec<(String, Canvas)>) -> Result<(), ReportError> {
+    let Cameras { title, source, width, height, pitch_um, distance_m, read_as, .. } = cameras;
+    text.push_str(&format!(
+        "## {title}\n\n{source}.\n\n{read_as}\n\nImages of {width} x {height} px, pixel pitch {pitch_um} um, object at {distance_m} m.\n\n"
+    ));
+    for printed in &cameras.camera {
+        let priced = price(cameras, printed)?;
+        text.push_str(&format!("### {}\n\n", printed.name));
+        if let Some(note) = &printed.note {
+            text.push_str(&format!("{note}\n\n"));
+        }
+        if let Some(fold) = &priced.fold {
+            text.push_str(&format!(
+                "**The printed polynomial folds over inside the frame**, {} px ({} mm) from the image of the axis: {:.2} % of the frame have no ray, and the camera is no truth there. \
+                 Everything below holds within {} px.\n\n",
+                plain(fold.radius_px),
+                plain(fold.radius_px * pitch_um * 1e-3),
+                100.0 * fold.share,
+                plain(fold.radius_px * INSIDE)
+            ));
+        }
+        text.push_str(&priced.table(*distance_m));
+        let name = format!("{}.png", printed.name.to_lowercase().replace(' ', "-"));
+        let (shown, vectors) = priced.shown();
+        let size = (*width, *height);
+        let picture = Field::of(&format!("{}: {shown}", printed.name), size, vectors.iter().map(|v| (v.at, (v.dx, v.dy)))).picture();
+        text.push_str(&format!("\n![{}: {shown}]({name})\n\n", printed.name));
+        pictures.push((name, picture));
+    }
+    Ok(())
+}
+
+/// The share of the fold's radius within which a camera is taken as true.
+const INSIDE: f64 = 0.9;
+
+/// A camera and what mistakes cost it: the mistake, as it is and after the best rotation.
+struct Priced {
+    fold: Option<Fold>,
+    rows: Vec<(String, Difference, Difference)>,
+}
+
+fn price(cameras: &Cameras, printed: &Printed) -> Result<Priced, ReportError> {
+    let Cameras { pitch_um, wrong_pitch_um, .. } = *cameras;
+    let size = ImageSize { width: cameras.width, height: cameras.height };
+    let Printed { c_mm: c, x0_mm: x0, y0_mm: y0, k, p, .. } = *printed;
+    let converted = Photogrammetric { size, pitch_um, c, x0, y0, k, p, b: [0.0; 2] };
+    let truth = from_naive(&converted, Target::metashape(), Tangential::Converted)?;
+    let fold = fold(&truth);
+    let region = fold.as_ref().map_or(Region::Frame, |fold| Region::Radius { px: fold.radius_px * INSIDE });
+    let options = ConvertOptions { region, accept: true, ..ConvertOptions::default() };
+    let compare =
+        |wrong: &Camera, rotation| difference(&truth, wrong, &DifferenceOptions { region, rotation, ..DifferenceOptions::default() });
+    let mut rows = Vec::new();
+    let mistakes = [
+        ("k / c^n and P / c taken as the inverse (Table 2)", Mistake::Naive),
+        ("p1 and p2 swapped", Mistake::TangentialSwapped),
+        ("y not turned upwards (y0, p2)", Mistake::VerticalNotFlipped),
+        ("correction added instead of subtracted", Mistake::SignOfCorrection),
+        ("half a pixel: corner taken as centre", Mistake::HalfPixel),
+        ("wrong pixel pitch throughout", Mistake::WrongPitch { pitch_um: wrong_pitch_um }),
+        ("wrong pixel pitch for the focal length alone", Mistake::WrongPitchOfC { pitch_um: wrong_pitch_um }),
+        ("sign of x0", Mistake::SignOfX0),
+        ("sign of y0", Mistake::SignOfY0),
+        ("principal point from the corner taken as from the centre", Mistake::PrincipalPointFromCorner),
+    ];
+    let right = mistaken(&truth, pitch_um, Mistake::SignOfY0, &options)?.right.camera;
+    rows.push(("none: converted by a fit".to_owned(), compare(&right, false)?, compare(&right, true)?));
+    for (name, mistake) in mistakes {
+        let wrong: Camera = mistaken(&truth, pitch_um, mistake, &options)?.wrong.into();
+        match (compare(&wrong, false), compare(&wrong, true)) {
+            (Ok(raw), Ok(turned)) => rows.push((name.to_owned(), raw, turned)),
+            // A camera so wrong that nothing can be compared is beyond any price.
+            (Err(error), _) | (_, Err(error)) if !matches!(error, ConvertError::Target { .. }) => {}
+            (Err(error), _) | (_, Err(error)) => return Err(error.into()),
+        }
+    }
+    Ok(Priced { fold, rows })
+}
+
+impl Priced {
+    fn table(&self, distance_m: f64) -> String {
+        let mut table = MarkdownTable::new(&[
+            "mistake",
+            "RMS px",
+            "max px",
+            "RMS px, rotated",
+            "max px, rotated",
+            "max mm on the object, rotated",
+            "not comparable",
+        ]);
+        for (name, raw, turned) in &self.rows {
+            let mm = turned.on_object(turned.spread.max_px, distance_m * 1e3);
+            let left_out = if turned.not_comparable > 0.0 { format!("{:.1} %", 100.0 * turned.not_comparable) } else { String::new() };
+            let figures = [raw.spread.rms_px, raw.spread.max_px, turned.spread.rms_px, turned.spread.max_px, mm].map(plain);
+            table.row(std::iter::once(name.clone()).chain(figures).chain([left_out]));
+        }
+        table.render()
+    }
+
+    /// What the picture shows: the direct conversion after the best rotation.
+    fn shown(&self) -> (&str, &[Vector]) {
+        let row = self.rows.iter().find(|(name, ..)| name.contains("Table 2")).or(self.rows.first());
+        row.map_or(("nothing", &[]), |(name, _, turned)| (name.as_str(), turned.vectors.as_slice()))
+    }
+}
