@@ -12,6 +12,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     extension: "xml",
     verified: Some("Metashape's own OpenCV export of the same adjustment pictures every ray alike, to 1e-10 of the frame (f; not fx, fy)"),
     many: false,
+    states_size: true,
     recognise: |source| xml::root_is(source.xml.as_ref(), "calibration"),
     read,
     write: Some(write),

@@ -16,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     extension: "xml",
     verified: None,
     many: true,
+    states_size: true,
     recognise: |source| xml::root_is(source.xml.as_ref(), "document"),
     read,
     write: Some(write),

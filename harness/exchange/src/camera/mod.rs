@@ -188,7 +188,7 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileEr
 /// The text of a camera file. Numbers have 17 significant digits or their shortest exact form.
 ///
 /// # Errors
-/// A format that is only read, a camera of another model, more cameras than the format holds, a number that is not finite.
+/// A format that is only read, a camera of another model, more cameras than the format holds, a number that is not finite, and whatever else [`parse_camera`] would refuse.
 pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let Some(write) = format.write else {
         return Err(CameraFileError::new(format!("{} is only read, not written", format.name)));
@@ -202,10 +202,18 @@ pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Str
     for camera in cameras {
         check(camera)?;
     }
-    write(cameras)
+    let text = write(cameras)?;
+    let size = Some(cameras[0].camera.size()).filter(|_| !format.states_size);
+    match parse(text.as_bytes(), &ReadOptions { size, fisheye: None }) {
+        Ok(_) => Ok(text),
+        Err(error) => {
+            let problem = format!("cannot be written as {}: {}", format.name, error.problem);
+            Err(CameraFileError { element: error.element, ..CameraFileError::new(problem) })
+        }
+    }
 }
 
-/// Only what could be read again is written.
+/// Numbers that no file holds.
 fn check(camera: &NamedCamera) -> Result<(), CameraFileError> {
     if let Some(wrong) = camera.camera.parameters().iter().find(|parameter| !parameter.value.is_finite()) {
         return Err(CameraFileError::new(format!("is {}; expected a finite number", wrong.value)).of(wrong.name));

@@ -16,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         "OpenCV's FileStorage reads what is written, number for number; Metashape's two exports of one adjustment agree to 1e-10",
     ),
     many: false,
+    states_size: true,
     recognise: |source| xml::root_is(source.xml.as_ref(), "opencv_storage"),
     read,
     write: Some(write),

@@ -14,6 +14,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     extension: "yml",
     verified: Some("OpenCV's FileStorage reads what is written, number for number"),
     many: false,
+    states_size: true,
     recognise,
     read,
     write: Some(write),

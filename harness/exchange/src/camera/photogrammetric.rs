@@ -13,6 +13,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     extension: "toml",
     verified: Some("our own: every number is read back exactly"),
     many: false,
+    states_size: true,
     recognise,
     read,
     write: Some(write),

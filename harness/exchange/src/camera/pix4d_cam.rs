@@ -15,6 +15,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     extension: "cam",
     verified: None,
     many: true,
+    states_size: false,
     recognise: |source| {
         let first = source.lines().next().map_or("", |(_, line)| line);
         if first.starts_with(HEADER) { Ok(()) } else { Err(format!("the first line does not begin with `{HEADER}`")) }

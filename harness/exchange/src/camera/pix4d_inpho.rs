@@ -20,6 +20,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         "Pix4D's camera matrix and coefficients of the same project, to their printed digits (order and signs of T1, T2 in use: unverified)",
     ),
     many: false,
+    states_size: true,
     recognise: |source| {
         let first = source.lines().next().map_or("", |(_, line)| line);
         if first.starts_with(HEADER) { Ok(()) } else { Err(format!("the first line does not begin with `{HEADER}`")) }

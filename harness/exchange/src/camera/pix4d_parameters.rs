@@ -16,6 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         "K [R, -R t] gives Pix4D's P-matrices of all 168 images, to their printed digits (order and signs of T1, T2: unverified)",
     ),
     many: true,
+    states_size: true,
     recognise: |source| {
         let first = source.lines().next().map_or("", |(_, line)| line);
         let found = first.split_whitespace().eq(HEADER[0].split_whitespace());

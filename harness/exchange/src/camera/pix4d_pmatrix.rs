@@ -15,6 +15,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     extension: "txt",
     verified: Some("decomposed, they give the camera matrix, position and rotation that Pix4D wrote, to what six decimals allow"),
     many: true,
+    states_size: false,
     recognise: |source| {
         let (_, first) = source.lines().next().unwrap_or_default();
         row(first).map(|_| ()).map_err(|_| "the first line is not a name and 12 numbers".to_owned())

@@ -37,6 +37,8 @@ pub struct CameraFormat {
     pub verified: Option<&'static str>,
     /// May it hold more than one camera?
     pub many: bool,
+    /// Does it state the size of the images? If not, [`ReadOptions::size`] is needed. OpenCV's may leave it out.
+    pub states_size: bool,
     /// Is this file one? If not, why?
     pub(super) recognise: fn(&Source<'_>) -> Result<(), String>,
     pub(super) read: fn(&Source<'_>, &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,

@@ -79,9 +79,9 @@ impl OpenCvFisheye {
         for _ in 0..MOST_STEPS {
             let (value, slope) = self.distort(theta);
             if value > distorted {
-                high = theta
+                high = theta;
             } else {
-                low = theta
+                low = theta;
             }
             let newton = theta - (value - distorted) / slope;
             let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };

@@ -23,7 +23,7 @@ impl Affinity {
         PixelPoint::new(self.a * x + self.b * y + self.shift.x, self.d * y + self.shift.y)
     }
 
-    fn from_pixel(self, point: PixelPoint) -> [f64; 2] {
+    fn undo(self, point: PixelPoint) -> [f64; 2] {
         let y = (point.y - self.shift.y) / self.d;
         [(point.x - self.shift.x - self.b * y) / self.a, y]
     }
@@ -86,7 +86,7 @@ impl<P: Pinhole> CameraModel for P {
     }
 
     fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
-        let [x, y] = invert(&Distortion(self), self.affinity().from_pixel(point))?;
+        let [x, y] = invert(&Distortion(self), self.affinity().undo(point))?;
         Ok(Ray::from_tangent(x, -y))
     }
 

@@ -217,6 +217,10 @@ fn what_cannot_be_written_is_said_and_leaves_the_old_file() {
     assert!(fails("metashape", &cameras).contains("`k2`: is NaN; expected a finite number"), "{}", fails("metashape", &cameras));
     let twice = [cameras[0].clone(), cameras[0].clone()];
     assert!(fails("metashape", &twice).contains("metashape holds one camera, found 2"));
+    let mut old = read(OLD).unwrap().cameras;
+    let Camera::Agisoft(inner) = &mut old[0].camera else { panic!() };
+    inner.k[3] = 0.1;
+    assert!(fails("metashape", &old).contains("`k4`: cannot be written as metashape: belongs to files with `f`"));
     let parameters = read(PARAMETERS).unwrap().cameras;
     assert!(fails("pix4d-inpho", &parameters).contains("the width of the sensor is not known"));
     assert_eq!(std::fs::read(&path).unwrap(), before);

@@ -103,7 +103,7 @@ fn comes_back(format: &str, cameras: &[NamedCamera]) {
     let text = camera_text(format, cameras).unwrap();
     let size = calibench_model::camera::CameraModel::size(&cameras[0].camera);
     // Only Pix4D's .cam does not state it.
-    let given = (format.name == "pix4d").then_some(size);
+    let given = (!format.states_size).then_some(size);
     let found = read_with(&text, ReadOptions { size: given, fisheye: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!(found.format, format);
     assert_same(cameras, &found.cameras, 1e-12);

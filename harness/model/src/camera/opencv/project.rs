@@ -122,7 +122,9 @@ fn see<L>(job: &Job<L>, [x, y, z]: [f64; 3]) -> Seen {
     let n: [f64; 3] = std::array::from_fn(|i| m[i][0] * x + m[i][1] * y + m[i][2] * z + t[i]);
     let w = -1.0 / n[2];
     let ideal = [n[0] * w, -n[1] * w];
-    let good = (n[2] < 0.0) & (ideal[0] * ideal[0] + ideal[1] * ideal[1] <= job.safe);
+    let mut good = ideal[0] * ideal[0] + ideal[1] * ideal[1] <= job.safe;
+    // Not `&&`: a branch would stand in the way of lanes.
+    good &= n[2] < 0.0;
     Seen { n, ideal, w, good }
 }
 
@@ -139,10 +141,10 @@ fn all_pixels<L: Lens>(job: &Job<L>, camera: &OpenCv, points: &[[f64; 3]], pixel
             *pixel = PixelPoint::new(job.focal[0] * dx + job.centre[0], job.focal[1] * dy + job.centre[1]);
             open += u64::from(!seen.good);
         }
-        if let Some(rows) = &job.tilt {
+        if let Some([rows, ..]) = &job.tilt {
             for pixel in pixels.iter_mut() {
                 let flat = [(pixel.x - job.centre[0]) / job.focal[0], (pixel.y - job.centre[1]) / job.focal[1]];
-                let [u, v, w] = times(&rows[0], flat);
+                let [u, v, w] = times(rows, flat);
                 *pixel = PixelPoint::new(job.focal[0] * (u / w) + job.centre[0], job.focal[1] * (v / w) + job.centre[1]);
             }
         }

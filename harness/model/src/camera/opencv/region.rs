@@ -2,10 +2,10 @@
 
 use super::OpenCv;
 use crate::PixelPoint;
-use crate::camera::CameraModel;
 use crate::camera::newton::determinant;
 use crate::camera::pinhole::Pinhole;
 use crate::camera::plane::first_fold;
+use crate::camera::{CameraModel, Ray};
 
 /// Directions and places where a fold is looked for, and what is kept clear of it.
 const DIRECTIONS: usize = 64;
@@ -34,8 +34,7 @@ pub(super) fn of(camera: &OpenCv) -> Region {
     let (width, height) = (f64::from(camera.size.width), f64::from(camera.size.height));
     let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)].map(|(x, y)| PixelPoint::new(x, y));
     // A corner without a ray: a fold inside the frame.
-    let radii =
-        corners.map(|corner| camera.unproject(corner).ok().and_then(|ray| ray.tangent()).map_or(f64::INFINITY, |(x, y)| x.hypot(y)));
+    let radii = corners.map(|corner| camera.unproject(corner).ok().and_then(Ray::tangent).map_or(f64::INFINITY, |(x, y)| x.hypot(y)));
     let farthest = BEYOND * radii.into_iter().fold(0.0, f64::max);
     let reach = if farthest.is_finite() { farthest } else { 3.0 };
     let safe = if camera.is_surely_one_to_one(reach) { reach } else { searched(camera, reach) };

@@ -91,28 +91,37 @@ fn twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[PixelPoint], tangents: &
 
 #[inline(always)]
 fn all<L: Lens>(job: &Job<L>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
-    for (points, tangents) in points.chunks(LANES).zip(tangents.chunks_mut(LANES)) {
-        let mut goals = [[0.0; LANES]; 2];
-        for (lane, point) in points.iter().enumerate() {
-            [goals[0][lane], goals[1][lane]] = distorted(job, point);
-        }
-        if let Some(rows) = &job.untilt {
-            for lane in 0..LANES {
-                [goals[0][lane], goals[1][lane]] = project(rows, [goals[0][lane], goals[1][lane]]);
-            }
-        }
-        let (mut found, mut left) = ([[0.0; LANES]; 2], [0.0; LANES]);
+    let (blocks, last_points) = points.as_chunks::<LANES>();
+    let (places, last_tangents) = tangents.as_chunks_mut::<LANES>();
+    for (points, tangents) in blocks.iter().zip(places) {
+        block(job, camera, points, tangents);
+    }
+    if let Some(last) = last_points.last() {
+        let full: [PixelPoint; LANES] = std::array::from_fn(|i| *last_points.get(i).unwrap_or(last));
+        let mut found = [[0.0; 2]; LANES];
+        block(job, camera, &full, &mut found);
+        last_tangents.copy_from_slice(&found[..last_points.len()]);
+    }
+}
+
+#[inline(always)]
+fn block<L: Lens>(job: &Job<L>, camera: &OpenCv, points: &[PixelPoint; LANES], tangents: &mut [[f64; 2]; LANES]) {
+    let mut left = [0.0; LANES];
+    if let Some(rows) = &job.untilt {
         for lane in 0..LANES {
-            let (at, misclosure) = solve(job, [goals[0][lane], goals[1][lane]]);
-            ([found[0][lane], found[1][lane]], left[lane]) = (at, misclosure);
+            (tangents[lane], left[lane]) = solve(job, project(rows, distorted(job, &points[lane])));
         }
-        for (lane, tangent) in tangents.iter_mut().enumerate() {
-            *tangent = [found[0][lane], found[1][lane]];
+    } else {
+        for lane in 0..LANES {
+            (tangents[lane], left[lane]) = solve(job, distorted(job, &points[lane]));
         }
-        let closed = left.iter().fold(true, |all, left| all & (*left <= CLOSED));
-        if !closed {
-            one_by_one(camera, points, tangents, &left);
-        }
+    }
+    let mut closed = true;
+    for left in left {
+        closed &= left <= CLOSED;
+    }
+    if !closed {
+        one_by_one(camera, points, tangents, &left);
     }
 }
 
