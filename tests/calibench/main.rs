@@ -1,5 +1,6 @@
 //! Tests that cross crates.
 
+mod cameras;
 mod cli;
 mod covariance;
 mod determinism;

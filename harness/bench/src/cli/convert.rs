@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::camera::{NamedCamera, ParameterCovariance, camera_text, write_camera};
 use calibench_model::camera::{Camera, CameraModel, ImageSize};
 use calibench_model::convert::{
-    Conversion, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, convert, difference, naive,
+    Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, convert, difference,
+    naive,
 };
 use clap::Args;
 
@@ -74,7 +75,7 @@ impl Convert {
                 covariance: source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?,
                 ..ConvertOptions::default()
             };
-            let conversion = convert(&source.camera, goal.target, &options)?;
+            let conversion = convert(&source.camera, goal.target, &options).map_err(advise)?;
             if !context.quiet {
                 eprint!("{}", summary(&conversion));
             }
@@ -111,6 +112,16 @@ impl Convert {
             if conversion.method == Method::Exact { "Exact conversion: no residuals" } else { "Residuals of the fitted conversion" };
         Ok(field(title, &conversion.camera, &conversion.residuals).write(path)?)
     }
+}
+
+/// An error with the flag that helps.
+fn advise(error: ConvertError) -> Failure {
+    let flag = match &error {
+        ConvertError::Residual { .. } => " (--accept takes it, --radius PX restricts it, a richer target fits better)",
+        ConvertError::Fold { .. } => " (--radius PX restricts it)",
+        _ => "",
+    };
+    Failure::input(format!("{error}{flag}"))
 }
 
 fn size_of(spread: &Spread) -> String {
@@ -188,13 +199,18 @@ impl Diff {
     pub fn run(&self) -> Result<(), Failure> {
         let camera = |path: &Path| self.reading.one(path).map(|named| named.camera);
         let (first, second) = (camera(&self.first)?, camera(&self.second)?);
+        let (a, b) = (first.size(), second.size());
+        if a != b {
+            let sizes = format!("{} x {} px and {} x {} px", a.width, a.height, b.width, b.height);
+            return Err(Failure::input(format!("the images of the two cameras differ in size: {sizes}; expected the same")));
+        }
         let options = DifferenceOptions {
             region: region(self.radius),
             rotation: !self.no_rotation,
             compensation: true,
             ..DifferenceOptions::default()
         };
-        let found = difference(&first, &second, &options)?;
+        let found = difference(&first, &second, &options).map_err(advise)?;
         let after = if self.no_rotation {
             "without a rotation".to_owned()
         } else {

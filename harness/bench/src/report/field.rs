@@ -66,6 +66,9 @@ impl Field {
             colour_bar(area, map, top);
         });
         let stretch = stretch(width / ARROWS as f64 * 1.2, top);
+        if self.vectors.iter().any(|(_, vector)| vector.is_none()) {
+            canvas.text("white: not compared", 16, (LEFT + map.0 - 150, TOP + map.1 + 60));
+        }
         if longest > 1e-12 {
             canvas.paint(|area| self.arrows(area, map, stretch));
             canvas.text(&format!("arrows {stretch} times too long; longest {} px", plain(longest)), 16, (LEFT, TOP + map.1 + 60));

@@ -1,0 +1,141 @@
+//! Cameras as a user converts them.
+
+use std::path::{Path, PathBuf};
+
+use crate::project::{copy, root, run, stderr, stdout};
+
+/// OpenCV's YAML of a camera with barrel distortion and decentring coefficients that differ.
+const CAMERA: &str = "%YAML:1.0\n---\nimage_width: 1600\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
+    data: [ 1500., 0., 810., 0., 1502., 590., 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   \
+    data: [ -1.2e-01, 4.0e-02, 3.0e-03, -1.0e-03, 0. ]\n";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("camera.yml"), CAMERA).unwrap();
+    folder
+}
+
+fn good(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
+    stdout(&output) + &stderr(&output)
+}
+
+#[test]
+fn there_and_back_is_the_same_camera() {
+    let folder = folder();
+    assert!(good(folder.path(), &["convert", "camera.yml", "--to", "metashape", "-o", "m.xml"]).contains("exact"));
+    assert!(good(folder.path(), &["convert", "m.xml", "--to", "opencv", "-o", "back.xml"]).contains("exact"));
+    let text = good(folder.path(), &["diff", "camera.yml", "back.xml"]);
+    let rms: f64 = text.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!(rms < 1e-9, "{text}");
+    assert!(good(folder.path(), &["camera", "back.xml"]).contains("opencv-xml"));
+}
+
+#[test]
+fn a_fitted_conversion_says_how_far_it_is_off_and_draws_it() {
+    let folder = folder();
+    let arguments = ["convert", "camera.yml", "--to", "photogrammetric", "--pitch", "4", "-o", "p.toml", "--plot", "p.png"];
+    let text = good(folder.path(), &arguments);
+    assert!(text.contains("fitted") && text.contains("px RMS"), "{text}");
+    assert!(image::open(folder.path().join("p.png")).unwrap().width() > 800);
+    let stated: f64 = text.split("residuals ").nth(1).and_then(|t| t.split_whitespace().next()).map(|t| t.parse().unwrap()).unwrap();
+    // The difference of the two files, found on its own way, is what the conversion stated.
+    let diff = good(folder.path(), &["diff", "camera.yml", "p.toml", "--no-rotation"]);
+    let found: f64 = diff.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!((found - stated).abs() < 0.2 * stated + 1e-6, "{stated} {diff}");
+    assert!(stated < 0.5, "{text}");
+}
+
+#[test]
+fn the_direct_conversion_costs_more_than_the_fit() {
+    let folder = folder();
+    let naive = good(folder.path(), &["convert", "camera.yml", "--to", "photogrammetric", "--pitch", "4", "--naive", "-o", "n.toml"]);
+    let rms: f64 = naive.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!(rms > 0.5, "{naive}");
+}
+
+#[test]
+fn a_fold_is_shown_and_refused() {
+    let folder = folder();
+    std::fs::write(folder.path().join("fold.yml"), CAMERA.replace("-1.2e-01, 4.0e-02", "-9.0e-01, 0.0e-00")).unwrap();
+    assert!(good(folder.path(), &["camera", "fold.yml"]).contains("folds over"));
+    let output = run(folder.path(), &["convert", "fold.yml", "--to", "photogrammetric", "--pitch", "4"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("folds over") && stderr(&output).contains("--radius PX"), "{}", stderr(&output));
+    good(folder.path(), &["convert", "fold.yml", "--to", "photogrammetric", "--pitch", "4", "--radius", "500", "--accept"]);
+}
+
+#[test]
+fn bad_input_is_named() {
+    let folder = folder();
+    std::fs::write(folder.path().join("short.yml"), CAMERA.replace(", 0. ]\n", " ]\n")).unwrap();
+    std::fs::write(folder.path().join("text"), "no camera").unwrap();
+    std::fs::write(folder.path().join("small.yml"), CAMERA.replace("1600", "1500")).unwrap();
+    for (arguments, expected) in [
+        (&["camera", "none.yml"][..], "none.yml"),
+        (&["camera", "text"], "no camera file that is known; tried"),
+        (&["camera", "short.yml"], "short.yml"),
+        (&["convert", "camera.yml", "--to", "metashap"], "did you mean `metashape`?"),
+        (&["convert", "camera.yml", "--to", "opencv7"], "no such target"),
+        (&["convert", "camera.yml", "--to", "photogrammetric"], "--pitch UM"),
+        (&["convert", "camera.yml", "--to", "photogrammetric", "--pitch", "-4"], "expected a positive number"),
+        (&["convert", "camera.yml", "--to", "ebner", "--pitch", "4"], "--base MM"),
+        (&["convert", "camera.yml", "--to", "opencv", "--naive"], "--naive converts to photogrammetric only"),
+        (&["convert", "camera.yml", "--to", "metashape", "--camera", "x"], "no camera is called x"),
+        (&["diff", "camera.yml", "small.yml"], "differ in size: 1600 x 1200 px and 1500 x 1200 px"),
+    ] {
+        let output = run(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stdout(&output));
+        assert!(stderr(&output).contains(expected), "{arguments:?}: expected {expected}\n{}", stderr(&output));
+    }
+}
+
+#[test]
+fn conventions_are_listed_with_what_is_verified() {
+    let text = good(&root(), &["list", "conventions"]);
+    for part in
+        ["photogrammetric", "ebner", "pix4d", "metashape", "opencv-fisheye", "unverified:", "verified:", "targets of `convert --to`"]
+    {
+        assert!(text.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn every_mistake_has_its_price() {
+    let project = copy();
+    good(project.path(), &["report", "conventions", "-q"]);
+    let folder = project.path().join("reports/conventions");
+    let page = std::fs::read_to_string(folder.join("README.md")).unwrap();
+    assert_eq!(page.matches("folds over inside the frame").count(), 2, "OpenCV's and Lens's polynomials");
+    let figures = |camera: &str, mistake: &str| -> Vec<f64> {
+        let section = page.split(&format!("### {camera}\n")).nth(1).unwrap();
+        let row = section.lines().find(|line| line.contains(mistake)).unwrap();
+        row.split('|').skip(2).filter_map(|cell| cell.trim().parse().ok()).collect()
+    };
+    // As measured elsewhere: the direct conversion of PhotoScan's camera, 3.88 and 9.95 px in the image.
+    let naive = figures("PhotoScan", "Table 2");
+    assert!((naive[0] - 3.88).abs() < 0.01 && (naive[1] - 9.95).abs() < 0.01, "{naive:?}");
+    // Half a pixel along both axes is 0.71 px before a rotation, and next to nothing after it.
+    let half = figures("PhotoScan", "half a pixel");
+    assert!((half[0] - 0.5_f64.sqrt()).abs() < 0.03 && half[2] < 0.15, "{half:?}");
+    // A swap hardly shows where p1 is near p2, and does where it is not.
+    assert!(figures("PhotoScan", "swapped")[0] < 0.2 && figures("p1 far from p2", "swapped")[0] > 10.0);
+    for picture in ["photoscan.png", "pix4d.png", "opencv.png", "lens.png", "p1-far-from-p2.png"] {
+        assert!(image::open(folder.join(picture)).is_ok() && page.contains(&format!("({picture})")), "{picture}");
+    }
+}
+
+fn data() -> PathBuf {
+    std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from).join("cameras")
+}
+
+#[test]
+#[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: see the README, `Data`")]
+fn two_exports_of_one_adjustment_are_one_camera() {
+    let file = |name: &str| data().join(name).to_str().unwrap().to_owned();
+    let text = good(&root(), &["diff", &file("metashape-24mm.xml"), &file("opencv-24mm.xml")]);
+    let rms: f64 = text.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!(rms < 1e-9 && text.contains("after a rotation of 0.000000"), "{text}");
+    assert!(good(&root(), &["camera", &file("pix4d-calibrated_camera_parameters.txt")]).contains("168 cameras"));
+}
