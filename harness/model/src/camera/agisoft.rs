@@ -223,8 +223,7 @@ mod tests {
             -5.024_210_632_290_122e-16,
         ];
         distortion[..5].copy_from_slice(&five);
-        let other =
-            OpenCv { size: SIZE, fx: f, fy: f, cx: 3_013.244_200_570_864_9, cy: 1_943.474_614_662_233_1, distortion, coefficients: 5 };
+        let other = OpenCv { size: SIZE, fx: f, fy: f, cx: 3_013.244_200_570_865, cy: 1_943.474_614_662_233, distortion, coefficients: 5 };
         for (x, y) in [(0.0, 0.0), (0.44, 0.3), (-0.45, 0.29), (0.2, -0.31)] {
             let ray = Ray::from_tangent(x, y);
             assert!(own.project(ray).unwrap().distance(other.project(ray).unwrap()) < 1e-9);

@@ -52,11 +52,12 @@ mod tests {
         let ray = Ray { x: 0.7, y: -0.4, z: -1.9 };
         let at = |d: [f64; 3]| Ray { x: ray.x + d[0], y: ray.y + d[1], z: ray.z + d[2] }.tangent().unwrap();
         let analytic = ray.tangent_derivatives();
-        for axis in 0..3 {
+        let [by_right, by_up] = analytic;
+        for (axis, (by_right, by_up)) in by_right.into_iter().zip(by_up).enumerate() {
             let step = |h: f64| std::array::from_fn(|i| if i == axis { h } else { 0.0 });
             let (high, low) = (at(step(1e-6)), at(step(-1e-6)));
-            assert!((analytic[0][axis] - (high.0 - low.0) / 2e-6).abs() < 1e-9);
-            assert!((analytic[1][axis] - (high.1 - low.1) / 2e-6).abs() < 1e-9);
+            assert!((by_right - (high.0 - low.0) / 2e-6).abs() < 1e-9);
+            assert!((by_up - (high.1 - low.1) / 2e-6).abs() < 1e-9);
         }
     }
 }

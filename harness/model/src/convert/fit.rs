@@ -14,6 +14,7 @@ const FLAT: f64 = 1e-11;
 const STEEP: f64 = 1e-6;
 
 /// A camera that pictures the rays of `sights`, once rotated, where they came from.
+#[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
     pub(super) sights: &'a [Sight],
     /// Indices of the parameters that may change.
@@ -74,7 +75,7 @@ impl Problem<'_> {
         Some((a, v))
     }
 
-    fn moved<T: CameraModel>(&self, state: &State<T>, step: &DVector<f64>) -> State<T> {
+    pub(super) fn moved<T: CameraModel>(&self, state: &State<T>, step: &DVector<f64>) -> State<T> {
         let mut values: Vec<f64> = state.camera.parameters().iter().map(|p| p.value).collect();
         self.free.iter().zip(step.iter()).for_each(|(&parameter, change)| values[parameter] += change);
         let turn = if self.rotation { std::array::from_fn(|k| step[self.free.len() + k]) } else { [0.0; 3] };

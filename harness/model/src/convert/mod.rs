@@ -106,8 +106,8 @@ pub struct Conversion {
     pub region: Region,
     /// Rotation of the source's rays before the camera pictures them: R in `pixel = camera(R ray)`.
     pub rotation: Rotation,
-    /// Covariance of the camera's parameters, in their order and units, if the source had one. Without second derivatives (of the order of the
-    /// residuals); a fit's own misfit is not in it.
+    /// Covariance of the camera's parameters, in their order and units, if the source had one: `J Q J^T`, with J = d(camera) / d(source) by the formula or by
+    /// the implicit function of the normal equations. A fit's own misfit is not in it.
     pub covariance: Option<DMatrix<f64>>,
     /// What the thresholds say.
     pub verdict: Verdict,

@@ -11,7 +11,7 @@ use crate::PixelPoint;
 use crate::camera::{CameraModel, Ray};
 
 /// Coefficients of the first guess.
-const GUESS: usize = 8;
+const GUESS: usize = 6;
 /// Product of the last two steps, px: the error left is a small multiple of it.
 const CLOSED: f64 = 1e-11;
 
@@ -161,9 +161,10 @@ fn solve<L: Lens>(job: &Job<L>, goal @ [gx, gy]: [f64; 2]) -> ([f64; 2], f64) {
 #[inline(always)]
 fn radial<L>(job: &Job<L>, [x, y]: [f64; 2]) -> [f64; 2] {
     let t = (x * x + y * y) * job.per_widest;
-    let [a, b, c, d, e, f, g, h] = job.guess;
-    let (t2, t4) = (t * t, t * t * t * t);
-    let factor = (a + b * t + (c + d * t) * t2) + (e + f * t + (g + h * t) * t2) * t4;
+    let [a, b, c, d, e, f] = job.guess;
+    let t2 = t * t;
+    let t4 = t2 * t2;
+    let factor = (a + b * t + (c + d * t) * t2) + (e + f * t) * t4;
     [x * factor, y * factor]
 }
 
