@@ -46,9 +46,9 @@ lint:
     RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
     sh -n bootstrap
 
-# Points per second of every operator beside its peers
+# Points per second of every operator, and of cameras, beside their peers
 perf:
-    cargo bench --workspace --bench perf
+    cargo bench --workspace --bench perf --bench cameras
 
 # Write the JSON Schema of scenario files
 schema: build

@@ -7,7 +7,7 @@ use crate::project::{copy, root, run, stderr, stdout};
 /// OpenCV's YAML of a camera with barrel distortion and decentring coefficients that differ.
 const CAMERA: &str = "%YAML:1.0\n---\nimage_width: 1600\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
     data: [ 1500., 0., 810., 0., 1502., 590., 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   \
-    data: [ -1.2e-01, 4.0e-02, 3.0e-03, -1.0e-03, 0. ]\n";
+    data: [ -1.0e-01, 4.0e-02, 1.0e-03, -3.0e-04, 0. ]\n";
 
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -39,7 +39,7 @@ fn a_fitted_conversion_says_how_far_it_is_off_and_draws_it() {
     let text = good(folder.path(), &arguments);
     assert!(text.contains("fitted") && text.contains("px RMS"), "{text}");
     assert!(image::open(folder.path().join("p.png")).unwrap().width() > 800);
-    let stated: f64 = text.split("residuals ").nth(1).and_then(|t| t.split_whitespace().next()).map(|t| t.parse().unwrap()).unwrap();
+    let stated: f64 = text.split(": residuals ").nth(1).and_then(|t| t.split_whitespace().next()).map(|t| t.parse().unwrap()).unwrap();
     // The difference of the two files, found on its own way, is what the conversion stated.
     let diff = good(folder.path(), &["diff", "camera.yml", "p.toml", "--no-rotation"]);
     let found: f64 = diff.split_whitespace().nth(1).unwrap().parse().unwrap();
@@ -58,7 +58,7 @@ fn the_direct_conversion_costs_more_than_the_fit() {
 #[test]
 fn a_fold_is_shown_and_refused() {
     let folder = folder();
-    std::fs::write(folder.path().join("fold.yml"), CAMERA.replace("-1.2e-01, 4.0e-02", "-9.0e-01, 0.0e-00")).unwrap();
+    std::fs::write(folder.path().join("fold.yml"), CAMERA.replace("-1.0e-01, 4.0e-02", "-9.0e-01, 0.0e-00")).unwrap();
     assert!(good(folder.path(), &["camera", "fold.yml"]).contains("folds over"));
     let output = run(folder.path(), &["convert", "fold.yml", "--to", "photogrammetric", "--pitch", "4"]);
     assert_eq!(output.status.code(), Some(2));
@@ -89,6 +89,18 @@ fn bad_input_is_named() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stdout(&output));
         assert!(stderr(&output).contains(expected), "{arguments:?}: expected {expected}\n{}", stderr(&output));
     }
+}
+
+#[test]
+fn what_is_unverified_is_said_and_can_be_decided() {
+    let folder = folder();
+    std::fs::write(folder.path().join("camera.yml"), CAMERA.replace("1502.", "1500.")).unwrap();
+    let said = good(folder.path(), &["convert", "camera.yml", "--to", "pix4d-inpho", "--pitch", "4", "-o", "p.cam"]);
+    assert!(said.contains("unverified") && said.contains("--order"), "{said}");
+    let read = |order: &str| good(folder.path(), &["diff", "camera.yml", "p.cam", "--order", order]);
+    let rms = |text: &str| text.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap();
+    assert!(rms(&read("opencv")) < 1e-6, "{}", read("opencv"));
+    assert!(rms(&read("brown")) > 0.1, "{}", read("brown"));
 }
 
 #[test]

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use calibench_exchange::camera::{CameraFile, NamedCamera, ReadOptions, read_camera_with};
 use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, TangentialOrder, Verification, fold};
 use calibench_model::convert::without_distortion;
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::{Failure, print};
 use crate::report::plain;
@@ -20,12 +20,43 @@ pub struct Reading {
     /// The file's OpenCV camera is the fisheye, though it does not say so
     #[arg(long)]
     fisheye: bool,
+    /// Order of Pix4D's T1 and T2, which public sources do not settle [default: opencv]
+    #[arg(long, value_enum, value_name = "ORDER")]
+    order: Option<Order>,
     /// Which camera of a file that holds several [default: the first]
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
 }
 
+/// Which of two decentring coefficients multiplies r^2 + 2 x^2.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Order {
+    /// The first: Brown's
+    Brown,
+    /// The second: OpenCV's
+    Opencv,
+}
+
 impl Reading {
+    /// The order that the user decided on, or the one that is assumed.
+    pub fn order(&self) -> TangentialOrder {
+        match self.order {
+            Some(Order::Brown) => TangentialOrder::Brown,
+            _ => TangentialOrder::OpenCv,
+        }
+    }
+
+    /// Says what of a camera's convention is not confirmed by numbers of its tool, and which flag decides it.
+    pub fn warn(&self, camera: &Camera) {
+        if let Verification::Unverified(open) = camera.convention().verification {
+            let flag = match camera {
+                Camera::Pix4d(_) if self.order.is_none() => "; --order brown or --order opencv decides the order of T1 and T2",
+                _ => "",
+            };
+            eprintln!("unverified: {}: {open}{flag}", camera.convention().name);
+        }
+    }
+
     pub fn file(&self, path: &std::path::Path) -> Result<CameraFile, Failure> {
         let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true) };
         Ok(read_camera_with(path, &options)?)
@@ -44,6 +75,11 @@ impl Reading {
         if count > 1 && self.camera.is_none() {
             eprintln!("{}: the first of {count} cameras, `{}`; choose with --camera NAME", path.display(), chosen.name);
         }
+        let mut chosen = chosen;
+        if let Camera::Pix4d(pix4d) = &mut chosen.camera {
+            pix4d.order = self.order();
+        }
+        self.warn(&chosen.camera);
         for note in &chosen.notes {
             eprintln!("{}: {note}", path.display());
         }

@@ -27,13 +27,13 @@ pub struct Convert {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Pixel pitch, um, for conventions in mm, where the file does not state it
-    #[arg(long, value_name = "UM", value_parser = positive)]
+    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true)]
     pitch: Option<f64>,
     /// Spacing of Ebner's grid, mm
-    #[arg(long, value_name = "MM", value_parser = positive)]
+    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true)]
     base: Option<f64>,
     /// Fit and hold only within this radius from the image of the axis, px
-    #[arg(long, value_name = "PX", value_parser = positive)]
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     radius: Option<f64>,
     /// Let the fit rotate the camera; the rotation is reported
     #[arg(long)]
@@ -62,7 +62,13 @@ fn region(radius: Option<f64>) -> Region {
 impl Convert {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let source = self.reading.one(&self.file)?;
-        let given = Given { source: &source, pitch_um: self.pitch, base_mm: self.base, output: self.output.as_deref() };
+        let given = Given {
+            source: &source,
+            pitch_um: self.pitch,
+            base_mm: self.base,
+            order: self.reading.order(),
+            output: self.output.as_deref(),
+        };
         let goal = goal(&self.to, &given)?;
         let pitch_um = self.pitch.or(source.pitch_um);
         let (camera, covariance) = if self.naive {
@@ -75,7 +81,7 @@ impl Convert {
                 covariance: source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?,
                 ..ConvertOptions::default()
             };
-            let conversion = convert(&source.camera, goal.target, &options).map_err(advise)?;
+            let conversion = convert(&source.camera, goal.target, &options).map_err(|error| advise(&error))?;
             if !context.quiet {
                 eprint!("{}", summary(&conversion));
             }
@@ -83,6 +89,9 @@ impl Convert {
             let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
             (conversion.camera, covariance)
         };
+        if camera.convention() != source.camera.convention() {
+            self.reading.warn(&camera);
+        }
         let result = NamedCamera { name: source.name.clone(), pitch_um, covariance, ..NamedCamera::new("", camera) };
         match &self.output {
             Some(path) => Ok(write_camera(path, goal.format, &[result])?),
@@ -115,8 +124,8 @@ impl Convert {
 }
 
 /// An error with the flag that helps.
-fn advise(error: ConvertError) -> Failure {
-    let flag = match &error {
+fn advise(error: &ConvertError) -> Failure {
+    let flag = match error {
         ConvertError::Residual { .. } => " (--accept takes it, --radius PX restricts it, a richer target fits better)",
         ConvertError::Fold { .. } => " (--radius PX restricts it)",
         _ => "",
@@ -186,10 +195,10 @@ pub struct Diff {
     #[arg(long)]
     no_rotation: bool,
     /// Compare only within this radius from the image of the axis, px
-    #[arg(long, value_name = "PX", value_parser = positive)]
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     radius: Option<f64>,
     /// Say what the difference is on an object at this distance, in its unit
-    #[arg(long, value_name = "D", value_parser = positive)]
+    #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
     distance: Option<f64>,
     #[command(flatten)]
     reading: Reading,
@@ -210,7 +219,7 @@ impl Diff {
             compensation: true,
             ..DifferenceOptions::default()
         };
-        let found = difference(&first, &second, &options).map_err(advise)?;
+        let found = difference(&first, &second, &options).map_err(|error| advise(&error))?;
         let after = if self.no_rotation {
             "without a rotation".to_owned()
         } else {

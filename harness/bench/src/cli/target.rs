@@ -40,6 +40,8 @@ pub struct Given<'a> {
     pub pitch_um: Option<f64>,
     /// Spacing of Ebner's grid, mm, if given.
     pub base_mm: Option<f64>,
+    /// Order of Pix4D's T1 and T2.
+    pub order: TangentialOrder,
     /// Where the file goes: its ending decides between YAML and XML.
     pub output: Option<&'a Path>,
 }
@@ -67,9 +69,7 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
         }
         "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
         "metashape" => (Target::metashape(), "metashape"),
-        "pix4d" | "pix4d-inpho" => {
-            (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: TangentialOrder::OpenCv }, name)
-        }
+        "pix4d" | "pix4d-inpho" => (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: given.order }, name),
         "photoscan" | "agisoft-lens" => {
             let version = if name == "photoscan" { AgisoftVersion::PhotoScan } else { AgisoftVersion::Lens };
             let flag = "files of this version are read, not written; convert --to metashape";
