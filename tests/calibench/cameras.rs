@@ -138,6 +138,21 @@ fn every_mistake_has_its_price() {
     }
 }
 
+#[test]
+#[cfg_attr(not(camera_files), ignore = "the camera files of other tools are absent: see the README, `Data`")]
+fn the_open_points_of_old_photoscan_are_decided_by_flags() {
+    let file = data().join("photoscan-old-cameras.xml");
+    let file = file.to_str().unwrap();
+    let value = |arguments: &[&str], name: &str| -> f64 {
+        let text = good(&root(), &[&["camera", file], arguments].concat());
+        let line = text.lines().find(|line| line.trim_start().starts_with(&format!("{name} "))).unwrap_or_else(|| panic!("{name}\n{text}"));
+        line.split_whitespace().nth(1).unwrap().parse().unwrap()
+    };
+    assert!((value(&["--origin", "centre"], "cx") - value(&[], "cx") - 0.5).abs() < 1e-12);
+    assert_eq!(value(&["--order", "brown"], "p1"), value(&[], "p2"));
+    assert!(good(&root(), &["camera", file]).contains("--order and --origin decide"));
+}
+
 fn data() -> PathBuf {
     std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from).join("cameras")
 }

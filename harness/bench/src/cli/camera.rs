@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_exchange::camera::{CameraFile, NamedCamera, ReadOptions, read_camera_with};
 use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, TangentialOrder, Verification, fold};
+use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, ImageSize, Ray, TangentialOrder, Verification, fold};
 use calibench_model::convert::without_distortion;
 use clap::{Args, ValueEnum};
 
@@ -20,9 +20,12 @@ pub struct Reading {
     /// The file's OpenCV camera is the fisheye, though it does not say so
     #[arg(long)]
     fisheye: bool,
-    /// Order of Pix4D's T1 and T2, which public sources do not settle [default: opencv]
+    /// Order of the decentring coefficients of Pix4D, PhotoScan before 1.2 and Lens, which public sources do not settle [default: opencv]
     #[arg(long, value_enum, value_name = "ORDER")]
     order: Option<Order>,
+    /// What (0, 0) is in files of PhotoScan before 1.2 and of Lens, which public sources do not settle [default: corner]
+    #[arg(long, value_enum, value_name = "ORIGIN")]
+    origin: Option<Origin>,
     /// Which camera of a file that holds several [default: the first]
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
@@ -37,7 +40,33 @@ pub enum Order {
     Opencv,
 }
 
+/// What the position (0, 0) is.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Origin {
+    /// The outer corner of the first pixel
+    Corner,
+    /// The centre of the first pixel
+    Centre,
+}
+
 impl Reading {
+    /// Applies what the user decided of points that a file's convention leaves open.
+    fn decide(&self, camera: &mut Camera) {
+        match camera {
+            Camera::Pix4d(pix4d) => pix4d.order = self.order(),
+            Camera::Agisoft(agisoft) if agisoft.version != AgisoftVersion::Metashape => {
+                if self.order() == TangentialOrder::Brown {
+                    agisoft.p.swap(0, 1);
+                }
+                if self.origin == Some(Origin::Centre) {
+                    let corner = PixelPoint::new(agisoft.cx, agisoft.cy).to_corner();
+                    (agisoft.cx, agisoft.cy) = (corner.x, corner.y);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// The order that the user decided on, or the one that is assumed.
     pub fn order(&self) -> TangentialOrder {
         match self.order {
@@ -51,6 +80,7 @@ impl Reading {
         if let Verification::Unverified(open) = camera.convention().verification {
             let flag = match camera {
                 Camera::Pix4d(_) if self.order.is_none() => "; --order brown or --order opencv decides the order of T1 and T2",
+                Camera::Agisoft(_) if self.order.is_none() || self.origin.is_none() => "; --order and --origin decide",
                 _ => "",
             };
             eprintln!("unverified: {}: {open}{flag}", camera.convention().name);
@@ -76,9 +106,7 @@ impl Reading {
             eprintln!("{}: the first of {count} cameras, `{}`; choose with --camera NAME", path.display(), chosen.name);
         }
         let mut chosen = chosen;
-        if let Camera::Pix4d(pix4d) = &mut chosen.camera {
-            pix4d.order = self.order();
-        }
+        self.decide(&mut chosen.camera);
         self.warn(&chosen.camera);
         for note in &chosen.notes {
             eprintln!("{}: {note}", path.display());
