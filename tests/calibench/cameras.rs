@@ -64,6 +64,10 @@ fn a_fold_is_shown_and_refused() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("folds over") && stderr(&output).contains("--radius PX"), "{}", stderr(&output));
     good(folder.path(), &["convert", "fold.yml", "--to", "photogrammetric", "--pitch", "4", "--radius", "500", "--accept"]);
+    // The same camera in other units folds as well, and that is said.
+    assert!(
+        good(folder.path(), &["convert", "fold.yml", "--to", "metashape", "-o", "fold.xml"]).contains("warning: the camera folds over")
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::camera::{NamedCamera, ParameterCovariance, camera_text, write_camera};
-use calibench_model::camera::{Camera, CameraModel, ImageSize};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, convert, difference,
     naive,
@@ -84,6 +84,11 @@ impl Convert {
             let conversion = convert(&source.camera, goal.target, &options).map_err(|error| advise(&error))?;
             if !context.quiet {
                 eprint!("{}", summary(&conversion));
+            }
+            if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
+                // An exact conversion takes a fold along; it is no truth beyond it in any convention.
+                let (radius, share) = (plain(fold.radius_px), 100.0 * fold.share);
+                eprintln!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
             }
             self.draw(&conversion)?;
             let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
