@@ -18,6 +18,13 @@ pub(super) trait Lens: Copy {
     /// What is not radial.
     fn rest(&self, at: [f64; 2]) -> [f64; 2];
     /// All of it.
+    #[inline(always)]
+    fn value(&self, at @ [x, y]: [f64; 2]) -> [f64; 2] {
+        let q = self.factor(x * x + y * y);
+        let [rx, ry] = self.rest(at);
+        [x * q + rx, y * q + ry]
+    }
+    /// All of it, with derivatives.
     fn slope(&self, at: [f64; 2]) -> Slope;
     /// d(distorted) / d(coefficient), x and y, of the coefficients with the places 0 to 11.
     fn by_coefficients(&self, at: [f64; 2]) -> [[f64; 2]; 12];
@@ -44,20 +51,29 @@ impl Lens for Five {
     #[inline(always)]
     fn rest(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [p1, p2] = self.p;
-        let (r2, xy) = (x * x + y * y, 2.0 * x * y);
-        [p1 * xy + p2 * (r2 + 2.0 * x * x), p1 * (r2 + 2.0 * y * y) + p2 * xy]
+        let (r2, lean) = (x * x + y * y, 2.0 * p1 * y + 2.0 * p2 * x);
+        [x * lean + p2 * r2, y * lean + p1 * r2]
+    }
+
+    #[inline(always)]
+    fn value(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [p1, p2] = self.p;
+        let r2 = x * x + y * y;
+        let along = self.factor(r2) + (2.0 * p1 * y + 2.0 * p2 * x);
+        [x * along + p2 * r2, y * along + p1 * r2]
     }
 
     #[inline(always)]
     fn slope(&self, [x, y]: [f64; 2]) -> Slope {
         let ([k1, k2, k3], [p1, p2]) = (self.k, self.p);
-        let (xx, yy, xy) = (x * x, y * y, x * y);
-        let r2 = xx + yy;
-        let q = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        let r2 = x * x + y * y;
+        let lean = 2.0 * p1 * y + 2.0 * p2 * x;
+        let along = self.factor(r2) + lean;
         let rise = 2.0 * k1 + r2 * (4.0 * k2 + r2 * (6.0 * k3));
-        let cross = xy * rise + 2.0 * (p1 * x + p2 * y);
-        let value = [x * q + 2.0 * p1 * xy + p2 * (r2 + 2.0 * xx), y * q + p1 * (r2 + 2.0 * yy) + 2.0 * p2 * xy];
-        let by = [[q + xx * rise + 2.0 * p1 * y + 6.0 * p2 * x, cross], [cross, q + yy * rise + 6.0 * p1 * y + 2.0 * p2 * x]];
+        let (rise_x, rise_y) = (x * rise, y * rise);
+        let cross = rise_x * y + (2.0 * p1 * x + 2.0 * p2 * y);
+        let value = [x * along + p2 * r2, y * along + p1 * r2];
+        let by = [[along + x * (rise_x + 4.0 * p2), cross], [cross, along + y * (rise_y + 4.0 * p1)]];
         Slope { value, by }
     }
 

@@ -23,12 +23,6 @@ pub(super) struct Region {
     pub(super) widest: f64,
 }
 
-impl Region {
-    pub(super) fn widest_distorted(&self, factor: impl Fn(f64) -> f64) -> f64 {
-        self.widest * factor(self.widest * self.widest)
-    }
-}
-
 /// The region of `camera`.
 pub(super) fn of(camera: &OpenCv) -> Region {
     let (width, height) = (f64::from(camera.size.width), f64::from(camera.size.height));

@@ -25,9 +25,8 @@ struct Job<L> {
     focal: f64,
     /// Undoes the tilt.
     untilt: Option<[[f64; 3]; 3]>,
-    /// ideal = distorted * polynomial of (distorted radius^2 / widest^2), without what is not radial.
+    /// ideal = distorted * polynomial of distorted radius^2, without what is not radial.
     guess: [f64; GUESS],
-    per_widest: f64,
     /// Square of the ideal radius within which the camera is one to one.
     safe: f64,
 }
@@ -60,7 +59,6 @@ fn job<L: Lens>(camera: &OpenCv, region: Region) -> Job<L> {
         focal: camera.fx.abs().max(camera.fy.abs()),
         untilt,
         guess: guess(&lens, region.widest),
-        per_widest: 1.0 / region.widest_distorted(|r2| lens.factor(r2)).powi(2),
         safe: region.safe * region.safe,
     }
 }
@@ -76,15 +74,17 @@ fn guess<L: Lens>(lens: &L, widest: f64) -> [f64; GUESS] {
     });
     let powers = SMatrix::<f64, GUESS, GUESS>::from_fn(|row, column| samples[row].0.powi(column as i32));
     let values = SVector::<f64, GUESS>::from_fn(|row, _| samples[row].1);
-    powers.lu().solve(&values).map_or([0.0; GUESS], Into::into)
+    let of_relative: [f64; GUESS] = powers.lu().solve(&values).map_or([0.0; GUESS], Into::into);
+    std::array::from_fn(|i| of_relative[i] / outer.powi(2 * i as i32))
 }
 
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+// The first target that the machine has is taken: the widest comes first.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn five(job: &Job<Five>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
     all(job, camera, points, tangents);
 }
 
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
     all(job, camera, points, tangents);
 }
@@ -150,9 +150,7 @@ fn solve<L: Lens>(job: &Job<L>, goal @ [gx, gy]: [f64; 2]) -> ([f64; 2], f64) {
     };
     let [dx, dy] = step(s.value);
     let (x, y) = (x + dx, y + dy);
-    let q = job.lens.factor(x * x + y * y);
-    let [rx, ry] = job.lens.rest([x, y]);
-    let [ex, ey] = step([x * q + rx, y * q + ry]);
+    let [ex, ey] = step(job.lens.value([x, y]));
     let (x, y) = (x + ex, y + ey);
     let left = (dx.abs() + dy.abs()) * (ex.abs() + ey.abs()) * job.focal;
     ([x, y], if x * x + y * y <= job.safe { left } else { f64::INFINITY })
@@ -160,7 +158,7 @@ fn solve<L: Lens>(job: &Job<L>, goal @ [gx, gy]: [f64; 2]) -> ([f64; 2], f64) {
 
 #[inline(always)]
 fn radial<L>(job: &Job<L>, [x, y]: [f64; 2]) -> [f64; 2] {
-    let t = (x * x + y * y) * job.per_widest;
+    let t = x * x + y * y;
     let [a, b, c, d, e, f] = job.guess;
     let t2 = t * t;
     let t4 = t2 * t2;
