@@ -80,12 +80,12 @@ fn job<L: Lens>(camera: &OpenCv, pose: &CameraFromWorld) -> Job<L> {
     Job { lens: L::of(camera), pose: *pose, focal, centre, tilt, safe: safe * safe }
 }
 
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn pixels_five(job: &Job<Five>, camera: &OpenCv, points: &[[f64; 3]], pixels: &mut [PixelPoint]) {
     all_pixels(job, camera, points, pixels);
 }
 
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn pixels_twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[[f64; 3]], pixels: &mut [PixelPoint]) {
     all_pixels(job, camera, points, pixels);
 }
