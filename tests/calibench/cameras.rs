@@ -33,6 +33,17 @@ fn there_and_back_is_the_same_camera() {
 }
 
 #[test]
+fn older_agisoft_files_are_written_and_read_again() {
+    let folder = folder();
+    for (to, file) in [("photoscan", "old.xml"), ("agisoft-lens", "lens.xml")] {
+        assert!(good(folder.path(), &["convert", "camera.yml", "--to", to, "-o", file]).contains("exact"), "{to}");
+        let text = good(folder.path(), &["diff", "camera.yml", file]);
+        let rms: f64 = text.split_whitespace().nth(1).unwrap().parse().unwrap();
+        assert!(rms < 1e-9, "{to}: {text}");
+    }
+}
+
+#[test]
 fn a_fitted_conversion_says_how_far_it_is_off_and_draws_it() {
     let folder = folder();
     let arguments = ["convert", "camera.yml", "--to", "photogrammetric", "--pitch", "4", "-o", "p.toml", "--plot", "p.png"];

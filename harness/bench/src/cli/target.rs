@@ -10,7 +10,7 @@ use super::Failure;
 use crate::scenario::problem::nearest;
 
 /// The names that `--to` knows, with what they mean.
-pub const TARGETS: [(&str, &str); 11] = [
+pub const TARGETS: [(&str, &str); 13] = [
     ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
     ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
     ("opencv", "OpenCV with five coefficients; also opencv4, opencv5, opencv8, opencv12, opencv14"),
@@ -20,6 +20,8 @@ pub const TARGETS: [(&str, &str); 11] = [
     ("opencv14", "tilt as well"),
     ("opencv-fisheye", "OpenCV's fisheye"),
     ("metashape", "Metashape, PhotoScan from 1.2: k1 to k3, p1, p2, b1, b2"),
+    ("photoscan", "PhotoScan before 1.2: cameras XML with fx, fy, cx, cy, skew"),
+    ("agisoft-lens", "Agisoft Lens: calibration XML with fx, fy, cx, cy, skew"),
     ("pix4d", "Pix4D's .cam (needs the pixel pitch)"),
     ("pix4d-inpho", "Pix4D's .cam for INPHO (needs the pixel pitch)"),
 ];
@@ -70,11 +72,8 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
         "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
         "metashape" => (Target::metashape(), "metashape"),
         "pix4d" | "pix4d-inpho" => (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: given.order }, name),
-        "photoscan" | "agisoft-lens" => {
-            let version = if name == "photoscan" { AgisoftVersion::PhotoScan } else { AgisoftVersion::Lens };
-            let flag = "files of this version are read, not written; convert --to metashape";
-            return Err(Failure::input(format!("--to {name}: {flag} ({version:?})")));
-        }
+        "photoscan" => (older(AgisoftVersion::PhotoScan), "photoscan-cameras"),
+        "agisoft-lens" => (older(AgisoftVersion::Lens), "metashape"),
         _ => match name.strip_prefix("opencv").map(|n| if n.is_empty() { Ok(5) } else { n.parse() }) {
             Some(Ok(coefficients @ (4 | 5 | 8 | 12 | 14))) => (Target::OpenCv { coefficients }, opencv),
             _ => return Err(unknown(name)),
@@ -82,6 +81,11 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
     };
     let format = format_named(format).ok_or_else(|| Failure::input(format!("no file format is called {format}")))?;
     Ok(Goal { target, format })
+}
+
+/// PhotoScan before 1.2 and Lens: three radial and two decentring coefficients, two focal lengths and a skew.
+fn older(version: AgisoftVersion) -> Target {
+    Target::Agisoft { version, radial: 3, tangential: 2, affinity: true }
 }
 
 fn unknown(name: &str) -> Failure {
