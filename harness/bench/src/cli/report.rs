@@ -44,14 +44,12 @@ impl Report {
             } else {
                 report::write(&places, family, scenarios, &context.toolbox.registry)?
             };
-            {
-                match written {
-                    Written::New(page) if !context.quiet => eprintln!("{}", page.display()),
-                    Written::Kept(page) if !context.quiet => {
-                        eprintln!("{}: kept as it is, nothing of it can be measured here", page.display());
-                    }
-                    _ => {}
+            match written {
+                Written::New(page) if !context.quiet => eprintln!("{}", page.display()),
+                Written::Kept(page) if !context.quiet => {
+                    eprintln!("{}: kept as it is, nothing of it can be measured here", page.display());
                 }
+                _ => {}
             }
         }
         Ok(report::write_index(&places.reports)?)

@@ -129,8 +129,11 @@ const INSIDE: f64 = 0.9;
 /// A camera and what mistakes cost it: the mistake, as it is and after the best rotation.
 struct Priced {
     fold: Option<Fold>,
-    rows: Vec<(String, Difference, Difference)>,
+    rows: Vec<(String, Price)>,
 }
+
+/// The two differences, as it is and rotated, or why a camera is so wrong that nothing can be compared.
+type Price = Result<(Difference, Difference), ConvertError>;
 
 fn price(cameras: &Cameras, printed: &Printed) -> Result<Priced, ReportError> {
     let Cameras { pitch_um, wrong_pitch_um, .. } = *cameras;
@@ -157,15 +160,11 @@ fn price(cameras: &Cameras, printed: &Printed) -> Result<Priced, ReportError> {
         ("principal point from the corner taken as from the centre", Mistake::PrincipalPointFromCorner),
     ];
     let right = mistaken(&truth, pitch_um, Mistake::SignOfY0, &options)?.right.camera;
-    rows.push(("none: converted by a fit".to_owned(), compare(&right, false)?, compare(&right, true)?));
+    let both = |wrong: &Camera| -> Price { Ok((compare(wrong, false)?, compare(wrong, true)?)) };
+    rows.push(("none: converted by a fit".to_owned(), both(&right)));
     for (name, mistake) in mistakes {
         let wrong: Camera = mistaken(&truth, pitch_um, mistake, &options)?.wrong.into();
-        match (compare(&wrong, false), compare(&wrong, true)) {
-            (Ok(raw), Ok(turned)) => rows.push((name.to_owned(), raw, turned)),
-            // A camera so wrong that nothing can be compared is beyond any price.
-            (Err(error), _) | (_, Err(error)) if !matches!(error, ConvertError::Target { .. }) => {}
-            (Err(error), _) | (_, Err(error)) => return Err(error.into()),
-        }
+        rows.push((name.to_owned(), both(&wrong)));
     }
     Ok(Priced { fold, rows })
 }
@@ -181,7 +180,15 @@ impl Priced {
             "max mm on the object, rotated",
             "not comparable",
         ]);
-        for (name, raw, turned) in &self.rows {
+        for (name, price) in &self.rows {
+            let (raw, turned) = match price {
+                Ok(price) => price,
+                Err(why) => {
+                    let cells = [name.clone(), String::new(), String::new(), String::new(), String::new(), String::new(), why.to_string()];
+                    table.row(cells);
+                    continue;
+                }
+            };
             let mm = turned.on_object(turned.spread.max_px, distance_m * 1e3);
             let left_out = if turned.not_comparable > 0.0 { format!("{:.1} %", 100.0 * turned.not_comparable) } else { String::new() };
             let figures = [raw.spread.rms_px, raw.spread.max_px, turned.spread.rms_px, turned.spread.max_px, mm].map(plain);
@@ -192,7 +199,8 @@ impl Priced {
 
     /// What the picture shows: the direct conversion after the best rotation.
     fn shown(&self) -> (&str, &[Vector]) {
-        let row = self.rows.iter().find(|(name, ..)| name.contains("Table 2")).or(self.rows.first());
-        row.map_or(("nothing", &[]), |(name, _, turned)| (name.as_str(), turned.vectors.as_slice()))
+        let shown = self.rows.iter().filter_map(|(name, price)| Some((name.as_str(), &price.as_ref().ok()?.1)));
+        let row = shown.clone().find(|(name, _)| name.contains("Table 2")).or(shown.clone().next());
+        row.map_or(("nothing", &[]), |(name, turned)| (name, turned.vectors.as_slice()))
     }
 }

@@ -83,9 +83,10 @@ fn race(mut ours: impl FnMut(), mut theirs: impl FnMut() -> opencv::Result<()>) 
     }))
 }
 
-fn print(name: &str, [ours, theirs]: [f64; 2], wanted: f64, deviations: &str) {
+fn print(name: &str, [ours, theirs]: [f64; 2], wanted: Option<f64>, deviations: &str) {
+    let wanted = wanted.map_or(String::new(), |wanted| format!("{wanted:.1}"));
     let (million, ratio) = (1e-6, ours / theirs);
-    println!("{name:<28} {:>11.1} M/s {:>11.1} M/s {ratio:>8.1} {wanted:>8.1}   {deviations}", ours * million, theirs * million);
+    println!("{name:<28} {:>11.1} M/s {:>11.1} M/s {ratio:>8.1} {wanted:>8}   {deviations}", ours * million, theirs * million);
 }
 
 /// The largest distance between the images of `tangents` and `places`, px.
@@ -106,13 +107,13 @@ fn undistortion(camera: &OpenCv) -> opencv::Result<()> {
     theirs.undistort_to(ACCURACY)?;
     let reached = residual(camera, &places, theirs.tangents());
     let rates = race(|| camera.undistort_all(black_box(&places), &mut ours), || theirs.undistort_to(ACCURACY))?;
-    print("undistortion to 1e-9 px", rates, 20.0, &format!("{own:.1e}, {reached:.1e}"));
+    print("undistortion to 1e-9 px", rates, Some(20.0), &format!("{own:.1e}, {reached:.1e}"));
     // The fewest iterations with which OpenCV is as good: what nobody knows beforehand.
     for iterations in [5, fewest(camera, &places, &mut theirs)?] {
         theirs.undistort(iterations)?;
         let reached = residual(camera, &places, theirs.tangents());
         let rates = race(|| camera.undistort_all(black_box(&places), &mut ours), || theirs.undistort(iterations))?;
-        print(&format!("  OpenCV's with {iterations} iterations"), rates, f64::NAN, &format!("{own:.1e}, {reached:.1e}"));
+        print(&format!("  OpenCV's with {iterations} iterations"), rates, None, &format!("{own:.1e}, {reached:.1e}"));
     }
     Ok(())
 }
@@ -132,7 +133,7 @@ fn projection(camera: &OpenCv, pose: &CameraFromWorld, objects: &[[f64; 3]]) -> 
     let mut theirs = Theirs::new(camera, pose, objects)?;
     let rates = race(|| camera.project_all(pose, black_box(objects), &mut ours), || theirs.project())?;
     let off = ours.iter().zip(theirs.pixels()).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
-    print("projection", rates, 3.0, &format!("{off:.1e} apart"));
+    print("projection", rates, Some(3.0), &format!("{off:.1e} apart"));
     Ok(())
 }
 
@@ -151,6 +152,6 @@ fn derivatives(camera: &OpenCv, pose: &CameraFromWorld, objects: &[[f64; 3]]) ->
             off = off.max((a[0] - b[0]).hypot(a[1] - b[1]) / (1.0 + a[0].hypot(a[1])));
         }
     }
-    print("projection, derivatives", rates, 5.0, &format!("{off:.1e} apart, relative; {} columns each", jacobian.columns()));
+    print("projection, derivatives", rates, Some(5.0), &format!("{off:.1e} apart, relative; {} columns each", jacobian.columns()));
     Ok(())
 }

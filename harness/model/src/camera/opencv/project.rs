@@ -92,6 +92,7 @@ fn pixels_twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[[f64; 3]], pixels
 
 macro_rules! slopes {
     ($($name:ident: $lens:ty, $coefficients:expr;)*) => {
+        // AVX2 first: compiled for AVX-512 the derivatives were measured at half the speed, the plain projection at 1.4 times.
         $(#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
         fn $name(job: &Job<$lens>, camera: &OpenCv, points: &[[f64; 3]], pixels: &mut [PixelPoint], values: &mut [f64]) {
             all_slopes::<$lens, $coefficients, { 2 * (POSE + MATRIX + $coefficients) }>(job, camera, points, pixels, values);
