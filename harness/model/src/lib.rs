@@ -5,11 +5,13 @@ pub mod convert;
 pub mod frames;
 pub mod image;
 pub mod observation;
+pub mod pose;
 pub mod scene;
 pub mod target;
 
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
 pub use image::Image;
 pub use observation::{Measurement, Rejection, Start};
+pub use pose::Pose;
 pub use scene::{Polygon, Scene, SceneTarget};
 pub use target::{Affine, TargetKind};

@@ -1,0 +1,1 @@
+//! Start values without truth: closed forms and robust searches.
