@@ -8,6 +8,7 @@ pub mod observation;
 pub mod pose;
 pub mod scene;
 pub mod target;
+pub mod testfield;
 
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
 pub use image::Image;
@@ -15,3 +16,4 @@ pub use observation::{Measurement, Rejection, Start};
 pub use pose::Pose;
 pub use scene::{Polygon, Scene, SceneTarget};
 pub use target::{Affine, TargetKind};
+pub use testfield::{Area, Bend, Curve, ObjectTarget, Outline, Plate, Testfield};
