@@ -5,9 +5,12 @@
 
 pub mod coverage;
 pub mod noise;
+pub mod optics;
 pub mod overlap;
 pub mod pointing;
 pub mod random;
+pub mod raster;
 pub mod render;
+pub mod view;
 
 pub use render::{draw, render};

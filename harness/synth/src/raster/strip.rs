@@ -1,0 +1,166 @@
+//! A strip of rows in which pieces leave their mark.
+//!
+//! Green's theorem turns a pixel's integral of an area under the kernel k(x) k(y) into one along the area's outline, of S(x) k(y) dy, with S the integral of
+//! k. A point of the outline therefore changes the pixels within the kernel's reach, and, where S has become one, all that lie left of it. Written as
+//! differences along the row the second part costs nothing: a running sum makes it.
+
+use multiversion::multiversion;
+
+use super::piece::Piece;
+use super::sharp;
+use crate::optics::{Kernel, Part, gauss_legendre};
+
+/// Nodes of one stretch of a piece, at most.
+const MOST_NODES: usize = 32;
+
+/// Rules of quadrature for every number of nodes.
+pub(crate) struct Rules(Vec<Vec<(f64, f64)>>);
+
+impl Rules {
+    pub fn new() -> Self {
+        Self((0..=MOST_NODES).map(gauss_legendre).collect())
+    }
+}
+
+/// Differences along rows `top` to `top + rows`.
+pub(crate) struct Strip {
+    pub top: i64,
+    pub rows: usize,
+    width: usize,
+    pad: usize,
+    stride: usize,
+    differences: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl Strip {
+    /// For images of `width` px and kernels that reach `reach` px along the row.
+    pub fn new(width: usize, rows: usize, reach: f64) -> Self {
+        let pad = 2 * reach.ceil() as usize + 16;
+        let stride = width + 2 * pad;
+        Self { top: 0, rows, width, pad, stride, differences: vec![0.0; stride * rows], scratch: vec![0.0; pad] }
+    }
+
+    /// Makes it the strip of `rows` rows from `top` on, empty.
+    pub fn reset(&mut self, top: i64, rows: usize) {
+        (self.top, self.rows) = (top, rows);
+        self.differences[..self.stride * rows].fill(0.0);
+    }
+
+    /// Sums the differences along each row and hands the grey values, less the background, to `row`.
+    pub fn finish(&mut self, mut row: impl FnMut(usize, &[f64])) {
+        for (y, differences) in self.differences.chunks_exact_mut(self.stride).take(self.rows).enumerate() {
+            let (before, after) = differences.split_at_mut(self.pad);
+            let mut sum: f64 = before.iter().sum();
+            let values = &mut after[..self.width];
+            for value in values.iter_mut() {
+                sum += *value;
+                *value = sum;
+            }
+            row(y, values);
+        }
+    }
+
+    /// The row of differences `y`, px from the image's top, if the strip holds it, from `column` on; the first column stands for all that lie left.
+    #[inline(always)]
+    pub fn row_from(&mut self, y: i64, column: i64) -> Option<&mut [f64]> {
+        let row = y - self.top;
+        if row < 0 || row >= self.rows as i64 || column >= self.width as i64 {
+            return None;
+        }
+        let start = (column + self.pad as i64).max(0) as usize;
+        Some(&mut self.differences[row as usize * self.stride + start..(row as usize + 1) * self.stride])
+    }
+
+    /// Adds `pieces`, those that `listed` names, as `kernel` spreads them. `jitter` is the shift of each row of the strip to the right, px.
+    pub fn add(&mut self, pieces: &[Piece], listed: &[u32], kernel: &Kernel, rules: &Rules, jitter: Option<&[f64]>) {
+        match kernel {
+            Kernel::Sharp(aperture) => {
+                for &index in listed {
+                    sharp::add(self, &pieces[index as usize], *aperture, jitter);
+                }
+            }
+            Kernel::Smooth { sigma, parts } => match jitter {
+                None => smooth(self, pieces, listed, *sigma, parts, rules),
+                Some(jitter) => jittered(self, pieces, listed, *sigma, parts, rules, jitter),
+            },
+        }
+    }
+}
+
+// The first target that the machine has is taken.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn smooth(strip: &mut Strip, pieces: &[Piece], listed: &[u32], sigma: f64, parts: &[Part], rules: &Rules) {
+    let bounds = [strip.top as f64, (strip.top + strip.rows as i64 - 1) as f64];
+    for &index in listed {
+        each_node(&pieces[index as usize], sigma, bounds, parts, rules, |part, x, y, weight| mark(strip, part, x, y, weight));
+    }
+}
+
+fn jittered(strip: &mut Strip, pieces: &[Piece], listed: &[u32], sigma: f64, parts: &[Part], rules: &Rules, jitter: &[f64]) {
+    let bounds = [strip.top as f64, (strip.top + strip.rows as i64 - 1) as f64];
+    for &index in listed {
+        each_node(&pieces[index as usize], sigma, bounds, parts, rules, |part, x, y, weight| {
+            let (first, low, high, share) = part.down.around(y);
+            for (row, (low, high)) in (first..).zip(low.iter().zip(high)) {
+                let Some(shift) = usize::try_from(row - strip.top).ok().and_then(|row| jitter.get(row)) else { continue };
+                let down = weight * (low + share * (high - low));
+                let (column, low, high, share) = part.along.around(x + shift + 0.5);
+                let Some(differences) = strip.row_from(row, column) else { continue };
+                for ((difference, low), high) in differences.iter_mut().zip(low).zip(high) {
+                    *difference -= down * (low + share * (high - low));
+                }
+            }
+        });
+    }
+}
+
+/// Calls `node(part, x, y, weight)` for all nodes of a piece that reach into the rows of `bounds`, for every part of the kernel.
+#[inline(always)]
+fn each_node(piece: &Piece, sigma: f64, bounds: [f64; 2], parts: &[Part], rules: &Rules, mut node: impl FnMut(&Part, f64, f64, f64)) {
+    let [x, y] = piece.polynomial();
+    let needed = 1.4 * piece.length() / sigma + 3.0;
+    let stretches = (needed / MOST_NODES as f64).ceil();
+    let rule = &rules.0[(needed / stretches).ceil() as usize];
+    let step = 1.0 / stretches;
+    for part in parts {
+        let reach = part.down.reach();
+        let (low, high) = (bounds[0] - reach, bounds[1] + reach);
+        for stretch in 0..stretches as usize {
+            let start = stretch as f64 * step;
+            for &(t, weight) in rule {
+                let t = start + t * step;
+                let at_y = y[0] + t * (y[1] + t * y[2]) + part.shift[1];
+                if at_y <= low || at_y >= high {
+                    continue;
+                }
+                let at_x = x[0] + t * (x[1] + t * x[2]) + part.shift[0];
+                node(part, at_x, at_y, weight * step * (y[1] + 2.0 * t * y[2]) * piece.contrast * part.weight);
+            }
+        }
+    }
+}
+
+/// What a point of an outline changes.
+#[inline(always)]
+fn mark(strip: &mut Strip, part: &Part, x: f64, y: f64, weight: f64) {
+    let (column, low, high, share) = part.along.around(x + 0.5);
+    if column >= strip.width as i64 {
+        return;
+    }
+    let taps = part.along.taps;
+    let mut scratch = std::mem::take(&mut strip.scratch);
+    for ((value, low), high) in scratch[..taps].iter_mut().zip(low).zip(high) {
+        *value = low + share * (high - low);
+    }
+    let (first, low, high, share) = part.down.around(y);
+    for (row, (low, high)) in (first..).zip(low.iter().zip(high)) {
+        let down = weight * (low + share * (high - low));
+        if let Some(differences) = strip.row_from(row, column) {
+            for (difference, along) in differences[..taps].iter_mut().zip(&scratch[..taps]) {
+                *difference -= down * along;
+            }
+        }
+    }
+    strip.scratch = scratch;
+}

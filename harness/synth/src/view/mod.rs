@@ -1,0 +1,126 @@
+//! A testfield seen by a camera: outlines in the image, and the truth about every target.
+
+mod clip;
+mod occlusion;
+mod outline;
+mod polygon;
+#[cfg(test)]
+mod tests;
+mod trace;
+mod truth;
+
+use calibench_model::camera::{Camera, CameraModel, NoCounterpart, fold};
+use calibench_model::{Pose, Testfield};
+use thiserror::Error;
+
+use crate::raster::Picture;
+use occlusion::Sheet;
+use polygon::Convex;
+
+pub use truth::{Ellipse, TargetTruth, Visibility};
+
+/// A camera before a testfield.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// What is seen.
+    pub field: &'a Testfield,
+    /// With which interior orientation.
+    pub camera: &'a Camera,
+    /// From where.
+    pub pose: &'a Pose,
+}
+
+/// A view that cannot be pictured.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ViewError {
+    /// Every plate is behind the camera.
+    #[error("the testfield lies behind the camera")]
+    Behind,
+    /// The mapping is not one to one within the frame or its margin.
+    #[error("the distortion folds over {radius_px:.0} px from the principal point, inside the image or within {margin_px:.0} px of it")]
+    Fold {
+        /// Where, px from the principal point.
+        radius_px: f64,
+        /// How far around the frame light matters, px.
+        margin_px: f64,
+    },
+    /// A bent plate before another one.
+    #[error("plate `{front}` is bent and hides part of plate `{back}`: only flat plates may stand before others")]
+    BentBefore {
+        /// The nearer plate.
+        front: String,
+        /// The other.
+        back: String,
+    },
+    /// Two plates that hide each other.
+    #[error("plates `{0}` and `{1}` cut through each other")]
+    Cut(String, String),
+    /// The camera stands in a plate.
+    #[error("the camera stands in the plane of plate `{0}`, or on it")]
+    EdgeOn(String),
+    /// A part of a plate in the frame to which the camera model gives no place.
+    #[error("part of plate `{plate}` has no place in the image: {why}")]
+    NoPlace {
+        /// The plate.
+        plate: String,
+        /// What the model says.
+        why: NoCounterpart,
+    },
+}
+
+impl View<'_> {
+    /// The outlines in the image. `margin` is how far around the frame light matters, px: the reach of the optics.
+    ///
+    /// # Errors
+    /// What cannot be pictured, by name.
+    pub fn picture(&self, margin: f64) -> Result<Picture, ViewError> {
+        let size = self.camera.size();
+        let frame = self.frame(margin)?;
+        let sheets = occlusion::sheets(self, &frame)?;
+        if !self.field.plates.is_empty() && sheets.iter().all(Option::is_none) {
+            return Err(ViewError::Behind);
+        }
+        let mut pieces = Vec::new();
+        for sheet in sheets.iter().flatten() {
+            outline::sheet(self, sheet, &frame, &mut pieces)?;
+        }
+        Ok(Picture { width: size.width as usize, height: size.height as usize, background: self.field.background, pieces })
+    }
+
+    /// The truth about every target, in the order of the testfield's.
+    ///
+    /// # Errors
+    /// As [`Self::picture`].
+    pub fn truth(&self, margin: f64) -> Result<Vec<TargetTruth>, ViewError> {
+        let frame = self.frame(margin)?;
+        let sheets = occlusion::sheets(self, &frame)?;
+        Ok(self.field.targets.iter().map(|target| truth::truth(self, target, sheets[target.plate].as_ref())).collect())
+    }
+
+    fn frame(&self, margin: f64) -> Result<Frame, ViewError> {
+        let size = self.camera.size();
+        if let Some(fold) = fold(self.camera) {
+            return Err(ViewError::Fold { radius_px: fold.radius_px, margin_px: margin });
+        }
+        // Two pixels more for the chords between the points of the border.
+        let margin = margin + 2.0;
+        let (right, bottom) = (f64::from(size.width) - 0.5 + margin, f64::from(size.height) - 0.5 + margin);
+        let sides = [-0.5 - margin, -0.5 - margin, right, bottom];
+        let directions = polygon::border(self.camera, sides).map_err(|at| {
+            let middle = ((f64::from(size.width) - 1.0) / 2.0, (f64::from(size.height) - 1.0) / 2.0);
+            ViewError::Fold { radius_px: (at.x - middle.0).hypot(at.y - middle.1), margin_px: margin }
+        })?;
+        Ok(Frame { sides, directions })
+    }
+}
+
+/// The frame with its margin.
+pub(crate) struct Frame {
+    /// Left, top, right, bottom, px.
+    pub sides: [f64; 4],
+    /// A convex polygon around all directions that come to the frame, in tangents (right, up).
+    pub directions: Convex,
+}
+
+/// A plate, as far as it is seen.
+pub(crate) type Seen<'a> = Sheet<'a>;

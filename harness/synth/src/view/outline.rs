@@ -1,0 +1,94 @@
+//! A plate's outlines in the image.
+
+use calibench_model::camera::{CameraModel, NoCounterpart, Ray};
+use calibench_model::{Outline, Plate};
+
+use super::polygon::{Tangent, apart, bounds, doubled_area};
+use super::trace::trace;
+use super::{Frame, Seen, View, ViewError, clip};
+use crate::raster::{Piece, orient};
+
+/// Appends the pieces of a plate: its sheet and what is printed on it.
+pub(super) fn sheet(view: &View<'_>, sheet: &Seen<'_>, frame: &Frame, pieces: &mut Vec<Piece>) -> Result<(), ViewError> {
+    let plate = sheet.plate;
+    outline(view, sheet, frame, &plate.border(), plate.level - view.field.background, pieces)?;
+    if sheet.front {
+        for area in &plate.areas {
+            outline(view, sheet, frame, &area.outline, area.level - area.ground, pieces)?;
+        }
+    }
+    Ok(())
+}
+
+fn outline(
+    view: &View<'_>,
+    sheet: &Seen<'_>,
+    frame: &Frame,
+    outline: &Outline,
+    contrast: f64,
+    pieces: &mut Vec<Piece>,
+) -> Result<(), ViewError> {
+    if contrast == 0.0 {
+        return Ok(());
+    }
+    let first = pieces.len();
+    let free = sheet.hidden_by.is_empty() || is_free(view, sheet, outline);
+    if free && whole(view, sheet.plate, frame, outline, pieces).is_ok() {
+        orient(&mut pieces[first..], contrast);
+        return Ok(());
+    }
+    pieces.truncate(first);
+    let seen = frame.directions.intersect(&clip::tangents(view.pose, sheet.plate, outline));
+    // The parts share one sense of rotation, that of the outline: a part may be too thin to tell its own.
+    let contrast = contrast * doubled_area(&seen).signum();
+    let mut parts = vec![seen];
+    for hull in &sheet.hidden_by {
+        parts = parts.iter().flat_map(|part| hull.subtract(part)).collect();
+    }
+    for part in parts.iter().filter(|part| part.len() > 2) {
+        let first = pieces.len();
+        polygon(view, frame, part, pieces).map_err(|why| ViewError::NoPlace { plate: sheet.plate.id.clone(), why })?;
+        // y turns over between tangents and pixels.
+        pieces[first..].iter_mut().for_each(|piece| piece.contrast = -contrast);
+    }
+    Ok(())
+}
+
+/// Does nothing hide any part of an outline? Boxes tell.
+fn is_free(view: &View<'_>, sheet: &Seen<'_>, outline: &Outline) -> bool {
+    let around = bounds(&clip::tangents(view.pose, sheet.plate, outline));
+    sheet.hidden_by.iter().all(|hull| apart(hull.bounds(), around))
+}
+
+/// The outline curve by curve.
+fn whole(view: &View<'_>, plate: &Plate, frame: &Frame, outline: &Outline, pieces: &mut Vec<Piece>) -> Result<(), NoCounterpart> {
+    let first = pieces.len();
+    for curve in &outline.0 {
+        let project = |t: f64| view.camera.project(view.pose.ray(&plate.point(curve.at(t))));
+        trace(&project, frame.sides, pieces)?;
+    }
+    close(&mut pieces[first..]);
+    Ok(())
+}
+
+/// A polygon of tangents.
+fn polygon(view: &View<'_>, frame: &Frame, polygon: &[Tangent], pieces: &mut Vec<Piece>) -> Result<(), NoCounterpart> {
+    let first = pieces.len();
+    for (i, a) in polygon.iter().enumerate() {
+        let b = polygon[(i + 1) % polygon.len()];
+        let project = |t: f64| view.camera.project(Ray::from_tangent(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])));
+        trace(&project, frame.sides, pieces)?;
+    }
+    close(&mut pieces[first..]);
+    Ok(())
+}
+
+/// Makes each piece start exactly where the one before it ends: rounding must not leave a gap.
+fn close(pieces: &mut [Piece]) {
+    for i in 1..pieces.len() {
+        pieces[i].start = pieces[i - 1].end;
+    }
+    if let [first, .., last] = pieces {
+        last.end = first.start;
+    }
+}
