@@ -1,9 +1,10 @@
 //! Scenes to images whose truth is known exactly.
 //!
-//! [`render()`] integrates a scene of polygons over each pixel's area, [`noise`] spoils the image as a sensor would, [`pointing`]
-//! makes the approximate positions that a person would click. Every random number comes from [`random::stream`].
+//! [`view`] brings a testfield before a camera, [`raster`] integrates outlines over each photosite under the blur of [`optics`], [`render()`] does so for a flat
+//! scene, [`noise`] spoils an image, [`pointing`] makes the approximate positions that a person would click. Every random number comes from
+//! [`random::stream`].
 
-pub mod coverage;
+mod centres;
 pub mod noise;
 pub mod optics;
 pub mod overlap;

@@ -1,26 +1,28 @@
 //! A scene to its noise-free image.
 
-use calibench_model::{Image, Polygon, Scene};
+use calibench_model::{Image, Scene};
 
-use crate::coverage::{centres, coverage};
+use crate::centres::centres;
+use crate::optics::Optics;
+use crate::raster::{Picture, Renderer};
 
 /// The noise-free image: each grey value is the exact mean of the scene over the pixel's area (fill factor 1, no blur).
 ///
 /// Summed in f64 and stored as f32: an error of at most 1e-7 of full scale.
+///
+/// # Panics
+/// Never: no optics are always in range.
 pub fn render(scene: &Scene) -> Image {
-    paint(scene, coverage)
+    let renderer = Renderer::new(&Optics::default(), scene.width, scene.height).expect("no blur, full aperture");
+    renderer.render(&Picture::from(scene), &[])
 }
 
 /// The image as a program draws it that knows no partial coverage: each pixel has the grey value of the scene at its centre.
 pub fn draw(scene: &Scene) -> Image {
-    paint(scene, centres)
-}
-
-fn paint(scene: &Scene, coverage: fn(&Polygon, usize, usize) -> Vec<f64>) -> Image {
     let mut grey = vec![scene.background; scene.width * scene.height];
     for polygon in &scene.polygons {
         let contrast = polygon.grey - scene.background;
-        for (value, covered) in grey.iter_mut().zip(coverage(polygon, scene.width, scene.height)) {
+        for (value, covered) in grey.iter_mut().zip(centres(polygon, scene.width, scene.height)) {
             *value += contrast * covered;
         }
     }
@@ -30,7 +32,7 @@ fn paint(scene: &Scene, coverage: fn(&Polygon, usize, usize) -> Vec<f64>) -> Ima
 #[cfg(test)]
 mod tests {
     use super::*;
-    use calibench_model::PixelPoint;
+    use calibench_model::{PixelPoint, Polygon};
 
     /// A corner of one area at (`x`, `y`) whose edges run right and down.
     fn corner(x: f64, y: f64) -> Scene {

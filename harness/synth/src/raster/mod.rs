@@ -13,7 +13,8 @@ use crate::optics::{Levels, Optics, OpticsError};
 use strip::{Rules, Strip};
 
 pub use piece::Piece;
-pub(crate) use piece::{orient, polygon};
+pub(crate) use piece::orient;
+use piece::polygon;
 
 /// Rows that are worked on together.
 pub const STRIP_ROWS: usize = 32;
@@ -45,7 +46,7 @@ pub struct Renderer {
     width: usize,
     height: usize,
     levels: Levels,
-    rules: Rules,
+    rules: &'static Rules,
 }
 
 impl Renderer {
@@ -55,7 +56,7 @@ impl Renderer {
     /// Optics that are out of range.
     pub fn new(optics: &Optics, width: usize, height: usize) -> Result<Self, OpticsError> {
         optics.check()?;
-        Ok(Self { width, height, levels: Levels::new(optics, width, height), rules: Rules::new() })
+        Ok(Self { width, height, levels: Levels::new(optics, width, height), rules: Rules::all() })
     }
 
     /// The noise-free image. `jitter` is the shift of each row to the right, px, or empty.
@@ -100,7 +101,7 @@ impl Renderer {
             return self.blended(strip, top, pieces, listed, background, jitter, rows);
         };
         strip.reset(top as i64, count);
-        strip.add(pieces, listed, kernel, &self.rules, jitter);
+        strip.add(pieces, listed, kernel, self.rules, jitter);
         strip.finish(|y, values| {
             for (grey, value) in rows[y * self.width..].iter_mut().zip(values) {
                 *grey = (background + value) as f32;
@@ -129,7 +130,7 @@ impl Renderer {
         }
         for (level, kernel) in self.levels.kernels.iter().enumerate() {
             strip.reset(top as i64, count);
-            strip.add(pieces, listed, kernel, &self.rules, jitter);
+            strip.add(pieces, listed, kernel, self.rules, jitter);
             strip.finish(|y, values| {
                 for (i, value) in (y * self.width..).zip(values) {
                     blended[i] += weights[i * n + level] * value;

@@ -4,6 +4,8 @@
 //! k. A point of the outline therefore changes the pixels within the kernel's reach, and, where S has become one, all that lie left of it. Written as
 //! differences along the row the second part costs nothing: a running sum makes it.
 
+use std::sync::LazyLock;
+
 use multiversion::multiversion;
 
 use super::piece::Piece;
@@ -17,8 +19,10 @@ const MOST_NODES: usize = 32;
 pub(crate) struct Rules(Vec<Vec<(f64, f64)>>);
 
 impl Rules {
-    pub fn new() -> Self {
-        Self((0..=MOST_NODES).map(gauss_legendre).collect())
+    /// The rules, computed once.
+    pub fn all() -> &'static Self {
+        static RULES: LazyLock<Rules> = LazyLock::new(|| Rules((0..=MOST_NODES).map(gauss_legendre).collect()));
+        &RULES
     }
 }
 
