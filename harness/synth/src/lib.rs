@@ -9,5 +9,6 @@ pub mod overlap;
 pub mod pointing;
 pub mod random;
 pub mod render;
+pub mod sensor;
 
 pub use render::{draw, render};
