@@ -12,6 +12,7 @@ pub mod pointing;
 pub mod random;
 pub mod raster;
 pub mod render;
+pub mod sensor;
 pub mod view;
 
 pub use render::{draw, render};

@@ -13,6 +13,18 @@ pub enum Purpose {
     GreyNoise = 2,
     /// The hand that points at a target.
     Pointing = 3,
+    /// A sensor's temporal noise: one normal number for each pixel.
+    SensorNoise = 10,
+    /// A sensor's electrons where they are counted one by one.
+    Electrons = 11,
+    /// Photo response non-uniformity, the camera's own.
+    Prnu = 12,
+    /// Dark signal non-uniformity, the camera's own.
+    Dsnu = 13,
+    /// A sensor's noise that is common to a row.
+    RowNoise = 14,
+    /// How far each row of an image is read out of its place.
+    RowJitter = 15,
 }
 
 /// Which stream.

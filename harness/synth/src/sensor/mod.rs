@@ -1,0 +1,298 @@
+//! What a camera makes of the light behind its photosites' apertures: irradiance to the image that is read.
+//!
+//! The stages, each optional, in the order in which light and signal pass them: vignetting and the illumination's gradient, exposure, colour filter,
+//! [`Noise`] (for electrons: response non-uniformity, photon noise and dark signal, the full well, dark signal non-uniformity, read noise, row
+//! noise), converter, demosaic, gamma, output levels, JPEG. Grey values are fractions of full scale; light of 1 is what a target of reflectance 1
+//! sends before exposure. The terms and units of the noise are those of EMVA 1288.
+//!
+//! A pixel's noise depends on the [`Key`] and its place alone, so that rows may be exposed in any order and on any number of threads. The patterns
+//! of the camera (PRNU, DSNU) depend on seed, scenario and place: they are the same in all views and trials.
+
+mod convert;
+mod demosaic;
+mod electrons;
+mod filter;
+mod gamma;
+mod jitter;
+mod jpeg;
+mod normal;
+mod rows;
+mod shading;
+mod statistics;
+#[cfg(test)]
+mod tests;
+
+use std::iter::Sum;
+use std::ops::Add;
+
+use calibench_model::{Image, PixelPoint};
+use rayon::prelude::*;
+use thiserror::Error;
+
+pub use demosaic::{Demosaic, DemosaicTo};
+pub use electrons::Electrons;
+pub use filter::{ColourFilter, Pattern};
+pub use gamma::Gamma;
+pub use jitter::row_shifts;
+pub use jpeg::through_jpeg;
+pub use shading::{FallOff, Gradient, Per, Vignetting};
+
+use crate::random::Key;
+
+/// Rows that a thread takes at a time.
+const BLOCK: usize = 64;
+
+/// What a sensor is made of, before it is checked. The default passes light on as it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// The lens's fall-off.
+    pub vignetting: Option<Vignetting>,
+    /// The illumination's gradient.
+    pub gradient: Option<Gradient>,
+    /// Grey value of reflectance 1, before the filter.
+    pub exposure: f64,
+    /// The colour filter.
+    pub filter: Option<ColourFilter>,
+    /// The noise.
+    pub noise: Noise,
+    /// Bits of the analogue-digital converter: 8, 10, 12, 14 or 16; `None` does not quantise nor clip.
+    pub converter: Option<u32>,
+    /// The mosaic of the filter to grey. Needs the filter.
+    pub demosaic: Option<Demosaic>,
+    /// The curve from light to grey.
+    pub gamma: Option<Gamma>,
+    /// Bits of the image that is handed out: 8, 12 or 16; `None` leaves it as it is (8 with JPEG).
+    pub output: Option<u32>,
+    /// JPEG of this quality, 1 to 100.
+    pub jpeg: Option<u8>,
+}
+
+/// How the noise is described: exactly one way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Noise {
+    /// There is none.
+    None,
+    /// White Gaussian noise, added after exposure and filter.
+    White {
+        /// Its standard deviation, fraction of full scale.
+        sigma: f64,
+    },
+    /// What electrons do.
+    Electrons(Electrons),
+}
+
+impl Noise {
+    /// White noise `decibel` dB below `signal`, a grey value: the difference of light and dark targets for a signal-to-noise ratio of contrast, the
+    /// mean grey value for one of the mean. `decibel` is 20 lg(signal / sigma).
+    pub fn white_below(signal: f64, decibel: f64) -> Self {
+        Noise::White { sigma: signal * 10_f64.powf(-decibel / 20.0) }
+    }
+}
+
+impl Default for Design {
+    fn default() -> Self {
+        Self {
+            vignetting: None,
+            gradient: None,
+            exposure: 1.0,
+            filter: None,
+            noise: Noise::None,
+            converter: None,
+            demosaic: None,
+            gamma: None,
+            output: None,
+            jpeg: None,
+        }
+    }
+}
+
+/// A sensor that can be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    design: Design,
+}
+
+/// Why a sensor cannot be, or cannot write an image.
+#[derive(Debug, Error)]
+pub enum SensorError {
+    /// A number outside its bounds.
+    #[error("{what} is {value}: expected a number from {min} to {max}")]
+    OutOfRange {
+        /// Which.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The least that can be.
+        min: f64,
+        /// The most that can be.
+        max: f64,
+    },
+    /// Bits that no converter or file has.
+    #[error("{what} of {bits} bits: expected {expected}")]
+    Bits {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        bits: u32,
+        /// Which there are.
+        expected: &'static str,
+    },
+    /// Nothing to demosaic.
+    #[error("demosaic without a colour filter")]
+    NoFilter,
+    /// Numbers in DN, and nothing that makes DN.
+    #[error("a system gain or black level in DN without the bits of the converter")]
+    NoConverter,
+    /// JPEG of more than 8 bits.
+    #[error("JPEG has 8 bits, the output is to have {0}")]
+    JpegBits(u32),
+    /// A size that JPEG cannot hold.
+    #[error("JPEG holds from 1 x 1 to 65535 x 65535 px, the image has {width} x {height}")]
+    JpegSize {
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+    },
+    /// The codec refused.
+    #[error("JPEG")]
+    Jpeg(#[from] image::ImageError),
+}
+
+/// The size of the whole image, px.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+impl Frame {
+    fn centre(self) -> PixelPoint {
+        let middle = |length: usize| (length as f64 - 1.0) / 2.0;
+        PixelPoint::new(middle(self.width), middle(self.height))
+    }
+}
+
+/// Pixels whose grey value was outside what well, converter or output levels hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Clipped {
+    /// Below.
+    pub low: u64,
+    /// Above.
+    pub high: u64,
+}
+
+impl Add for Clipped {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { low: self.low + other.low, high: self.high + other.high }
+    }
+}
+
+impl Sum for Clipped {
+    fn sum<I: Iterator<Item = Self>>(parts: I) -> Self {
+        parts.fold(Self::default(), Add::add)
+    }
+}
+
+/// An image that was taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exposure {
+    /// Grey values, fractions of full scale.
+    pub image: Image,
+    /// What was clipped: at the well or the converter each pixel once, and in addition where white balance or gamma left the output's levels.
+    pub clipped: Clipped,
+}
+
+impl Sensor {
+    /// Checks `design`.
+    ///
+    /// # Errors
+    /// [`SensorError`] names the first number outside its bounds, or the stage that lacks another.
+    pub fn new(design: Design) -> Result<Self, SensorError> {
+        design.vignetting.as_ref().map_or(Ok(()), Vignetting::check)?;
+        design.gradient.as_ref().map_or(Ok(()), Gradient::check)?;
+        check("the exposure", design.exposure, 1e-6, 1e6)?;
+        design.filter.as_ref().map_or(Ok(()), ColourFilter::check)?;
+        check_bits("a converter", design.converter, &[8, 10, 12, 14, 16], "8, 10, 12, 14 or 16")?;
+        check_bits("an image", design.output, &[8, 12, 16], "8, 12 or 16")?;
+        match &design.noise {
+            Noise::None => {}
+            Noise::White { sigma } => check("the noise", *sigma, 0.0, 10.0)?,
+            Noise::Electrons(electrons) => electrons.check(design.converter)?,
+        }
+        if let Some(demosaic) = &design.demosaic {
+            demosaic.check()?;
+            design.filter.ok_or(SensorError::NoFilter)?;
+        }
+        design.gamma.map_or(Ok(()), Gamma::check)?;
+        match (design.jpeg, design.output) {
+            (Some(_), Some(bits)) if bits != 8 => return Err(SensorError::JpegBits(bits)),
+            (Some(quality), _) => check("the quality of JPEG", f64::from(quality), 1.0, 100.0)?,
+            _ => {}
+        }
+        Ok(Self { design })
+    }
+
+    /// What it is made of.
+    pub fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// The image that the sensor takes of `irradiance`, in its place; `key` is the image's.
+    ///
+    /// Demosaicing and JPEG take up to another 4 bytes per pixel. Blocks of rows are spread over the current rayon pool.
+    ///
+    /// # Errors
+    /// [`SensorError::JpegSize`] or [`SensorError::Jpeg`] of an image that JPEG cannot hold.
+    pub fn expose(&self, mut irradiance: Image, key: Key<'_>) -> Result<Exposure, SensorError> {
+        let frame = Frame { width: irradiance.width(), height: irradiance.height() };
+        let rows = (BLOCK * frame.width).max(1);
+        let blocks = irradiance.grey_mut().par_chunks_mut(rows).enumerate();
+        let clipped = blocks.map(|(block, rows)| self.expose_rows(rows, block * BLOCK, frame, key));
+        let exposed = clipped.reduce(Clipped::default, Add::add);
+        let (image, developed) = self.develop(irradiance)?;
+        Ok(Exposure { image, clipped: exposed + developed })
+    }
+
+    /// Does [`Sensor::develop`] leave exposed rows as they are? The rows are then final, and the image may be written strip by strip.
+    pub fn works_by_rows(&self) -> bool {
+        self.design.demosaic.is_none() && self.design.jpeg.is_none()
+    }
+
+    /// The stages that need the whole image: demosaic with what follows it, and JPEG. `exposed` are all rows from [`Sensor::expose_rows`].
+    ///
+    /// # Errors
+    /// As [`Sensor::expose`].
+    pub fn develop(&self, mut exposed: Image) -> Result<(Image, Clipped), SensorError> {
+        let mut clipped = Clipped::default();
+        if let (Some(demosaic), Some(filter)) = (&self.design.demosaic, &self.design.filter) {
+            let width = exposed.width().max(1);
+            let raw = exposed.grey_mut().par_chunks_mut(width).enumerate();
+            raw.for_each(|(y, row)| self.balance_row(demosaic, filter, row, y));
+            exposed = demosaic.interpolate(&exposed, filter);
+            let rows = exposed.grey_mut().par_chunks_mut(width);
+            clipped = rows.map(|row| self.finish_row(row)).reduce(Clipped::default, Add::add);
+        }
+        let image = match self.design.jpeg {
+            Some(quality) => through_jpeg(exposed, quality)?,
+            None => exposed,
+        };
+        Ok((image, clipped))
+    }
+}
+
+fn check(what: &'static str, value: f64, min: f64, max: f64) -> Result<(), SensorError> {
+    let inside = value >= min && value <= max;
+    if inside { Ok(()) } else { Err(SensorError::OutOfRange { what, value, min, max }) }
+}
+
+fn check_bits(what: &'static str, bits: Option<u32>, known: &[u32], expected: &'static str) -> Result<(), SensorError> {
+    match bits {
+        Some(bits) if !known.contains(&bits) => Err(SensorError::Bits { what, bits, expected }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,64 @@
+//! What a sensor's grey values are on average and how far they scatter: for bounds and for tests.
+
+use super::electrons::top;
+use super::{Noise, Sensor};
+
+impl Sensor {
+    /// The mean grey value of a pixel to which shading leaves `light` (reflectance 1 is 1), where nothing is clipped: exposure, dark signal and black
+    /// level. `None` of a chain whose grey values are not linear in light or differ from photosite to photosite: colour filter or gamma.
+    pub fn mean(&self, light: f64) -> Option<f64> {
+        let design = &self.design;
+        if design.gamma.is_some() || design.filter.is_some() {
+            return None;
+        }
+        let exposed = light * design.exposure;
+        Some(match &design.noise {
+            Noise::Electrons(electrons) => {
+                let (black, per_electron) = electrons.scale(design.converter);
+                black + per_electron * (exposed * electrons.at_white + electrons.dark)
+            }
+            Noise::None | Noise::White { .. } => exposed,
+        })
+    }
+
+    /// Variance of the grey value of a pixel whose mean, as [`Sensor::mean`] gives it, is `grey`: photon and dark shot noise, read noise, the camera's
+    /// patterns as one image shows them, and quantisation as 1/12 of a squared step. Fractions of full scale, squared.
+    ///
+    /// Holds where nothing is clipped. `None` of a chain in which neighbours are not independent or the variance depends on more than the grey value:
+    /// row noise, demosaic, gamma, JPEG.
+    pub fn variance(&self, grey: f64) -> Option<f64> {
+        self.scatter(grey, true)
+    }
+
+    /// Signal-to-noise ratio SNR(mu_p) of a pixel whose mean is `grey`: the signal above the dark one, to the standard deviation from image to image.
+    /// The camera's patterns are not in it. `None` as for [`Sensor::variance`], or if there is no noise.
+    ///
+    /// Source: EMVA 1288, release 4.0, section 2.3: SNR = eta mu_p / sqrt(sigma_d^2 + sigma_q^2 / K^2 + eta mu_p).
+    pub fn snr(&self, grey: f64) -> Option<f64> {
+        let sigma = self.scatter(grey, false)?.sqrt();
+        (sigma > 0.0).then(|| (grey - self.mean(0.0).unwrap_or(0.0)) / sigma)
+    }
+
+    fn scatter(&self, grey: f64, patterns: bool) -> Option<f64> {
+        let design = &self.design;
+        if design.demosaic.is_some() || design.gamma.is_some() || design.jpeg.is_some() {
+            return None;
+        }
+        let noise = match &design.noise {
+            Noise::None => 0.0,
+            Noise::White { sigma } => sigma * sigma,
+            Noise::Electrons(electrons) if electrons.row > 0.0 => return None,
+            Noise::Electrons(electrons) => {
+                let (black, per_electron) = electrons.scale(design.converter);
+                let all = ((grey - black) / per_electron).max(0.0);
+                let light = (all - electrons.dark).max(0.0);
+                let fixed = (electrons.prnu * light).powi(2) + electrons.dsnu.powi(2);
+                per_electron * per_electron * (all + electrons.read.powi(2) + if patterns { fixed } else { 0.0 })
+            }
+        };
+        let step = |bits: u32| top(bits).recip();
+        let rounded = |bits: Option<u32>| bits.map_or(0.0, |bits| step(bits).powi(2) / 12.0);
+        let again = if design.output == design.converter { None } else { design.output };
+        Some(noise + rounded(design.converter) + rounded(again))
+    }
+}
