@@ -31,7 +31,7 @@ mod tests {
 
     #[test]
     fn drawn_pixels_are_those_whose_centres_are_inside() {
-        let triangle = polygon(&[(3.2, 1.1), (28.7, 9.4), (11.3, 24.6)]);
+        let triangle = polygon(&[(3.2, 1.1), (28.6, 9.4), (11.3, 24.6)]);
         let drawn = centres(&triangle, 30, 26);
         let v = &triangle.vertices;
         let inside =

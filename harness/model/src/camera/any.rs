@@ -82,6 +82,10 @@ impl CameraModel for Camera {
         each!(self, camera => camera.project(ray))
     }
 
+    fn project_near(&self, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
+        each!(self, camera => camera.project_near(ray, near))
+    }
+
     fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
         each!(self, camera => camera.unproject(point))
     }

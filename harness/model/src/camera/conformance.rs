@@ -76,6 +76,9 @@ fn round_trip(camera: &(impl CameraModel + Debug), point: PixelPoint) {
     assert!(off < 1e-9, "{point:?} comes back {off:e} px off");
     let longer = project(camera, Ray { x: 3.0 * ray.x, y: 3.0 * ray.y, z: 3.0 * ray.z });
     assert!(longer.distance(point) < 1e-9, "a longer ray leads elsewhere: {longer:?} for {point:?}");
+    let neighbour = PixelPoint::new(point.x + 0.02 * extent(camera).0, point.y - 0.01 * extent(camera).1);
+    let near = camera.project_near(ray, neighbour).unwrap_or_else(|error| panic!("{ray:?} near {neighbour:?}: {error}"));
+    assert!(near.distance(point) < 1e-9, "from nearby {point:?} is found elsewhere: {near:?}");
     // Right stays right and up stays up: no axis is swapped or mirrored.
     let axis = project(camera, Ray::from_tangent(0.0, 0.0));
     let (dx, dy) = (point.x - axis.x, axis.y - point.y);

@@ -1,6 +1,6 @@
 //! What the photogrammetric cameras have in common: measured coordinates in mm, corrected to ideal ones.
 
-use super::newton::determinant;
+use super::newton::{self, determinant};
 use super::plane::{self, PlaneMap};
 use super::{Derivatives, NoCounterpart, Photogrammetric, Ray};
 use crate::{Frame, PixelPoint, SensorPoint};
@@ -32,6 +32,17 @@ fn measured(camera: &impl Correction, ray: Ray) -> Result<[f64; 2], NoCounterpar
 
 pub(super) fn project(camera: &impl Correction, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
     to_pixel(camera.base(), measured(camera, ray)?)
+}
+
+pub(super) fn project_near(camera: &impl Correction, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
+    let base = camera.base();
+    let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
+    let start = frame(base)?.to_sensor(near);
+    // Newton's steps stay where the determinant is positive: on the branch of `near`.
+    match newton::solve([base.c * u, base.c * v], [start.x - base.x0, start.y - base.y0], |at| camera.map(at)) {
+        Ok(found) => to_pixel(base, found),
+        Err(_) => project(camera, ray),
+    }
 }
 
 pub(super) fn unproject(camera: &impl Correction, point: PixelPoint) -> Result<Ray, NoCounterpart> {

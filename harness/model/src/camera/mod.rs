@@ -101,6 +101,16 @@ pub trait CameraModel {
     /// A ray that the model does not picture: behind the camera, or beyond a fold.
     fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart>;
 
+    /// [`Self::project`] for a ray near another one whose image is `near`: cheaper where the model is inverted by iteration, because what joins the two
+    /// images is taken to be on one branch of the mapping.
+    ///
+    /// # Errors
+    /// As [`Self::project`].
+    fn project_near(&self, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
+        let _ = near;
+        self.project(ray)
+    }
+
     /// Pixel to ray, to 1e-9 px or better.
     ///
     /// # Errors

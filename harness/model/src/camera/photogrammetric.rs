@@ -128,6 +128,10 @@ impl CameraModel for Photogrammetric {
         measured::project(self, ray)
     }
 
+    fn project_near(&self, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
+        measured::project_near(self, ray, near)
+    }
+
     fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
         measured::unproject(self, point)
     }

@@ -3,20 +3,24 @@
 //! Rounds are interleaved (A B C A B C ...), so that a machine that is slower for a while is so for all; medians are printed.
 
 mod points;
+mod render;
 mod scene;
+mod warp;
 
 use std::time::Instant;
 
 use calibench_measure::{Board, BoardDetector};
-use calibench_model::{PixelPoint, Polygon};
 
 fn main() {
     // Cargo asks for a list or a test run in some of its commands.
     if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
         return;
     }
-    points::run();
-    rendering();
+    if std::env::args().all(|argument| argument != "--rendering") {
+        points::run();
+        detection();
+    }
+    render::run();
     detection();
 }
 
@@ -34,21 +38,6 @@ fn timed(work: &mut impl FnMut()) -> f64 {
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
-}
-
-fn rendering() {
-    let pixels = (scene::WIDTH * scene::HEIGHT) as f64 / 1e6;
-    let vertices = [(100.3, 90.1), (3900.7, 201.2), (3800.4, 2900.8), (205.5, 2801.6)].map(|(x, y)| PixelPoint::new(x, y));
-    let polygon = Polygon { id: String::new(), vertices: vertices.into(), grey: 1.0 };
-    let coverage = seconds(|| {
-        std::hint::black_box(calibench_synth::coverage::coverage(&polygon, scene::WIDTH, scene::HEIGHT));
-    });
-    let cells = seconds(|| {
-        std::hint::black_box(scene::corners());
-    });
-    println!("\nRendering, {pixels} megapixels, one thread, noise-free:");
-    println!("  {:<44} {:>8.1} Mpx/s", "coverage of one quadrangle", pixels / coverage);
-    println!("  {:<44} {:>8.1} Mpx/s", "10000 squares, each rendered in its cell", pixels / cells);
 }
 
 fn detection() {

@@ -14,7 +14,7 @@ use strip::{Rules, Strip};
 
 pub use piece::Piece;
 pub(crate) use piece::orient;
-use piece::polygon;
+use piece::{at, polygon};
 
 /// Rows that are worked on together.
 pub const STRIP_ROWS: usize = 32;
@@ -156,11 +156,12 @@ impl Renderer {
                 continue;
             }
             let [x, y] = piece.polynomial();
-            let at = |t: f64| [x[0] + t * (x[1] + t * x[2]), y[0] + t * (y[1] + t * y[2])];
-            let (mut start, last) = (piece.start, n as usize);
-            for i in 1..=last {
-                let end = if i == last { piece.end } else { at(i as f64 / n) };
-                let part = Piece { start, middle: at((i as f64 - 0.5) / n), end, contrast: piece.contrast };
+            let point = |t: f64| [at(x, t), at(y, t)];
+            let [mut start, .., last] = piece.points;
+            for i in 0..n as usize {
+                let inner = |quarter: f64| point((i as f64 + quarter / 4.0) / n);
+                let end = if i + 1 == n as usize { last } else { inner(4.0) };
+                let part = Piece { points: [start, inner(1.0), inner(2.0), inner(3.0), end], contrast: piece.contrast };
                 if kept(&part) {
                     cut.push(part);
                 }

@@ -2,75 +2,89 @@
 
 use calibench_model::Polygon;
 
-/// An arc between two points: the parabola through its ends and its middle (at parameter one half).
+/// A smooth arc: the curve of degree four through five points, at parameters 0, 1/4, 1/2, 3/4 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Where it starts, (x, y), px; pixel centres are whole numbers.
-    pub start: [f64; 2],
-    /// Where it is half-way.
-    pub middle: [f64; 2],
-    /// Where it ends.
-    pub end: [f64; 2],
+    /// The points, (x, y), px; pixel centres are whole numbers.
+    pub points: [[f64; 2]; 5],
     /// What lies on its inside minus what lies on its outside, fraction of full scale; negative for an outline that runs the other way round.
     pub contrast: f64,
 }
 
+/// Coefficients of t^0 to t^4.
+pub(crate) type Quartic = [f64; 5];
+
 impl Piece {
     /// A straight piece.
     pub fn straight(start: [f64; 2], end: [f64; 2], contrast: f64) -> Self {
-        Self { start, middle: [0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])], end, contrast }
+        let at = |t: f64| [start[0] + t * (end[0] - start[0]), start[1] + t * (end[1] - start[1])];
+        Self { points: [start, at(0.25), at(0.5), at(0.75), end], contrast }
     }
 
-    /// Coefficients of t^0, t^1, t^2 for x and y.
+    /// Its polynomials in x and y.
     #[inline(always)]
-    pub(crate) fn polynomial(&self) -> [[f64; 3]; 2] {
+    pub(crate) fn polynomial(&self) -> [Quartic; 2] {
         std::array::from_fn(|i| {
-            let (a, m, b) = (self.start[i], self.middle[i], self.end[i]);
-            [a, 4.0 * m - 3.0 * a - b, 2.0 * (a - 2.0 * m + b)]
+            let [a, b, c, d, e] = self.points.map(|p| p[i]);
+            // Differences from the first point, so that a straight piece has no curvature but rounding.
+            let (b, c, d, e) = (b - a, c - a, d - a, e - a);
+            [
+                a,
+                16.0 * b - 12.0 * c + 16.0 / 3.0 * d - e,
+                -208.0 / 3.0 * b + 76.0 * c - 112.0 / 3.0 * d + 22.0 / 3.0 * e,
+                96.0 * b - 128.0 * c + 224.0 / 3.0 * d - 16.0 * e,
+                -128.0 / 3.0 * b + 64.0 * c - 128.0 / 3.0 * d + 32.0 / 3.0 * e,
+            ]
         })
     }
 
     /// The lowest and highest y that it can reach.
     pub(crate) fn rows(&self) -> [f64; 2] {
-        span(self.start[1], self.middle[1], self.end[1])
+        self.span(1)
     }
 
     /// The lowest and highest x that it can reach.
     pub(crate) fn columns(&self) -> [f64; 2] {
-        span(self.start[0], self.middle[0], self.end[0])
+        self.span(0)
     }
 
-    /// The length of the polygon through its three points, px: at most a little less than its own.
+    fn span(&self, axis: usize) -> [f64; 2] {
+        let values = self.points.map(|p| p[axis]);
+        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        // Between its points a quartic goes no further beyond them than a third of their spread, a smooth one much less.
+        let slack = (high - low) / 3.0;
+        [low - slack, high + slack]
+    }
+
+    /// The length of the polygon through its points, px: at most a little less than its own.
     pub(crate) fn length(&self) -> f64 {
-        let [a, m, b] = [self.start, self.middle, self.end];
-        (m[0] - a[0]).hypot(m[1] - a[1]) + (b[0] - m[0]).hypot(b[1] - m[1])
+        self.points.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).sum()
     }
 
-    /// Twice the signed area between the piece and the origin, px^2.
-    pub(crate) fn doubled_area(&self) -> f64 {
-        // Simpson's rule is exact for the cubic integrand.
-        let [[x0, x1, x2], [y0, y1, y2]] = self.polynomial();
-        let cross = |t: f64| {
-            let (x, y) = (x0 + t * (x1 + t * x2), y0 + t * (y1 + t * y2));
-            x * (y1 + 2.0 * t * y2) - y * (x1 + 2.0 * t * x2)
-        };
-        (cross(0.0) + 4.0 * cross(0.5) + cross(1.0)) / 6.0
+    /// Twice the signed area between the piece and its origin `from`, px^2, by the polygon through its points.
+    fn doubled_area(&self, from: [f64; 2]) -> f64 {
+        let cross = |a: [f64; 2], b: [f64; 2]| (a[0] - from[0]) * (b[1] - from[1]) - (b[0] - from[0]) * (a[1] - from[1]);
+        self.points.windows(2).map(|pair| cross(pair[0], pair[1])).sum()
     }
 }
 
-/// The control polygon of the parabola bounds it.
-fn span(a: f64, m: f64, b: f64) -> [f64; 2] {
-    let control = 2.0 * m - 0.5 * (a + b);
-    [a.min(b).min(control), a.max(b).max(control)]
+/// The value at `t`.
+#[inline(always)]
+pub(crate) fn at([c0, c1, c2, c3, c4]: Quartic, t: f64) -> f64 {
+    c0 + t * (c1 + t * (c2 + t * (c3 + t * c4)))
+}
+
+/// The derivative at `t`.
+#[inline(always)]
+pub(crate) fn slope([_, c1, c2, c3, c4]: Quartic, t: f64) -> f64 {
+    c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * 4.0 * c4))
 }
 
 /// Turns `pieces`, a closed outline, so that `contrast` lies on its inside.
 pub(crate) fn orient(pieces: &mut [Piece], contrast: f64) {
     // From its own start, so that a small outline far from the origin loses no digits.
-    let origin = pieces.first().map_or([0.0, 0.0], |piece| piece.start);
-    let moved = |p: [f64; 2]| [p[0] - origin[0], p[1] - origin[1]];
-    let local = |piece: &Piece| Piece { start: moved(piece.start), middle: moved(piece.middle), end: moved(piece.end), contrast };
-    let area: f64 = pieces.iter().map(|piece| local(piece).doubled_area()).sum();
+    let origin = pieces.first().map_or([0.0, 0.0], |piece| piece.points[0]);
+    let area: f64 = pieces.iter().map(|piece| piece.doubled_area(origin)).sum();
     pieces.iter_mut().for_each(|piece| piece.contrast = contrast * area.signum());
 }
 
@@ -79,4 +93,21 @@ pub(crate) fn polygon(polygon: &Polygon, ground: f64) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = polygon.edges().map(|(a, b)| Piece::straight([a.x, a.y], [b.x, b.y], 0.0)).collect();
     orient(&mut pieces, polygon.grey - ground);
     pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_polynomial_runs_through_its_points() {
+        let points = [[1.0, 2.0], [3.5, 2.5], [4.0, 7.0], [2.0, 9.0], [-1.0, 8.5]];
+        let [x, y] = Piece { points, contrast: 1.0 }.polynomial();
+        for (i, [px, py]) in points.into_iter().enumerate() {
+            let t = i as f64 / 4.0;
+            assert!((at(x, t) - px).abs() < 1e-12 && (at(y, t) - py).abs() < 1e-12);
+            let difference = (at(x, t + 1e-6) - at(x, t - 1e-6)) / 2e-6;
+            assert!((slope(x, t) - difference).abs() < 1e-6);
+        }
+    }
 }

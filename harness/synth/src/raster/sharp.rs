@@ -1,20 +1,21 @@
 //! Pieces under a kernel that is the photosite alone: exact area, interval by interval.
 
-use super::piece::Piece;
+use super::piece::{Piece, Quartic, at};
 use super::strip::Strip;
 
-/// The largest distance between a parabola and the chords that stand for it, px.
+/// The largest distance between a piece and the chords that stand for it, px.
 const CHORD_ERROR: f64 = 1e-5;
 
 /// Adds `piece` as photosites of width `aperture` see it. `jitter` is the shift of each row of the strip to the right, px.
 pub(super) fn add(strip: &mut Strip, piece: &Piece, aperture: f64, jitter: Option<&[f64]>) {
     let [x, y] = piece.polynomial();
-    // A parabola is at most (x2, y2)/4 off its chord; n chords divide that by n^2.
-    let chords = (0.5 * (x[2].hypot(y[2]) / CHORD_ERROR).sqrt()).ceil().max(1.0);
-    let at = |t: f64| [x[0] + t * (x[1] + t * x[2]), y[0] + t * (y[1] + t * y[2])];
-    let mut from = at(0.0);
+    // A chord over a part h of the parameter is at most h^2/8 times the second derivative off.
+    let bend = |c: Quartic| 2.0 * c[2].abs() + 6.0 * c[3].abs() + 12.0 * c[4].abs();
+    let chords = (bend(x).hypot(bend(y)) / (8.0 * CHORD_ERROR)).sqrt().ceil().max(1.0);
+    let point = |t: f64| [at(x, t), at(y, t)];
+    let [mut from, .., end] = piece.points;
     for chord in 1..=chords as usize {
-        let to = if chord == chords as usize { piece.end } else { at(chord as f64 / chords) };
+        let to = if chord == chords as usize { end } else { point(chord as f64 / chords) };
         straight(strip, from, to, piece.contrast, aperture, jitter);
         from = to;
     }

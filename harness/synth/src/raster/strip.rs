@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use multiversion::multiversion;
 
-use super::piece::Piece;
+use super::piece::{Piece, at, slope};
 use super::sharp;
 use crate::optics::{Kernel, Part, gauss_legendre};
 
@@ -134,12 +134,11 @@ fn each_node(piece: &Piece, sigma: f64, bounds: [f64; 2], parts: &[Part], rules:
             let start = stretch as f64 * step;
             for &(t, weight) in rule {
                 let t = start + t * step;
-                let at_y = y[0] + t * (y[1] + t * y[2]) + part.shift[1];
+                let at_y = at(y, t) + part.shift[1];
                 if at_y <= low || at_y >= high {
                     continue;
                 }
-                let at_x = x[0] + t * (x[1] + t * x[2]) + part.shift[0];
-                node(part, at_x, at_y, weight * step * (y[1] + 2.0 * t * y[2]) * piece.contrast * part.weight);
+                node(part, at(x, t) + part.shift[0], at_y, weight * step * slope(y, t) * piece.contrast * part.weight);
             }
         }
     }

@@ -19,12 +19,12 @@ fn polygon(vertices: &[(f64, f64)]) -> Vec<Piece> {
 }
 
 fn disc(centre: (f64, f64), radius: f64) -> Vec<Piece> {
-    let n = 256;
+    let n = 32;
     let at = |i: i32| {
-        let (sine, cosine) = (f64::from(i) * std::f64::consts::PI / f64::from(n)).sin_cos();
+        let (sine, cosine) = (f64::from(i) * std::f64::consts::FRAC_PI_2 / f64::from(n)).sin_cos();
         [centre.0 + radius * cosine, centre.1 + radius * sine]
     };
-    let piece = |i: i32| Piece { start: at(2 * i), middle: at(2 * i + 1), end: at(2 * i + 2), contrast: 0.0 };
+    let piece = |i: i32| Piece { points: std::array::from_fn(|k| at(4 * i + k as i32)), contrast: 0.0 };
     let mut pieces: Vec<Piece> = (0..n).map(piece).collect();
     orient(&mut pieces, 0.7);
     pieces

@@ -1,20 +1,32 @@
 //! A plate's outlines in the image.
 
 use calibench_model::camera::{CameraModel, NoCounterpart, Ray};
-use calibench_model::{Outline, Plate};
+use calibench_model::{Outline, PixelPoint, Plate};
+
+use rayon::prelude::*;
 
 use super::polygon::{Tangent, apart, bounds, doubled_area};
 use super::trace::trace;
 use super::{Frame, Seen, View, ViewError, clip};
 use crate::raster::{Piece, orient};
 
+/// Areas that a thread takes at a time.
+const JOB: usize = 64;
+
 /// Appends the pieces of a plate: its sheet and what is printed on it.
 pub(super) fn sheet(view: &View<'_>, sheet: &Seen<'_>, frame: &Frame, pieces: &mut Vec<Piece>) -> Result<(), ViewError> {
     let plate = sheet.plate;
     outline(view, sheet, frame, &plate.border(), plate.level - view.field.background, pieces)?;
     if sheet.front {
-        for area in &plate.areas {
-            outline(view, sheet, frame, &area.outline, area.level - area.ground, pieces)?;
+        let traced = plate.areas.par_chunks(JOB).map(|areas| {
+            let mut pieces = Vec::new();
+            for area in areas {
+                outline(view, sheet, frame, &area.outline, area.level - area.ground, &mut pieces)?;
+            }
+            Ok(pieces)
+        });
+        for traced in traced.collect::<Result<Vec<_>, ViewError>>()? {
+            pieces.extend(traced);
         }
     }
     Ok(())
@@ -62,10 +74,13 @@ fn is_free(view: &View<'_>, sheet: &Seen<'_>, outline: &Outline) -> bool {
 
 /// The outline curve by curve.
 fn whole(view: &View<'_>, plate: &Plate, frame: &Frame, outline: &Outline, pieces: &mut Vec<Piece>) -> Result<(), NoCounterpart> {
-    let first = pieces.len();
+    let (first, mut near) = (pieces.len(), None);
     for curve in &outline.0 {
-        let project = |t: f64| view.camera.project(view.pose.ray(&plate.point(curve.at(t))));
-        trace(&project, frame.sides, pieces)?;
+        let project = |t: f64, near: Option<PixelPoint>| {
+            let ray = view.pose.ray(&plate.point(curve.at(t)));
+            near.map_or_else(|| view.camera.project(ray), |near| view.camera.project_near(ray, near))
+        };
+        near = Some(trace(&project, frame.sides, near, pieces)?);
     }
     close(&mut pieces[first..]);
     Ok(())
@@ -73,11 +88,14 @@ fn whole(view: &View<'_>, plate: &Plate, frame: &Frame, outline: &Outline, piece
 
 /// A polygon of tangents.
 fn polygon(view: &View<'_>, frame: &Frame, polygon: &[Tangent], pieces: &mut Vec<Piece>) -> Result<(), NoCounterpart> {
-    let first = pieces.len();
+    let (first, mut near) = (pieces.len(), None);
     for (i, a) in polygon.iter().enumerate() {
         let b = polygon[(i + 1) % polygon.len()];
-        let project = |t: f64| view.camera.project(Ray::from_tangent(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])));
-        trace(&project, frame.sides, pieces)?;
+        let project = |t: f64, near: Option<PixelPoint>| {
+            let ray = Ray::from_tangent(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
+            near.map_or_else(|| view.camera.project(ray), |near| view.camera.project_near(ray, near))
+        };
+        near = Some(trace(&project, frame.sides, near, pieces)?);
     }
     close(&mut pieces[first..]);
     Ok(())
@@ -86,9 +104,9 @@ fn polygon(view: &View<'_>, frame: &Frame, polygon: &[Tangent], pieces: &mut Vec
 /// Makes each piece start exactly where the one before it ends: rounding must not leave a gap.
 fn close(pieces: &mut [Piece]) {
     for i in 1..pieces.len() {
-        pieces[i].start = pieces[i - 1].end;
+        pieces[i].points[0] = pieces[i - 1].points[4];
     }
     if let [first, .., last] = pieces {
-        last.end = first.start;
+        last.points[4] = first.points[0];
     }
 }

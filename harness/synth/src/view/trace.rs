@@ -1,12 +1,14 @@
-//! Curves to parabolas in the image.
+//! Curves to pieces in the image.
 
 use calibench_model::PixelPoint;
 use calibench_model::camera::NoCounterpart;
 
 use crate::raster::Piece;
 
-/// How far a parabola may lie off the curve that it stands for, px.
+/// How far a piece may lie off the curve that it stands for, px.
 const TOLERANCE: f64 = 1e-5;
+/// What estimated errors are multiplied by: terms that fall more slowly than expected were seen to add up to four times the estimate.
+const CAUTION: f64 = 4.0;
 /// Halvings at most: a curve of a million pixels in pieces of one.
 const DEEPEST: u32 = 20;
 
@@ -17,46 +19,77 @@ struct Sample {
     at: [f64; 2],
 }
 
-/// Appends the image of a curve to `pieces`; `project(t)` is its point at parameter t from 0 to 1, `sides` the frame with its margin.
+/// Appends the image of a curve to `pieces`; `project(t, near)` is its point at parameter t from 0 to 1, given one nearby if there is one, `sides` the frame
+/// with its margin.
 ///
-/// Beyond the frame only the ends matter, and the curve is not followed.
+/// Beyond the frame only the ends matter, and the curve is not followed. `near` is a point near its start, if one is known; its end is returned.
 pub(super) fn trace(
-    project: &impl Fn(f64) -> Result<PixelPoint, NoCounterpart>,
+    project: &impl Fn(f64, Option<PixelPoint>) -> Result<PixelPoint, NoCounterpart>,
     sides: [f64; 4],
+    near: Option<PixelPoint>,
     pieces: &mut Vec<Piece>,
-) -> Result<(), NoCounterpart> {
-    let sample = |t: f64| project(t).map(|p| Sample { t, at: [p.x, p.y] });
-    let ends = [sample(0.0)?, sample(0.5)?, sample(1.0)?];
-    split(&sample, sides, ends, DEEPEST, pieces)
+) -> Result<PixelPoint, NoCounterpart> {
+    let sample = |t: f64, near: Option<Sample>| {
+        let near = near.map(|near| PixelPoint::new(near.at[0], near.at[1]));
+        project(t, near).map(|p| Sample { t, at: [p.x, p.y] })
+    };
+    let start = sample(0.0, near.map(|near| Sample { t: 0.0, at: [near.x, near.y] }))?;
+    let quarter = sample(0.25, Some(start))?;
+    let middle = sample(0.5, Some(quarter))?;
+    let third = sample(0.75, Some(middle))?;
+    let end = sample(1.0, Some(third))?;
+    split(&sample, sides, [start, quarter, middle, third, end], DEEPEST, pieces)?;
+    Ok(PixelPoint::new(end.at[0], end.at[1]))
 }
 
 fn split(
-    sample: &impl Fn(f64) -> Result<Sample, NoCounterpart>,
+    sample: &impl Fn(f64, Option<Sample>) -> Result<Sample, NoCounterpart>,
     sides: [f64; 4],
-    [start, middle, end]: [Sample; 3],
+    samples: [Sample; 5],
     depth: u32,
     pieces: &mut Vec<Piece>,
 ) -> Result<(), NoCounterpart> {
-    let quarters = [sample(0.5 * (start.t + middle.t))?, sample(0.5 * (middle.t + end.t))?];
-    let piece = Piece { start: start.at, middle: middle.at, end: end.at, contrast: 0.0 };
-    let beyond = beyond(sides, &[start.at, quarters[0].at, middle.at, quarters[1].at, end.at]);
-    if beyond || depth == 0 || follows(&piece, 0.25, quarters[0].at) && follows(&piece, 0.75, quarters[1].at) {
-        pieces.push(piece);
+    let points = samples.map(|sample| sample.at);
+    if depth == 0 || beyond(sides, &points) || error(&points) < TOLERANCE {
+        pieces.push(Piece { points, contrast: 0.0 });
         return Ok(());
     }
-    split(sample, sides, [start, quarters[0], middle], depth - 1, pieces)?;
-    split(sample, sides, [middle, quarters[1], end], depth - 1, pieces)
+    let between = |a: Sample, b: Sample| sample(0.5 * (a.t + b.t), Some(a));
+    let [a, c, e, g, i] = samples;
+    split(sample, sides, [a, between(a, c)?, c, between(c, e)?, e], depth - 1, pieces)?;
+    split(sample, sides, [e, between(e, g)?, g, between(g, i)?, i], depth - 1, pieces)
 }
 
-/// Does the parabola come by `at` near its parameter `t`? Only the distance across it counts.
-fn follows(piece: &Piece, t: f64, at: [f64; 2]) -> bool {
-    let [x, y] = piece.polynomial();
-    let off = [at[0] - (x[0] + t * (x[1] + t * x[2])), at[1] - (y[0] + t * (y[1] + t * y[2]))];
-    let along = [x[1] + 2.0 * t * x[2], y[1] + 2.0 * t * y[2]];
-    let (length, chord) = (along[0].hypot(along[1]), off[0].hypot(off[1]));
-    let across = if length > 0.0 { (off[0] * along[1] - off[1] * along[0]).abs() / length } else { chord };
-    // Far along the parabola the tangent no longer tells the distance.
-    across < TOLERANCE && chord < TOLERANCE + 0.1 * length
+/// An estimate of how far the quartic through five points of a smooth curve lies off it, px: the first terms that are left out, if they go on falling as those
+/// before them. Only what lies across the curve counts.
+fn error(points: &[[f64; 2]; 5]) -> f64 {
+    let chord = [points[4][0] - points[0][0], points[4][1] - points[0][1]];
+    let length = chord[0].hypot(chord[1]);
+    let (c, s) = if length > 0.0 { (chord[0] / length, chord[1] / length) } else { (1.0, 0.0) };
+    let along = tail(points.map(|p| c * p[0] + s * p[1]));
+    let across_values = points.map(|p| c * p[1] - s * p[0]);
+    let (mut steepest, mut shortest) = (0.0_f64, f64::INFINITY);
+    for i in 0..4 {
+        let step = [points[i + 1][0] - points[i][0], points[i + 1][1] - points[i][1]];
+        steepest = steepest.max((across_values[i + 1] - across_values[i]).abs());
+        shortest = shortest.min((c * step[0] + s * step[1]).abs());
+    }
+    let steepness = if shortest > 0.0 { (steepest / shortest).min(1.0) } else { 1.0 };
+    tail(across_values) + steepness * along
+}
+
+/// What the terms beyond the fourth of a function's expansion over [-1, 1] add up to, estimated from five values.
+fn tail([a, b, c, d, e]: [f64; 5]) -> f64 {
+    // Chebyshev coefficients of the quartic through the values.
+    let (even, odd) = (a - 4.0 * b + 6.0 * c - 4.0 * d + e, -a + 2.0 * b - 2.0 * d + e);
+    let (first, second) = ((0.5 * (e - a)).abs(), (0.25 * (a - 2.0 * c + e)).abs());
+    let (third, fourth) = ((odd / 6.0).abs(), (even / 12.0).abs());
+    let (low, high) = (first.max(second), third.max(fourth));
+    if high < 0.1 * TOLERANCE {
+        return high;
+    }
+    // Two orders further on: they fall as much again as from the first two to the last two.
+    CAUTION * (third + fourth) * (high / low).min(1.0)
 }
 
 /// Do all points lie beyond one side of the frame?

@@ -53,7 +53,8 @@ fn holds(outline: &Outline, [u, v]: [f64; 2]) -> bool {
 /// How far `at` is from a piece, px: the least distance to many points, refined.
 pub fn distance(piece: &Piece, at: [f64; 2]) -> f64 {
     let [x, y] = piece.polynomial();
-    let off = |t: f64| (x[0] + t * (x[1] + t * x[2]) - at[0]).hypot(y[0] + t * (y[1] + t * y[2]) - at[1]);
+    let value = |c: [f64; 5], t: f64| c.iter().rev().fold(0.0, |sum, c| sum * t + c);
+    let off = |t: f64| (value(x, t) - at[0]).hypot(value(y, t) - at[1]);
     let mut best = (0..=32).map(|i| f64::from(i) / 32.0).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap();
     let mut step = 1.0 / 64.0;
     while step > 1e-9 {
