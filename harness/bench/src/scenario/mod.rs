@@ -6,6 +6,7 @@ mod methods;
 pub mod problem;
 pub mod schema;
 mod section;
+pub mod sensor;
 mod wire;
 
 use calibench_measure::{Board, Configured};

@@ -45,6 +45,7 @@ macro_rules! bounded {
         }
     )*};
 }
+pub(super) use bounded;
 
 bounded! {
     /// A grey value as a fraction of full scale.

@@ -42,7 +42,7 @@ fn levels(converter: Converter, row: &mut [f32], full: &[u8]) -> (u32, u32) {
     for (value, &full) in row.iter_mut().zip(full) {
         let number = *value * gain + offset;
         low += u32::from(number < -0.5);
-        high += u32::from((number > top + 0.5) | (full != 0));
+        high += u32::from(number > top + 0.5 || full != 0);
         *value = (number.max(0.0).min(top) + ROUND - ROUND) / top;
     }
     (low, high)

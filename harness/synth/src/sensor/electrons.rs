@@ -1,16 +1,17 @@
 //! Light to electrons, in the terms of EMVA 1288: photon noise, dark signal, read noise and the patterns of the camera.
 //!
-//! The number of electrons is Poisson's. Where a pixel expects at least [`COUNTED`] of them, the sum of shot and read noise is drawn as one number
-//! that has the mean, variance and skewness of the true sum (Cornish and Fisher's expansion of its quantile); below, and where the well
-//! may or may not be full, electrons are counted. At [`COUNTED`] the fourth cumulant is off by a third of its 1/100: beyond what 10^7 pixels show.
+//! The number of electrons is Poisson's. Where a pixel expects at least [`COUNTED`] of them, it is drawn as a normal number bent so that mean, variance
+//! and skewness are Poisson's (Cornish and Fisher's expansion of the quantile), one number for the sum of shot and read noise unless the well may be
+//! full; below, electrons are counted. At [`COUNTED`] the fourth cumulant is off by a third of its 1/100: beyond what 10^7 pixels show.
 //! Where single electrons can be told apart in the output (read noise below half an electron and steps below four electrons), all are counted.
 //!
 //! Source: EMVA Standard 1288, release 4.0, section 2; Cornish & Fisher 1938, Moments and cumulants in the specification of distributions.
 
 use multiversion::multiversion;
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Poisson};
+use rand_distr::{Distribution, StandardNormal};
 
+use super::poisson::poisson;
 use super::{SensorError, check};
 
 /// Expected electrons below which they are counted one by one.
@@ -98,7 +99,7 @@ pub(super) struct Wells {
     /// Expected electrons up to which the well is surely not full, and from which it surely is.
     below: f32,
     above: f32,
-    /// Expected electrons below which they are counted.
+    /// Expected electrons below which Poisson's distribution is not to be approximated.
     counted: f32,
 }
 
@@ -108,7 +109,7 @@ impl Wells {
         if draw(*self, expected, normals, full, read_out) {
             for i in 0..expected.len() {
                 if self.is_counted(expected[i]) {
-                    let electrons = Poisson::new(f64::from(expected[i])).map_or(0.0, |poisson| poisson.sample(counter)) as f32;
+                    let electrons = self.electrons(expected[i], counter);
                     full[i] = u8::from(electrons > self.brim);
                     read_out[i] = electrons.min(self.brim) + self.read * normals[i];
                 }
@@ -117,10 +118,27 @@ impl Wells {
         expected.copy_from_slice(read_out);
     }
 
+    /// How many electrons there are.
+    fn electrons(&self, expected: f32, rng: &mut ChaCha8Rng) -> f32 {
+        if expected < self.counted { poisson(expected, rng) } else { bent(expected, 0.0, StandardNormal.sample(rng)) }
+    }
+
+    /// Is the number of electrons to be known by itself?
     #[inline(always)]
     fn is_counted(&self, expected: f32) -> bool {
-        (expected > 0.0) & (expected < self.above) & ((expected < self.counted) | (expected > self.below))
+        expected > 0.0 && expected < self.above && (expected < self.counted || expected > self.below)
     }
+}
+
+/// The sum of `expected` Poisson's electrons and of normal noise of variance `read2`, of the standard normal number `z`.
+#[inline(always)]
+fn bent(expected: f32, read2: f32, z: f32) -> f32 {
+    let variance = (expected + read2).max(f32::MIN_POSITIVE);
+    // The third cumulant is the shot noise's alone: skewness times standard deviation is expected / variance.
+    let skew = expected / variance;
+    // What the bend adds to the variance is taken away before.
+    let sigma = (variance - skew * skew * (1.0 / 18.0)).max(0.0).sqrt();
+    expected + sigma * z + skew * (z * z - 1.0) * (1.0 / 6.0)
 }
 
 /// Shot and read noise as one number in each pixel; returns whether there are pixels to be counted instead.
@@ -133,12 +151,8 @@ fn draw(wells: Wells, expected: &[f32], normals: &[f32], full: &mut [u8], read_o
     for i in 0..n {
         let (mean, z) = (expected[i], normals[i]);
         let brimming = mean >= wells.above;
-        let (kept, shot) = if brimming { (wells.brim, 0.0) } else { (mean, mean) };
-        let variance = (shot + read2).max(f32::MIN_POSITIVE);
-        // The third cumulant is the shot noise's alone: skewness times standard deviation is shot / variance.
-        let skew = shot / variance;
-        let sigma = (variance - skew * skew * (1.0 / 18.0)).max(0.0).sqrt();
-        read_out[i] = kept + sigma * z + skew * (z * z - 1.0) * (1.0 / 6.0);
+        let drawn = bent(if brimming { 0.0 } else { mean }, read2, z);
+        read_out[i] = if brimming { wells.brim + drawn } else { drawn };
         full[i] = u8::from(brimming);
         counted |= u32::from(wells.is_counted(mean));
     }

@@ -8,6 +8,9 @@ use super::SensorError;
 
 /// The image of 8 bits that is left of `image` after JPEG of `quality`, from 1 to 100. Grey values are rounded to 8 bits before.
 ///
+/// The encoder cuts coefficients to whole numbers before it divides and rounds them: at quality 100 the error is 0.60 levels rms where rounding would
+/// leave 0.41.
+///
 /// # Errors
 /// [`SensorError::JpegSize`] if a side is longer than JPEG's 65535 px or the image is empty, [`SensorError::Jpeg`] if the codec refuses.
 pub fn through_jpeg(mut image: Image, quality: u8) -> Result<Image, SensorError> {

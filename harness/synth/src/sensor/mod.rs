@@ -16,6 +16,7 @@ mod gamma;
 mod jitter;
 mod jpeg;
 mod normal;
+mod poisson;
 mod rows;
 mod shading;
 mod statistics;
@@ -240,6 +241,11 @@ impl Sensor {
     /// What it is made of.
     pub fn design(&self) -> &Design {
         &self.design
+    }
+
+    /// Is there nothing random in what it does? Row jitter is not its business.
+    pub fn is_deterministic(&self) -> bool {
+        matches!(self.design.noise, Noise::None | Noise::White { sigma: 0.0 })
     }
 
     /// The image that the sensor takes of `irradiance`, in its place; `key` is the image's.

@@ -22,7 +22,7 @@ impl Sensor {
     }
 
     /// Variance of the grey value of a pixel whose mean, as [`Sensor::mean`] gives it, is `grey`: photon and dark shot noise, read noise, the camera's
-    /// patterns as one image shows them, and quantisation as 1/12 of a squared step. Fractions of full scale, squared.
+    /// patterns as one image shows them, and quantisation as 1/12 of a squared step, its mean over grey values. Fractions of full scale, squared.
     ///
     /// Holds where nothing is clipped. `None` of a chain in which neighbours are not independent or the variance depends on more than the grey value:
     /// row noise, demosaic, gamma, JPEG.
