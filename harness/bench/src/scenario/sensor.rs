@@ -62,7 +62,7 @@ pub struct SensorWire {
     pub exposure_time: Option<Time>,
     /// Dark signal non-uniformity DSNU1288, e-. The same in all views and trials.
     pub dsnu: Option<Electron>,
-    /// Read noise, e-.
+    /// Read noise sigma_d0: standard deviation, e-.
     pub read_noise: Option<Electron>,
     /// Noise common to a row, new in each row of each image, e-.
     pub row_noise: Option<Electron>,

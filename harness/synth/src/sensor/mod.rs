@@ -11,6 +11,7 @@
 mod convert;
 mod demosaic;
 mod electrons;
+mod error;
 mod filter;
 mod gamma;
 mod jitter;
@@ -28,10 +29,11 @@ use std::ops::Add;
 
 use calibench_model::{Image, PixelPoint};
 use rayon::prelude::*;
-use thiserror::Error;
 
 pub use demosaic::{Demosaic, DemosaicTo};
 pub use electrons::Electrons;
+pub use error::SensorError;
+use error::{check, check_bits};
 pub use filter::{ColourFilter, Pattern};
 pub use gamma::Gamma;
 pub use jitter::row_shifts;
@@ -111,53 +113,6 @@ impl Default for Design {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensor {
     design: Design,
-}
-
-/// Why a sensor cannot be, or cannot write an image.
-#[derive(Debug, Error)]
-pub enum SensorError {
-    /// A number outside its bounds.
-    #[error("{what} is {value}: expected a number from {min} to {max}")]
-    OutOfRange {
-        /// Which.
-        what: &'static str,
-        /// The number.
-        value: f64,
-        /// The least that can be.
-        min: f64,
-        /// The most that can be.
-        max: f64,
-    },
-    /// Bits that no converter or file has.
-    #[error("{what} of {bits} bits: expected {expected}")]
-    Bits {
-        /// Of what.
-        what: &'static str,
-        /// How many.
-        bits: u32,
-        /// Which there are.
-        expected: &'static str,
-    },
-    /// Nothing to demosaic.
-    #[error("demosaic without a colour filter")]
-    NoFilter,
-    /// Numbers in DN, and nothing that makes DN.
-    #[error("a system gain or black level in DN without the bits of the converter")]
-    NoConverter,
-    /// JPEG of more than 8 bits.
-    #[error("JPEG has 8 bits, the output is to have {0}")]
-    JpegBits(u32),
-    /// A size that JPEG cannot hold.
-    #[error("JPEG holds from 1 x 1 to 65535 x 65535 px, the image has {width} x {height}")]
-    JpegSize {
-        /// Columns.
-        width: usize,
-        /// Rows.
-        height: usize,
-    },
-    /// The codec refused.
-    #[error("JPEG")]
-    Jpeg(#[from] image::ImageError),
 }
 
 /// The size of the whole image, px.
@@ -288,17 +243,5 @@ impl Sensor {
             None => exposed,
         };
         Ok((image, clipped))
-    }
-}
-
-fn check(what: &'static str, value: f64, min: f64, max: f64) -> Result<(), SensorError> {
-    let inside = value >= min && value <= max;
-    if inside { Ok(()) } else { Err(SensorError::OutOfRange { what, value, min, max }) }
-}
-
-fn check_bits(what: &'static str, bits: Option<u32>, known: &[u32], expected: &'static str) -> Result<(), SensorError> {
-    match bits {
-        Some(bits) if !known.contains(&bits) => Err(SensorError::Bits { what, bits, expected }),
-        _ => Ok(()),
     }
 }

@@ -133,7 +133,7 @@ fn numbers_out_of_bounds_and_of_the_wrong_form_are_named() {
         ("exposure = 0", "0", "found 0"),
         ("prnu = 101", "101", "from 0 to 100"),
         ("vignetting = [1, 2]", "[1, 2]", "expected 3 numbers in a list, found 2"),
-        ("gradient_across = [1, 2, 3]", "[1, 2, 3]", "expected 2 numbers in a list, found 3"),
+        ("gradient_across = [1, 2, 1]", "[1, 2, 1]", "expected 2 numbers in a list, found 3"),
         ("adc_bits = 9", "9", "expected 8, 10, 12, 14 or 16 bits, found 9"),
         ("bits = 14", "14", "expected 8, 12 or 16 bits, found 14"),
         ("jpeg_quality = 0", "0", "expected a whole number from 1 to 100"),
