@@ -25,7 +25,8 @@ proptest::proptest! {
     fn exact_points_give_the_exact_orientation(seed in 0_u64..1_000_000, count in 12_usize..60) {
         let mut chance = Chance::new(seed);
         let (first, second, a, b) = (lens(), pinhole(), chance.pose(), chance.pose());
-        let points = pairs(&mut chance, [&first, &second], [&a, &b], &chance.points(count), 0.0);
+        let objects = chance.points(count);
+        let points = pairs(&mut chance, [&first, &second], [&a, &b], &objects, 0.0);
         let found = orient_relatively([&first, &second], &points, &SEARCH).unwrap();
         proptest::prop_assert!(difference(&found.pose, &relative(&a, &b)) < 1e-9, "{:e}", difference(&found.pose, &relative(&a, &b)));
         proptest::prop_assert!(found.sigma0 < 1e-8 && found.redundancy == count - 5 && found.rejected.is_empty());
@@ -35,7 +36,8 @@ proptest::proptest! {
     fn gross_errors_are_found(seed in 0_u64..1_000_000, unknown in proptest::bool::ANY) {
         let mut chance = Chance::new(seed);
         let (camera, a, b) = (lens(), chance.pose(), chance.pose());
-        let mut points = pairs(&mut chance, [&camera, &camera], [&a, &b], &chance.points(60), 0.2);
+        let objects = chance.points(60);
+        let mut points = pairs(&mut chance, [&camera, &camera], [&a, &b], &objects, 0.2);
         for i in (0..60).step_by(5) {
             points[i][1] = PixelPoint::new(chance.between(1000.0, 3000.0), chance.between(500.0, 2500.0));
         }
@@ -72,7 +74,8 @@ fn the_cofactors_and_sigma0_are_honest() {
 fn the_same_seed_gives_the_same_bytes() {
     let mut chance = Chance::new(102);
     let (camera, a, b) = (lens(), chance.pose(), chance.pose());
-    let points = pairs(&mut chance, [&camera, &camera], [&a, &b], &chance.points(20), 0.5);
+    let objects = chance.points(20);
+    let points = pairs(&mut chance, [&camera, &camera], [&a, &b], &objects, 0.5);
     let found = orient_relatively([&camera, &camera], &points, &SEARCH).unwrap();
     assert_eq!(orient_relatively([&camera, &camera], &points, &SEARCH).unwrap(), found);
 }
@@ -81,7 +84,7 @@ fn the_same_seed_gives_the_same_bytes() {
 fn a_rotation_has_no_base() {
     let mut chance = Chance::new(103);
     let (camera, a) = (pinhole(), chance.pose());
-    let b = Pose { rotation: Rotation3::new(nalgebra::Vector3::new(0.02, -0.03, 0.4)) * a.rotation, ..a };
+    let b = Pose { rotation: Rotation3::new(Vector3::new(0.02, -0.03, 0.4)) * a.rotation, ..a };
     let objects = chance.points(30);
     for sigma in [0.0, 0.3] {
         let points = pairs(&mut chance, [&camera, &camera], [&a, &b], &objects, sigma);
@@ -94,8 +97,8 @@ fn a_rotation_has_no_base() {
 fn a_plane_is_oriented_and_never_ends_in_a_number_that_is_none() {
     let mut chance = Chance::new(104);
     for trial in 0..20 {
-        let (camera, a) = (pinhole(), chance.pose_from(&nalgebra::Vector3::z(), 0.5));
-        let b = chance.pose_from(&nalgebra::Vector3::z(), 0.5);
+        let (camera, a) = (pinhole(), chance.pose_from(&Vector3::z(), 0.5));
+        let b = chance.pose_from(&Vector3::z(), 0.5);
         let objects: Vec<_> = chance.points(30).iter().map(|p| Point3::new(p.x, p.y, 0.0)).collect();
         let points = pairs(&mut chance, [&camera, &camera], [&a, &b], &objects, 0.05);
         let found = orient_relatively([&camera, &camera], &points, &SEARCH).unwrap();
@@ -110,7 +113,8 @@ fn a_plane_is_oriented_and_never_ends_in_a_number_that_is_none() {
 fn what_cannot_be_oriented_is_named() {
     let mut chance = Chance::new(105);
     let (camera, a, b) = (lens(), chance.pose(), chance.pose());
-    let points = pairs(&mut chance, [&camera, &camera], [&a, &b], &chance.points(20), 0.0);
+    let objects = chance.points(20);
+    let points = pairs(&mut chance, [&camera, &camera], [&a, &b], &objects, 0.0);
     let orient = |points: &[[PixelPoint; 2]]| orient_relatively([&camera, &camera], points, &SEARCH);
     assert!(matches!(orient(&points[..5]), Err(ApproximateError::TooFew { needed: 6, found: 5, .. })));
     assert_eq!(orient(&[points[0]; 9]), Err(ApproximateError::NoSolution));

@@ -49,7 +49,7 @@ fn a_board_gets_its_best_pose_and_the_other() {
     let mut chance = Chance::new(62);
     let small: Vec<_> = board().iter().map(|p| p * 0.1).collect();
     for _ in 0..20 {
-        let pose = Pose::looking_at(Point3::new(4.0, 2.0, 8.0), Point3::origin(), nalgebra::Vector3::y(), 0.3).unwrap();
+        let pose = Pose::looking_at(Point3::new(4.0, 2.0, 8.0), Point3::origin(), Vector3::y(), 0.3).unwrap();
         let control = chance.control(&pinhole(), &pose, &small, 0.3);
         let found = resect(&pinhole(), &control, None).unwrap();
         let rival = found.rival.unwrap();
@@ -94,7 +94,7 @@ fn what_cannot_be_resected_is_named() {
 fn the_danger_cylinder_is_named() {
     let corners = [[1.0, 0.0], [-0.5, 0.75_f64.sqrt()], [-0.5, -(0.75_f64.sqrt())], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0));
     let centre = Point3::new(0.6, 0.8, 6.0);
-    let pose = Pose::looking_at(centre, Point3::origin(), nalgebra::Vector3::y(), 0.0).unwrap();
+    let pose = Pose::looking_at(centre, Point3::origin(), Vector3::y(), 0.0).unwrap();
     let control = Chance::new(65).control(&pinhole(), &pose, &corners, 0.0);
     // Four points on one circle, seen from its cylinder.
     match resect(&pinhole(), &control, None) {
