@@ -136,12 +136,10 @@ fn constraints(basis: &[Matrix3<f64>; 4]) -> SMatrix<f64, 10, 20> {
     (0..3).for_each(|i| (0..20).for_each(|m| square[i][i][m] -= half[m]));
     let mut rows = SMatrix::zeros();
     let mut put = |row: usize, p: &Polynomial| (0..20).for_each(|m| rows[(row, m)] = p[m]);
-    for i in 0..3 {
-        for j in 0..3 {
-            let mut sum = [0.0; 20];
-            (0..3).for_each(|k| add_product(&mut sum, 1.0, &square[i][k], &e[k][j]));
-            put(3 * i + j, &sum);
-        }
+    for (row, (i, j)) in (0..9).map(|row| (row, (row / 3, row % 3))) {
+        let mut sum = [0.0; 20];
+        (0..3).for_each(|k| add_product(&mut sum, 1.0, &square[i][k], &e[k][j]));
+        put(row, &sum);
     }
     let mut sum = [0.0; 20];
     for (a, b, c) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
@@ -183,7 +181,7 @@ fn times_polynomial(p: &[f64], q: &[f64]) -> Vec<f64> {
 /// Source: Hartley & Zisserman 2004, section 9.6.2.
 pub(super) fn motion<'a>(
     essential: &Matrix3<f64>,
-    pairs: impl Iterator<Item = (&'a Vector3<f64>, &'a Vector3<f64>)> + Clone,
+    pairs: &(impl Iterator<Item = (&'a Vector3<f64>, &'a Vector3<f64>)> + Clone),
 ) -> Option<(Matrix3<f64>, Vector3<f64>)> {
     let svd = essential.svd(true, true);
     let (u, v) = (svd.u?, svd.v_t?);

@@ -1,11 +1,12 @@
 //! Homographies: a plane and its picture.
 
-use nalgebra::{Matrix3, SVector, Vector3};
+use nalgebra::{Matrix3, Point3, SVector, Vector3};
 
 use super::ApproximateError;
 use super::error::at_least;
 use super::least_squares::{Normal, minimise};
 use super::projective::{Normaliser, Undetermined, projective};
+use super::shape::Shape;
 
 /// A determinant, with both planes normalised and the matrix of unit norm, below which the map flattens its plane.
 const SINGULAR: f64 = 1e-10;
@@ -56,10 +57,7 @@ pub(super) fn normalised(pairs: &[([f64; 2], [f64; 2])]) -> Result<(Matrix3<f64>
         let [x, y] = from.apply(a);
         (Vector3::new(x, y, 1.0), to.apply(b))
     });
-    let flat = || match all_but_one_in_line(pairs.iter().map(|pair| pair.0)) {
-        true => ApproximateError::Collinear,
-        false => ApproximateError::ImageCollinear,
-    };
+    let flat = || if all_but_one_in_line(pairs) { ApproximateError::Collinear } else { ApproximateError::ImageCollinear };
     let matrix = projective(rows).map_err(|why| if why == Undetermined::Object { ApproximateError::Collinear } else { flat() })?;
     let matrix = matrix / matrix.norm();
     let determinant = matrix.determinant().abs();
@@ -69,13 +67,11 @@ pub(super) fn normalised(pairs: &[([f64; 2], [f64; 2])]) -> Result<(Matrix3<f64>
     Ok((matrix, from, to))
 }
 
-/// Do all points, or all but one, lie on a line?
-fn all_but_one_in_line(points: impl Iterator<Item = [f64; 2]> + Clone) -> bool {
-    let count = points.clone().count();
-    (0..count).any(|left_out| {
-        let rest = points.clone().enumerate().filter(|(i, _)| *i != left_out).map(|(_, [x, y])| nalgebra::Point3::new(x, y, 0.0));
-        super::shape::Shape::of(rest).is_line()
-    })
+/// Do all first points, or all but one, lie on a line?
+fn all_but_one_in_line(pairs: &[([f64; 2], [f64; 2])]) -> bool {
+    let points = pairs.iter().map(|&([x, y], _)| Point3::new(x, y, 0.0));
+    let rest = |left_out: usize| points.clone().enumerate().filter(move |(i, _)| *i != left_out).map(|(_, point)| point);
+    (0..pairs.len()).any(|left_out| Shape::of(rest(left_out)).is_line())
 }
 
 /// The homography of least squares in the picture, from an approximate one: the distances of `(x', y')` from the mapped `(x, y)`.

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 /// Steps at most.
 const MOST_STEPS: usize = 100;
 /// A predicted fall of the sum of squares, px^2 for each row, below which nothing is left to gain.
-const NOTHING: f64 = 1e-26;
+const NOTHING: f64 = 1e-22;
 /// Of a normal matrix of unit diagonal: the inverse's diagonal is 1 / (1 - R^2), with R the multiple correlation with the other unknowns.
 const MOST_INFLATION: f64 = 1e13;
 

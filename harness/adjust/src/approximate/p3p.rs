@@ -9,12 +9,12 @@ use super::pose_fit::{Control, all_finite, rays};
 use super::roots::real_roots;
 use super::shape::{Shape, ascending};
 
-/// Newton steps on the distances.
-const POLISHES: usize = 8;
+/// Newton steps on the distances at most; two or three are enough but near a double solution.
+const POLISHES: usize = 30;
 /// A misclosure of the squared sides, relative, of what is a solution after polishing.
 const CLOSED: f64 = 1e-10;
 /// A negative discriminant, relative, that rounding makes of a double root.
-const DOUBLE: f64 = 1e-8;
+const DOUBLE: f64 = 1e-5;
 /// A determinant, of a conic of unit norm, that is zero but for rounding.
 const INFINITE: f64 = 1e-14;
 /// Distances that differ by less, relative, are one solution.
@@ -86,8 +86,10 @@ impl Triangle {
 
     /// Approximate distances, scaled.
     fn distances(&self) -> Vec<Vector3<f64>> {
-        let [a, b, c] = self.squares;
-        let (first, second) = (self.form(0) * c - self.form(2) * a, self.form(1) * c - self.form(2) * b);
+        // With a short side in both, the conics would hardly differ.
+        let longest = Vector3::from(self.squares).imax();
+        let conic = |pair: usize| self.form(pair) * self.squares[longest] - self.form(longest) * self.squares[pair];
+        let (first, second) = (conic((longest + 1) % 3), conic((longest + 2) % 3));
         let sum = self.form(0) + self.form(1) + self.form(2);
         let Some(lines) = split_of_pencil(&first, &second) else { return Vec::new() };
         let scaled = |at: Vector3<f64>| {
@@ -101,21 +103,20 @@ impl Triangle {
     /// Newton's method on the three sides; `None` where it does not end in positive distances that close.
     fn polished(&self, start: Vector3<f64>) -> Option<Vector3<f64>> {
         let mut d = start;
+        let mut misclosure = self.misclosure(&d);
         for _ in 0..POLISHES {
-            let misclosure = self.misclosure(&d);
             let mut slopes = Matrix3::zeros();
             for (row, (i, j)) in PAIRS.into_iter().enumerate() {
                 slopes[(row, i)] = 2.0 * (d[i] - d[j] * self.cosines[row]);
                 slopes[(row, j)] = 2.0 * (d[j] - d[i] * self.cosines[row]);
             }
             let Some(step) = slopes.lu().solve(&misclosure) else { break };
-            let next = d - step;
-            if !next.iter().all(|value| value.is_finite()) || self.misclosure(&next).amax() >= misclosure.amax() {
-                break;
-            }
-            d = next;
+            // Near a double solution a whole step may overshoot.
+            let trials = [1.0, 0.5, 0.25, 0.125].map(|share| d - step * share);
+            let Some(next) = trials.into_iter().find(|next| self.misclosure(next).amax() < misclosure.amax()) else { break };
+            (d, misclosure) = (next, self.misclosure(&next));
         }
-        (d.min() > 0.0 && self.misclosure(&d).amax() <= CLOSED * d.norm_squared().max(1.0)).then(|| d * self.size)
+        (d.min() > 0.0 && misclosure.amax() <= CLOSED * d.norm_squared().max(1.0)).then(|| d * self.size)
     }
 
     fn misclosure(&self, d: &Vector3<f64>) -> Vector3<f64> {

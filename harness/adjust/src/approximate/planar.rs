@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use super::ApproximateError;
 use super::error::at_least;
 use super::homography::normalised;
-use super::pose_fit::{Control, FittedPose, all_finite, fit_pose, rays, square};
+use super::pose_fit::{Control, FittedPose, all_finite, fit_pose, rays};
 use super::shape::Shape;
 
 /// Height above the plane, as a share of the extent, of what counts as in the plane.
@@ -31,7 +31,8 @@ pub fn planar_poses(camera: &Camera, control: &[Control]) -> Result<Vec<FittedPo
     if fitted.is_empty() { Err(ApproximateError::NoSolution) } else { Ok(fitted) }
 }
 
-/// As [`planar_poses`], in closed form and not refined: both poses, the better first; they are one where the plane is seen straight on.
+/// As [`planar_poses`], in closed form and not refined: both poses, the better (by the tangents of its rays) first; they are one where the plane is
+/// seen straight on.
 ///
 /// # Errors
 /// As [`planar_poses`].
@@ -56,9 +57,16 @@ pub(super) fn flattened_starts(camera: &Camera, control: &[Control], shape: &Sha
     let (matrix, from, to) = normalised(&pairs)?;
     let homography = to.inverse() * matrix * from.matrix();
     let starts = infinitesimal(&(homography / homography[(2, 2)])).ok_or(ApproximateError::NoSolution)?;
-    let [first, second] = starts.map(|(rotation, depth)| in_object(shape, &homography, &rotation, depth));
-    let squares = |pose: &Pose| control.iter().map(|point| square(camera, pose, point)).sum::<f64>();
-    Ok(if squares(&first) <= squares(&second) { [first, second] } else { [second, first] })
+    let origin = homography.column(2) / homography[(2, 2)];
+    let squares = |(rotation, depth): &(Matrix3<f64>, f64)| {
+        let square = |&([x, y], [u, v]): &([f64; 2], [f64; 2])| {
+            let p = rotation.column(0) * x + rotation.column(1) * y + origin * *depth;
+            if p.z > 0.0 { (p.x / p.z - u).powi(2) + (p.y / p.z - v).powi(2) } else { f64::INFINITY }
+        };
+        pairs.iter().map(square).sum::<f64>()
+    };
+    let [first, second] = if squares(&starts[0]) <= squares(&starts[1]) { starts } else { [starts[1], starts[0]] };
+    Ok([first, second].map(|(rotation, depth)| in_object(shape, &(origin * depth), &rotation)))
 }
 
 /// The rotations and the depth of the plane's origin, from a homography whose last element is one.
@@ -101,10 +109,9 @@ pub(super) fn orthogonal(m: &Matrix3<f64>) -> Matrix3<f64> {
     u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, (u * v).determinant().signum())) * v
 }
 
-/// The pose from a rotation of the plane's axes into those of computer vision (y down, z forward), and the depth of the plane's origin.
-fn in_object(shape: &Shape, homography: &Matrix3<f64>, rotation: &Matrix3<f64>, depth: f64) -> Pose {
+/// The pose from a rotation of the plane's axes into those of computer vision (y down, z forward), and the place of the plane's origin in these.
+fn in_object(shape: &Shape, origin: &Vector3<f64>, rotation: &Matrix3<f64>) -> Pose {
     let turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-    let origin = homography.column(2) / homography[(2, 2)] * depth;
     let rotation = turn * rotation * shape.axes.transpose();
     Pose { rotation, centre: shape.centroid - rotation.transpose() * (turn * origin) }
 }

@@ -20,6 +20,9 @@ const NEEDED: usize = 5;
 /// Samples from which a second solution is looked for, and the norm by which it must differ.
 const RIVAL_SAMPLES: usize = 12;
 const DIFFERENT: f64 = 1e-4;
+/// The sum of squares of five points' motion, relative to that of a rival, above which no minimum is near; and a squared residual that is always worth it, px^2.
+const HOPELESS: f64 = 50.0;
+const NEARLY_EXACT: f64 = 1e-6;
 /// A standard deviation that is none, px.
 const ROUNDING: f64 = 1e-7;
 
@@ -130,7 +133,7 @@ impl<'a> Network<'a> {
         let (first, second) = (five.map(|pair| pair[0]), five.map(|pair| pair[1]));
         let matrices = essential_matrices(&first, &second);
         let of = |essential: &Matrix3<f64>| {
-            let (rotation, t) = motion(essential, first.iter().zip(&second))?;
+            let (rotation, t) = motion(essential, &first.iter().zip(&second))?;
             let before =
                 |(a, b): (&Vector3<f64>, &Vector3<f64>)| distances(&(rotation * a), b, &t).is_some_and(|[s, r]| s > 0.0 && r > 0.0);
             let all = first.iter().zip(&second).all(before);
@@ -179,6 +182,10 @@ impl<'a> Network<'a> {
         for _ in 0..RIVAL_SAMPLES {
             let sampled: Vec<_> = sample(&mut random, chosen.len(), NEEDED).iter().map(|i| chosen[i]).collect();
             for start in self.motions(&sampled) {
+                let squares: f64 = chosen.iter().map(|&i| self.square(&start, i)).sum();
+                if squares > HOPELESS * limit + chosen.len() as f64 * NEARLY_EXACT {
+                    continue;
+                }
                 let Some(fit) = self.fit(&start, chosen).filter(|fit| fit.squares <= limit) else { continue };
                 let apart = (fit.motion.rotation - best.motion.rotation).norm() + (fit.motion.base - best.motion.base).norm();
                 let better = rival.as_ref().is_none_or(|rival| fit.squares < rival.squares);

@@ -67,11 +67,7 @@ fn between(coefficients: &[f64], mut low: f64, mut high: f64, at_low: f64) -> f6
         if value == 0.0 {
             return x;
         }
-        if value * at_low > 0.0 {
-            low = x
-        } else {
-            high = x
-        }
+        (low, high) = if value * at_low > 0.0 { (x, high) } else { (low, x) };
         let newton = x - value / slope;
         let inside = newton > low && newton < high && (newton - x).abs() < 0.5 * before;
         let next = if inside { newton } else { 0.5 * (low + high) };

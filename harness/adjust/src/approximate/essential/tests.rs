@@ -59,7 +59,7 @@ fn the_motion_has_the_points_before_both_cameras() {
     let mut chance = Chance::new(83);
     for _ in 0..200 {
         let (first, second, essential) = case(&mut chance);
-        let (rotation, t) = motion(&essential, first.iter().zip(&second)).unwrap();
+        let (rotation, t) = motion(&essential, &first.iter().zip(&second)).unwrap();
         assert!(
             ((t.cross_matrix() * rotation).normalize() - essential)
                 .norm()
