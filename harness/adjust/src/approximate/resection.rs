@@ -16,8 +16,13 @@ use super::shape::Shape;
 const NEEDED: usize = 4;
 /// Height of points above their plane, as a share of the extent, below which a second pose is looked for.
 const NEARLY_FLAT: f64 = 0.1;
+/// Triples of which the poses may lead to a second minimum; the sum of squares, relative to the best minimum's, above which none is near; and a squared
+/// residual that is always worth it, px^2.
+const RIVAL_TRIPLES: usize = 6;
+const HOPELESS: f64 = 50.0;
+const NEARLY_EXACT: f64 = 1e-6;
 /// Rotations that differ by less are one, as the norm of the difference.
-const SAME: f64 = 1e-6;
+const SAME: f64 = 1e-5;
 
 /// The pose of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +39,7 @@ pub struct Resection {
     pub residuals: Vec<Option<[f64; 2]>>,
     /// Points that did not fit.
     pub rejected: Vec<usize>,
-    /// Another minimum, from nearly coplanar points: compare its `squares` with `sigma0^2 redundancy`.
+    /// Another minimum, if one was met (four points, or nearly coplanar ones, often have two): compare its `squares` with `sigma0^2 redundancy`.
     pub rival: Option<FittedPose>,
 }
 
@@ -66,7 +71,8 @@ pub fn resect(camera: &Camera, control: &[Control], against: Option<&Search>) ->
     let distance = |pose: &Pose, index: usize| square(camera, pose, &control[index]);
     let refine = |pose: &Pose, chosen: &[usize]| fit_pose(camera, pose, &of(control, chosen)).ok().map(|fit| fit.pose);
     let (pose, agreeing) = search(control.len(), 3, 2, against.unwrap_or(&everything), propose, distance, refine)?;
-    let (best, rival) = best_of(camera, &pose, &of(control, &agreeing))?;
+    let others = spread_triples(&agreeing).flat_map(|triple| propose(&triple)).collect();
+    let (best, rival) = best_of(camera, &pose, others, &of(control, &agreeing))?;
     let cofactor = best.cofactor.ok_or(ApproximateError::Critical { what: "the pose" })?;
     Ok(Resection {
         pose: best.pose,
@@ -83,21 +89,36 @@ fn of(control: &[Control], chosen: &[usize]) -> Vec<Control> {
     chosen.iter().map(|&i| control[i]).collect()
 }
 
-/// The least squares from a start and, where the points are nearly coplanar, from the two poses before their plane: the best and the next.
-fn best_of(camera: &Camera, start: &Pose, chosen: &[Control]) -> Result<(FittedPose, Option<FittedPose>), ApproximateError> {
+/// Some triples of the points, far apart in their order.
+fn spread_triples(agreeing: &[usize]) -> impl Iterator<Item = [usize; 3]> + '_ {
+    let n = agreeing.len();
+    (0..RIVAL_TRIPLES.min(n)).map(move |k| [k, k + n / 3, k + 2 * n / 3].map(|i| agreeing[i % n]))
+}
+
+/// The least squares from a start, from those of `others` that are worth it and, where the points are nearly coplanar, from the two poses before their
+/// plane: the best and the next.
+fn best_of(
+    camera: &Camera,
+    start: &Pose,
+    others: Vec<Pose>,
+    chosen: &[Control],
+) -> Result<(FittedPose, Option<FittedPose>), ApproximateError> {
     let shape = Shape::of(chosen.iter().map(|point| point.object));
     if shape.is_line() {
         return Err(ApproximateError::Collinear);
     }
-    let mut starts = vec![*start];
+    let first = fit_pose(camera, start, chosen)?;
+    let limit = HOPELESS * first.squares + chosen.len() as f64 * NEARLY_EXACT;
+    let squares = |pose: &Pose| chosen.iter().map(|point| square(camera, pose, point)).sum::<f64>();
+    let mut starts: Vec<Pose> = others.into_iter().filter(|pose| squares(pose) <= limit).collect();
     if shape.extents[2] < NEARLY_FLAT * shape.extents[0] {
         starts.extend(flattened_starts(camera, chosen, &shape).into_iter().flatten());
     }
-    let mut fitted: Vec<_> = starts.iter().filter_map(|start| fit_pose(camera, start, chosen).ok()).collect();
+    let mut fitted: Vec<_> = starts.iter().filter_map(|start| fit_pose(camera, start, chosen).ok()).chain([first]).collect();
     fitted.sort_by(|a, b| a.squares.total_cmp(&b.squares));
-    fitted.dedup_by(|b, a| (a.pose.rotation - b.pose.rotation).norm() < SAME);
-    let mut fitted = fitted.into_iter();
-    Ok((fitted.next().ok_or(ApproximateError::NoSolution)?, fitted.next()))
+    let best = fitted[0];
+    let differs = |other: &&FittedPose| (other.pose.rotation - best.pose.rotation).norm() > SAME;
+    Ok((best, fitted.iter().find(differs).copied()))
 }
 
 #[cfg(test)]

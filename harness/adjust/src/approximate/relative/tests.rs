@@ -55,7 +55,7 @@ fn the_cofactors_and_sigma0_are_honest() {
     let mut chance = Chance::new(101);
     let (camera, a, b) = (lens(), chance.pose(), chance.pose());
     let (truth, objects) = (relative(&a, &b), chance.points(25));
-    let (trials, sigma) = (1000, 0.3);
+    let (trials, sigma) = (500, 0.3);
     let (mut distance, mut squares) = (0.0, 0.0);
     for _ in 0..trials {
         let points = pairs(&mut chance, [&camera, &camera], [&a, &b], &objects, sigma);
