@@ -46,8 +46,9 @@ pub struct PlaneInterior {
 /// The interior orientation from views of planes whose points are known, in closed form; distortion is neglected, so it is a start.
 ///
 /// Each view is a list of coplanar control points (each view may show another plane, in axes of its own). The principal point comes from three useful
-/// views or more, and only if it lies in the middle half of the frame; else it is the centre, and pixels are square where one direction of tilt alone
-/// is seen. The answer says what was assumed. Useful are views of four points or more that show perspective beyond what their residuals could feign.
+/// views or more, and only if it lies in the middle half of the frame; else it is the centre. Pixels are square where there is one view, or one
+/// direction of tilt alone. The answer says what was assumed. Useful are views of four points or more that show perspective beyond what their residuals
+/// could feign.
 ///
 /// # Errors
 /// [`ApproximateError::TooFew`] without a view of four points, [`ApproximateError::NoPerspective`] when all views are parallel to their planes,
@@ -75,7 +76,7 @@ pub fn interior_from_planes(views: &[&[Control]], size: ImageSize) -> Result<Pla
     let half = [f64::from(size.width), f64::from(size.height)].map(|side| 0.25 * side * frame.scale);
     let (focal, [x, y], assumed) = complete(&rows, used.len(), half)
         .map(|(focal, point)| (focal, point, Assumed::Nothing))
-        .or_else(|| centred(&rows).map(|focal| (focal, [0.0; 2], Assumed::Centre)))
+        .or_else(|| centred(&rows, used.len()).map(|focal| (focal, [0.0; 2], Assumed::Centre)))
         .or_else(|| square(&rows).map(|focal| ([focal; 2], [0.0; 2], Assumed::CentreAndSquare)))
         .ok_or(ApproximateError::NoInterior)?;
     let px = 1.0 / frame.scale;
@@ -136,8 +137,11 @@ fn complete(rows: &[Row], views: usize, half: [f64; 2]) -> Option<([f64; 2], [f6
     (x.abs() <= half[0] && y.abs() <= half[1]).then_some((focal, [x, y]))
 }
 
-/// Both focal lengths, with the principal point in the centre.
-fn centred(rows: &[Row]) -> Option<[f64; 2]> {
+/// Both focal lengths from two views or more, with the principal point in the centre.
+fn centred(rows: &[Row], views: usize) -> Option<[f64; 2]> {
+    if views < 2 {
+        return None;
+    }
     let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
     for row in rows {
         let a = Vector2::new(row[0], row[1]);
