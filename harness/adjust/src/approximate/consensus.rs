@@ -1,0 +1,202 @@
+//! Searches against gross errors: few points at random, and what the others say.
+
+use rand::SeedableRng;
+use rand::seq::index::sample;
+use rand_chacha::ChaCha8Rng;
+
+use super::ApproximateError;
+
+/// Trials at most, and at least.
+const MOST_TRIALS: usize = 5000;
+const FEWEST_TRIALS: usize = 40;
+/// The risk that every trial held a gross error.
+const RISK: f64 = 1e-6;
+/// Without a tolerance, up to this share of the points may be wrong.
+const WRONG: f64 = 0.45;
+/// Rounds of fitting the agreeing points and asking again which agree.
+const ROUNDS: usize = 20;
+/// A residual that is never a gross error, px.
+const ROUNDING: f64 = 1e-7;
+
+/// What a residual may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tolerance {
+    /// Longer residuals are gross errors, px: random sample consensus.
+    Pixels(f64),
+    /// Not known: it is estimated from the median (least median of squares), so that one right residual in a thousand is taken for a gross error. Fewer
+    /// than half of the points may be wrong.
+    Unknown,
+}
+
+/// How to search against gross errors. The same seed gives the same answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Search {
+    /// Where the choice of points starts.
+    pub seed: u64,
+    /// What a residual may be.
+    pub tolerance: Tolerance,
+}
+
+/// The model on which most agree, refined, and the indices that agree with it.
+///
+/// `size` points determine a model; `freedom` is the number of residuals of a point, 1 or 2. `propose` makes models of chosen points, `square` is the
+/// squared residual of a point, px^2, and `refine` fits a model to all chosen points.
+///
+/// # Errors
+/// [`ApproximateError::NoSolution`] if no trial gave a model, [`ApproximateError::NoConsensus`].
+///
+/// Source: Fischler & Bolles 1981, with the truncated squares of Torr & Zisserman 2000; Rousseeuw & Leroy 1987 for the median.
+pub(super) fn search<M: Clone>(
+    count: usize,
+    size: usize,
+    freedom: usize,
+    options: &Search,
+    propose: impl Fn(&[usize]) -> Vec<M>,
+    square: impl Fn(&M, usize) -> f64,
+    refine: impl Fn(&M, &[usize]) -> Option<M>,
+) -> Result<(M, Vec<usize>), ApproximateError> {
+    let judge = Judge { count, size, freedom, tolerance: options.tolerance };
+    let squares = |model: &M| (0..count).map(|i| square(model, i)).collect::<Vec<f64>>();
+    let (mut model, mut agreeing) = best_trial(&judge, options.seed, propose, squares).ok_or(ApproximateError::NoSolution)?;
+    for _ in 0..ROUNDS {
+        if agreeing.len() <= size {
+            break;
+        }
+        let Some(refined) = refine(&model, &agreeing) else { break };
+        let found = judge.agreeing(&squares(&refined));
+        model = refined;
+        if found == agreeing {
+            break;
+        }
+        agreeing = found;
+    }
+    let needed = (size + 1).min(count);
+    if agreeing.len() < needed {
+        return Err(ApproximateError::NoConsensus { agreeing: agreeing.len(), found: count, needed });
+    }
+    Ok((model, agreeing))
+}
+
+fn best_trial<M>(
+    judge: &Judge,
+    seed: u64,
+    propose: impl Fn(&[usize]) -> Vec<M>,
+    squares: impl Fn(&M) -> Vec<f64>,
+) -> Option<(M, Vec<usize>)> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut best: Option<(f64, M, Vec<usize>)> = None;
+    let (mut trial, mut trials) = (0, judge.trials(judge.size));
+    while trial < trials {
+        trial += 1;
+        for model in propose(&sample(&mut random, judge.count, judge.size).into_vec()) {
+            let found = squares(&model);
+            let cost = judge.cost(&found);
+            if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+                let agreeing = judge.agreeing(&found);
+                trials = judge.trials(agreeing.len());
+                best = Some((cost, model, agreeing));
+            }
+        }
+    }
+    best.map(|(_, model, agreeing)| (model, agreeing))
+}
+
+/// Tells agreement from gross errors.
+struct Judge {
+    count: usize,
+    size: usize,
+    freedom: usize,
+    tolerance: Tolerance,
+}
+
+impl Judge {
+    /// How many trials it takes when so many points agree.
+    fn trials(&self, agreeing: usize) -> usize {
+        let share = match self.tolerance {
+            Tolerance::Pixels(_) => agreeing as f64 / self.count as f64,
+            Tolerance::Unknown => 1.0 - WRONG,
+        };
+        let clean = share.powi(self.size as i32);
+        let trials = RISK.ln() / (-clean).ln_1p();
+        (trials.min(MOST_TRIALS as f64) as usize).max(FEWEST_TRIALS)
+    }
+
+    /// The largest squared residual of a point that agrees.
+    fn limit(&self, squares: &[f64]) -> f64 {
+        let limit = match self.tolerance {
+            Tolerance::Pixels(tolerance) => tolerance * tolerance,
+            Tolerance::Unknown => self.variance(squares) * if self.freedom == 1 { 10.83 } else { 13.82 },
+        };
+        limit.max(ROUNDING * ROUNDING)
+    }
+
+    /// The variance of a residual from the median of their squares, which is .455 or 1.386 times as large for one or two of them.
+    fn variance(&self, squares: &[f64]) -> f64 {
+        let spare = self.count.saturating_sub(self.size).max(1) as f64;
+        let small_sample = (1.0 + 5.0 / spare).powi(2);
+        self.median(squares) / if self.freedom == 1 { 0.455 } else { 1.386 } * small_sample
+    }
+
+    /// The square that just more than half of the points that are not fitted exactly stay below.
+    fn median(&self, squares: &[f64]) -> f64 {
+        let mut sorted = squares.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get((self.count + self.size) / 2).or(sorted.last()).copied().unwrap_or(f64::INFINITY)
+    }
+
+    fn cost(&self, squares: &[f64]) -> f64 {
+        match self.tolerance {
+            Tolerance::Pixels(_) => squares.iter().map(|square| square.min(self.limit(squares))).sum(),
+            Tolerance::Unknown => self.median(squares),
+        }
+    }
+
+    fn agreeing(&self, squares: &[f64]) -> Vec<usize> {
+        let limit = self.limit(squares);
+        (0..self.count).filter(|&i| squares[i] <= limit).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(tolerance: Tolerance, seed: u64, points: &[[f64; 2]]) -> Result<([f64; 2], Vec<usize>), ApproximateError> {
+        let through = |a: [f64; 2], b: [f64; 2]| {
+            let slope = (b[1] - a[1]) / (b[0] - a[0]);
+            [a[1] - slope * a[0], slope]
+        };
+        let refine = |_: &[f64; 2], chosen: &[usize]| {
+            let n = chosen.len() as f64;
+            let sum = |f: fn([f64; 2]) -> f64| chosen.iter().map(|&i| f(points[i])).sum::<f64>();
+            let (x, y, xx, xy) = (sum(|p| p[0]), sum(|p| p[1]), sum(|p| p[0] * p[0]), sum(|p| p[0] * p[1]));
+            let slope = (n * xy - x * y) / (n * xx - x * x);
+            Some([(y - slope * x) / n, slope])
+        };
+        let propose = |chosen: &[usize]| vec![through(points[chosen[0]], points[chosen[1]])];
+        let square = |m: &[f64; 2], i: usize| (points[i][1] - m[0] - m[1] * points[i][0]).powi(2);
+        search(points.len(), 2, 1, &Search { seed, tolerance }, propose, square, refine)
+    }
+
+    #[test]
+    fn gross_errors_are_found_either_way() {
+        let wobble = |i: u32| 0.1 * f64::from(i * 7 % 5) - 0.2;
+        let mut points: Vec<[f64; 2]> = (0..30).map(|i| [f64::from(i), 2.0 + 0.5 * f64::from(i) + wobble(i)]).collect();
+        for wrong in [3, 9, 11, 20, 28] {
+            points[wrong][1] += 5.0 + wrong as f64;
+        }
+        for tolerance in [Tolerance::Pixels(0.5), Tolerance::Unknown] {
+            let ([constant, slope], agreeing) = line(tolerance, 7, &points).unwrap();
+            assert_eq!(agreeing.len(), 25, "{tolerance:?}");
+            assert!((constant - 2.0).abs() < 0.1 && (slope - 0.5).abs() < 0.01);
+            assert_eq!(line(tolerance, 7, &points), line(tolerance, 7, &points));
+        }
+    }
+
+    #[test]
+    fn scattered_points_agree_on_nothing() {
+        let points: Vec<[f64; 2]> = (0..6).map(|i| [f64::from(i), f64::from(i * i * i % 7) * 100.0 + f64::from(i * i)]).collect();
+        let error = line(Tolerance::Pixels(1e-3), 1, &points).unwrap_err();
+        assert_eq!(error, ApproximateError::NoConsensus { agreeing: 2, found: 6, needed: 3 });
+    }
+}

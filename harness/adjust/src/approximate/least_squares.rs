@@ -1,0 +1,137 @@
+//! Least squares in a few unknowns: normal equations that are summed up, and damped steps.
+
+use nalgebra::{SMatrix, SVector};
+
+/// Steps at most.
+const MOST_STEPS: usize = 100;
+/// A predicted fall of the sum of squares, px^2 for each row, below which nothing is left to gain.
+const NOTHING: f64 = 1e-22;
+/// Of a normal matrix of unit diagonal: the inverse's diagonal is 1 / (1 - R^2), with R the multiple correlation with the other unknowns.
+const MOST_INFLATION: f64 = 1e13;
+
+/// Normal equations of rows `v = a dx + w`, of weight one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Normal<const N: usize> {
+    matrix: SMatrix<f64, N, N>,
+    right: SVector<f64, N>,
+    /// The sum of the squares of `w`.
+    pub(super) squares: f64,
+    rows: usize,
+}
+
+impl<const N: usize> Normal<N> {
+    pub(super) fn new() -> Self {
+        Self { matrix: SMatrix::zeros(), right: SVector::zeros(), squares: 0.0, rows: 0 }
+    }
+
+    /// Adds the row `v = a dx + w`; only the lower triangle of the matrix is kept.
+    pub(super) fn add(&mut self, a: &SVector<f64, N>, w: f64) {
+        for j in 0..N {
+            for i in j..N {
+                self.matrix[(i, j)] += a[i] * a[j];
+            }
+            self.right[j] -= a[j] * w;
+        }
+        self.squares += w * w;
+        self.rows += 1;
+    }
+
+    /// Rows minus unknowns, none if negative.
+    pub(super) fn redundancy(&self) -> usize {
+        self.rows.saturating_sub(N)
+    }
+
+    /// Lengths that scale the matrix to a unit diagonal; `None` if an unknown has no effect.
+    fn scales(&self) -> Option<SVector<f64, N>> {
+        let scales = SVector::<f64, N>::from_fn(|i, _| 1.0 / self.matrix[(i, i)].sqrt());
+        scales.iter().all(|scale| scale.is_finite()).then_some(scales)
+    }
+
+    fn scaled(&self, scales: &SVector<f64, N>, damping: f64) -> SMatrix<f64, N, N> {
+        let damped = |i: usize, j: usize| if i == j { damping } else { 0.0 };
+        SMatrix::from_fn(|i, j| self.matrix[(i.max(j), i.min(j))] * scales[i] * scales[j] + damped(i, j))
+    }
+
+    /// The damped step and the fall of the squares that it predicts.
+    fn step(&self, damping: f64) -> Option<(SVector<f64, N>, f64)> {
+        let scales = self.scales()?;
+        let right = self.right.component_mul(&scales);
+        let scaled = self.scaled(&scales, damping).cholesky()?.solve(&right);
+        let step = scaled.component_mul(&scales);
+        step.iter().all(|value| value.is_finite()).then(|| (step, right.dot(&scaled)))
+    }
+
+    /// The inverse of the normal matrix; `None` if the rows do not determine every unknown.
+    pub(super) fn cofactor(&self) -> Option<SMatrix<f64, N, N>> {
+        let scales = self.scales()?;
+        let inverse = self.scaled(&scales, 0.0).cholesky()?.inverse();
+        let determined = inverse.diagonal().iter().all(|&inflation| inflation < MOST_INFLATION);
+        determined.then(|| SMatrix::from_fn(|i, j| inverse[(i, j)] * scales[i] * scales[j]))
+    }
+}
+
+/// The least-squares solution from `start`, with its normal equations: Levenberg-Marquardt. `None` if `normal` has none for the start.
+///
+/// The last steps are hardly damped, so that the end is that of Gauss-Newton.
+pub(super) fn minimise<S, const N: usize>(
+    start: S,
+    normal: impl Fn(&S) -> Option<Normal<N>>,
+    moved: impl Fn(&S, &SVector<f64, N>) -> S,
+) -> Option<(S, Normal<N>)> {
+    let mut state = start;
+    let mut here = normal(&state).filter(|normal| normal.squares.is_finite())?;
+    let mut damping = 1e-5;
+    for _ in 0..MOST_STEPS {
+        let Some((step, fall)) = here.step(damping) else {
+            damping *= 100.0;
+            if damping > 1e8 {
+                break;
+            }
+            continue;
+        };
+        let trial = moved(&state, &step);
+        match normal(&trial).filter(|trial| trial.squares < here.squares) {
+            Some(better) => {
+                (state, here) = (trial, better);
+                damping = (damping * 0.05).max(1e-16);
+            }
+            None if damping > 1e8 || fall <= 1e-13 * here.squares => break,
+            None => damping *= 20.0,
+        }
+        if fall <= NOTHING * here.rows as f64 {
+            break;
+        }
+    }
+    Some((state, here))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// y = a exp(b x), without noise: the end is exact.
+    #[test]
+    fn an_exponential_is_found_from_afar() {
+        let truth = SVector::<f64, 2>::new(2.0, -0.7);
+        let at = |p: &SVector<f64, 2>, x: f64| p[0] * (p[1] * x).exp();
+        let normal = |p: &SVector<f64, 2>| {
+            let mut normal = Normal::new();
+            for x in [0.0, 0.5, 1.0, 2.0, 4.0] {
+                normal.add(&SVector::<f64, 2>::new((p[1] * x).exp(), x * at(p, x)), at(p, x) - at(&truth, x));
+            }
+            Some(normal)
+        };
+        let (found, normal) = minimise(SVector::<f64, 2>::new(0.5, 0.5), normal, |p, step| p + step).unwrap();
+        assert!((found - truth).norm() < 1e-14, "{found}");
+        assert_eq!(normal.redundancy(), 3);
+        assert!(normal.cofactor().is_some());
+    }
+
+    #[test]
+    fn what_the_rows_do_not_determine_has_no_cofactor() {
+        let mut normal = Normal::<2>::new();
+        [1.0, 2.0, 3.0].iter().for_each(|&x| normal.add(&SVector::<f64, 2>::new(x, 2.0 * x), 1.0));
+        assert!(normal.cofactor().is_none());
+        assert!(Normal::<2>::new().cofactor().is_none());
+    }
+}
