@@ -3,6 +3,7 @@
 pub mod cli;
 pub mod data;
 pub mod gate;
+mod imaging;
 pub mod published;
 pub mod records;
 pub mod report;
@@ -11,3 +12,4 @@ pub mod run;
 pub mod scenario;
 pub mod score;
 pub mod store;
+mod truth;

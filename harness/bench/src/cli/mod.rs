@@ -8,6 +8,7 @@ mod detect;
 mod list;
 mod measure;
 mod progress;
+mod render;
 mod report;
 mod run;
 mod show;
@@ -60,6 +61,8 @@ enum Command {
     Show(show::Show),
     /// Run scenarios and write their records
     Run(run::Run),
+    /// Write a scenario's images with the truth about every target, the camera and the poses
+    Render(render::Render),
     /// Write reports from records alone; runs nothing
     Report(report::Report),
     /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
@@ -121,6 +124,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::List { what } => list::list(&context, what),
         Command::Show(show) => show.run(&context),
         Command::Run(run) => run.run(&context),
+        Command::Render(render) => render.run(&context),
         Command::Report(report) => report.run(&context),
         Command::Check(check) => check.run(&context),
         Command::Bless(bless) => bless.run(&context),

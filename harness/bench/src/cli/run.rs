@@ -10,7 +10,7 @@ use super::Failure;
 use super::context::Context;
 use super::progress::Progress;
 use crate::run::Plan;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Subject};
 use crate::store;
 
 #[derive(Args)]
@@ -94,7 +94,7 @@ fn summary(plan: &Plan<'_>, seconds: f64) -> String {
     }
     let missing = plan.method_infos().into_iter().filter_map(|m| m.unavailable.map(|why| format!("; {} unavailable: {why}", m.label)));
     let (count, steps) = (plan.methods.len(), plan.steps());
-    let unit = if matches!(plan.scenario.subject, crate::scenario::Subject::Scene(_)) { "trial" } else { "photograph" };
+    let unit = if matches!(plan.scenario.subject, Subject::Photographs(_)) { "photograph" } else { "trial" };
     let plural = |n: u64, noun: &str| if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") };
     format!("{} of {} in {seconds:.1} s{}", plural(steps, unit), plural(count as u64, "method"), missing.collect::<String>())
 }

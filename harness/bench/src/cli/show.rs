@@ -5,14 +5,18 @@ use std::path::PathBuf;
 
 use calibench_exchange::read_photo;
 use calibench_model::{Image, PixelPoint};
+use calibench_model::camera::CameraModel;
 use calibench_synth::random::Key;
+use calibench_synth::stations::sees;
+use calibench_synth::view::Visibility;
 use clap::Args;
 
 use super::context::Context;
 use super::{Failure, print};
 use crate::report::preview;
-use crate::run::{trial_image, trial_truth};
-use crate::scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject};
+use crate::run::views::Prepared;
+use crate::run::{trial_picture, trial_truth};
+use crate::scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, ViewsSubject};
 
 #[derive(Args)]
 pub struct Show {
@@ -50,6 +54,7 @@ fn card(scenario: &Scenario) -> String {
     let _ = writeln!(text, "seed = {}\ntrials = {}", scenario.seed, scenario.trials);
     match &scenario.subject {
         Subject::Scene(subject) => scene(&mut text, subject),
+        Subject::Views(subject) => views(&mut text, subject),
         Subject::Photographs(subject) => {
             let _ = writeln!(text, "\n[photographs]\nfolder = {}\nfiles = {:?}", quoted(&subject.folder), subject.files);
             let _ = writeln!(text, "board = \"{}x{}\"", subject.board.columns, subject.board.rows);
@@ -92,6 +97,27 @@ fn scene(text: &mut String, subject: &SceneSubject) {
     }
 }
 
+fn views(text: &mut String, subject: &ViewsSubject) {
+    let (field, size) = (&subject.field, subject.camera.size());
+    let _ = writeln!(text, "\n[camera] # {}, {} x {} px", subject.camera.convention().name, size.width, size.height);
+    for parameter in subject.camera.parameters() {
+        let _ = writeln!(text, "# {} = {} {}", parameter.name, parameter.value, parameter.unit);
+    }
+    let (plates, targets, unit) = (field.plates.len(), field.targets.len(), subject.unit.name());
+    let _ = writeln!(text, "\n[testfield] # {plates} plates, {targets} targets, in {unit}");
+    if let Some([low, high]) = field.extent() {
+        let _ = writeln!(text, "# from ({}, {}, {}) to ({}, {}, {})", low.x, low.y, low.z, high.x, high.y, high.z);
+    }
+    for station in &subject.stations {
+        let (at, angles) = (station.pose.centre, station.pose.angles().map(f64::to_degrees));
+        let seen = sees(&subject.camera, &station.pose, field) * targets as f64;
+        let [omega, phi, kappa] = angles;
+        let _ = writeln!(text, "\n[[station]]\nname = \"{}\" # sees {seen:.0} targets", station.name);
+        let _ = writeln!(text, "position = [{}, {}, {}]\nangles = [{omega:.6}, {phi:.6}, {kappa:.6}]", at.x, at.y, at.z);
+    }
+    let _ = writeln!(text, "\n[pointing]\nsigma = {}\nwhole_pixels = {}", subject.hand.sigma, subject.hand.whole_pixels);
+}
+
 type Picture = (Image, Vec<(String, PixelPoint)>);
 
 /// The image of the first trial with its targets, or the first photograph with its corners; or why there is none.
@@ -100,8 +126,15 @@ fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture,
         Subject::Scene(subject) => {
             let key = Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: crate::run::VIEW, target: "" };
             let truth = trial_truth(subject, key);
-            let image = trial_image(subject, &truth, key);
+            let image = trial_picture(subject, &truth, key)?.image;
             Ok(Ok((image, truth.targets.into_iter().map(|target| (target.id, target.at)).collect())))
+        }
+        Subject::Views(subject) => {
+            let prepared = Prepared::new(subject)?;
+            let Some(view) = prepared.views.first() else { return Ok(Err("the scenario has no station".into())) };
+            let image = prepared.image(view, Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: "", target: "" })?.image;
+            let seen = subject.field.targets.iter().zip(&view.truth).filter(|(_, truth)| truth.visibility == Visibility::Visible);
+            Ok(Ok((image, seen.filter_map(|(target, truth)| Some((target.id.clone(), truth.at?))).collect())))
         }
         Subject::Photographs(subject) => {
             let path = context.data()?.join(&subject.folder).join(&subject.files[0]);

@@ -25,7 +25,7 @@ impl Coordinates {
     /// What a scenario yields: errors for a scene, positions for photographs.
     pub fn of(scenario: &Scenario) -> Self {
         match scenario.subject {
-            Subject::Scene(_) => Self::Errors,
+            Subject::Scene(_) | Subject::Views(_) => Self::Errors,
             Subject::Photographs(_) => Self::Positions,
         }
     }

@@ -172,7 +172,7 @@ impl Page {
                 self.text.push_str(&text);
                 self.pictures.extend(pictures);
             }
-            Subject::Scene(_) => {
+            Subject::Scene(_) | Subject::Views(_) => {
                 self.text.push_str(&scores_section::section(loaded));
                 self.text.push('\n');
                 if let Some((overview, panels)) = scene_figures::figures(loaded) {

@@ -2,19 +2,23 @@
 
 mod photographs;
 mod scene;
+pub mod views;
 
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::PhotoError;
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::{Image, Rejection, Start};
+use calibench_synth::optics::OpticsError;
+use calibench_synth::sensor::SensorError;
+use calibench_synth::view::ViewError;
 use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::results::{MethodInfo, Trial};
 use crate::scenario::{Scenario, Subject};
 
-pub use scene::{VIEW, trial_image, trial_truth};
+pub use scene::{VIEW, trial_picture, trial_truth};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 const BATCH: u64 = 32;
@@ -48,6 +52,31 @@ pub enum RunError {
     /// A photograph that is there and cannot be read, or an image that cannot be written.
     #[error(transparent)]
     Photo(#[from] PhotoError),
+    /// Photographs are not rendered.
+    #[error("the scenario is of photographs: there is nothing to render; expected one with [scene] or [testfield]")]
+    NothingToRender,
+    /// A station that the scenario does not have.
+    #[error("no station is called `{name}`; expected one of {known}")]
+    NoStation {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// A view that cannot be pictured.
+    #[error("station `{station}`: {source}")]
+    View {
+        /// From where.
+        station: String,
+        /// Why.
+        source: ViewError,
+    },
+    /// A lens that cannot be.
+    #[error(transparent)]
+    Optics(#[from] OpticsError),
+    /// An image that the sensor cannot write.
+    #[error(transparent)]
+    Sensor(#[from] SensorError),
     /// Results that cannot be written.
     #[error("{0}")]
     Output(#[from] std::io::Error),
@@ -73,7 +102,7 @@ impl<'a> Plan<'a> {
     /// How many steps [`Plan::run`] reports.
     pub fn steps(&self) -> u64 {
         match &self.scenario.subject {
-            Subject::Scene(_) => self.trials,
+            Subject::Scene(_) | Subject::Views(_) => self.trials,
             Subject::Photographs(photographs) => photographs.files.len() as u64,
         }
     }
@@ -87,7 +116,7 @@ impl<'a> Plan<'a> {
     /// Why nothing at all can be measured, if so.
     pub fn missing(&self) -> Option<String> {
         match &self.scenario.subject {
-            Subject::Scene(_) => None,
+            Subject::Scene(_) | Subject::Views(_) => None,
             Subject::Photographs(subject) => photographs::missing(self, subject),
         }
     }
@@ -99,21 +128,33 @@ impl<'a> Plan<'a> {
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
-            Subject::Scene(subject) => {
-                for first in (0..self.trials).step_by(BATCH as usize) {
-                    let batch = first..(first + BATCH).min(self.trials);
-                    let trial = |number| {
-                        let trial = scene::run_trial(self, subject, number);
-                        step();
-                        trial
-                    };
-                    for trial in batch.into_par_iter().map(trial).collect::<Result<Vec<_>, _>>()? {
-                        sink(trial)?;
-                    }
-                }
-                Ok(())
+            Subject::Scene(subject) => self.trials(step, sink, &|number| scene::run_trial(self, subject, number)),
+            Subject::Views(subject) => {
+                let prepared = views::Prepared::new(subject)?;
+                self.trials(step, sink, &|number| views::run_trial(self, &prepared, number))
             }
         }
+    }
+
+    /// Runs trials in batches and hands them on in their order.
+    fn trials(
+        &self,
+        step: &(dyn Fn() + Sync),
+        sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
+        trial: &(dyn Fn(u64) -> Result<Trial, RunError> + Sync),
+    ) -> Result<(), RunError> {
+        for first in (0..self.trials).step_by(BATCH as usize) {
+            let batch = first..(first + BATCH).min(self.trials);
+            let counted = |number| {
+                let trial = trial(number);
+                step();
+                trial
+            };
+            for trial in batch.into_par_iter().map(counted).collect::<Result<Vec<_>, _>>()? {
+                sink(trial)?;
+            }
+        }
+        Ok(())
     }
 
     /// Every available method on one image: (method, results in the order of `starts`).

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use calibench_exchange::write_png;
-use calibench_model::{Image, Scene, Start};
+use calibench_model::{Scene, Start};
 use calibench_synth::noise::{add_grey_noise, quantise};
 use calibench_synth::random::{Key, Purpose, stream};
-use calibench_synth::{draw, render};
+use calibench_synth::draw;
+use calibench_synth::sensor::{Clipped, Exposure};
+use calibench_synth::raster::Picture;
 use rand::RngExt;
 
 use super::{Plan, RunError};
@@ -19,9 +21,9 @@ pub const VIEW: &str = "image";
 pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };
     let truth = trial_truth(subject, key);
-    let image = trial_image(subject, &truth, key);
+    let image = trial_picture(subject, &truth, key)?.image;
     if let Some(folder) = plan.images.filter(|_| number == 0) {
-        write_png(&super::kept_image(folder, VIEW), &image, subject.bits.is_none_or(|bits| bits > 8))?;
+        write_png(&super::kept_image(folder, VIEW), &image, subject.is_deep())?;
     }
     let starts = starts(subject, &truth, key);
     let view: Arc<str> = VIEW.into();
@@ -54,17 +56,23 @@ pub fn trial_truth(subject: &SceneSubject, key: Key<'_>) -> Scene {
     }
 }
 
-/// The image of a trial: rendered, spoiled, quantised.
-pub fn trial_image(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Image {
-    let mut image = match subject.pixels {
-        Pixels::Area => render(truth),
-        Pixels::Centre => draw(truth),
+/// The image of a trial, rendered, spoiled, quantised, and what was clipped where a sensor says so.
+///
+/// # Errors
+/// Optics out of range, or a size that the image's format cannot hold.
+pub fn trial_picture(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Result<Exposure, RunError> {
+    let mut exposure = match subject.pixels {
+        Pixels::Area => {
+            let renderer = subject.imaging.renderer(truth.width, truth.height)?;
+            subject.imaging.expose(&renderer, &Picture::from(truth), key)?
+        }
+        Pixels::Centre => Exposure { image: draw(truth), clipped: Clipped::default() },
     };
-    add_grey_noise(&mut image, subject.grey_noise, &mut stream(key, Purpose::GreyNoise));
+    add_grey_noise(&mut exposure.image, subject.grey_noise, &mut stream(key, Purpose::GreyNoise));
     if let Some(bits) = subject.bits {
-        quantise(&mut image, bits);
+        quantise(&mut exposure.image, bits);
     }
-    image
+    Ok(exposure)
 }
 
 fn starts(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Vec<Start> {

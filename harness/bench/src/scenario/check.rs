@@ -7,20 +7,24 @@ use calibench_measure::{Board, Registry};
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
 use calibench_synth::overlap::{crosses_itself, overlap};
 use calibench_synth::pointing::Hand;
+use calibench_synth::random::Key;
 use toml::Spanned;
 use toml::de::DeTable;
 
 use super::methods::methods;
 use super::problem::{Problem, Problems};
 use super::section::Section;
+use super::sensor::Surroundings;
+use super::views::{ImagingTables, ViewTables};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, Position, SceneWire, TargetWire};
-use super::{PhotographsSubject, Scenario, SceneSubject, Starts, Subject};
+use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 3] = ["method", "scene", "photographs"];
+pub const TOP_TABLES: [&str; 10] =
+    ["method", "scene", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
 /// The keys of `[scene]` that are tables of their own.
 pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 
@@ -30,7 +34,8 @@ pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 /// Every mistake with its place in the text.
 pub fn parse(name: &str, file: &str, text: &str, registry: &Registry) -> Result<Scenario, Problems> {
     let mut problems = Vec::new();
-    let scenario = read(name, text, registry, &mut problems);
+    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
+    let scenario = read(name, folder, text, registry, &mut problems);
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),
         _ => {
@@ -40,7 +45,7 @@ pub fn parse(name: &str, file: &str, text: &str, registry: &Registry) -> Result<
     }
 }
 
-fn read(name: &str, text: &str, registry: &Registry, problems: &mut Vec<Problem>) -> Option<Scenario> {
+fn read(name: &str, folder: &Path, text: &str, registry: &Registry, problems: &mut Vec<Problem>) -> Option<Scenario> {
     let (root, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
         problems.extend(errors.iter().map(|error| Problem::new(error.span().unwrap_or(0..0), error.message())));
@@ -51,21 +56,30 @@ fn read(name: &str, text: &str, registry: &Registry, problems: &mut Vec<Problem>
     let methods_missing = listed.as_ref().is_none_or(Vec::is_empty);
     let scene = root.take_table("scene", "[scene]", problems);
     let photographs = root.take_table("photographs", "[photographs]", problems);
+    let views = ViewTables::take(&mut root, problems);
+    let imaging = ImagingTables::take(&mut root, problems);
     let start = root.span.clone();
     if methods_missing && problems.is_empty() {
         problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
     }
     let methods = methods(listed.unwrap_or_default(), registry, problems);
     let head: Option<Head> = root.read(&TOP_TABLES, problems);
-    let subject = match (scene, photographs) {
-        (Some(scene), None) => read_scene(scene, problems).map(Subject::Scene),
-        (None, Some(photographs)) => read_photographs(photographs, problems).map(Subject::Photographs),
-        (Some(_), Some(second)) => {
-            problems.push(Problem::new(second.span, "both [scene] and [photographs]: expected one of them"));
+    let seed = head.as_ref().map_or(0, |head| head.seed.0);
+    let key = Key { seed, scenario: name, trial: 0, view: "", target: "" };
+    let stray = views.span().or_else(|| imaging.span());
+    let subject = match (scene, photographs, views.span()) {
+        (Some(scene), None, None) => read_scene(scene, imaging, problems).map(Subject::Scene),
+        (None, Some(photographs), None) if stray.is_none() => read_photographs(photographs, problems).map(Subject::Photographs),
+        (None, None, Some(_)) => views.read(imaging, &start, folder, key, problems).map(Subject::Views),
+        (None, None, None) => {
+            let problem = Problem::new(start, "the scenario has nothing to measure");
+            problems.push(problem.help("add a [scene] table, [camera] with [testfield] and [stations], or a [photographs] table"));
             None
         }
-        (None, None) => {
-            problems.push(Problem::new(start, "the scenario has nothing to measure").help("add a [scene] or a [photographs] table"));
+        (scene, photographs, _) => {
+            let span = if scene.is_some() { photographs.map(|second| second.span) } else { None }.or(stray).unwrap_or(start);
+            let problem = Problem::new(span, "more than one of [scene], [photographs] and [testfield] with its tables: expected one of them");
+            problems.push(problem.help("photographs have no camera, testfield, optics or sensor; a scene has no [camera] and no [pointing] of its own level"));
             None
         }
     };
@@ -111,7 +125,7 @@ fn read_photographs(section: Section<'_>, problems: &mut Vec<Problem>) -> Option
     Some(PhotographsSubject { folder: wire.folder.into_inner(), files, board })
 }
 
-fn read_scene(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<SceneSubject> {
+fn read_scene(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut Vec<Problem>) -> Option<SceneSubject> {
     let polygons = section.take_tables("polygon", "[[scene.polygon]]", problems).unwrap_or_default();
     let targets = section.take_tables("target", "[[scene.target]]", problems).unwrap_or_default();
     let pointing = section.take_table("pointing", "[scene.pointing]", problems);
@@ -148,6 +162,8 @@ fn read_scene(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<S
     }
     let starts = hand.map_or(Starts::Given(given), Starts::Pointed);
     let pixels = wire.pixels.unwrap_or_default();
+    check_imaging(&imaging, pixels, &wire, problems);
+    let imaging = imaging.read(&surroundings(&scene), problems)?;
     Some(SceneSubject {
         scene,
         starts,
@@ -155,8 +171,26 @@ fn read_scene(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<S
         bits: wire.bits.map(|bits| bits.0),
         grey_noise: wire.grey_noise.map_or(0.0, |n| n.0),
         phase,
+        imaging,
     })
 }
+
+/// Drawn pixels have no lens, and a sensor's noise and levels are its own.
+fn check_imaging(imaging: &ImagingTables<'_>, pixels: Pixels, wire: &SceneWire, problems: &mut Vec<Problem>) {
+    if let Some(span) = imaging.span().filter(|_| pixels == Pixels::Centre) {
+        problems.push(Problem::new(span, "[optics] or [sensor] beside `pixels = \"centre\"`: drawn pixels have neither"));
+    }
+    if let Some(span) = imaging.sensor_span().filter(|_| wire.bits.is_some() || wire.grey_noise.is_some()) {
+        problems.push(Problem::new(span, "[sensor] beside `bits` or `grey_noise` of [scene]: expected them in [sensor]"));
+    }
+}
+
+fn surroundings(scene: &Scene) -> Surroundings {
+    let levels = || scene.polygons.iter().map(|polygon| polygon.grey).chain([scene.background]);
+    let (low, high) = (levels().fold(f64::INFINITY, f64::min), levels().fold(f64::NEG_INFINITY, f64::max));
+    Surroundings { contrast: Some(high - low), mean: Some(0.5 * (high + low)), ..Surroundings::default() }
+}
+
 
 fn unique<'a>(ids: impl Iterator<Item = &'a Spanned<String>>, what: &str, problems: &mut Vec<Problem>) {
     let mut seen: Vec<&str> = Vec::new();

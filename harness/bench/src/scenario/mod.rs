@@ -1,19 +1,28 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
+mod camera;
 pub mod catalogue;
 mod check;
 mod methods;
+mod optics;
 pub mod problem;
 pub mod schema;
 mod section;
 pub mod sensor;
+mod stations;
+pub mod testfield;
+mod views;
 mod wire;
 
 use calibench_measure::{Board, Configured};
-use calibench_model::{PixelPoint, Scene};
+use calibench_model::camera::Camera;
+use calibench_model::{PixelPoint, Scene, Testfield};
 use calibench_synth::pointing::Hand;
+use calibench_synth::stations::Station;
 
+pub use crate::imaging::Imaging;
 pub use check::parse;
+pub use testfield::Unit;
 pub use problem::{Problem, Problems};
 pub use wire::{Phase, Pixels};
 
@@ -43,6 +52,8 @@ pub struct Scenario {
 pub enum Subject {
     /// A rendered scene, whose truth is known.
     Scene(SceneSubject),
+    /// Views of a testfield, whose truth is known.
+    Views(ViewsSubject),
     /// Photographs, of which no truth is known.
     Photographs(PhotographsSubject),
 }
@@ -61,6 +72,31 @@ pub struct SceneSubject {
     pub grey_noise: f64,
     /// Where the scene lies on the pixel grid.
     pub phase: Phase,
+    /// Lens and sensor.
+    pub imaging: Imaging,
+}
+
+impl SceneSubject {
+    /// Is the image to be kept with 16 bits?
+    pub fn is_deep(&self) -> bool {
+        if self.imaging.sensor.is_some() { self.imaging.is_deep() } else { self.bits.is_none_or(|bits| bits > 8) }
+    }
+}
+
+/// Views of a testfield by a camera.
+pub struct ViewsSubject {
+    /// What is seen.
+    pub field: Testfield,
+    /// The object unit.
+    pub unit: Unit,
+    /// With which interior orientation.
+    pub camera: Camera,
+    /// From where, in the order of reports.
+    pub stations: Vec<Station>,
+    /// Lens and sensor.
+    pub imaging: Imaging,
+    /// Who points at the targets.
+    pub hand: Hand,
 }
 
 /// Approximate positions.
@@ -85,7 +121,11 @@ impl Scenario {
     /// Is there nothing random in it? Its figures are then the same in every trial and for every seed.
     pub fn is_deterministic(&self) -> bool {
         match &self.subject {
-            Subject::Scene(scene) => scene.grey_noise == 0.0 && scene.phase == Phase::Fixed && matches!(scene.starts, Starts::Given(_)),
+            Subject::Scene(scene) => {
+                let still = scene.phase == Phase::Fixed && matches!(scene.starts, Starts::Given(_));
+                still && scene.grey_noise == 0.0 && !scene.imaging.is_random()
+            }
+            Subject::Views(views) => views.hand.sigma == 0.0 && !views.imaging.is_random(),
             Subject::Photographs(_) => true,
         }
     }

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use calibench_model::camera::ImageSize;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use toml::Spanned;
@@ -91,6 +92,44 @@ impl JsonSchema for Position {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": "array", "minItems": 2, "maxItems": 2, "items": Coordinate::json_schema(generator) })
+    }
+}
+
+/// Columns and rows of an image, px.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "Vec<Side>")]
+pub struct ImageSides(usize, usize);
+
+impl ImageSides {
+    /// As a camera has it.
+    pub fn size(self) -> ImageSize {
+        // Sides are bounded by a million.
+        ImageSize { width: self.0 as u32, height: self.1 as u32 }
+    }
+}
+
+impl TryFrom<Vec<Side>> for ImageSides {
+    type Error = String;
+
+    fn try_from(sides: Vec<Side>) -> Result<Self, String> {
+        match sides[..] {
+            [width, height] => Ok(Self(width.0, height.0)),
+            _ => Err(format!("expected two numbers [columns, rows], found {}", sides.len())),
+        }
+    }
+}
+
+impl JsonSchema for ImageSides {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "ImageSides".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "minItems": 2, "maxItems": 2, "items": Side::json_schema(generator) })
     }
 }
 

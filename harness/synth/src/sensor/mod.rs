@@ -193,6 +193,11 @@ impl Sensor {
         Ok(Self { design })
     }
 
+    /// Bits of the image that it hands out; `None` if nothing quantises it.
+    pub fn bits(&self) -> Option<u32> {
+        self.design.jpeg.map(|_| 8).or(self.design.output).or(self.design.converter)
+    }
+
     /// What it is made of.
     pub fn design(&self) -> &Design {
         &self.design

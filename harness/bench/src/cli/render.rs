@@ -1,0 +1,116 @@
+//! `calibench render`.
+
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::{FolderWriter, write_png};
+use calibench_model::camera::Camera;
+use calibench_synth::random::Key;
+use clap::Args;
+
+use super::context::Context;
+use super::progress::Progress;
+use super::{Failure, print};
+use crate::run::views::Prepared;
+use crate::run::{RunError, VIEW, trial_picture, trial_truth};
+use crate::scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
+use crate::truth;
+
+/// Writes a scenario's images with the truth about every target, the camera and the poses.
+#[derive(Args)]
+pub struct Render {
+    /// Name of a scenario, or a TOML file
+    scenario: String,
+    /// The folder; one that is there is replaced as a whole
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Which trial, counted from 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    trial: u64,
+    /// Seed in place of the scenario's
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: Option<u64>,
+    /// Also each image before the sensor: without noise, 16 bit
+    #[arg(long)]
+    noise_free: bool,
+    /// Only this station's image; may be repeated
+    #[arg(long = "station", value_name = "NAME")]
+    stations: Vec<String>,
+}
+
+impl Render {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let scenario = context.scenario(&self.scenario)?;
+        let (Some(name), parent) = (self.output.file_name().and_then(|name| name.to_str()), self.output.parent()) else {
+            return Err(Failure::input(format!("-o {}: expected the name of a folder", self.output.display())));
+        };
+        let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let writer = FolderWriter::new(parent)?;
+        let key = Key { seed: self.seed.unwrap_or(scenario.seed), scenario: &scenario.name, trial: self.trial, view: "", target: "" };
+        let mut notes = Vec::new();
+        writer.replace::<RunError>(name, |folder| {
+            notes = match &scenario.subject {
+                Subject::Views(subject) => self.views(context, &scenario, subject, key, folder)?,
+                Subject::Scene(subject) => self.scene(subject, key, folder)?,
+                Subject::Photographs(_) => return Err(RunError::NothingToRender),
+            };
+            Ok(())
+        })?;
+        print(&format!("{}\n{}", self.output.display(), notes.iter().map(|note| format!("  {note}\n")).collect::<String>()))
+    }
+
+    fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &Path) -> Result<Vec<String>, RunError> {
+        let key = Key { view: VIEW, ..key };
+        let scene = trial_truth(subject, key);
+        let exposure = trial_picture(subject, &scene, key)?;
+        write_png(&folder.join(format!("{VIEW}.png")), &exposure.image, subject.is_deep())?;
+        if self.noise_free {
+            let picture = calibench_synth::raster::Picture::from(&scene);
+            let renderer = subject.imaging.renderer(scene.width, scene.height)?;
+            write_png(&folder.join(format!("{VIEW}-noise-free.png")), &renderer.render(&picture, &[]), true)?;
+        }
+        truth::write_scene(&folder.join(format!("{VIEW}.csv")), &scene)?;
+        Ok(truth::clipping_note(VIEW, exposure.clipped, exposure.image.grey().len()).into_iter().collect())
+    }
+
+    fn views(
+        &self,
+        context: &Context<'_>,
+        scenario: &Scenario,
+        subject: &ViewsSubject,
+        key: Key<'_>,
+        folder: &Path,
+    ) -> Result<Vec<String>, RunError> {
+        if let Some(unknown) = self.stations.iter().find(|name| subject.stations.iter().all(|station| station.name != **name)) {
+            let known: Vec<&str> = subject.stations.iter().map(|station| station.name.as_str()).collect();
+            return Err(RunError::NoStation { name: unknown.clone(), known: known.join(", ") });
+        }
+        let prepared = Prepared::new(subject)?;
+        let chosen = |name: &String| self.stations.is_empty() || self.stations.contains(name);
+        let views: Vec<_> = prepared.views.iter().filter(|view| chosen(&view.station.name)).collect();
+        let progress = Progress::start(&scenario.name, views.len() as u64, context.quiet);
+        let (mut notes, mut rows) = (Vec::new(), Vec::new());
+        for view in &views {
+            let name = &view.station.name;
+            let exposure = prepared.image(view, key)?;
+            write_png(&folder.join(format!("{name}.png")), &exposure.image, prepared.is_deep())?;
+            if self.noise_free {
+                write_png(&folder.join(format!("{name}-noise-free.png")), &prepared.irradiance(view), true)?;
+            }
+            truth::write_view(&folder.join(format!("{name}.csv")), subject, view)?;
+            notes.extend(truth::clipping_note(name, exposure.clipped, exposure.image.grey().len()));
+            notes.extend(truth::warnings(subject, view));
+            rows.push(truth::StationRow::new(view.station, exposure.clipped));
+            progress.step();
+        }
+        truth::write_stations(&folder.join("stations.csv"), &rows)?;
+        truth::write_control(&folder.join("control.csv"), subject)?;
+        write_camera(&folder.join("camera"), &subject.camera)?;
+        progress.finish(&format!("{} images", views.len()));
+        Ok(notes)
+    }
+}
+
+/// The camera in its own convention: a file that every command reads.
+fn write_camera(stem: &Path, camera: &Camera) -> Result<(), RunError> {
+    truth::write_camera(stem, camera).map_err(RunError::Output)
+}

@@ -1,0 +1,123 @@
+//! Trials of a testfield that is seen from several stations.
+
+use std::sync::Arc;
+
+use calibench_exchange::write_png;
+use calibench_model::camera::CameraModel;
+use calibench_model::{PixelPoint, Start};
+use calibench_synth::random::{Key, Purpose, stream};
+use calibench_synth::raster::{Picture, Renderer};
+use calibench_synth::sensor::Exposure;
+use calibench_synth::stations::Station;
+use calibench_synth::view::{TargetTruth, View, Visibility};
+
+use super::{Plan, RunError};
+use crate::results::{Outcome, PointResult, Trial};
+use crate::scenario::ViewsSubject;
+
+/// What is the same in all trials.
+pub struct Prepared<'a> {
+    /// The scenario's subject.
+    pub subject: &'a ViewsSubject,
+    /// The views, in the order of the stations.
+    pub views: Vec<PreparedView<'a>>,
+    renderer: Renderer,
+    targets: Vec<Arc<str>>,
+}
+
+/// A station's outlines and truth.
+pub struct PreparedView<'a> {
+    /// Where the camera stands.
+    pub station: &'a Station,
+    /// The outlines in the image.
+    pub picture: Picture,
+    /// The truth about each target of the field.
+    pub truth: Vec<TargetTruth>,
+    name: Arc<str>,
+}
+
+impl<'a> Prepared<'a> {
+    /// Projects the field for every station.
+    ///
+    /// # Errors
+    /// A view that cannot be pictured, by the name of its station.
+    pub fn new(subject: &'a ViewsSubject) -> Result<Self, RunError> {
+        let size = subject.camera.size();
+        let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
+        let margin = subject.imaging.optics.reach();
+        let view = |station: &'a Station| {
+            let view = View { field: &subject.field, camera: &subject.camera, pose: &station.pose };
+            let failed = |source| RunError::View { station: station.name.clone(), source };
+            let (picture, truth) = (view.picture(margin).map_err(failed)?, view.truth(margin).map_err(failed)?);
+            Ok(PreparedView { station, picture, truth, name: station.name.as_str().into() })
+        };
+        let views = subject.stations.iter().map(view).collect::<Result<Vec<_>, RunError>>()?;
+        let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
+        Ok(Self { subject, views, renderer, targets })
+    }
+
+    /// The image of a view.
+    ///
+    /// # Errors
+    /// A size that the image's format cannot hold.
+    pub fn image(&self, view: &PreparedView<'_>, key: Key<'_>) -> Result<Exposure, RunError> {
+        Ok(self.subject.imaging.expose(&self.renderer, &view.picture, Key { view: &view.station.name, ..key })?)
+    }
+
+    /// The image of a view before the sensor, without noise and without row jitter.
+    pub fn irradiance(&self, view: &PreparedView<'_>) -> calibench_model::Image {
+        self.renderer.render(&view.picture, &[])
+    }
+
+    /// Is the image to be kept with 16 bits?
+    pub fn is_deep(&self) -> bool {
+        self.subject.imaging.is_deep()
+    }
+}
+
+pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
+    let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
+    let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
+    for view in &prepared.views {
+        let image = prepared.image(view, key)?.image;
+        if let Some(folder) = plan.images.filter(|_| number == 0) {
+            write_png(&super::kept_image(folder, &view.station.name), &image, prepared.is_deep())?;
+        }
+        let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
+        let starts: Vec<Start> = seen.iter().map(|point| point.start).collect();
+        for (method, results) in plan.measure(&image, &starts) {
+            let points = seen.iter().zip(results).map(|(point, result)| {
+                let outcome = match result {
+                    Ok(found) => {
+                        let error = (found.position.x - point.truth.x, found.position.y - point.truth.y);
+                        Outcome::Measured { position: found.position, error: Some(error) }
+                    }
+                    Err(rejection) => Outcome::Rejected(rejection),
+                };
+                PointResult { view: view.name.clone(), target: prepared.targets[point.target].clone(), method, outcome }
+            });
+            by_method[method].extend(points);
+        }
+    }
+    Ok(Trial { number, points: by_method.into_iter().flatten().collect(), missed_views: Vec::new() })
+}
+
+/// A target that is wholly in the image.
+struct SeenTarget {
+    target: usize,
+    truth: PixelPoint,
+    start: Start,
+}
+
+fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<SeenTarget> {
+    let targets = &prepared.subject.field.targets;
+    let whole = view.truth.iter().enumerate().filter(|(_, truth)| truth.visibility == Visibility::Visible);
+    let point = |(index, truth): (usize, &TargetTruth)| {
+        let target = &targets[index];
+        let at = truth.at?;
+        let pointed = prepared.subject.hand.point(at, &mut stream(Key { target: &target.id, ..key }, Purpose::Pointing));
+        let start = Start { kind: Some(target.kind), affine: truth.affine, ..Start::at(pointed) };
+        Some(SeenTarget { target: index, truth: at, start })
+    };
+    whole.filter_map(point).collect()
+}

@@ -1,0 +1,123 @@
+//! The `[camera]` table: an interior orientation written out, or a camera file of any tool.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use calibench_exchange::camera::{ReadOptions, read_camera};
+use calibench_model::camera::{Camera, ImageSize, Photogrammetric};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::problem::Problem;
+use super::section::Section;
+use super::wire::{ImageSides, bounded};
+
+bounded! {
+    /// A pixel pitch, um.
+    Pitch(f64), f64 "f64", 0.01, 1e4;
+    /// A principal distance, mm.
+    Distance(f64), f64 "f64", 1e-3, 1e5;
+    /// A place on the sensor, mm.
+    Place(f64), f64 "f64", -1e4, 1e4;
+    /// A coefficient of distortion.
+    Coefficient(f64), f64 "f64", -1e6, 1e6;
+}
+
+/// The camera: a canonical interior orientation, or `file`.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CameraWire {
+    /// A camera file of any format that `calibench list formats` names, relative to the scenario's folder. Instead of all other keys but `size` and `name`.
+    #[schemars(with = "Option<String>")]
+    pub file: Option<Spanned<String>>,
+    /// Which camera of the file, if it holds several.
+    pub name: Option<String>,
+    /// Columns and rows of the image.
+    #[schemars(with = "Option<ImageSides>")]
+    pub size: Option<Spanned<ImageSides>>,
+    /// Pixel pitch, um.
+    pub pitch: Option<Pitch>,
+    /// Principal distance c, mm.
+    pub c: Option<Distance>,
+    /// Principal point x0, mm from the centre of the frame. Default 0.
+    pub x0: Option<Place>,
+    /// Principal point y0, mm upwards from the centre of the frame. Default 0.
+    pub y0: Option<Place>,
+    /// Radial distortion k1, mm^-2: a correction of measured coordinates. Default 0.
+    pub k1: Option<Coefficient>,
+    /// Radial distortion k2, mm^-4. Default 0.
+    pub k2: Option<Coefficient>,
+    /// Radial distortion k3, mm^-6. Default 0.
+    pub k3: Option<Coefficient>,
+    /// Decentring distortion p1, mm^-1, in Brown's order. Default 0.
+    pub p1: Option<Coefficient>,
+    /// Decentring distortion p2, mm^-1. Default 0.
+    pub p2: Option<Coefficient>,
+    /// Difference of scale b1. Default 0.
+    pub b1: Option<Coefficient>,
+    /// Shear b2. Default 0.
+    pub b2: Option<Coefficient>,
+}
+
+/// Reads a `[camera]` table; `folder` is where the scenario's file is.
+pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<Camera> {
+    let span = section.span.clone();
+    let wire: CameraWire = section.read(&[], problems)?;
+    match &wire.file {
+        Some(file) => of_file(&wire, file, folder, problems),
+        None => written_out(&wire, span, problems),
+    }
+}
+
+fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut Vec<Problem>) -> Option<Camera> {
+    let (Some(size), Some(pitch), Some(c)) = (&wire.size, wire.pitch, wire.c) else {
+        let missing: Vec<&str> = [("`size`", wire.size.is_none()), ("`pitch`", wire.pitch.is_none()), ("`c`", wire.c.is_none())]
+            .iter()
+            .filter_map(|(key, missing)| missing.then_some(*key))
+            .collect();
+        let help = "expected `size` (px), `pitch` (um) and `c` (mm), or `file`";
+        problems.push(Problem::new(span, format!("[camera] has no {}", missing.join(", "))).help(help));
+        return None;
+    };
+    let place = |value: Option<Place>| value.map_or(0.0, |value| value.0);
+    let term = |value: Option<Coefficient>| value.map_or(0.0, |value| value.0);
+    let camera = Photogrammetric {
+        size: size.get_ref().size(),
+        pitch_um: pitch.0,
+        c: c.0,
+        x0: place(wire.x0),
+        y0: place(wire.y0),
+        k: [term(wire.k1), term(wire.k2), term(wire.k3)],
+        p: [term(wire.p1), term(wire.p2)],
+        b: [term(wire.b1), term(wire.b2)],
+    };
+    Some(camera.into())
+}
+
+fn of_file(wire: &CameraWire, file: &Spanned<String>, folder: &Path, problems: &mut Vec<Problem>) -> Option<Camera> {
+    let beside = [wire.pitch.is_some(), wire.c.is_some(), wire.k1.is_some(), wire.x0.is_some(), wire.y0.is_some()];
+    if beside.contains(&true) {
+        let problem = Problem::new(file.span(), "`file` beside an interior orientation that is written out: expected one of them");
+        problems.push(problem);
+        return None;
+    }
+    let size: Option<ImageSize> = wire.size.as_ref().map(|size| size.get_ref().size());
+    let options = ReadOptions { size, ..ReadOptions::default() };
+    let read = match read_camera(&folder.join(file.get_ref()), &options) {
+        Ok(read) => read,
+        Err(error) => {
+            problems.push(Problem::new(file.span(), format!("the camera cannot be read: {error}")));
+            return None;
+        }
+    };
+    let names: Vec<&str> = read.cameras.iter().map(|camera| camera.name.as_str()).collect();
+    let chosen = match &wire.name {
+        Some(name) => read.cameras.iter().find(|camera| camera.name == *name),
+        None => read.cameras.first().filter(|_| read.cameras.len() == 1),
+    };
+    if chosen.is_none() {
+        problems.push(Problem::new(file.span(), "which camera of the file?").help(format!("expected `name`, one of {}", names.join(", "))));
+    }
+    chosen.map(|camera| camera.camera)
+}

@@ -1,0 +1,131 @@
+//! The tables of a scenario that pictures a testfield: `[camera]`, `[testfield]`, `[stations]`, `[[station]]`, `[optics]`, `[sensor]`, `[pointing]`.
+
+use std::ops::Range;
+use std::path::Path;
+
+use calibench_model::Testfield;
+use calibench_model::camera::{Camera, CameraModel};
+use calibench_synth::optics::Optics;
+use calibench_synth::pointing::Hand;
+use calibench_synth::random::Key;
+
+use super::problem::Problem;
+use super::section::Section;
+use super::sensor::{Surroundings, read_sensor};
+use super::wire::PointingWire;
+use super::{Imaging, ViewsSubject, camera, optics, stations, testfield};
+
+/// Lens and sensor as they stand in the file, not read yet: a sensor's contrast depends on what it sees.
+pub struct ImagingTables<'i> {
+    optics: Option<Section<'i>>,
+    sensor: Option<Section<'i>>,
+}
+
+impl<'i> ImagingTables<'i> {
+    /// Takes `[optics]` and `[sensor]` out of the file.
+    pub fn take(root: &mut Section<'i>, problems: &mut Vec<Problem>) -> Self {
+        let optics = root.take_table("optics", "[optics]", problems);
+        Self { optics, sensor: root.take_table("sensor", "[sensor]", problems) }
+    }
+
+    /// Where either stands, if one does.
+    pub fn span(&self) -> Option<Range<usize>> {
+        self.optics.as_ref().or(self.sensor.as_ref()).map(|section| section.span.clone())
+    }
+
+    /// Where `[sensor]` stands, if it does.
+    pub fn sensor_span(&self) -> Option<Range<usize>> {
+        self.sensor.as_ref().map(|section| section.span.clone())
+    }
+
+    /// Reads both.
+    pub fn read(self, surroundings: &Surroundings, problems: &mut Vec<Problem>) -> Option<Imaging> {
+        let optics = match self.optics {
+            Some(section) => optics::read(section, problems),
+            None => Some(Optics::default()),
+        };
+        let sensor = match self.sensor {
+            Some(section) => read_sensor(section, surroundings, problems).map(Some),
+            None => Some(None),
+        };
+        Some(Imaging { optics: optics?, sensor: sensor? })
+    }
+}
+
+/// The tables of a view but for lens and sensor.
+pub struct ViewTables<'i> {
+    camera: Option<Section<'i>>,
+    testfield: Option<Section<'i>>,
+    stations: Option<Section<'i>>,
+    explicit: Vec<Section<'i>>,
+    pointing: Option<Section<'i>>,
+}
+
+impl<'i> ViewTables<'i> {
+    /// Takes them out of the file.
+    pub fn take(root: &mut Section<'i>, problems: &mut Vec<Problem>) -> Self {
+        Self {
+            camera: root.take_table("camera", "[camera]", problems),
+            testfield: root.take_table("testfield", "[testfield]", problems),
+            stations: root.take_table("stations", "[stations]", problems),
+            explicit: root.take_tables("station", "[[station]]", problems).unwrap_or_default(),
+            pointing: root.take_table("pointing", "[pointing]", problems),
+        }
+    }
+
+    /// Where the first of them stands, if one does.
+    pub fn span(&self) -> Option<Range<usize>> {
+        let tables = [&self.testfield, &self.camera, &self.stations, &self.pointing];
+        tables.into_iter().flatten().chain(self.explicit.first()).map(|section| section.span.clone()).next()
+    }
+
+    /// Reads all of them; `span` is where the file begins, `folder` where it is, `key` that of the scenario.
+    pub fn read(
+        self,
+        imaging: ImagingTables<'_>,
+        span: &Range<usize>,
+        folder: &Path,
+        key: Key<'_>,
+        problems: &mut Vec<Problem>,
+    ) -> Option<ViewsSubject> {
+        let mut missing = |name: &str, help: &str| {
+            problems.push(Problem::new(span.clone(), format!("the scenario pictures a testfield and has no {name}")).help(help.to_owned()));
+        };
+        if self.camera.is_none() {
+            missing("[camera]", "add one with `size`, `pitch` and `c`, or with `file`");
+        }
+        if self.testfield.is_none() {
+            missing("[testfield]", "add one with a `kind`");
+        }
+        if self.stations.is_none() && self.explicit.is_empty() {
+            missing("station", "add [stations] with a `kind`, or [[station]] tables");
+        }
+        if self.pointing.is_none() {
+            missing("[pointing]", "measuring starts where somebody points: add `sigma` (px) and `whole_pixels`");
+        }
+        let camera = self.camera.and_then(|section| camera::read(section, folder, problems));
+        let pointing: Option<PointingWire> = self.pointing.and_then(|section| section.read(&[], problems));
+        let plan = self.testfield.and_then(|section| testfield::read(section, key, problems));
+        let (camera, pointing, plan) = (camera?, pointing?, plan?);
+        let field = plan.generate(key).map_err(|error| problems.push(plan.problem(&error))).ok()?;
+        let imaging = imaging.read(&surroundings(&camera, &field), problems);
+        let stations = stations::read(self.stations, self.explicit, problems)?;
+        let stations = stations.generate(&field, &camera, key).map_err(|error| problems.push(stations.problem(&error))).ok()?;
+        let hand = Hand { sigma: pointing.sigma.0, whole_pixels: pointing.whole_pixels };
+        Some(ViewsSubject { field, unit: plan.unit, camera, stations, imaging: imaging?, hand })
+    }
+}
+
+/// What a sensor's signal-to-noise ratios refer to: the lightest and the darkest level of the field, and the mean of the two.
+fn surroundings(camera: &Camera, field: &Testfield) -> Surroundings {
+    let levels = field.plates.iter().flat_map(|plate| plate.areas.iter().map(|area| area.level).chain([plate.level]));
+    let (low, high) = levels.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), level| (low.min(level), high.max(level)));
+    let axis = calibench_model::camera::Ray::from_tangent(0.0, 0.0);
+    let on_axis = camera.derivatives(axis).ok();
+    Surroundings {
+        principal_distance: on_axis.as_ref().map(|derivatives| derivatives.by_ray[0][0].abs()),
+        principal_point: on_axis.map(|derivatives| derivatives.point),
+        contrast: Some(high - low).filter(|contrast| contrast.is_finite()),
+        mean: Some(0.5 * (high + low)).filter(|mean| mean.is_finite()),
+    }
+}
