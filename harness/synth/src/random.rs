@@ -13,6 +13,18 @@ pub enum Purpose {
     GreyNoise = 2,
     /// The hand that points at a target.
     Pointing = 3,
+    /// Where a printed corner lies beside the one that was meant.
+    PrintNoise = 32,
+    /// The error of a target's surveyed position.
+    Survey = 33,
+    /// Where targets are put on a sheet, and how they are turned.
+    Layout = 34,
+    /// The depths and tilts of a wall's sheets.
+    Relief = 35,
+    /// The texture of a facade.
+    Texture = 36,
+    /// Where a station is put.
+    Station = 37,
 }
 
 /// Which stream.
