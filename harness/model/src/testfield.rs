@@ -186,7 +186,7 @@ impl Testfield {
             let [[u0, v0], [u1, v1]] = plate.corners;
             let crest = plate.normal() * plate.bend.map_or(0.0, |bend| bend.peak);
             let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]];
-            corners.into_iter().flat_map(move |at| [plate.point(at), plate.origin + plate.u * at[0] + plate.v * at[1] + crest])
+            corners.map(|at| [plate.point(at), plate.origin + plate.u * at[0] + plate.v * at[1] + crest]).into_iter().flatten()
         };
         self.plates.iter().flat_map(border).fold(None, |found, p| {
             let [low, high] = found.unwrap_or([p, p]);
