@@ -5,22 +5,28 @@
 
 mod check;
 pub mod chessboard;
+pub mod coded;
 mod fill;
+pub mod house;
 mod outline;
 pub mod panels;
 mod placed;
 pub mod shape;
 pub mod wall;
+pub mod zhu;
 
 use calibench_model::PixelPoint;
 use calibench_model::testfield::{Bend, PlatePoint};
 use thiserror::Error;
 
 pub use chessboard::Chessboard;
+pub use coded::Coded;
 pub use fill::{Arrangement, Fill, Turn};
+pub use house::House;
 pub use panels::Panels;
 pub use shape::Shape;
 pub use wall::{Sheet, Wall, WallTarget};
+pub use zhu::{Figure4, Zhu};
 
 /// Reflectances of a sheet and of what is printed on it, fractions of what makes full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,6 +123,9 @@ pub enum FieldError {
         /// The plate.
         plate: String,
     },
+    /// A square of a coded field for which no unambiguous arrangement was found.
+    #[error("no arrangement of targets tells square {0} from the others")]
+    Ambiguous(String),
     /// A field without plates or targets.
     #[error("the testfield has no {0}")]
     Nothing(&'static str),
