@@ -6,6 +6,8 @@ mod methods;
 pub mod problem;
 pub mod schema;
 mod section;
+pub mod stations;
+pub mod testfield;
 mod wire;
 
 use calibench_measure::{Board, Configured};

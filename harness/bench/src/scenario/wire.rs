@@ -46,6 +46,8 @@ macro_rules! bounded {
     )*};
 }
 
+pub(super) use bounded;
+
 bounded! {
     /// A grey value as a fraction of full scale.
     Grey(f64), f64 "f64", 0.0, 1.0;
