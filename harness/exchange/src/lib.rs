@@ -1,4 +1,4 @@
-//! Files of other tools: cameras, image coordinates and photographs.
+//! Files of other tools: cameras, image coordinates and photographs; testfields for the printer.
 
 pub mod atomic;
 pub mod camera;
@@ -6,6 +6,7 @@ pub mod folder;
 pub mod photo;
 pub mod points;
 pub mod points_write;
+pub mod print;
 
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use folder::FolderWriter;

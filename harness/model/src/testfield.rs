@@ -180,11 +180,13 @@ impl Testfield {
         self.plates[target.plate].point(target.at)
     }
 
-    /// The box around all sheets, lowest and highest coordinates, object units; `None` without a plate.
+    /// A box around all sheets, bends included, lowest and highest coordinates, object units; `None` without a plate.
     pub fn extent(&self) -> Option<[Point3<f64>; 2]> {
         let border = |plate: &Plate| {
             let [[u0, v0], [u1, v1]] = plate.corners;
-            [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|at| plate.point(at))
+            let crest = plate.normal() * plate.bend.map_or(0.0, |bend| bend.peak);
+            let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]];
+            corners.map(|at| [plate.point(at), plate.origin + plate.u * at[0] + plate.v * at[1] + crest]).into_iter().flatten()
         };
         self.plates.iter().flat_map(border).fold(None, |found, p| {
             let [low, high] = found.unwrap_or([p, p]);
@@ -225,6 +227,9 @@ mod tests {
     fn the_extent_holds_all_corners() {
         let field = Testfield { plates: vec![plate(None)], targets: Vec::new(), background: 0.0 };
         assert_eq!(field.extent(), Some([Point3::new(1.0, 0.0, 2.0), Point3::new(1.0, 4.0, 4.0)]));
+        let bend = Bend { peak: 0.5, middle: [0.0, 0.0], across: 0.0, reach: 2.0 };
+        let bent = Testfield { plates: vec![plate(Some(bend))], ..field.clone() };
+        assert_eq!(bent.extent(), Some([Point3::new(1.0, 0.0, 2.0), Point3::new(1.5, 4.0, 4.0)]), "the crest is inside");
         assert_eq!(Testfield { plates: Vec::new(), ..field }.extent(), None);
     }
 }

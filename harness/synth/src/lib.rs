@@ -1,8 +1,8 @@
 //! Scenes to images whose truth is known exactly.
 //!
-//! [`view`] brings a testfield before a camera, [`raster`] integrates outlines over each photosite under the blur of [`optics`], [`render()`] does so for a flat
-//! scene, [`noise`] spoils an image, [`pointing`] makes the approximate positions that a person would click. Every random number comes from
-//! [`random::stream`].
+//! [`testfield`] makes what a camera is pointed at, [`stations`] where it stands, [`view`] brings the one before the other; [`raster`] integrates outlines over each
+//! photosite under the blur of [`optics`], [`sensor`] reads the light out. [`render()`] pictures a flat scene, [`noise`] spoils an image, [`pointing`] makes the
+//! approximate positions that a person would click. Every random number comes from [`random::stream`].
 
 mod centres;
 pub mod noise;
@@ -14,5 +14,7 @@ pub mod raster;
 pub mod render;
 pub mod sensor;
 pub mod view;
+pub mod stations;
+pub mod testfield;
 
 pub use render::{draw, render};

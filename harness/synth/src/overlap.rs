@@ -79,8 +79,8 @@ fn on_segment((from, to): (PixelPoint, PixelPoint), p: PixelPoint) -> bool {
     (wx * uy - wy * ux).abs() <= TOLERANCE * length && along >= -TOLERANCE && along <= length + TOLERANCE
 }
 
-/// Even-odd rule; a point within 1e-9 px of the border counts as outside.
-fn contains(polygon: &Polygon, p: PixelPoint) -> bool {
+/// Is `p` inside? Even-odd rule; a point within 1e-9 px of the border counts as outside.
+pub fn contains(polygon: &Polygon, p: PixelPoint) -> bool {
     if polygon.edges().any(|edge| on_segment(edge, p)) {
         return false;
     }

@@ -25,6 +25,18 @@ pub enum Purpose {
     RowNoise = 14,
     /// How far each row of an image is read out of its place.
     RowJitter = 15,
+    /// Where a printed corner lies beside the one that was meant.
+    PrintNoise = 32,
+    /// The error of a target's surveyed position.
+    Survey = 33,
+    /// Where targets are put on a sheet, and how they are turned.
+    Layout = 34,
+    /// The depths and tilts of a wall's sheets.
+    Relief = 35,
+    /// The texture of a facade.
+    Texture = 36,
+    /// Where a station is put.
+    Station = 37,
 }
 
 /// Which stream.

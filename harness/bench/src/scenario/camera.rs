@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use calibench_exchange::camera::{ReadOptions, read_camera};
+use calibench_exchange::camera::{ReadOptions, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize, Photogrammetric};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -104,7 +104,7 @@ fn of_file(wire: &CameraWire, file: &Spanned<String>, folder: &Path, problems: &
     }
     let size: Option<ImageSize> = wire.size.as_ref().map(|size| size.get_ref().size());
     let options = ReadOptions { size, ..ReadOptions::default() };
-    let read = match read_camera(&folder.join(file.get_ref()), &options) {
+    let read = match read_camera_with(&folder.join(file.get_ref()), &options) {
         Ok(read) => read,
         Err(error) => {
             problems.push(Problem::new(file.span(), format!("the camera cannot be read: {error}")));

@@ -9,7 +9,7 @@ pub mod problem;
 pub mod schema;
 mod section;
 pub mod sensor;
-mod stations;
+pub mod stations;
 pub mod testfield;
 mod views;
 mod wire;

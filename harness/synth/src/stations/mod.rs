@@ -1,0 +1,117 @@
+//! Stations: where cameras stand and what they look at.
+//!
+//! Each generator is a struct of checked parameters, angles in radians, that makes named stations around an [`Aim`]. Whether a station sees the field
+//! is asked afterwards, with [`sees`] or [`check_sight`].
+
+pub mod aim;
+pub mod board;
+pub mod convergent;
+pub mod random;
+mod sight;
+
+use calibench_model::Pose;
+use thiserror::Error;
+
+pub use aim::Aim;
+pub use board::BoardViews;
+pub use convergent::{Arc, Ring};
+pub use random::RandomViews;
+pub use sight::{check_sight, sees};
+
+/// A camera's place, with a name for records and tables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Station {
+    /// Its name.
+    pub name: String,
+    /// Exterior orientation.
+    pub pose: Pose,
+}
+
+/// Why stations cannot be made or used.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum StationError {
+    /// A parameter out of its range.
+    #[error("`{parameter}` is {value}: expected {expected}")]
+    Parameter {
+        /// Its name in scenarios.
+        parameter: &'static str,
+        /// What it is; angles in degrees.
+        value: f64,
+        /// What it may be.
+        expected: String,
+    },
+    /// A list without elements.
+    #[error("`{0}` is empty: expected at least one")]
+    Empty(&'static str),
+    /// A station whose pose is not determined.
+    #[error("station `{0}` looks along the field's upwards direction, or stands where it looks: its pose is not determined")]
+    Undetermined(String),
+    /// Two stations of one name.
+    #[error("station `{0}` stands here a second time; expected each name once")]
+    Twice(String),
+    /// A station that does not see the field.
+    #[error("station `{name}` does not see the field: {seen} of {all} targets inside the frame, expected at least {least}")]
+    Unseen {
+        /// Its name.
+        name: String,
+        /// Targets that it sees.
+        seen: usize,
+        /// Targets that there are.
+        all: usize,
+        /// How many it should see.
+        least: usize,
+    },
+    /// No station within the bounds sees the field.
+    #[error("station `{name}`: none of {tries} random poses within the bounds sees enough of the field")]
+    NoneSees {
+        /// Its name.
+        name: String,
+        /// How many were tried.
+        tries: usize,
+    },
+}
+
+fn within(parameter: &'static str, value: f64, least: f64, most: f64) -> Result<(), StationError> {
+    if value >= least && value <= most {
+        return Ok(());
+    }
+    Err(StationError::Parameter { parameter, value, expected: format!("a number from {least} to {most}") })
+}
+
+/// An angle in radians, its bounds and messages in degrees.
+fn angle(parameter: &'static str, value: f64, least: f64, most: f64) -> Result<(), StationError> {
+    const ROUNDING: f64 = 1e-9;
+    let degrees = value.to_degrees();
+    if degrees >= least - ROUNDING && degrees <= most + ROUNDING {
+        return Ok(());
+    }
+    Err(StationError::Parameter { parameter, value: degrees, expected: format!("{least} to {most} degrees") })
+}
+
+fn length(parameter: &'static str, value: f64) -> Result<(), StationError> {
+    within(parameter, value, 1e-6, 1e9)
+}
+
+fn rolls(rolls: &[f64]) -> Result<(), StationError> {
+    if rolls.is_empty() {
+        return Err(StationError::Empty("rolls"));
+    }
+    rolls.iter().try_for_each(|&roll| angle("rolls", roll, -360.0, 360.0))
+}
+
+/// Are all names different?
+///
+/// # Errors
+/// The first name that stands twice.
+pub fn check_names(stations: &[Station]) -> Result<(), StationError> {
+    let twice = stations.iter().enumerate().find(|(i, station)| stations[..*i].iter().any(|other| other.name == station.name));
+    twice.map_or(Ok(()), |(_, station)| Err(StationError::Twice(station.name.clone())))
+}
+
+/// The name of place `index`, counted from 0, with roll number `roll` if there are several: `s01`, or `s01-r2`.
+fn named(index: usize, roll: usize, rolls: usize) -> String {
+    if rolls > 1 { format!("s{:02}-r{}", index + 1, roll + 1) } else { format!("s{:02}", index + 1) }
+}
+
+#[cfg(test)]
+mod tests;
