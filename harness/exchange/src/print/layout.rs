@@ -127,10 +127,10 @@ pub fn sheets<'a>(field: &'a Testfield, options: &PrintOptions) -> Result<Vec<Sh
     if !(1e-3..=1e6).contains(&options.mm_per_unit) {
         return Err(PrintError::Scale(options.mm_per_unit));
     }
-    if let Paper::Sheets { width, height } = options.paper {
-        if !((LEAST_WIDTH..=5000.0).contains(&width) && (80.0..=5000.0).contains(&height)) {
-            return Err(PrintError::Paper(width, height));
-        }
+    if let Paper::Sheets { width, height } = options.paper
+        && !((LEAST_WIDTH..=5000.0).contains(&width) && (80.0..=5000.0).contains(&height))
+    {
+        return Err(PrintError::Paper(width, height));
     }
     if field.plates.is_empty() {
         return Err(PrintError::Nothing);

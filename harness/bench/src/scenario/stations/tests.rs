@@ -1,0 +1,106 @@
+use calibench_model::camera::{ImageSize, Photogrammetric};
+use calibench_synth::testfield::{Chessboard, Levels};
+
+use super::super::problem::Problems;
+use super::*;
+
+const KEY: Key<'_> = Key { seed: 1, scenario: "test", trial: 0, view: "", target: "" };
+
+fn field() -> Testfield {
+    let levels = Levels::default();
+    let board = Chessboard { rows: 6, columns: 9, square: 30.0, margin: 15.0, bend: None, print_noise: 0.0, levels, background: 0.5 };
+    board.generate(KEY).unwrap()
+}
+
+fn camera() -> Camera {
+    let size = ImageSize { width: 1000, height: 800 };
+    Photogrammetric { size, pitch_um: 5.0, c: 8.0, x0: 0.0, y0: 0.0, k: [0.0; 3], p: [0.0; 2], b: [0.0; 2] }.into()
+}
+
+/// The stations of a text, or its problems as `line:column: message (help)`.
+fn stations(text: &str) -> Result<Vec<Station>, String> {
+    let (root, errors) = DeTable::parse_recoverable(text);
+    assert!(errors.is_empty(), "{errors:?}");
+    let mut root = Section { name: "the scenario", span: 0..1, table: root.into_inner() };
+    let mut problems = Vec::new();
+    let given = root.take_tables("station", "[[station]]", &mut problems).unwrap_or_default();
+    let section = root.take_table("stations", "[stations]", &mut problems);
+    let plan = read(section, given, &mut problems);
+    assert_eq!(plan.is_some(), problems.is_empty());
+    let made = plan.map(|plan| plan.generate(&field(), &camera(), KEY).map_err(|error| problems.push(plan.problem(&error))));
+    made.and_then(Result::ok).ok_or_else(|| Problems { file: "f".into(), text: text.into(), problems }.to_string())
+}
+
+fn refused(text: &str, message: &str) {
+    let found = stations(text).unwrap_err();
+    assert!(found.contains(message), "{text}\n{found}\nexpected {message}");
+}
+
+#[test]
+fn every_kind_is_read() {
+    let count = |text: &str| stations(text).unwrap().len();
+    let ring = "[stations]\nkind = \"convergent\"\ncount = 4\nangle = 30\ndistances = [800, 900]\nrolls = [0, 90, 180, 270]\nsees = 0.9";
+    assert_eq!(count(ring), 16);
+    assert_eq!(count("[stations]\nkind = \"arc\"\ncount = 3\nconvergence = 60\ndistances = [800]\nheights = [0, 50]"), 3);
+    assert_eq!(count("[stations]\nkind = \"board\"\ntilts = [[0, 0], [30, -20]]\ndistances = [800, 1000]"), 4);
+    assert_eq!(count("[stations]\nkind = \"random\"\ncount = 25\ndistance = [700, 1200]\ntilt = 40\nroll = 180\naside = [50, 50]"), 25);
+}
+
+#[test]
+fn given_stations_stand_as_they_are_given_and_come_first() {
+    let text = r#"[[station]]
+name = "above"
+at = [120, -75, 800]
+angles = [0, 0, 90]
+[[station]]
+name = "aside"
+at = [400, -75, 700]
+towards = [120, -75, 0]
+roll = 90
+[stations]
+kind = "board"
+tilts = [[0, 0]]
+distances = [800]
+middle = [130, -75, 0]
+"#;
+    let stations = stations(text).unwrap();
+    let names: Vec<&str> = stations.iter().map(|station| station.name.as_str()).collect();
+    assert_eq!(names, ["above", "aside", "s01"]);
+    let angles = stations[0].pose.angles();
+    assert!(angles[0].abs() < 1e-15 && angles[1].abs() < 1e-15 && (angles[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    let towards = stations[1].pose.camera_from_world(&Point3::new(120.0, -75.0, 0.0));
+    assert!(towards.x.abs() < 1e-9 && towards.y.abs() < 1e-9 && towards.z < 0.0);
+    // A quarter turn: the field's upwards direction is the image's x.
+    let up = stations[1].pose.rotation * Vector3::y();
+    assert!((up.x - 1.0).abs() < 1e-12);
+    assert!((stations[2].pose.centre - Point3::new(130.0, -75.0, 800.0)).norm() < 1e-9);
+}
+
+#[test]
+fn mistakes_are_told_with_their_places() {
+    let board = "[stations]\nkind = \"board\"\n";
+    refused("[stations]\ncount = 3", "1:2: [stations] has no `kind`");
+    refused("[stations]\nkind = \"bord\"", "2:8: `kind` of [stations] is one of convergent, arc, board, random; found `bord`");
+    refused(&format!("{board}distances = [800]"), "[stations] has no `tilts`");
+    refused(&format!("{board}tilts = [[0, 0]]\ndistances = []"), "4:13: `distances` is empty");
+    refused(&format!("{board}tilts = [[0, 89]]\ndistances = [800]"), "3:9: `tilts` is 89: expected -85 to 85 degrees");
+    refused(&format!("{board}tilts = [[0]]\ndistances = [800]"), "expected 2 numbers in brackets, found 1");
+    refused(&format!("{board}tilts = [[0, 0]]\ndistances = [800]\nsees = 2"), "5:8: expected a number from 0 to 1");
+    refused(&format!("{board}tilts = [[0, 0]]\ndistances = [800]\nup = [0, 0, 1]"), "its pose is not determined");
+    refused(&format!("{board}tilts = [[0, 0]]\ndistances = [100]\nsees = 1"), "1:2: station `s01` does not see the field");
+    let random = "[stations]\nkind = \"random\"\ncount = 2\n";
+    refused(&format!("{random}distance = [9, 5]\ntilt = 10"), "4:12: `distance` is 5: expected at least the first, 9");
+    refused(&format!("{random}distance = [5, 9]\ntilt = 10"), "none of 1000 random poses within the bounds sees enough of the field");
+}
+
+#[test]
+fn mistakes_of_given_stations_are_told_by_name() {
+    let station = "[[station]]\nname = \"a\"\nat = [120, -75, 800]\n";
+    refused(station, "2:8: station `a` does not say how it is turned (give `angles` or `towards`)");
+    refused(&format!("{station}angles = [0, 0, 0]\ntowards = [0, 0, 0]"), "2:8: station `a` has both");
+    refused(&format!("{station}angles = [0, 0, 0]\nroll = 3"), "they belong to `towards`");
+    refused(&format!("{station}towards = [120, -75, 800]"), "2:8: station `a` looks along the field's upwards direction, or stands");
+    refused(&format!("{station}angles = [180, 0, 0]"), "2:8: station `a` does not see the field: 0 of 54 targets inside the frame");
+    refused(&format!("{station}angles = [0, 0, 0]\n{station}angles = [0, 0, 0]"), "6:8: station `a` stands here a second time");
+    refused("[[station]]\nname = \" \"\nat = [1, 2, 3]\nangles = [0, 0, 0]", "2:8: station ` ` has a name that cannot be read");
+}

@@ -1,0 +1,99 @@
+//! The `[stations]` and `[[station]]` tables as they are written.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::super::testfield::wire::{Count, Degrees, Fraction, Height, Length, Tuple};
+
+/// Stations on a ring around the field's normal.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConvergentWire {
+    /// How many places.
+    pub count: Count,
+    /// Angle of the lines of sight from the field's normal, degrees, 0 to 85: opposite stations converge at twice this.
+    pub angle: Degrees,
+    /// Where the ring begins, from the field's right towards its upper side, degrees. Default 0.
+    pub start: Option<Degrees>,
+    /// Distances from the field's middle, object units, taken in turn.
+    pub distances: Vec<Length>,
+    /// Rolls (kappa), degrees; at every place one image for each. Default [0].
+    pub rolls: Option<Vec<Degrees>>,
+}
+
+/// Stations on an arc before the field, from left to right.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ArcWire {
+    /// How many places.
+    pub count: Count,
+    /// Angle between the lines of sight of the first and the last, degrees, 0 to 170.
+    pub convergence: Degrees,
+    /// Distances from the field's middle, before heights, object units, taken in turn.
+    pub distances: Vec<Length>,
+    /// Heights over the field's middle, object units, taken in turn. Default [0].
+    pub heights: Option<Vec<Height>>,
+    /// Rolls (kappa), degrees; at every place one image for each. Default [0].
+    pub rolls: Option<Vec<Degrees>>,
+}
+
+/// Views of a board: every tilt at every distance with every roll.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoardWire {
+    /// Tilts [about the board's u axis, then about the upright v axis], degrees, each within 85.
+    pub tilts: Vec<Tuple<2>>,
+    /// Distances from the board's middle, object units.
+    pub distances: Vec<Length>,
+    /// Rolls (kappa), degrees. Default [0].
+    pub rolls: Option<Vec<Degrees>>,
+}
+
+/// Stations at random within bounds.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RandomWire {
+    /// How many.
+    pub count: Count,
+    /// The least and the greatest distance from what is looked at, object units.
+    pub distance: Tuple<2>,
+    /// The greatest angle of the line of sight from the field's normal, degrees, 0 to 85.
+    pub tilt: Degrees,
+    /// Rolls are uniform from minus to plus this, degrees, 0 to 180. Default 0.
+    pub roll: Option<Degrees>,
+    /// The cameras look at a point this far from the field's middle at most [to the sides, up or down], object units. Default [0, 0].
+    pub aside: Option<Tuple<2>>,
+}
+
+/// A station.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StationWire {
+    /// Its name in records and tables.
+    #[schemars(with = "String")]
+    pub name: toml::Spanned<String>,
+    /// Projection centre [x, y, z], object units.
+    pub at: Tuple<3>,
+    /// omega, phi, kappa, degrees: `M = M_kappa M_phi M_omega`, passive. Or give `towards`.
+    pub angles: Option<Tuple<3>>,
+    /// The object point that the axis meets [x, y, z], object units.
+    pub towards: Option<Tuple<3>>,
+    /// With `towards`: the object direction that is upwards in the image. Default: that of the field.
+    pub up: Option<Tuple<3>>,
+    /// With `towards`: the roll (kappa) that follows, degrees; positive turns the picture clockwise. Default 0.
+    pub roll: Option<Degrees>,
+}
+
+/// What `[stations]` has beside the keys of its kind.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CommonWire {
+    /// The fraction of the targets that every station must see. Default: one target; with random stations all.
+    pub sees: Option<Fraction>,
+    /// What the stations look at [x, y, z], object units. Default: the middle of the targets.
+    pub middle: Option<Tuple<3>>,
+    /// The direction from the field towards the cameras [x, y, z]. Default: the mean of the plates' normals.
+    pub facing: Option<Tuple<3>>,
+    /// The field's upwards direction [x, y, z]. Default: that of the first plate.
+    pub up: Option<Tuple<3>>,
+}

@@ -1,0 +1,259 @@
+//! The `[testfield]` table: what the cameras of a scenario look at.
+
+use std::ops::Range;
+
+use calibench_model::Testfield;
+use calibench_synth::random::Key;
+use calibench_synth::testfield::{Chessboard, Coded, FieldError, House, Levels, Panels, SheetBend, Wall};
+use toml::de::DeValue;
+
+use super::problem::Problem;
+use super::section::Section;
+use super::wire::Grey;
+
+mod wall;
+pub mod wire;
+
+use wire::{ChessboardWire, CodedWire, Degrees, Height, HouseWire};
+
+/// The kinds of testfield.
+pub const KINDS: [&str; 4] = ["chessboard", "wall", "coded", "house"];
+/// Background where the file gives none.
+const BACKGROUND: f64 = 0.2;
+
+/// The unit of object space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unit {
+    /// mm.
+    #[default]
+    Millimetre,
+    /// m.
+    Metre,
+}
+
+impl Unit {
+    /// Its name in files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Millimetre => "mm",
+            Self::Metre => "m",
+        }
+    }
+
+    /// Millimetres in it.
+    pub const fn mm(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Metre => 1000.0,
+        }
+    }
+}
+
+/// What makes the testfield.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Generator {
+    /// A chessboard.
+    Chessboard(Chessboard),
+    /// A wall, whose sheets are those of the panels, if any, after its own.
+    Wall(Wall, Option<Panels>),
+    /// The coded field.
+    Coded(Coded),
+    /// The house.
+    House(House),
+}
+
+/// A checked `[testfield]`.
+#[derive(Clone, Debug)]
+pub struct FieldPlan {
+    /// The unit of its lengths, and of object space.
+    pub unit: Unit,
+    /// What makes it.
+    pub generator: Generator,
+    spans: Spans,
+}
+
+impl FieldPlan {
+    /// The testfield of `key`.
+    ///
+    /// # Errors
+    /// What does not fit together. A plan that was read has been tried with the scenario's key.
+    pub fn generate(&self, key: Key<'_>) -> Result<Testfield, FieldError> {
+        match &self.generator {
+            Generator::Chessboard(board) => board.generate(key),
+            Generator::Wall(wall, None) => wall.generate(key),
+            Generator::Wall(wall, Some(panels)) => {
+                let sheets = wall.sheets.iter().cloned().chain(panels.sheets(key)?).collect();
+                Wall { sheets, ..wall.clone() }.generate(key)
+            }
+            Generator::Coded(field) => field.generate(key),
+            Generator::House(house) => house.generate(key),
+        }
+    }
+
+    /// An error of [`Self::generate`] at its place in the file.
+    pub fn problem(&self, error: &FieldError) -> Problem {
+        let span = match error {
+            FieldError::Parameter { parameter, .. } => self.spans.of_key(parameter),
+            FieldError::Twice { id, .. } | FieldError::Axes(id) => self.spans.of_id(id),
+            FieldError::UnknownPlate { target, .. } | FieldError::OffPlate { target, .. } => self.spans.of_id(target),
+            FieldError::Overlap { first, second, .. } => self.spans.of_id(second).or_else(|| self.spans.of_id(first)),
+            _ => None,
+        };
+        Problem::new(span.unwrap_or_else(|| self.spans.whole.clone()), error.to_string())
+    }
+}
+
+/// Where keys and named things stand.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Spans {
+    pub whole: Range<usize>,
+    keys: Vec<(String, Range<usize>)>,
+    ids: Vec<(String, Range<usize>)>,
+}
+
+impl Spans {
+    /// Of the table itself and its keys.
+    pub fn of(section: &Section<'_>) -> Self {
+        let mut spans = Self { whole: section.span.clone(), ..Self::default() };
+        spans.add(section);
+        spans
+    }
+
+    /// Adds the keys of a table within, and its name under `id` or `name`.
+    pub fn add(&mut self, section: &Section<'_>) {
+        for (key, value) in &section.table {
+            self.keys.push((key.get_ref().to_string(), value.span()));
+            if let ("id" | "name", Some(name)) = (key.get_ref().as_ref(), value.get_ref().as_str()) {
+                self.ids.push((name.to_owned(), value.span()));
+            }
+        }
+    }
+
+    /// The value of a key, if it stands in one place only.
+    pub fn of_key(&self, name: &str) -> Option<Range<usize>> {
+        let mut found = self.keys.iter().filter(|(key, _)| key == name);
+        let first = found.next()?;
+        found.next().is_none().then(|| first.1.clone())
+    }
+
+    /// The last place of a name: of two that are equal the second is the mistake.
+    pub fn of_id(&self, name: &str) -> Option<Range<usize>> {
+        self.ids.iter().rfind(|(id, _)| id == name).map(|(_, span)| span.clone())
+    }
+}
+
+/// Reads `[testfield]` and tries it with `key`; mistakes are added to `problems`.
+pub fn read(mut section: Section<'_>, key: Key<'_>, problems: &mut Vec<Problem>) -> Option<FieldPlan> {
+    let unit = take_unit(&mut section, problems);
+    let kind = take_kind(&mut section, "[testfield]", &KINDS, problems);
+    let (unit, kind) = (unit?, kind?);
+    let mut spans = Spans::of(&section);
+    let generator = match kind {
+        "chessboard" => Generator::Chessboard(chessboard(&section.read(&[], problems)?)),
+        "coded" => Generator::Coded(coded(&section.read(&[], problems)?, unit)),
+        "house" => Generator::House(house(&section.read(&[], problems)?)),
+        _ => wall::read(section, &mut spans, problems)?,
+    };
+    let plan = FieldPlan { unit, generator, spans };
+    match plan.generate(key) {
+        Ok(_) => Some(plan),
+        Err(error) => {
+            problems.push(plan.problem(&error));
+            None
+        }
+    }
+}
+
+/// Takes the key `kind`, one of `kinds`.
+pub(super) fn take_kind(
+    section: &mut Section<'_>,
+    name: &str,
+    kinds: &[&'static str],
+    problems: &mut Vec<Problem>,
+) -> Option<&'static str> {
+    let listed = kinds.join(", ");
+    let Some((_, value)) = section.take("kind") else {
+        problems.push(Problem::new(section.span.clone(), format!("{name} has no `kind`")).help(format!("`kind`: one of {listed}")));
+        return None;
+    };
+    let found = value.get_ref().as_str().unwrap_or_default();
+    let known = kinds.iter().copied().find(|kind| *kind == found);
+    if known.is_none() {
+        let message = format!("`kind` of {name} is one of {listed}; found {}", shown(value.get_ref()));
+        problems.push(Problem::new(value.span(), message).nearest(found, kinds.iter().copied()));
+    }
+    known
+}
+
+fn take_unit(section: &mut Section<'_>, problems: &mut Vec<Problem>) -> Option<Unit> {
+    let Some((_, value)) = section.take("unit") else { return Some(Unit::default()) };
+    match value.get_ref().as_str() {
+        Some("mm") => Some(Unit::Millimetre),
+        Some("m") => Some(Unit::Metre),
+        _ => {
+            problems.push(Problem::new(value.span(), format!("`unit` is \"mm\" or \"m\"; found {}", shown(value.get_ref()))));
+            None
+        }
+    }
+}
+
+fn shown(value: &DeValue<'_>) -> String {
+    value.as_str().map_or_else(|| format!("a value of type {}", value.type_str()), |text| format!("`{text}`"))
+}
+
+fn levels(paper: Option<Grey>, ink: Option<Grey>) -> Levels {
+    let usual = Levels::default();
+    Levels { paper: paper.map_or(usual.paper, |level| level.0), ink: ink.map_or(usual.ink, |level| level.0) }
+}
+
+fn bend(peak: Option<Height>, across: Option<Degrees>) -> Option<SheetBend> {
+    let peak = peak.map(|peak| peak.0).filter(|peak| *peak != 0.0)?;
+    Some(SheetBend { peak, across: across.map_or(0.0, |angle| angle.0.to_radians()) })
+}
+
+fn chessboard(wire: &ChessboardWire) -> Chessboard {
+    Chessboard {
+        rows: wire.rows.0,
+        columns: wire.columns.0,
+        square: wire.square.0,
+        margin: wire.margin.map_or(wire.square.0, |margin| margin.0),
+        bend: bend(wire.bend, wire.bend_across),
+        print_noise: wire.print_noise.map_or(0.0, |noise| noise.0),
+        levels: levels(wire.paper, wire.ink),
+        background: wire.background.map_or(BACKGROUND, |level| level.0),
+    }
+}
+
+fn coded(wire: &CodedWire, unit: Unit) -> Coded {
+    let paper = Coded::paper();
+    let length = |mm: f64| mm / unit.mm();
+    let squares = wire.squares.map_or(paper.squares, |count| count.0);
+    let half = if squares.is_multiple_of(4) { squares / 2 } else { squares };
+    let peak = wire.bend.unwrap_or(Height(length(0.8)));
+    Coded {
+        squares,
+        measured: wire.measured.map_or(half, |count| count.0),
+        spacing: wire.spacing.map_or(length(paper.spacing), |spacing| spacing.0),
+        line: wire.line.map_or(length(paper.line), |line| line.0),
+        sheet: wire.sheet.map_or(length(paper.sheet), |side| side.0),
+        small: wire.small.map_or(paper.small.map(length), |sizes| sizes.0),
+        large: wire.large.map_or(paper.large.map(length), |sizes| sizes.0),
+        bend: bend(Some(peak), wire.bend_across),
+        levels: levels(wire.paper, wire.ink),
+        background: wire.background.map_or(paper.background, |level| level.0),
+    }
+}
+
+fn house(wire: &HouseWire) -> House {
+    let usual = House::default();
+    House {
+        width: wire.width.0,
+        specks: wire.specks.map_or(usual.specks, |count| count.0),
+        speck: wire.speck.map_or(0.0075 * wire.width.0, |side| side.0),
+        contrast: wire.contrast.map_or(usual.contrast, |contrast| contrast.0),
+        background: wire.background.map_or(usual.background, |level| level.0),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,132 @@
+use super::super::problem::Problems;
+use super::*;
+use toml::de::DeTable;
+
+const KEY: Key<'_> = Key { seed: 1, scenario: "test", trial: 0, view: "", target: "" };
+
+/// The plan of a text, or its problems as `line:column: message (help)`.
+pub fn plan(text: &str) -> Result<FieldPlan, String> {
+    let (root, errors) = DeTable::parse_recoverable(text);
+    assert!(errors.is_empty(), "{errors:?}");
+    let mut root = Section { name: "the scenario", span: 0..1, table: root.into_inner() };
+    let mut problems = Vec::new();
+    let section = root.take_table("testfield", "[testfield]", &mut problems).unwrap();
+    let plan = read(section, KEY, &mut problems);
+    assert_eq!(plan.is_some(), problems.is_empty(), "no plan without a problem, no problem with a plan");
+    plan.ok_or_else(|| Problems { file: "f".into(), text: text.into(), problems }.to_string())
+}
+
+fn refused(text: &str, message: &str) {
+    let found = plan(text).unwrap_err();
+    assert!(found.contains(message), "{text}\n{found}\nexpected {message}");
+}
+
+#[test]
+fn a_chessboard_is_read_with_its_defaults() {
+    let plan = plan("[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\nsquare = 30\nbend = 1.5\nbend_across = 90").unwrap();
+    assert_eq!(plan.unit, Unit::Millimetre);
+    let Generator::Chessboard(board) = &plan.generator else { panic!() };
+    assert_eq!((board.rows, board.columns, board.margin, board.levels), (6, 9, 30.0, Levels::default()));
+    assert!((board.bend.unwrap().across - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
+    assert_eq!(plan.generate(KEY).unwrap().targets.len(), 54);
+}
+
+#[test]
+fn the_coded_field_and_the_house_have_the_papers_defaults() {
+    let coded = plan("[testfield]\nkind = \"coded\"").unwrap();
+    assert_eq!(coded.generator, Generator::Coded(Coded::paper()));
+    let metres = plan("[testfield]\nkind = \"coded\"\nunit = \"m\"").unwrap();
+    let extent = metres.generate(KEY).unwrap().plates[0].corners;
+    assert!((extent[1][0] - 0.6).abs() < 1e-12 && metres.unit == Unit::Metre);
+    let house = plan("[testfield]\nkind = \"house\"\nwidth = 16").unwrap();
+    assert_eq!(house.generator, Generator::House(House::default()));
+}
+
+const WALL: &str = r#"[testfield]
+kind = "wall"
+unit = "m"
+survey_sigma = 0.003
+[[testfield.plate]]
+id = "front"
+middle = [0, 5, 2]
+right = [0, -1, 0]
+up = [0, 0, 1]
+width = 4
+height = 2
+shift = [0.002, 0, 0]
+[[testfield.target]]
+id = "gcp1"
+plate = "front"
+kind = "corner"
+at = [-1, 0.5]
+size = 0.1
+angle = 60
+turn = 15
+[testfield.panels]
+rows = 1
+columns = 2
+width = 1
+height = 1
+gap = 0.2
+relief = 0.1
+tilt = 20
+[testfield.fill]
+kinds = ["cross", "disc", "corner"]
+angles = [30, 150]
+size = 0.05
+count = 20
+distance = 0.13
+"#;
+
+#[test]
+fn a_wall_is_its_plates_its_panels_and_its_targets() {
+    let field = plan(WALL).unwrap().generate(KEY).unwrap();
+    let ids: Vec<&str> = field.plates.iter().map(|plate| plate.id.as_str()).collect();
+    assert_eq!(ids, ["front", "p1-1", "p1-2"]);
+    assert_eq!(field.targets.len(), 61);
+    assert!((field.targets[0].turn - 15_f64.to_radians()).abs() < 1e-15);
+    let corners = field.targets.iter().filter(|target| target.kind == calibench_model::TargetKind::Corner).count();
+    assert_eq!(corners, 31, "two of four shapes, and the given one");
+}
+
+#[test]
+fn mistakes_are_told_with_their_places() {
+    let board = "[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\n";
+    refused("[testfield]\nrows = 3", "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house)");
+    refused("[testfield]\nkind = \"chesboard\"", "2:8: `kind` of [testfield] is one of");
+    refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
+    refused("[testfield]\nkind = 3", "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house; found a value of type integer");
+    refused("[testfield]\nkind = \"house\"\nunit = \"cm\"\nwidth = 3", "3:8: `unit` is \"mm\" or \"m\"; found `cm`");
+    refused(board, "[testfield] has no `square`");
+    refused(&format!("{board}sqare = 30"), "5:1: unknown key `sqare` in [testfield]");
+    refused(&format!("{board}square = -30"), "5:10: expected a number from 0.000001 to 1000000, found -30");
+    refused(&format!("{board}square = nan"), "5:10: expected a number");
+    refused(&format!("{board}square = 30\nprint_noise = 2"), "6:15: `print_noise` is 2: expected a number from 0 to 0.6");
+    refused(&format!("{board}square = 30\nmargin = 1\nprint_noise = 0.5"), "6:10: `margin` is 1: expected at least 8 times");
+    refused("[testfield]\nkind = \"coded\"\nsquares = 9", "3:11: `squares` is 9");
+    refused("[testfield]\nkind = \"coded\"\nsmall = [1, 2, 3]", "3:9: expected 4 numbers in brackets, found 3");
+    refused("[testfield]\nkind = \"house\"\nwidth = 1\nspeck = 0.5", "4:9: `speck` is 0.5");
+    refused("[testfield]\nkind = \"wall\"", "1:2: the testfield has no plates");
+}
+
+#[test]
+fn mistakes_in_a_wall_are_told_with_their_places() {
+    let changed = |from: &str, to: &str| {
+        assert!(WALL.contains(from), "{from}");
+        WALL.replace(from, to)
+    };
+    refused(&changed("right = [0, -1, 0]", "right = [0, 0, 3]"), "6:6: the axes of plate `front`");
+    refused(&changed("right = [0, -1, 0]", "right = [0, 3]"), "8:9: expected 3 numbers in brackets, found 2");
+    refused(&changed("plate = \"front\"", "plate = \"back\""), "14:6: target `gcp1` is on plate `back`");
+    refused(&changed("at = [-1, 0.5]", "at = [-2.1, 0.5]"), "14:6: target `gcp1` does not lie wholly on plate `front`");
+    refused(&changed("kind = \"corner\"", "kind = \"junction\""), "16:8: no target of a wall is a `junction`");
+    refused(&changed("kind = \"corner\"", "kind = \"conrer\""), "did you mean `corner`?");
+    refused(&changed("angle = 60", "angle = 20"), "19:9: `angle` is 20");
+    refused(&changed("gap = 0.2", "gap = 0.0"), "26:7: `gap` is 0: expected at least 0.11");
+    refused(&changed("tilt = 20", "tilt = 70"), "28:8: `tilt` is 70");
+    refused(&changed("count = 20", "rows = 20"), "29:12: [testfield.fill] does not say where the targets are");
+    refused(&changed("count = 20", "count = 20000"), "of 20000 targets found a place on plate `front`");
+    refused(&changed("kinds = [\"cross\", \"disc\", \"corner\"]", "kinds = []"), "30:9: `kinds` is empty");
+    refused(&changed("angles = [30, 150]", "angles = [30, 170]"), "`angle` is 170");
+    refused(&changed("survey_sigma", "survey_sgma"), "4:1: unknown key `survey_sgma`");
+}
