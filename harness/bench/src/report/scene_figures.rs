@@ -31,12 +31,12 @@ pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
 pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
     let first = loaded.first.points.first()?;
     let image = loaded.image(&first.view)?;
-    let targets = targets(loaded);
+    let targets = targets(loaded, &first.view);
     let (layers, layer_of) = layers(loaded);
     let mut marks = Vec::new();
     for (target, truth) in &targets {
         marks.push((target.clone(), MarkAt { layer: 0, at: *truth }));
-        for point in loaded.first.points.iter().filter(|point| *point.target == **target) {
+        for point in loaded.first.points.iter().filter(|point| point.view == first.view && *point.target == **target) {
             if let (Some(layer), Some(at)) = (layer_of[point.method], point.outcome.position()) {
                 marks.push((target.clone(), MarkAt { layer, at }));
             }
@@ -61,10 +61,10 @@ fn round(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }
 
-/// Every target of the first trial with its true position: a measured position less its error.
-fn targets(loaded: &Loaded) -> Vec<(String, PixelPoint)> {
+/// Every target of a view of the first trial with its true position: a measured position less its error.
+fn targets(loaded: &Loaded, view: &str) -> Vec<(String, PixelPoint)> {
     let mut targets: Vec<(String, PixelPoint)> = Vec::new();
-    for point in &loaded.first.points {
+    for point in loaded.first.points.iter().filter(|point| &*point.view == view) {
         let Outcome::Measured { position, error: Some((dx, dy)) } = point.outcome else { continue };
         if !targets.iter().any(|(id, _)| *id == *point.target) {
             targets.push((point.target.to_string(), PixelPoint::new(position.x - dx, position.y - dy)));

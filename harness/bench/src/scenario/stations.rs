@@ -91,8 +91,10 @@ impl StationPlan {
     pub fn problem(&self, error: &StationError) -> Problem {
         let span = match error {
             StationError::Parameter { parameter, .. } | StationError::Empty(parameter) => self.spans.of_key(parameter),
-            StationError::Undetermined(name) | StationError::Twice(name) => self.spans.of_id(name),
-            StationError::Unseen { name, .. } | StationError::NoneSees { name, .. } => self.spans.of_id(name),
+            StationError::Undetermined(name)
+            | StationError::Twice(name)
+            | StationError::Unseen { name, .. }
+            | StationError::NoneSees { name, .. } => self.spans.of_id(name),
         };
         Problem::new(span.unwrap_or_else(|| self.spans.whole.clone()), error.to_string())
     }

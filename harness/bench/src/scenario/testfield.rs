@@ -228,7 +228,7 @@ fn coded(wire: &CodedWire, unit: Unit) -> Coded {
     let paper = Coded::paper();
     let length = |mm: f64| mm / unit.mm();
     let squares = wire.squares.map_or(paper.squares, |count| count.0);
-    let half = if squares % 4 == 0 { squares / 2 } else { squares };
+    let half = if squares.is_multiple_of(4) { squares / 2 } else { squares };
     let peak = wire.bend.unwrap_or(Height(length(0.8)));
     Coded {
         squares,

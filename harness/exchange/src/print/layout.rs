@@ -69,12 +69,13 @@ impl Sheet<'_> {
         // An area inside another is smaller than it.
         let extent = |[low, high]: [PlatePoint; 2]| (high[0] - low[0]) * (high[1] - low[1]);
         areas.sort_by(|a, b| extent(b.1).total_cmp(&extent(a.1)));
-        areas.into_iter().map(|(area, _)| (area, self.grey(area.level))).collect()
+        let range = self.range();
+        areas.into_iter().map(|(area, _)| (area, grey(area.level, range))).collect()
     }
 
     /// The grey of the sheet itself.
     pub fn ground(&self) -> f64 {
-        self.grey(self.plate.level)
+        grey(self.plate.level, self.range())
     }
 
     /// Marks outside the window's corners: lines from one point to another.
@@ -100,12 +101,17 @@ impl Sheet<'_> {
         (0..2).all(|i| low[i] < self.window[1][i] && high[i] > self.window[0][i])
     }
 
-    fn grey(&self, level: f64) -> f64 {
-        let levels = || self.plate.areas.iter().map(|area| area.level).chain([self.plate.level]);
-        let (low, high) = (levels().fold(f64::INFINITY, f64::min), levels().fold(f64::NEG_INFINITY, f64::max));
-        let linear = if high > low { (level - low) / (high - low) } else { 1.0 };
-        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    /// The lowest and the highest level of the plate.
+    fn range(&self) -> [f64; 2] {
+        let levels = self.plate.areas.iter().map(|area| area.level).chain([self.plate.level]);
+        levels.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], level| [low.min(level), high.max(level)])
     }
+}
+
+/// The printer's grey (sRGB) of a level within this range.
+fn grey(level: f64, [low, high]: [f64; 2]) -> f64 {
+    let linear = if high > low { (level - low) / (high - low) } else { 1.0 };
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// A box around an area, for arcs around their circle.
@@ -127,10 +133,10 @@ pub fn sheets<'a>(field: &'a Testfield, options: &PrintOptions) -> Result<Vec<Sh
     if !(1e-3..=1e6).contains(&options.mm_per_unit) {
         return Err(PrintError::Scale(options.mm_per_unit));
     }
-    if let Paper::Sheets { width, height } = options.paper {
-        if !((LEAST_WIDTH..=5000.0).contains(&width) && (80.0..=5000.0).contains(&height)) {
-            return Err(PrintError::Paper(width, height));
-        }
+    if let Paper::Sheets { width, height } = options.paper
+        && !((LEAST_WIDTH..=5000.0).contains(&width) && (80.0..=5000.0).contains(&height))
+    {
+        return Err(PrintError::Paper(width, height));
     }
     if field.plates.is_empty() {
         return Err(PrintError::Nothing);

@@ -118,13 +118,13 @@ fn mistakes_in_a_wall_are_told_with_their_places() {
     refused(&changed("right = [0, -1, 0]", "right = [0, 0, 3]"), "6:6: the axes of plate `front`");
     refused(&changed("right = [0, -1, 0]", "right = [0, 3]"), "8:9: expected 3 numbers in brackets, found 2");
     refused(&changed("plate = \"front\"", "plate = \"back\""), "14:6: target `gcp1` is on plate `back`");
-    refused(&changed("at = [-1, 0.5]", "at = [-2, 0.5]"), "14:6: target `gcp1` does not lie wholly on plate `front`");
+    refused(&changed("at = [-1, 0.5]", "at = [-2.1, 0.5]"), "14:6: target `gcp1` does not lie wholly on plate `front`");
     refused(&changed("kind = \"corner\"", "kind = \"junction\""), "16:8: no target of a wall is a `junction`");
     refused(&changed("kind = \"corner\"", "kind = \"conrer\""), "did you mean `corner`?");
     refused(&changed("angle = 60", "angle = 20"), "19:9: `angle` is 20");
     refused(&changed("gap = 0.2", "gap = 0.0"), "26:7: `gap` is 0: expected at least 0.11");
     refused(&changed("tilt = 20", "tilt = 70"), "28:8: `tilt` is 70");
-    refused(&changed("count = 20", "rows = 20"), "29:2: [testfield.fill] does not say where the targets are");
+    refused(&changed("count = 20", "rows = 20"), "29:12: [testfield.fill] does not say where the targets are");
     refused(&changed("count = 20", "count = 20000"), "of 20000 targets found a place on plate `front`");
     refused(&changed("kinds = [\"cross\", \"disc\", \"corner\"]", "kinds = []"), "30:9: `kinds` is empty");
     refused(&changed("angles = [30, 150]", "angles = [30, 170]"), "`angle` is 170");

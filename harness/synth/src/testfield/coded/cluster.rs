@@ -12,6 +12,8 @@ use super::{Coded, SHAPES};
 const PAIRS: usize = 8;
 /// By how much, as a fraction of a target's cell, what tells targets apart must be clear.
 const CLEAR: f64 = 0.15;
+/// How far from the border of its cell, as a fraction of the cell, a target stays if it is small enough: targets and lines must not run together.
+const APART: f64 = 0.1;
 /// Arrangements that are tried.
 const TRIES: usize = 1_000_000;
 
@@ -48,9 +50,9 @@ impl Cluster {
             slots.shuffle(rng);
             let mut places = [[[0.0; 2]; 2]; PAIRS];
             for (i, &slot) in slots.iter().enumerate() {
-                // Anywhere in its cell from which no turn takes it out.
+                // Anywhere in its cell from where no turn brings it near the border, or in the middle.
                 let (pair, which) = (i / 2, i % 2);
-                let slack = 0.5 * cell - SHAPES[pair % 4].reach(field.size(pair));
+                let slack = (0.5 * cell - SHAPES[pair % 4].reach(field.size(pair)) - APART * cell).max(0.0);
                 let mut place = |k: usize| (k as f64 - 1.5) * cell + (2.0 * rng.random::<f64>() - 1.0) * slack;
                 places[pair][which] = [place(slot % 4), place(slot / 4)];
             }
