@@ -114,14 +114,14 @@ pub struct Score {
     pub whole: Errors,
     /// Errors of the points that every operator measured and none lost.
     pub common: Errors,
-    /// By target, in the order of the scenario.
+    /// By target, or by group of targets, in the order in which they come.
     pub targets: Vec<TargetScore>,
 }
 
 /// The figures of one method on one target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetScore {
-    /// The target.
+    /// The target, or the group.
     pub target: Arc<str>,
     /// Errors of all its measured points, lost ones among them.
     pub whole: Errors,
@@ -143,23 +143,24 @@ impl Score {
         &mut self.targets[place]
     }
 
-    fn add(&mut self, points: &[&PointResult], common: &BTreeSet<PointKey>) {
+    fn add(&mut self, points: &[&PointResult], common: &BTreeSet<PointKey>, groups: &Groups) {
         let mut errors: [Vec<(f64, f64)>; 3] = Default::default();
         let mut targets: BTreeMap<&Arc<str>, Vec<(f64, f64)>> = BTreeMap::new();
         for point in points {
+            let group = groups.get(&point.target).unwrap_or(&point.target);
             match point.outcome {
                 Outcome::Rejected(why) => *self.rejected.entry(why.name()).or_default() += 1,
                 Outcome::Measured { .. } if point.outcome.is_lost() => self.lost += 1,
                 Outcome::Measured { .. } => self.measured += 1,
             }
-            let target = self.target(&point.target);
+            let target = self.target(group);
             let Outcome::Measured { error, .. } = point.outcome else {
                 target.failed += 1;
                 continue;
             };
             let Some(error) = error else { continue };
             target.failed += u64::from(point.outcome.is_lost());
-            targets.entry(&point.target).or_default().push(error);
+            targets.entry(group).or_default().push(error);
             errors[0].push(error);
             if !point.outcome.is_lost() {
                 errors[1].push(error);
@@ -177,6 +178,9 @@ impl Score {
 
 type PointKey = (Arc<str>, Arc<str>);
 
+/// The group of each target that is scored as one of many, by the target's name.
+pub type Groups = BTreeMap<Arc<str>, Arc<str>>;
+
 /// The scores of all methods of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scores {
@@ -184,12 +188,14 @@ pub struct Scores {
     pub methods: Vec<Score>,
     /// How many trials.
     pub trials: u64,
+    /// How targets are grouped; a target that is not named stands for itself.
+    pub groups: Groups,
 }
 
 impl Scores {
     /// No trial yet, for `methods` methods.
     pub fn new(methods: usize) -> Self {
-        Self { methods: vec![Score::default(); methods], trials: 0 }
+        Self { methods: vec![Score::default(); methods], ..Self::default() }
     }
 
     /// Adds a trial. `operators` are the methods whose points decide what is common: those that look at the image.
@@ -203,7 +209,7 @@ impl Scores {
         let common = common_points(trial, operators);
         for (index, score) in self.methods.iter_mut().enumerate() {
             let points: Vec<&PointResult> = trial.points.iter().filter(|point| point.method == index).collect();
-            score.add(&points, &common);
+            score.add(&points, &common, &self.groups);
         }
     }
 }
@@ -254,6 +260,16 @@ mod tests {
         assert!((second.common.square.mean().unwrap() - 0.01).abs() < 1e-15, "only `a` is common");
         assert_eq!(second.kept.rmse_interval(), None, "one trial has no interval");
         assert_eq!(scores.methods[2].common.square.count(), 1);
+    }
+
+    #[test]
+    fn groups_are_scored_together() {
+        let groups = [("a", "disc"), ("b", "disc")].map(|(target, group)| (target.into(), group.into())).into();
+        let mut scores = Scores { groups, ..Scores::new(1) };
+        let points = vec![point(0, "a", Some((0.3, 0.0))), point(0, "b", Some((0.1, 0.0))), point(0, "c", None)];
+        scores.add(&Trial { number: 0, points, missed_views: Vec::new() }, |_| true);
+        let found: Vec<(&str, u64, u64)> = scores.methods[0].targets.iter().map(|t| (&*t.target, t.whole.dx.count(), t.failed)).collect();
+        assert_eq!(found, [("disc", 2, 0), ("c", 0, 1)]);
     }
 
     #[test]

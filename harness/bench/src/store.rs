@@ -8,11 +8,24 @@ use calibench_exchange::FolderWriter;
 
 use crate::records::{RecordWriter, RunInfo};
 use crate::run::{Plan, RunError};
+use crate::scenario::{Scenario, Subject};
 
 /// The records' file in a scenario's folder.
 pub const RECORDS: &str = "records.csv";
 /// The scenario as it was run, in the same folder.
 pub const SCENARIO: &str = "scenario.toml";
+
+/// The scenario's camera file, where the scenario as it was run looks for it: records are read without what they were made from.
+fn keep_camera(scenario: &Scenario, folder: &Path) -> Result<(), RunError> {
+    let Subject::Views(views) = &scenario.subject else { return Ok(()) };
+    let Some((name, path)) = &views.camera_file else { return Ok(()) };
+    let place = folder.join(name);
+    if place != *path && place.starts_with(folder) && !name.contains("..") {
+        place.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+        std::fs::copy(path, place)?;
+    }
+    Ok(())
+}
 
 /// Runs `plan` and puts its records, its scenario and the first trial's images in the place of older ones, all at once, when it is done.
 ///
@@ -28,6 +41,7 @@ pub fn run(writer: &FolderWriter, plan: &mut Plan<'_>, revision: &str, step: &(d
         plan.run(step, &mut |trial| Ok(records.trial(&trial).map_err(std::io::Error::other)?))?;
         records.finish().map_err(std::io::Error::other)?;
         std::fs::write(folder.join(SCENARIO), &plan.scenario.text)?;
+        keep_camera(plan.scenario, folder)?;
         Ok(())
     })
 }

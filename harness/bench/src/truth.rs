@@ -15,8 +15,26 @@ use crate::run::views::PreparedView;
 use crate::scenario::ViewsSubject;
 
 const VIEW_COLUMNS: [&str; 20] = [
-    "image", "target", "kind", "x", "y", "visibility", "axx", "axy", "ayx", "ayy", "ellipse_x", "ellipse_y", "semi_major", "semi_minor", "angle_deg", "X", "Y",
-    "Z", "size_px", "warning",
+    "image",
+    "target",
+    "kind",
+    "x",
+    "y",
+    "visibility",
+    "axx",
+    "axy",
+    "ayx",
+    "ayy",
+    "ellipse_x",
+    "ellipse_y",
+    "semi_major",
+    "semi_minor",
+    "angle_deg",
+    "X",
+    "Y",
+    "Z",
+    "size_px",
+    "warning",
 ];
 
 /// A station and what its image clipped.

@@ -13,8 +13,8 @@ pub mod random;
 pub mod raster;
 pub mod render;
 pub mod sensor;
-pub mod view;
 pub mod stations;
 pub mod testfield;
+pub mod view;
 
 pub use render::{draw, render};

@@ -7,6 +7,7 @@ mod convert;
 mod detect;
 mod list;
 mod measure;
+mod print;
 mod progress;
 mod render;
 mod report;
@@ -63,6 +64,8 @@ enum Command {
     Run(run::Run),
     /// Write a scenario's images with the truth about every target, the camera and the poses
     Render(render::Render),
+    /// Write a scenario's testfield at true scale, as SVG and PDF
+    Print(print::Print),
     /// Write reports from records alone; runs nothing
     Report(report::Report),
     /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
@@ -124,6 +127,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::List { what } => list::list(&context, what),
         Command::Show(show) => show.run(&context),
         Command::Run(run) => run.run(&context),
+        Command::Print(print) => print.run(&context),
         Command::Render(render) => render.run(&context),
         Command::Report(report) => report.run(&context),
         Command::Check(check) => check.run(&context),

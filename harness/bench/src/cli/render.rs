@@ -61,11 +61,11 @@ impl Render {
     fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &Path) -> Result<Vec<String>, RunError> {
         let key = Key { view: VIEW, ..key };
         let scene = trial_truth(subject, key);
-        let exposure = trial_picture(subject, &scene, key)?;
+        let renderer = subject.renderer()?;
+        let exposure = trial_picture(subject, &renderer, &scene, key)?;
         write_png(&folder.join(format!("{VIEW}.png")), &exposure.image, subject.is_deep())?;
         if self.noise_free {
             let picture = calibench_synth::raster::Picture::from(&scene);
-            let renderer = subject.imaging.renderer(scene.width, scene.height)?;
             write_png(&folder.join(format!("{VIEW}-noise-free.png")), &renderer.render(&picture, &[]), true)?;
         }
         truth::write_scene(&folder.join(format!("{VIEW}.csv")), &scene)?;

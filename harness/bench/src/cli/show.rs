@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use calibench_exchange::read_photo;
-use calibench_model::{Image, PixelPoint};
 use calibench_model::camera::CameraModel;
+use calibench_model::{Image, PixelPoint};
 use calibench_synth::random::Key;
 use calibench_synth::stations::sees;
 use calibench_synth::view::Visibility;
@@ -126,7 +126,7 @@ fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture,
         Subject::Scene(subject) => {
             let key = Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: crate::run::VIEW, target: "" };
             let truth = trial_truth(subject, key);
-            let image = trial_picture(subject, &truth, key)?.image;
+            let image = trial_picture(subject, &subject.renderer()?, &truth, key)?.image;
             Ok(Ok((image, truth.targets.into_iter().map(|target| (target.id, target.at)).collect())))
         }
         Subject::Views(subject) => {

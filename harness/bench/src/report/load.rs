@@ -12,8 +12,8 @@ use thiserror::Error;
 use crate::records::{RecordError, RecordHead, read_records};
 use crate::results::Trial;
 use crate::run::kept_image;
-use crate::scenario::{self, Scenario};
-use crate::score::Scores;
+use crate::scenario::{self, Scenario, Subject};
+use crate::score::{Groups, Scores};
 use crate::store::{RECORDS, SCENARIO};
 
 /// All that a report needs of one scenario. Its size does not grow with the number of trials.
@@ -72,7 +72,7 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
     let text_path = folder.join(SCENARIO);
     let text = std::fs::read_to_string(&text_path).map_err(in_file(text_path.clone()))?;
     let scenario = scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
-    let mut scores = Scores::default();
+    let mut scores = Scores { groups: groups(&scenario), ..Scores::default() };
     let mut first = None;
     // The methods of a file are named as they come; `pixel` is the one that does not look at the image.
     let head = read_records(BufReader::new(file), |trial, methods| {
@@ -82,6 +82,19 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
     let head = head.map_err(|source| LoadError::Records { path, source })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
     Ok(Loaded { scenario, head, scores, first: first.unwrap_or_default(), folder })
+}
+
+/// More targets than this are scored by kind.
+pub const MOST_TARGETS: usize = 24;
+
+/// The kinds of a testfield's targets, if there are too many to be listed one by one.
+fn groups(scenario: &Scenario) -> Groups {
+    match &scenario.subject {
+        Subject::Views(views) if views.field.targets.len() > MOST_TARGETS => {
+            views.field.targets.iter().map(|target| (target.id.as_str().into(), target.kind.name().into())).collect()
+        }
+        _ => Groups::new(),
+    }
 }
 
 /// The names of all scenarios that have records, those of files elsewhere (`local/...`) among them.

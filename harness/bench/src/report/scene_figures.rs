@@ -9,6 +9,10 @@ use crate::results::{MethodInfo, Outcome};
 
 /// More targets than this are not all labelled.
 const MOST_LABELS: usize = 24;
+/// More targets than this are not marked with approximations and results in an overview.
+const CROWD: usize = 120;
+/// Targets that get a panel of their own.
+const MOST_PANELS: usize = 12;
 
 /// The first layers, which an overview shows.
 const OVERVIEW: usize = 3;
@@ -22,9 +26,13 @@ fn zoom_for(image: &Image) -> u32 {
 pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
     let marks: Vec<MarkAt> = targets.iter().map(|(_, at)| MarkAt { layer: 0, at: *at }).collect();
     let layer = Layer { name: "target".into(), ..Layer::truth() };
-    // Many labels would hide each other: the first and the last say which way the names run.
-    let ends: Vec<_> = targets.iter().take(1).chain(targets.last()).cloned().collect();
-    overview(image, zoom_for(image), &[layer], &marks, if targets.len() > MOST_LABELS { &ends } else { targets })
+    overview(image, zoom_for(image), &[layer], &marks, &labelled(targets))
+}
+
+/// The targets that are labelled. Many labels would hide each other: the first and the last say which way the names run.
+fn labelled(targets: &[(String, PixelPoint)]) -> Vec<(String, PixelPoint)> {
+    let ends = targets.iter().take(1).chain(targets.last());
+    if targets.len() > MOST_LABELS { ends.cloned().collect() } else { targets.to_vec() }
 }
 
 /// Overview and panels, or `None` where no image was kept or nothing was measured.
@@ -43,10 +51,14 @@ pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
         }
     }
     // An overview shows truth, starts and one method: more would hide each other.
-    let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < OVERVIEW).map(|(_, mark)| mark.clone()).collect();
-    let whole = overview(&image, zoom_for(&image), &layers[..OVERVIEW.min(layers.len())], &few, &targets);
-    let close: Vec<Panel<'_>> = targets
-        .iter()
+    // Of a crowd of targets it shows the truth alone.
+    let shown = if targets.len() > CROWD { 1 } else { OVERVIEW.min(layers.len()) };
+    let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < shown).map(|(_, mark)| mark.clone()).collect();
+    let whole = overview(&image, zoom_for(&image), &layers[..shown], &few, &labelled(&targets));
+    // One further at each step, so that targets that come in turn all get a panel.
+    let step = targets.len().div_ceil(MOST_PANELS).max(1);
+    let chosen = (0..targets.len().min(MOST_PANELS)).map(|i| &targets[(i * step + if step > 1 { i } else { 0 }) % targets.len()]);
+    let close: Vec<Panel<'_>> = chosen
         .map(|(target, truth)| Panel {
             title: format!("{target}: ({}, {}) px", round(truth.x), round(truth.y)),
             image: &image,

@@ -128,5 +128,6 @@ fn by_target(loaded: &Loaded) -> String {
         let rmse = rmse_with_error(errors, 4);
         if failed > 0 { format!("{rmse} ({failed})") } else { rmse }
     });
-    format!("By target, lost points too, over {trials} trials; in brackets how many points were lost or rejected:\n\n{bias}\n{rmse}")
+    let by = if loaded.scores.groups.is_empty() { "target" } else { "kind of target" };
+    format!("By {by}, lost points too, over {trials} trials; in brackets how many points were lost or rejected:\n\n{bias}\n{rmse}")
 }

@@ -11,6 +11,7 @@ use calibench_measure::{BoardDetector, Configured};
 use calibench_model::{Image, Rejection, Start};
 use calibench_synth::optics::OpticsError;
 use calibench_synth::sensor::SensorError;
+use calibench_synth::stations::StationError;
 use calibench_synth::view::ViewError;
 use rayon::prelude::*;
 use thiserror::Error;
@@ -71,6 +72,9 @@ pub enum RunError {
         /// Why.
         source: ViewError,
     },
+    /// Stations of a trial that see too little.
+    #[error(transparent)]
+    Station(#[from] StationError),
     /// A lens that cannot be.
     #[error(transparent)]
     Optics(#[from] OpticsError),
@@ -128,7 +132,10 @@ impl<'a> Plan<'a> {
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
-            Subject::Scene(subject) => self.trials(step, sink, &|number| scene::run_trial(self, subject, number)),
+            Subject::Scene(subject) => {
+                let renderer = subject.renderer()?;
+                self.trials(step, sink, &|number| scene::run_trial(self, subject, &renderer, number))
+            }
             Subject::Views(subject) => {
                 let prepared = views::Prepared::new(subject)?;
                 self.trials(step, sink, &|number| views::run_trial(self, &prepared, number))

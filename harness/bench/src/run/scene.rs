@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use calibench_exchange::write_png;
 use calibench_model::{Scene, Start};
+use calibench_synth::draw;
 use calibench_synth::noise::{add_grey_noise, quantise};
 use calibench_synth::random::{Key, Purpose, stream};
-use calibench_synth::draw;
+use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::{Clipped, Exposure};
-use calibench_synth::raster::Picture;
 use rand::RngExt;
 
 use super::{Plan, RunError};
@@ -18,10 +18,10 @@ use crate::scenario::{Phase, Pixels, SceneSubject, Starts};
 /// The name of the only view.
 pub const VIEW: &str = "image";
 
-pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, number: u64) -> Result<Trial, RunError> {
+pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, renderer: &Renderer, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };
     let truth = trial_truth(subject, key);
-    let image = trial_picture(subject, &truth, key)?.image;
+    let image = trial_picture(subject, renderer, &truth, key)?.image;
     if let Some(folder) = plan.images.filter(|_| number == 0) {
         write_png(&super::kept_image(folder, VIEW), &image, subject.is_deep())?;
     }
@@ -56,16 +56,13 @@ pub fn trial_truth(subject: &SceneSubject, key: Key<'_>) -> Scene {
     }
 }
 
-/// The image of a trial, rendered, spoiled, quantised, and what was clipped where a sensor says so.
+/// The image of a trial, rendered, spoiled, quantised, and what was clipped where a sensor says so. `renderer` is that of the subject.
 ///
 /// # Errors
-/// Optics out of range, or a size that the image's format cannot hold.
-pub fn trial_picture(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Result<Exposure, RunError> {
+/// A size that the image's format cannot hold.
+pub fn trial_picture(subject: &SceneSubject, renderer: &Renderer, truth: &Scene, key: Key<'_>) -> Result<Exposure, RunError> {
     let mut exposure = match subject.pixels {
-        Pixels::Area => {
-            let renderer = subject.imaging.renderer(truth.width, truth.height)?;
-            subject.imaging.expose(&renderer, &Picture::from(truth), key)?
-        }
+        Pixels::Area => subject.imaging.expose(renderer, &Picture::from(truth), key)?,
         Pixels::Centre => Exposure { image: draw(truth), clipped: Clipped::default() },
     };
     add_grey_noise(&mut exposure.image, subject.grey_noise, &mut stream(key, Purpose::GreyNoise));

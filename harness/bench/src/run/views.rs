@@ -37,11 +37,16 @@ pub struct PreparedView<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Projects the field for every station.
+    /// Projects the field for the stations of all trials, or of the first.
     ///
     /// # Errors
     /// A view that cannot be pictured, by the name of its station.
     pub fn new(subject: &'a ViewsSubject) -> Result<Self, RunError> {
+        Self::of(subject, &subject.stations)
+    }
+
+    /// Projects the field for `stations`.
+    fn of(subject: &'a ViewsSubject, stations: &'a [Station]) -> Result<Self, RunError> {
         let size = subject.camera.size();
         let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
         let margin = subject.imaging.optics.reach();
@@ -51,7 +56,7 @@ impl<'a> Prepared<'a> {
             let (picture, truth) = (view.picture(margin).map_err(failed)?, view.truth(margin).map_err(failed)?);
             Ok(PreparedView { station, picture, truth, name: station.name.as_str().into() })
         };
-        let views = subject.stations.iter().map(view).collect::<Result<Vec<_>, RunError>>()?;
+        let views = stations.iter().map(view).collect::<Result<Vec<_>, RunError>>()?;
         let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
         Ok(Self { subject, views, renderer, targets })
     }
@@ -77,6 +82,18 @@ impl<'a> Prepared<'a> {
 
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
+    let subject = prepared.subject;
+    match &subject.redraw {
+        None => run_views(plan, prepared, key),
+        Some(drawing) => {
+            let stations = drawing.generate(&subject.field, &subject.camera, key)?;
+            run_views(plan, &Prepared::of(subject, &stations)?, key)
+        }
+    }
+}
+
+fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
+    let number = key.trial;
     let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
     for view in &prepared.views {
         let image = prepared.image(view, key)?.image;

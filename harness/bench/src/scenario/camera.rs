@@ -1,11 +1,10 @@
 //! The `[camera]` table: an interior orientation written out, or a camera file of any tool.
 
-use std::borrow::Cow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calibench_exchange::camera::{ReadOptions, read_camera_with};
-use calibench_model::camera::{Camera, ImageSize, Photogrammetric};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -60,14 +59,28 @@ pub struct CameraWire {
     pub b2: Option<Coefficient>,
 }
 
-/// Reads a `[camera]` table; `folder` is where the scenario's file is.
-pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<Camera> {
+/// The largest image, px: 400 megapixels take about 5 GB.
+const MOST_PIXELS: u64 = 400_000_000;
+
+/// Reads a `[camera]` table; `folder` is where the scenario's file is. With the camera comes the file that it was read from.
+pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<(Camera, Option<(String, PathBuf)>)> {
     let span = section.span.clone();
     let wire: CameraWire = section.read(&[], problems)?;
-    match &wire.file {
-        Some(file) => of_file(&wire, file, folder, problems),
-        None => written_out(&wire, span, problems),
+    let read = match &wire.file {
+        Some(file) => {
+            let source = (file.get_ref().clone(), folder.join(file.get_ref()));
+            of_file(&wire, file, &source.1, problems).map(|camera| (camera, Some(source)))
+        }
+        None => written_out(&wire, span.clone(), problems).map(|camera| (camera, None)),
+    }?;
+    let size = read.0.size();
+    if u64::from(size.width) * u64::from(size.height) > MOST_PIXELS {
+        let gigabytes = f64::from(size.width) * f64::from(size.height) * 12.0 / 1e9;
+        let message =
+            format!("an image of {} x {} px needs about {gigabytes:.0} GB: expected at most 400 megapixels", size.width, size.height);
+        problems.push(Problem::new(wire.size.map_or(span, |size| size.span()), message));
     }
+    Some(read)
 }
 
 fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut Vec<Problem>) -> Option<Camera> {
@@ -95,7 +108,7 @@ fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut V
     Some(camera.into())
 }
 
-fn of_file(wire: &CameraWire, file: &Spanned<String>, folder: &Path, problems: &mut Vec<Problem>) -> Option<Camera> {
+fn of_file(wire: &CameraWire, file: &Spanned<String>, path: &Path, problems: &mut Vec<Problem>) -> Option<Camera> {
     let beside = [wire.pitch.is_some(), wire.c.is_some(), wire.k1.is_some(), wire.x0.is_some(), wire.y0.is_some()];
     if beside.contains(&true) {
         let problem = Problem::new(file.span(), "`file` beside an interior orientation that is written out: expected one of them");
@@ -104,7 +117,7 @@ fn of_file(wire: &CameraWire, file: &Spanned<String>, folder: &Path, problems: &
     }
     let size: Option<ImageSize> = wire.size.as_ref().map(|size| size.get_ref().size());
     let options = ReadOptions { size, ..ReadOptions::default() };
-    let read = match read_camera_with(&folder.join(file.get_ref()), &options) {
+    let read = match read_camera_with(path, &options) {
         Ok(read) => read,
         Err(error) => {
             problems.push(Problem::new(file.span(), format!("the camera cannot be read: {error}")));

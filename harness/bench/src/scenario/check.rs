@@ -17,14 +17,14 @@ use super::section::Section;
 use super::sensor::Surroundings;
 use super::views::{ImagingTables, ViewTables};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, Position, SceneWire, TargetWire};
-use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject};
+use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject, figure};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 10] =
-    ["method", "scene", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
+pub const TOP_TABLES: [&str; 11] =
+    ["method", "scene", "figure", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
 /// The keys of `[scene]` that are tables of their own.
 pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 
@@ -55,6 +55,7 @@ fn read(name: &str, folder: &Path, text: &str, registry: &Registry, problems: &m
     let listed = root.take_tables("method", "[[method]]", problems);
     let methods_missing = listed.as_ref().is_none_or(Vec::is_empty);
     let scene = root.take_table("scene", "[scene]", problems);
+    let figure = root.take_table("figure", "[figure]", problems);
     let photographs = root.take_table("photographs", "[photographs]", problems);
     let views = ViewTables::take(&mut root, problems);
     let imaging = ImagingTables::take(&mut root, problems);
@@ -67,19 +68,25 @@ fn read(name: &str, folder: &Path, text: &str, registry: &Registry, problems: &m
     let seed = head.as_ref().map_or(0, |head| head.seed.0);
     let key = Key { seed, scenario: name, trial: 0, view: "", target: "" };
     let stray = views.span().or_else(|| imaging.span());
-    let subject = match (scene, photographs, views.span()) {
-        (Some(scene), None, None) => read_scene(scene, imaging, problems).map(Subject::Scene),
-        (None, Some(photographs), None) if stray.is_none() => read_photographs(photographs, problems).map(Subject::Photographs),
-        (None, None, Some(_)) => views.read(imaging, &start, folder, key, problems).map(Subject::Views),
-        (None, None, None) => {
+    let subject = match (scene, figure, photographs, views.span()) {
+        (Some(scene), None, None, None) => read_scene(scene, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
+        (None, Some(figure), None, None) => figure::read(figure, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
+        (None, None, Some(photographs), None) if stray.is_none() => read_photographs(photographs, problems).map(Subject::Photographs),
+        (None, None, None, Some(_)) => views.read(imaging, &start, folder, key, problems).map(|views| Subject::Views(Box::new(views))),
+        (None, None, None, None) => {
             let problem = Problem::new(start, "the scenario has nothing to measure");
-            problems.push(problem.help("add a [scene] table, [camera] with [testfield] and [stations], or a [photographs] table"));
+            problems
+                .push(problem.help("add a [scene] or [figure] table, [camera] with [testfield] and [stations], or a [photographs] table"));
             None
         }
-        (scene, photographs, _) => {
-            let span = if scene.is_some() { photographs.map(|second| second.span) } else { None }.or(stray).unwrap_or(start);
-            let problem = Problem::new(span, "more than one of [scene], [photographs] and [testfield] with its tables: expected one of them");
-            problems.push(problem.help("photographs have no camera, testfield, optics or sensor; a scene has no [camera] and no [pointing] of its own level"));
+        (scene, figure, photographs, _) => {
+            let subjects = [scene, figure, photographs].into_iter().flatten().map(|section| section.span);
+            let second = subjects.chain(stray).nth(1).unwrap_or(start);
+            let message = "more than one of [scene], [figure], [photographs] and [testfield] with its tables: expected one of them";
+            let problem = Problem::new(second, message);
+            problems.push(problem.help(
+                "photographs have no camera, testfield, optics or sensor; a scene has no [camera] and no [pointing] of its own level",
+            ));
             None
         }
     };
@@ -185,12 +192,12 @@ fn check_imaging(imaging: &ImagingTables<'_>, pixels: Pixels, wire: &SceneWire, 
     }
 }
 
-fn surroundings(scene: &Scene) -> Surroundings {
+/// What a sensor's signal-to-noise ratios refer to.
+pub(super) fn surroundings(scene: &Scene) -> Surroundings {
     let levels = || scene.polygons.iter().map(|polygon| polygon.grey).chain([scene.background]);
     let (low, high) = (levels().fold(f64::INFINITY, f64::min), levels().fold(f64::NEG_INFINITY, f64::max));
     Surroundings { contrast: Some(high - low), mean: Some(0.5 * (high + low)), ..Surroundings::default() }
 }
-
 
 fn unique<'a>(ids: impl Iterator<Item = &'a Spanned<String>>, what: &str, problems: &mut Vec<Problem>) {
     let mut seen: Vec<&str> = Vec::new();

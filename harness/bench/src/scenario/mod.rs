@@ -3,6 +3,7 @@
 mod camera;
 pub mod catalogue;
 mod check;
+mod figure;
 mod methods;
 mod optics;
 pub mod problem;
@@ -14,16 +15,21 @@ pub mod testfield;
 mod views;
 mod wire;
 
+use std::path::PathBuf;
+
 use calibench_measure::{Board, Configured};
 use calibench_model::camera::Camera;
 use calibench_model::{PixelPoint, Scene, Testfield};
+use calibench_synth::optics::OpticsError;
 use calibench_synth::pointing::Hand;
+use calibench_synth::raster::Renderer;
 use calibench_synth::stations::Station;
 
 pub use crate::imaging::Imaging;
 pub use check::parse;
-pub use testfield::Unit;
 pub use problem::{Problem, Problems};
+pub use stations::StationPlan;
+pub use testfield::Unit;
 pub use wire::{Phase, Pixels};
 
 /// A checked scenario.
@@ -51,9 +57,9 @@ pub struct Scenario {
 /// What a scenario measures.
 pub enum Subject {
     /// A rendered scene, whose truth is known.
-    Scene(SceneSubject),
+    Scene(Box<SceneSubject>),
     /// Views of a testfield, whose truth is known.
-    Views(ViewsSubject),
+    Views(Box<ViewsSubject>),
     /// Photographs, of which no truth is known.
     Photographs(PhotographsSubject),
 }
@@ -77,6 +83,14 @@ pub struct SceneSubject {
 }
 
 impl SceneSubject {
+    /// What renders its images.
+    ///
+    /// # Errors
+    /// Optics that are out of range.
+    pub fn renderer(&self) -> Result<Renderer, OpticsError> {
+        self.imaging.renderer(self.scene.width, self.scene.height)
+    }
+
     /// Is the image to be kept with 16 bits?
     pub fn is_deep(&self) -> bool {
         if self.imaging.sensor.is_some() { self.imaging.is_deep() } else { self.bits.is_none_or(|bits| bits > 8) }
@@ -91,8 +105,12 @@ pub struct ViewsSubject {
     pub unit: Unit,
     /// With which interior orientation.
     pub camera: Camera,
-    /// From where, in the order of reports.
+    /// The file that it was read from, as the scenario names it, and where that is.
+    pub camera_file: Option<(String, PathBuf)>,
+    /// From where, in the order of reports; those of the first trial if they change.
     pub stations: Vec<Station>,
+    /// What draws other stations in each trial.
+    pub redraw: Option<StationPlan>,
     /// Lens and sensor.
     pub imaging: Imaging,
     /// Who points at the targets.
@@ -125,7 +143,7 @@ impl Scenario {
                 let still = scene.phase == Phase::Fixed && matches!(scene.starts, Starts::Given(_));
                 still && scene.grey_noise == 0.0 && !scene.imaging.is_random()
             }
-            Subject::Views(views) => views.hand.sigma == 0.0 && !views.imaging.is_random(),
+            Subject::Views(views) => views.hand.sigma == 0.0 && views.redraw.is_none() && !views.imaging.is_random(),
             Subject::Photographs(_) => true,
         }
     }

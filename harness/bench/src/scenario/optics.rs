@@ -1,9 +1,7 @@
 //! The `[optics]` table: how light is spread before it is sampled.
 
-use std::borrow::Cow;
-
 use calibench_synth::optics::{Motion, Optics};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::problem::Problem;

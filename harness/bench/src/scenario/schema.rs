@@ -5,6 +5,12 @@ use calibench_measure::parameter::Domain;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
+use super::camera::CameraWire;
+use super::figure::FigureWire;
+use super::optics::OpticsWire;
+use super::sensor::SensorWire;
+use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StationWire};
+use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
 
 /// The schema, with the methods of `registry` and their parameters.
@@ -21,8 +27,66 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["photographs"] = table::<PhotographsWire>();
     root["properties"]["method"] = list(&json!({ "oneOf": registry.methods().iter().map(method).collect::<Vec<_>>() }));
     require(&mut root, &["method"]);
-    root["oneOf"] = json!([{ "required": ["scene"] }, { "required": ["photographs"] }]);
+    root["properties"]["figure"] = table::<FigureWire>();
+    root["properties"]["figure"]["properties"]["pointing"] = table::<PointingWire>();
+    root["properties"]["camera"] = table::<CameraWire>();
+    root["properties"]["testfield"] = testfield();
+    root["properties"]["stations"] = stations();
+    root["properties"]["station"] = list(&table::<StationWire>());
+    root["properties"]["optics"] = table::<OpticsWire>();
+    root["properties"]["sensor"] = table::<SensorWire>();
+    root["properties"]["pointing"] = table::<PointingWire>();
+    let subjects = [vec!["scene"], vec!["figure"], vec!["camera", "testfield", "pointing"], vec!["photographs"]];
+    root["oneOf"] = subjects.iter().map(|keys| json!({ "required": keys })).collect();
     root
+}
+
+fn testfield() -> Value {
+    let mut wall = table::<WallWire>();
+    for (key, schema) in [
+        ("plate", list(&table::<PlateWire>())),
+        ("target", list(&table::<WallTargetWire>())),
+        ("panels", table::<PanelsWire>()),
+        ("fill", table::<FillWire>()),
+    ] {
+        wall["properties"][key] = schema;
+    }
+    let unit = json!({ "description": "The object unit. Default mm.", "enum": ["mm", "m"] });
+    let kinds =
+        [("chessboard", table::<ChessboardWire>()), ("wall", wall), ("coded", table::<CodedWire>()), ("house", table::<HouseWire>())];
+    one_of(kinds.into_iter().map(|(kind, mut schema)| {
+        schema["properties"]["unit"] = unit.clone();
+        (kind, schema)
+    }))
+}
+
+fn stations() -> Value {
+    let common = table::<CommonWire>();
+    let kinds = [
+        ("convergent", table::<ConvergentWire>()),
+        ("arc", table::<ArcWire>()),
+        ("board", table::<BoardWire>()),
+        ("random", table::<RandomWire>()),
+    ];
+    one_of(kinds.into_iter().map(|(kind, mut schema)| {
+        for (key, property) in common["properties"].as_object().into_iter().flatten() {
+            schema["properties"][key] = property.clone();
+        }
+        (kind, schema)
+    }))
+}
+
+/// Tables that their key `kind` tells apart.
+fn one_of(kinds: impl Iterator<Item = (&'static str, Value)>) -> Value {
+    let tables = kinds.map(|(kind, mut schema)| {
+        schema["properties"]["kind"] = json!({ "const": kind });
+        match schema["required"].as_array_mut() {
+            Some(required) => required.push(json!("kind")),
+            None => schema["required"] = json!(["kind"]),
+        }
+        schema
+    });
+    json!({ "oneOf": tables.collect::<Vec<_>>() })
 }
 
 fn table<T: JsonSchema>() -> Value {

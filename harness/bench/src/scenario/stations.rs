@@ -18,7 +18,7 @@ use wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StationWi
 /// The kinds of generators.
 pub const KINDS: [&str; 4] = ["convergent", "arc", "board", "random"];
 /// The keys of `[stations]` that every kind has.
-const COMMON: [&str; 4] = ["sees", "middle", "facing", "up"];
+const COMMON: [&str; 5] = ["sees", "middle", "facing", "up", "each_trial"];
 
 /// What makes stations.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +56,8 @@ pub struct StationPlan {
     pub generator: Option<Generator>,
     /// The fraction of the targets that every station must see.
     pub sees: f64,
+    /// Are they drawn anew in each trial?
+    pub each_trial: bool,
     given: Vec<Given>,
     aim: [Option<[f64; 3]>; 3],
     spans: Spans,
@@ -141,8 +143,13 @@ pub fn read(stations: Option<Section<'_>>, given: Vec<Section<'_>>, problems: &m
     }
     let random = matches!(generator, Some(Generator::Random(_)));
     let least = common.as_ref().and_then(|common| common.sees).map_or(f64::from(u8::from(random)), |fraction| fraction.0);
+    let each_trial = common.as_ref().and_then(|common| common.each_trial).unwrap_or(false);
+    if each_trial && !random {
+        problems.push(Problem::new(spans.whole, "`each_trial` without `kind = \"random\"`: the stations are the same in every trial"));
+        return None;
+    }
     let aim = common.map_or([None; 3], |common| [common.middle, common.facing, common.up].map(|tuple| tuple.map(|tuple| tuple.0)));
-    Some(StationPlan { generator, sees: least, given, aim, spans })
+    Some(StationPlan { generator, sees: least, each_trial, given, aim, spans })
 }
 
 /// The keys that every kind has, as a table of their own.

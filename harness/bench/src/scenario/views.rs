@@ -106,13 +106,15 @@ impl<'i> ViewTables<'i> {
         let camera = self.camera.and_then(|section| camera::read(section, folder, problems));
         let pointing: Option<PointingWire> = self.pointing.and_then(|section| section.read(&[], problems));
         let plan = self.testfield.and_then(|section| testfield::read(section, key, problems));
-        let (camera, pointing, plan) = (camera?, pointing?, plan?);
+        let ((camera, camera_file), pointing, plan) = (camera?, pointing?, plan?);
         let field = plan.generate(key).map_err(|error| problems.push(plan.problem(&error))).ok()?;
         let imaging = imaging.read(&surroundings(&camera, &field), problems);
-        let stations = stations::read(self.stations, self.explicit, problems)?;
-        let stations = stations.generate(&field, &camera, key).map_err(|error| problems.push(stations.problem(&error))).ok()?;
+        let plan_of_stations = stations::read(self.stations, self.explicit, problems)?;
+        let drawn = plan_of_stations.generate(&field, &camera, key);
+        let stations = drawn.map_err(|error| problems.push(plan_of_stations.problem(&error))).ok()?;
+        let redraw = Some(plan_of_stations).filter(|plan| plan.each_trial);
         let hand = Hand { sigma: pointing.sigma.0, whole_pixels: pointing.whole_pixels };
-        Some(ViewsSubject { field, unit: plan.unit, camera, stations, imaging: imaging?, hand })
+        Some(ViewsSubject { field, unit: plan.unit, camera, camera_file, stations, redraw, imaging: imaging?, hand })
     }
 }
 

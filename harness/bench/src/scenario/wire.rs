@@ -11,7 +11,7 @@ use toml::Spanned;
 macro_rules! bounded {
     ($($(#[$doc:meta])* $name:ident($inner:ty), $wire:ident $text:literal, $min:expr, $max:expr;)*) => {$(
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Deserialize)]
+        #[derive(Clone, Copy, Debug, serde::Deserialize)]
         #[serde(try_from = $text)]
         pub struct $name(pub $inner);
 
@@ -29,19 +29,19 @@ macro_rules! bounded {
             }
         }
 
-        impl JsonSchema for $name {
+        impl schemars::JsonSchema for $name {
             fn inline_schema() -> bool {
                 true
             }
 
-            fn schema_name() -> Cow<'static, str> {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
                 stringify!($name).into()
             }
 
-            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
                 let form = if $text == "i64" { "integer" } else { "number" };
                 let (min, max): ($wire, $wire) = ($min, $max);
-                json_schema!({ "type": form, "minimum": min, "maximum": max })
+                schemars::json_schema!({ "type": form, "minimum": min, "maximum": max })
             }
         }
     )*};

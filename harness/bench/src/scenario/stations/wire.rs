@@ -90,6 +90,8 @@ pub struct StationWire {
 pub struct CommonWire {
     /// The fraction of the targets that every station must see. Default: one target; with random stations all.
     pub sees: Option<Fraction>,
+    /// true: random stations are drawn anew in each trial. Default: the same in all.
+    pub each_trial: Option<bool>,
     /// What the stations look at [x, y, z], object units. Default: the middle of the targets.
     pub middle: Option<Tuple<3>>,
     /// The direction from the field towards the cameras [x, y, z]. Default: the mean of the plates' normals.
