@@ -4,6 +4,7 @@
 //! photosite under the blur of [`optics`], [`sensor`] reads the light out. [`render()`] pictures a flat scene, [`noise`] spoils an image, [`pointing`] makes the
 //! approximate positions that a person would click. Every random number comes from [`random::stream`].
 
+pub mod bound;
 mod centres;
 pub mod noise;
 pub mod optics;

@@ -77,69 +77,71 @@ impl Renderer {
         let mut grey = vec![0.0_f32; self.width * self.height];
         let new_strip = || Strip::new(self.width, STRIP_ROWS, self.levels.reach()[0]);
         grey.par_chunks_mut(self.width * STRIP_ROWS).enumerate().for_each_init(new_strip, |strip, (number, rows)| {
-            let top = number * STRIP_ROWS;
-            let jitter = jitter.get(top..(top + STRIP_ROWS).min(self.height)).filter(|jitter| !jitter.is_empty());
-            self.strip(strip, top, &pieces, listed.of(number), picture.background, jitter, rows);
+            let (top, count) = (number * STRIP_ROWS, rows.len() / self.width);
+            let jitter = jitter.get(top..top + count).filter(|jitter| !jitter.is_empty());
+            let listed = listed.of(number);
+            let band =
+                Band { pieces: &pieces, listed, background: picture.background, jitter, top: top as i64, rows: count, origin: [0, 0] };
+            self.band(strip, &band, |y, values| {
+                for (grey, value) in rows[y * self.width..].iter_mut().zip(values) {
+                    *grey = *value as f32;
+                }
+            });
             finish(top, rows);
         });
         Image::new(self.width, self.height, grey)
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn strip(
-        &self,
-        strip: &mut Strip,
-        top: usize,
-        pieces: &[Piece],
-        listed: &[u32],
-        background: f64,
-        jitter: Option<&[f64]>,
-        rows: &mut [f32],
-    ) {
-        let count = rows.len() / self.width;
-        let [kernel] = &self.levels.kernels[..] else {
-            return self.blended(strip, top, pieces, listed, background, jitter, rows);
+    /// The grey values of `side` x `side` px from (`left`, `top`) on, row by row, in f64, of the pieces as `moved` moves them.
+    pub(crate) fn render_window(&self, picture: &Picture, moved: impl Fn(&Piece) -> Piece, [left, top]: [i64; 2], side: usize) -> Vec<f64> {
+        let [reach_x, reach_y] = self.levels.reach();
+        let (low, high) = (top as f64 - reach_y - 1.0, top as f64 + side as f64 + reach_y + 1.0);
+        let right = left as f64 + side as f64 + reach_x + 1.0;
+        let shifted = |piece: Piece| Piece { points: piece.points.map(|[x, y]| [x - left as f64, y - top as f64]), ..piece };
+        let near =
+            picture.pieces.iter().map(moved).filter(|piece| piece.rows()[1] > low && piece.rows()[0] < high && piece.columns()[0] < right);
+        let pieces: Vec<Piece> = near.map(shifted).collect();
+        let listed: Vec<u32> = (0..pieces.len() as u32).collect();
+        let band = Band {
+            pieces: &pieces,
+            listed: &listed,
+            background: picture.background,
+            jitter: None,
+            top: 0,
+            rows: side,
+            origin: [left, top],
         };
-        strip.reset(top as i64, count);
-        strip.add(pieces, listed, kernel, self.rules, jitter);
-        strip.finish(|y, values| {
-            for (grey, value) in rows[y * self.width..].iter_mut().zip(values) {
-                *grey = (background + value) as f32;
-            }
-        });
+        let mut grey = Vec::with_capacity(side * side);
+        self.band(&mut Strip::new(side, side, reach_x), &band, |_, values| grey.extend_from_slice(values));
+        grey
     }
 
-    /// Renders at every level of blur and blends.
-    #[allow(clippy::too_many_arguments)]
-    fn blended(
-        &self,
-        strip: &mut Strip,
-        top: usize,
-        pieces: &[Piece],
-        listed: &[u32],
-        background: f64,
-        jitter: Option<&[f64]>,
-        rows: &mut [f32],
-    ) {
-        let count = rows.len() / self.width;
-        let n = self.levels.kernels.len();
-        let mut blended = vec![background; rows.len()];
-        let mut weights = vec![0.0; rows.len() * n];
-        for (i, weights) in weights.chunks_exact_mut(n).enumerate() {
-            self.levels.weights((i % self.width) as f64, (top + i / self.width) as f64, weights);
+    /// Renders a band and hands on its rows, counted from its first.
+    fn band(&self, strip: &mut Strip, band: &Band<'_>, mut row: impl FnMut(usize, &[f64])) {
+        let mut levels = self.levels.kernels.iter();
+        let (first, n) = (levels.next(), self.levels.kernels.len());
+        if let (Some(kernel), 1) = (first, n) {
+            strip.reset(band.top, band.rows);
+            strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
+            return strip.finish(band.background, row);
         }
+        // At every level of blur, blended at each pixel.
+        let mut blended: Vec<Vec<f64>> = vec![Vec::new(); band.rows];
+        let mut weights = vec![0.0; n];
         for (level, kernel) in self.levels.kernels.iter().enumerate() {
-            strip.reset(top as i64, count);
-            strip.add(pieces, listed, kernel, self.rules, jitter);
-            strip.finish(|y, values| {
-                for (i, value) in (y * self.width..).zip(values) {
-                    blended[i] += weights[i * n + level] * value;
+            strip.reset(band.top, band.rows);
+            strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
+            strip.finish(band.background, |y, values| {
+                let sums = &mut blended[y];
+                sums.resize(values.len(), 0.0);
+                for (x, (sum, value)) in sums.iter_mut().zip(values).enumerate() {
+                    let (column, line) = (band.origin[0] + x as i64, band.origin[1] + band.top + y as i64);
+                    self.levels.weights(column as f64, line as f64, &mut weights);
+                    *sum += weights[level] * value;
                 }
             });
         }
-        for (grey, value) in rows.iter_mut().zip(blended) {
-            *grey = value as f32;
-        }
+        blended.iter().enumerate().for_each(|(y, values)| row(y, values));
     }
 
     /// The pieces that matter, none of them long.
@@ -170,6 +172,21 @@ impl Renderer {
         }
         cut
     }
+}
+
+/// Rows to be rendered.
+struct Band<'a> {
+    pieces: &'a [Piece],
+    /// The pieces that reach into these rows.
+    listed: &'a [u32],
+    background: f64,
+    /// The shift of each of the rows to the right, px.
+    jitter: Option<&'a [f64]>,
+    /// The first row, in the pieces' coordinates.
+    top: i64,
+    rows: usize,
+    /// Where the origin of the pieces' coordinates lies in the frame.
+    origin: [i64; 2],
 }
 
 /// Which pieces reach into which strip.

@@ -51,11 +51,11 @@ impl Strip {
         self.differences[..self.stride * rows].fill(0.0);
     }
 
-    /// Sums the differences along each row and hands the grey values, less the background, to `row`.
-    pub fn finish(&mut self, mut row: impl FnMut(usize, &[f64])) {
+    /// Sums the differences along each row and hands the grey values, which begin with `background`, to `row`.
+    pub fn finish(&mut self, background: f64, mut row: impl FnMut(usize, &[f64])) {
         for (y, differences) in self.differences.chunks_exact_mut(self.stride).take(self.rows).enumerate() {
             let (before, after) = differences.split_at_mut(self.pad);
-            let mut sum: f64 = before.iter().sum();
+            let mut sum = background + before.iter().sum::<f64>();
             let values = &mut after[..self.width];
             for value in values.iter_mut() {
                 sum += *value;

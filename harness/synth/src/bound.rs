@@ -1,0 +1,262 @@
+//! The Cramér-Rao bound: how well the position of a target can be found in an image at best, whatever the operator.
+//!
+//! With `J` the derivatives of the noise-free grey values of a window by the unknowns and `S` the covariance of the grey values, no unbiased operator
+//! has a smaller covariance than `(J^T S^-1 J)^-1`. What an operator has to estimate beside the position (directions and sizes, grey levels, sharpness)
+//! widens the bound of the position.
+
+use calibench_model::{Covariance, PixelPoint};
+use nalgebra::{DMatrix, Matrix2, Vector2};
+
+use crate::optics::{Optics, OpticsError};
+use crate::raster::{Picture, Piece, Renderer};
+
+/// What an operator estimates beside the position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(clippy::struct_excessive_bools, reason = "any of them can be there without the others")]
+pub struct Unknowns {
+    /// The other four parameters of an affine map: directions and sizes.
+    pub shape: bool,
+    /// The two grey levels.
+    pub levels: bool,
+    /// The standard deviation of the blur.
+    pub blur: bool,
+    /// A linear change of the grey values over the window.
+    pub gradient: bool,
+}
+
+/// Steps of the differences: px of a shift, and of a deformation at the window's edge.
+const STEP: f64 = 0.05;
+/// The relative change of the blur.
+const BLUR_STEP: f64 = 0.02;
+/// Unknowns whose share of the information is below this are not determined by the window: a disc's rotation, a straight edge's length.
+const SINGULAR: f64 = 1e-9;
+
+/// Bounds of targets in pictures that are rendered through one lens.
+pub struct Bounds {
+    /// Half the width of the window, px.
+    half: i64,
+    renderer: Renderer,
+    /// A little sharper and a little softer, where there is a blur; and the step between the two, px.
+    blurred: Option<(Renderer, Renderer, f64)>,
+}
+
+impl Bounds {
+    /// For windows of `window` x `window` px (odd) in pictures of `width` x `height` px through `optics`.
+    ///
+    /// # Errors
+    /// Optics that are out of range.
+    pub fn new(optics: &Optics, width: usize, height: usize, window: usize) -> Result<Self, OpticsError> {
+        let scaled = |factor: f64| {
+            let corner_blur = optics.corner_blur.map(|blur| blur * factor);
+            Renderer::new(&Optics { blur: optics.blur * factor, corner_blur, ..*optics }, width, height)
+        };
+        let blurred = if optics.blur > 0.0 {
+            // Near the least blur that can be rendered the step goes one way.
+            let (low, high) = if scaled(1.0 - BLUR_STEP).is_ok() { (1.0 - BLUR_STEP, 1.0 + BLUR_STEP) } else { (1.0, 1.0 + BLUR_STEP) };
+            Some((scaled(low)?, scaled(high)?, optics.blur * (high - low)))
+        } else {
+            None
+        };
+        Ok(Self { half: (window / 2) as i64, renderer: scaled(1.0)?, blurred })
+    }
+
+    /// What the grey values of the window around `at` tell; `None` if it leaves the image.
+    pub fn window<'a>(&'a self, picture: &'a Picture, at: PixelPoint) -> Option<Window<'a>> {
+        let (left, top) = (at.x.round() as i64 - self.half, at.y.round() as i64 - self.half);
+        let side = 2 * self.half + 1;
+        let inside = left >= 0 && top >= 0 && left + side <= picture.width as i64 && top + side <= picture.height as i64;
+        inside.then(|| {
+            let window = Window { bounds: self, picture, at, left, top, side: side as usize, grey: Vec::new() };
+            let grey = window.grey_of(&self.renderer, |p| p);
+            Window { grey, ..window }
+        })
+    }
+}
+
+/// The window around a target.
+pub struct Window<'a> {
+    bounds: &'a Bounds,
+    picture: &'a Picture,
+    at: PixelPoint,
+    left: i64,
+    top: i64,
+    side: usize,
+    grey: Vec<f64>,
+}
+
+impl Window<'_> {
+    /// The bound of the position, px^2, beside `unknowns`. `mean` is what the sensor makes of light and `variance` the variance of that grey value,
+    /// `None` where the chain has none.
+    ///
+    /// `None` also where the window does not determine the position.
+    pub fn bound(
+        &self,
+        unknowns: Unknowns,
+        mean: impl Fn(f64) -> Option<f64>,
+        variance: impl Fn(f64) -> Option<f64>,
+    ) -> Option<Covariance> {
+        // Differences of what the sensor makes of light: its curve counts.
+        let read = |light: &[f64]| light.iter().map(|&light| mean(light)).collect::<Option<Vec<f64>>>();
+        let grey = read(&self.grey)?;
+        let weights = grey.iter().map(|&grey| variance(grey).filter(|v| *v > 0.0).map(|v| 1.0 / v)).collect::<Option<Vec<f64>>>()?;
+        let mut columns = Vec::new();
+        for (high, low, step) in self.differences(unknowns) {
+            let (high, low) = (read(&high)?, read(&low)?);
+            columns.push(high.iter().zip(&low).map(|(high, low)| (high - low) / step).collect::<Vec<f64>>());
+        }
+        if unknowns.levels {
+            columns.push(vec![1.0; grey.len()]);
+            columns.push(grey.clone());
+        }
+        if unknowns.gradient {
+            let middle = self.bounds.half as f64;
+            columns.push((0..grey.len()).map(|i| (i % self.side) as f64 - middle).collect());
+            columns.push((0..grey.len()).map(|i| (i / self.side) as f64 - middle).collect());
+        }
+        position(&columns, &weights)
+    }
+
+    /// Pairs of windows on both sides of a parameter, and the step between them.
+    fn differences(&self, unknowns: Unknowns) -> Vec<(Vec<f64>, Vec<f64>, f64)> {
+        let renderer = &self.bounds.renderer;
+        let (x0, y0) = (self.at.x, self.at.y);
+        let pair = |moved: &dyn Fn([f64; 2], f64) -> [f64; 2], step: f64| {
+            (self.grey_of(renderer, |p| moved(p, step / 2.0)), self.grey_of(renderer, |p| moved(p, -step / 2.0)), step)
+        };
+        let mut pairs = vec![pair(&|[x, y], h| [x + h, y], STEP), pair(&|[x, y], h| [x, y + h], STEP)];
+        if unknowns.shape {
+            let step = STEP / self.bounds.half.max(1) as f64;
+            pairs.push(pair(&|[x, y], h| [x + h * (x - x0), y], step));
+            pairs.push(pair(&|[x, y], h| [x + h * (y - y0), y], step));
+            pairs.push(pair(&|[x, y], h| [x, y + h * (x - x0)], step));
+            pairs.push(pair(&|[x, y], h| [x, y + h * (y - y0)], step));
+        }
+        if let Some((sharper, softer, step)) = self.bounds.blurred.as_ref().filter(|_| unknowns.blur) {
+            pairs.push((self.grey_of(softer, |p| p), self.grey_of(sharper, |p| p), *step));
+        }
+        pairs
+    }
+
+    fn grey_of(&self, renderer: &Renderer, moved: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
+        let move_piece = |piece: &Piece| Piece { points: piece.points.map(&moved), ..*piece };
+        renderer.render_window(self.picture, move_piece, [self.left, self.top], self.side)
+    }
+}
+
+/// The position's part of the inverse of the normal equations: what is left of its information when the other unknowns have taken theirs.
+fn position(columns: &[Vec<f64>], weights: &[f64]) -> Option<Covariance> {
+    let n = columns.len();
+    let normal = DMatrix::from_fn(n, n, |i, j| columns[i].iter().zip(&columns[j]).zip(weights).map(|((a, b), w)| a * b * w).sum::<f64>());
+    // Scaled to a unit diagonal, so that units do not decide what is singular. What has no information at all stays out.
+    let scale: Vec<f64> = (0..n).map(|i| if normal[(i, i)] > 0.0 { 1.0 / normal[(i, i)].sqrt() } else { 0.0 }).collect();
+    let scaled = DMatrix::from_fn(n, n, |i, j| normal[(i, j)] * scale[i] * scale[j]);
+    let information = Matrix2::new(scaled[(0, 0)], scaled[(0, 1)], scaled[(1, 0)], scaled[(1, 1)]) - taken(&scaled);
+    let covariance = information.try_inverse()?;
+    let sxx = covariance[(0, 0)] * scale[0] * scale[0];
+    let (sxy, syy) = (covariance[(0, 1)] * scale[0] * scale[1], covariance[(1, 1)] * scale[1] * scale[1]);
+    // A direction of which the window tells nothing, but for rounding, leaves a bound without bounds.
+    let (sum, product) = (sxx + syy, sxx * syy - sxy * sxy);
+    let determined = sxx > 0.0 && syy > 0.0 && product > 1e-7 * sum * sum;
+    determined.then_some(Covariance { sxx, sxy, syy }).filter(Covariance::is_valid)
+}
+
+/// The position's information that the other unknowns take.
+fn taken(scaled: &DMatrix<f64>) -> Matrix2<f64> {
+    let others = scaled.nrows() - 2;
+    let mut taken = Matrix2::zeros();
+    if others == 0 {
+        return taken;
+    }
+    let eigen = scaled.view((2, 2), (others, others)).into_owned().symmetric_eigen();
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > SINGULAR {
+            let along = Vector2::from([0, 1].map(|row| (0..others).map(|k| scaled[(row, k + 2)] * vector[k]).sum::<f64>()));
+            taken += along * along.transpose() / *value;
+        }
+    }
+    taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibench_model::{Polygon, Scene};
+
+    const SIGMA: f64 = 0.02;
+
+    fn scene(polygons: &[&[(f64, f64)]]) -> Picture {
+        let polygon = |vertices: &&[(f64, f64)]| Polygon {
+            id: String::new(),
+            grey: 0.1,
+            vertices: vertices.iter().map(|&(x, y)| PixelPoint::new(x, y)).collect(),
+        };
+        Picture::from(&Scene {
+            width: 41,
+            height: 41,
+            background: 0.9,
+            polygons: polygons.iter().map(polygon).collect(),
+            targets: Vec::new(),
+        })
+    }
+
+    fn bound(picture: &Picture, blur: f64, window: usize, unknowns: Unknowns) -> Option<Covariance> {
+        let bounds = Bounds::new(&Optics { blur, ..Optics::default() }, 41, 41, window).unwrap();
+        let window = bounds.window(picture, PixelPoint::new(20.2, 19.9)).unwrap();
+        window.bound(unknowns, Some, |_| Some(SIGMA * SIGMA))
+    }
+
+    fn chess() -> Picture {
+        scene(&[&[(-9.0, -9.0), (20.2, -9.0), (20.2, 19.9), (-9.0, 19.9)], &[(20.2, 19.9), (60.0, 19.9), (60.0, 60.0), (20.2, 60.0)]])
+    }
+
+    #[test]
+    fn an_upright_chess_corner_has_its_closed_form() {
+        // Far from the centre a row crosses one edge: the information of x is the number of rows times the integral of the squared slope, except where the
+        // other edge turns the contrast over. There it is (2 Phi - 1)^2.
+        let (blur, window) = (1.5, 15);
+        let found = bound(&chess(), blur, window, Unknowns::default()).unwrap();
+        // By sums over the pixels of products of one-dimensional profiles.
+        let phi = |s: f64| 0.5 * libm::erfc(-s * std::f64::consts::FRAC_1_SQRT_2);
+        let once = |u: f64| u * phi(u / blur) + blur * (-0.5 * (u / blur).powi(2)).exp() / (2.0 * std::f64::consts::PI).sqrt();
+        let profile = |u: f64| once(u + 0.5) - once(u - 0.5);
+        let slope = |u: f64| phi((u + 0.5) / blur) - phi((u - 0.5) / blur);
+        let information = |of_x: bool| -> f64 {
+            let pixels = (13..=27).flat_map(|y| (13..=27).map(move |x| (f64::from(x) - 20.2, f64::from(y) - 19.9)));
+            let slopes =
+                pixels.map(|(x, y)| 0.8 * if of_x { slope(x) * (2.0 * profile(y) - 1.0) } else { slope(y) * (2.0 * profile(x) - 1.0) });
+            slopes.map(|s| s * s).sum::<f64>() / (SIGMA * SIGMA)
+        };
+        assert!((found.sxx * information(true) - 1.0).abs() < 2e-3, "{found:?} {}", 1.0 / information(true));
+        assert!((found.syy * information(false) - 1.0).abs() < 2e-3);
+        assert!(found.sxy.abs() < 0.02 * found.sxx);
+    }
+
+    #[test]
+    fn unknowns_widen_the_bound_and_never_narrow_it() {
+        let trace = |unknowns| bound(&chess(), 0.7, 15, unknowns).map(|c| c.sxx + c.syy).unwrap();
+        let alone = trace(Unknowns::default());
+        let shape = trace(Unknowns { shape: true, ..Unknowns::default() });
+        let all = Unknowns { shape: true, levels: true, blur: true, gradient: true };
+        assert!(alone <= shape && shape <= trace(all), "{alone} {shape} {}", trace(all));
+        let even = trace(Unknowns { gradient: false, ..all });
+        assert!(even < 1.15 * alone && trace(all) > 1.1 * even, "point-symmetric, so little is lost, but to a gradient: {even} {alone}");
+        // A triangle is not: up to sqrt 2 wider.
+        let triangle = scene(&[&[(20.2, 12.9), (26.26, 23.4), (14.14, 23.4)]]);
+        let trace = |unknowns| bound(&triangle, 0.7, 21, unknowns).map(|c| c.sxx + c.syy).unwrap();
+        let ratio = (trace(Unknowns { shape: true, levels: true, ..Unknowns::default() }) / trace(Unknowns::default())).sqrt();
+        assert!(ratio > 1.02 && ratio < 1.6, "{ratio}");
+    }
+
+    #[test]
+    fn an_edge_or_nothing_has_no_bound() {
+        let edge = scene(&[&[(-9.0, -9.0), (20.2, -9.0), (20.2, 60.0), (-9.0, 60.0)]]);
+        assert_eq!(bound(&edge, 0.7, 15, Unknowns::default()), None);
+        assert_eq!(bound(&scene(&[]), 0.7, 15, Unknowns::default()), None);
+        let bounds = Bounds::new(&Optics::default(), 41, 41, 15).unwrap();
+        let picture = chess();
+        assert!(bounds.window(&picture, PixelPoint::new(3.0, 20.0)).is_none(), "the window leaves the image");
+        let window = bounds.window(&picture, PixelPoint::new(20.2, 19.9)).unwrap();
+        assert_eq!(window.bound(Unknowns::default(), Some, |_| None), None, "a chain without a variance");
+        assert!(window.bound(Unknowns { blur: true, ..Unknowns::default() }, Some, |_| Some(1e-4)).is_some(), "no blur to be estimated");
+    }
+}
