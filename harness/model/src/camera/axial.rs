@@ -66,7 +66,8 @@ impl PlaneMap for Plane {
         let q = 1.0 + r2 * (k1 + r2 * (k2 + r2 * (k3 + r2 * k4)));
         let slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3 + r2 * 4.0 * k4)));
         let cross = x * y * slope + 2.0 * (p1 * x + p2 * y);
-        let value = [x * q + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x) + s1 * r2, y * q + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y + s2 * r2];
+        let value =
+            [x * q + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x) + s1 * r2, y * q + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y + s2 * r2];
         let by = [
             [q + x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x + 2.0 * s1 * x, cross + 2.0 * s1 * y],
             [cross + 2.0 * s2 * x, q + y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x + 2.0 * s2 * y],

@@ -126,6 +126,8 @@ mod tests {
         let d2 = (x * x + y * y + t * t).sqrt();
         let under = camera.alpha * d2 + (1.0 - camera.alpha) * t;
         let found = camera.project(Ray { x, y: -y, z: -z }).unwrap();
-        assert!((found.x - (camera.fx * x / under + camera.cx)).abs() < 1e-12 && (found.y - (camera.fy * y / under + camera.cy)).abs() < 1e-12);
+        assert!(
+            (found.x - (camera.fx * x / under + camera.cx)).abs() < 1e-12 && (found.y - (camera.fy * y / under + camera.cy)).abs() < 1e-12
+        );
     }
 }

@@ -74,15 +74,11 @@ impl MicMac {
         let r2 = x * x + y * y;
         let s = r2 * (k1 + r2 * (k2 + r2 * (k3 + r2 * (k4 + r2 * k5))));
         let slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3 + r2 * (4.0 * k4 + r2 * 5.0 * k5))));
-        let value = [
-            x * s + p1 * (r2 + 2.0 * x * x) + 2.0 * p2 * x * y + b1 * x + b2 * y,
-            y * s + p2 * (r2 + 2.0 * y * y) + 2.0 * p1 * x * y,
-        ];
+        let value =
+            [x * s + p1 * (r2 + 2.0 * x * x) + 2.0 * p2 * x * y + b1 * x + b2 * y, y * s + p2 * (r2 + 2.0 * y * y) + 2.0 * p1 * x * y];
         let cross = x * y * slope + 2.0 * (p1 * y + p2 * x);
-        let by = [
-            [s + x * x * slope + 6.0 * p1 * x + 2.0 * p2 * y + b1, cross + b2],
-            [cross, s + y * y * slope + 6.0 * p2 * y + 2.0 * p1 * x],
-        ];
+        let by =
+            [[s + x * x * slope + 6.0 * p1 * x + 2.0 * p2 * y + b1, cross + b2], [cross, s + y * y * slope + 6.0 * p2 * y + 2.0 * p1 * x]];
         (value, by)
     }
 

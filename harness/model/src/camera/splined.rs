@@ -55,12 +55,8 @@ impl Basis {
         let left = at.floor().clamp(1.0, (count - 3) as f64);
         let t = at - left;
         let s = 1.0 - t;
-        let value = [
-            s * s * s / 6.0,
-            (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-            (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0,
-            t * t * t / 6.0,
-        ];
+        let value =
+            [s * s * s / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0, (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0, t * t * t / 6.0];
         let slope = [-s * s / 2.0, (3.0 * t * t - 4.0 * t) / 2.0, -(3.0 * s * s - 4.0 * s) / 2.0, t * t / 2.0];
         Self { first: left as usize - 1, value, slope }
     }

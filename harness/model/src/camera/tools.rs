@@ -22,7 +22,9 @@ pub const KAPTURE: Convention = Convention {
     about: "kapture: COLMAP's models in sensors.txt",
     version: "1.0, 1.1",
     source: "kapture's format specification: camera models are COLMAP's",
-    verification: Verification::Unverified("formulas by its specification; that the origin is COLMAP's is what its converters do, which copy the numbers"),
+    verification: Verification::Unverified(
+        "formulas by its specification; that the origin is COLMAP's is what its converters do, which copy the numbers",
+    ),
     ..COLMAP
 };
 
@@ -42,7 +44,9 @@ pub const KALIBR: Convention = Convention {
     about: "Kalibr camchain: pinhole, omni, eucm, ds with radtan, equidistant, fov",
     version: "camchain YAML",
     source: "Kalibr's wiki, Supported models and Yaml formats",
-    verification: Verification::Unverified("formulas after its wiki; that (0, 0) is the centre of the first pixel follows from OpenCV's corners, which it measures"),
+    verification: Verification::Unverified(
+        "formulas after its wiki; that (0, 0) is the centre of the first pixel follows from OpenCV's corners, which it measures",
+    ),
     ..opencv::CONVENTION
 };
 
@@ -79,7 +83,9 @@ pub const NERFSTUDIO: Convention = Convention {
     pixel_origin: PixelOrigin::PixelCorner,
     principal_point_from: PixelOrigin::PixelCorner,
     source: "nerfstudio's documentation, Data conventions",
-    verification: Verification::Unverified("formulas after its documentation; that the centre of the first pixel is (0.5, 0.5) after its sampler of rays"),
+    verification: Verification::Unverified(
+        "formulas after its documentation; that the centre of the first pixel is (0.5, 0.5) after its sampler of rays",
+    ),
     ..opencv::CONVENTION
 };
 
@@ -109,7 +115,9 @@ pub const OPENMVG: Convention = Convention {
     about: "OpenMVG sfm_data.json: pinhole, radial k1, k3, brown t2, fisheye",
     version: "0.3, 1 and 2",
     source: "OpenMVG's documentation, Cameras",
-    verification: Verification::Unverified("formulas after its documentation; what (0, 0) is it does not say: the centre of the first pixel is assumed"),
+    verification: Verification::Unverified(
+        "formulas after its documentation; what (0, 0) is it does not say: the centre of the first pixel is assumed",
+    ),
     ..opencv::CONVENTION
 };
 
@@ -119,7 +127,9 @@ pub const THEIA: Convention = Convention {
     about: "Theia calibration JSON: PINHOLE, PINHOLE_RADIAL_TANGENTIAL, FISHEYE, FOV, DOUBLE_SPHERE, EXTENDED_UNIFIED",
     version: "0.8 and later",
     source: "Theia's documentation, Camera",
-    verification: Verification::Unverified("formulas after its documentation; what (0, 0) is it does not say: the centre of the first pixel is assumed"),
+    verification: Verification::Unverified(
+        "formulas after its documentation; what (0, 0) is it does not say: the centre of the first pixel is assumed",
+    ),
     ..opencv::CONVENTION
 };
 
@@ -147,7 +157,9 @@ pub const REALITY_CAPTURE: Convention = Convention {
     principal_point_from: PixelOrigin::FrameCentre,
     normalisation: "divided by the focal length; that and the principal point are in units of the longer side, the former times 36",
     source: "RealityCapture's support pages, XMP camera math; the readers of AliceVision and camorph",
-    verification: Verification::Unverified("formulas and the order of t1 and t2 by two other programs' readers; no numbers of the tool were at hand"),
+    verification: Verification::Unverified(
+        "formulas and the order of t1 and t2 by two other programs' readers; no numbers of the tool were at hand",
+    ),
     ..agisoft::METASHAPE
 };
 
@@ -186,6 +198,8 @@ pub const CALTECH: Convention = Convention {
     version: "Calib_Results.m",
     normalisation: "divided by fc, px",
     source: "Bouguet, Camera Calibration Toolbox for Matlab, Description of the calibration parameters: the first pixel's centre is (0, 0)",
-    verification: Verification::Unverified("formulas after the toolbox's page, from which OpenCV's are taken; no numbers of it were at hand"),
+    verification: Verification::Unverified(
+        "formulas after the toolbox's page, from which OpenCV's are taken; no numbers of it were at hand",
+    ),
     ..opencv::CONVENTION
 };

@@ -38,9 +38,7 @@ fn is_complete(source: &Camera, target: &Target, camera: &Camera) -> bool {
     match (source, target) {
         (Camera::Photogrammetric(_), Target::Photogrammetric { .. })
         | (Camera::OpenCvFisheye(_), Target::OpenCvFisheye)
-        | (Camera::MicMac(_), Target::MicMac { .. }) => {
-            target.holds(source)
-        }
+        | (Camera::MicMac(_), Target::MicMac { .. }) => target.holds(source),
         (Camera::Ebner(from), &Target::Ebner { pitch_um, b_mm }) => {
             let scaled = from.b_mm * pitch_um / from.base.pitch_um;
             target.holds(source) && (scaled - b_mm).abs() <= 1e-14 * b_mm

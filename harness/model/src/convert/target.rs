@@ -91,6 +91,11 @@ impl Target {
         Self::Agisoft { version: AgisoftVersion::Metashape, radial: 3, tangential: 2, affinity: true }
     }
 
+    /// Does a formula lead from `camera` to this convention, with nothing left out?
+    pub fn is_exact_for(&self, camera: &Camera) -> bool {
+        self.check().is_ok() && super::exact::exact(camera, self).is_some()
+    }
+
     pub(super) fn check(&self) -> Result<(), ConvertError> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         let fault = match *self {
@@ -133,12 +138,8 @@ impl Target {
             Self::Eucm => Eucm { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, alpha: 0.0, beta: 1.0 }.into(),
             Self::Omni { .. } => Omni { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, xi: 0.0, k: [0.0; 2], p: [0.0; 2] }.into(),
             Self::Fov => Fov { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, w: 0.0 }.into(),
-            Self::PrismFisheye => {
-                PrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] }.into()
-            }
-            Self::MicMac { .. } => {
-                MicMac { size, f: 1.0, pp: [0.0; 2], offset: [0.0; 2], k: [0.0; 5], p: [0.0; 2], b: [0.0; 2] }.into()
-            }
+            Self::PrismFisheye => PrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] }.into(),
+            Self::MicMac { .. } => MicMac { size, f: 1.0, pp: [0.0; 2], offset: [0.0; 2], k: [0.0; 5], p: [0.0; 2], b: [0.0; 2] }.into(),
             Self::Agisoft { version, .. } => {
                 Agisoft { size, version, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 4] }.into()
             }
