@@ -5,9 +5,11 @@ mod check;
 mod context;
 mod convert;
 mod detect;
+mod diff;
 mod list;
 mod measure;
 mod progress;
+mod reading;
 mod report;
 mod run;
 mod show;
@@ -75,7 +77,7 @@ enum Command {
     /// Show what is in a camera file: parameters, field of view, distortion, fold-over
     Camera(camera::CameraCommand),
     /// Say how far two cameras differ, in px over the frame, after the best rotation
-    Diff(convert::Diff),
+    Diff(diff::Diff),
     /// Print the JSON Schema of scenario files, for editors
     Schema,
 }

@@ -10,7 +10,7 @@ use super::pose::{of_quaternion, quaternion};
 use super::registry::PLAIN;
 use super::source::Source;
 use super::storage::Entry;
-use super::{CameraFileError, CameraFormat, NamedCamera, Pose, PoseFrame, ReadOptions, literal};
+use super::{CameraFileError, CameraFormat, NamedCamera, Pose, PoseFrame, ReadOptions, literal, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "basalt",
@@ -64,11 +64,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         }
         cameras.push(named);
     }
-    let notes = root.unknown(&["T_imu_cam", "intrinsics", "resolution"])?;
-    if let Some(first) = cameras.first_mut() {
-        first.notes.extend(notes);
-    }
-    Ok(cameras)
+    Ok(noted(cameras, &root.unknown(&["T_imu_cam", "intrinsics", "resolution"])?))
 }
 
 fn pose(entry: &Entry) -> Result<Pose, CameraFileError> {

@@ -8,7 +8,7 @@ use super::fit::{Keeps, Model};
 use super::number::{finite, numbers, shortest};
 use super::registry::PLAIN;
 use super::source::Source;
-use super::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};
+use super::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "bundler",
@@ -72,10 +72,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         let pose = Pose::of_rt(rows, t).map_err(|error| error.on_line(line))?.with_y_and_z_reversed();
         cameras.push(NamedCamera { pose: Some(pose), ..NamedCamera::new(index.to_string(), camera) });
     }
-    if let Some(first) = cameras.first_mut().filter(|_| unused > 0) {
-        first.notes.push(format!("{unused} images that are not oriented were left out"));
-    }
-    Ok(cameras)
+    let note = (unused > 0).then(|| format!("{unused} images that are not oriented were left out"));
+    Ok(noted(cameras, note.as_slice()))
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {

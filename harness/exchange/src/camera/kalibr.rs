@@ -12,7 +12,7 @@ use super::pose::rigid;
 use super::registry::PLAIN;
 use super::source::Source;
 use super::storage::Entry;
-use super::{CameraFileError, CameraFormat, NamedCamera, Pose, PoseFrame, ReadOptions};
+use super::{CameraFileError, CameraFormat, NamedCamera, Pose, PoseFrame, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "kalibr",
@@ -82,10 +82,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let used: Vec<&str> = used.iter().map(String::as_str).collect();
     let unknown = root.unknown(&used)?;
     place(&mut cameras, &chain, &against_imu);
-    if let Some(first) = cameras.first_mut() {
-        first.notes.extend(unknown);
-    }
-    Ok(cameras)
+    Ok(noted(cameras, &unknown))
 }
 
 fn pose(entry: &Entry) -> Result<Pose, CameraFileError> {
@@ -105,9 +102,8 @@ fn place(cameras: &mut [NamedCamera], chain: &[Option<Pose>], against_imu: &[Opt
             }
         }
         if off > AGREE {
-            cameras[0]
-                .notes
-                .push(format!("the poses against the IMU and between the cameras differ by up to {off:.2e}: the former are kept"));
+            let note = format!("the poses against the IMU and between the cameras differ by up to {off:.2e}: the former are kept");
+            cameras.iter_mut().for_each(|camera| camera.notes.push(note.clone()));
         }
         return;
     }

@@ -6,7 +6,7 @@ use super::fit::Keeps;
 use super::number::{finite, pixels, shortest};
 use super::registry::PLAIN;
 use super::source::Source;
-use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
+use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "kapture",
@@ -50,10 +50,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
             [id, _, kind, ..] => others.push(format!("`{id}`, a sensor of kind {kind}, was left out")),
         }
     }
-    if let Some(first) = cameras.first_mut() {
-        first.notes.extend(others);
-    }
-    Ok(cameras)
+    Ok(noted(cameras, &others))
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {

@@ -135,6 +135,12 @@ impl ParameterCovariance {
     }
 }
 
+/// What a file says of all its cameras goes with each.
+fn noted(mut cameras: Vec<NamedCamera>, notes: &[String]) -> Vec<NamedCamera> {
+    cameras.iter_mut().for_each(|camera| camera.notes.extend(notes.iter().cloned()));
+    cameras
+}
+
 /// What a file may leave open.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {

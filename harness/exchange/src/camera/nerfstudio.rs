@@ -13,7 +13,7 @@ use super::pose::rigid;
 use super::registry::PLAIN;
 use super::source::Source;
 use super::storage::Entry;
-use super::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};
+use super::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "nerfstudio",
@@ -59,11 +59,10 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         let pose = frame.key("transform_matrix")?.map(pose).transpose().map_err(at)?;
         cameras.push(NamedCamera { pose, ..NamedCamera::new(name, camera) });
     }
-    cameras[0].notes.extend(unknown);
     let known = [&INTRINSICS[..], &["file_path", "transform_matrix"]].concat();
     let more: Vec<&str> = frames[0].entries()?.iter().map(|(name, _)| name.as_str()).filter(|name| !known.contains(name)).collect();
-    cameras[0].notes.extend(more.into_iter().map(|name| left_out(&format!("frames.{name}"))));
-    Ok(cameras)
+    let more: Vec<String> = more.into_iter().map(|name| left_out(&format!("frames.{name}"))).collect();
+    Ok(noted(noted(cameras, &unknown), &more))
 }
 
 /// From the camera to the world, the camera with y up and z backwards.

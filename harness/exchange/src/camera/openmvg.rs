@@ -12,7 +12,7 @@ use super::number::{row, shortened, shortest};
 use super::registry::PLAIN;
 use super::source::Source;
 use super::storage::Entry;
-use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "openmvg",
@@ -61,10 +61,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         cameras.push(named);
     }
     let posed = root.key("extrinsics")?.map_or(Ok(0), |entry| entry.items().map(<[Entry]>::len))?;
-    if let Some(first) = cameras.first_mut().filter(|_| posed > 0) {
-        first.notes.push(format!("`extrinsics`, {posed} poses of images, were left out"));
-    }
-    Ok(cameras)
+    let note = (posed > 0).then(|| format!("`extrinsics`, {posed} poses of images, were left out"));
+    Ok(noted(cameras, note.as_slice()))
 }
 
 /// The name of a value's type, by its number if it was named before.
