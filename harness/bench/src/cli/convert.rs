@@ -70,8 +70,10 @@ impl Convert {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
         let mut results = Vec::new();
-        for source in &sources {
-            results.push(self.converted(source, sources.len() > 1, context.quiet)?);
+        for (index, source) in sources.iter().enumerate() {
+            let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
+            let label = (sources.len() > 1).then_some(place);
+            results.push(self.converted(source, label.as_deref(), context.quiet)?);
         }
         let Some((_, goal)) = results.last() else { return Err(Failure::input("the file holds no camera")) };
         let format = goal.format;
@@ -101,7 +103,7 @@ impl Convert {
     }
 
     /// A camera in the new convention, and the format of its file.
-    fn converted(&self, source: &NamedCamera, several: bool, quiet: bool) -> Result<(NamedCamera, Goal), Failure> {
+    fn converted(&self, source: &NamedCamera, label: Option<&str>, quiet: bool) -> Result<(NamedCamera, Goal), Failure> {
         let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order: self.reading.order(), output: self.output.as_deref() };
         let goal = goal(&self.to, &given)?;
         let pitch_um = self.pitch.or(source.pitch_um);
@@ -118,7 +120,7 @@ impl Convert {
         };
         let (conversion, model) = self.fit(source, &goal, &options)?;
         if !quiet {
-            let name = if several { format!("{}: ", source.name) } else { String::new() };
+            let name = label.map_or(String::new(), |label| format!("{label}: "));
             let model = model.map_or(String::new(), |model| format!("{model}: "));
             eprint!("{name}{model}{}", summary(&conversion));
         }

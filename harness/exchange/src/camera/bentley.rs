@@ -6,7 +6,7 @@ use calibench_model::convert::Target;
 use roxmltree::Node;
 
 use super::brown::{Brown, middle, positive};
-use super::entry::left_out;
+use super::entry::all_left_out;
 use super::fit::{Keeps, Model};
 use super::number::{finite, pixels, shortened, shortest};
 use super::registry::PLAIN;
@@ -85,7 +85,7 @@ fn camera(group: Node<'_, '_>, options: &ReadOptions) -> Result<NamedCamera, Cam
         notes.push(format!("{photos} photos with their poses were left out"));
     }
     let others = xml::elements(group).map(|node| node.tag_name().name()).filter(|name| !KNOWN.contains(name) && *name != "Photo");
-    notes.extend(others.map(left_out));
+    notes.extend(all_left_out(others));
     let pitch_um = per_mm.map(|per_mm| 1e3 / per_mm);
     Ok(NamedCamera { pitch_um, notes, ..NamedCamera::new(name, brown.camera()) })
 }

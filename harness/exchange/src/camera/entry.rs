@@ -90,11 +90,24 @@ impl Entry {
         }
     }
 
-    /// Notes on all names that are not among `known`.
+    /// A note on all names that are not among `known`, if there are any.
     pub fn unknown(&self, known: &[&str]) -> Result<Vec<String>, CameraFileError> {
-        let left = self.entries()?.iter().filter(|(name, _)| !known.contains(&name.as_str()));
-        Ok(left.map(|(name, _)| left_out(name)).collect())
+        let names = self.entries()?.iter().map(|(name, _)| name.as_str());
+        Ok(all_left_out(names.filter(|name| !known.contains(name))))
     }
+}
+
+/// Names that a note quotes at most.
+const MOST_QUOTED: usize = 20;
+
+/// A note on names that were not understood or have no place here, if there are any.
+pub(super) fn all_left_out<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut names: Vec<String> = names.map(|name| format!("`{}`", shortened(name))).collect();
+    let count = names.len();
+    names.truncate(MOST_QUOTED);
+    let more = if count > MOST_QUOTED { format!(" and {} more", count - MOST_QUOTED) } else { String::new() };
+    let verb = if count == 1 { "was" } else { "were" };
+    if count == 0 { Vec::new() } else { vec![format!("{}{more} {verb} left out", names.join(", "))] }
 }
 
 /// A note on a name that was not understood or has no place here.

@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 use roxmltree::Node;
 
 use super::brown::positive;
-use super::entry::left_out;
+use super::entry::all_left_out;
 use super::fit::{Keeps, Model};
 use super::number::{finite, numbers, scientific, shortened};
 use super::registry::PLAIN;
@@ -65,7 +65,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         return Err(xml::at(second, CameraFileError::new("stands after another distortion; expected one")));
     }
     let others = xml::elements(node).map(|child| child.tag_name().name()).filter(|name| !KNOWN.contains(name));
-    let mut notes: Vec<String> = others.map(left_out).collect();
+    let mut notes = all_left_out(others);
     if let Some(radius) = xml::number(node, "RayonUtile")? {
         notes.push(format!("`RayonUtile`, the calibration's own limit of {radius} px, was left out: restrict fits by a radius"));
     }

@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 use calibench_model::{CornerPoint, PixelPoint};
 
 use super::brown::{Brown, positive};
-use super::entry::left_out;
+use super::entry::all_left_out;
 use super::fit::{Keeps, Model};
 use super::literal::{self, quoted};
 use super::number::{row, shortened, shortest};
@@ -60,8 +60,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         cameras.push(NamedCamera { pose, ..NamedCamera::new(name, camera) });
     }
     let known = [&INTRINSICS[..], &["file_path", "transform_matrix"]].concat();
-    let more: Vec<&str> = frames[0].entries()?.iter().map(|(name, _)| name.as_str()).filter(|name| !known.contains(name)).collect();
-    let more: Vec<String> = more.into_iter().map(|name| left_out(&format!("frames.{name}"))).collect();
+    let more = all_left_out(frames[0].entries()?.iter().map(|(name, _)| name.as_str()).filter(|name| !known.contains(name)));
+    let more: Vec<String> = more.into_iter().map(|note| format!("of frames, {note}")).collect();
     Ok(noted(noted(cameras, &unknown), &more))
 }
 

@@ -79,12 +79,7 @@ fn camera(name: &str, entry: &Entry, options: &ReadOptions) -> Result<NamedCamer
     } else {
         Brown { k, p1: v("p1")?, p2: v("p2")?, ..Brown::plain(size, [fx, fy, cx, cy]) }.camera()
     };
-    let mut notes = entry.unknown(&[names, &["projection_type", "width", "height"]].concat())?;
-    let priors = notes.iter().filter(|note| note.contains("_prior`")).count();
-    notes.retain(|note| !note.contains("_prior`"));
-    if priors > 0 {
-        notes.push(format!("{priors} prior values were left out"));
-    }
+    let notes = entry.unknown(&[names, &["projection_type", "width", "height"]].concat())?;
     Ok(NamedCamera { notes, ..NamedCamera::new(name, camera) })
 }
 

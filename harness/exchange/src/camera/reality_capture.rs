@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 use roxmltree::Node;
 
 use super::brown::{Brown, middle, positive};
-use super::entry::left_out;
+use super::entry::all_left_out;
 use super::fit::{Keeps, Model};
 use super::number::{finite, numbers, shortened, shortest};
 use super::registry::PLAIN;
@@ -127,7 +127,7 @@ fn pose(node: Node<'_, '_>) -> Result<Option<Pose>, CameraFileError> {
 fn unknown(node: Node<'_, '_>) -> Vec<String> {
     let attributes = node.attributes().filter(|a| a.namespace() == Some(NAMESPACE)).map(|a| a.name());
     let elements = xml::elements(node).map(|child| child.tag_name().name());
-    attributes.chain(elements).filter(|name| !KNOWN.contains(name)).map(left_out).collect()
+    all_left_out(attributes.chain(elements).filter(|name| !KNOWN.contains(name)))
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {

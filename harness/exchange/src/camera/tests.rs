@@ -2,6 +2,9 @@
 
 mod files;
 mod malformed;
+mod others;
+mod others_malformed;
+mod pairs;
 mod round_trip;
 
 use calibench_model::camera::{Camera, CameraModel};
