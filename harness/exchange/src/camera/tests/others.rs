@@ -14,7 +14,7 @@ use super::super::fit::{fit_to_format, losses};
 use super::super::pose::of_rotation_vector;
 use super::super::{CameraFormat, FORMATS, NamedCamera, ParameterCovariance, Pose, PoseFrame, ReadOptions, camera_text, format_named};
 use super::read_with;
-use super::round_trip::{coefficient, coefficients, focal, name, offset, size};
+use super::round_trip::{coefficients, focal, name, offset, size};
 
 /// The formats of this file, in the order of the registry.
 pub const ROUND_TRIPPED: [&str; 17] = [
@@ -335,7 +335,7 @@ fn apart(a: &Camera, b: &Camera) -> f64 {
 }
 
 fn into_format(format: &CameraFormat, camera: &Camera) -> &'static str {
-    let options = ConvertOptions { columns: 17, ..ConvertOptions::default() };
+    let options = ConvertOptions { columns: 7, ..ConvertOptions::default() };
     let (found, model) = match fit_to_format(format, camera, None, None, &options) {
         Ok(found) => found,
         Err(error) => {
@@ -364,14 +364,18 @@ fn into_format(format: &CameraFormat, camera: &Camera) -> &'static str {
 
 #[test]
 fn any_camera_is_exact_fitted_or_refused_by_name() {
-    let mut counts = std::collections::BTreeMap::new();
-    for format in FORMATS.iter().filter(|format| !format.models(None).is_empty()) {
-        for camera in all_models() {
-            *counts.entry(into_format(format, &camera)).or_insert(0) += 1;
-        }
-    }
+    // kapture's models are COLMAP's, BAL's are Bundler's.
+    let formats = FORMATS.iter().filter(|format| !format.models(None).is_empty() && !["kapture", "bal"].contains(&format.name));
+    let answers: Vec<&str> = std::thread::scope(|scope| {
+        let threads: Vec<_> = formats
+            .map(|format| scope.spawn(|| all_models().iter().map(|camera| into_format(format, camera)).collect::<Vec<_>>()))
+            .collect();
+        threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
+    });
     // Each of the answers is given: the test looks at something.
-    assert!(counts.values().all(|&count| count > 5) && counts.len() == 4, "{counts:?}");
+    for answer in ["exact", "fitted", "fitted with a warning", "refused"] {
+        assert!(answers.iter().filter(|found| **found == answer).count() > 5, "{answer}: {answers:?}");
+    }
 }
 
 #[test]
