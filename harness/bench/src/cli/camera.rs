@@ -90,7 +90,7 @@ pub fn card(named: &NamedCamera) -> String {
     line("distortion", distortion(camera));
     line("one to one", one_to_one(camera));
     if let Some(pose) = &named.pose {
-        let [x, y, z] = pose.position.map(plain);
+        let [x, y, z] = pose.position;
         let of = match named.pose_frame {
             PoseFrame::World => "the world",
             PoseFrame::FirstCamera => "the rig's first camera",

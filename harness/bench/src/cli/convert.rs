@@ -12,12 +12,13 @@ use calibench_model::convert::{
 use clap::Args;
 
 use super::context::Context;
-use super::reading::{Reading, warn_of_format};
+use super::reading::{Reading, shifted};
 use super::target::{Given, Goal, Way, goal};
 use super::{Failure, print};
 use crate::report::{Field, plain};
 
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Convert {
     /// A camera file of any known format, found by content
     file: PathBuf,
@@ -77,8 +78,11 @@ impl Convert {
         }
         let Some((_, goal)) = results.last() else { return Err(Failure::input("the file holds no camera")) };
         let format = goal.format;
-        let cameras: Vec<NamedCamera> = results.into_iter().map(|(camera, _)| camera).collect();
-        warn_of_format(format);
+        let mut cameras: Vec<NamedCamera> = results.into_iter().map(|(camera, _)| camera).collect();
+        if self.reading.starts_at_corner(format) {
+            cameras.iter_mut().for_each(|named| named.camera = shifted(&named.camera, 0.5));
+        }
+        self.reading.warn_of_format(format);
         let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
         lost.dedup();
         lost.iter().for_each(|what| eprintln!("warning: lost: {what}"));

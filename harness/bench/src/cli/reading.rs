@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibench_exchange::camera::{CameraFile, CameraFormat, NamedCamera, ReadOptions, read_camera_with};
 use calibench_model::PixelPoint;
-use calibench_model::camera::{AgisoftVersion, Camera, ImageSize, TangentialOrder, Verification};
+use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, ImageSize, TangentialOrder, Verification};
 use clap::{Args, ValueEnum};
 
 use super::Failure;
@@ -21,7 +21,7 @@ pub struct Reading {
     /// Order of the decentring coefficients of Pix4D, PhotoScan before 1.2 and Lens, which public sources do not settle [default: opencv]
     #[arg(long, value_enum, value_name = "ORDER")]
     order: Option<Order>,
-    /// What (0, 0) is in files of PhotoScan before 1.2 and of Lens, which public sources do not settle [default: corner]
+    /// What (0, 0) is in files of PhotoScan before 1.2, Lens [default: corner], MicMac, OpenMVG and Theia [default: centre], which public sources do not settle
     #[arg(long, value_enum, value_name = "ORIGIN")]
     origin: Option<Origin>,
     /// Which camera of a file that holds several: its name, or its place counted from 1 [default: the first]
@@ -62,6 +62,19 @@ impl Reading {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// Did the user decide that the corner of the first pixel is the origin of a format that leaves it open?
+    pub fn starts_at_corner(&self, format: &CameraFormat) -> bool {
+        format.origin_is_open && self.origin == Some(Origin::Corner)
+    }
+
+    /// Says what of a format's convention is not confirmed by numbers of its tool.
+    pub fn warn_of_format(&self, format: &CameraFormat) {
+        if let Some(Verification::Unverified(open)) = format.convention.map(|convention| convention.verification) {
+            let flag = if format.origin_is_open && self.origin.is_none() { "; --origin corner or --origin centre decides" } else { "" };
+            eprintln!("unverified: {}: {open}{flag}", format.name);
         }
     }
 
@@ -122,8 +135,13 @@ impl Reading {
     /// The cameras as the user decided open points; says what is unverified, assumed and left out.
     fn decided(&self, path: &Path, file: CameraFile) -> Vec<NamedCamera> {
         let mut cameras = file.cameras;
-        cameras.iter_mut().for_each(|named| self.decide(&mut named.camera));
-        warn_of_format(file.format);
+        for named in &mut cameras {
+            self.decide(&mut named.camera);
+            if self.starts_at_corner(file.format) {
+                named.camera = shifted(&named.camera, -0.5);
+            }
+        }
+        self.warn_of_format(file.format);
         let mut said: Vec<String> = Vec::new();
         for named in &cameras {
             if !said.iter().any(|word| word == named.camera.convention().name) && file.format.convention.is_none() {
@@ -141,11 +159,11 @@ impl Reading {
     }
 }
 
-/// Says what of a format's convention is not confirmed by numbers of its tool.
-pub fn warn_of_format(format: &CameraFormat) {
-    if let Some(Verification::Unverified(open)) = format.convention.map(|convention| convention.verification) {
-        eprintln!("unverified: {}: {open}", format.name);
-    }
+/// The camera with its principal point moved along both axes, px.
+pub fn shifted(camera: &Camera, by: f64) -> Camera {
+    let moves = |name: &str| ["cx", "cy", "PPx", "PPy"].contains(&name);
+    let values = camera.parameters().into_iter().map(|p| if moves(p.name) { p.value + by } else { p.value });
+    camera.with_parameters(&values.collect::<Vec<_>>())
 }
 
 fn size(text: &str) -> Result<ImageSize, String> {

@@ -4,7 +4,7 @@ use calibench_model::camera::tools;
 use calibench_model::convert::Target;
 
 use super::bundler::{Stream, camera, parts};
-use super::fit::{Keeps, Model};
+use super::fit::{Keeps, KeptPose, Model};
 use super::number::shortest;
 use super::pose::{of_rotation_vector, rotation_vector};
 use super::registry::PLAIN;
@@ -23,7 +23,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     write: Some(write),
     convention: Some(&tools::BUNDLER),
     models: |_| vec![Model { name: "f, k1, k2", target: Target::Centred { radial: 2 } }],
-    keeps: Keeps { pose: true, ..PLAIN.keeps },
+    keeps: Keeps { pose: KeptPose::InWorld, ..PLAIN.keeps },
     ..PLAIN
 };
 

@@ -4,7 +4,7 @@ use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, Fov, Imag
 use calibench_model::convert::Target;
 
 use super::brown::{Brown, positive};
-use super::fit::{Keeps, Model};
+use super::fit::{Keeps, KeptPose, Model};
 use super::number::{row, shortened, shortest};
 use super::pose::{of_quaternion, quaternion};
 use super::registry::PLAIN;
@@ -34,7 +34,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
             Model { name: "ds", target: Target::DoubleSphere },
         ]
     },
-    keeps: Keeps { pose: true, ..PLAIN.keeps },
+    keeps: Keeps { pose: KeptPose::InRig, ..PLAIN.keeps },
     ..PLAIN
 };
 

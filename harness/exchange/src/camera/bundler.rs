@@ -4,7 +4,7 @@ use calibench_model::camera::{Camera, ImageSize, tools};
 use calibench_model::convert::Target;
 
 use super::brown::{Brown, middle};
-use super::fit::{Keeps, Model};
+use super::fit::{Keeps, KeptPose, Model};
 use super::number::{finite, numbers, shortest};
 use super::registry::PLAIN;
 use super::source::Source;
@@ -25,7 +25,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     write: Some(write),
     convention: Some(&tools::BUNDLER),
     models: |_| vec![Model { name: "f, k1, k2", target: Target::Centred { radial: 2 } }],
-    keeps: Keeps { pose: true, ..PLAIN.keeps },
+    keeps: Keeps { pose: KeptPose::InWorld, ..PLAIN.keeps },
     ..PLAIN
 };
 

@@ -23,9 +23,20 @@ pub struct Keeps {
     /// The pixel pitch.
     pub pitch: bool,
     /// A pose.
-    pub pose: bool,
+    pub pose: KeptPose,
     /// The covariance of the parameters.
     pub covariance: KeptCovariance,
+}
+
+/// What of a pose a format keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptPose {
+    /// Nothing.
+    None,
+    /// That in a rig.
+    InRig,
+    /// That in a world.
+    InWorld,
 }
 
 /// How much of a covariance a format keeps.
@@ -159,7 +170,8 @@ pub fn losses(format: &CameraFormat, camera: &NamedCamera) -> Vec<String> {
         PoseFrame::FirstCamera => "the pose in the rig",
         PoseFrame::Imu => "the pose against the inertial sensor",
     };
-    say(!pose && camera.pose.is_some_and(|pose| pose != super::Pose::IDENTITY), of.to_owned());
+    let posed = camera.pose.is_some_and(|pose| pose != super::Pose::IDENTITY);
+    say(pose == KeptPose::None && posed, of.to_owned());
     let known = camera.covariance.as_ref();
     say(covariance == KeptCovariance::None && known.is_some(), "the covariance of the parameters".to_owned());
     let correlated = |q: &ParameterCovariance| {
@@ -167,6 +179,9 @@ pub fn losses(format: &CameraFormat, camera: &NamedCamera) -> Vec<String> {
         (0..n * n).any(|i| i / n != i % n && q.values[i] != 0.0)
     };
     say(covariance == KeptCovariance::Variances && known.is_some_and(correlated), "the correlations of the parameters".to_owned());
+    if pose == KeptPose::InRig && posed && camera.pose_frame == PoseFrame::World {
+        lost.push(format!("the world of the pose: {} holds poses of a rig, against each other or a sensor", format.name));
+    }
     lost
 }
 

@@ -5,7 +5,7 @@ use calibench_model::convert::Target;
 
 use super::brown::{Brown, positive};
 use super::entry::left_out;
-use super::fit::{Keeps, Model};
+use super::fit::{Keeps, KeptPose, Model};
 use super::number::{row, shortened};
 use super::opencv_yaml::{quoted, tree};
 use super::pose::rigid;
@@ -35,7 +35,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
             Model { name: "omni-radtan", target: Target::Omni { distortion: true } },
         ]
     },
-    keeps: Keeps { name: true, pose: true, ..PLAIN.keeps },
+    keeps: Keeps { name: true, pose: KeptPose::InRig, ..PLAIN.keeps },
     ..PLAIN
 };
 

@@ -5,7 +5,7 @@
 use calibench_model::camera::{Agisoft, AgisoftVersion, Camera};
 use roxmltree::Node;
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{finite, scientific};
 use super::registry::PLAIN;
 use super::source::Source;
@@ -22,7 +22,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "document"),
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: true, pose: false, covariance: KeptCovariance::Whole },
+    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::Whole },
     ..PLAIN
 };
 

@@ -31,6 +31,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         ]
     },
     keeps: Keeps { ..PLAIN.keeps },
+    origin_is_open: true,
     ..PLAIN
 };
 

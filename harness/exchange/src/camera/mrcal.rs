@@ -4,7 +4,7 @@ use calibench_model::camera::{Camera, CameraModel, Eucm, ImageSize, OpenCv, Spli
 use calibench_model::convert::Target;
 
 use super::brown::positive;
-use super::fit::{Keeps, Model, fit_spline};
+use super::fit::{Keeps, KeptPose, Model, fit_spline};
 use super::number::{row, shortened};
 use super::pose::{of_rotation_vector, rotation_vector};
 use super::registry::PLAIN;
@@ -35,7 +35,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
             opencv("LENSMODEL_OPENCV12", 12),
         ]
     },
-    keeps: Keeps { pose: true, ..PLAIN.keeps },
+    keeps: Keeps { pose: KeptPose::InWorld, ..PLAIN.keeps },
     ..PLAIN
 };
 

@@ -6,7 +6,7 @@ use calibench_model::{CornerPoint, PixelPoint};
 
 use super::brown::{Brown, positive};
 use super::entry::all_left_out;
-use super::fit::{Keeps, Model};
+use super::fit::{Keeps, KeptPose, Model};
 use super::literal::{self, quoted};
 use super::number::{row, shortened, shortest};
 use super::pose::rigid;
@@ -36,7 +36,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
             Model { name: "OPENCV_FISHEYE", target: Target::OpenCvFisheye },
         ]
     },
-    keeps: Keeps { name: true, pose: true, ..PLAIN.keeps },
+    keeps: Keeps { name: true, pose: KeptPose::InWorld, ..PLAIN.keeps },
     ..PLAIN
 };
 

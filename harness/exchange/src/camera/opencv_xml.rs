@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::scientific;
 use super::registry::PLAIN;
 use super::source::Source;
@@ -22,7 +22,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "opencv_storage"),
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: false, pose: false, covariance: KeptCovariance::None },
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

@@ -2,7 +2,7 @@
 
 use saphyr_parser::{Event, Parser, Span, StrInput};
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{scientific, shortened};
 use super::registry::PLAIN;
 use super::source::Source;
@@ -20,7 +20,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise,
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: false, pose: false, covariance: KeptCovariance::None },
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

@@ -2,7 +2,7 @@
 
 use calibench_model::camera::{Camera, CameraModel};
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::registry::PLAIN;
 use super::source::Source;
 use super::wire::{CovarianceRows, Head, Wire};
@@ -19,7 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise,
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: true, pose: false, covariance: KeptCovariance::Whole },
+    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::Whole },
     ..PLAIN
 };
 

@@ -3,7 +3,7 @@
 use calibench_model::camera::{AgisoftVersion, Camera};
 use roxmltree::Node;
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{numbers, scientific};
 use super::registry::PLAIN;
 use super::source::Source;
@@ -20,7 +20,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "collection"),
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: false, pose: true, covariance: KeptCovariance::None },
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

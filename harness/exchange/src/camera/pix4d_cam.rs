@@ -4,7 +4,7 @@
 
 use calibench_model::camera::{Camera, Pix4d, TangentialOrder};
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{finite, fixed, shortened};
 use super::registry::PLAIN;
 use super::source::Source;
@@ -24,7 +24,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: true, pose: false, covariance: KeptCovariance::None },
+    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

@@ -6,7 +6,7 @@
 
 use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{finite, fixed, pixels, shortened};
 use super::pix4d_cam::{camera, sensor, width_of_sensor};
 use super::registry::PLAIN;
@@ -29,7 +29,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
-    keeps: Keeps { name: false, pitch: true, pose: false, covariance: KeptCovariance::None },
+    keeps: Keeps { name: false, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

@@ -2,7 +2,7 @@
 
 use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
 
-use super::fit::{Keeps, KeptCovariance};
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{fixed, numbers, pixels};
 use super::pix4d_cam::camera;
 use super::registry::PLAIN;
@@ -26,7 +26,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: false, pose: true, covariance: KeptCovariance::None },
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

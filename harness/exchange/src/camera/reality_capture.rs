@@ -6,7 +6,7 @@ use roxmltree::Node;
 
 use super::brown::{Brown, middle, positive};
 use super::entry::all_left_out;
-use super::fit::{Keeps, Model};
+use super::fit::{Keeps, KeptPose, Model};
 use super::number::{finite, numbers, shortened, shortest};
 use super::registry::PLAIN;
 use super::source::Source;
@@ -32,7 +32,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         };
         vec![brown("brown3", 3, 0), brown("brown4", 4, 0), brown("brown3t2", 3, 2), brown("brown4t2", 4, 2)]
     },
-    keeps: Keeps { pose: true, ..PLAIN.keeps },
+    keeps: Keeps { pose: KeptPose::InWorld, ..PLAIN.keeps },
     ..PLAIN
 };
 

@@ -1,6 +1,6 @@
 //! The camera files that are known.
 
-use super::fit::{Keeps, KeptCovariance, Model};
+use super::fit::{Keeps, KeptCovariance, KeptPose, Model};
 use super::source::Source;
 use super::{
     CameraFileError, NamedCamera, ReadOptions, bal, basalt, bentley, bundler, caltech, camodocal, colmap, kalibr, kapture,
@@ -69,6 +69,8 @@ pub struct CameraFormat {
     pub(super) models: fn(Option<f64>) -> Vec<Model>,
     /// What it has a place for besides the camera.
     pub keeps: Keeps,
+    /// Do public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner?
+    pub origin_is_open: bool,
 }
 
 /// What most formats have in common, for struct updates.
@@ -85,7 +87,8 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     write: None,
     convention: None,
     models: |_| Vec::new(),
-    keeps: Keeps { name: false, pitch: false, pose: false, covariance: KeptCovariance::None },
+    keeps: Keeps { name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
+    origin_is_open: false,
 };
 
 impl CameraFormat {

@@ -1,5 +1,6 @@
 //! Camera files, read and written.
 
+mod any_model;
 mod files;
 mod malformed;
 mod others;

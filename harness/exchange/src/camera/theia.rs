@@ -36,6 +36,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         ]
     },
     keeps: Keeps { name: true, ..PLAIN.keeps },
+    origin_is_open: true,
     ..PLAIN
 };
 

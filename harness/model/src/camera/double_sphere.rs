@@ -1,8 +1,8 @@
 //! The double sphere camera: a ray meets two unit spheres, then a plane.
 
+use super::ImageSize;
 use super::axial::{Axial, Focal, axial_camera};
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
-use super::{ImageSize, opencv};
 
 /// The double sphere camera. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
 ///
@@ -41,7 +41,6 @@ pub const CONVENTION: Convention = Convention {
     normalisation: "fx, fy, px, times a function of the ray's direction",
     source: "Usenko, Demmel and Cremers 2018",
     verification: Verification::Unverified("formulas after the paper; no projected point of the authors' own program was at hand"),
-    ..opencv::CONVENTION
 };
 
 const NAMES: [(&str, &str); 2] = [("xi", ""), ("alpha", "")];

@@ -82,7 +82,7 @@ impl MicMac {
         (value, by)
     }
 
-    fn from_centre(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn about_centre(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.f * x - self.offset[0], self.f * y - self.offset[1]]
     }
 }
@@ -104,7 +104,7 @@ impl Pinhole for MicMac {
     }
 
     fn distort(&self, ideal @ [x, y]: [f64; 2]) -> ValueAndDerivatives {
-        let ([dx, dy], by) = self.displacement(self.from_centre(ideal));
+        let ([dx, dy], by) = self.displacement(self.about_centre(ideal));
         ([x + dx / self.f, y + dy / self.f], [[1.0 + by[0][0], by[0][1]], [by[1][0], 1.0 + by[1][1]]])
     }
 
@@ -113,7 +113,7 @@ impl Pinhole for MicMac {
     }
 
     fn by_parameters(&self, ideal: [f64; 2], _distorted: [f64; 2]) -> Vec<[f64; 2]> {
-        let at @ [x, y] = self.from_centre(ideal);
+        let at @ [x, y] = self.about_centre(ideal);
         let (_, by) = self.displacement(at);
         let r2 = x * x + y * y;
         let moved = |[dx, dy]: [f64; 2]| [dx + by[0][0] * dx + by[0][1] * dy, dy + by[1][0] * dx + by[1][1] * dy];

@@ -37,8 +37,8 @@ fn unified(source: &Camera) -> Option<Omni> {
     };
     match *source {
         Camera::Omni(camera) => Some(camera),
-        Camera::Eucm(Eucm { size, fx, fy, cx, cy, alpha, beta: 1.0 }) => of_alpha(size, [fx, fy, cx, cy], alpha),
-        Camera::DoubleSphere(DoubleSphere { size, fx, fy, cx, cy, xi: 0.0, alpha }) => of_alpha(size, [fx, fy, cx, cy], alpha),
+        Camera::Eucm(Eucm { size, fx, fy, cx, cy, alpha, beta: 1.0 })
+        | Camera::DoubleSphere(DoubleSphere { size, fx, fy, cx, cy, xi: 0.0, alpha }) => of_alpha(size, [fx, fy, cx, cy], alpha),
         Camera::DoubleSphere(DoubleSphere { size, fx, fy, cx, cy, xi, alpha: 0.0 }) => {
             Some(Omni { size, fx, fy, cx, cy, xi, k: [0.0; 2], p: [0.0; 2] })
         }
@@ -46,7 +46,7 @@ fn unified(source: &Camera) -> Option<Omni> {
             let form = BrownForm::of(source).filter(|_| BrownForm::holds(source))?;
             let plain = form.b == 0.0 && form.k[2..] == [0.0; 2] && form.p[2..] == [0.0; 2];
             let (k, p) = ([form.k[0], form.k[1]], [form.p[1], form.p[0]]);
-            plain.then(|| Omni { size: form.size, fx: form.a, fy: form.d, cx: form.centre.x, cy: form.centre.y, xi: 0.0, k, p })
+            plain.then_some(Omni { size: form.size, fx: form.a, fy: form.d, cx: form.centre.x, cy: form.centre.y, xi: 0.0, k, p })
         }
     }
 }
