@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use crate::project::{copy, root, run, stderr, stdout};
 
 /// OpenCV's YAML of a camera with barrel distortion and decentring coefficients that differ.
-const CAMERA: &str = "%YAML:1.0\n---\nimage_width: 1600\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
+pub const CAMERA: &str = "%YAML:1.0\n---\nimage_width: 1600\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   \
     data: [ 1500., 0., 810., 0., 1502., 590., 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 5\n   dt: d\n   \
     data: [ -1.0e-01, 4.0e-02, 1.0e-03, -3.0e-04, 0. ]\n";
 
-fn folder() -> tempfile::TempDir {
+pub fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("camera.yml"), CAMERA).unwrap();
     folder
 }
 
-fn good(folder: &Path, arguments: &[&str]) -> String {
+pub fn good(folder: &Path, arguments: &[&str]) -> String {
     let output = run(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", stderr(&output));
     stdout(&output) + &stderr(&output)
@@ -98,6 +98,12 @@ fn bad_input_is_named() {
         (&["convert", "camera.yml", "--to", "ebner", "--pitch", "4"], "--base MM"),
         (&["convert", "camera.yml", "--to", "opencv", "--naive"], "--naive converts to photogrammetric only"),
         (&["convert", "camera.yml", "--to", "metashape", "--camera", "x"], "no camera is called x"),
+        (&["convert", "camera.yml", "--to", "metashape", "--camera", "2"], "no camera is called 2"),
+        (&["convert", "camera.yml", "--to", "colmp"], "did you mean `colmap`?"),
+        (&["convert", "camera.yml", "--to", "colmap", "--model", "OPENGL"], "colmap holds no model `OPENGL`; it holds SIMPLE_RADIAL"),
+        (&["convert", "camera.yml", "--to", "metashape", "--model", "OPENCV"], "no --model"),
+        (&["convert", "camera.yml", "--to", "colmap", "--all", "--camera", "1"], "--all and --camera NAME exclude each other"),
+        (&["convert", "camera.yml", "--to", "bundler"], "bundler cannot hold the camera: the target differs by up to"),
         (&["diff", "camera.yml", "small.yml"], "differ in size: 1600 x 1200 px and 1500 x 1200 px"),
     ] {
         let output = run(folder.path(), arguments);

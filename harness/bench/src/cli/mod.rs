@@ -5,10 +5,12 @@ mod check;
 mod context;
 mod convert;
 mod detect;
+mod diff;
 mod list;
 mod measure;
 mod print;
 mod progress;
+mod reading;
 mod render;
 mod report;
 mod run;
@@ -81,7 +83,7 @@ enum Command {
     /// Show what is in a camera file: parameters, field of view, distortion, fold-over
     Camera(camera::CameraCommand),
     /// Say how far two cameras differ, in px over the frame, after the best rotation
-    Diff(convert::Diff),
+    Diff(diff::Diff),
     /// Print the JSON Schema of scenario files, for editors
     Schema,
 }

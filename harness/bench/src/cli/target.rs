@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::{CameraFormat, NamedCamera, format_named};
+use calibench_exchange::camera::{CameraFormat, FORMATS, NamedCamera, format_named};
 use calibench_model::camera::{AgisoftVersion, CameraModel, TangentialOrder};
 use calibench_model::convert::Target;
 
 use super::Failure;
 use crate::scenario::problem::nearest;
 
-/// The names that `--to` knows, with what they mean.
+/// The names that `--to` knows besides those of formats with models of their own, with what they mean.
 pub const TARGETS: [(&str, &str); 13] = [
     ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
     ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
@@ -26,10 +26,18 @@ pub const TARGETS: [(&str, &str); 13] = [
     ("pix4d-inpho", "Pix4D's .cam for INPHO (needs the pixel pitch)"),
 ];
 
+/// How a format's model is chosen.
+pub enum Way {
+    /// The convention and its shape.
+    One(Target),
+    /// The best of the format's own models.
+    Best,
+}
+
 /// A target and the format of its file.
 pub struct Goal {
-    /// The convention and its shape.
-    pub target: Target,
+    /// The model.
+    pub way: Way,
     /// The file format.
     pub format: &'static CameraFormat,
 }
@@ -60,6 +68,9 @@ impl Given<'_> {
 
 /// The target called `name`.
 pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
+    if let Some(format) = FORMATS.iter().copied().find(|format| format.name == name && !format.models(None).is_empty()) {
+        return Ok(Goal { way: Way::Best, format });
+    }
     let xml = given.output.is_some_and(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")));
     let opencv = if xml { "opencv-xml" } else { "opencv-yaml" };
     let sensor_width = |pitch_um: f64| f64::from(given.source.camera.size().width) * pitch_um * 1e-3;
@@ -80,7 +91,7 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
         },
     };
     let format = format_named(format).ok_or_else(|| Failure::input(format!("no file format is called {format}")))?;
-    Ok(Goal { target, format })
+    Ok(Goal { way: Way::One(target), format })
 }
 
 /// PhotoScan before 1.2 and Lens: three radial and two decentring coefficients, two focal lengths and a skew.
@@ -89,7 +100,8 @@ fn older(version: AgisoftVersion) -> Target {
 }
 
 fn unknown(name: &str) -> Failure {
-    let known = TARGETS.map(|(name, _)| name);
-    let near = nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    let formats = FORMATS.iter().filter(|format| !format.models(None).is_empty()).map(|format| format.name);
+    let known: Vec<&str> = TARGETS.iter().map(|(name, _)| *name).chain(formats).collect();
+    let near = nearest(name, known.iter().copied()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
     Failure::input(format!("--to {name}: no such target; known are {}{near}", known.join(", ")))
 }

@@ -36,6 +36,12 @@ impl CameraFileError {
         Self { element: Some(element.into()), ..self }
     }
 
+    /// With the name of what holds the element.
+    pub(super) fn in_key(self, key: &str) -> Self {
+        let element = self.element.as_ref().map_or_else(|| key.to_owned(), |inner| format!("{key}.{inner}"));
+        self.of(element)
+    }
+
     pub(super) fn in_file(self, file: &str) -> Self {
         Self { file: file.to_owned(), ..self }
     }

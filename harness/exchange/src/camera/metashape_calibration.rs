@@ -2,6 +2,7 @@
 
 use calibench_model::camera::{AgisoftVersion, Camera};
 
+use super::registry::PLAIN;
 use super::source::Source;
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, agisoft, xml};
 
@@ -16,6 +17,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "calibration"),
     read,
     write: Some(write),
+    ..PLAIN
 };
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {

@@ -5,7 +5,9 @@
 use calibench_model::camera::{Agisoft, AgisoftVersion, Camera};
 use roxmltree::Node;
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{finite, scientific};
+use super::registry::PLAIN;
 use super::source::Source;
 use super::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions, agisoft, xml};
 
@@ -20,6 +22,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "document"),
     read,
     write: Some(write),
+    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::Whole },
+    ..PLAIN
 };
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {

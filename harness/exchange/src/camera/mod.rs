@@ -3,22 +3,45 @@
 //! A new format is one file with a `static` [`CameraFormat`] and one line in [`registry::FORMATS`].
 
 mod agisoft;
+mod bal;
+mod basalt;
+mod bentley;
+mod brown;
+mod bundler;
+mod caltech;
+mod camodocal;
+mod colmap;
+mod colmap_models;
+mod entry;
 mod error;
+pub mod fit;
+mod kalibr;
+mod kapture;
+mod literal;
 mod metashape_calibration;
 mod metashape_cameras;
+mod micmac;
+mod mrcal;
+mod nerfstudio;
 mod number;
 mod opencv;
 mod opencv_xml;
 mod opencv_yaml;
+mod openmvg;
+mod opensfm;
 mod photogrammetric;
 mod photoscan_cameras;
 mod pix4d_cam;
 mod pix4d_inpho;
 mod pix4d_parameters;
 pub mod pix4d_pmatrix;
+mod pose;
+mod reality_capture;
 pub mod registry;
+mod ros;
 mod source;
 mod storage;
+mod theia;
 mod wire;
 mod xml;
 
@@ -29,6 +52,7 @@ use calibench_model::camera::{Camera, CameraModel, ImageSize};
 use crate::atomic::write_atomically;
 
 pub use error::CameraFileError;
+pub use pose::{Pose, PoseFrame};
 pub use registry::{CameraFormat, FORMATS, format_named};
 pub use source::LARGEST_FILE;
 use source::Source;
@@ -53,6 +77,8 @@ pub struct NamedCamera {
     pub pitch_um: Option<f64>,
     /// Where the camera stood, in files that say it.
     pub pose: Option<Pose>,
+    /// What the world of the pose is.
+    pub pose_frame: PoseFrame,
     /// Covariance of the parameters, where the file states it.
     pub covariance: Option<ParameterCovariance>,
     /// What the user should know: what was assumed, what was left out.
@@ -62,17 +88,8 @@ pub struct NamedCamera {
 impl NamedCamera {
     /// A camera of which nothing else is known.
     pub fn new(name: impl Into<String>, camera: Camera) -> Self {
-        Self { name: name.into(), camera, pitch_um: None, pose: None, covariance: None, notes: Vec::new() }
+        Self { name: name.into(), camera, pitch_um: None, pose: None, pose_frame: PoseFrame::World, covariance: None, notes: Vec::new() }
     }
-}
-
-/// A camera's position and rotation, with the camera's axes of these tools: x right, y down, z forward.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Rotation from the world's axes to the camera's, row by row.
-    pub camera_from_world: [[f64; 3]; 3],
-    /// Projection centre in the world, in its unit.
-    pub position: [f64; 3],
 }
 
 /// Covariance of a camera's parameters, in their own units. Parameters that are not named were held fixed.
@@ -116,6 +133,12 @@ impl ParameterCovariance {
         }
         Ok(Self { parameters, values })
     }
+}
+
+/// What a file says of all its cameras goes with each.
+fn noted(mut cameras: Vec<NamedCamera>, notes: &[String]) -> Vec<NamedCamera> {
+    cameras.iter_mut().for_each(|camera| camera.notes.extend(notes.iter().cloned()));
+    cameras
 }
 
 /// What a file may leave open.

@@ -50,6 +50,17 @@ pub(super) fn scientific(value: f64) -> String {
     format!("{mantissa}e{sign}{digits:0>2}")
 }
 
+/// The shortest decimals that are read back exactly; very large and small numbers as [`scientific`], with the point that YAML 1.1 wants.
+pub(super) fn shortest(value: f64) -> String {
+    let text = format!("{value:?}");
+    if text.contains('e') { scientific(value) } else { text }
+}
+
+/// Numbers in a row, between commas.
+pub(super) fn row(values: &[f64]) -> String {
+    values.iter().map(|&value| shortest(value)).collect::<Vec<_>>().join(", ")
+}
+
 /// Decimals without an exponent, at least 20 and at least 17 significant digits: as Pix4D prints.
 pub(super) fn fixed(value: f64) -> String {
     let below = if value == 0.0 { 0.0 } else { (-value.abs().log10().floor()).max(0.0) };
@@ -65,6 +76,7 @@ mod tests {
         for value in [0.0, 1.0, -0.1, 4_470.897_102_766_255, 1.237e-9, -2.2e-30, 6.02e23] {
             assert_eq!(scientific(value).parse(), Ok(value));
             assert_eq!(fixed(value).parse(), Ok(value));
+            assert_eq!(shortest(value).parse(), Ok(value));
         }
         assert_eq!(scientific(-0.000_25), "-2.5000000000000001e-04");
     }

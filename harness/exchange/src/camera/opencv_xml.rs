@@ -2,7 +2,9 @@
 
 use roxmltree::Node;
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::scientific;
+use super::registry::PLAIN;
 use super::source::Source;
 use super::storage::{self, Entry, Value};
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, opencv, xml};
@@ -20,6 +22,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "opencv_storage"),
     read,
     write: Some(write),
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
+    ..PLAIN
 };
 
 /// Depth of nesting at most.

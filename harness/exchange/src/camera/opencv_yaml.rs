@@ -2,7 +2,9 @@
 
 use saphyr_parser::{Event, Parser, Span, StrInput};
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{scientific, shortened};
+use super::registry::PLAIN;
 use super::source::Source;
 use super::storage::{self, Entry, Value};
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, opencv};
@@ -18,6 +20,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise,
     read,
     write: Some(write),
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
+    ..PLAIN
 };
 
 /// Values at most: each takes memory.
@@ -37,8 +41,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     opencv::read(&tree(source.text)?, options)
 }
 
-/// The tree of a FileStorage.
-fn tree(text: &str) -> Result<Entry, CameraFileError> {
+/// The tree of a FileStorage, or of any YAML.
+pub(super) fn tree(text: &str) -> Result<Entry, CameraFileError> {
     // OpenCV writes `%YAML:1.0`, which is no directive of YAML's.
     let (body, skipped) = match text.split_once('\n') {
         Some((first, rest)) if first.starts_with("%YAML") => (rest, version(first).map(|()| 1)?),
@@ -142,7 +146,7 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     Ok(out)
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {

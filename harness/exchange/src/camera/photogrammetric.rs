@@ -2,6 +2,8 @@
 
 use calibench_model::camera::{Camera, CameraModel};
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
+use super::registry::PLAIN;
 use super::source::Source;
 use super::wire::{CovarianceRows, Head, Wire};
 use super::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
@@ -17,6 +19,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise,
     read,
     write: Some(write),
+    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::Whole },
+    ..PLAIN
 };
 
 const NAME: &str = "calibench-camera";

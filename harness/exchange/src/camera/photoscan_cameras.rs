@@ -3,7 +3,9 @@
 use calibench_model::camera::{AgisoftVersion, Camera};
 use roxmltree::Node;
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{numbers, scientific};
+use super::registry::PLAIN;
 use super::source::Source;
 use super::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, agisoft, xml};
 
@@ -18,6 +20,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "collection"),
     read,
     write: Some(write),
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
+    ..PLAIN
 };
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {

@@ -4,7 +4,9 @@
 
 use calibench_model::camera::{Camera, Pix4d, TangentialOrder};
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{finite, fixed, shortened};
+use super::registry::PLAIN;
 use super::source::Source;
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 
@@ -22,6 +24,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
+    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
+    ..PLAIN
 };
 
 const HEADER: &str = "Pix4D camera calibration file";

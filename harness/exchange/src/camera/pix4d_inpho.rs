@@ -6,8 +6,10 @@
 
 use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{finite, fixed, pixels, shortened};
 use super::pix4d_cam::{camera, sensor, width_of_sensor};
+use super::registry::PLAIN;
 use super::source::Source;
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 
@@ -27,6 +29,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
+    keeps: Keeps { name: false, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
+    ..PLAIN
 };
 
 const HEADER: &str = "camera_calibration_file";

@@ -2,8 +2,10 @@
 
 use calibench_model::camera::{Camera, ImageSize, Pix4d, TangentialOrder};
 
+use super::fit::{Keeps, KeptCovariance, KeptPose};
 use super::number::{fixed, numbers, pixels};
 use super::pix4d_cam::camera;
+use super::registry::PLAIN;
 use super::source::Source;
 use super::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};
 
@@ -24,6 +26,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
+    keeps: Keeps { name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
+    ..PLAIN
 };
 
 const HEADER: [&str; 7] = [

@@ -5,6 +5,7 @@ use std::path::Path;
 use calibench_model::camera::{Camera, Pix4d, TangentialOrder};
 
 use super::number::numbers;
+use super::registry::PLAIN;
 use super::source::{self, Source};
 use super::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions};
 
@@ -22,6 +23,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: None,
+    ..PLAIN
 };
 
 /// A projection matrix: homogeneous px, from the outer corner of the first pixel and without distortion, of a homogeneous world point.

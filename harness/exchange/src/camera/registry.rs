@@ -1,14 +1,20 @@
 //! The camera files that are known.
 
+use super::fit::{Keeps, KeptCovariance, KeptPose, Model};
 use super::source::Source;
 use super::{
-    CameraFileError, NamedCamera, ReadOptions, metashape_calibration, metashape_cameras, opencv_xml, opencv_yaml, photogrammetric,
-    photoscan_cameras, pix4d_cam, pix4d_inpho, pix4d_parameters, pix4d_pmatrix,
+    CameraFileError, NamedCamera, ReadOptions, bal, basalt, bentley, bundler, caltech, camodocal, colmap, kalibr, kapture,
+    metashape_calibration, metashape_cameras, micmac, mrcal, nerfstudio, opencv_xml, opencv_yaml, openmvg, opensfm, photogrammetric,
+    photoscan_cameras, pix4d_cam, pix4d_inpho, pix4d_parameters, pix4d_pmatrix, reality_capture, ros, theia,
 };
+use calibench_model::camera::Convention;
 
 /// Every format, in the order in which they are tried.
 pub static FORMATS: &[&CameraFormat] = &[
     &photogrammetric::FORMAT,
+    &camodocal::FORMAT,
+    &ros::FORMAT,
+    &kalibr::FORMAT,
     &opencv_yaml::FORMAT,
     &opencv_xml::FORMAT,
     &metashape_calibration::FORMAT,
@@ -18,6 +24,20 @@ pub static FORMATS: &[&CameraFormat] = &[
     &pix4d_cam::FORMAT,
     &pix4d_parameters::FORMAT,
     &pix4d_pmatrix::FORMAT,
+    &micmac::FORMAT,
+    &bentley::FORMAT,
+    &reality_capture::FORMAT,
+    &mrcal::FORMAT,
+    &basalt::FORMAT,
+    &nerfstudio::FORMAT,
+    &openmvg::FORMAT,
+    &theia::FORMAT,
+    &opensfm::FORMAT,
+    &colmap::FORMAT,
+    &kapture::FORMAT,
+    &bundler::FORMAT,
+    &bal::FORMAT,
+    &caltech::FORMAT,
 ];
 
 /// Cameras to text.
@@ -43,7 +63,33 @@ pub struct CameraFormat {
     pub(super) recognise: fn(&Source<'_>) -> Result<(), String>,
     pub(super) read: fn(&Source<'_>, &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
     pub(super) write: Option<Writer>,
+    /// The convention of its numbers, where the cameras read from it are of another.
+    pub convention: Option<&'static Convention>,
+    /// The models that it holds, the leanest first, for a pixel pitch in um if one is known; empty for a format that is written through its convention.
+    pub(super) models: fn(Option<f64>) -> Vec<Model>,
+    /// What it has a place for besides the camera.
+    pub keeps: Keeps,
+    /// Do public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner?
+    pub origin_is_open: bool,
 }
+
+/// What most formats have in common, for struct updates.
+pub(super) const PLAIN: CameraFormat = CameraFormat {
+    name: "",
+    tool: "",
+    versions: "",
+    extension: "",
+    verified: None,
+    many: false,
+    states_size: true,
+    recognise: |_| Err(String::new()),
+    read: |_, _| Ok(Vec::new()),
+    write: None,
+    convention: None,
+    models: |_| Vec::new(),
+    keeps: Keeps { name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
+    origin_is_open: false,
+};
 
 impl CameraFormat {
     /// Can it be written?

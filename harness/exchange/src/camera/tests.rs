@@ -1,7 +1,11 @@
 //! Camera files, read and written.
 
+mod any_model;
 mod files;
 mod malformed;
+mod others;
+mod others_malformed;
+mod pairs;
 mod round_trip;
 
 use calibench_model::camera::{Camera, CameraModel};

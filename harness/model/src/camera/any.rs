@@ -1,8 +1,9 @@
 //! All models behind one dispatch.
 
 use super::{
-    Agisoft, CameraModel, CameraParameter, Convention, Derivatives, Ebner, ImageSize, NoCounterpart, OpenCv, OpenCvFisheye,
-    Photogrammetric, Pix4d, Ray, agisoft, ebner, moniwa, opencv, opencv_fisheye, photogrammetric, pix4d,
+    Agisoft, CameraModel, CameraParameter, Convention, Derivatives, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, NoCounterpart, Omni,
+    OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, Ray, agisoft, double_sphere, ebner, eucm, fov, micmac, moniwa, omni,
+    opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, tools,
 };
 use crate::PixelPoint;
 
@@ -21,6 +22,18 @@ pub enum Camera {
     Agisoft(Agisoft),
     /// Pix4D's.
     Pix4d(Pix4d),
+    /// Double sphere.
+    DoubleSphere(DoubleSphere),
+    /// Enhanced unified.
+    Eucm(Eucm),
+    /// Mei's unified camera with distortion.
+    Omni(Omni),
+    /// Field of view.
+    Fov(Fov),
+    /// Fisheye with decentring and thin prism.
+    PrismFisheye(PrismFisheye),
+    /// MicMac's.
+    MicMac(MicMac),
 }
 
 macro_rules! each {
@@ -32,6 +45,12 @@ macro_rules! each {
             Camera::OpenCvFisheye($model) => $work,
             Camera::Agisoft($model) => $work,
             Camera::Pix4d($model) => $work,
+            Camera::DoubleSphere($model) => $work,
+            Camera::Eucm($model) => $work,
+            Camera::Omni($model) => $work,
+            Camera::Fov($model) => $work,
+            Camera::PrismFisheye($model) => $work,
+            Camera::MicMac($model) => $work,
         }
     };
 }
@@ -48,6 +67,28 @@ pub const fn conventions() -> &'static [&'static Convention] {
         &agisoft::LENS,
         &opencv::CONVENTION,
         &opencv_fisheye::CONVENTION,
+        &prism_fisheye::CONVENTION,
+        &double_sphere::CONVENTION,
+        &eucm::CONVENTION,
+        &omni::CONVENTION,
+        &fov::CONVENTION,
+        &micmac::CONVENTION,
+        &tools::COLMAP,
+        &tools::KAPTURE,
+        &tools::ROS,
+        &tools::KALIBR,
+        &tools::MRCAL,
+        &tools::OPENSFM,
+        &tools::NERFSTUDIO,
+        &tools::BASALT,
+        &tools::CAMODOCAL,
+        &tools::OPENMVG,
+        &tools::THEIA,
+        &tools::BUNDLER,
+        &tools::REALITY_CAPTURE,
+        &tools::BENTLEY,
+        &tools::PHOTOMODELER,
+        &tools::CALTECH,
     ]
 }
 
@@ -61,6 +102,12 @@ impl Camera {
             Self::OpenCvFisheye(_) => &opencv_fisheye::CONVENTION,
             Self::Agisoft(camera) => camera.version.convention(),
             Self::Pix4d(_) => &pix4d::CONVENTION,
+            Self::DoubleSphere(_) => &double_sphere::CONVENTION,
+            Self::Eucm(_) => &eucm::CONVENTION,
+            Self::Omni(_) => &omni::CONVENTION,
+            Self::Fov(_) => &fov::CONVENTION,
+            Self::PrismFisheye(_) => &prism_fisheye::CONVENTION,
+            Self::MicMac(_) => &micmac::CONVENTION,
         }
     }
 }
@@ -109,7 +156,7 @@ macro_rules! from {
     };
 }
 
-from!(Photogrammetric, Ebner, OpenCv, OpenCvFisheye, Agisoft, Pix4d);
+from!(Photogrammetric, Ebner, OpenCv, OpenCvFisheye, Agisoft, Pix4d, DoubleSphere, Eucm, Omni, Fov, PrismFisheye, MicMac);
 
 #[cfg(test)]
 mod tests {

@@ -5,20 +5,29 @@
 
 pub mod agisoft;
 mod any;
+mod axial;
 pub mod conformance;
 pub mod convention;
+pub mod double_sphere;
 pub mod ebner;
+pub mod eucm;
 pub mod fold;
+pub mod fov;
 mod measured;
+pub mod micmac;
 pub mod moniwa;
 mod newton;
+pub mod omni;
 pub mod opencv;
 pub mod opencv_fisheye;
 pub mod photogrammetric;
 mod pinhole;
 pub mod pix4d;
 mod plane;
+pub mod prism_fisheye;
 mod ray;
+pub mod splined;
+pub mod tools;
 
 use thiserror::Error;
 
@@ -27,14 +36,21 @@ use crate::PixelPoint;
 pub use agisoft::{Agisoft, AgisoftVersion};
 pub use any::{Camera, conventions};
 pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
+pub use double_sphere::DoubleSphere;
 pub use ebner::Ebner;
+pub use eucm::Eucm;
 pub use fold::{Fold, fold};
+pub use fov::Fov;
+pub use micmac::MicMac;
 pub use moniwa::Moniwa;
+pub use omni::Omni;
 pub use opencv::OpenCv;
 pub use opencv_fisheye::OpenCvFisheye;
 pub use photogrammetric::Photogrammetric;
 pub use pix4d::Pix4d;
+pub use prism_fisheye::PrismFisheye;
 pub use ray::Ray;
+pub use splined::Splined;
 
 /// Columns and rows of a camera's images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,10 @@
 //! Brown's polynomial on normalised coordinates, without the signs, origins and units of any tool.
 
 use super::{ConvertError, Target};
-use crate::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize, OpenCv, Ray, TangentialOrder};
+use crate::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize, MicMac, OpenCv, Ray, TangentialOrder};
 use crate::{CornerPoint, Frame, PixelPoint, SensorPoint};
 
-/// What OpenCV's camera up to five coefficients, Agisoft's and Pix4D's have in common: ideal to distorted, y down, pixels from the centre of the first one,
+/// What OpenCV's camera up to five coefficients, Agisoft's, Pix4D's and MicMac's have in common: ideal to distorted, y down, pixels from the centre of the first one,
 /// `u = a x' + b y' + centre.x`, `v = d y' + centre.y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BrownForm {
@@ -55,8 +55,17 @@ impl BrownForm {
                 let (k, p) = ([r1, r2, r3, 0.0], [p1, p2, 0.0, 0.0]);
                 Some(Self { size: camera.size, a: camera.f_px, b: 0.0, d: camera.f_px, centre, k, p })
             }
-            Camera::Photogrammetric(_) | Camera::Ebner(_) | Camera::OpenCvFisheye(_) => None,
+            Camera::MicMac(camera) => Some(Self::of_micmac(camera)),
+            _ => None,
         }
+    }
+
+    /// px^-2 and px^-1 become numbers by the focal length; what is around another centre, k5, b1 and b2 are left out.
+    fn of_micmac(camera: &MicMac) -> Self {
+        let f = camera.f;
+        let k = std::array::from_fn(|i| camera.k[i] * f.powi(2 * i as i32 + 2));
+        let (centre, p) = (PixelPoint::new(camera.pp[0], camera.pp[1]), [camera.p[0] * f, camera.p[1] * f, 0.0, 0.0]);
+        Self { size: camera.size, a: f, b: 0.0, d: f, centre, k, p }
     }
 
     fn of_opencv(camera: &OpenCv) -> Self {
@@ -76,7 +85,7 @@ impl BrownForm {
     }
 
     /// The linear part of any camera at its axis.
-    pub(super) fn at_axis(camera: &Camera) -> Result<Self, ConvertError> {
+    pub(super) fn at_axis(camera: &dyn CameraModel) -> Result<Self, ConvertError> {
         let [[a, by_y, _], [_, d, _]] = camera.derivatives(Ray::from_tangent(0.0, 0.0))?.by_ray;
         let centre = super::grid::axis(camera)?;
         Ok(Self { size: camera.size(), a, b: -by_y, d: -d, centre, k: [0.0; 4], p: [0.0; 4] })
@@ -87,7 +96,8 @@ impl BrownForm {
         match camera {
             Camera::OpenCv(camera) => camera.distortion[5..].iter().all(|&value| value == 0.0),
             Camera::Agisoft(_) | Camera::Pix4d(_) => true,
-            Camera::Photogrammetric(_) | Camera::Ebner(_) | Camera::OpenCvFisheye(_) => false,
+            Camera::MicMac(camera) => camera.offset == [0.0; 2] && camera.b == [0.0; 2] && camera.k[4] == 0.0,
+            _ => false,
         }
     }
 
@@ -122,9 +132,23 @@ impl BrownForm {
             Camera::OpenCvFisheye(camera) if self.is_without_distortion() => {
                 (camera.fx, camera.fy, camera.cx, camera.cy) = (self.a, self.d, self.centre.x, self.centre.y);
             }
-            Camera::Photogrammetric(_) | Camera::Ebner(_) | Camera::OpenCvFisheye(_) => return None,
+            Camera::MicMac(camera) => self.to_micmac(camera),
+            Camera::Omni(camera) => {
+                (camera.fx, camera.fy, camera.cx, camera.cy) = (self.a, self.d, self.centre.x, self.centre.y);
+                (camera.k, camera.p) = ([self.k[0], self.k[1]], [self.p[1], self.p[0]]);
+            }
+            _ => return None,
         }
         Some(without_left_out(camera, target))
+    }
+
+    fn to_micmac(self, camera: &mut MicMac) {
+        let f = if self.a == self.d { self.a } else { 0.5 * (self.a + self.d) };
+        (camera.f, camera.pp) = (f, [self.centre.x, self.centre.y]);
+        for (i, k) in self.k.iter().enumerate() {
+            camera.k[i] = k / f.powi(2 * i as i32 + 2);
+        }
+        camera.p = [self.p[0] / f, self.p[1] / f];
     }
 
     fn to_agisoft(self, camera: &mut Agisoft) {

@@ -2,10 +2,14 @@
 
 use super::Target;
 use super::brown::{BrownForm, without_left_out};
+use crate::CornerPoint;
 use crate::camera::{Camera, Ebner, OpenCv, Photogrammetric};
 
 /// The same camera in the target's convention, `None` if the target cannot hold it. Decided by what the models are and which terms are zero.
 pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
+    if let Some(camera) = super::axial::exact(source, target) {
+        return Some(camera);
+    }
     let camera = closed_form(source, target)?;
     is_complete(source, target, &camera).then_some(camera)
 }
@@ -23,6 +27,8 @@ pub(super) fn closed_form(source: &Camera, target: &Target) -> Option<Camera> {
         (Camera::OpenCv(camera), &Target::OpenCv { coefficients }) => Some(shorter(camera, coefficients).into()),
         (Camera::OpenCvFisheye(_), Target::OpenCvFisheye) => Some(without_left_out(*source, target)),
         (Camera::Photogrammetric(camera), _) if is_pinhole(camera) => BrownForm::of_pinhole(camera)?.to_target(target),
+        (Camera::MicMac(camera), &Target::MicMac { .. }) => Some(without_left_out((*camera).into(), target)),
+        _ if super::axial::exact(source, target).is_some() => super::axial::exact(source, target),
         _ => BrownForm::of(source)?.to_target(target),
     }
 }
@@ -30,9 +36,9 @@ pub(super) fn closed_form(source: &Camera, target: &Target) -> Option<Camera> {
 /// Does the closed form hold all of `source`?
 fn is_complete(source: &Camera, target: &Target, camera: &Camera) -> bool {
     match (source, target) {
-        (Camera::Photogrammetric(_), Target::Photogrammetric { .. }) | (Camera::OpenCvFisheye(_), Target::OpenCvFisheye) => {
-            target.holds(source)
-        }
+        (Camera::Photogrammetric(_), Target::Photogrammetric { .. })
+        | (Camera::OpenCvFisheye(_), Target::OpenCvFisheye)
+        | (Camera::MicMac(_), Target::MicMac { .. }) => target.holds(source),
         (Camera::Ebner(from), &Target::Ebner { pitch_um, b_mm }) => {
             let scaled = from.b_mm * pitch_um / from.base.pitch_um;
             target.holds(source) && (scaled - b_mm).abs() <= 1e-14 * b_mm
@@ -49,7 +55,7 @@ fn is_complete(source: &Camera, target: &Target, camera: &Camera) -> bool {
 }
 
 /// Are all terms of the form in the target?
-fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> bool {
+pub(super) fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> bool {
     let affine = form.a != form.d;
     let (k, p) = (form.k, form.p);
     match *target {
@@ -61,7 +67,16 @@ fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> bool {
         Target::Pix4d { .. } => !affine && form.b == 0.0 && k[3] == 0.0 && p[2..] == [0.0; 2],
         Target::Photogrammetric { affinity, .. } => form.is_without_distortion() && (affinity || (!affine && form.b == 0.0)),
         Target::Ebner { .. } => form.is_without_distortion() && !affine && form.b == 0.0 && matches!(camera, Camera::Ebner(_)),
-        Target::OpenCvFisheye => false,
+        Target::Centred { radial } => {
+            let middle = CornerPoint { x: f64::from(form.size.width) / 2.0, y: f64::from(form.size.height) / 2.0 };
+            let centred = form.centre.to_corner() == middle;
+            centred && !affine && form.b == 0.0 && k[radial..].iter().all(|&k| k == 0.0) && p == [0.0; 4]
+        }
+        Target::MicMac { radial, tangential } => {
+            let held = k[radial.min(4)..].iter().all(|&k| k == 0.0) && p[if tangential { 2 } else { 0 }..].iter().all(|&p| p == 0.0);
+            held && !affine && form.b == 0.0
+        }
+        Target::OpenCvFisheye | Target::DoubleSphere | Target::Eucm | Target::Omni { .. } | Target::Fov | Target::PrismFisheye => false,
     }
 }
 

@@ -3,6 +3,7 @@
 //! [`convert`] gives the same camera in another convention: by formula where the models are the same up to units, by a fit over the frame, whose residuals
 //! and region it reports, where they are not. [`naive()`] and [`Mistake`] are the conversions that go wrong, and [`difference()`] says what they cost.
 
+mod axial;
 mod brown;
 mod covariance;
 mod difference;
@@ -192,16 +193,52 @@ pub fn convert(source: &Camera, target: Target, options: &ConvertOptions) -> Res
     if let Some(camera) = exact::exact(source, &target) {
         return exactly(source, camera, &target, options);
     }
-    let sights = sights(source, options.region, options.columns)?;
+    let mut starts = target.starts(source)?;
+    starts.extend(naive::first_order(source, &target));
+    let (mut conversion, state, over) = fitted(source, target, options, starts)?;
+    if let Some(q) = &options.covariance {
+        conversion.covariance = Some(covariance::propagate(&covariance::jacobian(&over.problem(options), &state, source)?, q)?);
+    }
+    Ok(conversion)
+}
+
+/// The camera of the target's convention that is closest to `source`, which need not be a [`Camera`], by least squares over the region.
+///
+/// # Errors
+/// As [`convert`]; a covariance cannot be given.
+pub fn fit(source: &dyn CameraModel, target: Target, options: &ConvertOptions) -> Result<Conversion, ConvertError> {
+    target.check()?;
+    Ok(fitted(source, target, options, target.starts(source)?)?.0)
+}
+
+/// What a fit ran over.
+struct Over {
+    sights: Vec<Sight>,
+    free: Vec<usize>,
+}
+
+impl Over {
+    fn problem(&self, options: &ConvertOptions) -> Problem<'_> {
+        Problem { sights: &self.sights, free: &self.free, rotation: options.rotation }
+    }
+}
+
+/// The fit from the best of `starts`, without covariance.
+fn fitted(
+    source: &dyn CameraModel,
+    target: Target,
+    options: &ConvertOptions,
+    starts: Vec<Camera>,
+) -> Result<(Conversion, State<Camera>, Over), ConvertError> {
     let free = target.free(&target.blank(source.size()));
-    let problem = Problem { sights: &sights, free: &free, rotation: options.rotation };
-    let state = problem.solve(start(source, &target, &problem)?)?;
+    let over = Over { sights: sights(source, options.region, options.columns)?, free };
+    let problem = over.problem(options);
+    let state = problem.solve(cheapest(starts, &problem)?)?;
     let (residual, residuals) = check(source, &state, options)?;
     let verdict = judge(residual, options)?;
-    let propagate = |q: &DMatrix<f64>| covariance::propagate(&covariance::jacobian(&problem, &state, source)?, q);
-    let covariance = options.covariance.as_ref().map(propagate).transpose()?;
-    let (region, rotation) = (options.region, state.rotation);
-    Ok(Conversion { camera: state.camera, method: Method::Fitted, residual, residuals, region, rotation, covariance, verdict })
+    let (camera, region, rotation) = (state.camera, options.region, state.rotation);
+    let conversion = Conversion { camera, method: Method::Fitted, residual, residuals, region, rotation, covariance: None, verdict };
+    Ok((conversion, state, over))
 }
 
 /// The camera without distortion that agrees with `source` on its axis and beside it, as OpenCV's; `None` if there is none.
@@ -220,17 +257,16 @@ fn exactly(source: &Camera, camera: Camera, target: &Target, options: &ConvertOp
     Ok(Conversion { camera, method: Method::Exact, residual, residuals: Vec::new(), region: Region::Frame, rotation, covariance, verdict })
 }
 
-/// The better of the camera without distortion and the one by the first-order formulas.
-fn start(source: &Camera, target: &Target, problem: &Problem) -> Result<State<Camera>, ConvertError> {
+/// The camera whose residuals are smallest; the first if none pictures all rays.
+fn cheapest(cameras: Vec<Camera>, problem: &Problem) -> Result<State<Camera>, ConvertError> {
     let state = |camera| State { camera, rotation: Rotation::identity() };
-    let plain = state(target.plain(source)?);
-    let Some(first_order) = naive::first_order(source, target).map(state) else { return Ok(plain) };
     let cost = |state: &State<Camera>| problem.cost(state).unwrap_or(f64::INFINITY);
-    Ok(if cost(&first_order) < cost(&plain) { first_order } else { plain })
+    let states = cameras.into_iter().map(state);
+    states.min_by(|a, b| cost(a).total_cmp(&cost(b))).ok_or(ConvertError::NotConverged)
 }
 
 /// Residuals between the nodes of the fit as well.
-fn check(source: &Camera, state: &State<Camera>, options: &ConvertOptions) -> Result<(Spread, Vec<Vector>), ConvertError> {
+fn check(source: &dyn CameraModel, state: &State<Camera>, options: &ConvertOptions) -> Result<(Spread, Vec<Vector>), ConvertError> {
     let dense: Vec<Sight> = sights(source, options.region, 2 * options.columns.max(3) - 1)?;
     let problem = Problem { sights: &dense, free: &[], rotation: false };
     let residuals = problem.residuals(state).ok_or(ConvertError::NotPictured { share: 0.0 })?;

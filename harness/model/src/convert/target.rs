@@ -3,7 +3,8 @@
 use super::ConvertError;
 use super::brown::BrownForm;
 use crate::camera::{
-    Agisoft, AgisoftVersion, Camera, CameraModel, Ebner, ImageSize, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, TangentialOrder,
+    Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, Omni, OpenCv, OpenCvFisheye,
+    Photogrammetric, Pix4d, PrismFisheye, TangentialOrder,
 };
 
 /// A convention with its shape. Terms that the shape leaves out are zero.
@@ -52,6 +53,31 @@ pub enum Target {
         /// Order of T1 and T2.
         order: TangentialOrder,
     },
+    /// One focal length, the principal point in the middle of the frame, radial coefficients: what Bundler holds, as Metashape's camera.
+    Centred {
+        /// Radial coefficients: 0 to 4.
+        radial: usize,
+    },
+    /// Double sphere.
+    DoubleSphere,
+    /// Enhanced unified.
+    Eucm,
+    /// Mei's unified camera.
+    Omni {
+        /// k1, k2, p1, p2?
+        distortion: bool,
+    },
+    /// Field of view.
+    Fov,
+    /// Fisheye with decentring and thin prism.
+    PrismFisheye,
+    /// MicMac's, with the distortion around the principal point.
+    MicMac {
+        /// Radial coefficients: 0 to 5.
+        radial: usize,
+        /// P1 and P2?
+        tangential: bool,
+    },
 }
 
 impl Target {
@@ -63,6 +89,11 @@ impl Target {
     /// Metashape with k1 to k3, p1, p2, b1, b2.
     pub const fn metashape() -> Self {
         Self::Agisoft { version: AgisoftVersion::Metashape, radial: 3, tangential: 2, affinity: true }
+    }
+
+    /// Does a formula lead from `camera` to this convention, with nothing left out?
+    pub fn is_exact_for(&self, camera: &Camera) -> bool {
+        self.check().is_ok() && super::exact::exact(camera, self).is_some()
     }
 
     pub(super) fn check(&self) -> Result<(), ConvertError> {
@@ -82,6 +113,7 @@ impl Target {
             Self::Agisoft { tangential: 1, .. } => "p1 without p2",
             Self::Pix4d { sensor_width_mm, .. } if !positive(sensor_width_mm) => "the width of the sensor is not positive",
             Self::Pix4d { order: TangentialOrder::Without, .. } => "the order of T1 and T2 is open",
+            Self::Centred { radial: 5.. } | Self::MicMac { radial: 6.., .. } => "more radial coefficients than the model has",
             _ => return Ok(()),
         };
         Err(ConvertError::Target { fault })
@@ -98,6 +130,16 @@ impl Target {
                 OpenCv { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, distortion: [0.0; 14], coefficients }.into()
             }
             Self::OpenCvFisheye => OpenCvFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, skew: 0.0, k: [0.0; 4] }.into(),
+            Self::Centred { .. } => {
+                let version = AgisoftVersion::Metashape;
+                Agisoft { size, version, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 4] }.into()
+            }
+            Self::DoubleSphere => DoubleSphere { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, xi: 0.0, alpha: 0.0 }.into(),
+            Self::Eucm => Eucm { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, alpha: 0.0, beta: 1.0 }.into(),
+            Self::Omni { .. } => Omni { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, xi: 0.0, k: [0.0; 2], p: [0.0; 2] }.into(),
+            Self::Fov => Fov { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, w: 0.0 }.into(),
+            Self::PrismFisheye => PrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] }.into(),
+            Self::MicMac { .. } => MicMac { size, f: 1.0, pp: [0.0; 2], offset: [0.0; 2], k: [0.0; 5], p: [0.0; 2], b: [0.0; 2] }.into(),
             Self::Agisoft { version, .. } => {
                 Agisoft { size, version, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 4] }.into()
             }
@@ -120,7 +162,19 @@ impl Target {
             Self::Ebner { .. } => [&K[..], &P[..], &B[..]].concat(),
             Self::Agisoft { radial, tangential, affinity: b, .. } => [&K[radial..], &P[tangential..], affinity(b)].concat(),
             Self::OpenCvFisheye => vec!["skew", "alpha"],
-            Self::OpenCv { .. } | Self::Pix4d { .. } => Vec::new(),
+            Self::Centred { radial } => [&["cx", "cy"], &K[radial..], &P[..], &B[..]].concat(),
+            Self::Omni { distortion: false } => [&K[..2], &P[..2]].concat(),
+            Self::MicMac { radial, tangential } => {
+                const FIVE: [&str; 5] = ["k1", "k2", "k3", "k4", "k5"];
+                [&["ex", "ey"], &FIVE[radial..], &P[if tangential { 2 } else { 0 }..], &B[..]].concat()
+            }
+            Self::OpenCv { .. }
+            | Self::Pix4d { .. }
+            | Self::DoubleSphere
+            | Self::Eucm
+            | Self::Omni { distortion: true }
+            | Self::Fov
+            | Self::PrismFisheye => Vec::new(),
         }
     }
 
@@ -136,8 +190,14 @@ impl Target {
         camera.parameters().iter().all(|p| !left_out.contains(&p.name) || p.value == 0.0)
     }
 
+    /// Cameras that agree with `source` on the axis and beside it: for most models one without distortion.
+    pub(super) fn starts(&self, source: &dyn CameraModel) -> Result<Vec<Camera>, ConvertError> {
+        let wide = super::axial::starts(&BrownForm::at_axis(source)?, self);
+        if wide.is_empty() { self.plain(source).map(|plain| vec![plain]) } else { Ok(wide) }
+    }
+
     /// The camera without distortion that agrees with `source` on the axis and beside it.
-    pub(super) fn plain(&self, source: &Camera) -> Result<Camera, ConvertError> {
+    pub(super) fn plain(&self, source: &dyn CameraModel) -> Result<Camera, ConvertError> {
         let form = BrownForm::at_axis(source)?;
         form.to_target(self).or_else(|| BrownForm { b: 0.0, ..form }.to_target(self)).ok_or(ConvertError::NotConverged)
     }

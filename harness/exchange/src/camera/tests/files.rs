@@ -142,15 +142,3 @@ fn every_file_written_back_is_the_same_camera() {
         assert_same(&original.cameras, &again.cameras, tolerance);
     }
 }
-
-#[test]
-#[cfg_attr(not(camera_files), ignore = "no camera files")]
-fn files_of_other_tools_are_named_as_unknown() {
-    for name in
-        ["ros-pymvg.yaml", "colmap-t265-cameras.txt", "kalibr-4seasons-camchain.yaml", "mrcal-opencv5.cameramodel", "basalt-euroc-ds.json"]
-    {
-        let error = read_camera(&path(name)).unwrap_err().to_string();
-        assert!(error.contains("no camera file that is known; tried photogrammetric: no line"), "{error}");
-        assert!(error.contains("pix4d-pmatrix: the first line is not a name and 12 numbers"), "{error}");
-    }
-}

@@ -3,6 +3,7 @@ mod differences;
 mod exact;
 mod fitted;
 mod mistakes;
+mod others;
 mod published;
 
 use crate::camera::{Camera, CameraModel, ImageSize, OpenCv, Photogrammetric};

@@ -1,0 +1,173 @@
+//! How a camera file is read: which camera of it, and what it may leave open.
+
+use std::path::Path;
+
+use calibench_exchange::camera::{CameraFile, CameraFormat, NamedCamera, ReadOptions, read_camera_with};
+use calibench_model::PixelPoint;
+use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, ImageSize, TangentialOrder, Verification};
+use clap::{Args, ValueEnum};
+
+use super::Failure;
+
+/// What a camera file may leave open.
+#[derive(Args)]
+pub struct Reading {
+    /// Size of the images, for files that do not state it
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<ImageSize>,
+    /// The file's OpenCV camera is the fisheye, though it does not say so
+    #[arg(long)]
+    fisheye: bool,
+    /// Order of the decentring coefficients of Pix4D, PhotoScan before 1.2 and Lens, which public sources do not settle [default: opencv]
+    #[arg(long, value_enum, value_name = "ORDER")]
+    order: Option<Order>,
+    /// What (0, 0) is in files of PhotoScan before 1.2, Lens [default: corner], MicMac, OpenMVG and Theia [default: centre], which public sources do not settle
+    #[arg(long, value_enum, value_name = "ORIGIN")]
+    origin: Option<Origin>,
+    /// Which camera of a file that holds several: its name, or its place counted from 1 [default: the first]
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+}
+
+/// Which of two decentring coefficients multiplies r^2 + 2 x^2.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Order {
+    /// The first: Brown's
+    Brown,
+    /// The second: OpenCV's
+    Opencv,
+}
+
+/// What the position (0, 0) is.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Origin {
+    /// The outer corner of the first pixel
+    Corner,
+    /// The centre of the first pixel
+    Centre,
+}
+
+impl Reading {
+    /// Applies what the user decided of points that a file's convention leaves open.
+    fn decide(&self, camera: &mut Camera) {
+        match camera {
+            Camera::Pix4d(pix4d) => pix4d.order = self.order(),
+            Camera::Agisoft(agisoft) if agisoft.version != AgisoftVersion::Metashape => {
+                if self.order() == TangentialOrder::Brown {
+                    agisoft.p.swap(0, 1);
+                }
+                if self.origin == Some(Origin::Centre) {
+                    let corner = PixelPoint::new(agisoft.cx, agisoft.cy).to_corner();
+                    (agisoft.cx, agisoft.cy) = (corner.x, corner.y);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Did the user decide that the corner of the first pixel is the origin of a format that leaves it open?
+    pub fn starts_at_corner(&self, format: &CameraFormat) -> bool {
+        format.origin_is_open && self.origin == Some(Origin::Corner)
+    }
+
+    /// Says what of a format's convention is not confirmed by numbers of its tool.
+    pub fn warn_of_format(&self, format: &CameraFormat) {
+        if let Some(Verification::Unverified(open)) = format.convention.map(|convention| convention.verification) {
+            let flag = if format.origin_is_open && self.origin.is_none() { "; --origin corner or --origin centre decides" } else { "" };
+            eprintln!("unverified: {}: {open}{flag}", format.name);
+        }
+    }
+
+    /// The order that the user decided on, or the one that is assumed.
+    pub fn order(&self) -> TangentialOrder {
+        match self.order {
+            Some(Order::Brown) => TangentialOrder::Brown,
+            _ => TangentialOrder::OpenCv,
+        }
+    }
+
+    /// Says what of a camera's convention is not confirmed by numbers of its tool, and which flag decides it.
+    pub fn warn(&self, camera: &Camera) {
+        if let Verification::Unverified(open) = camera.convention().verification {
+            let flag = match camera {
+                Camera::Pix4d(_) if self.order.is_none() => "; --order brown or --order opencv decides the order of T1 and T2",
+                Camera::Agisoft(_) if self.order.is_none() || self.origin.is_none() => "; --order and --origin decide",
+                _ => "",
+            };
+            eprintln!("unverified: {}: {open}{flag}", camera.convention().name);
+        }
+    }
+
+    pub fn file(&self, path: &Path) -> Result<CameraFile, Failure> {
+        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true) };
+        Ok(read_camera_with(path, &options)?)
+    }
+
+    /// The camera that is meant, with a word on standard error about what was assumed and left out.
+    pub fn one(&self, path: &Path) -> Result<NamedCamera, Failure> {
+        let mut file = self.file(path)?;
+        let chosen = self.choose(path, &file.cameras)?;
+        if file.cameras.len() > 1 && self.camera.is_none() {
+            let (count, name) = (file.cameras.len(), &file.cameras[chosen].name);
+            eprintln!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", path.display());
+        }
+        let one = vec![file.cameras.swap_remove(chosen)];
+        let one = self.decided(path, CameraFile { cameras: one, ..file });
+        one.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
+    }
+
+    /// All cameras, with the same words, each once.
+    pub fn all(&self, path: &Path) -> Result<Vec<NamedCamera>, Failure> {
+        if self.camera.is_some() {
+            return Err(Failure::input("--all and --camera NAME exclude each other"));
+        }
+        Ok(self.decided(path, self.file(path)?))
+    }
+
+    /// The place of the camera that is meant.
+    fn choose(&self, path: &Path, cameras: &[NamedCamera]) -> Result<usize, Failure> {
+        let Some(name) = &self.camera else { return Ok(0) };
+        let by_name = cameras.iter().position(|camera| camera.name == *name);
+        let by_place = || name.parse::<usize>().ok().filter(|place| (1..=cameras.len()).contains(place)).map(|place| place - 1);
+        by_name.or_else(by_place).ok_or_else(|| Failure::input(format!("{}: no camera is called {name}", path.display())))
+    }
+
+    /// The cameras as the user decided open points; says what is unverified, assumed and left out.
+    fn decided(&self, path: &Path, file: CameraFile) -> Vec<NamedCamera> {
+        let mut cameras = file.cameras;
+        for named in &mut cameras {
+            self.decide(&mut named.camera);
+            if self.starts_at_corner(file.format) {
+                named.camera = shifted(&named.camera, -0.5);
+            }
+        }
+        self.warn_of_format(file.format);
+        let mut said: Vec<String> = Vec::new();
+        for named in &cameras {
+            if !said.iter().any(|word| word == named.camera.convention().name) && file.format.convention.is_none() {
+                self.warn(&named.camera);
+                said.push(named.camera.convention().name.to_owned());
+            }
+            for note in &named.notes {
+                if !said.contains(note) {
+                    eprintln!("{}: {note}", path.display());
+                    said.push(note.clone());
+                }
+            }
+        }
+        cameras
+    }
+}
+
+/// The camera with its principal point moved along both axes, px.
+pub fn shifted(camera: &Camera, by: f64) -> Camera {
+    let moves = |name: &str| ["cx", "cy", "PPx", "PPy"].contains(&name);
+    let values = camera.parameters().into_iter().map(|p| if moves(p.name) { p.value + by } else { p.value });
+    camera.with_parameters(&values.collect::<Vec<_>>())
+}
+
+fn size(text: &str) -> Result<ImageSize, String> {
+    let side = |text: &str| text.parse().ok().filter(|n| *n > 0);
+    let size = text.split_once(['x', 'X']).and_then(|(w, h)| Some(ImageSize { width: side(w)?, height: side(h)? }));
+    size.ok_or_else(|| "expected columns x rows, as in 4272x2848".into())
+}

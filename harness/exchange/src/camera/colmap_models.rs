@@ -1,0 +1,116 @@
+//! COLMAP's camera models as names and numbers, which kapture has too: the corner of the first pixel is (0, 0).
+
+use calibench_model::camera::{AgisoftVersion, Camera, Fov, ImageSize, OpenCv, OpenCvFisheye, PrismFisheye};
+use calibench_model::convert::Target;
+use calibench_model::{CornerPoint, PixelPoint};
+
+use super::brown::{Brown, positive};
+use super::fit::Model;
+use super::number::shortened;
+use super::{CameraFileError, CameraFormat};
+
+/// Names and how many numbers they have.
+const MODELS: [(&str, usize); 11] = [
+    ("SIMPLE_PINHOLE", 3),
+    ("PINHOLE", 4),
+    ("SIMPLE_RADIAL", 4),
+    ("RADIAL", 5),
+    ("OPENCV", 8),
+    ("OPENCV_FISHEYE", 8),
+    ("FULL_OPENCV", 12),
+    ("FOV", 5),
+    ("SIMPLE_RADIAL_FISHEYE", 4),
+    ("RADIAL_FISHEYE", 5),
+    ("THIN_PRISM_FISHEYE", 12),
+];
+
+/// What can be fitted, the leanest first.
+pub(super) fn models(_pitch_um: Option<f64>) -> Vec<Model> {
+    let radial = |radial| Target::Agisoft { version: AgisoftVersion::Metashape, radial, tangential: 0, affinity: false };
+    vec![
+        Model { name: "SIMPLE_RADIAL", target: radial(1) },
+        Model { name: "RADIAL", target: radial(2) },
+        Model { name: "OPENCV", target: Target::OpenCv { coefficients: 4 } },
+        Model { name: "OPENCV_FISHEYE", target: Target::OpenCvFisheye },
+        Model { name: "FOV", target: Target::Fov },
+        Model { name: "FULL_OPENCV", target: Target::OpenCv { coefficients: 8 } },
+        Model { name: "THIN_PRISM_FISHEYE", target: Target::PrismFisheye },
+    ]
+}
+
+/// The camera of a model's name and its numbers.
+pub(super) fn camera(name: &str, size: ImageSize, v: &[f64]) -> Result<Camera, CameraFileError> {
+    let Some((_, count)) = MODELS.iter().find(|(known, _)| *known == name) else {
+        let known = MODELS.map(|(name, _)| name).join(", ");
+        return Err(CameraFileError::new(format!("model `{}` is not known; expected {known}", shortened(name))));
+    };
+    if v.len() != *count {
+        return Err(CameraFileError::new(format!("expected {count} numbers for {name}, found {}", v.len())));
+    }
+    let one_focal = matches!(name, "SIMPLE_PINHOLE" | "SIMPLE_RADIAL" | "RADIAL" | "SIMPLE_RADIAL_FISHEYE" | "RADIAL_FISHEYE");
+    let (fx, fy, rest) = if one_focal { (v[0], v[0], &v[1..]) } else { (v[0], v[1], &v[2..]) };
+    positive("f", fx)?;
+    positive("f", fy)?;
+    let (PixelPoint { x: cx, y: cy }, d) = (CornerPoint { x: rest[0], y: rest[1] }.to_pixel(), &rest[2..]);
+    let plain = Brown::plain(size, [fx, fy, cx, cy]);
+    let at = |i: usize| d.get(i).copied().unwrap_or(0.0);
+    Ok(match name {
+        "OPENCV" => Brown { k: [d[0], d[1], 0.0, 0.0], p1: d[2], p2: d[3], ..plain }.camera(),
+        "FULL_OPENCV" => {
+            let mut distortion = [0.0; 14];
+            distortion[..8].copy_from_slice(d);
+            OpenCv { size, fx, fy, cx, cy, distortion, coefficients: 8 }.into()
+        }
+        "OPENCV_FISHEYE" | "SIMPLE_RADIAL_FISHEYE" | "RADIAL_FISHEYE" => {
+            OpenCvFisheye { size, fx, fy, cx, cy, skew: 0.0, k: std::array::from_fn(at) }.into()
+        }
+        "FOV" => Fov { size, fx, fy, cx, cy, w: d[0] }.into(),
+        "THIN_PRISM_FISHEYE" => PrismFisheye { size, fx, fy, cx, cy, k: [d[0], d[1], d[4], d[5]], p: [d[2], d[3]], s: [d[6], d[7]] }.into(),
+        _ => Brown { k: [at(0), at(1), 0.0, 0.0], ..plain }.camera(),
+    })
+}
+
+/// The leanest model that holds `camera`, and its numbers.
+pub(super) fn written(camera: &Camera, format: &CameraFormat) -> Result<(&'static str, Vec<f64>), CameraFileError> {
+    let head = |fx: f64, fy: f64, cx: f64, cy: f64| {
+        let corner = PixelPoint::new(cx, cy).to_corner();
+        vec![fx, fy, corner.x, corner.y]
+    };
+    let with = |head: Vec<f64>, rest: &[f64]| [head.as_slice(), rest].concat();
+    match *camera {
+        Camera::OpenCvFisheye(OpenCvFisheye { fx, fy, cx, cy, skew: 0.0, k, .. }) => {
+            let head = head(fx, fy, cx, cy);
+            let lean = |name, n: usize| Ok((name, [&head[1..], &k[..n]].concat()));
+            match k {
+                [_, 0.0, 0.0, 0.0] if fx == fy => lean("SIMPLE_RADIAL_FISHEYE", 1),
+                [_, _, 0.0, 0.0] if fx == fy => lean("RADIAL_FISHEYE", 2),
+                _ => Ok(("OPENCV_FISHEYE", with(head, &k))),
+            }
+        }
+        Camera::Fov(Fov { fx, fy, cx, cy, w, .. }) => Ok(("FOV", with(head(fx, fy, cx, cy), &[w]))),
+        Camera::PrismFisheye(PrismFisheye { fx, fy, cx, cy, k, p, s, .. }) => {
+            Ok(("THIN_PRISM_FISHEYE", with(head(fx, fy, cx, cy), &[k[0], k[1], p[0], p[1], k[2], k[3], s[0], s[1]])))
+        }
+        Camera::OpenCv(OpenCv { fx, fy, cx, cy, distortion: d, coefficients, .. })
+            if d[8..].iter().all(|&v| v == 0.0) && (coefficients >= 8 || d[4] != 0.0) =>
+        {
+            Ok(("FULL_OPENCV", with(head(fx, fy, cx, cy), &d[..8])))
+        }
+        _ => brown(camera).ok_or_else(|| format.other_model("cameras of COLMAP's models")),
+    }
+}
+
+fn brown(camera: &Camera) -> Option<(&'static str, Vec<f64>)> {
+    let brown = Brown::of(camera).filter(|brown| brown.skew == 0.0 && brown.k[3] == 0.0)?;
+    let (corner, [k1, k2, k3, _]) = (brown.corner(), brown.k);
+    let two = [brown.fx, brown.fy, corner.x, corner.y];
+    let radial = brown.radial();
+    Some(match (brown.has_one_focal() && !brown.has_tangential(), radial) {
+        (_, 3) => ("FULL_OPENCV", [&two[..], &[k1, k2, brown.p1, brown.p2, k3, 0.0, 0.0, 0.0]].concat()),
+        (true, 0) => ("SIMPLE_PINHOLE", two[1..].to_vec()),
+        (true, 1) => ("SIMPLE_RADIAL", [&two[1..], &[k1]].concat()),
+        (true, _) => ("RADIAL", [&two[1..], &[k1, k2]].concat()),
+        (false, 0) if !brown.has_tangential() => ("PINHOLE", two.to_vec()),
+        (false, _) => ("OPENCV", [&two[..], &[k1, k2, brown.p1, brown.p2]].concat()),
+    })
+}

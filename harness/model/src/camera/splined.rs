@@ -1,0 +1,229 @@
+//! mrcal's splined stereographic camera, to be read and fitted by another model.
+
+use super::newton::{self, ValueAndDerivatives, determinant};
+use super::plane::{PlaneMap, first_fold, is_on_branch};
+use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray, named};
+use crate::PixelPoint;
+
+/// mrcal's `LENSMODEL_SPLINED_STEREOGRAPHIC`. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
+///
+/// With the angle from the axis `theta` and the direction `e` of (X, Y) (x right, y down, z forward): `u = 2 tan(theta/2) e`,
+/// `x = fx (u_x + D_x(u)) + cx`, `y = fy (u_y + D_y(u)) + cy`. D are uniform B-splines of order 2 or 3 over a grid of `columns` x `rows` control points
+/// around the axis, whose spacing in u is `4 tan(fov/4) / (columns - order)`, where fov is the horizontal field of view.
+///
+/// It has hundreds of numbers and is no [`super::Camera`]: other tools cannot hold it. [`crate::convert::fit`] finds a camera that they can.
+///
+/// Source: mrcal's documentation, "mrcal splined lens models".
+#[derive(Clone, Debug, PartialEq)]
+pub struct Splined {
+    /// Size of its images.
+    pub size: ImageSize,
+    /// fx, fy, cx, cy, px.
+    pub core: [f64; 4],
+    /// Order of the splines: 2 or 3.
+    pub order: usize,
+    /// Columns of control points.
+    pub columns: usize,
+    /// Rows of control points.
+    pub rows: usize,
+    /// Horizontal field of view that the grid spans, degrees.
+    pub fov_x_deg: f64,
+    /// Control points (x, y), row by row.
+    pub control: Vec<[f64; 2]>,
+}
+
+const NAMES: [(&str, &str); 4] = [("fx", "px"), ("fy", "px"), ("cx", "px"), ("cy", "px")];
+/// The largest |u| that is looked at: 160 degrees from the axis.
+const WIDEST: f64 = 11.34;
+const PLACES: usize = 400;
+
+/// Values and derivatives of the basis at a grid coordinate, and the first control point that they belong to.
+struct Basis {
+    first: usize,
+    value: [f64; 4],
+    slope: [f64; 4],
+}
+
+impl Basis {
+    fn new(order: usize, at: f64, count: usize) -> Self {
+        if order == 2 {
+            let middle = (at + 0.5).floor().clamp(1.0, (count - 2) as f64);
+            let t = at - middle;
+            let value = [(0.5 - t) * (0.5 - t) / 2.0, 0.75 - t * t, (0.5 + t) * (0.5 + t) / 2.0, 0.0];
+            return Self { first: middle as usize - 1, value, slope: [t - 0.5, -2.0 * t, t + 0.5, 0.0] };
+        }
+        let left = at.floor().clamp(1.0, (count - 3) as f64);
+        let t = at - left;
+        let s = 1.0 - t;
+        let value =
+            [s * s * s / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0, (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0, t * t * t / 6.0];
+        let slope = [-s * s / 2.0, (3.0 * t * t - 4.0 * t) / 2.0, -(3.0 * s * s - 4.0 * s) / 2.0, t * t / 2.0];
+        Self { first: left as usize - 1, value, slope }
+    }
+}
+
+impl Splined {
+    /// Checked: an order of 2 or 3, more control points than that along each side and as many as given, a field of view below 360 degrees.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn check(&self) -> Result<(), String> {
+        if ![2, 3].contains(&self.order) {
+            return Err(format!("order {} of the splines; expected 2 or 3", self.order));
+        }
+        if self.columns.min(self.rows) <= self.order {
+            return Err(format!("{} x {} control points; expected more than {} along each side", self.columns, self.rows, self.order));
+        }
+        if self.columns.checked_mul(self.rows) != Some(self.control.len()) {
+            return Err(format!("expected {} x {} control points, found {}", self.columns, self.rows, self.control.len()));
+        }
+        if !(self.fov_x_deg > 0.0 && self.fov_x_deg < 360.0) {
+            return Err(format!("a field of view of {} degrees; expected 0 to 360", self.fov_x_deg));
+        }
+        Ok(())
+    }
+
+    fn per_u(&self) -> f64 {
+        (self.columns - self.order) as f64 / (4.0 * (self.fov_x_deg.to_radians() / 4.0).tan())
+    }
+
+    fn pixel(&self, [x, y]: [f64; 2]) -> PixelPoint {
+        let [fx, fy, cx, cy] = self.core;
+        PixelPoint::new(fx * x + cx, fy * y + cy)
+    }
+}
+
+impl PlaneMap for Splined {
+    fn map(&self, [ux, uy]: [f64; 2]) -> ValueAndDerivatives {
+        let per_u = self.per_u();
+        let centre = |count: usize| (count - 1) as f64 / 2.0;
+        let along = Basis::new(self.order, ux * per_u + centre(self.columns), self.columns);
+        let down = Basis::new(self.order, uy * per_u + centre(self.rows), self.rows);
+        let (mut value, mut by) = ([ux, uy], [[1.0, 0.0], [0.0, 1.0]]);
+        for row in 0..=self.order {
+            for column in 0..=self.order {
+                let point = self.control[(down.first + row) * self.columns + along.first + column];
+                for axis in 0..2 {
+                    value[axis] += along.value[column] * down.value[row] * point[axis];
+                    by[axis][0] += per_u * along.slope[column] * down.value[row] * point[axis];
+                    by[axis][1] += per_u * along.value[column] * down.slope[row] * point[axis];
+                }
+            }
+        }
+        (value, by)
+    }
+}
+
+/// The stereographic u (right, down) of a ray, with its derivatives by the ray's own axes.
+fn stereographic(ray: Ray) -> Result<([f64; 2], [[f64; 3]; 2]), NoCounterpart> {
+    let [x, y, z] = [ray.x, -ray.y, -ray.z];
+    let d = (x * x + y * y + z * z).sqrt();
+    let under = d + z;
+    if !under.is_finite() || under <= 1e-12 * d || d == 0.0 {
+        return Err(NoCounterpart::Behind);
+    }
+    // 2 tan(theta/2) = 2 sin / (1 + cos): u = 2 (x, y) / (d + z).
+    let u = [2.0 * x / under, 2.0 * y / under];
+    let by_under = [x / d, y / d, z / d + 1.0];
+    let signs = [1.0, -1.0, -1.0];
+    let row = |axis: usize| std::array::from_fn(|i| signs[i] * (if i == axis { 2.0 } else { 0.0 } - u[axis] * by_under[i]) / under);
+    Ok((u, [row(0), row(1)]))
+}
+
+impl CameraModel for Splined {
+    fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// The four of the core; the control points are not among them.
+    fn parameters(&self) -> Vec<CameraParameter> {
+        named(&NAMES, &self.core)
+    }
+
+    fn with_parameters(&self, values: &[f64]) -> Self {
+        Self { core: [values[0], values[1], values[2], values[3]], ..self.clone() }
+    }
+
+    fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
+        let (u, _) = stereographic(ray)?;
+        if is_on_branch(self, u) { Ok(self.pixel(self.map(u).0)) } else { Err(NoCounterpart::Fold) }
+    }
+
+    fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
+        let [fx, fy, cx, cy] = self.core;
+        let goal = [(point.x - cx) / fx, (point.y - cy) / fy];
+        if !(goal[0].is_finite() && goal[1].is_finite()) {
+            return Err(NoCounterpart::NoSolution);
+        }
+        let [ux, uy] = super::plane::invert(self, goal).or_else(|_| newton::solve(goal, goal, |at| self.map(at)))?;
+        // The point of the unit sphere: (u, 1 - |u|^2/4) / (1 + |u|^2/4).
+        let quarter = 0.25 * (ux * ux + uy * uy);
+        Ok(Ray { x: ux / (1.0 + quarter), y: -uy / (1.0 + quarter), z: -(1.0 - quarter) / (1.0 + quarter) })
+    }
+
+    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+        let (u, by_u) = stereographic(ray)?;
+        if !is_on_branch(self, u) {
+            return Err(NoCounterpart::Fold);
+        }
+        let (distorted, by) = self.map(u);
+        let by_ray = [0, 1].map(|row| std::array::from_fn(|i| self.core[row] * (by[row][0] * by_u[0][i] + by[row][1] * by_u[1][i])));
+        let by_parameters = vec![[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]];
+        Ok(Derivatives { point: self.pixel(distorted), by_ray, by_parameters })
+    }
+
+    fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
+        let (sin, cos) = angle.sin_cos();
+        let fold = first_fold(|s| determinant(self.map([s * cos, s * sin]).1), WIDEST, PLACES)?;
+        Some(self.pixel(self.map([fold * cos, fold * sin]).0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::conformance::{self, Shape};
+
+    fn camera(order: usize) -> Splined {
+        let (columns, rows) = (12, 9);
+        let control = (0..columns * rows).map(|i| {
+            let (x, y) = ((i % columns) as f64 - 5.5, (i / columns) as f64 - 4.0);
+            [-4e-4 * x * (x * x + y * y) + 1e-3 * y, -4e-4 * y * (x * x + y * y) + 2e-3 * x.sin()]
+        });
+        let size = ImageSize { width: 1600, height: 1200 };
+        Splined { size, core: [900.0, 905.0, 790.0, 610.0], order, columns, rows, fov_x_deg: 130.0, control: control.collect() }
+    }
+
+    #[test]
+    fn conforms() {
+        for order in [2, 3] {
+            let camera = camera(order);
+            camera.check().unwrap();
+            conformance::check(&camera, Shape::Barrel);
+        }
+    }
+
+    #[test]
+    fn control_points_on_a_plane_give_that_plane() {
+        // B-splines reproduce linear functions: D = 0.03 g_x, -0.02 g_y of the grid coordinates from its middle.
+        let mut camera = camera(3);
+        camera.control = (0..12 * 9).map(|i| [0.03 * (f64::from(i % 12) - 5.5), -0.02 * (f64::from(i / 12) - 4.0)]).collect();
+        let per_u = 9.0 / (4.0 * 32.5_f64.to_radians().tan());
+        for u in [[0.0, 0.0], [0.3, -0.2], [-0.61, 0.44]] {
+            let ([x, y], _) = camera.map(u);
+            assert!((x - u[0] * (1.0 + 0.03 * per_u)).abs() < 1e-13 && (y - u[1] * (1.0 - 0.02 * per_u)).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_together_is_refused() {
+        for wrong in [
+            Splined { order: 4, ..camera(3) },
+            Splined { columns: 3, ..camera(3) },
+            Splined { rows: 10, ..camera(3) },
+            Splined { fov_x_deg: 360.0, ..camera(3) },
+        ] {
+            assert!(wrong.check().is_err(), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Conventions of tools whose cameras are models that are there already: what their files mean by the same numbers.
+
+use super::convention::{Convention, PixelOrigin, TangentialOrder, Verification};
+use super::{agisoft, opencv, photogrammetric};
+
+/// COLMAP.
+pub const COLMAP: Convention = Convention {
+    name: "colmap",
+    about: "COLMAP: SIMPLE_PINHOLE to FULL_OPENCV, fisheyes, FOV, thin prism",
+    version: "3.x",
+    pixel_origin: PixelOrigin::PixelCorner,
+    principal_point_from: PixelOrigin::PixelCorner,
+    normalisation: "divided by f or fx, fy, px",
+    source: "COLMAP's documentation, Camera Models and Output Format: the centre of the first pixel is (0.5, 0.5)",
+    verification: Verification::Unverified("origin and formulas by COLMAP's documentation; no projected point of it was at hand"),
+    ..opencv::CONVENTION
+};
+
+/// kapture.
+pub const KAPTURE: Convention = Convention {
+    name: "kapture",
+    about: "kapture: COLMAP's models in sensors.txt",
+    version: "1.0, 1.1",
+    source: "kapture's format specification: camera models are COLMAP's",
+    verification: Verification::Unverified(
+        "formulas by its specification; that the origin is COLMAP's is what its converters do, which copy the numbers",
+    ),
+    ..COLMAP
+};
+
+/// ROS.
+pub const ROS: Convention = Convention {
+    name: "ros",
+    about: "ROS camera_info: plumb_bob, rational_polynomial, equidistant",
+    version: "camera_calibration and image_pipeline of ROS 1 and 2",
+    source: "sensor_msgs/CameraInfo and distortion_models.h: OpenCV's models",
+    verification: Verification::Unverified("OpenCV's functions by ROS's own statement; no projected point of ROS was at hand"),
+    ..opencv::CONVENTION
+};
+
+/// Kalibr.
+pub const KALIBR: Convention = Convention {
+    name: "kalibr",
+    about: "Kalibr camchain: pinhole, omni, eucm, ds with radtan, equidistant, fov",
+    version: "camchain YAML",
+    source: "Kalibr's wiki, Supported models and Yaml formats",
+    verification: Verification::Unverified(
+        "formulas after its wiki; that (0, 0) is the centre of the first pixel follows from OpenCV's corners, which it measures",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// mrcal.
+pub const MRCAL: Convention = Convention {
+    name: "mrcal",
+    about: "mrcal .cameramodel: PINHOLE, STEREOGRAPHIC, OPENCV4 to OPENCV12; splined models are read and fitted",
+    version: "1 and 2",
+    source: "mrcal's documentation, Lens models and Conventions",
+    verification: Verification::Verified(
+        "mrcal's own splined fit of one of its OPENCV8 cameras, made for points at 5 m, agrees to 0.2 px after a shift of the centre",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// OpenSfM and ODM.
+pub const OPENSFM: Convention = Convention {
+    name: "opensfm",
+    about: "OpenSfM, OpenDroneMap: perspective, brown, fisheye, in units of the longer side",
+    version: "camera_models.json, cameras.json",
+    pixel_origin: PixelOrigin::FrameCentre,
+    principal_point_from: PixelOrigin::FrameCentre,
+    normalisation: "divided by the focal length, which is in units of the longer side of the image",
+    source: "OpenSfM's documentation, Geometric models: normalised image coordinates from the centre of the image",
+    verification: Verification::Unverified("formulas and origin after its documentation; no projected point of it was at hand"),
+    ..opencv::CONVENTION
+};
+
+/// nerfstudio.
+pub const NERFSTUDIO: Convention = Convention {
+    name: "nerfstudio",
+    about: "nerfstudio transforms.json: OPENCV, OPENCV_FISHEYE, PINHOLE",
+    version: "",
+    pixel_origin: PixelOrigin::PixelCorner,
+    principal_point_from: PixelOrigin::PixelCorner,
+    source: "nerfstudio's documentation, Data conventions",
+    verification: Verification::Unverified(
+        "formulas after its documentation; that the centre of the first pixel is (0.5, 0.5) after its sampler of rays",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// basalt.
+pub const BASALT: Convention = Convention {
+    name: "basalt",
+    about: "basalt calibration JSON: ds, eucm, ucm, kb4, pinhole, fov, pinhole-radtan8",
+    version: "",
+    source: "basalt-headers, camera models; Usenko, Demmel and Cremers 2018",
+    verification: Verification::Unverified("formulas after the paper; no projected point of it was at hand"),
+    ..opencv::CONVENTION
+};
+
+/// camodocal.
+pub const CAMODOCAL: Convention = Convention {
+    name: "camodocal",
+    about: "camodocal YAML: MEI, KANNALA_BRANDT, PINHOLE",
+    version: "",
+    source: "camodocal's camera models; Mei and Rives 2007; Kannala and Brandt 2006",
+    verification: Verification::Unverified("formulas after the papers; no file of the tool was at hand"),
+    ..opencv::CONVENTION
+};
+
+/// OpenMVG.
+pub const OPENMVG: Convention = Convention {
+    name: "openmvg",
+    about: "OpenMVG sfm_data.json: pinhole, radial k1, k3, brown t2, fisheye",
+    version: "0.3, 1 and 2",
+    source: "OpenMVG's documentation, Cameras",
+    verification: Verification::Unverified(
+        "formulas after its documentation; what (0, 0) is it does not say: the centre of the first pixel is assumed",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// Theia.
+pub const THEIA: Convention = Convention {
+    name: "theia",
+    about: "Theia calibration JSON: PINHOLE, PINHOLE_RADIAL_TANGENTIAL, FISHEYE, FOV",
+    version: "0.8 and later",
+    source: "Theia's documentation, Camera",
+    verification: Verification::Unverified(
+        "formulas after its documentation; what (0, 0) is it does not say: the centre of the first pixel is assumed",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// Bundler and BAL.
+pub const BUNDLER: Convention = Convention {
+    name: "bundler",
+    about: "Bundler, BAL: f, k1, k2, y up, principal point in the centre of the frame",
+    version: "bundle.out v0.3; Bundle Adjustment in the Large",
+    pixel_origin: PixelOrigin::FrameCentre,
+    principal_point_from: PixelOrigin::FrameCentre,
+    y: super::Vertical::Up,
+    order: TangentialOrder::Without,
+    normalisation: "divided by f, px",
+    source: "Bundler v0.4 User's Manual; Agarwal et al. 2010",
+    verification: Verification::Unverified("formulas after the manual; no projected point was at hand"),
+    ..opencv::CONVENTION
+};
+
+/// RealityCapture.
+pub const REALITY_CAPTURE: Convention = Convention {
+    name: "reality-capture",
+    about: "RealityCapture, RealityScan XMP: FocalLength35mm, PrincipalPointU and V, brown3 to brown4t2",
+    version: "XMP version 2 and 3",
+    pixel_origin: PixelOrigin::FrameCentre,
+    principal_point_from: PixelOrigin::FrameCentre,
+    normalisation: "divided by the focal length; that and the principal point are in units of the longer side, the former times 36",
+    source: "RealityCapture's support pages, XMP camera math; the readers of AliceVision and camorph",
+    verification: Verification::Unverified(
+        "formulas and the order of t1 and t2 by two other programs' readers; no numbers of the tool were at hand",
+    ),
+    ..agisoft::METASHAPE
+};
+
+/// Bentley's BlocksExchange.
+pub const BENTLEY: Convention = Convention {
+    name: "bentley",
+    about: "Bentley ContextCapture, iTwin BlocksExchange: FocalLength or FocalLengthPixels, PrincipalPoint, K1 to K3, P1, P2",
+    version: "BlocksExchange 2.1 and later",
+    source: "ContextCapture User Guide, BlocksExchange XML format: the centre of the first pixel is (0, 0)",
+    verification: Verification::Unverified(
+        "direction and the order of P1 and P2 are not stated (Brown's model by name): ideal to distorted and OpenCV's order are assumed",
+    ),
+    ..opencv::CONVENTION
+};
+
+/// PhotoModeler.
+pub const PHOTOMODELER: Convention = Convention {
+    name: "photomodeler",
+    about: "PhotoModeler: focal length, principal point, format in mm, K1 to K3, P1, P2 added to measured coordinates",
+    version: "",
+    pixel_origin: PixelOrigin::PixelCorner,
+    principal_point_from: PixelOrigin::PixelCorner,
+    order: TangentialOrder::Brown,
+    normalisation: "none: mm from the principal point",
+    source: "PhotoModeler's online help, Lens Distortion Formulation",
+    verification: Verification::Unverified(
+        "formulas after its help; whether y points up there is not stated (up is assumed), and no file of it was at hand: names of keys are after the help's dialog",
+    ),
+    ..photogrammetric::CONVENTION
+};
+
+/// Bouguet's toolbox.
+pub const CALTECH: Convention = Convention {
+    name: "caltech",
+    about: "Camera Calibration Toolbox for Matlab: fc, cc, alpha_c, kc",
+    version: "Calib_Results.m",
+    normalisation: "divided by fc, px",
+    source: "Bouguet, Camera Calibration Toolbox for Matlab, Description of the calibration parameters: the first pixel's centre is (0, 0)",
+    verification: Verification::Unverified(
+        "formulas after the toolbox's page, from which OpenCV's are taken; no numbers of it were at hand",
+    ),
+    ..opencv::CONVENTION
+};

@@ -1,0 +1,124 @@
+//! Cameras from tool to tool, as a user converts them.
+
+use crate::cameras::{CAMERA, folder, good};
+use crate::project::{root, run, stderr};
+
+/// Two cameras of a rig, 11 cm apart.
+const RIG: &str = "cam0:\n  camera_model: ds\n  intrinsics: [-0.24, 0.57, 350.0, 349.0, 366.0, 249.0]\n  distortion_model: none\n  distortion_coeffs: []\n  \
+    resolution: [752, 480]\ncam1:\n  camera_model: pinhole\n  intrinsics: [460.0, 459.0, 379.0, 256.0]\n  distortion_model: radtan\n  \
+    distortion_coeffs: [-0.28, 0.07, 2.0e-4, 1.0e-5]\n  resolution: [752, 480]\n  T_cn_cnm1:\n  - [1.0, 0.0, 0.0, -0.11]\n  - [0.0, 1.0, 0.0, 0.0]\n  \
+    - [0.0, 0.0, 1.0, 0.0]\n  - [0.0, 0.0, 0.0, 1.0]\n";
+
+#[test]
+fn every_tool_s_file_is_written_and_read_again() {
+    let folder = folder();
+    std::fs::write(folder.path().join("camera.yml"), CAMERA.replace("1502.", "1500.")).unwrap();
+    for (to, exact) in [
+        ("colmap", true),
+        ("kapture", true),
+        ("ros", true),
+        ("kalibr", true),
+        ("mrcal", true),
+        ("basalt", true),
+        ("camodocal", true),
+        ("opensfm", true),
+        ("nerfstudio", true),
+        ("openmvg", true),
+        ("theia", true),
+        ("reality-capture", true),
+        ("bentley", true),
+        ("caltech", true),
+        ("micmac", true),
+        ("bundler", false),
+        ("bal", false),
+    ] {
+        let said = good(folder.path(), &["convert", "camera.yml", "--to", to, "--accept", "-o", to]);
+        assert_eq!(said.contains(": exact:"), exact, "{to}: {said}");
+        let text = good(folder.path(), &["diff", "camera.yml", to, "--size", "1600x1200", "--no-rotation"]);
+        let rms: f64 = text.split_whitespace().skip_while(|word| *word != "difference").nth(1).unwrap().parse().unwrap();
+        assert_eq!(rms < 1e-9, exact, "{to}: {text}");
+    }
+}
+
+#[test]
+fn a_rig_is_listed_chosen_from_and_converted_whole() {
+    let folder = folder();
+    std::fs::write(folder.path().join("rig.yaml"), RIG).unwrap();
+    let card = good(folder.path(), &["camera", "rig.yaml"]);
+    assert!(card.contains("holds       2 cameras") && card.contains("1   cam0: double-sphere, 752 x 480 px"), "{card}");
+    assert!(card.contains("2   cam1: opencv, 752 x 480 px") && card.contains("the first of 2 cameras, `cam0`"), "{card}");
+    for name in ["cam1", "2"] {
+        assert!(
+            good(folder.path(), &["camera", "rig.yaml", "--camera", name])
+                .contains("position    0.11, 0, 0 in the axes of the rig's first camera")
+        );
+    }
+    // Both into one file, with the pose where it has a place ...
+    let said = good(folder.path(), &["convert", "rig.yaml", "--all", "--to", "basalt", "-o", "rig.json"]);
+    assert!(
+        said.contains("cam0: ds: exact") && said.contains("cam1: pinhole-radtan8: exact") && said.contains("the name `cam1`"),
+        "{said}"
+    );
+    assert!(!said.contains("lost: the pose"), "{said}");
+    assert!(std::fs::read_to_string(folder.path().join("rig.json")).unwrap().contains("\"px\": 0.11"));
+    // ... and named as lost where it has none.
+    let said = good(folder.path(), &["convert", "rig.yaml", "--all", "--to", "colmap", "-o", "cameras.txt"]);
+    assert!(
+        said.contains("warning: lost: the pose in the rig: colmap has no place for it") && said.contains("cam0: OPENCV_FISHEYE: fitted"),
+        "{said}"
+    );
+    assert!(good(folder.path(), &["camera", "cameras.txt"]).contains("holds       2 cameras"));
+    // A file each where the format holds one camera.
+    good(folder.path(), &["convert", "rig.yaml", "--all", "--to", "ros", "-o", "ros"]);
+    let mut names: Vec<_> = std::fs::read_dir(folder.path().join("ros")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["001-cam0.yaml", "002-cam1.yaml"]);
+    let output = run(folder.path(), &["convert", "rig.yaml", "--all", "--to", "ros"]);
+    assert!(stderr(&output).contains("ros holds one camera a file: name a folder with -o"), "{}", stderr(&output));
+}
+
+#[test]
+fn an_open_origin_is_decided_by_a_flag() {
+    let folder = folder();
+    let convert = |origin: &str, file: &str| {
+        good(folder.path(), &["convert", "camera.yml", "--to", "theia", "--origin", origin, "-o", file]);
+        std::fs::read_to_string(folder.path().join(file)).unwrap()
+    };
+    assert!(convert("centre", "a.json").contains("[810.0, 590.0]") && convert("corner", "b.json").contains("[810.5, 590.5]"));
+    let rms = |origin: &str| {
+        let text = good(folder.path(), &["diff", "camera.yml", "b.json", "--no-rotation", "--origin", origin]);
+        text.split_whitespace().skip_while(|word| *word != "difference").nth(1).unwrap().parse::<f64>().unwrap()
+    };
+    assert!(rms("corner") < 1e-9 && rms("centre") > 0.6);
+    assert!(good(folder.path(), &["camera", "b.json"]).contains("--origin corner or --origin centre decides"));
+}
+
+#[test]
+fn a_rotated_fit_turns_the_pose_as_well() {
+    let folder = folder();
+    let transforms = "{\"fl_x\": 1500, \"fl_y\": 1500, \"cx\": 815, \"cy\": 590, \"w\": 1600, \"h\": 1200, \"k1\": -0.1, \"frames\": [{\"file_path\": \"a\", \
+        \"transform_matrix\": [[1, 0, 0, 5], [0, 1, 0, 6], [0, 0, 1, 7], [0, 0, 0, 1]]}]}";
+    std::fs::write(folder.path().join("t.json"), transforms).unwrap();
+    good(folder.path(), &["convert", "t.json", "--to", "bundler", "--rotation", "--accept", "-o", "b.out"]);
+    let said = good(folder.path(), &["camera", "b.out", "--size", "1600x1200"]);
+    let (_, position) = said.split_once("position ").unwrap();
+    let words = position.split(" in the axes of the world").next().unwrap().split(',');
+    let position: Vec<f64> = words.map(|word| word.trim().parse().unwrap()).collect();
+    assert!(position.iter().zip([5.0, 6.0, 7.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{said}");
+    // The axis was pictured 15 px right of the middle; after the turn, with z backwards, -R (0, 0, 1) leads there still, to first order.
+    let text = std::fs::read_to_string(folder.path().join("b.out")).unwrap();
+    let row: Vec<f64> = text.lines().nth(3).unwrap().split_whitespace().map(|word| word.parse().unwrap()).collect();
+    assert!((row[2] + 0.01).abs() < 0.002 && row[0] > 0.999, "{text}");
+}
+
+#[test]
+fn the_readme_names_every_format_of_a_tool() {
+    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    for format in calibench_exchange::camera::FORMATS {
+        assert!(
+            readme.contains(&format!("`{}`", format.name)) || format.models(None).is_empty(),
+            "{} has no row in the README",
+            format.name
+        );
+    }
+}
