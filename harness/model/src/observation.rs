@@ -46,11 +46,23 @@ pub enum Rejection {
     NoMaximum,
     /// The solution lies outside the window.
     LeftWindow,
+    /// The iteration came to no solution.
+    NotConverged,
+    /// There is a solution, but the grey values do not determine its position.
+    Undetermined,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 5] = [Self::Border, Self::NotFinite, Self::NoCorner, Self::NoMaximum, Self::LeftWindow];
+    pub const ALL: [Self; 7] = [
+        Self::Border,
+        Self::NotFinite,
+        Self::NoCorner,
+        Self::NoMaximum,
+        Self::LeftWindow,
+        Self::NotConverged,
+        Self::Undetermined,
+    ];
 
     /// The name in files.
     pub const fn name(self) -> &'static str {
@@ -60,6 +72,8 @@ impl Rejection {
             Self::NoCorner => "no_corner",
             Self::NoMaximum => "no_maximum",
             Self::LeftWindow => "left_window",
+            Self::NotConverged => "not_converged",
+            Self::Undetermined => "undetermined",
         }
     }
 
@@ -71,6 +85,8 @@ impl Rejection {
             Self::NoCorner => "the window is flat or holds a single edge",
             Self::NoMaximum => "the strength has no maximum inside the window",
             Self::LeftWindow => "the solution lies outside the window",
+            Self::NotConverged => "the iteration came to no solution",
+            Self::Undetermined => "the grey values do not determine the position",
         }
     }
 }

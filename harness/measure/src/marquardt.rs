@@ -1,0 +1,172 @@
+//! Least squares for a handful of unknowns: Gauss-Newton, with Marquardt's damping while it is needed.
+
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
+
+/// The normal equations at one place, and the sum of the squared residuals there.
+#[derive(Clone)]
+pub(crate) struct Normal<const P: usize> {
+    /// `J^T J`.
+    pub(crate) n: SMatrix<f64, P, P>,
+    /// `J^T r`, r observed minus modelled.
+    pub(crate) b: SVector<f64, P>,
+    /// `r^T r`.
+    pub(crate) omega: f64,
+}
+
+/// What is fitted. The first two unknowns are the position, px.
+pub(crate) trait Problem<const P: usize> {
+    /// The normal equations at `x`; `None` where the model has no meaning.
+    fn normal(&mut self, x: &SVector<f64, P>) -> Option<Normal<P>>;
+    /// The smallest value of an unknown.
+    fn lowest(&self, unknown: usize) -> f64;
+    /// Observations minus unknowns.
+    fn redundancy(&self) -> f64;
+}
+
+/// A solution.
+pub(crate) struct Solution<const P: usize> {
+    /// The unknowns.
+    pub(crate) x: SVector<f64, P>,
+    /// The normal equations one step, of no weight, before them.
+    pub(crate) normal: Normal<P>,
+}
+
+/// The iteration ends with a step whose length is at most this fraction of its standard deviation, squared.
+const SHORT: f64 = 1e-6;
+/// Or with one that moves the position by less than this, px.
+const STILL: f64 = 1e-9;
+const EVALUATIONS: usize = 60;
+const DAMPING: f64 = 1e-3;
+
+/// Minimises; `None` when that takes too long or comes to a place of no meaning.
+pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVector<f64, P>) -> Option<Solution<P>> {
+    let mut x = start;
+    let mut normal = problem.normal(&x)?;
+    let mut damping = DAMPING;
+    for _ in 0..EVALUATIONS {
+        let (step, decrement) = step(problem, &normal, &x, damping)?;
+        let variance = normal.omega / problem.redundancy();
+        let next = bounded(problem, &(x + step));
+        if damping <= DAMPING && (decrement <= SHORT * variance || step[0].abs().max(step[1].abs()) < STILL) {
+            return Some(Solution { x: next, normal });
+        }
+        match problem.normal(&next) {
+            Some(better) if better.omega <= normal.omega => {
+                (x, normal) = (next, better);
+                damping = (damping * 0.1).max(1e-9);
+            }
+            // The residuals differ by rounding only: there is nothing left to gain.
+            Some(same) if damping <= DAMPING && same.omega <= normal.omega * (1.0 + 1e-9) => return Some(Solution { x, normal }),
+            _ if damping > 1e8 => return None,
+            _ => damping = (damping * 10.0).max(DAMPING),
+        }
+    }
+    None
+}
+
+/// The step and how much it is to gain. Unknowns that press against their bound stay there.
+fn step<const P: usize>(
+    problem: &impl Problem<P>,
+    normal: &Normal<P>,
+    x: &SVector<f64, P>,
+    damping: f64,
+) -> Option<(SVector<f64, P>, f64)> {
+    let (mut n, mut b) = (normal.n, normal.b);
+    for i in 0..P {
+        n[(i, i)] *= 1.0 + damping;
+        if x[i] <= problem.lowest(i) && b[i] <= 0.0 {
+            n.row_mut(i).fill(0.0);
+            n.column_mut(i).fill(0.0);
+            n[(i, i)] = 1.0;
+            b[i] = 0.0;
+        }
+    }
+    let step = decompose(&n)?.solve(&b);
+    let decrement = step.dot(&b);
+    decrement.is_finite().then_some((step, decrement))
+}
+
+fn bounded<const P: usize>(problem: &impl Problem<P>, x: &SVector<f64, P>) -> SVector<f64, P> {
+    SVector::from_fn(|i, _| x[i].max(problem.lowest(i)))
+}
+
+/// Cholesky, after the unknowns are scaled alike; `None` for a matrix that is singular to rounding.
+fn decompose<const P: usize>(n: &SMatrix<f64, P, P>) -> Option<Scaled<P>> {
+    let scale: SVector<f64, P> = SVector::from_fn(|i, _| 1.0 / n[(i, i)].sqrt());
+    if !scale.iter().all(|s| s.is_finite()) {
+        return None;
+    }
+    let scaled: SMatrix<f64, P, P> = SMatrix::from_fn(|i, j| n[(i, j)] * scale[i] * scale[j]);
+    let factor = scaled.cholesky()?;
+    let smallest = (0..P).map(|i| factor.l_dirty()[(i, i)]).fold(f64::INFINITY, f64::min);
+    (smallest > 1e-7).then_some(Scaled { factor, scale })
+}
+
+struct Scaled<const P: usize> {
+    factor: Cholesky<f64, Const<P>>,
+    scale: SVector<f64, P>,
+}
+
+impl<const P: usize> Scaled<P> {
+    fn solve(&self, b: &SVector<f64, P>) -> SVector<f64, P> {
+        self.factor.solve(&b.component_mul(&self.scale)).component_mul(&self.scale)
+    }
+}
+
+impl<const P: usize> Normal<P> {
+    /// The cofactors of the unknowns, `N^-1`; `None` when they are not determined.
+    pub(crate) fn cofactors(&self) -> Option<SMatrix<f64, P, P>> {
+        let Scaled { factor, scale } = decompose(&self.n)?;
+        let inverse = factor.inverse();
+        Some(SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A decaying exponential `a exp(-b t)`, sampled without error.
+    struct Decay {
+        lowest: f64,
+    }
+
+    impl Problem<2> for Decay {
+        fn normal(&mut self, x: &SVector<f64, 2>) -> Option<Normal<2>> {
+            let mut normal = Normal { n: SMatrix::zeros(), b: SVector::zeros(), omega: 0.0 };
+            for t in (0..20).map(|i| f64::from(i) * 0.2) {
+                let (e, r) = ((-x[1] * t).exp(), 3.0 * (-0.7 * t).exp() - x[0] * (-x[1] * t).exp());
+                let j = SVector::from([e, -x[0] * t * e]);
+                normal.n += j * j.transpose();
+                normal.b += j * r;
+                normal.omega += r * r;
+            }
+            Some(normal)
+        }
+
+        fn lowest(&self, unknown: usize) -> f64 {
+            if unknown == 1 { self.lowest } else { f64::NEG_INFINITY }
+        }
+
+        fn redundancy(&self) -> f64 {
+            18.0
+        }
+    }
+
+    #[test]
+    fn a_far_start_arrives() {
+        let solution = minimise(&mut Decay { lowest: 0.0 }, SVector::from([0.2, 4.0])).unwrap();
+        assert!((solution.x - SVector::from([3.0, 0.7])).norm() < 1e-8, "{}", solution.x);
+    }
+
+    #[test]
+    fn a_bound_is_kept_and_the_rest_solved() {
+        let solution = minimise(&mut Decay { lowest: 0.9 }, SVector::from([1.0, 4.0])).unwrap();
+        let (e, d) = (0..20).map(|i| f64::from(i) * 0.2).fold((0.0, 0.0), |(e, d), t| {
+            let model = (-0.9 * t).exp();
+            (e + model * 3.0 * (-0.7 * t).exp(), d + model * model)
+        });
+        assert_eq!(solution.x[1], 0.9);
+        assert!((solution.x[0] - e / d).abs() < 1e-6, "{}", solution.x);
+    }
+}
