@@ -211,3 +211,61 @@ fn all_of_an_ellipse_is_in_its_image() {
     let area: f64 = ellipse.render(30).iter().sum();
     assert!((area - PI * (4.0 * 2.5 - 0.49)).abs() < 1e-8, "{area}");
 }
+
+/// White noise of standard deviation `sigma` from a stream of its own.
+pub(crate) fn noisy(grey: &[f64], sigma: f64, rng: &mut rand_chacha::ChaCha8Rng) -> Vec<f64> {
+    use rand_distr::{Distribution, Normal};
+    let normal = Normal::new(0.0, sigma).unwrap();
+    grey.iter().map(|g| g + normal.sample(rng)).collect()
+}
+
+/// The Cramér-Rao bound of the first two of `P` unknowns for white noise of unit variance: its trace, px^2.
+pub(crate) fn bound<const P: usize>(at: [f64; P], render: impl Fn(&[f64; P]) -> Vec<f64>) -> f64 {
+    use nalgebra::SMatrix;
+    let derivative = |i: usize| {
+        let shifted = |h: f64| {
+            let mut x = at;
+            x[i] += h;
+            render(&x)
+        };
+        let (high, low) = (shifted(1e-4), shifted(-1e-4));
+        high.iter().zip(&low).map(|(h, l)| (h - l) / 2e-4).collect::<Vec<_>>()
+    };
+    let j: Vec<Vec<f64>> = (0..P).map(derivative).collect();
+    let n = SMatrix::<f64, P, P>::from_fn(|a, b| j[a].iter().zip(&j[b]).map(|(a, b)| a * b).sum());
+    let inverse = n.try_inverse().expect("all unknowns are determined");
+    inverse[(0, 0)] + inverse[(1, 1)]
+}
+
+/// Squared errors in units of the bound, pooled: their number, mean and standard error.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pool {
+    n: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Pool {
+    pub(crate) fn add(&mut self, value: f64) {
+        self.n += 1.0;
+        self.sum += value;
+        self.squares += value * value;
+    }
+
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.n += other.n;
+        self.sum += other.sum;
+        self.squares += other.squares;
+    }
+
+    pub(crate) fn trials(&self) -> usize {
+        self.n as usize
+    }
+
+    /// The root of the mean, and its 99 % interval.
+    pub(crate) fn ratio(&self) -> (f64, [f64; 2]) {
+        let mean = self.sum / self.n;
+        let error = ((self.squares / self.n - mean * mean).max(0.0) / self.n).sqrt();
+        (mean.sqrt(), [(mean - 2.576 * error).max(0.0).sqrt(), (mean + 2.576 * error).sqrt()])
+    }
+}

@@ -31,15 +31,15 @@ pub(crate) struct Solution<const P: usize> {
     pub(crate) normal: Normal<P>,
 }
 
-/// The iteration ends with a step whose length is at most this fraction of its standard deviation, squared.
-const SHORT: f64 = 1e-6;
-/// Or with one that moves the position by less than this, px.
+/// The iteration also ends with one that moves the position by less than this, px.
 const STILL: f64 = 1e-9;
 const EVALUATIONS: usize = 60;
 const DAMPING: f64 = 1e-3;
 
-/// Minimises; `None` when that takes too long or comes to a place of no meaning.
-pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVector<f64, P>) -> Option<Solution<P>> {
+/// Minimises, until a step is shorter than `short` standard deviations; it is still taken. `None` when that takes too long or comes to a place of no meaning.
+thread_local! { pub(crate) static COUNT: std::cell::Cell<usize> = const { std::cell::Cell::new(0) }; }
+pub(crate) fn minimise_count<const P: usize>(p: &mut impl Problem<P>, s: SVector<f64, P>) -> usize { COUNT.set(0); minimise(p, s, 1e-2); COUNT.get() }
+pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVector<f64, P>, short: f64) -> Option<Solution<P>> {
     let mut x = start;
     let mut normal = problem.normal(&x)?;
     let mut damping = DAMPING;
@@ -47,9 +47,10 @@ pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVe
         let (step, decrement) = step(problem, &normal, &x, damping)?;
         let variance = normal.omega / problem.redundancy();
         let next = bounded(problem, &(x + step));
-        if damping <= DAMPING && (decrement <= SHORT * variance || step[0].abs().max(step[1].abs()) < STILL) {
+        if damping <= DAMPING && (decrement <= short * short * variance || step[0].abs().max(step[1].abs()) < STILL) {
             return Some(Solution { x: next, normal });
         }
+        COUNT.set(COUNT.get() + 1);
         match problem.normal(&next) {
             Some(better) if better.omega <= normal.omega => {
                 (x, normal) = (next, better);
@@ -155,13 +156,13 @@ mod tests {
 
     #[test]
     fn a_far_start_arrives() {
-        let solution = minimise(&mut Decay { lowest: 0.0 }, SVector::from([0.2, 4.0])).unwrap();
+        let solution = minimise(&mut Decay { lowest: 0.0 }, SVector::from([0.2, 4.0]), 1e-3).unwrap();
         assert!((solution.x - SVector::from([3.0, 0.7])).norm() < 1e-8, "{}", solution.x);
     }
 
     #[test]
     fn a_bound_is_kept_and_the_rest_solved() {
-        let solution = minimise(&mut Decay { lowest: 0.9 }, SVector::from([1.0, 4.0])).unwrap();
+        let solution = minimise(&mut Decay { lowest: 0.9 }, SVector::from([1.0, 4.0]), 1e-3).unwrap();
         let (e, d) = (0..20).map(|i| f64::from(i) * 0.2).fold((0.0, 0.0), |(e, d), t| {
             let model = (-0.9 * t).exp();
             (e + model * 3.0 * (-0.7 * t).exp(), d + model * model)

@@ -11,12 +11,17 @@ use crate::marquardt::{Normal, minimise};
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
+use model::Fidelity;
 use window::Window;
 
 /// Blur at the start, px^2: between sharp and soft.
 const VARIANCE: f64 = 0.5;
-/// The window is laid anew when the corner is further than this from its middle pixel, px. A little more than a half, so that it comes to rest.
-const FOLLOW: f64 = 0.51;
+/// The window is laid anew when the corner is further than this beyond its middle pixel, px: more each time, so that it comes to rest also where
+/// either of two windows finds the corner in the other's middle.
+const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+/// Each iteration ends with a step shorter than so many standard deviations.
+const ROUGHLY: f64 = 0.1;
+const NEARLY: f64 = 1e-2;
 const LAYINGS: usize = 6;
 /// A corner whose standard deviation is more than this, px, is none.
 const VAGUE: f64 = 1.0;
@@ -105,21 +110,29 @@ impl ParametricCorner {
         let mut x = SVector::<f64, P>::zeros();
         x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, guess.mean, guess.half]);
         let mut at = guess.position;
-        for _ in 0..LAYINGS {
+        for beyond in BEYOND {
+            let follow = 0.5 + beyond;
             let centre = at.map(|c| c.round() as i64);
             if !image.holds(centre[0], centre[1], half) {
                 return Err(Rejection::Border);
             }
             window.centre_on((centre[0], centre[1]));
             (x[0], x[1]) = (at[0] - centre[0] as f64, at[1] - centre[1] as f64);
-            let found = minimise(&mut window, x).ok_or(Rejection::NotConverged)?;
-            x = found.x;
-            if x[0].abs().max(x[1].abs()) > half as f64 {
+            window.fidelity = Fidelity::Rough;
+            x = minimise(&mut window, x, ROUGHLY).ok_or(Rejection::NotConverged)?.x;
+            window.fidelity = Fidelity::Full;
+            let off = |x: &SVector<f64, P>| x[0].abs().max(x[1].abs());
+            let mut normal = None;
+            if off(&x) <= follow {
+                let found = minimise(&mut window, x, NEARLY).ok_or(Rejection::NotConverged)?;
+                (x, normal) = (found.x, Some(found.normal));
+            }
+            if off(&x) > half as f64 {
                 return Err(Rejection::LeftWindow);
             }
             at = [centre[0] as f64 + x[0], centre[1] as f64 + x[1]];
-            if x[0].abs().max(x[1].abs()) <= FOLLOW {
-                let covariance = covariance(&found.normal, (self.window * self.window - P) as f64).ok_or(Rejection::Undetermined)?;
+            if let Some(normal) = normal.filter(|_| off(&x) <= follow) {
+                let covariance = covariance(&normal, (self.window * self.window - P) as f64).ok_or(Rejection::Undetermined)?;
                 return Ok(Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) });
             }
         }
@@ -169,3 +182,5 @@ fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection>
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod efficiency;

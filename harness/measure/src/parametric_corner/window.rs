@@ -4,7 +4,7 @@ use calibench_model::Image;
 use multiversion::multiversion;
 use nalgebra::{SMatrix, SVector};
 
-use super::model::{BASE, Field, Model, Shape};
+use super::model::{BASE, Fidelity, Field, Model, Shape};
 use crate::lanes::{LANES, Lanes};
 use crate::marquardt::{Normal, Problem};
 
@@ -19,6 +19,8 @@ pub(super) struct Window<'a, const P: usize, const GRADIENT: bool, const CURVED:
     top: usize,
     side: usize,
     pixels: Lists,
+    /// How well the model is worked out.
+    pub(super) fidelity: Fidelity,
 }
 
 /// Pixels, by what can be seen in them.
@@ -51,7 +53,7 @@ impl<'a, const P: usize, const GRADIENT: bool, const CURVED: bool> Window<'a, P,
     pub(super) fn new(image: &'a Image, side: usize) -> Self {
         let list = || List::new(side);
         let pixels = Lists { corner: list(), edges: [list(), list()], areas: list() };
-        Self { image, left: 0, top: 0, side, pixels }
+        Self { image, left: 0, top: 0, side, pixels, fidelity: Fidelity::Full }
     }
 
     /// Lays the window around a pixel from which `side / 2` px are in the image.
@@ -74,7 +76,7 @@ impl<const P: usize, const GRADIENT: bool, const CURVED: bool> Problem<P> for Wi
         if !(x.iter().all(|value| value.is_finite()) && shape.position.iter().all(|p| p.abs() < limit) && shape.variance < limit * limit) {
             return None;
         }
-        let model = Model::new(&shape)?;
+        let model = Model::new(&shape, self.fidelity)?;
         let view = View { grey: &self.image.grey()[self.top * self.image.width() + self.left..], stride: self.image.width(), side: self.side };
         let mut sums = Sums::<P> { n: [[[0.0; LANES]; P]; P], b: [[0.0; LANES]; P], omega: [0.0; LANES] };
         add::<P, GRADIENT, CURVED>(&model, view, x.as_slice(), &mut self.pixels, &mut sums);
