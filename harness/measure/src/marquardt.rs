@@ -37,8 +37,6 @@ const EVALUATIONS: usize = 60;
 const DAMPING: f64 = 1e-3;
 
 /// Minimises, until a step is shorter than `short` standard deviations; it is still taken. `None` when that takes too long or comes to a place of no meaning.
-thread_local! { pub(crate) static COUNT: std::cell::Cell<usize> = const { std::cell::Cell::new(0) }; }
-pub(crate) fn minimise_count<const P: usize>(p: &mut impl Problem<P>, s: SVector<f64, P>) -> usize { COUNT.set(0); minimise(p, s, 1e-2); COUNT.get() }
 pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVector<f64, P>, short: f64) -> Option<Solution<P>> {
     let mut x = start;
     let mut normal = problem.normal(&x)?;
@@ -50,7 +48,6 @@ pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVe
         if damping <= DAMPING && (decrement <= short * short * variance || step[0].abs().max(step[1].abs()) < STILL) {
             return Some(Solution { x: next, normal });
         }
-        COUNT.set(COUNT.get() + 1);
         match problem.normal(&next) {
             Some(better) if better.omega <= normal.omega => {
                 (x, normal) = (next, better);

@@ -132,7 +132,7 @@ impl ParametricCorner {
             }
             at = [centre[0] as f64 + x[0], centre[1] as f64 + x[1]];
             if let Some(normal) = normal.filter(|_| off(&x) <= follow) {
-                let covariance = covariance(&normal, (self.window * self.window - P) as f64).ok_or(Rejection::Undetermined)?;
+                let covariance = covariance(&normal, (self.window * self.window - P) as f64).ok_or(Rejection::ErrorEllipse)?;
                 return Ok(Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) });
             }
         }
@@ -150,7 +150,7 @@ fn covariance<const P: usize>(normal: &Normal<P>, redundancy: f64) -> Option<Cov
 impl Operator for ParametricCorner {
     /// # Errors
     /// [`Rejection::Border`] when the window leaves the image, [`Rejection::NotFinite`], [`Rejection::NoCorner`] when there is no saddle near the start,
-    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::Undetermined`] when the standard deviation is above a pixel.
+    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let centre = window_centre(image, start, half)?;

@@ -46,23 +46,16 @@ pub enum Rejection {
     NoMaximum,
     /// The solution lies outside the window.
     LeftWindow,
-    /// The iteration came to no solution.
+    /// The iteration did not converge.
     NotConverged,
-    /// There is a solution, but the grey values do not determine its position.
-    Undetermined,
+    /// The error ellipse of the solution is too large or too flat.
+    ErrorEllipse,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 7] = [
-        Self::Border,
-        Self::NotFinite,
-        Self::NoCorner,
-        Self::NoMaximum,
-        Self::LeftWindow,
-        Self::NotConverged,
-        Self::Undetermined,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Border, Self::NotFinite, Self::NoCorner, Self::NoMaximum, Self::LeftWindow, Self::NotConverged, Self::ErrorEllipse];
 
     /// The name in files.
     pub const fn name(self) -> &'static str {
@@ -73,7 +66,7 @@ impl Rejection {
             Self::NoMaximum => "no_maximum",
             Self::LeftWindow => "left_window",
             Self::NotConverged => "not_converged",
-            Self::Undetermined => "undetermined",
+            Self::ErrorEllipse => "error_ellipse",
         }
     }
 
@@ -85,8 +78,8 @@ impl Rejection {
             Self::NoCorner => "the window is flat or holds a single edge",
             Self::NoMaximum => "the strength has no maximum inside the window",
             Self::LeftWindow => "the solution lies outside the window",
-            Self::NotConverged => "the iteration came to no solution",
-            Self::Undetermined => "the grey values do not determine the position",
+            Self::NotConverged => "the iteration did not converge",
+            Self::ErrorEllipse => "the error ellipse is too large or too flat",
         }
     }
 }

@@ -98,7 +98,8 @@ pub(super) struct Model {
     pub(super) edges: [Edge; 2],
     nodes: [Node; 16],
     count: usize,
-    /// 1 / (blur of one Gaussian of the pixel).
+    /// Variance of the blurred Gaussians of the pixel, px^2, and 1 / its root.
+    variance: f64,
     inverse: f64,
     /// Cosine and sine of the angle between the normals.
     rho: f64,
@@ -140,10 +141,11 @@ impl Model {
             Edge { nx, ny, curvature: shape.curvature[i] }
         };
         let (integral, terms) = correlation(rho.asin());
-        let blur = (shape.variance + pixel.variance).sqrt();
+        let variance = shape.variance + pixel.variance;
+        let blur = variance.sqrt();
         // Half a pixel's diagonal, and five standard deviations: 3e-7 of the contrast.
         let reach = std::f64::consts::FRAC_1_SQRT_2 + 5.0 * blur;
-        Some(Self { edges: [edge(0), edge(1)], nodes, count, inverse: 1.0 / blur, rho, sine, integral, terms, reach })
+        Some(Self { edges: [edge(0), edge(1)], nodes, count, variance, inverse: 1.0 / blur, rho, sine, integral, terms, reach })
     }
 
     /// Both edges are near.
@@ -158,8 +160,8 @@ impl Model {
 
     #[inline(always)]
     fn add_corner<const CURVED: bool>(&self, node: &Node, x: &Lanes, y: &Lanes, sum: &mut Field) {
-        let p = self.edges[0].place::<CURVED>(node, x, y);
-        let q = self.edges[1].place::<CURVED>(node, x, y);
+        let p = self.edges[0].place::<CURVED>(node, self.variance, x, y);
+        let q = self.edges[1].place::<CURVED>(node, self.variance, x, y);
         let (mut a, mut b, mut along_a, mut along_b) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             a[i] = p.distance[i] * self.inverse;
@@ -206,7 +208,7 @@ impl Model {
     pub(super) fn edge<const CURVED: bool>(&self, which: usize, side: &Lanes, x: &Lanes, y: &Lanes) -> Field {
         let mut sum = Field::default();
         for node in &self.nodes[..self.count] {
-            let p = self.edges[which].place::<CURVED>(node, x, y);
+            let p = self.edges[which].place::<CURVED>(node, self.variance, x, y);
             let mut a = [0.0; LANES];
             for i in 0..LANES {
                 a[i] = p.distance[i] * self.inverse;
@@ -233,7 +235,8 @@ impl Model {
             sum.normals[which][i] += by[i] * (p.along[i] - lean);
             sum.variance[i] -= 0.5 * self.inverse * self.inverse * by[i] * p.distance[i];
             if CURVED {
-                sum.curvature[which][i] += 0.5 * by[i] * p.along[i] * p.along[i];
+                sum.variance[i] += 0.5 * curvature * by[i];
+                sum.curvature[which][i] += 0.5 * by[i] * (p.along[i] * p.along[i] + self.variance);
             }
         }
     }
@@ -254,14 +257,15 @@ impl Edge {
         self.nx * x + self.ny * y + 0.5 * self.curvature * along * along
     }
 
+    /// `variance` is the blur's, px^2: it moves a curved edge to its hollow side, by the mean of what it averages.
     #[inline(always)]
-    fn place<const CURVED: bool>(&self, node: &Node, x: &Lanes, y: &Lanes) -> Place {
+    fn place<const CURVED: bool>(&self, node: &Node, variance: f64, x: &Lanes, y: &Lanes) -> Place {
         let mut place = Place { distance: [0.0; LANES], straight: [0.0; LANES], along: [0.0; LANES] };
         for i in 0..LANES {
             let (x, y) = (x[i] + node.x, y[i] + node.y);
             place.straight[i] = self.nx * x + self.ny * y;
             place.along[i] = self.nx * y - self.ny * x;
-            let sag = if CURVED { 0.5 * self.curvature * place.along[i] * place.along[i] } else { 0.0 };
+            let sag = if CURVED { 0.5 * self.curvature * (place.along[i] * place.along[i] + variance) } else { 0.0 };
             place.distance[i] = place.straight[i] + sag;
         }
         place

@@ -126,7 +126,7 @@ impl Columns {
 ///
 /// Around a chess corner the grey value jumps four times: of its Fourier coefficients by direction the second is `(2/pi) sin b` and the fourth `(1/pi) sin 2b`
 /// in units of half the contrast, with b the width of a light sector, and their phases are two and four times the direction of its middle.
-/// `None` when all grey values are the same.
+/// `None` when all grey values are the same to rounding.
 pub(super) fn directions(image: &Image, position: [f64; 2], half: i64) -> Option<Guess> {
     let centre = position.map(|p| p.round() as i64);
     let (mut weights, mut mean) = (0.0, 0.0);
@@ -161,5 +161,6 @@ pub(super) fn directions(image: &Image, position: [f64; 2], half: i64) -> Option
     let contrast = size * quarter / width.sin();
     // The light sectors cover width / 90 degrees of the mean.
     let mean = mean - contrast * (width / quarter - 1.0);
-    (size.is_finite() && size > 0.0).then_some(Guess { position, normals, mean, half: contrast })
+    // Grey values have 24 bits.
+    (contrast.is_finite() && contrast > 1e-6 * mean.abs()).then_some(Guess { position, normals, mean, half: contrast })
 }
