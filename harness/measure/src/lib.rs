@@ -5,6 +5,7 @@
 
 pub mod board;
 pub mod conformance;
+pub mod ellipse;
 #[cfg(test)]
 mod exact;
 pub mod external;
@@ -16,6 +17,7 @@ mod marquardt;
 pub mod operator;
 pub mod paraboloid;
 pub mod parameter;
+pub mod parametric_circle;
 pub mod parametric_corner;
 pub mod pixel;
 pub mod registry;

@@ -1,6 +1,9 @@
 //! Least squares for a handful of unknowns: Gauss-Newton, with Marquardt's damping while it is needed.
 
+use calibench_model::Covariance;
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
+
+use crate::lanes::{LANES, Lanes};
 
 /// The normal equations at one place, and the sum of the squared residuals there.
 #[derive(Clone)]
@@ -118,6 +121,56 @@ impl<const P: usize> Normal<P> {
         let inverse = factor.inverse();
         Some(SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
     }
+}
+
+/// The normal equations, the upper triangle in lanes.
+pub(crate) struct Sums<const P: usize> {
+    n: [[Lanes; P]; P],
+    b: [Lanes; P],
+    omega: Lanes,
+}
+
+impl<const P: usize> Sums<P> {
+    pub(crate) fn new() -> Self {
+        Self { n: [[[0.0; LANES]; P]; P], b: [[0.0; LANES]; P], omega: [0.0; LANES] }
+    }
+
+    /// Adds the rows of one chunk: `j` the derivatives, `r` the residuals.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, j: &[Lanes; P], r: &Lanes) {
+        for row in 0..P {
+            for column in row..P {
+                for i in 0..LANES {
+                    self.n[row][column][i] += j[row][i] * j[column][i];
+                }
+            }
+            for i in 0..LANES {
+                self.b[row][i] += j[row][i] * r[i];
+            }
+        }
+        for i in 0..LANES {
+            self.omega[i] += r[i] * r[i];
+        }
+    }
+
+    pub(crate) fn normal(&self) -> Normal<P> {
+        let sum = |lanes: &Lanes| lanes.iter().sum::<f64>();
+        Normal {
+            n: SMatrix::from_fn(|i, j| sum(&self.n[i.min(j)][i.max(j)])),
+            b: SVector::from_fn(|i, _| sum(&self.b[i])),
+            omega: sum(&self.omega),
+        }
+    }
+}
+
+/// A position whose standard deviation is more than this, px, is none.
+const VAGUE: f64 = 1.0;
+
+/// The covariance of the position, px^2, with the variance of unit weight from the residuals; `None` when it is too vague.
+pub(crate) fn covariance<const P: usize>(normal: &Normal<P>, redundancy: f64) -> Option<Covariance> {
+    let cofactors = normal.cofactors()? * (normal.omega / redundancy);
+    let covariance = Covariance { sxx: cofactors[(0, 0)], sxy: cofactors[(0, 1)], syy: cofactors[(1, 1)] };
+    (covariance.sxx + covariance.syy <= VAGUE * VAGUE).then_some(covariance)
 }
 
 #[cfg(test)]

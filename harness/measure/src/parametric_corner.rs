@@ -4,10 +4,10 @@ mod model;
 mod start;
 mod window;
 
-use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use nalgebra::SVector;
 
-use crate::marquardt::{Normal, minimise};
+use crate::marquardt::{covariance, minimise};
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
@@ -23,8 +23,6 @@ const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 const ROUGHLY: f64 = 0.1;
 const NEARLY: f64 = 1e-2;
 const LAYINGS: usize = 6;
-/// A corner whose standard deviation is more than this, px, is none.
-const VAGUE: f64 = 1.0;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
@@ -138,13 +136,6 @@ impl ParametricCorner {
         }
         Err(Rejection::NotConverged)
     }
-}
-
-/// That of the position; `None` when it is too vague.
-fn covariance<const P: usize>(normal: &Normal<P>, redundancy: f64) -> Option<Covariance> {
-    let cofactors = normal.cofactors()? * (normal.omega / redundancy);
-    let covariance = Covariance { sxx: cofactors[(0, 0)], sxy: cofactors[(0, 1)], syy: cofactors[(1, 1)] };
-    (covariance.sxx + covariance.syy <= VAGUE * VAGUE).then_some(covariance)
 }
 
 impl Operator for ParametricCorner {

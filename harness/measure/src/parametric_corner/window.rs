@@ -2,11 +2,11 @@
 
 use calibench_model::Image;
 use multiversion::multiversion;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 use super::model::{BASE, Fidelity, Field, Model, Shape};
 use crate::lanes::{LANES, Lanes};
-use crate::marquardt::{Normal, Problem};
+use crate::marquardt::{Normal, Problem, Sums};
 
 /// The widest window, px.
 pub(super) const WIDEST: usize = 41;
@@ -78,7 +78,7 @@ impl<const P: usize, const GRADIENT: bool, const CURVED: bool> Problem<P> for Wi
         }
         let model = Model::new(&shape, self.fidelity)?;
         let view = View { grey: &self.image.grey()[self.top * self.image.width() + self.left..], stride: self.image.width(), side: self.side };
-        let mut sums = Sums::<P> { n: [[[0.0; LANES]; P]; P], b: [[0.0; LANES]; P], omega: [0.0; LANES] };
+        let mut sums = Sums::<P>::new();
         add::<P, GRADIENT, CURVED>(&model, view, x.as_slice(), &mut self.pixels, &mut sums);
         Some(sums.normal())
     }
@@ -98,42 +98,6 @@ struct View<'a> {
     grey: &'a [f32],
     stride: usize,
     side: usize,
-}
-
-/// The normal equations, the upper triangle in lanes.
-struct Sums<const P: usize> {
-    n: [[Lanes; P]; P],
-    b: [Lanes; P],
-    omega: Lanes,
-}
-
-impl<const P: usize> Sums<P> {
-    /// Adds the rows of one chunk: `j` the derivatives, `r` the residuals.
-    #[inline(always)]
-    fn add(&mut self, j: &[Lanes; P], r: &Lanes) {
-        for row in 0..P {
-            for column in row..P {
-                for i in 0..LANES {
-                    self.n[row][column][i] += j[row][i] * j[column][i];
-                }
-            }
-            for i in 0..LANES {
-                self.b[row][i] += j[row][i] * r[i];
-            }
-        }
-        for i in 0..LANES {
-            self.omega[i] += r[i] * r[i];
-        }
-    }
-
-    fn normal(&self) -> Normal<P> {
-        let sum = |lanes: &Lanes| lanes.iter().sum::<f64>();
-        Normal {
-            n: SMatrix::from_fn(|i, j| sum(&self.n[i.min(j)][i.max(j)])),
-            b: SVector::from_fn(|i, _| sum(&self.b[i])),
-            omega: sum(&self.omega),
-        }
-    }
 }
 
 #[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
