@@ -14,7 +14,7 @@ pub struct Ellipse {
 
 impl Ellipse {
     /// The ellipse of half second moments: A is twice the root of the `moments` (xx, xy, yy) of an evenly filled ellipse.
-    fn from_moments(position: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Self {
+    pub(crate) fn from_moments(position: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Self {
         let root = (xx * yy - xy * xy).max(0.0).sqrt();
         let scale = 2.0 / (xx + yy + 2.0 * root).sqrt();
         Self { position, shape: [scale * (xx + root), scale * xy, scale * (yy + root)] }

@@ -6,6 +6,7 @@
 pub mod board;
 pub mod conformance;
 pub mod ellipse;
+pub mod ellipse_edges;
 #[cfg(test)]
 mod exact;
 pub mod external;

@@ -37,6 +37,8 @@ pub(crate) struct Solution<const P: usize> {
 /// The iteration also ends with one that moves the position by less than this, px.
 const STILL: f64 = 1e-9;
 const EVALUATIONS: usize = 60;
+/// From so many evaluations on it is enough that the position stands, for where a target hardly tells its size from its blur and contrast.
+const PATIENCE: usize = 10;
 const DAMPING: f64 = 1e-3;
 
 /// Minimises, until a step is shorter than `short` standard deviations; it is still taken. `None` when that takes too long or comes to a place of no meaning.
@@ -44,11 +46,16 @@ pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVe
     let mut x = start;
     let mut normal = problem.normal(&x)?;
     let mut damping = DAMPING;
-    for _ in 0..EVALUATIONS {
+    for evaluation in 0..EVALUATIONS {
         let (step, decrement) = step(problem, &normal, &x, damping)?;
         let variance = normal.omega / problem.redundancy();
         let next = bounded(problem, &(x + step));
-        if damping <= DAMPING && (decrement <= short * short * variance || step[0].abs().max(step[1].abs()) < STILL) {
+        let stands = || {
+            let short = short * short * variance;
+            let rests = || step[0].hypot(step[1]) < STILL || evaluation >= PATIENCE && normal.position_rests(&step, short);
+            decrement <= short || rests()
+        };
+        if damping <= DAMPING && stands() {
             return Some(Solution { x: next, normal });
         }
         match problem.normal(&next) {
@@ -115,6 +122,11 @@ impl<const P: usize> Scaled<P> {
 }
 
 impl<const P: usize> Normal<P> {
+    /// Is the step of the position short against its standard deviation? `square` is that of the fraction, times the variance of unit weight.
+    fn position_rests(&self, step: &SVector<f64, P>, square: f64) -> bool {
+        self.cofactors().is_some_and(|q| step[0].powi(2) + step[1].powi(2) <= square * (q[(0, 0)] + q[(1, 1)]))
+    }
+
     /// The cofactors of the unknowns, `N^-1`; `None` when they are not determined.
     pub(crate) fn cofactors(&self) -> Option<SMatrix<f64, P, P>> {
         let Scaled { factor, scale } = decompose(&self.n)?;

@@ -146,4 +146,4 @@ impl Problem<UNKNOWNS> for Disc {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
