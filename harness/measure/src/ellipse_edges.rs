@@ -10,17 +10,17 @@ use crate::operator::Operator;
 use crate::registry::{Build, Method};
 use profile::{common, profiles};
 
-/// The profiles are laid anew around each ellipse, until its centre moves by less than this, px.
-const STILL: f64 = 1e-3;
-const LAYINGS: usize = 8;
+/// So often the profiles are laid anew around the ellipse; the last time its centre must not move by more than this, px.
+const LAYINGS: usize = 5;
+const STILL: f64 = 0.1;
 const VAGUE: f64 = 1.0;
 
-/// Ellipse through edge points: profiles across the outline, one a pixel, the edge in each to a fraction of a pixel, the ellipse through these points.
+/// Ellipse through edge points: profiles across the outline, four a pixel, the edge in each to a fraction of a pixel, the ellipse through these points.
 ///
-/// Grey values are interpolated bilinearly from 4 px inside to 4 px outside. An edge blurred by a Gaussian is fitted to the mean of all profiles, and
+/// Grey values are interpolated bilinearly from 4 px inside (less in small discs) to 4 px outside. An edge blurred by a Gaussian is fitted to the mean of all profiles, and
 /// then shifted along each. The first ellipse is the direct one of least algebraic distance, the last that of least orthogonal distances. The start is the
 /// area nearest to the given position that stands out from its ground. The result is the centre of the *ellipse*, as with `parametric_circle`.
-/// The covariance (px^2) is that of the distances, taken as independent: neighbouring profiles share pixels, which makes it a little too small.
+/// The covariance (px^2) is that of the distances, of which one a pixel is taken as independent.
 ///
 /// Source: Fitzgibbon, Pilu & Fisher 1999 (direct fit); the profiles are our own.
 pub struct EllipseEdges;
@@ -43,17 +43,16 @@ impl Operator for EllipseEdges {
     /// [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let Guess { mut ellipse, .. } = seek(image, start)?;
-        for laying in 0..LAYINGS {
+        for laying in 0.. {
             let profiles = profiles(image, &ellipse).ok_or(Rejection::Border)?;
             let edge = common(&profiles).ok_or(Rejection::NoCorner)?;
             let points: Vec<_> = profiles.iter().filter_map(|profile| profile.crossing(&edge)).collect();
             let rough = if laying == 0 { conic::direct(&points).ok_or(Rejection::NoCorner)? } else { ellipse };
             let fit = conic::orthogonal(&points, rough).ok_or(Rejection::NotConverged)?;
-            let moved = distance(&fit.ellipse, &ellipse);
-            ellipse = fit.ellipse;
-            if moved < STILL {
-                return measurement(&fit);
+            if laying + 1 == LAYINGS {
+                return if distance(&fit.ellipse, &ellipse) <= STILL { measurement(&fit) } else { Err(Rejection::NotConverged) };
             }
+            ellipse = fit.ellipse;
         }
         Err(Rejection::NotConverged)
     }
@@ -64,7 +63,8 @@ fn distance(a: &Ellipse, b: &Ellipse) -> f64 {
 }
 
 fn measurement(fit: &conic::Fit) -> Result<Measurement, Rejection> {
-    let q = fit.cofactors * fit.variance;
+    // Of the profiles only one a pixel is independent of the others.
+    let q = fit.cofactors * (fit.variance * profile::DENSELY);
     let covariance = Covariance { sxx: q[(0, 0)], sxy: q[(0, 1)], syy: q[(1, 1)] };
     // Written so that NaN is rejected, too.
     if covariance.sxx + covariance.syy <= VAGUE * VAGUE {

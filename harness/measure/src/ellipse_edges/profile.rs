@@ -10,14 +10,20 @@ use crate::marquardt::{Normal, Problem, minimise};
 /// Samples of a profile are this far apart, px.
 const SPACING: f64 = 0.5;
 /// Samples to either side of the outline.
-pub(super) const HALF: usize = 8;
+const HALF: usize = 8;
 const SAMPLES: usize = 2 * HALF + 1;
+/// Inwards a profile ends at this fraction of the smaller semi-axis: beyond the centre lies the opposite edge.
+const INWARDS: f64 = 0.8;
+/// Profiles for each px of the outline: many, so that what interpolation does to each averages out.
+pub(super) const DENSELY: f64 = 4.0;
 
 /// A profile across the outline, from inside to outside.
 pub(super) struct Profile {
     foot: Vector2<f64>,
     normal: Vector2<f64>,
     grey: [f64; SAMPLES],
+    /// The first sample that is taken.
+    first: usize,
 }
 
 /// The edge that all profiles have in common: grey values inside and outside, and the blur, px.
@@ -28,19 +34,22 @@ pub(super) struct Edge {
     blur: f64,
 }
 
-/// Profiles across an ellipse, one a px of its outline; `None` when one leaves the image.
+/// Profiles across an ellipse, [`DENSELY`]; `None` when one leaves the image.
 pub(super) fn profiles(image: &Image, ellipse: &Ellipse) -> Option<Vec<Profile>> {
-    let count = (std::f64::consts::PI * ellipse.semi_axes().iter().sum::<f64>()).ceil().max(12.0) as usize;
+    let [large, small] = ellipse.semi_axes();
+    // A multiple of eight: in an image that is turned or reflected the same profiles are taken.
+    let count = 8 * (DENSELY * std::f64::consts::PI * (large + small) / 8.0).ceil().max(3.0) as usize;
+    let first = HALF - ((INWARDS * small / SPACING) as usize).clamp(2, HALF);
     (0..count)
         .map(|i| {
             let (offset, tangent) = ellipse.point(std::f64::consts::TAU * i as f64 / count as f64);
             let normal = Vector2::new(tangent.y, -tangent.x).normalize();
             let foot = Vector2::from(ellipse.position) + offset;
             let mut grey = [0.0; SAMPLES];
-            for (sample, grey) in grey.iter_mut().enumerate() {
+            for (sample, grey) in grey.iter_mut().enumerate().skip(first) {
                 *grey = interpolate(image, foot + normal * distance(sample))?;
             }
-            Some(Profile { foot, normal, grey })
+            Some(Profile { foot, normal, grey, first })
         })
         .collect()
 }
@@ -69,13 +78,14 @@ fn blurred(distance: f64) -> (f64, f64) {
 /// Mean, half the difference and variance of the blur of the mean profile.
 struct Common {
     grey: [f64; SAMPLES],
+    first: usize,
 }
 
 impl Problem<4> for Common {
     fn normal(&mut self, x: &SVector<f64, 4>) -> Option<Normal<4>> {
         let blur = x[2];
         let mut normal = Normal { n: SMatrix::zeros(), b: SVector::zeros(), omega: 0.0 };
-        for (sample, grey) in self.grey.iter().enumerate() {
+        for (sample, grey) in self.grey.iter().enumerate().skip(self.first) {
             let t = (distance(sample) - x[0]) / blur;
             let (edge, slope) = blurred(t);
             let j = SVector::from([-2.0 * x[1] * slope / blur, edge, -2.0 * x[1] * slope * t / blur, 1.0]);
@@ -92,7 +102,7 @@ impl Problem<4> for Common {
     }
 
     fn redundancy(&self) -> f64 {
-        SAMPLES as f64 - 4.0
+        (SAMPLES - self.first) as f64 - 4.0
     }
 }
 
@@ -104,9 +114,10 @@ pub(super) fn common(profiles: &[Profile]) -> Option<Edge> {
             *sum += value / profiles.len() as f64;
         }
     }
-    let (inside, outside) = (grey[0], grey[SAMPLES - 1]);
+    let first = profiles.first()?.first;
+    let (inside, outside) = (grey[first], grey[SAMPLES - 1]);
     let start = SVector::from([0.0, 0.5 * (outside - inside), 0.8, 0.5 * (outside + inside)]);
-    let x = minimise(&mut Common { grey }, start, 1e-2)?.x;
+    let x = minimise(&mut Common { grey, first }, start, 1e-2)?.x;
     Some(Edge { inside: x[3] - x[1], outside: x[3] + x[1], blur: x[2] })
 }
 
@@ -117,7 +128,7 @@ impl Profile {
         let mut shift = 0.0;
         for _ in 0..4 {
             let (mut n, mut b) = (0.0, 0.0);
-            for (sample, grey) in self.grey.iter().enumerate() {
+            for (sample, grey) in self.grey.iter().enumerate().skip(self.first) {
                 let (value, slope) = blurred((distance(sample) - shift) / edge.blur);
                 let j = -2.0 * half * slope / edge.blur;
                 n += j * j;
