@@ -123,7 +123,8 @@ impl Patch {
         let moment = |a: usize, b: usize| mean(&|p| (p[a] - centre[a]) * (p[b] - centre[b])) + if a == b { 1.0 / 12.0 } else { 0.0 };
         let ellipse = Ellipse::from_moments(centre, [moment(0, 0), moment(0, 1), moment(1, 1)]);
         let level = |target: bool| {
-            let (sum, n) = (0..self.grey.len()).filter(|i| is_target(*i) == target).fold((0.0, 0.0), |(s, n), i| (s + self.grey[i], n + 1.0));
+            let (sum, n) =
+                (0..self.grey.len()).filter(|i| is_target(*i) == target).fold((0.0, 0.0), |(s, n), i| (s + self.grey[i], n + 1.0));
             sum / n
         };
         Some(Guess { ellipse, inside: level(true), outside: level(false) })
@@ -137,8 +138,12 @@ impl Patch {
         let mut next = 0;
         while let Some(&i) = pixels.get(next) {
             let (x, y) = (i % self.side, i / self.side);
-            let neighbours =
-                [(x > 0).then(|| i - 1), (x + 1 < self.side).then(|| i + 1), (y > 0).then(|| i - self.side), (y + 1 < self.side).then(|| i + self.side)];
+            let neighbours = [
+                (x > 0).then(|| i - 1),
+                (x + 1 < self.side).then(|| i + 1),
+                (y > 0).then(|| i - self.side),
+                (y + 1 < self.side).then(|| i + self.side),
+            ];
             for j in neighbours.into_iter().flatten() {
                 if !seen[j] && is_target(j) {
                     seen[j] = true;

@@ -11,7 +11,7 @@ use crate::registry::{Build, Method};
 use profile::{common, profiles};
 
 /// So often the profiles are laid anew around the ellipse; the last time its centre must not move by more than this, px.
-const LAYINGS: usize = 5;
+const LAYINGS: usize = 4;
 const STILL: f64 = 0.1;
 const VAGUE: f64 = 1.0;
 
@@ -20,7 +20,8 @@ const VAGUE: f64 = 1.0;
 /// Grey values are interpolated bilinearly from 4 px inside (less in small discs) to 4 px outside. An edge blurred by a Gaussian is fitted to the mean of all profiles, and
 /// then shifted along each. The first ellipse is the direct one of least algebraic distance, the last that of least orthogonal distances. The start is the
 /// area nearest to the given position that stands out from its ground. The result is the centre of the *ellipse*, as with `parametric_circle`.
-/// The covariance (px^2) is that of the distances, of which one a pixel is taken as independent.
+/// The covariance (px^2) is that of the distances, of which one a pixel is taken as independent:
+/// on sharp edges (blur 0.3 px) with little noise (0.5 % of the contrast) the interpolation leaves an error of some thousandths of a pixel that it does not show.
 ///
 /// Source: Fitzgibbon, Pilu & Fisher 1999 (direct fit); the profiles are our own.
 pub struct EllipseEdges;
@@ -81,9 +82,12 @@ mod tests {
 
     #[test]
     fn errors_are_within_a_third_of_the_bound() {
-        let [bound, _] = pools("ellipse_edges", 54);
+        let [bound, own] = pools("ellipse_edges", 54);
         let (_, interval) = bound.ratio();
         assert!(bound.trials() >= 2500 && interval[0] <= 1.35 && interval[1] >= 1.0, "{interval:?}");
+        // Sharp edges at little noise are where interpolation, not noise, says how far off the points are.
+        let (ratio, _) = own.ratio();
+        assert!((0.8..1.6).contains(&ratio), "{ratio}");
     }
 
     #[test]

@@ -85,7 +85,9 @@ impl Chess {
                 self.along(which, direction, (low, high), &rule, side, &mut sum);
             }
         }
-        let plane = |i: usize| self.gradient[0] * ((i % side) as f64 - self.position[0]) + self.gradient[1] * ((i / side) as f64 - self.position[1]);
+        let plane = |i: usize| {
+            self.gradient[0] * ((i % side) as f64 - self.position[0]) + self.gradient[1] * ((i / side) as f64 - self.position[1])
+        };
         sum.iter().enumerate().map(|(i, f)| self.mean + self.half * f + plane(i)).collect()
     }
 
@@ -188,15 +190,8 @@ pub(crate) fn image(grey: &[f64], side: usize) -> Image {
 
 #[test]
 fn an_upright_chess_corner_is_the_product_of_two_profiles() {
-    let corner = Chess {
-        position: [9.3, 8.8],
-        normals: [0.0, 0.5 * PI],
-        curvature: [0.0; 2],
-        blur: 0.4,
-        mean: 0.5,
-        half: 0.5,
-        gradient: [0.0; 2],
-    };
+    let corner =
+        Chess { position: [9.3, 8.8], normals: [0.0, 0.5 * PI], curvature: [0.0; 2], blur: 0.4, mean: 0.5, half: 0.5, gradient: [0.0; 2] };
     let grey = corner.render(19);
     let step = |z: f64| 2.0 * profile(z, 0.4).0 - 1.0;
     for (i, grey) in grey.iter().enumerate() {

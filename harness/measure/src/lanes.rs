@@ -15,8 +15,8 @@ pub(crate) const DENSITY: f64 = 0.398_942_280_401_432_7;
 ///
 /// The form is that of Shepherd & Laframboise 1981; the coefficients are fitted anew, to an error of erfc of 6e-10.
 const ERFCX: [f64; 10] = [
-    1.244_375_846_053_946_69,
-    -0.139_610_989_764_241_99,
+    1.244_375_846_053_946_7,
+    -0.139_610_989_764_242,
     -0.016_960_689_947_235_83,
     0.103_848_136_867_238_26,
     -0.116_987_945_056_996_36,

@@ -152,17 +152,11 @@ impl<const P: usize> Sums<P> {
     pub(crate) fn add(&mut self, j: &[Lanes; P], r: &Lanes) {
         for row in 0..P {
             for column in row..P {
-                for i in 0..LANES {
-                    self.n[row][column][i] += j[row][i] * j[column][i];
-                }
+                add_products(&mut self.n[row][column], &j[row], &j[column]);
             }
-            for i in 0..LANES {
-                self.b[row][i] += j[row][i] * r[i];
-            }
+            add_products(&mut self.b[row], &j[row], r);
         }
-        for i in 0..LANES {
-            self.omega[i] += r[i] * r[i];
-        }
+        add_products(&mut self.omega, r, r);
     }
 
     pub(crate) fn normal(&self) -> Normal<P> {
@@ -172,6 +166,13 @@ impl<const P: usize> Sums<P> {
             b: SVector::from_fn(|i, _| sum(&self.b[i])),
             omega: sum(&self.omega),
         }
+    }
+}
+
+#[inline(always)]
+fn add_products(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+    for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
+        *sum += a * b;
     }
 }
 

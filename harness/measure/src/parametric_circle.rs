@@ -70,7 +70,7 @@ impl Operator for ParametricCircle {
         let half = if self.window == 0 { (ellipse.extent() + MARGIN).ceil() as i64 } else { self.window as i64 / 2 };
         let centre = ellipse.position.map(|c| c.round() as i64);
         let mut disc = Disc::new(image, centre, half)?;
-        let (at, [a, b, c]) = (disc.from_image(ellipse.position), ellipse.shape);
+        let (at, [a, b, c]) = (disc.in_window(ellipse.position), ellipse.shape);
         let start = SVector::from([at[0], at[1], a, b, c, VARIANCE, outside, inside - outside]);
         let found = minimise(&mut disc, start, NEARLY).ok_or(Rejection::NotConverged)?;
         let side = disc.planes.side as f64 - 1.0;
@@ -102,7 +102,7 @@ impl Disc {
         Ok(Self { grey, first, planes: Planes::new((2 * half + 1) as usize) })
     }
 
-    fn from_image(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    fn in_window(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x - self.first[0], y - self.first[1]]
     }
 }
@@ -123,8 +123,8 @@ impl Problem<UNKNOWNS> for Disc {
             let (mut j, mut r) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
             for (i, grey) in grey.iter().enumerate() {
                 let pixel = chunk * LANES + i;
-                let covered = self.planes.planes[0][pixel];
-                for (unknown, plane) in self.planes.planes[1..].iter().enumerate() {
+                let covered = self.planes.values[0][pixel];
+                for (unknown, plane) in self.planes.values[1..].iter().enumerate() {
                     j[unknown][i] = contrast * plane[pixel];
                 }
                 j[6][i] = 1.0;

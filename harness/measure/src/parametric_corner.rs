@@ -172,6 +172,6 @@ fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection>
 }
 
 #[cfg(test)]
-mod tests;
-#[cfg(test)]
 mod efficiency;
+#[cfg(test)]
+mod tests;

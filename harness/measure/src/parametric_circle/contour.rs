@@ -18,7 +18,7 @@ const REACH: f64 = 6.0;
 /// How much of each pixel is covered, and its derivatives by the centre (2), the shape (3) and the variance of the blur: seven planes of the window.
 pub(super) struct Planes {
     pub(super) side: usize,
-    pub(super) planes: [Vec<f64>; 7],
+    pub(super) values: [Vec<f64>; 7],
     columns: Profile,
     rows: Profile,
 }
@@ -36,7 +36,7 @@ impl Planes {
     pub(super) fn new(side: usize) -> Self {
         let plane = || vec![0.0; side * side];
         let planes = std::array::from_fn(|_| plane());
-        Self { side, planes, columns: Profile::default(), rows: Profile::default() }
+        Self { side, values: planes, columns: Profile::default(), rows: Profile::default() }
     }
 
     /// Fills all planes for an `ellipse` whose position is taken from the window's first pixel, under a blur of `variance` px^2.
@@ -44,7 +44,7 @@ impl Planes {
         let blur = variance.sqrt();
         let around = std::f64::consts::TAU;
         let nodes = ((around * ellipse.semi_axes()[0] / (STEP * blur)).ceil() as usize).max(FEWEST);
-        self.planes.iter_mut().for_each(|plane| plane.fill(0.0));
+        self.values.iter_mut().for_each(|plane| plane.fill(0.0));
         for node in 0..nodes {
             add(self, ellipse, blur, around * node as f64 / nodes as f64, around / nodes as f64);
         }
@@ -62,7 +62,7 @@ fn add(to: &mut Planes, ellipse: &Ellipse, blur: f64, t: f64, dt: f64) {
     let speeds = [dy, -dx, cos * dy, sin * dy - cos * dx, -sin * dx];
     let Profile { first, integral, value, slope } = &to.columns;
     let beyond = first + integral.len();
-    let [covered, unknowns @ .., variance] = &mut to.planes;
+    let [covered, unknowns @ .., variance] = &mut to.values;
     for (row, (down, down_slope)) in to.rows.value.iter().zip(&to.rows.slope).enumerate() {
         let start = (to.rows.first + row) * to.side;
         let line = start + first..start + beyond;

@@ -101,7 +101,7 @@ fn coverage_is_exact_and_derivatives_are_those_of_differences() {
     let at = |x: [f64; 6]| {
         let mut planes = Planes::new(SIDE);
         planes.fill(&Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] }, x[5]);
-        planes.planes
+        planes.values
     };
     let ([x, y], [a, b, c]) = (disc.position, disc.shape);
     let x = [x, y, a, b, c, disc.blur * disc.blur];

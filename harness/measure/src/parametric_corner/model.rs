@@ -32,7 +32,8 @@ struct Pixel {
 
 /// One Gaussian of the square's variance: quick, and near enough to begin with.
 const ONE: Pixel = Pixel { offsets: &[0.0], weights: &[1.0], variance: 1.0 / 12.0 };
-const TWO: Pixel = Pixel { offsets: &[-0.254_066_374_077_307_4, 0.254_066_374_077_307_4], weights: &[0.5, 0.5], variance: 0.018_783_610_896_543_05 };
+const TWO: Pixel =
+    Pixel { offsets: &[-0.254_066_374_077_307_4, 0.254_066_374_077_307_4], weights: &[0.5, 0.5], variance: 0.018_783_610_896_543_05 };
 const THREE: Pixel = Pixel {
     offsets: &[-0.345_831_998_689_224, 0.0, 0.345_831_998_689_224],
     weights: &[0.318_902_974_746_591_3, 0.362_194_050_506_817_4, 0.318_902_974_746_591_3],
@@ -209,10 +210,7 @@ impl Model {
         let mut sum = Field::default();
         for node in &self.nodes[..self.count] {
             let p = self.edges[which].place::<CURVED>(node, self.variance, x, y);
-            let mut a = [0.0; LANES];
-            for i in 0..LANES {
-                a[i] = p.distance[i] * self.inverse;
-            }
+            let a = p.distance.map(|distance| distance * self.inverse);
             let (edge, bell) = step(&a);
             let mut by = [0.0; LANES];
             for i in 0..LANES {
@@ -224,6 +222,7 @@ impl Model {
         sum
     }
 
+    #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
     /// Adds the derivatives of which `by` is that by the distance from edge `which`.
     #[inline(always)]
     fn add_edge<const CURVED: bool>(&self, which: usize, p: &Place, by: &Lanes, sum: &mut Field) {

@@ -27,17 +27,16 @@ impl Kernels {
     fn new(reach: usize) -> Self {
         let sigma = reach as f64 / 2.5;
         let mut taps = [[0.0; 2 * WIDEST + 1]; 3];
+        let [value, slope, bend] = &mut taps;
         for i in 0..=2 * reach {
             let t = (i as f64 - reach as f64) / sigma;
             let bell = (-0.5 * t * t).exp();
-            taps[0][i] = bell;
-            taps[1][i] = t * bell;
-            taps[2][i] = (t * t - 1.0) * bell;
+            (value[i], slope[i], bend[i]) = (bell, t * bell, (t * t - 1.0) * bell);
         }
         // Truncated and sampled, the second derivative must still not see a constant.
-        let excess = taps[2].iter().sum::<f64>() / taps[0].iter().sum::<f64>();
-        for i in 0..=2 * reach {
-            taps[2][i] -= excess * taps[0][i];
+        let excess = bend.iter().sum::<f64>() / value.iter().sum::<f64>();
+        for (bend, value) in bend.iter_mut().zip(value) {
+            *bend -= excess * *value;
         }
         Self { reach, taps }
     }

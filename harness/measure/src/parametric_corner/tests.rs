@@ -107,7 +107,9 @@ fn derivatives_are_those_of_differences() {
             let (x, y) = ([x - shape.position[0]; LANES], [y - shape.position[1]; LANES]);
             only.map_or_else(|| model.corner::<true>(&x, &y), |which| model.edge::<true>(which, &[-1.0; LANES], &x, &y))
         };
-        for (at, only) in [((14.2, 15.9), None), ((15.6, 15.1), None), ((16.9, 13.4), None), ((15.5, 14.8), Some(0)), ((14.9, 15.8), Some(1))] {
+        for (at, only) in
+            [((14.2, 15.9), None), ((15.6, 15.1), None), ((16.9, 13.4), None), ((15.5, 14.8), Some(0)), ((14.9, 15.8), Some(1))]
+        {
             let shape = shape_of(&corner);
             let f = field(&shape, at, only);
             let analytic = [f.position[0], f.position[1], f.normals[0], f.normals[1], f.variance, f.curvature[0], f.curvature[1]];

@@ -77,7 +77,8 @@ impl<const P: usize, const GRADIENT: bool, const CURVED: bool> Problem<P> for Wi
             return None;
         }
         let model = Model::new(&shape, self.fidelity)?;
-        let view = View { grey: &self.image.grey()[self.top * self.image.width() + self.left..], stride: self.image.width(), side: self.side };
+        let view =
+            View { grey: &self.image.grey()[self.top * self.image.width() + self.left..], stride: self.image.width(), side: self.side };
         let mut sums = Sums::<P>::new();
         add::<P, GRADIENT, CURVED>(&model, view, x.as_slice(), &mut self.pixels, &mut sums);
         Some(sums.normal())
@@ -129,10 +130,10 @@ fn sort(model: &Model, view: View<'_>, [cx, cy]: [f64; 2], lists: &mut Lists) {
             let [u, v] = [model.edges[0].distance(x - cx, y - cy), model.edges[1].distance(x - cx, y - cy)];
             let (by_first, by_second) = (u.abs() < model.reach, v.abs() < model.reach);
             let entry = |side: f64| [x, y, f64::from(*grey), 1_f64.copysign(side)];
-            corner.push_if(by_first & by_second, entry(1.0));
-            first.push_if(by_first & !by_second, entry(v));
-            second.push_if(!by_first & by_second, entry(u));
-            areas.push_if(!by_first & !by_second, entry(1_f64.copysign(u) * v));
+            corner.push_if(by_first && by_second, entry(1.0));
+            first.push_if(by_first && !by_second, entry(v));
+            second.push_if(!by_first && by_second, entry(u));
+            areas.push_if(!by_first && !by_second, entry(1_f64.copysign(u) * v));
         }
     }
 }
