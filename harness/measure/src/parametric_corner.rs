@@ -20,8 +20,8 @@ const VARIANCE: f64 = 0.5;
 /// either of two windows finds the corner in the other's middle.
 const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 /// Each iteration ends with a step shorter than so many standard deviations.
-const ROUGHLY: f64 = 0.1;
-const NEARLY: f64 = 1e-2;
+const ROUGHLY: f64 = 0.3;
+const NEARLY: f64 = 0.03;
 const LAYINGS: usize = 6;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
