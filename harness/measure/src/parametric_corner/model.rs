@@ -22,7 +22,7 @@ pub(super) struct Shape {
 /// A pixel's area as a mixture of Gaussians: `offsets` along each axis with `weights`, each of this `variance`, px^2.
 ///
 /// Up to which order the mixture's cumulants are the unit square's grows with the Gaussians of an axis. Of the contrast, an edge blurred by a Gaussian of
-/// standard deviation s is off by 6e-5 with one at s = 1.34, 8e-6 with two at 0.71, 7e-6 with three at 0.4, 4e-6 with four at 0.3 and 5e-3 at 0.1, all px;
+/// standard deviation s is off by 8e-6 with two at s = 0.71, 7e-6 with three at 0.4, 4e-6 with four at 0.3 and 5e-3 at 0.1, all px;
 /// without any blur the grey values are 4e-2 off, but the model does not become singular.
 struct Pixel {
     offsets: &'static [f64],
@@ -50,7 +50,6 @@ impl Pixel {
     fn for_blur(variance: f64, fidelity: Fidelity) -> &'static Self {
         match variance {
             _ if fidelity == Fidelity::Rough => &ONE,
-            v if v > 1.8 => &ONE,
             v if v > 0.5 => &TWO,
             v if v > 0.16 => &THREE,
             _ => &FOUR,
