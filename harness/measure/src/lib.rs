@@ -5,13 +5,21 @@
 
 pub mod board;
 pub mod conformance;
+pub mod ellipse;
+pub mod ellipse_edges;
+#[cfg(test)]
+mod exact;
 pub mod external;
 pub mod forstner;
 pub mod harris;
 pub mod harris_paraboloid;
+mod lanes;
+mod marquardt;
 pub mod operator;
 pub mod paraboloid;
 pub mod parameter;
+pub mod parametric_circle;
+pub mod parametric_corner;
 pub mod pixel;
 pub mod registry;
 

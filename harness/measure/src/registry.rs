@@ -101,7 +101,16 @@ pub struct Registry {
 impl Registry {
     /// The methods of this crate.
     pub fn builtin() -> Self {
-        Self { methods: vec![crate::pixel::method(), crate::forstner::method(), crate::harris_paraboloid::method()] }
+        Self {
+            methods: vec![
+                crate::pixel::method(),
+                crate::forstner::method(),
+                crate::harris_paraboloid::method(),
+                crate::parametric_corner::method(),
+                crate::parametric_circle::method(),
+                crate::ellipse_edges::method(),
+            ],
+        }
     }
 
     /// Adds a method, in place of one of the same name if there is one.

@@ -2,6 +2,7 @@
 
 pub mod camera;
 pub mod convert;
+pub mod eccentricity;
 pub mod frames;
 pub mod image;
 pub mod observation;

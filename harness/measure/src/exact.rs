@@ -1,0 +1,266 @@
+//! Exact images for tests: shapes blurred by a Gaussian and averaged over the pixel's area, by quadrature to 1e-9.
+//!
+//! Chess corners by Green's theorem along their edges, ellipses area by area: the operators go the other way about.
+
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+use calibench_model::Image;
+use statrs::function::erf::erfc;
+
+/// A chess corner: the grey value is `mean + half * sign u * sign v`, with `u = n1 . d + curvature t^2 / 2`, d from the corner and t along the edge.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Chess {
+    pub(crate) position: [f64; 2],
+    pub(crate) normals: [f64; 2],
+    pub(crate) curvature: [f64; 2],
+    pub(crate) blur: f64,
+    pub(crate) mean: f64,
+    pub(crate) half: f64,
+    pub(crate) gradient: [f64; 2],
+}
+
+/// An ellipse: the points `position + A (cos t, sin t)`, with A symmetric, `shape` = axx, axy, ayy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ellipse {
+    pub(crate) position: [f64; 2],
+    pub(crate) shape: [f64; 3],
+    pub(crate) blur: f64,
+    pub(crate) inside: f64,
+    pub(crate) outside: f64,
+}
+
+fn phi(x: f64) -> f64 {
+    0.5 * erfc(-x * FRAC_1_SQRT_2)
+}
+
+fn bell(x: f64) -> f64 {
+    (-0.5 * x * x).exp() / (2.0 * PI).sqrt()
+}
+
+/// The mean over a pixel at distance z of a blurred unit step, and its derivative by z.
+fn profile(z: f64, blur: f64) -> (f64, f64) {
+    let (high, low) = ((z + 0.5) / blur, (z - 0.5) / blur);
+    let area = |x: f64| x * phi(x) + bell(x);
+    (blur * (area(high) - area(low)), phi(high) - phi(low))
+}
+
+/// Nodes and weights of Gauss and Legendre on [-1, 1].
+pub(crate) fn legendre(n: usize) -> Vec<(f64, f64)> {
+    let order = n as f64;
+    (0..n)
+        .map(|i| {
+            let (mut x, mut slope) = ((PI * (i as f64 + 0.75) / (order + 0.5)).cos(), 0.0);
+            for _ in 0..100 {
+                let (mut p, mut q) = (1.0, x);
+                for k in 2..=n {
+                    let k = k as f64;
+                    (p, q) = (q, ((2.0 * k - 1.0) * x * q - (k - 1.0) * p) / k);
+                }
+                slope = order * (x * q - p) / (x * x - 1.0);
+                x -= q / slope;
+            }
+            (x, 2.0 / ((1.0 - x * x) * slope * slope))
+        })
+        .collect()
+}
+
+impl Chess {
+    /// The grey values of `side` x `side` px, row by row, unrounded.
+    pub(crate) fn render(&self, side: usize) -> Vec<f64> {
+        let far = 12.0 * self.blur + 2.0;
+        let (low, high) = (-far, side as f64 - 1.0 + far);
+        let mut sum = vec![self.sides(low, low); side * side];
+        let rule = legendre(8);
+        for which in 0..2 {
+            for direction in [1.0, -1.0] {
+                let (x, y) = self.leave(which, direction, low, high);
+                // On the left-hand side of the frame the sign changes where an edge comes through.
+                if x < low + 0.5 * far && y > low && y < high {
+                    let (u, v) = (self.sides(low, y - 1e-6), self.sides(low, y + 1e-6));
+                    sum.chunks_mut(side).enumerate().for_each(|(row, line)| {
+                        let passed = (v - u) * profile(row as f64 - y, self.blur).0;
+                        line.iter_mut().for_each(|value| *value += passed);
+                    });
+                }
+                self.along(which, direction, (low, high), &rule, side, &mut sum);
+            }
+        }
+        let plane = |i: usize| {
+            self.gradient[0] * ((i % side) as f64 - self.position[0]) + self.gradient[1] * ((i / side) as f64 - self.position[1])
+        };
+        sum.iter().enumerate().map(|(i, f)| self.mean + self.half * f + plane(i)).collect()
+    }
+
+    fn signed(&self, which: usize, x: f64, y: f64) -> f64 {
+        let (ny, nx) = self.normals[which].sin_cos();
+        let (dx, dy) = (x - self.position[0], y - self.position[1]);
+        let t = nx * dy - ny * dx;
+        nx * dx + ny * dy + 0.5 * self.curvature[which] * t * t
+    }
+
+    fn sides(&self, x: f64, y: f64) -> f64 {
+        (self.signed(0, x, y) * self.signed(1, x, y)).signum()
+    }
+
+    fn point(&self, which: usize, t: f64) -> (f64, f64) {
+        let (ny, nx) = self.normals[which].sin_cos();
+        let sag = 0.5 * self.curvature[which] * t * t;
+        (self.position[0] - t * ny - sag * nx, self.position[1] + t * nx - sag * ny)
+    }
+
+    /// How far an edge goes, and where it leaves the frame.
+    fn length(&self, which: usize, direction: f64, low: f64, high: f64) -> f64 {
+        let inside = |t: f64| {
+            let (x, y) = self.point(which, direction * t);
+            x > low && x < high && y > low && y < high
+        };
+        let (mut near, mut beyond) = (0.0, 1.0);
+        while inside(beyond) {
+            (near, beyond) = (beyond, beyond + 1.0);
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (near + beyond);
+            if inside(middle) { near = middle } else { beyond = middle }
+        }
+        beyond
+    }
+
+    fn leave(&self, which: usize, direction: f64, low: f64, high: f64) -> (f64, f64) {
+        self.point(which, direction * self.length(which, direction, low, high))
+    }
+
+    fn along(&self, which: usize, direction: f64, (low, high): (f64, f64), rule: &[(f64, f64)], side: usize, sum: &mut [f64]) {
+        let length = self.length(which, direction, low, high);
+        let panels = (length / self.blur).ceil().max(1.0);
+        let (ny, nx) = self.normals[which].sin_cos();
+        for panel in 0..panels as usize {
+            for (node, weight) in rule {
+                let t = direction * length * (panel as f64 + 0.5 + 0.5 * node) / panels;
+                let (x, y) = self.point(which, t);
+                let other = self.signed(1 - which, x, y).signum();
+                let jump = 2.0 * other * (nx - self.curvature[which] * t * ny) * weight * 0.5 * length / panels;
+                let across: Vec<f64> = (0..side).map(|column| profile(column as f64 - x, self.blur).0).collect();
+                for row in 0..side {
+                    let down = profile(row as f64 - y, self.blur).1;
+                    if down > 1e-14 {
+                        let line = &mut sum[row * side..(row + 1) * side];
+                        line.iter_mut().zip(&across).for_each(|(value, across)| *value += jump * down * across);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Ellipse {
+    /// The grey values of `side` x `side` px, row by row, unrounded.
+    pub(crate) fn render(&self, side: usize) -> Vec<f64> {
+        let [a, b, c] = self.shape;
+        let determinant = (a * c - b * b).powi(2);
+        // The inverse of A^2.
+        let (q12, q22) = (-(a * b + b * c) / determinant, (a * a + b * b) / determinant);
+        let width = (q22 * determinant).sqrt();
+        let (panels, rule, pixel) = ((PI * width / self.blur).ceil(), legendre(8), legendre(8));
+        let mut covered = vec![0.0; side * side];
+        for panel in 0..panels as usize {
+            for (node, weight) in &rule {
+                let psi = PI * ((panel as f64 + 0.5 + 0.5 * node) / panels - 0.5);
+                let dx = width * psi.sin();
+                let (middle, half) = (self.position[1] - q12 * dx / q22, psi.cos() / q22.sqrt());
+                let mean = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
+                    let over = |at: usize| pixel.iter().map(|(node, weight)| 0.5 * weight * f(at as f64 + 0.5 * node)).sum();
+                    (0..side).map(over).collect()
+                };
+                let across = mean(&|x| bell((x - self.position[0] - dx) / self.blur) / self.blur);
+                let down = mean(&|y| phi((middle + half - y) / self.blur) - phi((middle - half - y) / self.blur));
+                let weight = weight * 0.5 * PI / panels * width * psi.cos();
+                for (line, down) in covered.chunks_mut(side).zip(&down) {
+                    line.iter_mut().zip(&across).for_each(|(value, across)| *value += weight * down * across);
+                }
+            }
+        }
+        covered.iter().map(|c| self.outside + (self.inside - self.outside) * c).collect()
+    }
+}
+
+/// The grey values as an image.
+pub(crate) fn image(grey: &[f64], side: usize) -> Image {
+    Image::new(side, side, grey.iter().map(|g| *g as f32).collect())
+}
+
+#[test]
+fn an_upright_chess_corner_is_the_product_of_two_profiles() {
+    let corner =
+        Chess { position: [9.3, 8.8], normals: [0.0, 0.5 * PI], curvature: [0.0; 2], blur: 0.4, mean: 0.5, half: 0.5, gradient: [0.0; 2] };
+    let grey = corner.render(19);
+    let step = |z: f64| 2.0 * profile(z, 0.4).0 - 1.0;
+    for (i, grey) in grey.iter().enumerate() {
+        let expected = 0.5 + 0.5 * step((i % 19) as f64 - 9.3) * step((i / 19) as f64 - 8.8);
+        assert!((grey - expected).abs() < 1e-9, "{i}: {grey} {expected}");
+    }
+}
+
+#[test]
+fn all_of_an_ellipse_is_in_its_image() {
+    let ellipse = Ellipse { position: [14.2, 15.1], shape: [4.0, 0.7, 2.5], blur: 0.5, inside: 1.0, outside: 0.0 };
+    let area: f64 = ellipse.render(30).iter().sum();
+    assert!((area - PI * (4.0 * 2.5 - 0.49)).abs() < 1e-8, "{area}");
+}
+
+/// White noise of standard deviation `sigma` from a stream of its own.
+pub(crate) fn noisy(grey: &[f64], sigma: f64, rng: &mut rand_chacha::ChaCha8Rng) -> Vec<f64> {
+    use rand_distr::{Distribution, Normal};
+    let normal = Normal::new(0.0, sigma).unwrap();
+    grey.iter().map(|g| g + normal.sample(rng)).collect()
+}
+
+/// The Cramér-Rao bound of the first two of `P` unknowns for white noise of unit variance: its trace, px^2.
+pub(crate) fn bound<const P: usize>(at: [f64; P], render: impl Fn(&[f64; P]) -> Vec<f64>) -> f64 {
+    use nalgebra::SMatrix;
+    let derivative = |i: usize| {
+        let shifted = |h: f64| {
+            let mut x = at;
+            x[i] += h;
+            render(&x)
+        };
+        let (high, low) = (shifted(1e-4), shifted(-1e-4));
+        high.iter().zip(&low).map(|(h, l)| (h - l) / 2e-4).collect::<Vec<_>>()
+    };
+    let j: Vec<Vec<f64>> = (0..P).map(derivative).collect();
+    let n = SMatrix::<f64, P, P>::from_fn(|a, b| j[a].iter().zip(&j[b]).map(|(a, b)| a * b).sum());
+    let inverse = n.try_inverse().expect("all unknowns are determined");
+    inverse[(0, 0)] + inverse[(1, 1)]
+}
+
+/// Squared errors in units of the bound, pooled: their number, mean and standard error.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pool {
+    n: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Pool {
+    pub(crate) fn add(&mut self, value: f64) {
+        self.n += 1.0;
+        self.sum += value;
+        self.squares += value * value;
+    }
+
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.n += other.n;
+        self.sum += other.sum;
+        self.squares += other.squares;
+    }
+
+    pub(crate) fn trials(&self) -> usize {
+        self.n as usize
+    }
+
+    /// The root of the mean, and its 99 % interval.
+    pub(crate) fn ratio(&self) -> (f64, [f64; 2]) {
+        let mean = self.sum / self.n;
+        let error = ((self.squares / self.n - mean * mean).max(0.0) / self.n).sqrt();
+        (mean.sqrt(), [(mean - 2.576 * error).max(0.0).sqrt(), (mean + 2.576 * error).sqrt()])
+    }
+}

@@ -1,0 +1,236 @@
+//! Least squares for a handful of unknowns: Gauss-Newton, with Marquardt's damping while it is needed.
+
+use calibench_model::Covariance;
+use nalgebra::{Cholesky, Const, SMatrix, SVector};
+
+use crate::lanes::{LANES, Lanes};
+
+/// The normal equations at one place, and the sum of the squared residuals there.
+#[derive(Clone)]
+pub(crate) struct Normal<const P: usize> {
+    /// `J^T J`.
+    pub(crate) n: SMatrix<f64, P, P>,
+    /// `J^T r`, r observed minus modelled.
+    pub(crate) b: SVector<f64, P>,
+    /// `r^T r`.
+    pub(crate) omega: f64,
+}
+
+/// What is fitted. The first two unknowns are the position, px.
+pub(crate) trait Problem<const P: usize> {
+    /// The normal equations at `x`; `None` where the model has no meaning.
+    fn normal(&mut self, x: &SVector<f64, P>) -> Option<Normal<P>>;
+    /// The smallest value of an unknown.
+    fn lowest(&self, unknown: usize) -> f64;
+    /// Observations minus unknowns.
+    fn redundancy(&self) -> f64;
+}
+
+/// A solution.
+pub(crate) struct Solution<const P: usize> {
+    /// The unknowns.
+    pub(crate) x: SVector<f64, P>,
+    /// The normal equations one step, of no weight, before them.
+    pub(crate) normal: Normal<P>,
+}
+
+/// The iteration also ends with one that moves the position by less than this, px.
+const STILL: f64 = 1e-9;
+const EVALUATIONS: usize = 60;
+/// From so many evaluations on it is enough that the position stands, for where a target hardly tells its size from its blur and contrast.
+const PATIENCE: usize = 10;
+const DAMPING: f64 = 1e-3;
+
+/// Minimises, until a step is shorter than `short` standard deviations; it is still taken. `None` when that takes too long or comes to a place of no meaning.
+pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVector<f64, P>, short: f64) -> Option<Solution<P>> {
+    let mut x = start;
+    let mut normal = problem.normal(&x)?;
+    let mut damping = DAMPING;
+    for evaluation in 0..EVALUATIONS {
+        let (step, decrement) = step(problem, &normal, &x, damping)?;
+        let variance = normal.omega / problem.redundancy();
+        let next = bounded(problem, &(x + step));
+        let stands = || {
+            let short = short * short * variance;
+            let rests = || step[0].hypot(step[1]) < STILL || evaluation >= PATIENCE && normal.position_rests(&step, short);
+            decrement <= short || rests()
+        };
+        if damping <= DAMPING && stands() {
+            return Some(Solution { x: next, normal });
+        }
+        match problem.normal(&next) {
+            Some(better) if better.omega <= normal.omega => {
+                (x, normal) = (next, better);
+                damping = (damping * 0.1).max(1e-9);
+            }
+            // The residuals differ by rounding only: there is nothing left to gain.
+            Some(same) if damping <= DAMPING && same.omega <= normal.omega * (1.0 + 1e-9) => return Some(Solution { x, normal }),
+            _ if damping > 1e8 => return None,
+            _ => damping = (damping * 10.0).max(DAMPING),
+        }
+    }
+    None
+}
+
+/// The step and how much it is to gain. Unknowns that press against their bound stay there.
+fn step<const P: usize>(
+    problem: &impl Problem<P>,
+    normal: &Normal<P>,
+    x: &SVector<f64, P>,
+    damping: f64,
+) -> Option<(SVector<f64, P>, f64)> {
+    let (mut n, mut b) = (normal.n, normal.b);
+    for i in 0..P {
+        n[(i, i)] *= 1.0 + damping;
+        if x[i] <= problem.lowest(i) && b[i] <= 0.0 {
+            n.row_mut(i).fill(0.0);
+            n.column_mut(i).fill(0.0);
+            n[(i, i)] = 1.0;
+            b[i] = 0.0;
+        }
+    }
+    let step = decompose(&n)?.solve(&b);
+    let decrement = step.dot(&b);
+    decrement.is_finite().then_some((step, decrement))
+}
+
+fn bounded<const P: usize>(problem: &impl Problem<P>, x: &SVector<f64, P>) -> SVector<f64, P> {
+    SVector::from_fn(|i, _| x[i].max(problem.lowest(i)))
+}
+
+/// Cholesky, after the unknowns are scaled alike; `None` for a matrix that is singular to rounding.
+fn decompose<const P: usize>(n: &SMatrix<f64, P, P>) -> Option<Scaled<P>> {
+    let scale: SVector<f64, P> = SVector::from_fn(|i, _| 1.0 / n[(i, i)].sqrt());
+    if !scale.iter().all(|s| s.is_finite()) {
+        return None;
+    }
+    let scaled: SMatrix<f64, P, P> = SMatrix::from_fn(|i, j| n[(i, j)] * scale[i] * scale[j]);
+    let factor = scaled.cholesky()?;
+    let smallest = (0..P).map(|i| factor.l_dirty()[(i, i)]).fold(f64::INFINITY, f64::min);
+    (smallest > 1e-7).then_some(Scaled { factor, scale })
+}
+
+struct Scaled<const P: usize> {
+    factor: Cholesky<f64, Const<P>>,
+    scale: SVector<f64, P>,
+}
+
+impl<const P: usize> Scaled<P> {
+    fn solve(&self, b: &SVector<f64, P>) -> SVector<f64, P> {
+        self.factor.solve(&b.component_mul(&self.scale)).component_mul(&self.scale)
+    }
+}
+
+impl<const P: usize> Normal<P> {
+    /// Is the step of the position short against its standard deviation? `square` is that of the fraction, times the variance of unit weight.
+    fn position_rests(&self, step: &SVector<f64, P>, square: f64) -> bool {
+        self.cofactors().is_some_and(|q| step[0].powi(2) + step[1].powi(2) <= square * (q[(0, 0)] + q[(1, 1)]))
+    }
+
+    /// The cofactors of the unknowns, `N^-1`; `None` when they are not determined.
+    pub(crate) fn cofactors(&self) -> Option<SMatrix<f64, P, P>> {
+        let Scaled { factor, scale } = decompose(&self.n)?;
+        let inverse = factor.inverse();
+        Some(SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+    }
+}
+
+/// The normal equations, the upper triangle in lanes.
+pub(crate) struct Sums<const P: usize> {
+    n: [[Lanes; P]; P],
+    b: [Lanes; P],
+    omega: Lanes,
+}
+
+impl<const P: usize> Sums<P> {
+    pub(crate) fn new() -> Self {
+        Self { n: [[[0.0; LANES]; P]; P], b: [[0.0; LANES]; P], omega: [0.0; LANES] }
+    }
+
+    /// Adds the rows of one chunk: `j` the derivatives, `r` the residuals.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, j: &[Lanes; P], r: &Lanes) {
+        for row in 0..P {
+            for column in row..P {
+                add_products(&mut self.n[row][column], &j[row], &j[column]);
+            }
+            add_products(&mut self.b[row], &j[row], r);
+        }
+        add_products(&mut self.omega, r, r);
+    }
+
+    pub(crate) fn normal(&self) -> Normal<P> {
+        let sum = |lanes: &Lanes| lanes.iter().sum::<f64>();
+        Normal {
+            n: SMatrix::from_fn(|i, j| sum(&self.n[i.min(j)][i.max(j)])),
+            b: SVector::from_fn(|i, _| sum(&self.b[i])),
+            omega: sum(&self.omega),
+        }
+    }
+}
+
+#[inline(always)]
+fn add_products(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+    for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
+        *sum += a * b;
+    }
+}
+
+/// A position whose standard deviation is more than this, px, is none.
+const VAGUE: f64 = 1.0;
+
+/// The covariance of the position, px^2, with the variance of unit weight from the residuals; `None` when it is too vague.
+pub(crate) fn covariance<const P: usize>(normal: &Normal<P>, redundancy: f64) -> Option<Covariance> {
+    let cofactors = normal.cofactors()? * (normal.omega / redundancy);
+    let covariance = Covariance { sxx: cofactors[(0, 0)], sxy: cofactors[(0, 1)], syy: cofactors[(1, 1)] };
+    (covariance.sxx + covariance.syy <= VAGUE * VAGUE).then_some(covariance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A decaying exponential `a exp(-b t)`, sampled without error.
+    struct Decay {
+        lowest: f64,
+    }
+
+    impl Problem<2> for Decay {
+        fn normal(&mut self, x: &SVector<f64, 2>) -> Option<Normal<2>> {
+            let mut normal = Normal { n: SMatrix::zeros(), b: SVector::zeros(), omega: 0.0 };
+            for t in (0..20).map(|i| f64::from(i) * 0.2) {
+                let (e, r) = ((-x[1] * t).exp(), 3.0 * (-0.7 * t).exp() - x[0] * (-x[1] * t).exp());
+                let j = SVector::from([e, -x[0] * t * e]);
+                normal.n += j * j.transpose();
+                normal.b += j * r;
+                normal.omega += r * r;
+            }
+            Some(normal)
+        }
+
+        fn lowest(&self, unknown: usize) -> f64 {
+            if unknown == 1 { self.lowest } else { f64::NEG_INFINITY }
+        }
+
+        fn redundancy(&self) -> f64 {
+            18.0
+        }
+    }
+
+    #[test]
+    fn a_far_start_arrives() {
+        let solution = minimise(&mut Decay { lowest: 0.0 }, SVector::from([0.2, 4.0]), 1e-3).unwrap();
+        assert!((solution.x - SVector::from([3.0, 0.7])).norm() < 1e-8, "{}", solution.x);
+    }
+
+    #[test]
+    fn a_bound_is_kept_and_the_rest_solved() {
+        let solution = minimise(&mut Decay { lowest: 0.9 }, SVector::from([1.0, 4.0]), 1e-3).unwrap();
+        let (e, d) = (0..20).map(|i| f64::from(i) * 0.2).fold((0.0, 0.0), |(e, d), t| {
+            let model = (-0.9 * t).exp();
+            (e + model * 3.0 * (-0.7 * t).exp(), d + model * model)
+        });
+        assert_eq!(solution.x[1], 0.9);
+        assert!((solution.x[0] - e / d).abs() < 1e-6, "{}", solution.x);
+    }
+}

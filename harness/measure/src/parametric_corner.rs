@@ -1,0 +1,177 @@
+//! `parametric_corner`: a chess corner's grey values, fitted.
+
+mod model;
+mod start;
+mod window;
+
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use nalgebra::SVector;
+
+use crate::marquardt::{covariance, minimise};
+use crate::operator::{Operator, window_centre};
+use crate::parameter::{Domain, Parameter, Settings};
+use crate::registry::{Build, Method};
+use model::Fidelity;
+use window::Window;
+
+/// Blur at the start, px^2: between sharp and soft.
+const VARIANCE: f64 = 0.5;
+/// The window is laid anew when the corner is further than this beyond its middle pixel, px: more each time, so that it comes to rest also where
+/// either of two windows finds the corner in the other's middle.
+const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+/// Each iteration ends with a step shorter than so many standard deviations.
+const ROUGHLY: f64 = 0.3;
+const NEARLY: f64 = 0.03;
+const LAYINGS: usize = 6;
+
+/// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
+///
+/// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the pixel's area (fill factor 1).
+/// Unknowns are the position, the directions of both edges, the blur, and the two grey values; on demand a linear change of grey value
+/// over the window, and the curvature of each edge (a lens bends the edges of large windows; to second order, for radii far beyond the window).
+/// For white noise of equal variance this is the maximum-likelihood estimate.
+///
+/// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
+/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Covariance (px^2):
+/// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
+///
+/// Source: edge model fitted by least squares as in Mallon & Whelan 2007 and Ha et al. 2017 for chessboards; the pixel's integral as a mixture of
+/// Gaussians, and the crossing's expectation as a bivariate normal orthant (Drezner & Wesolowsky 1990), are our own choice.
+pub struct ParametricCorner {
+    window: usize,
+    search: usize,
+    gradient: bool,
+    curvature: bool,
+}
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "window",
+        about: "side of the window, px",
+        domain: Domain::Odd { min: 7, max: window::WIDEST as u32 },
+        default: 15.0,
+        always_shown: true,
+    },
+    Parameter {
+        name: "search",
+        about: "the corner is sought within so many px of the start, along each axis",
+        domain: Domain::Whole { min: 0, max: 12 },
+        default: 5.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "gradient",
+        about: "1: a linear change of the grey value over the window is estimated, 0: it is not",
+        domain: Domain::Whole { min: 0, max: 1 },
+        default: 0.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "curvature",
+        about: "1: a curvature of each edge is estimated, 0: edges are straight",
+        domain: Domain::Whole { min: 0, max: 1 },
+        default: 0.0,
+        always_shown: false,
+    },
+];
+
+/// The method's entry.
+pub fn method() -> Method {
+    Method {
+        name: "parametric_corner",
+        about: "least-squares fit of a chess corner's grey values: position, two edges, blur, two grey values",
+        source: "calibench; cf. Mallon & Whelan 2007, Ha et al. 2017",
+        version: "1".into(),
+        parameters: PARAMETERS,
+        build: Build::With(|settings| Box::new(ParametricCorner::new(settings))),
+    }
+}
+
+impl ParametricCorner {
+    /// The operator with these settings of [`method`]'s parameters.
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            window: settings.whole("window"),
+            search: settings.whole("search"),
+            gradient: settings.whole("gradient") == 1,
+            curvature: settings.whole("curvature") == 1,
+        }
+    }
+
+    fn fit<const P: usize, const GRADIENT: bool, const CURVED: bool>(
+        &self,
+        image: &Image,
+        guess: &start::Guess,
+    ) -> Result<Measurement, Rejection> {
+        let half = self.window as i64 / 2;
+        let mut window = Window::<P, GRADIENT, CURVED>::new(image, self.window);
+        let mut x = SVector::<f64, P>::zeros();
+        x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, guess.mean, guess.half]);
+        let mut at = guess.position;
+        for beyond in BEYOND {
+            let follow = 0.5 + beyond;
+            let centre = at.map(|c| c.round() as i64);
+            if !image.holds(centre[0], centre[1], half) {
+                return Err(Rejection::Border);
+            }
+            window.centre_on((centre[0], centre[1]));
+            (x[0], x[1]) = (at[0] - centre[0] as f64, at[1] - centre[1] as f64);
+            window.fidelity = Fidelity::Rough;
+            x = minimise(&mut window, x, ROUGHLY).ok_or(Rejection::NotConverged)?.x;
+            window.fidelity = Fidelity::Full;
+            let off = |x: &SVector<f64, P>| x[0].abs().max(x[1].abs());
+            let mut normal = None;
+            if off(&x) <= follow {
+                let found = minimise(&mut window, x, NEARLY).ok_or(Rejection::NotConverged)?;
+                (x, normal) = (found.x, Some(found.normal));
+            }
+            if off(&x) > half as f64 {
+                return Err(Rejection::LeftWindow);
+            }
+            at = [centre[0] as f64 + x[0], centre[1] as f64 + x[1]];
+            if let Some(normal) = normal.filter(|_| off(&x) <= follow) {
+                let covariance = covariance(&normal, (self.window * self.window - P) as f64).ok_or(Rejection::ErrorEllipse)?;
+                return Ok(Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) });
+            }
+        }
+        Err(Rejection::NotConverged)
+    }
+}
+
+impl Operator for ParametricCorner {
+    /// # Errors
+    /// [`Rejection::Border`] when the window leaves the image, [`Rejection::NotFinite`], [`Rejection::NoCorner`] when there is no saddle near the start,
+    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
+    fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
+        let half = self.window as i64 / 2;
+        let centre = window_centre(image, start, half)?;
+        finite(image, centre, half)?;
+        let position = if self.search == 0 {
+            [start.position.x, start.position.y]
+        } else {
+            start::saddle(image, centre, self.search, half as usize).ok_or(Rejection::NoCorner)?
+        };
+        let at = position.map(|c| c.round() as i64);
+        if !image.holds(at[0], at[1], half) {
+            return Err(Rejection::Border);
+        }
+        finite(image, (at[0], at[1]), half)?;
+        let guess = start::directions(image, position, half).ok_or(Rejection::NoCorner)?;
+        match (self.gradient, self.curvature) {
+            (false, false) => self.fit::<7, false, false>(image, &guess),
+            (true, false) => self.fit::<9, true, false>(image, &guess),
+            (false, true) => self.fit::<9, false, true>(image, &guess),
+            (true, true) => self.fit::<11, true, true>(image, &guess),
+        }
+    }
+}
+
+fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
+    let mut rows = image.rows_around(x, y, half).ok_or(Rejection::Border)?;
+    if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
+}
+
+#[cfg(test)]
+mod efficiency;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! Where a chess corner is and how it is turned, to begin with: from the image alone.
+
+use calibench_model::Image;
+use nalgebra::Complex;
+
+/// Half the widest kernel, px.
+const WIDEST: usize = 5;
+/// Half the widest field of places, px.
+const FIELD: usize = 12;
+
+/// The start: position (px, in the image), directions of the normals (rad), mean of the two grey values and half their difference.
+pub(super) struct Guess {
+    pub(super) position: [f64; 2],
+    pub(super) normals: [f64; 2],
+    pub(super) mean: f64,
+    pub(super) half: f64,
+}
+
+/// Gaussian derivatives of order 0, 1 and 2, sampled.
+struct Kernels {
+    reach: usize,
+    taps: [[f64; 2 * WIDEST + 1]; 3],
+}
+
+impl Kernels {
+    /// With a standard deviation of `reach / 2.5` px.
+    fn new(reach: usize) -> Self {
+        let sigma = reach as f64 / 2.5;
+        let mut taps = [[0.0; 2 * WIDEST + 1]; 3];
+        let [value, slope, bend] = &mut taps;
+        for i in 0..=2 * reach {
+            let t = (i as f64 - reach as f64) / sigma;
+            let bell = (-0.5 * t * t).exp();
+            (value[i], slope[i], bend[i]) = (bell, t * bell, (t * t - 1.0) * bell);
+        }
+        // Truncated and sampled, the second derivative must still not see a constant.
+        let excess = bend.iter().sum::<f64>() / value.iter().sum::<f64>();
+        for (bend, value) in bend.iter_mut().zip(value) {
+            *bend -= excess * *value;
+        }
+        Self { reach, taps }
+    }
+}
+
+/// The strongest saddle within `search` px of a pixel along each axis, refined by a parabola an axis. `reach` is half the kernel.
+///
+/// Its strength is minus the determinant of the second derivatives: positive on saddles alone, zero along straight edges. `None` when
+/// there is no saddle. The image holds `reach` px around the pixel; places nearer to its border are left out.
+pub(super) fn saddle(image: &Image, (x, y): (i64, i64), search: usize, reach: usize) -> Option<[f64; 2]> {
+    let kernels = Kernels::new(reach.min(WIDEST));
+    let side = 2 * search + 1;
+    let mut strengths = [[0.0; 2 * FIELD + 1]; 2 * FIELD + 1];
+    let [left, top] = [x, y].map(|c| c - search as i64);
+    let mut columns = Columns { filtered: [[0.0; 2 * (FIELD + WIDEST) + 1]; 3], inside: (1, 0) };
+    let (mut best, mut at) = (0.0, None);
+    for (row, line) in strengths.iter_mut().take(side).enumerate() {
+        let cy = top + row as i64;
+        columns.fill(image, &kernels, left, cy, side);
+        for (column, strength) in line.iter_mut().take(side).enumerate() {
+            *strength = columns.strength(&kernels, column);
+            if *strength > best {
+                (best, at) = (*strength, Some((column, row)));
+            }
+        }
+    }
+    let (column, row) = at?;
+    let peak = |low: f64, high: f64| {
+        let (slope, bend) = (0.5 * (high - low), 2.0 * best - low - high);
+        if bend > 0.0 && low > 0.0 && high > 0.0 { (slope / bend).clamp(-0.5, 0.5) } else { 0.0 }
+    };
+    let value = |c: usize, r: usize| if c < side && r < side { strengths[r][c] } else { 0.0 };
+    let dx = peak(value(column.wrapping_sub(1), row), value(column + 1, row));
+    let dy = peak(value(column, row.wrapping_sub(1)), value(column, row + 1));
+    Some([left as f64 + column as f64 + dx, top as f64 + row as f64 + dy])
+}
+
+/// Columns of the image around one row, filtered downwards by each kernel.
+struct Columns {
+    filtered: [[f64; 2 * (FIELD + WIDEST) + 1]; 3],
+    /// The first and the last place whose kernel is inside the image.
+    inside: (usize, usize),
+}
+
+impl Columns {
+    fn fill(&mut self, image: &Image, kernels: &Kernels, left: i64, cy: i64, side: usize) {
+        let reach = kernels.reach as i64;
+        self.inside = (1, 0);
+        if cy < reach || cy + reach >= image.height() as i64 {
+            return;
+        }
+        // Places that are left out on either side.
+        let first = (reach - left).max(0) as usize;
+        let last = (image.width() as i64 - 1 - reach - left).min(side as i64 - 1);
+        if last < first as i64 {
+            return;
+        }
+        self.inside = (first, last as usize);
+        let span = first..last as usize + 2 * kernels.reach + 1;
+        self.filtered = [[0.0; 2 * (FIELD + WIDEST) + 1]; 3];
+        for (tap, y) in (cy - reach..=cy + reach).enumerate() {
+            let from = (left - reach + first as i64) as usize;
+            let grey = &image.row(y as usize)[from..from + span.len()];
+            for (filtered, taps) in self.filtered.iter_mut().zip(&kernels.taps) {
+                for (sum, grey) in filtered[span.clone()].iter_mut().zip(grey) {
+                    *sum += taps[tap] * f64::from(*grey);
+                }
+            }
+        }
+    }
+
+    fn strength(&self, kernels: &Kernels, column: usize) -> f64 {
+        if column < self.inside.0 || column > self.inside.1 {
+            return 0.0;
+        }
+        let across = |order: usize, down: usize| -> f64 {
+            let taps = &kernels.taps[order][..=2 * kernels.reach];
+            taps.iter().zip(&self.filtered[down][column..]).map(|(tap, value)| tap * value).sum()
+        };
+        let (xx, xy, yy) = (across(2, 0), across(1, 1), across(0, 2));
+        xy * xy - xx * yy
+    }
+}
+
+/// The two edges and grey values seen around `position`, in the disc of `half` px around it.
+///
+/// Around a chess corner the grey value jumps four times: of its Fourier coefficients by direction the second is `(2/pi) sin b` and the fourth `(1/pi) sin 2b`
+/// in units of half the contrast, with b the width of a light sector, and their phases are two and four times the direction of its middle.
+/// `None` when all grey values are the same to rounding.
+pub(super) fn directions(image: &Image, position: [f64; 2], half: i64) -> Option<Guess> {
+    let centre = position.map(|p| p.round() as i64);
+    let (mut weights, mut mean) = (0.0, 0.0);
+    let (mut waves, mut lattice) = ([Complex::new(0.0, 0.0); 2], [Complex::new(0.0, 0.0); 2]);
+    for (row, grey) in image.rows_around(centre[0], centre[1], half)?.enumerate() {
+        for (column, grey) in grey.iter().enumerate() {
+            let at = [column, row].map(|index| index as i64 - half);
+            let z = Complex::new((centre[0] + at[0]) as f64 - position[0], (centre[1] + at[1]) as f64 - position[1]);
+            let r2 = z.norm_sqr() / (half * half) as f64;
+            if r2 <= 1.0 {
+                // Next to the corner blur hides the edges, and a disc without a sharp rim hides the lattice.
+                let weight = r2 * (1.0 - r2);
+                let double = if r2 > 0.0 { z.conj() * z.conj() / z.norm_sqr() } else { z };
+                let terms = [double, double * double];
+                for k in 0..2 {
+                    waves[k] += terms[k] * (weight * f64::from(*grey));
+                    lattice[k] += terms[k] * weight;
+                }
+                weights += weight;
+                mean += weight * f64::from(*grey);
+            }
+        }
+    }
+    mean /= weights;
+    let [second, fourth] = [0, 1].map(|k| (waves[k] - lattice[k] * mean) / weights);
+    let size = second.norm();
+    let middle = -0.5 * second.arg();
+    let cosine = ((fourth * Complex::from_polar(1.0, 4.0 * middle)).re / size).clamp(-0.8, 0.8);
+    let width = cosine.acos();
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let normals = [middle + 0.5 * width - quarter, middle - 0.5 * width + quarter];
+    let contrast = size * quarter / width.sin();
+    // The light sectors cover width / 90 degrees of the mean.
+    let mean = mean - contrast * (width / quarter - 1.0);
+    // Grey values have 24 bits.
+    (contrast.is_finite() && contrast > 1e-6 * mean.abs()).then_some(Guess { position, normals, mean, half: contrast })
+}
