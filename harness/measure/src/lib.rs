@@ -3,12 +3,18 @@
 //! An operator sees an image and a [`Start`](calibench_model::Start) and nothing else: this crate does not depend on the one that knows the truth.
 //! To add one, write its file, name it in [`builtin`](registry::Registry::builtin), and call [`conformance::check`] on it.
 
+#[cfg(test)]
+mod analytic;
+pub mod blob;
 pub mod board;
+pub mod centroid;
+mod cholesky;
 pub mod conformance;
 pub mod external;
 pub mod forstner;
 pub mod harris;
 pub mod harris_paraboloid;
+pub mod lsm;
 pub mod operator;
 pub mod paraboloid;
 pub mod parameter;

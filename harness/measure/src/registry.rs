@@ -101,7 +101,9 @@ pub struct Registry {
 impl Registry {
     /// The methods of this crate.
     pub fn builtin() -> Self {
-        Self { methods: vec![crate::pixel::method(), crate::forstner::method(), crate::harris_paraboloid::method()] }
+        let classical = [crate::centroid::method(), crate::centroid::binary(), crate::lsm::method()];
+        let methods = [crate::pixel::method(), crate::forstner::method(), crate::harris_paraboloid::method()].into_iter().chain(classical);
+        Self { methods: methods.collect() }
     }
 
     /// Adds a method, in place of one of the same name if there is one.

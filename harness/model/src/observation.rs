@@ -46,11 +46,16 @@ pub enum Rejection {
     NoMaximum,
     /// The solution lies outside the window.
     LeftWindow,
+    /// The iteration did not converge.
+    NotConverged,
+    /// The error ellipse of the solution is too large or too flat.
+    ErrorEllipse,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 5] = [Self::Border, Self::NotFinite, Self::NoCorner, Self::NoMaximum, Self::LeftWindow];
+    pub const ALL: [Self; 7] =
+        [Self::Border, Self::NotFinite, Self::NoCorner, Self::NoMaximum, Self::LeftWindow, Self::NotConverged, Self::ErrorEllipse];
 
     /// The name in files.
     pub const fn name(self) -> &'static str {
@@ -60,6 +65,8 @@ impl Rejection {
             Self::NoCorner => "no_corner",
             Self::NoMaximum => "no_maximum",
             Self::LeftWindow => "left_window",
+            Self::NotConverged => "not_converged",
+            Self::ErrorEllipse => "error_ellipse",
         }
     }
 
@@ -71,6 +78,8 @@ impl Rejection {
             Self::NoCorner => "the window is flat or holds a single edge",
             Self::NoMaximum => "the strength has no maximum inside the window",
             Self::LeftWindow => "the solution lies outside the window",
+            Self::NotConverged => "the iteration did not converge",
+            Self::ErrorEllipse => "the error ellipse is too large or too flat",
         }
     }
 }
