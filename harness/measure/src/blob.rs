@@ -115,7 +115,7 @@ impl Raster {
     fn nearest(&self, inside: &[bool], start: PixelPoint) -> Option<usize> {
         let distance = |index: &usize| {
             let (x, y) = self.position(*index);
-            (x - start.x).hypot(y - start.y)
+            (x - start.x) * (x - start.x) + (y - start.y) * (y - start.y)
         };
         (0..inside.len()).filter(|&index| inside[index]).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }

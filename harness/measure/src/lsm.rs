@@ -1,5 +1,6 @@
 //! `lsm`: least-squares matching with an artificial mask.
 
+mod border;
 mod fit;
 mod mask;
 mod planes;
@@ -129,13 +130,13 @@ impl Lsm {
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let first = window_centre(image, start, half)?;
-        finite(image, first, half)?;
+        admit(image, first, half)?;
         let mask = self.mask(start).ok_or(Rejection::NoCorner)?;
         let blob = start::blob(mask, image, first, half, start.position);
         let position = blob.as_ref().map_or(start.position, crate::blob::Blob::centre);
         // The target may be whole in the first window and the second still reach past the image.
         let (x, y) = window_centre(image, &Start::at(position), half).unwrap_or(first);
-        finite(image, (x, y), half)?;
+        admit(image, (x, y), half)?;
         work.planes.observe(image.rows_around(x, y, half).ok_or(Rejection::Border)?);
         let (left, top) = ((x - half) as f64, (y - half) as f64);
         let shapes = start::shapes(mask, start.affine, self.size, blob.as_ref(), self.window as f64);
@@ -153,9 +154,19 @@ impl Lsm {
     }
 }
 
-fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
-    let mut rows = image.rows_around(x, y, half).ok_or(Rejection::Border)?;
-    if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
+/// Checks that the window's grey values are numbers and not all the same.
+fn admit(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
+    let (mut low, mut high, mut finite) = (f32::INFINITY, f32::NEG_INFINITY, true);
+    for row in image.rows_around(x, y, half).ok_or(Rejection::Border)? {
+        for &grey in row {
+            (low, high, finite) = (low.min(grey), high.max(grey), finite & grey.is_finite());
+        }
+    }
+    match finite {
+        false => Err(Rejection::NotFinite),
+        true if low < high => Ok(()),
+        true => Err(Rejection::NoCorner),
+    }
 }
 
 impl Operator for Lsm {

@@ -57,9 +57,9 @@ pub(super) struct Work {
 
 impl Work {
     /// Draws the mask and takes the levels that fit best; the sum of squared residuals with them. `None` if the mask has no contrast in the window.
-    pub(super) fn levels(&mut self, mask: &Mask, parameters: &mut Parameters) -> Option<f64> {
+    pub(super) fn levels(&mut self, mask: &Mask, parameters: &mut Parameters, blur: bool) -> Option<f64> {
         self.profile.set(parameters.sigma);
-        self.planes.draw(mask, &parameters.pose, &self.profile, false);
+        self.planes.draw(mask, &parameters.pose, &self.profile, blur);
         (parameters.ground, parameters.contrast) = self.planes.levels()?;
         Some(self.planes.compare(parameters.ground, parameters.contrast))
     }
@@ -70,13 +70,13 @@ impl Work {
         self.planes.compare(parameters.ground, parameters.contrast)
     }
 
-    /// The least-squares fit from `start` on, by Gauss-Newton; where a step leads upwards, it is damped (Levenberg-Marquardt).
+    /// The least-squares fit from `start` on (its levels are taken from the image), by Gauss-Newton; where a step leads upwards, it is damped (Levenberg-Marquardt).
     ///
     /// # Errors
     /// [`Rejection::NoCorner`] for a window in which the parameters cannot be told apart, [`Rejection::LeftWindow`], [`Rejection::NotConverged`].
     pub(super) fn fit(&mut self, mask: &Mask, start: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
         let mut now = start;
-        let mut omega = self.evaluate(mask, &now, limits.blur);
+        let mut omega = self.levels(mask, &mut now, limits.blur).ok_or(Rejection::NoCorner)?;
         let mut system = System::new(mask.kind, &now, &self.planes.normal(unknowns(limits.blur)), limits.blur);
         let mut damping = 0.0;
         for _ in 0..limits.iterations {

@@ -3,11 +3,9 @@
 use calibench_model::Affine;
 use multiversion::multiversion;
 
+use super::border::{self, Bank};
 use super::mask::Mask;
-use super::profile::{Axis, PIXELS, Profile};
-
-/// Columns that are summed side by side. Fixed, so that every instruction set adds in the same order and gives the same bits.
-const LANES: usize = 8;
+use super::profile::{LANES, Profile};
 
 /// Unknowns of the model, in this order: x, y, axx, axy, ayx, ayy, grey value of the ground, contrast, blur.
 pub(super) const UNKNOWNS: usize = 9;
@@ -28,6 +26,7 @@ pub(super) struct Planes {
     stride: usize,
     values: Vec<f64>,
     grey: Vec<f64>,
+    bank: Bank,
 }
 
 /// The normal equations, `N dx = g`, before the contrast scales the derivatives; and the sum of the squared residuals.
@@ -39,6 +38,16 @@ pub(super) struct Normal {
     pub(super) right: [f64; UNKNOWNS],
     /// Sum of squared residuals.
     pub(super) omega: f64,
+}
+
+/// The planes as [`border`] adds to them.
+pub(super) struct Window<'a> {
+    /// Pixels on a side.
+    pub(super) pixels: usize,
+    /// From row to row.
+    pub(super) stride: usize,
+    /// All planes.
+    pub(super) values: &'a mut [f64],
 }
 
 /// What the mask is mapped and blurred by. Positions count from the window's first pixel.
@@ -54,8 +63,8 @@ impl Planes {
     /// For a window of `pixels` px on a side.
     pub(super) fn new(pixels: usize) -> Self {
         let stride = pixels.next_multiple_of(LANES);
-        debug_assert!(stride <= PIXELS, "a window of {pixels} px");
-        Self { pixels, stride, values: vec![0.0; (RESIDUAL + 1) * pixels * stride], grey: vec![0.0; pixels * stride] }
+        let values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
+        Self { pixels, stride, values, grey: vec![0.0; pixels * stride], bank: Bank::new(pixels, stride) }
     }
 
     /// Pixels in the window.
@@ -88,7 +97,8 @@ impl Planes {
         for index in (0..=BLUR).filter(|&index| index != GROUND) {
             self.values[index * area..(index + 1) * area].fill(0.0);
         }
-        integrate(self, mask, pose, profile, blur);
+        let window = Window { pixels: self.pixels, stride: self.stride, values: &mut self.values };
+        border::integrate(window, &mut self.bank, mask, pose, profile, blur);
         for line in self.values[..GROUND * area].chunks_exact_mut(self.stride) {
             line[self.pixels..].fill(0.0);
         }
@@ -127,51 +137,6 @@ impl Planes {
     pub(super) fn at(&self, plane: usize, column: usize, row: usize) -> f64 {
         self.plane(plane)[row * self.stride + column]
     }
-}
-
-/// Adds the line integrals. With K the profile of a blurred pixel in two dimensions, W(x) its integral in x and p along the border:
-/// coverage = integral of W k dy; its derivative by a parameter that moves the border by dp = integral of K (dp x dp/dt) dt; by the blur, as K obeys the
-/// equation of heat, sigma times the integral of grad K x dp.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn integrate(planes: &mut Planes, mask: &Mask, pose: &Pose, profile: &Profile, blur: bool) {
-    let (area, stride, pixels) = (planes.area(), planes.stride, planes.pixels);
-    let (mut xs, mut ys) = (Axis::new(pixels), Axis::new(pixels));
-    let a = &pose.affine;
-    // Where the affine reflects, the border runs the other way round.
-    let sense = if a.axx * a.ayy - a.axy * a.ayx < 0.0 { -1.0 } else { 1.0 };
-    let rows = (-profile.reach(), pixels as f64 - 1.0 + profile.reach());
-    mask.nodes(a, pose.at, profile.sigma(), rows, |node| {
-        let (low, high) = profile.sample(node.at[1], &mut ys);
-        let (left, right) = profile.sample(node.at[0], &mut xs);
-        if low == high || (left == right && left == 0) {
-            return;
-        }
-        let (first, end) = (left / LANES, right.div_ceil(LANES));
-        let [dx, dy] = node.step.map(|s| s * sense);
-        let [u, v] = node.mask;
-        let moving = [dy, -dx, dy * u, dy * v, -dx * u, -dx * v];
-        for row in low..high {
-            let (value, slope) = (ys.value[row], ys.slope[row]);
-            let start = row * stride;
-            let weight = value * dy;
-            for (to, w) in planes.values[COVERAGE * area + start..][..end * LANES].iter_mut().zip(&xs.integral) {
-                *to += weight * w;
-            }
-            for (plane, factor) in moving.iter().enumerate() {
-                let weight = value * factor;
-                let span = first * LANES..end * LANES;
-                for (to, k) in planes.values[plane * area + start..][span.clone()].iter_mut().zip(&xs.value[span]) {
-                    *to += weight * k;
-                }
-            }
-            if blur {
-                let (across, down) = (profile.sigma() * value * dy, -profile.sigma() * slope * dx);
-                for column in first * LANES..end * LANES {
-                    planes.values[BLUR * area + start + column] += across * xs.slope[column] + down * xs.value[column];
-                }
-            }
-        }
-    });
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]

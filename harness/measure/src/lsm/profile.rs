@@ -2,8 +2,10 @@
 
 /// Fractions of a px at which the profile is tabulated; between them it is a Taylor series.
 const STEPS: usize = 16;
-/// The most pixels along an axis of a window, a multiple of the lanes.
-pub(super) const PIXELS: usize = 48;
+/// Pixels that are sampled side by side. Fixed, so that every instruction set gives the same bits.
+pub(super) const LANES: usize = 8;
+/// W, k and the first four derivatives of k.
+const DERIVATIVES: usize = 6;
 /// How far the Gaussian reaches, in standard deviations: less than 4e-6 of it is left beyond.
 const REACH: f64 = 4.5;
 
@@ -16,8 +18,8 @@ const REACH: f64 = 4.5;
 pub(super) struct Profile {
     sigma: f64,
     half: usize,
-    /// For each fraction, for each pixel: W, k and the first four derivatives of k.
-    table: Vec<[f64; 6]>,
+    /// For each fraction, for each of the [`DERIVATIVES`], for each pixel, and zeros behind.
+    table: Vec<f64>,
 }
 
 impl Profile {
@@ -34,16 +36,23 @@ impl Profile {
             return;
         }
         (self.sigma, self.half) = (sigma, (0.5 + REACH * sigma).ceil() as usize);
+        let (stride, width) = (self.stride(), self.width());
         self.table.clear();
-        for step in 0..STEPS {
+        self.table.resize(STEPS * DERIVATIVES * stride, 0.0);
+        for (step, row) in self.table.chunks_exact_mut(DERIVATIVES * stride).enumerate() {
             let fraction = (step as f64 + 0.5) / STEPS as f64;
             let mut above = Boundary::new(fraction + self.half as f64 + 0.5, sigma);
-            for pixel in 0..self.width() {
+            for pixel in 0..width {
                 let below = Boundary::new(fraction + self.half as f64 - pixel as f64 - 0.5, sigma);
-                self.table.push(std::array::from_fn(|i| above.0[i] - below.0[i]));
+                (0..DERIVATIVES).for_each(|i| row[i * stride + pixel] = above.0[i] - below.0[i]);
                 above = below;
             }
         }
+    }
+
+    /// From one derivative to the next in the table.
+    fn stride(&self) -> usize {
+        self.width() + LANES
     }
 
     /// Its standard deviation, px.
@@ -61,63 +70,60 @@ impl Profile {
         self.half as f64 + 1.0
     }
 
-    /// Samples of all pixels from 0 on for the point `at`; returns the pixels that see it, as far as `axis` reaches.
-    /// Outside these the value is zero and the integral one (before the point) or zero (after it).
+    /// Samples of the first `pixels` pixels for the point `at`; returns from which to which these see it.
+    ///
+    /// Outside the value is zero and the integral one (before the point) or zero (after it). The slices are `LANES` longer than `pixels`.
     #[inline(always)]
-    pub(super) fn sample(&self, at: f64, axis: &mut Axis) -> (usize, usize) {
+    pub(super) fn sample(&self, at: f64, pixels: usize, out: &mut Samples<'_>) -> (usize, usize) {
         let whole = at.floor();
         let scaled = (at - whole) * STEPS as f64;
         let step = (scaled as usize).min(STEPS - 1);
         let d = (scaled - step as f64 - 0.5) / STEPS as f64;
-        let first = whole as i64 - self.half as i64;
-        let limit = axis.pixels as i64;
+        let (first, limit) = (whole as i64 - self.half as i64, pixels as i64);
         let (low, high) = (first.clamp(0, limit) as usize, (first + self.width() as i64).clamp(0, limit) as usize);
-        axis.integral[..low].fill(1.0);
-        axis.integral[high..].fill(0.0);
-        for rest in [&mut axis.value, &mut axis.slope] {
-            rest[..low].fill(0.0);
-            rest[high..].fill(0.0);
-        }
+        out.integral[..low].fill(1.0);
+        out.integral[low..].fill(0.0);
+        out.value.fill(0.0);
+        out.slope.fill(0.0);
         let skipped = (low as i64 - first) as usize;
-        let row = &self.table[step * self.width()..(step + 1) * self.width()];
-        // Nothing is seen when low is high: then nothing is read.
-        for (pixel, entry) in (low..high).zip(row.iter().skip(skipped)) {
-            (axis.integral[pixel], axis.value[pixel], axis.slope[pixel]) = taylor(entry, d);
+        let row = &self.table[step * DERIVATIVES * self.stride()..(step + 1) * DERIVATIVES * self.stride()];
+        for chunk in 0..(high - low).div_ceil(LANES) {
+            let entry = |i: usize| *lanes(row, i * self.stride() + skipped + chunk * LANES);
+            let [w, k, k1, k2, k3, k4] = [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)];
+            let (mut integral, mut value, mut slope) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                slope[i] = k1[i] + d * (k2[i] + d * (k3[i] * (1.0 / 2.0) + d * (k4[i] * (1.0 / 6.0))));
+                value[i] = k[i] + d * (k1[i] + d * (k2[i] * (1.0 / 2.0) + d * (k3[i] * (1.0 / 6.0) + d * (k4[i] * (1.0 / 24.0)))));
+                integral[i] = w[i] + d * (k[i] + d * (k1[i] * (1.0 / 2.0) + d * (k2[i] * (1.0 / 6.0) + d * (k3[i] * (1.0 / 24.0)))));
+            }
+            let to = low + chunk * LANES..low + (chunk + 1) * LANES;
+            out.integral[to.clone()].copy_from_slice(&integral);
+            out.value[to.clone()].copy_from_slice(&value);
+            out.slope[to].copy_from_slice(&slope);
         }
         (low, high)
     }
 }
 
-/// Samples along one axis of a window.
-#[derive(Clone, Debug)]
-pub(super) struct Axis {
-    /// Pixels of the window.
-    pub(super) pixels: usize,
-    /// `W`.
-    pub(super) integral: [f64; PIXELS],
-    /// `k`.
-    pub(super) value: [f64; PIXELS],
-    /// `dk/dt`.
-    pub(super) slope: [f64; PIXELS],
-}
-
-impl Axis {
-    /// For a window of `pixels`, at most [`PIXELS`].
-    pub(super) fn new(pixels: usize) -> Self {
-        Self { pixels, integral: [0.0; PIXELS], value: [0.0; PIXELS], slope: [0.0; PIXELS] }
-    }
-}
-
+/// The `LANES` values from `index` on.
 #[inline(always)]
-fn taylor(&[w, k, k1, k2, k3, k4]: &[f64; 6], d: f64) -> (f64, f64, f64) {
-    let slope = k1 + d * (k2 + d * (k3 / 2.0 + d * (k4 / 6.0)));
-    let value = k + d * (k1 + d * (k2 / 2.0 + d * (k3 / 6.0 + d * (k4 / 24.0))));
-    let integral = w + d * (k + d * (k1 / 2.0 + d * (k2 / 6.0 + d * (k3 / 24.0))));
-    (integral, value, slope)
+fn lanes(values: &[f64], index: usize) -> &[f64; LANES] {
+    values[index..index + LANES].try_into().expect("a slice of that length")
+}
+
+/// Samples along one axis of a window.
+#[derive(Debug)]
+pub(super) struct Samples<'a> {
+    /// `W`.
+    pub(super) integral: &'a mut [f64],
+    /// `k`.
+    pub(super) value: &'a mut [f64],
+    /// `dk/dt`.
+    pub(super) slope: &'a mut [f64],
 }
 
 /// What one border of a pixel gives to `W`, `k` and the derivatives of `k`.
-struct Boundary([f64; 6]);
+struct Boundary([f64; DERIVATIVES]);
 
 impl Boundary {
     fn new(t: f64, sigma: f64) -> Self {
@@ -142,10 +148,18 @@ mod tests {
         (0..n).map(|i| gauss((t - 0.5 + (f64::from(i) + 0.5) / f64::from(n)) / sigma)).sum::<f64>() / f64::from(n)
     }
 
-    fn samples(profile: &Profile, at: f64) -> (usize, usize, Axis) {
-        let mut axis = Axis::new(40);
-        let (low, high) = profile.sample(at, &mut axis);
-        (low, high, axis)
+    struct Sampled {
+        low: usize,
+        high: usize,
+        integral: Vec<f64>,
+        value: Vec<f64>,
+        slope: Vec<f64>,
+    }
+
+    fn samples(profile: &Profile, at: f64) -> Sampled {
+        let [mut integral, mut value, mut slope] = [(); 3].map(|()| vec![0.0; 40 + LANES]);
+        let (low, high) = profile.sample(at, 40, &mut Samples { integral: &mut integral, value: &mut value, slope: &mut slope });
+        Sampled { low, high, integral, value, slope }
     }
 
     #[test]
@@ -153,7 +167,7 @@ mod tests {
         for sigma in [0.3, 0.7, 2.0] {
             let profile = Profile::new(sigma);
             for at in [13.0, 13.031, 23.49, -2.77, 0.999, 38.2, 70.0] {
-                let (_, _, axis) = samples(&profile, at);
+                let axis = samples(&profile, at);
                 for (pixel, value) in axis.value[..40].iter().enumerate() {
                     let t = at - pixel as f64;
                     assert!((value - by_midpoints(t, sigma)).abs() < 1e-6, "{sigma} {t}: {value}");
@@ -167,7 +181,7 @@ mod tests {
         for sigma in [0.4, 1.3] {
             let profile = Profile::new(sigma);
             let (h, at) = (1e-4, 15.33);
-            let ((_, _, low), (_, _, here), (_, _, high)) = (samples(&profile, at - h), samples(&profile, at), samples(&profile, at + h));
+            let (low, here, high) = (samples(&profile, at - h), samples(&profile, at), samples(&profile, at + h));
             for i in 0..40 {
                 let first = (high.integral[i] - low.integral[i]) / (2.0 * h);
                 let second = (high.value[i] - low.value[i]) / (2.0 * h);
@@ -179,11 +193,12 @@ mod tests {
     #[test]
     fn the_integral_goes_from_one_to_nothing() {
         let profile = Profile::new(0.9);
-        let (low, high, axis) = samples(&profile, 17.2);
+        let axis = samples(&profile, 17.2);
+        let (low, high) = (axis.low, axis.high);
         assert!(low > 0 && (axis.integral[low - 1], axis.integral[high]) == (1.0, 0.0));
         assert!((axis.integral[low] - 1.0).abs() < 1e-6 && axis.integral[high - 1].abs() < 1e-6);
         for (at, expected) in [(-60.0, 0.0), (90.0, 1.0)] {
-            assert!(samples(&profile, at).2.integral[..40].iter().all(|&w| w == expected), "{at}");
+            assert!(samples(&profile, at).integral[..40].iter().all(|&w| w == expected), "{at}");
         }
     }
 }

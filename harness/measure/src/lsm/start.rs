@@ -51,12 +51,16 @@ pub(super) fn shapes(mask: &Mask, given: Option<Affine>, size: f64, blob: Option
     (0..turns).map(|turn| turned(shape, period * f64::from(turn) / f64::from(turns))).collect()
 }
 
-/// The shape with the smallest residuals, with its levels; `None` if no shape has any contrast.
+/// The shape with the smallest residuals; `None` if there are several and none has any contrast.
 pub(super) fn best(work: &mut Work, mask: &Mask, at: [f64; 2], shapes: &[Affine], sigma: f64) -> Option<Parameters> {
+    let of = |affine: Affine| Parameters { pose: Pose { at, affine }, ground: 0.0, contrast: 0.0, sigma };
+    if let [only] = shapes {
+        return Some(of(*only));
+    }
     let mut found: Option<(f64, Parameters)> = None;
     for &affine in shapes {
-        let mut parameters = Parameters { pose: Pose { at, affine }, ground: 0.0, contrast: 0.0, sigma };
-        let Some(omega) = work.levels(mask, &mut parameters) else { continue };
+        let mut parameters = of(affine);
+        let Some(omega) = work.levels(mask, &mut parameters, false) else { continue };
         if found.is_none_or(|(best, _)| omega < best) {
             found = Some((omega, parameters));
         }
