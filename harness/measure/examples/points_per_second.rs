@@ -6,6 +6,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use calibench_measure::Registry;
+use calibench_measure::harris::{Harris, StrengthMap};
+use calibench_measure::paraboloid::Weights;
 use calibench_model::{Affine, Image, PixelPoint, Start, TargetKind};
 
 const CELL: usize = 50;
@@ -45,7 +47,40 @@ fn scene(profile: impl Fn(f64) -> f64) -> Image {
     })
 }
 
+/// The best time of several runs, s.
+fn best(runs: usize, mut work: impl FnMut()) -> f64 {
+    let timed = (0..runs).map(|_| {
+        let clock = Instant::now();
+        work();
+        clock.elapsed().as_secs_f64()
+    });
+    timed.fold(f64::INFINITY, f64::min)
+}
+
+fn whole_images() {
+    let image = Image::from_fn(4000, 3000, |x, y| {
+        (0.5 + 0.3 * (0.05 * x as f32).sin() * (0.07 * y as f32).cos()) + ((x * 7 + y * 13) % 11) as f32 * 0.01
+    });
+    for (name, harris) in
+        [("Harris strength, block 5x5", Harris::block(0.04, 2)), ("Harris strength, Gaussian 1 px", Harris::new(0.04, 1.0))]
+    {
+        let mut map = StrengthMap::default();
+        let seconds = best(15, || harris.map_into(black_box(&image), black_box(&mut map)));
+        println!("{name:<45} {:>10.0} Mpx/s", 12.0 / seconds);
+    }
+    let map = Harris::block(0.04, 2).map(&image);
+    let places: Vec<(usize, usize)> = (0..100_000).map(|i| (1 + i * 37 % (map.columns - 2), 1 + i * 11 % (map.rows - 2))).collect();
+    let samples: Vec<[[f64; 3]; 3]> = places.iter().map(|&(column, row)| map.around(column, row)).collect();
+    let weights = Weights::new(0.2);
+    let seconds = best(15, || {
+        let found = samples.iter().filter_map(|f| weights.fit(black_box(f)).maximum());
+        black_box(found.fold((0.0, 0.0), |sum, at| (sum.0 + at.0, sum.1 + at.1)));
+    });
+    println!("{:<45} {:>10.1} million/s", "paraboloid on given strengths", samples.len() as f64 / seconds / 1e6);
+}
+
 fn main() {
+    whole_images();
     let wanted: Vec<String> = std::env::args().skip(1).collect();
     let edge = |t: f64| 0.5 + 0.5 * erf(t / BLUR / 2_f64.sqrt());
     let corners = scene(edge);

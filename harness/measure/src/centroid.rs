@@ -108,8 +108,8 @@ mod tests {
     #[test]
     fn conforms() {
         // Not with a given threshold, which does not follow grey values that are scaled.
-        for spec in ["centroid:window=3", "centroid_binary:window=5", "centroid_binary:window=3,enlarge=3"] {
-            conformance::check(&*operator(spec), 1e-6);
+        for spec in ["centroid", "centroid:polarity=1", "centroid_binary", "centroid_binary:enlarge=3", "centroid_binary:enlarge=1"] {
+            conformance::check_on(&*operator(spec), conformance::disc, 1e-6);
         }
     }
 

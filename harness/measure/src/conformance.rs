@@ -17,10 +17,39 @@ pub fn textured_corner(side: usize) -> Image {
 }
 
 fn grey(x: f64, y: f64) -> f32 {
+    (0.15 + 0.7 * edge(x, y, 0.2) * edge(x, y, 0.2 + 100_f64.to_radians()) + texture(x, y)) as f32
+}
+
+/// A blurred edge through the corner, from 0 to 1 in direction `angle`.
+fn edge(x: f64, y: f64, angle: f64) -> f64 {
     let (u, v) = (x - CORNER.0, y - CORNER.1);
-    let edge = |angle: f64| 0.5 + 0.5 * ((u * angle.cos() + v * angle.sin()) * 1.2).tanh();
-    let texture = 0.004 * ((0.31 * x + 0.17 * y).sin() + (0.23 * x - 0.41 * y).cos());
-    (0.15 + 0.7 * edge(0.2) * edge(0.2 + 100_f64.to_radians()) + texture) as f32
+    0.5 + 0.5 * ((u * angle.cos() + v * angle.sin()) * 1.2).tanh()
+}
+
+fn texture(x: f64, y: f64) -> f64 {
+    0.004 * ((0.31 * x + 0.17 * y).sin() + (0.23 * x - 0.41 * y).cos())
+}
+
+/// What is pictured: the grey value at (x, y) from the image's centre, px. The point to be measured is at (0.31, -0.17).
+pub type Picture = fn(f64, f64) -> f32;
+
+/// A blurred chess corner of 80 degrees with the same texture, for operators that measure no other corner.
+pub fn chess_corner(x: f64, y: f64) -> f32 {
+    let sign = |angle: f64| 2.0 * edge(x, y, angle) - 1.0;
+    (0.5 + 0.35 * sign(0.2) * sign(0.2 + 100_f64.to_radians()) + texture(x, y)) as f32
+}
+
+/// A blurred dark ellipse of 6.5 x 4.5 px with the same texture, for operators that measure discs.
+pub fn disc(x: f64, y: f64) -> f32 {
+    let (sin, cos) = 0.4_f64.sin_cos();
+    let (u, v) = (x - CORNER.0, y - CORNER.1);
+    let (u, v) = ((u * cos + v * sin) / 6.5, (v * cos - u * sin) / 4.5);
+    (0.5 + 0.35 * (6.0 * (u.hypot(v) - 1.0)).tanh() + texture(x, y)) as f32
+}
+
+fn image_of(picture: Picture) -> Image {
+    let middle = (SIDE / 2) as f64;
+    Image::from_fn(SIDE, SIDE, |x, y| picture(x as f64 - middle, y as f64 - middle))
 }
 
 /// Checks `operator`; positions must agree within `tolerance` px, which is the operator's own (f32 arithmetic has a wider one).
@@ -31,14 +60,22 @@ fn grey(x: f64, y: f64) -> f32 {
 /// # Panics
 /// With what the operator did wrong.
 pub fn check(operator: &dyn Operator, tolerance: f64) {
-    plausible(operator);
-    shifts(operator, tolerance);
-    symmetries(operator, tolerance);
-    grey_scale(operator, tolerance);
-    not_finite(operator);
+    check_on(operator, grey, tolerance);
+}
+
+/// As [`check`], on another picture than the corner of one area: [`chess_corner`], [`disc`].
+///
+/// # Panics
+/// As [`check`].
+pub fn check_on(operator: &dyn Operator, picture: Picture, tolerance: f64) {
+    plausible(operator, picture);
+    shifts(operator, picture, tolerance);
+    symmetries(operator, picture, tolerance);
+    grey_scale(operator, picture, tolerance);
+    not_finite(operator, picture);
     flat(operator);
-    borders(operator);
-    many(operator);
+    borders(operator, picture);
+    many(operator, picture);
 }
 
 fn start() -> Start {
@@ -58,26 +95,26 @@ fn agree(a: PixelPoint, b: PixelPoint, tolerance: f64, what: &str) {
     assert!(distance <= tolerance, "{what}: {distance:e} px off, tolerance {tolerance:e}");
 }
 
-fn plausible(operator: &dyn Operator) {
-    let found = position(operator, &textured_corner(SIDE), &start(), "a clear corner");
+fn plausible(operator: &dyn Operator, picture: Picture) {
+    let found = position(operator, &image_of(picture), &start(), "a clear corner");
     let middle = (SIDE / 2) as f64;
     // Wide: Harris with a large integration scale is biased by two pixels.
     agree(found, PixelPoint::new(middle + CORNER.0, middle + CORNER.1), 3.0, "a clear corner");
 }
 
-fn shifts(operator: &dyn Operator, tolerance: f64) {
-    let reference = position(operator, &textured_corner(SIDE), &start(), "unshifted");
+fn shifts(operator: &dyn Operator, picture: Picture, tolerance: f64) {
+    let reference = position(operator, &image_of(picture), &start(), "unshifted");
     let middle = (SIDE / 2) as f64;
     for (dx, dy) in [(7.0, 0.0), (0.0, -5.0), (-3.0, 11.0)] {
-        let image = Image::from_fn(SIDE, SIDE, |x, y| grey(x as f64 - middle - dx, y as f64 - middle - dy));
+        let image = Image::from_fn(SIDE, SIDE, |x, y| picture(x as f64 - middle - dx, y as f64 - middle - dy));
         let at = Start::at(PixelPoint::new(start().position.x + dx, start().position.y + dy));
         let found = position(operator, &image, &at, "shifted");
         agree(found, PixelPoint::new(reference.x + dx, reference.y + dy), tolerance, &format!("shift by ({dx}, {dy})"));
     }
 }
 
-fn symmetries(operator: &dyn Operator, tolerance: f64) {
-    let image = textured_corner(SIDE);
+fn symmetries(operator: &dyn Operator, picture: Picture, tolerance: f64) {
+    let image = image_of(picture);
     let reference = position(operator, &image, &start(), "upright");
     let last = (SIDE - 1) as f64;
     for (swap, flip_x, flip_y) in (0..8).map(|i| (i & 1 != 0, i & 2 != 0, i & 4 != 0)) {
@@ -94,24 +131,24 @@ fn symmetries(operator: &dyn Operator, tolerance: f64) {
     }
 }
 
-fn grey_scale(operator: &dyn Operator, tolerance: f64) {
-    let image = textured_corner(SIDE);
+fn grey_scale(operator: &dyn Operator, picture: Picture, tolerance: f64) {
+    let image = image_of(picture);
     let reference = position(operator, &image, &start(), "full contrast");
     // Powers of two and a small offset: the grey values themselves lose few bits.
     let weaker = Image::new(SIDE, SIDE, image.grey().iter().map(|g| g * 0.5 + 0.25).collect());
     agree(position(operator, &weaker, &start(), "half contrast"), reference, tolerance.max(1e-5), "half the contrast, brighter");
 }
 
-fn not_finite(operator: &dyn Operator) {
+fn not_finite(operator: &dyn Operator, picture: Picture) {
     let (x, y) = start().position.nearest_pixel().expect("a finite start");
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-        let mut image = textured_corner(SIDE);
+        let mut image = image_of(picture);
         image.grey_mut()[y as usize * SIDE + x as usize] = bad;
         reject_or_ignore(operator, &image, &[Rejection::NotFinite], &format!("{bad} at the start"));
         let image = Image::new(SIDE, SIDE, vec![bad; SIDE * SIDE]);
         reject_or_ignore(operator, &image, &[Rejection::NotFinite], &format!("{bad} everywhere"));
     }
-    let image = textured_corner(SIDE);
+    let image = image_of(picture);
     for (x, y) in [(f64::NAN, 45.0), (45.0, f64::INFINITY), (f64::NEG_INFINITY, f64::NAN)] {
         let found = operator.measure(&image, &Start::at(PixelPoint::new(x, y)));
         assert_eq!(found.unwrap_err(), Rejection::NotFinite, "start ({x}, {y})");
@@ -133,8 +170,8 @@ fn reject_or_ignore(operator: &dyn Operator, image: &Image, reasons: &[Rejection
     }
 }
 
-fn borders(operator: &dyn Operator) {
-    let image = textured_corner(SIDE);
+fn borders(operator: &dyn Operator, picture: Picture) {
+    let image = image_of(picture);
     let last = (SIDE - 1) as f64;
     let border = |x: f64, y: f64| {
         let found = operator.measure(&image, &Start::at(PixelPoint::new(x, y)));
@@ -157,8 +194,8 @@ fn borders(operator: &dyn Operator) {
     }
 }
 
-fn many(operator: &dyn Operator) {
-    let image = textured_corner(SIDE);
+fn many(operator: &dyn Operator, picture: Picture) {
+    let image = image_of(picture);
     let starts: Vec<Start> = (-50..140).step_by(5).map(|i| Start::at(PixelPoint::new(f64::from(i), f64::from(i) + 0.4))).collect();
     let together = operator.measure_all(&image, &starts);
     let alone: Vec<_> = starts.iter().map(|start| operator.measure(&image, start)).collect();

@@ -19,7 +19,9 @@ pub mod operator;
 pub mod paraboloid;
 pub mod parameter;
 pub mod pixel;
+pub mod precision;
 pub mod registry;
+pub mod saddle;
 
 pub use board::{Board, BoardDetector};
 pub use operator::Operator;

@@ -101,7 +101,13 @@ pub struct Registry {
 impl Registry {
     /// The methods of this crate.
     pub fn builtin() -> Self {
-        let classical = [crate::centroid::method(), crate::centroid::binary(), crate::lsm::method()];
+        let classical = [
+            crate::centroid::method(),
+            crate::centroid::binary(),
+            crate::lsm::method(),
+            crate::saddle::method(),
+            crate::harris_paraboloid::linear(),
+        ];
         let methods = [crate::pixel::method(), crate::forstner::method(), crate::harris_paraboloid::method()].into_iter().chain(classical);
         Self { methods: methods.collect() }
     }

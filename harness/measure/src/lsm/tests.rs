@@ -38,6 +38,8 @@ fn conforms() {
     for spec in ["lsm:window=15", "lsm:window=21,shape=1,sharpness=1"] {
         conformance::check(&*operator(spec), 1e-6);
     }
+    conformance::check_on(&*operator("lsm:window=23,shape=5,sharpness=1"), conformance::disc, 1e-6);
+    conformance::check_on(&*operator("lsm:window=15,shape=2"), conformance::chess_corner, 1e-6);
 }
 
 fn drawn(picture: &Picture, pixels: usize) -> Planes {
