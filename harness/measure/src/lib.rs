@@ -8,6 +8,7 @@ mod analytic;
 pub mod blob;
 pub mod board;
 pub mod centroid;
+pub mod chess_corners;
 mod cholesky;
 pub mod conformance;
 pub mod external;

@@ -101,15 +101,18 @@ pub struct Registry {
 impl Registry {
     /// The methods of this crate.
     pub fn builtin() -> Self {
-        let classical = [
+        let methods = vec![
+            crate::pixel::method(),
+            crate::forstner::method(),
+            crate::harris_paraboloid::method(),
+            crate::harris_paraboloid::linear(),
             crate::centroid::method(),
             crate::centroid::binary(),
             crate::lsm::method(),
             crate::saddle::method(),
-            crate::harris_paraboloid::linear(),
+            crate::chess_corners::method(),
         ];
-        let methods = [crate::pixel::method(), crate::forstner::method(), crate::harris_paraboloid::method()].into_iter().chain(classical);
-        Self { methods: methods.collect() }
+        Self { methods }
     }
 
     /// Adds a method, in place of one of the same name if there is one.

@@ -89,10 +89,10 @@ fn strips<T: Real, const L: usize>(source: Source<'_>, recipe: Recipe<'_>, out: 
         // The last strip overlaps the one before it, so that it is wide enough for the lanes.
         let strip = Strip { source, left: done.min(source.columns - columns), columns };
         match recipe.weights.len() - 1 {
-            1 => rows::<T, _, L>(strip, recipe, Fixed::<T, 2>::new(recipe.weights), out),
-            2 => rows::<T, _, L>(strip, recipe, Fixed::<T, 3>::new(recipe.weights), out),
-            3 => rows::<T, _, L>(strip, recipe, Fixed::<T, 4>::new(recipe.weights), out),
-            _ => rows::<T, _, L>(strip, recipe, Any(recipe.weights.iter().map(|&w| T::from_weight(w)).collect()), out),
+            1 => rows::<T, _, L>(strip, recipe, &Fixed::<T, 2>::new(recipe.weights), out),
+            2 => rows::<T, _, L>(strip, recipe, &Fixed::<T, 3>::new(recipe.weights), out),
+            3 => rows::<T, _, L>(strip, recipe, &Fixed::<T, 4>::new(recipe.weights), out),
+            _ => rows::<T, _, L>(strip, recipe, &Any(recipe.weights.iter().map(|&w| T::from_weight(w)).collect()), out),
         }
         done = strip.left + columns;
     }
@@ -157,12 +157,12 @@ struct Buffers<T> {
 }
 
 #[inline(always)]
-fn rows<T: Real, W: Weights<T>, const L: usize>(strip: Strip<'_>, recipe: Recipe<'_>, weights: W, out: &mut [T]) {
+fn rows<T: Real, W: Weights<T>, const L: usize>(strip: Strip<'_>, recipe: Recipe<'_>, weights: &W, out: &mut [T]) {
     let (radius, columns) = (weights.radius(), strip.columns);
     let wide = columns + 2 * radius;
     let mut buffers = Buffers {
         products: [(); 3].map(|()| vec![T::default(); wide]),
-        ring: (0..2 * radius + 1).map(|_| [(); 3].map(|()| vec![T::default(); columns])).collect(),
+        ring: (0..=2 * radius).map(|_| [(); 3].map(|()| vec![T::default(); columns])).collect(),
     };
     let taps = buffers.ring.len();
     let (alpha, scale) = (T::from_weight(recipe.alpha), T::from_weight(recipe.scale));
@@ -174,12 +174,12 @@ fn rows<T: Real, W: Weights<T>, const L: usize>(strip: Strip<'_>, recipe: Recipe
             Gradient::Central => gradients::<T, L>(three, false, &mut buffers.products),
         }
         for (product, to) in buffers.products.iter().zip(&mut buffers.ring[row % taps]) {
-            across::<T, W, L>(product, &weights, to);
+            across::<T, W, L>(product, weights, to);
         }
         if row >= 2 * radius {
             let top = row - 2 * radius;
             let line = &mut out[top * strip.source.columns + strip.left..][..columns];
-            down::<T, W, L>(&buffers.ring, top, &weights, (alpha, scale), line);
+            down::<T, W, L>(&buffers.ring, top, weights, (alpha, scale), line);
         }
     }
 }
@@ -194,7 +194,7 @@ type Gradients<T, const L: usize> = ([T; L], [T; L]);
 #[inline(always)]
 fn sobel<T: Real, const L: usize>([above, here, below]: [&[f32]; 3], start: usize) -> Gradients<T, L> {
     let (two, eighth) = (T::from_weight(2.0), T::from_weight(0.125));
-    let (a, b, c): ([[f32; L]; 3], [[f32; L]; 3], [[f32; L]; 3]) = (three(above, start), three(here, start), three(below, start));
+    let (a, b, c) = (three::<L>(above, start), three::<L>(here, start), three::<L>(below, start));
     let (mut gx, mut gy) = ([T::default(); L], [T::default(); L]);
     for i in 0..L {
         let column = |x: usize| T::from_grey(a[x][i]) + two * T::from_grey(b[x][i]) + T::from_grey(c[x][i]);

@@ -201,9 +201,9 @@ fn add<const B: usize>(
             put(COVERAGE, sums.coverage);
             for (plane, factors) in expansion.iter().enumerate() {
                 let mut combined = [0.0; LANES];
-                for b in 0..B {
-                    for lane in 0..LANES {
-                        combined[lane] += factors[b] * sums.moments[b][lane];
+                for (factor, moment) in factors.iter().zip(&sums.moments) {
+                    for (to, moment) in combined.iter_mut().zip(moment) {
+                        *to += factor * moment;
                     }
                 }
                 put(plane, combined);
@@ -238,13 +238,13 @@ fn sum<const B: usize>(
         let ([dx, dy], k) = (bank.steps[node], bank.rows.value[down]);
         let (integral, value) = (lanes(&bank.columns.integral), lanes(&bank.columns.value));
         let weight = k * dy;
-        for lane in 0..LANES {
-            sums.coverage[lane] += weight * integral[lane];
+        for (to, integral) in sums.coverage.iter_mut().zip(&integral) {
+            *to += weight * integral;
         }
         let factors = values[node].map(|value| value * k);
-        for b in 0..B {
-            for lane in 0..LANES {
-                sums.moments[b][lane] += value[lane] * factors[b];
+        for (moment, factor) in sums.moments.iter_mut().zip(&factors) {
+            for (to, value) in moment.iter_mut().zip(&value) {
+                *to += value * factor;
             }
         }
         if blur {

@@ -161,8 +161,8 @@ impl System {
         let mut system = Self { count, basis, normal: [[0.0; UNKNOWNS]; UNKNOWNS], right: [0.0; UNKNOWNS] };
         for i in 0..count {
             let row: [f64; UNKNOWNS] = std::array::from_fn(|k| (0..UNKNOWNS).map(|l| basis[i][l] * scale[l] * sums.products[l][k]).sum());
-            for j in 0..=i {
-                let sum = (0..UNKNOWNS).map(|k| row[k] * scale[k] * basis[j][k]).sum();
+            for (j, other) in basis.iter().enumerate().take(i + 1) {
+                let sum = (0..UNKNOWNS).map(|k| row[k] * scale[k] * other[k]).sum();
                 (system.normal[i][j], system.normal[j][i]) = (sum, sum);
             }
             system.right[i] = (0..UNKNOWNS).map(|k| basis[i][k] * scale[k] * sums.right[k]).sum();
@@ -203,7 +203,7 @@ fn basis(kind: TargetKind, a: &Affine, blur: bool) -> ([[f64; UNKNOWNS]; UNKNOWN
     push(unit(1));
     match kind {
         TargetKind::Disc => {
-            [[a.axx, 0.0, a.ayx, 0.0], [0.0, a.axy, 0.0, a.ayy], [a.axy, a.axx, a.ayy, a.ayx]].map(shape).into_iter().for_each(&mut push)
+            [[a.axx, 0.0, a.ayx, 0.0], [0.0, a.axy, 0.0, a.ayy], [a.axy, a.axx, a.ayy, a.ayx]].map(shape).into_iter().for_each(&mut push);
         }
         TargetKind::Corner | TargetKind::ChessCorner => {
             [[-a.ayx, 0.0, a.axx, 0.0], [0.0, -a.ayy, 0.0, a.axy]].map(shape).into_iter().for_each(&mut push);
