@@ -2,6 +2,7 @@
 //!
 //! Rounds are interleaved (A B C A B C ...), so that a machine that is slower for a while is so for all; medians are printed.
 
+mod classical;
 mod points;
 mod scene;
 
@@ -16,6 +17,7 @@ fn main() {
         return;
     }
     points::run();
+    classical::run();
     rendering();
     detection();
 }
