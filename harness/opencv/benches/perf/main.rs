@@ -16,8 +16,8 @@ fn main() {
     if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
         return;
     }
-    points::run();
     classical::run();
+    points::run();
     rendering();
     detection();
 }
