@@ -1,10 +1,10 @@
-//! `harris_paraboloid`: the maximum of the Harris strength, refined by a paraboloid.
+//! `harris_paraboloid`, `harris_linear`: the maximum of the Harris strength, refined by a paraboloid or by the weights of its neighbours.
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 
 use crate::harris::{Harris, Strengths};
 use crate::operator::{Operator, window_centre};
-use crate::paraboloid::Paraboloid;
+use crate::paraboloid::Weights;
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
 
@@ -16,56 +16,93 @@ use crate::registry::{Build, Method};
 /// Source: Zhu et al. 2007, Eq. 1, 4, 9 to 13.
 pub struct HarrisParaboloid {
     half: usize,
-    k: f64,
+    refinement: Refinement,
     harris: Harris,
 }
 
+/// From the 3 x 3 strengths around the strongest pixel to a position.
+enum Refinement {
+    /// The maximum of a paraboloid.
+    Paraboloid(Weights),
+    /// The linear fit that the paraboloid improves on: along each axis the mean of the three positions, weighted by the strengths (negative ones count
+    /// as zero). The paper says no more of it than that the four connected neighbours are weighted by their strengths.
+    ///
+    /// Source: Malik et al. 2002, as described in Zhu et al. 2007.
+    Linear,
+}
+
+impl Refinement {
+    fn apply(&self, f: &[[f64; 3]; 3]) -> Option<(f64, f64)> {
+        match self {
+            Self::Paraboloid(weights) => weights.fit(f).maximum(),
+            Self::Linear => {
+                let axis = |before: f64, behind: f64| {
+                    let (before, behind) = (before.max(0.0), behind.max(0.0));
+                    (behind - before) / (before + f[1][1] + behind)
+                };
+                Some((axis(f[1][0], f[1][2]), axis(f[0][1], f[2][1])))
+            }
+        }
+    }
+}
+
+const WINDOW: Parameter = Parameter {
+    name: "window",
+    about: "side of the window in which the strongest pixel is sought, px",
+    domain: Domain::Odd { min: 3, max: 31 },
+    default: 11.0,
+    always_shown: true,
+};
+const K: Parameter = Parameter {
+    name: "k",
+    about: "scale of the weights exp(-d^2/k^2) of the fit, px",
+    domain: Domain::Real { min: 1e-3, max: 1e3 },
+    default: 0.2,
+    always_shown: false,
+};
+const SIGMA: Parameter = Parameter {
+    name: "sigma",
+    about: "standard deviation of the integration Gaussian, px",
+    domain: Domain::Real { min: 0.1, max: 10.0 },
+    default: 1.0,
+    always_shown: false,
+};
+const ALPHA: Parameter = Parameter {
+    name: "alpha",
+    about: "weight of the squared trace in the strength",
+    domain: Domain::Real { min: 0.0, max: 0.24 },
+    default: 0.04,
+    always_shown: false,
+};
+
 /// The method's entry.
 pub fn method() -> Method {
-    const PARAMETERS: &[Parameter] = &[
-        Parameter {
-            name: "window",
-            about: "side of the window in which the strongest pixel is sought, px",
-            domain: Domain::Odd { min: 3, max: 31 },
-            default: 11.0,
-            always_shown: true,
-        },
-        Parameter {
-            name: "k",
-            about: "scale of the weights exp(-d^2/k^2) of the fit, px",
-            domain: Domain::Real { min: 1e-3, max: 1e3 },
-            default: 0.2,
-            always_shown: false,
-        },
-        Parameter {
-            name: "sigma",
-            about: "standard deviation of the integration Gaussian, px",
-            domain: Domain::Real { min: 0.1, max: 10.0 },
-            default: 1.0,
-            always_shown: false,
-        },
-        Parameter {
-            name: "alpha",
-            about: "weight of the squared trace in the strength",
-            domain: Domain::Real { min: 0.0, max: 0.24 },
-            default: 0.04,
-            always_shown: false,
-        },
-    ];
     Method {
         name: "harris_paraboloid",
         about: "maximum of the Harris strength in the window, refined by a paraboloid through its 3x3 strengths",
         source: "Zhu et al. 2007, Eq. 1, 4, 9 to 13",
         version: "1".into(),
-        parameters: PARAMETERS,
-        build: Build::With(|settings| Box::new(HarrisParaboloid::new(settings))),
+        parameters: const { &[WINDOW, K, SIGMA, ALPHA] },
+        build: Build::With(|settings| Box::new(HarrisParaboloid::new(settings, Refinement::Paraboloid(Weights::new(settings.get("k")))))),
+    }
+}
+
+/// The entry of the linear fit.
+pub fn linear() -> Method {
+    Method {
+        name: "harris_linear",
+        about: "maximum of the Harris strength in the window, refined by the strengths of its four neighbours",
+        source: "Malik et al. 2002, as described in Zhu et al. 2007",
+        version: "1".into(),
+        parameters: const { &[WINDOW, SIGMA, ALPHA] },
+        build: Build::With(|settings| Box::new(HarrisParaboloid::new(settings, Refinement::Linear))),
     }
 }
 
 impl HarrisParaboloid {
-    fn new(settings: &Settings) -> Self {
+    fn new(settings: &Settings, refinement: Refinement) -> Self {
         let harris = Harris::new(settings.get("alpha"), settings.get("sigma"));
-        Self { half: settings.whole("window") / 2, k: settings.get("k"), harris }
+        Self { half: settings.whole("window") / 2, refinement, harris }
     }
 }
 
@@ -79,7 +116,7 @@ impl Operator for HarrisParaboloid {
         let (x, y) = window_centre(image, start, (ring + self.harris.reach()) as i64)?;
         let strengths = self.harris.strengths(image, x, y, ring)?;
         let (column, row) = strongest(&strengths, start.position, (x, y))?;
-        let (dx, dy) = Paraboloid::fit(&strengths.around(column, row), self.k).maximum().ok_or(Rejection::NoCorner)?;
+        let (dx, dy) = self.refinement.apply(&strengths.around(column, row)).ok_or(Rejection::NoCorner)?;
         if dx.abs() > 1.0 || dy.abs() > 1.0 {
             return Err(Rejection::LeftWindow);
         }
@@ -124,6 +161,25 @@ mod tests {
         for spec in ["window=11", "window=5,k=1", "window=7,sigma=2,k=100", "window=31,alpha=0.06"] {
             conformance::check(&*operator(&format!("harris_paraboloid:{spec}")), 1e-7);
         }
+    }
+
+    #[test]
+    fn the_linear_fit_conforms() {
+        for spec in ["window=11", "window=7,sigma=2"] {
+            conformance::check(&*operator(&format!("harris_linear:{spec}")), 1e-7);
+        }
+    }
+
+    #[test]
+    fn the_linear_fit_is_pulled_to_the_pixel() {
+        // On a wide hill neighbours are nearly as strong as the middle: the mean of three tells a third of what the difference of slopes does.
+        let hill =
+            |cx: f64| Image::from_fn(41, 41, move |x, y| (-((x as f64 - cx).powi(2) + (y as f64 - 20.0).powi(2)) / 8.0).exp() as f32);
+        let found = |name: &str| {
+            operator(&format!("{name}:sigma=2")).measure(&hill(20.3), &Start::at(PixelPoint::new(21.0, 19.0))).unwrap().position.x - 20.0
+        };
+        let (linear, paraboloid) = (found("harris_linear"), found("harris_paraboloid"));
+        assert!(linear > 0.01 && linear < 0.15 && (paraboloid - 0.3).abs() < 0.02, "{linear} {paraboloid}");
     }
 
     #[test]

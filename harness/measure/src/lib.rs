@@ -3,7 +3,13 @@
 //! An operator sees an image and a [`Start`](calibench_model::Start) and nothing else: this crate does not depend on the one that knows the truth.
 //! To add one, write its file, name it in [`builtin`](registry::Registry::builtin), and call [`conformance::check`] on it.
 
+#[cfg(test)]
+mod analytic;
+pub mod blob;
 pub mod board;
+pub mod centroid;
+pub mod chess_corners;
+mod cholesky;
 pub mod conformance;
 pub mod ellipse;
 pub mod ellipse_edges;
@@ -14,6 +20,7 @@ pub mod forstner;
 pub mod harris;
 pub mod harris_paraboloid;
 mod lanes;
+pub mod lsm;
 mod marquardt;
 pub mod operator;
 pub mod paraboloid;
@@ -21,7 +28,9 @@ pub mod parameter;
 pub mod parametric_circle;
 pub mod parametric_corner;
 pub mod pixel;
+pub mod precision;
 pub mod registry;
+pub mod saddle;
 
 pub use board::{Board, BoardDetector};
 pub use operator::Operator;

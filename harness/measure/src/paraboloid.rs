@@ -9,33 +9,61 @@ pub struct Paraboloid {
     pub a: [f64; 6],
 }
 
-impl Paraboloid {
-    /// The weighted least-squares fit to `f[row][column]` with weights `exp(-d^2 / k^2)`.
-    ///
-    /// Nine samples, six unknowns. By symmetry the normal equations fall apart, and with `q = exp(-1 / k^2)`, the weight of a direct neighbour, all
-    /// weights stand in ratios 1 : q : q^2; divided out, nothing is lost however small `q` is: at `k = 0.2` it is e^-25, and the
-    /// limit `q = 0` is that of finite differences, `q = 1` the unweighted fit. `k` in px, positive.
+/// Weights `exp(-d^2 / k^2)` of a fit, worked out once for many fits.
+///
+/// By symmetry the normal equations of nine samples and six unknowns fall apart, and with `q = exp(-1 / k^2)`, the weight of a direct neighbour, all
+/// weights stand in ratios 1 : q : q^2; divided out, nothing is lost however small `q` is: at `k = 0.2` it is e^-25, and the
+/// limit `q = 0` is that of finite differences, `q = 1` the unweighted fit.
+///
+/// Source: Zhu et al. 2007, Eq. 10.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    q: f64,
+    /// `1 / (2 + 4 q)`.
+    odd: f64,
+    /// `2 q / (1 + 2 q)`.
+    even: f64,
+}
+
+impl Weights {
+    /// For `k` px, positive.
+    pub fn new(k: f64) -> Self {
+        let q = (-1.0 / (k * k)).exp();
+        Self { q, odd: 1.0 / (2.0 + 4.0 * q), even: 2.0 * q / (1.0 + 2.0 * q) }
+    }
+
+    /// The least-squares paraboloid for `f[row][column]`.
     ///
     /// Source: Zhu et al. 2007, Eq. 9 to 11, solved in closed form.
-    pub fn fit(f: &[[f64; 3]; 3], k: f64) -> Self {
-        let q = (-1.0 / (k * k)).exp();
+    #[inline]
+    pub fn fit(&self, f: &[[f64; 3]; 3]) -> Paraboloid {
         let [[nw, north, ne], [west, centre, east], [sw, south, se]] = *f;
         let a2 = (nw + se - ne - sw) / 4.0;
-        let a3 = ((east - west) + q * ((ne + se) - (nw + sw))) / (2.0 + 4.0 * q);
-        let a4 = ((south - north) + q * ((sw + se) - (nw + ne))) / (2.0 + 4.0 * q);
+        let a3 = ((east - west) + self.q * ((ne + se) - (nw + sw))) * self.odd;
+        let a4 = ((south - north) + self.q * ((sw + se) - (nw + ne))) * self.odd;
         // The even part: means along x, along y and over the diagonals, with one condition between them, `misclosure = 0`.
         let (x, y, diagonal) = ((east + west) / 2.0, (north + south) / 2.0, (nw + ne + sw + se) / 4.0);
         let misclosure = centre - x - y + diagonal;
-        let share = 2.0 * q * misclosure / (1.0 + 2.0 * q);
+        let share = self.even * misclosure;
         let a0 = x - centre + share;
         let a1 = y - centre + share;
-        let a5 = centre - 2.0 * q / (1.0 + 2.0 * q) * share;
-        Self { a: [a0, a1, a2, a3, a4, a5] }
+        let a5 = centre - self.even * share;
+        Paraboloid { a: [a0, a1, a2, a3, a4, a5] }
+    }
+}
+
+impl Paraboloid {
+    /// The weighted least-squares fit to `f[row][column]` with weights `exp(-d^2 / k^2)`; for many fits see [`Weights`]. `k` in px, positive.
+    ///
+    /// Source: Zhu et al. 2007, Eq. 9 to 11, solved in closed form.
+    pub fn fit(f: &[[f64; 3]; 3], k: f64) -> Self {
+        Weights::new(k).fit(f)
     }
 
     /// Where the paraboloid has its maximum, from the middle sample, px; `None` if it has none (a saddle, a valley, a cylinder).
     ///
     /// Source: Zhu et al. 2007, Eq. 12.
+    #[inline]
     pub fn maximum(&self) -> Option<(f64, f64)> {
         let [a0, a1, a2, a3, a4, _] = self.a;
         let denominator = a2 * a2 - 4.0 * a1 * a0;

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::Outline;
+
 /// The kinds of target that operators and testfields know by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TargetKind {
@@ -38,7 +40,37 @@ impl TargetKind {
             Self::Triangle => "triangle",
         }
     }
+
+    /// The target in its own plane: unit its size, v down, the reference point at (0, 0); the areas that its outlines enclose make it up.
+    ///
+    /// Disc, square and cross are centred; the bars of a cross lie along u and v and are [`BAR`] wide. The reference point of the (equilateral)
+    /// triangle is its centroid; one vertex lies straight up. Of a corner and a chess corner the squares that meet at it are given; what is beyond
+    /// them is for their user to know. A junction has no one shape.
+    pub fn outlines(self) -> Vec<Outline> {
+        let half = 0.5;
+        match self {
+            Self::Disc => vec![Outline::disc([0.0, 0.0], half)],
+            Self::Square => vec![Outline::rectangle([-half, -half], [half, half])],
+            Self::Triangle => {
+                let height = 3_f64.sqrt() / 2.0;
+                vec![Outline::polygon(&[[0.0, -height * 2.0 / 3.0], [half, height / 3.0], [-half, height / 3.0]])]
+            }
+            Self::Cross => {
+                let b = BAR / 2.0;
+                let quarter = [[half, -b], [half, b], [b, b]];
+                let turned = |[u, v]: [f64; 2], turns: usize| [[u, v], [-v, u], [-u, -v], [v, -u]][turns];
+                let vertices: Vec<[f64; 2]> = (0..4).flat_map(|turns| quarter.map(|vertex| turned(vertex, turns))).collect();
+                vec![Outline::polygon(&vertices)]
+            }
+            Self::Corner => vec![Outline::rectangle([0.0, 0.0], [1.0, 1.0])],
+            Self::ChessCorner => vec![Outline::rectangle([0.0, 0.0], [1.0, 1.0]), Outline::rectangle([-1.0, -1.0], [0.0, 0.0])],
+            Self::Junction => Vec::new(),
+        }
+    }
 }
+
+/// The width of a cross's bars, as a fraction of their length.
+pub const BAR: f64 = 1.0 / 3.0;
 
 impl fmt::Display for TargetKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -77,6 +109,37 @@ pub struct Affine {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Area and centroid by Green's theorem, the curves cut into short chords.
+    fn area_and_centroid(kind: TargetKind) -> (f64, [f64; 2]) {
+        let (mut area, mut moment) = (0.0, [0.0; 2]);
+        for curve in kind.outlines().iter().flat_map(|outline| &outline.0) {
+            for step in 0..1000 {
+                let [a, b] = [step, step + 1].map(|i| curve.at(f64::from(i) / 1000.0));
+                let cross = a[0] * b[1] - b[0] * a[1];
+                area += cross / 2.0;
+                moment = [0, 1].map(|i| moment[i] + cross * (a[i] + b[i]) / 6.0);
+            }
+        }
+        (area, moment.map(|m| m / area))
+    }
+
+    #[test]
+    fn outlines_have_their_area_and_reference_point() {
+        use TargetKind::{ChessCorner, Corner, Cross, Disc, Square, Triangle};
+        let bars = 2.0 * BAR - BAR * BAR;
+        let centred =
+            [(Disc, std::f64::consts::PI / 4.0), (Square, 1.0), (Triangle, 3_f64.sqrt() / 4.0), (Cross, bars), (ChessCorner, 2.0)];
+        for (kind, area) in centred {
+            let (found, [u, v]) = area_and_centroid(kind);
+            // Chords of a circle: (2 pi / 4000)^2 / 6.
+            assert!((found - area).abs() < 1e-6 && u.abs() < 1e-12 && v.abs() < 1e-12, "{kind}: {found} {u} {v}");
+        }
+        let (area, [u, v]) = area_and_centroid(Corner);
+        // Four thousand chords are added up.
+        assert!([area - 1.0, u - 0.5, v - 0.5].iter().all(|off| off.abs() < 1e-12), "{area} {u} {v}");
+        assert!(TargetKind::Junction.outlines().is_empty());
+    }
 
     #[test]
     fn names_go_both_ways() {

@@ -2,6 +2,7 @@
 //!
 //! Rounds are interleaved (A B C A B C ...), so that a machine that is slower for a while is so for all; medians are printed.
 
+mod classical;
 mod points;
 mod render;
 mod scene;
@@ -16,12 +17,12 @@ fn main() {
     if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
         return;
     }
-    if std::env::args().all(|argument| argument != "--rendering") {
-        points::run();
-        detection();
+    // A part alone, by its name: `cargo bench --workspace --bench perf -- rendering`.
+    let parts: [(&str, fn()); 4] = [("points", points::run), ("classical", classical::run), ("rendering", render::run), ("detection", detection)];
+    let asked: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
+    for (_, run) in parts.iter().filter(|(name, _)| asked.is_empty() || asked.iter().any(|part| part == name)) {
+        run();
     }
-    render::run();
-    detection();
 }
 
 /// Seconds that `work` takes: the median of five runs.

@@ -1,0 +1,187 @@
+//! `lsm`: least-squares matching with an artificial mask.
+
+mod border;
+mod fit;
+mod mask;
+mod planes;
+mod profile;
+mod start;
+
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind};
+
+use self::fit::{Limits, Work};
+use self::mask::Mask;
+use self::planes::Planes;
+use self::profile::Profile;
+use crate::operator::{Operator, window_centre};
+use crate::parameter::{Domain, Parameter, Settings};
+use crate::registry::{Build, Method};
+
+/// The largest standard deviation of a result, px: beyond, the window holds no such target.
+const LARGEST: f64 = 1.0;
+
+/// Least-squares matching of an artificial mask: an ideal shape (see [`TargetKind::outlines`]), mapped into the image by an affine
+/// transformation, blurred there by a pixel and a Gaussian, with a grey value for the ground and a contrast: eight parameters, or nine with
+/// the Gaussian's width.
+///
+/// The blur belongs to the image and does not follow the affine map. Coverage and derivatives are line integrals along the mask's border, exact to
+/// 1e-6. A disc is left out the turn of its own plane, the edges of a corner their length. What is pictured comes from the start, or from `shape`;
+/// the affine start from the start, or from `size` and the image, or from the image alone: the moments of the pixels beyond Otsu's
+/// threshold, turned to where the residuals are smallest. If these pixels are all in the window, it moves onto their centroid.
+///
+/// The position is that of the mask's reference point; a triangle's is its centroid. Covariance: `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
+///
+/// Source: Vosselman & Förstner 1988, Sect. 3.4; Förstner 1982; blur as a parameter: Thurgood & Mikhail 1982.
+pub struct Lsm {
+    window: usize,
+    shape: Option<TargetKind>,
+    size: f64,
+    sigma: f64,
+    limits: Limits,
+    /// Masks of all kinds, in the order of [`TargetKind::ALL`].
+    masks: Vec<Option<Mask>>,
+    profile: Profile,
+}
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "window",
+        about: "side of the window, px",
+        domain: Domain::Odd { min: 5, max: 47 },
+        default: 15.0,
+        always_shown: true,
+    },
+    Parameter {
+        name: "shape",
+        about: "what is pictured: 0 as the start says, or else 1 corner, 2 chess corner, 4 cross, 5 disc, 6 square, 7 triangle",
+        domain: Domain::Whole { min: 0, max: 7 },
+        default: 0.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "size",
+        about: "size of the target where the start gives no affine map, px; 0 to take it from the image",
+        domain: Domain::Real { min: 0.0, max: 100.0 },
+        default: 0.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "sigma",
+        about: "standard deviation of the Gaussian blur, px; where it is sought, its start",
+        domain: Domain::Real { min: 0.2, max: 4.0 },
+        default: 0.7,
+        always_shown: false,
+    },
+    Parameter {
+        name: "sharpness",
+        about: "is the blur sought, too? 0 no, 1 yes",
+        domain: Domain::Whole { min: 0, max: 1 },
+        default: 0.0,
+        always_shown: false,
+    },
+    Parameter { name: "iterations", about: "most steps", domain: Domain::Whole { min: 1, max: 100 }, default: 30.0, always_shown: false },
+    Parameter {
+        name: "epsilon",
+        about: "step of the position at which iteration ends, px",
+        domain: Domain::Real { min: 1e-9, max: 0.1 },
+        default: 1e-3,
+        always_shown: false,
+    },
+];
+
+/// The method's entry.
+pub fn method() -> Method {
+    Method {
+        name: "lsm",
+        about: "least-squares matching with an artificial mask: six affine parameters, two of grey values, the blur if wanted",
+        source: "Vosselman & Förstner 1988, Sect. 3.4; Thurgood & Mikhail 1982 (blur)",
+        version: "1".into(),
+        parameters: PARAMETERS,
+        build: Build::With(|settings| Box::new(Lsm::new(settings))),
+    }
+}
+
+impl Lsm {
+    fn new(settings: &Settings) -> Self {
+        let limits =
+            Limits { iterations: settings.whole("iterations"), epsilon: settings.get("epsilon"), blur: settings.get("sharpness") > 0.0 };
+        let sigma = settings.get("sigma");
+        Self {
+            window: settings.whole("window"),
+            shape: settings.whole("shape").checked_sub(1).map(|index| TargetKind::ALL[index]),
+            size: settings.get("size"),
+            sigma,
+            limits,
+            masks: TargetKind::ALL.into_iter().map(Mask::new).collect(),
+            profile: Profile::new(sigma),
+        }
+    }
+
+    fn work(&self) -> Work {
+        Work { planes: Planes::new(self.window), profile: self.profile.clone() }
+    }
+
+    /// The mask for a start; a start that does not say what is pictured is taken for a corner.
+    fn mask(&self, start: &Start) -> Option<&Mask> {
+        let kind = self.shape.or(start.kind).unwrap_or(TargetKind::Corner);
+        TargetKind::ALL.iter().zip(&self.masks).find(|(k, _)| **k == kind).and_then(|(_, mask)| mask.as_ref())
+    }
+
+    fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
+        let half = self.window as i64 / 2;
+        let first = window_centre(image, start, half)?;
+        admit(image, first, half)?;
+        let mask = self.mask(start).ok_or(Rejection::NoCorner)?;
+        let blob = start::blob(mask, image, first, half, start.position);
+        let position = blob.as_ref().map_or(start.position, crate::blob::Blob::centre);
+        // The target may be whole in the first window and the second still reach past the image.
+        let (x, y) = window_centre(image, &Start::at(position), half).unwrap_or(first);
+        admit(image, (x, y), half)?;
+        work.planes.observe(image.rows_around(x, y, half).ok_or(Rejection::Border)?);
+        let (left, top) = ((x - half) as f64, (y - half) as f64);
+        let shapes = start::shapes(mask, start.affine, self.size, blob.as_ref(), self.window as f64);
+        let at = [position.x - left, position.y - top];
+        let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
+        let fitted = work.fit(mask, begin, self.limits)?;
+        if !(fitted.covariance.sxx + fitted.covariance.syy).is_finite() {
+            return Err(Rejection::NotConverged);
+        }
+        if fitted.covariance.sxx.max(fitted.covariance.syy) > LARGEST * LARGEST {
+            return Err(Rejection::ErrorEllipse);
+        }
+        let [dx, dy] = fitted.parameters.pose.at;
+        Ok(Measurement { position: PixelPoint::new(left + dx, top + dy), covariance: Some(fitted.covariance) })
+    }
+}
+
+/// Checks that the window's grey values are numbers and not all the same.
+fn admit(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
+    let (mut low, mut high, mut finite) = (f32::INFINITY, f32::NEG_INFINITY, true);
+    for row in image.rows_around(x, y, half).ok_or(Rejection::Border)? {
+        for &grey in row {
+            (low, high, finite) = (low.min(grey), high.max(grey), finite & grey.is_finite());
+        }
+    }
+    match finite {
+        false => Err(Rejection::NotFinite),
+        true if low < high => Ok(()),
+        true => Err(Rejection::NoCorner),
+    }
+}
+
+impl Operator for Lsm {
+    /// # Errors
+    /// [`Rejection::Border`] when the window leaves the image; [`Rejection::NotFinite`]; [`Rejection::NoCorner`] when the target has no one shape (a junction) or the window no
+    /// contrast; [`Rejection::NotConverged`]; [`Rejection::LeftWindow`]; [`Rejection::ErrorEllipse`] when a coordinate's standard deviation exceeds 1 px.
+    fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
+        self.measure_with(&mut self.work(), image, start)
+    }
+
+    fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
+        let mut work = self.work();
+        starts.iter().map(|start| self.measure_with(&mut work, image, start)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,186 @@
+//! The mask: an ideal shape in its own plane, and the points along its border at which line integrals are added up.
+
+use std::sync::LazyLock;
+
+use calibench_model::{Affine, Curve, TargetKind};
+
+/// Nodes of the longest rule.
+pub(super) const LONGEST: usize = 48;
+/// Distance between the middle nodes of a rule, in standard deviations of the blur: coverages are then right to 2e-6 at a blur of 0.3 px, to 1e-6 from 0.5 px on.
+const SPACING: f64 = 1.4;
+
+/// Nodes and weights of the Gauss-Legendre rules of 1 to [`LONGEST`] points on [0, 1].
+static RULES: LazyLock<Vec<Vec<(f64, f64)>>> = LazyLock::new(|| (1..=LONGEST).map(gauss_legendre).collect());
+
+/// A mask.
+#[derive(Clone, Debug)]
+pub(super) struct Mask {
+    /// What it pictures.
+    pub(super) kind: TargetKind,
+    curves: Vec<Curve>,
+    /// Mean of u^2, which is that of v^2 for shapes with more than two-fold symmetry.
+    pub(super) moment: f64,
+}
+
+impl Mask {
+    /// The mask of a kind of target; `None` if that has no one shape.
+    pub(super) fn new(kind: TargetKind) -> Option<Self> {
+        let curves: Vec<Curve> = kind.outlines().into_iter().flat_map(|outline| outline.0).collect();
+        let moment = moment(&curves)?;
+        Some(Self { kind, curves, moment })
+    }
+
+    /// How many times it looks the same in a full turn, a change of contrast allowed; 0 for a disc.
+    pub(super) fn symmetry(&self) -> u32 {
+        match self.kind {
+            TargetKind::Disc => 0,
+            TargetKind::Triangle => 3,
+            TargetKind::Corner | TargetKind::Junction => 1,
+            TargetKind::Square | TargetKind::Cross | TargetKind::ChessCorner => 4,
+        }
+    }
+
+    /// Do its edges go on past the window?
+    pub(super) fn is_open(&self) -> bool {
+        matches!(self.kind, TargetKind::Corner | TargetKind::ChessCorner)
+    }
+
+    /// The curves of its border.
+    pub(super) fn curves(&self) -> &[Curve] {
+        &self.curves
+    }
+}
+
+/// The part of one curve over which one rule is added up: parameters from `begin` on, `share` long.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Panel {
+    rule: &'static [(f64, f64)],
+    begin: f64,
+    share: f64,
+}
+
+impl Panel {
+    /// The panels of a curve for a blur of `sigma` px, where it runs between two pixel rows: the rest is not seen.
+    pub(super) fn of(curve: &Curve, affine: &Affine, y: f64, sigma: f64, rows: (f64, f64)) -> impl Iterator<Item = Self> {
+        let (t0, t1) = visible(curve, affine, y, rows).unwrap_or((0.0, 0.0));
+        let length = (t1 - t0) * extent(curve, affine);
+        let wanted = std::f64::consts::FRAC_PI_2 * length / (SPACING * sigma) + 3.0;
+        // Of a shape that the iteration blew up beyond all bounds only so much is looked at: it is rejected anyway.
+        let count = if t1 > t0 { (wanted / LONGEST as f64).ceil().clamp(1.0, 16.0) } else { 0.0 };
+        let nodes = ((wanted / count.max(1.0)).ceil() as usize).clamp(1, LONGEST);
+        let share = (t1 - t0) / count.max(1.0);
+        (0..count as usize).map(move |index| Self { rule: &RULES[nodes - 1], begin: t0 + index as f64 * share, share })
+    }
+
+    /// Parameters of the curve with their weights.
+    pub(super) fn nodes(self) -> impl Iterator<Item = (f64, f64)> {
+        self.rule.iter().map(move |&(node, weight)| (self.begin + node * self.share, weight * self.share))
+    }
+}
+
+/// A direction of the mask in the image, px.
+#[inline(always)]
+pub(super) fn map(a: &Affine, [u, v]: [f64; 2]) -> [f64; 2] {
+    [a.axx * u + a.axy * v, a.ayx * u + a.ayy * v]
+}
+
+/// The part of a curve between two rows, as parameters: of a line, where it is; an arc is taken whole. `None` if nothing is.
+fn visible(curve: &Curve, affine: &Affine, y: f64, (low, high): (f64, f64)) -> Option<(f64, f64)> {
+    let Curve::Line { from, to } = *curve else { return Some((0.0, 1.0)) };
+    let (y0, y1) = (y + map(affine, from)[1], y + map(affine, to)[1]);
+    if y0.max(y1) <= low || y0.min(y1) >= high {
+        return None;
+    }
+    if y0.min(y1) >= low && y0.max(y1) <= high {
+        return Some((0.0, 1.0));
+    }
+    let at = |row: f64| ((row - y0) / (y1 - y0)).clamp(0.0, 1.0);
+    let (a, b) = (at(low), at(high));
+    Some((a.min(b), a.max(b)))
+}
+
+/// How long a curve is in the image at most, px.
+fn extent(curve: &Curve, affine: &Affine) -> f64 {
+    match *curve {
+        Curve::Line { from, to } => {
+            let [x, y] = map(affine, [to[0] - from[0], to[1] - from[1]]);
+            x.hypot(y)
+        }
+        Curve::Arc { radius, sweep, .. } => {
+            let a = affine;
+            radius * sweep.abs() * (a.axx * a.axx + a.axy * a.axy + a.ayx * a.ayx + a.ayy * a.ayy).sqrt()
+        }
+    }
+}
+
+/// Mean u^2 over what the curves enclose, by Green's theorem; `None` if that is nothing.
+fn moment(curves: &[Curve]) -> Option<f64> {
+    let (mut area, mut second) = (0.0, 0.0);
+    for curve in curves {
+        for &(t, weight) in &RULES[19] {
+            let (u, dv) = match *curve {
+                Curve::Line { from, to } => (from[0] + t * (to[0] - from[0]), to[1] - from[1]),
+                Curve::Arc { centre, radius, start, sweep } => {
+                    let cosine = (start + t * sweep).cos();
+                    (centre[0] + radius * cosine, radius * sweep * cosine)
+                }
+            };
+            area += u * dv * weight;
+            second += u * u * u / 3.0 * dv * weight;
+        }
+    }
+    (area > 0.0).then(|| second / area)
+}
+
+/// Newton's method on Legendre's polynomial, whose values come from its recurrence.
+fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+    let node = |i: usize| {
+        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..50 {
+            let (mut before, mut value) = (0.0, 1.0);
+            for k in 0..n {
+                let k = k as f64;
+                (before, value) = (value, ((2.0 * k + 1.0) * x * value - k * before) / (k + 1.0));
+            }
+            slope = n as f64 * (x * value - before) / (x * x - 1.0);
+            let step = value / slope;
+            x -= step;
+            if step.abs() < 1e-15 {
+                break;
+            }
+        }
+        ((1.0 - x) / 2.0, 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(node).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rules_integrate_polynomials() {
+        for (index, rule) in RULES.iter().enumerate() {
+            for degree in [0, 1, index, 2 * index + 1] {
+                let sum: f64 = rule.iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
+                assert!((sum * (degree + 1) as f64 - 1.0).abs() < 1e-12, "{} points, degree {degree}: {sum}", index + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn moments_are_those_of_the_shapes() {
+        let expected = [
+            (TargetKind::Disc, 1.0 / 16.0),
+            (TargetKind::Square, 1.0 / 12.0),
+            (TargetKind::Triangle, 1.0 / 24.0),
+            (TargetKind::Cross, 29.0 / 540.0),
+        ];
+        for (kind, moment) in expected {
+            let mask = Mask::new(kind).unwrap();
+            assert!((mask.moment - moment).abs() < 1e-14, "{kind}: {}", mask.moment);
+        }
+        assert!(Mask::new(TargetKind::Junction).is_none());
+    }
+}

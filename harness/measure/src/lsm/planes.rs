@@ -1,0 +1,167 @@
+//! Coverage of every pixel by the mask, and its derivatives, by line integrals along the mask's border.
+
+use calibench_model::Affine;
+use multiversion::multiversion;
+
+use super::border::{self, Bank};
+use super::mask::Mask;
+use super::profile::{LANES, Profile};
+
+/// Unknowns of the model, in this order: x, y, axx, axy, ayx, ayy, grey value of the ground, contrast, blur.
+pub(super) const UNKNOWNS: usize = 9;
+/// Plane of ones, the derivative by the ground's grey value.
+pub(super) const GROUND: usize = 6;
+/// Plane of coverages, the derivative by the contrast.
+pub(super) const COVERAGE: usize = 7;
+/// Plane of derivatives by the blur, present if that is unknown.
+pub(super) const BLUR: usize = 8;
+/// Plane of residuals.
+const RESIDUAL: usize = 9;
+
+/// Values of every pixel of a window, one plane after the other: derivatives of the coverage (by x to ayy and the blur), ones, coverage, residuals.
+#[derive(Clone, Debug)]
+pub(super) struct Planes {
+    pixels: usize,
+    /// From row to row: the window's columns and zeros up to whole lanes.
+    stride: usize,
+    values: Vec<f64>,
+    grey: Vec<f64>,
+    bank: Bank,
+}
+
+/// The normal equations, `N dx = g`, before the contrast scales the derivatives; and the sum of the squared residuals.
+#[derive(Clone, Debug)]
+pub(super) struct Normal {
+    /// Sums of products of two planes.
+    pub(super) products: [[f64; UNKNOWNS]; UNKNOWNS],
+    /// Sums of products with the residuals.
+    pub(super) right: [f64; UNKNOWNS],
+    /// Sum of squared residuals.
+    pub(super) omega: f64,
+}
+
+/// The planes as [`border`] adds to them.
+pub(super) struct Window<'a> {
+    /// Pixels on a side.
+    pub(super) pixels: usize,
+    /// From row to row.
+    pub(super) stride: usize,
+    /// All planes.
+    pub(super) values: &'a mut [f64],
+}
+
+/// What the mask is mapped and blurred by. Positions count from the window's first pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pose {
+    /// The reference point.
+    pub(super) at: [f64; 2],
+    /// Mask to image.
+    pub(super) affine: Affine,
+}
+
+impl Planes {
+    /// For a window of `pixels` px on a side.
+    pub(super) fn new(pixels: usize) -> Self {
+        let stride = pixels.next_multiple_of(LANES);
+        let values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
+        Self { pixels, stride, values, grey: vec![0.0; pixels * stride], bank: Bank::new(pixels, stride) }
+    }
+
+    /// Pixels in the window.
+    pub(super) fn count(&self) -> usize {
+        self.pixels * self.pixels
+    }
+
+    /// Takes the window's grey values.
+    pub(super) fn observe<'a>(&mut self, rows: impl Iterator<Item = &'a [f32]>) {
+        let area = self.area();
+        let ones = &mut self.values[GROUND * area..(GROUND + 1) * area];
+        for ((row, line), one) in rows.zip(self.grey.chunks_exact_mut(self.stride)).zip(ones.chunks_exact_mut(self.stride)) {
+            line.iter_mut().zip(row).for_each(|(to, &grey)| *to = f64::from(grey));
+            one[..row.len()].fill(1.0);
+        }
+    }
+
+    fn area(&self) -> usize {
+        self.pixels * self.stride
+    }
+
+    /// One plane, with its padding.
+    fn plane(&self, index: usize) -> &[f64] {
+        &self.values[index * self.area()..(index + 1) * self.area()]
+    }
+
+    /// Coverage and derivatives for a mask.
+    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, blur: bool) {
+        let area = self.area();
+        for index in (0..=BLUR).filter(|&index| index != GROUND) {
+            self.values[index * area..(index + 1) * area].fill(0.0);
+        }
+        let window = Window { pixels: self.pixels, stride: self.stride, values: &mut self.values };
+        border::integrate(window, &mut self.bank, mask, pose, profile, blur);
+        for line in self.values[..GROUND * area].chunks_exact_mut(self.stride) {
+            line[self.pixels..].fill(0.0);
+        }
+        for line in self.values[COVERAGE * area..].chunks_exact_mut(self.stride) {
+            line[self.pixels..].fill(0.0);
+        }
+    }
+
+    /// Ground and contrast that fit the coverages best; `None` if these do not differ.
+    pub(super) fn levels(&self) -> Option<(f64, f64)> {
+        let (ones, coverage, n) = (self.plane(GROUND), self.plane(COVERAGE), self.count() as f64);
+        let (c, cc) = (dot(ones, coverage), dot(coverage, coverage));
+        let (g, cg) = (dot(ones, &self.grey), dot(coverage, &self.grey));
+        let determinant = n * cc - c * c;
+        (determinant > 1e-9 * n * n).then(|| ((cc * g - c * cg) / determinant, (n * cg - c * g) / determinant))
+    }
+
+    /// Sum of squared residuals for these levels, and the residuals, ready for [`Self::normal`].
+    pub(super) fn compare(&mut self, ground: f64, contrast: f64) -> f64 {
+        let area = self.area();
+        let (before, residual) = self.values.split_at_mut(RESIDUAL * area);
+        let (ones, coverage) = (&before[GROUND * area..(GROUND + 1) * area], &before[COVERAGE * area..(COVERAGE + 1) * area]);
+        for (((to, grey), one), c) in residual.iter_mut().zip(&self.grey).zip(ones).zip(coverage) {
+            *to = grey - ground * one - contrast * c;
+        }
+        dot(residual, residual)
+    }
+
+    /// The normal equations of the first `unknowns`.
+    pub(super) fn normal(&self, unknowns: usize) -> Normal {
+        products(self, unknowns)
+    }
+
+    /// The value of `plane` at a pixel.
+    #[cfg(test)]
+    pub(super) fn at(&self, plane: usize, column: usize, row: usize) -> f64 {
+        self.plane(plane)[row * self.stride + column]
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn products(planes: &Planes, unknowns: usize) -> Normal {
+    let mut normal = Normal { products: [[0.0; UNKNOWNS]; UNKNOWNS], right: [0.0; UNKNOWNS], omega: 0.0 };
+    let residual = planes.plane(RESIDUAL);
+    for i in 0..unknowns {
+        let plane = planes.plane(i);
+        for j in 0..=i {
+            let sum = dot(plane, planes.plane(j));
+            (normal.products[i][j], normal.products[j][i]) = (sum, sum);
+        }
+        normal.right[i] = dot(plane, residual);
+    }
+    normal.omega = dot(residual, residual);
+    normal
+}
+
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; LANES];
+    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
+        for i in 0..LANES {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    sums.iter().sum()
+}

@@ -1,0 +1,204 @@
+//! What a blurred pixel sees of a point and of a half-plane, along one axis.
+
+/// Fractions of a px at which the profile is tabulated; between them it is a Taylor series.
+const STEPS: usize = 16;
+/// Pixels that are sampled side by side. Fixed, so that every instruction set gives the same bits.
+pub(super) const LANES: usize = 8;
+/// W, k and the first four derivatives of k.
+const DERIVATIVES: usize = 6;
+/// How far the Gaussian reaches, in standard deviations: less than 4e-6 of it is left beyond.
+const REACH: f64 = 4.5;
+
+/// The profile of a pixel one px wide under a Gaussian, and its integral, at all pixels around a point.
+///
+/// With `phi` the normal density, `Phi` its integral and `u = (t -+ 1/2) / sigma`, the profile at distance `t` is `k(t) = Phi(u+) - Phi(u-)` and
+/// its integral `W(t) = sigma (G(u+) - G(u-))`, `G(u) = u Phi(u) + phi(u)`: a pixel at `x` sees `W(p - x)` of everything left of `p`.
+/// The pixels lie at whole distances, so that they share the fraction of a px and with it one row of the table.
+#[derive(Clone, Debug)]
+pub(super) struct Profile {
+    sigma: f64,
+    half: usize,
+    /// For each fraction, for each of the [`DERIVATIVES`], for each pixel, and zeros behind.
+    table: Vec<f64>,
+}
+
+impl Profile {
+    /// With a Gaussian of standard deviation `sigma` px, more than 0.
+    pub(super) fn new(sigma: f64) -> Self {
+        let mut profile = Self { sigma: 0.0, half: 0, table: Vec::new() };
+        profile.set(sigma);
+        profile
+    }
+
+    /// Changes the standard deviation; the table's memory is used again.
+    pub(super) fn set(&mut self, sigma: f64) {
+        if sigma == self.sigma {
+            return;
+        }
+        (self.sigma, self.half) = (sigma, (0.5 + REACH * sigma).ceil() as usize);
+        let (stride, width) = (self.stride(), self.width());
+        self.table.clear();
+        self.table.resize(STEPS * DERIVATIVES * stride, 0.0);
+        for (step, row) in self.table.chunks_exact_mut(DERIVATIVES * stride).enumerate() {
+            let fraction = (step as f64 + 0.5) / STEPS as f64;
+            let mut above = Boundary::new(fraction + self.half as f64 + 0.5, sigma);
+            for pixel in 0..width {
+                let below = Boundary::new(fraction + self.half as f64 - pixel as f64 - 0.5, sigma);
+                (0..DERIVATIVES).for_each(|i| row[i * stride + pixel] = above.0[i] - below.0[i]);
+                above = below;
+            }
+        }
+    }
+
+    /// From one derivative to the next in the table.
+    fn stride(&self) -> usize {
+        self.width() + LANES
+    }
+
+    /// Its standard deviation, px.
+    pub(super) fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    /// Pixels that see a point.
+    pub(super) fn width(&self) -> usize {
+        2 * self.half + 2
+    }
+
+    /// How far from a point they lie at most, px.
+    pub(super) fn reach(&self) -> f64 {
+        self.half as f64 + 1.0
+    }
+
+    /// Samples of the first `pixels` pixels for the point `at`; returns from which to which these see it.
+    ///
+    /// Outside the value is zero and the integral one (before the point) or zero (after it). The slices are `LANES` longer than `pixels`.
+    #[inline(always)]
+    pub(super) fn sample(&self, at: f64, pixels: usize, out: &mut Samples<'_>) -> (usize, usize) {
+        let whole = at.floor();
+        let scaled = (at - whole) * STEPS as f64;
+        let step = (scaled as usize).min(STEPS - 1);
+        let d = (scaled - step as f64 - 0.5) / STEPS as f64;
+        let (first, limit) = (whole as i64 - self.half as i64, pixels as i64);
+        let (low, high) = (first.clamp(0, limit) as usize, (first + self.width() as i64).clamp(0, limit) as usize);
+        out.integral[..low].fill(1.0);
+        out.integral[low..].fill(0.0);
+        out.value.fill(0.0);
+        out.slope.fill(0.0);
+        let skipped = (low as i64 - first) as usize;
+        let row = &self.table[step * DERIVATIVES * self.stride()..(step + 1) * DERIVATIVES * self.stride()];
+        for chunk in 0..(high - low).div_ceil(LANES) {
+            let entry = |i: usize| *lanes(row, i * self.stride() + skipped + chunk * LANES);
+            let [w, k, k1, k2, k3, k4] = [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)];
+            let (mut integral, mut value, mut slope) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                slope[i] = k1[i] + d * (k2[i] + d * (k3[i] * (1.0 / 2.0) + d * (k4[i] * (1.0 / 6.0))));
+                value[i] = k[i] + d * (k1[i] + d * (k2[i] * (1.0 / 2.0) + d * (k3[i] * (1.0 / 6.0) + d * (k4[i] * (1.0 / 24.0)))));
+                integral[i] = w[i] + d * (k[i] + d * (k1[i] * (1.0 / 2.0) + d * (k2[i] * (1.0 / 6.0) + d * (k3[i] * (1.0 / 24.0)))));
+            }
+            let to = low + chunk * LANES..low + (chunk + 1) * LANES;
+            out.integral[to.clone()].copy_from_slice(&integral);
+            out.value[to.clone()].copy_from_slice(&value);
+            out.slope[to].copy_from_slice(&slope);
+        }
+        (low, high)
+    }
+}
+
+/// The `LANES` values from `index` on.
+#[inline(always)]
+fn lanes(values: &[f64], index: usize) -> &[f64; LANES] {
+    values[index..index + LANES].try_into().expect("a slice of that length")
+}
+
+/// Samples along one axis of a window.
+#[derive(Debug)]
+pub(super) struct Samples<'a> {
+    /// `W`.
+    pub(super) integral: &'a mut [f64],
+    /// `k`.
+    pub(super) value: &'a mut [f64],
+    /// `dk/dt`.
+    pub(super) slope: &'a mut [f64],
+}
+
+/// What one border of a pixel gives to `W`, `k` and the derivatives of `k`.
+struct Boundary([f64; DERIVATIVES]);
+
+impl Boundary {
+    fn new(t: f64, sigma: f64) -> Self {
+        let u = t / sigma;
+        let density = (-0.5 * u * u).exp() * 0.398_942_280_401_432_7;
+        let below = 0.5 * libm::erfc(-u * std::f64::consts::FRAC_1_SQRT_2);
+        let s = 1.0 / sigma;
+        let derivatives = [s, -u * s * s, (u * u - 1.0) * s * s * s, (3.0 * u - u * u * u) * s * s * s * s].map(|factor| factor * density);
+        let [k1, k2, k3, k4] = derivatives;
+        Self([sigma * (u * below + density), below, k1, k2, k3, k4])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `k` at `t` by adding up the Gaussian over the pixel.
+    fn by_midpoints(t: f64, sigma: f64) -> f64 {
+        let n = 4000;
+        let gauss = |u: f64| (-0.5 * u * u).exp() / (2.0 * std::f64::consts::PI).sqrt() / sigma;
+        (0..n).map(|i| gauss((t - 0.5 + (f64::from(i) + 0.5) / f64::from(n)) / sigma)).sum::<f64>() / f64::from(n)
+    }
+
+    struct Sampled {
+        low: usize,
+        high: usize,
+        integral: Vec<f64>,
+        value: Vec<f64>,
+        slope: Vec<f64>,
+    }
+
+    fn samples(profile: &Profile, at: f64) -> Sampled {
+        let [mut integral, mut value, mut slope] = [(); 3].map(|()| vec![0.0; 40 + LANES]);
+        let (low, high) = profile.sample(at, 40, &mut Samples { integral: &mut integral, value: &mut value, slope: &mut slope });
+        Sampled { low, high, integral, value, slope }
+    }
+
+    #[test]
+    fn samples_are_those_of_a_pixel_under_a_gaussian() {
+        for sigma in [0.3, 0.7, 2.0] {
+            let profile = Profile::new(sigma);
+            for at in [13.0, 13.031, 23.49, -2.77, 0.999, 38.2, 70.0] {
+                let axis = samples(&profile, at);
+                for (pixel, value) in axis.value[..40].iter().enumerate() {
+                    let t = at - pixel as f64;
+                    assert!((value - by_midpoints(t, sigma)).abs() < 1e-6, "{sigma} {t}: {value}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn each_is_the_derivative_of_the_one_before() {
+        for sigma in [0.4, 1.3] {
+            let profile = Profile::new(sigma);
+            let (h, at) = (1e-4, 15.33);
+            let (low, here, high) = (samples(&profile, at - h), samples(&profile, at), samples(&profile, at + h));
+            for i in 0..40 {
+                let first = (high.integral[i] - low.integral[i]) / (2.0 * h);
+                let second = (high.value[i] - low.value[i]) / (2.0 * h);
+                assert!((here.value[i] - first).abs() < 1e-5 && (here.slope[i] - second).abs() < 2e-5, "{i}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_integral_goes_from_one_to_nothing() {
+        let profile = Profile::new(0.9);
+        let axis = samples(&profile, 17.2);
+        let (low, high) = (axis.low, axis.high);
+        assert!(low > 0 && (axis.integral[low - 1], axis.integral[high]) == (1.0, 0.0));
+        assert!((axis.integral[low] - 1.0).abs() < 1e-6 && axis.integral[high - 1].abs() < 1e-6);
+        for (at, expected) in [(-60.0, 0.0), (90.0, 1.0)] {
+            assert!(samples(&profile, at).integral[..40].iter().all(|&w| w == expected), "{at}");
+        }
+    }
+}
