@@ -1,7 +1,7 @@
 //! All models behind one dispatch.
 
 use super::{
-    Agisoft, CameraModel, CameraParameter, Convention, Derivatives, Ebner, ImageSize, NoCounterpart, OpenCv, OpenCvFisheye,
+    Agisoft, CameraModel, CameraParameter, Convention, DerivativeBuffer, Ebner, ImageSize, NoCounterpart, OpenCv, OpenCvFisheye,
     Photogrammetric, Pix4d, Ray, agisoft, ebner, moniwa, opencv, opencv_fisheye, photogrammetric, pix4d,
 };
 use crate::PixelPoint;
@@ -86,8 +86,8 @@ impl CameraModel for Camera {
         each!(self, camera => camera.unproject(point))
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
-        each!(self, camera => camera.derivatives(ray))
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+        each!(self, camera => camera.derivatives_into(ray, into))
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -4,7 +4,7 @@ use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Ver
 use super::measured::{self, Correction};
 use super::newton::ValueAndDerivatives;
 use super::plane::{PlaneMap, is_contraction};
-use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
 /// Interior orientation in mm, y up, from the centre of the frame. Direction: **measured to ideal**.
@@ -93,10 +93,10 @@ impl Correction for Photogrammetric {
         self
     }
 
-    fn by_coefficients(&self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
+    fn by_coefficients(&self, [x, y]: [f64; 2], into: &mut DerivativeBuffer) {
         let r2 = x * x + y * y;
         let radial = |power: f64| [-x * power, -y * power];
-        vec![
+        into.extend([
             radial(r2),
             radial(r2 * r2),
             radial(r2 * r2 * r2),
@@ -104,7 +104,7 @@ impl Correction for Photogrammetric {
             [-2.0 * x * y, -(r2 + 2.0 * y * y)],
             [-x, 0.0],
             [-y, 0.0],
-        ]
+        ]);
     }
 }
 
@@ -132,8 +132,8 @@ impl CameraModel for Photogrammetric {
         measured::unproject(self, point)
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
-        measured::derivatives(self, ray)
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+        measured::derivatives_into(self, ray, into)
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
