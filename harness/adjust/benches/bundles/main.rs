@@ -1,1 +1,89 @@
-fn main() {}
+//! Seconds of adjustments, one thread. `cargo bench -p calibench-adjust --bench bundles`.
+
+#[path = "../../tests/common/mod.rs"]
+mod common;
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use calibench_adjust::{AdjustError, Network, Options, adjust};
+use calibench_model::camera::CameraModel;
+
+fn main() -> Result<(), AdjustError> {
+    if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
+        return Ok(());
+    }
+    println!("{:<44} {:>8} {:>8} {:>6} {:>10} {:>12} {:>10}", "", "observed", "unknown", "steps", "solution s", "covariance s", "sigma0 px");
+    for views in [17, 100, 1000, 5000] {
+        race(&format!("board of 54 corners, {views} views"), &board(views), if views > 500 { 5 } else { 50 })?;
+    }
+    race("36 images x 256 points, OpenCV's camera", &ring(common::opencv(), &common::FIVE), 9)?;
+    race("200 images x 5000 points, OpenCV's camera", &flight(common::opencv(), &common::FIVE), 3)?;
+    let names = ["c", "x0", "y0", "k1", "k2", "p1", "p2"];
+    race("36 images x 256 points, photogrammetric", &ring(common::photogrammetric(), &names), 9)?;
+    race("200 images x 5000 points, photogrammetric", &flight(common::photogrammetric(), &names), 3)
+}
+
+/// The best of some rounds.
+fn race(what: &str, network: &Network, rounds: usize) -> Result<(), AdjustError> {
+    let options = Options::default();
+    let mut best = [f64::INFINITY; 2];
+    for _ in 0..rounds {
+        let clock = Instant::now();
+        let solution = black_box(adjust(black_box(network), &options)?);
+        best[0] = best[0].min(clock.elapsed().as_secs_f64());
+    }
+    let solution = adjust(network, &options)?;
+    let (counts, sigma0) = (solution.counts(), solution.sigma0().unwrap_or(f64::NAN));
+    let (observed, unknowns, steps) = (counts.observations(), counts.unknowns, solution.iterations());
+    println!("{what:<44} {observed:>8} {unknowns:>8} {steps:>6} {:>10.5} {:>12.5} {sigma0:>10.5}", best[0], best[1]);
+    Ok(())
+}
+
+fn board(views: usize) -> Network {
+    let mut network = common::board(common::opencv(), views, 1);
+    common::free(&mut network, &common::FIVE);
+    let mut random = common::random(2);
+    common::shake_pixels(&mut network, 0.2, &mut random);
+    // As good as Zhang's closed form and a homography.
+    common::shake_poses(&mut network, 5.0, 0.02, &mut random);
+    start(&mut network, 1.03);
+    network
+}
+
+fn ring(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
+    let mut network = common::ring(camera, 36, 256, 1);
+    prepared(&mut network, names, 0.05, 0.01, 32);
+    network
+}
+
+fn flight(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
+    let mut network = common::flight(camera, 1);
+    println!("{}", network.observations.len());
+    prepared(&mut network, names, 1.0, 0.01, 100);
+    network
+}
+
+fn prepared(network: &mut Network, names: &[&str], shift: f64, turn: f64, control: usize) {
+    common::free(network, names);
+    common::control(network, control, 1e-4 * shift);
+    let mut random = common::random(2);
+    common::shake_pixels(network, 0.2, &mut random);
+    common::shake_poses(network, shift, turn, &mut random);
+    for point in &mut network.points {
+        point.position += nalgebra::Vector3::from_fn(|_, _| shift * common::normal(&mut random));
+    }
+    start(network, 1.02);
+}
+
+/// Principal distances off by a factor, distortion unknown.
+fn start(network: &mut Network, factor: f64) {
+    let interior = &mut network.cameras[0];
+    let start = |p: &calibench_model::camera::CameraParameter| match p.name {
+        "fx" | "fy" | "c" => p.value * factor,
+        "cx" | "cy" => p.value.round(),
+        _ => 0.0,
+    };
+    let values: Vec<f64> = interior.camera.parameters().iter().map(start).collect();
+    interior.camera = interior.camera.with_parameters(&values);
+}

@@ -1,0 +1,5 @@
+//! What the result is worth.
+
+mod defect;
+
+pub use defect::Defect;

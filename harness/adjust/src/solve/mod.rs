@@ -1,0 +1,179 @@
+//! From start values to the minimum: Gauss-Newton, damped after Levenberg and Marquardt where it does not descend.
+
+mod factor;
+mod plan;
+mod reduced;
+mod schur;
+mod small;
+
+use crate::AdjustError;
+use crate::network::{Layout, Network};
+use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise};
+use crate::state::State;
+use factor::{Factor, Structure};
+pub(crate) use plan::{Eliminated, Plan};
+use reduced::Reduced;
+pub(crate) use schur::Schur;
+pub(crate) use small::{backward, cholesky};
+
+/// Damping that is tried first, and below which there is none.
+const FIRST: f64 = 1e-6;
+const LEAST: f64 = 1e-9;
+/// Damping beyond which nothing helps.
+const MOST: f64 = 1e12;
+/// Share of the sum of squares that a step must promise to be worth while.
+const WORTH: f64 = 1e-18;
+/// Share of the sum of squares by which rounding may raise it.
+const ROUNDING: f64 = 1e-12;
+
+/// The reduced normal equations, solved: what the way back and covariances need.
+#[derive(Clone, Debug)]
+pub(crate) struct Solved {
+    pub(crate) schur: Schur,
+    pub(crate) factor: Factor,
+}
+
+/// A network on its way to the minimum.
+#[derive(Clone, Debug)]
+pub(crate) struct Engine<'n> {
+    pub(crate) network: &'n Network,
+    pub(crate) layout: Layout,
+    pub(crate) plan: Plan,
+    loss: Loss,
+    structure: Option<Structure>,
+    blank: Reduced,
+    /// What rounding of pixels makes of the sum of squares.
+    floor: f64,
+}
+
+/// Where the iteration ended.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    pub(crate) state: State,
+    pub(crate) normals: Normals,
+    pub(crate) iterations: usize,
+    /// What the last step still promised.
+    pub(crate) gain: f64,
+    pub(crate) converged: bool,
+}
+
+impl<'n> Engine<'n> {
+    pub(crate) fn new(network: &'n Network, layout: Layout, loss: Loss) -> Self {
+        let plan = Plan::of(&layout);
+        let blank = Reduced::new(&plan.kept, || plan.pattern(&layout));
+        let structure = Structure::of(&blank);
+        let rounding = |at: f64, whiten: f64| (4.0 * f64::EPSILON * at.abs().max(1.0) * whiten).powi(2);
+        let floor = layout.sights.iter().map(|s| rounding(s.at[0], s.whiten[0]) + rounding(s.at[1], s.whiten[2])).sum();
+        Self { network, layout, plan, loss, structure, blank, floor }
+    }
+
+    pub(crate) fn linearise(&self, state: &State, scratch: &mut Scratch, into: &mut Normals) -> Result<(), Lost> {
+        linearise(self.network, &self.layout, state, self.loss, scratch, into)
+    }
+
+    /// Solves the normal equations with their diagonal raised; `None` if they are singular.
+    pub(crate) fn decompose(&self, normals: &Normals, damping: f64) -> Option<Solved> {
+        let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
+        schur.eliminate(&self.plan, &self.layout, normals, damping, &mut reduced).ok()?;
+        let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;
+        Some(Solved { schur, factor })
+    }
+
+    /// The reduced matrix, scaled, as it is: for the search for what is not determined.
+    pub(crate) fn reduced(&self, normals: &Normals, damping: f64) -> Option<(Schur, Vec<f64>, Vec<f64>)> {
+        let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
+        schur.eliminate(&self.plan, &self.layout, normals, damping, &mut reduced).ok()?;
+        let scale = self.scale(normals);
+        Some((schur, reduced.into_dense(), scale))
+    }
+
+    /// Roots of the diagonal of the kept unknowns.
+    fn scale(&self, normals: &Normals) -> Vec<f64> {
+        let root = |value: f64| if value > 0.0 { value.sqrt() } else { 1.0 };
+        let mut scale = vec![1.0; self.plan.size()];
+        for (camera, place) in self.layout.cameras.iter().enumerate() {
+            let width = place.free.len();
+            (0..width).for_each(|i| scale[place.offset + i] = root(normals.camera[camera][i * (width + 1)]));
+        }
+        for (kept, &block) in self.plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+            let into = &mut scale[self.plan.kept[block]..self.plan.kept[block + 1]];
+            into.iter_mut().enumerate().for_each(|(i, scale)| {
+                *scale = root(match self.plan.eliminated {
+                    Eliminated::Poses => normals.point[kept][4 * i],
+                    Eliminated::Points => normals.pose[kept][7 * i],
+                });
+            });
+        }
+        scale
+    }
+
+    pub(crate) fn zero_step(&self) -> Step {
+        Step::zero(self.layout.width, self.layout.pose_free.len(), self.layout.point_free.len())
+    }
+
+    /// The step with `damping`, and what it promises; `None` if there is none.
+    fn step(&self, normals: &Normals, damping: f64, step: &mut Step) -> Option<f64> {
+        let solved = self.decompose(normals, damping)?;
+        let mut kept = solved.schur.reduced.clone();
+        solved.factor.solve(&mut kept);
+        solved.schur.back(&self.plan, &self.layout, &kept, step);
+        step.is_finite().then(|| normals.along(step))
+    }
+
+    /// The minimum from `start`.
+    ///
+    /// # Errors
+    /// [`AdjustError::NotPictured`] by the start values.
+    pub(crate) fn descend(&self, start: State, most_iterations: usize) -> Result<End, AdjustError> {
+        let (mut scratch, mut normals, mut trial) = (Scratch::default(), Normals::default(), Normals::default());
+        self.linearise(&start, &mut scratch, &mut normals).map_err(|lost| self.not_pictured(&start, lost))?;
+        let (mut state, mut step, mut damping, mut gain) = (start, self.zero_step(), 0.0, f64::INFINITY);
+        for iterations in 1..=most_iterations {
+            let promised = self.step(&normals, damping, &mut step);
+            let mut accepted = false;
+            if let Some(promised) = promised {
+                gain = promised;
+                let moved = state.moved(&self.layout, &step);
+                let pictured = self.linearise(&moved, &mut scratch, &mut trial).is_ok() && trial.cost.is_finite();
+                accepted = pictured && trial.cost <= normals.cost * (1.0 + ROUNDING) + self.floor;
+                let rest = gain <= WORTH * normals.cost + self.floor;
+                if accepted && (trial.cost <= normals.cost || rest) {
+                    state = moved;
+                    std::mem::swap(&mut normals, &mut trial);
+                }
+                // Nothing to gain, or rounding alone decides.
+                if rest || (accepted && gain <= 1e-9 * normals.cost && trial.cost <= normals.cost * (1.0 + 1e-15)) {
+                    return Ok(End { state, normals, iterations, gain, converged: true });
+                }
+            }
+            damping = match (accepted, damping) {
+                (true, damping) if damping <= LEAST => 0.0,
+                (true, damping) => damping * 0.1,
+                (false, damping) => (damping * 10.0).max(FIRST),
+            };
+            if damping > MOST {
+                return Ok(End { state, normals, iterations, gain, converged: false });
+            }
+        }
+        Ok(End { state, normals, iterations: most_iterations, gain, converged: false })
+    }
+
+    fn not_pictured(&self, state: &State, Lost(sight): Lost) -> AdjustError {
+        use calibench_model::camera::{CameraModel, NoCounterpart};
+        let sight = &self.layout.sights[sight];
+        let ray = state.poses[sight.image].ray(&state.points[sight.point]);
+        let why = state.cameras[self.layout.camera_of[sight.image]].project(ray).err().unwrap_or(NoCounterpart::NoSolution);
+        let (image, point) = (self.network.images[sight.image].name.clone(), self.network.points[sight.point].name.clone());
+        AdjustError::NotPictured { image, point, why }
+    }
+}
+
+impl Normals {
+    /// `g^T x`.
+    pub(crate) fn along(&self, step: &Step) -> f64 {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        dot(&self.camera_right, &step.cameras)
+            + dot(self.pose_right.as_flattened(), step.poses.as_flattened())
+            + dot(self.point_right.as_flattened(), step.points.as_flattened())
+    }
+}
