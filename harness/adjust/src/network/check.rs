@@ -69,7 +69,7 @@ impl Network {
     pub(crate) fn check(&self) -> Result<(), NetworkError> {
         self.cameras.iter().try_for_each(check_camera)?;
         self.images.iter().try_for_each(|image| {
-            within(&format!("image {}", image.name), "camera", image.camera, self.cameras.len())?;
+            within(|| format!("image {}", image.name), "camera", image.camera, self.cameras.len())?;
             check_pose(image)
         })?;
         self.points.iter().try_for_each(|point| {
@@ -88,8 +88,8 @@ impl Network {
         for i in order {
             let o = &self.observations[i];
             let of = || format!("observation {i}");
-            within(&of(), "image", o.image, self.images.len())?;
-            within(&of(), "point", o.point, self.points.len())?;
+            within(of, "image", o.image, self.images.len())?;
+            within(of, "point", o.point, self.points.len())?;
             finite(of, [o.position.x, o.position.y])?;
             check_precision(of, o.precision)?;
             if std::mem::replace(&mut last[o.point], o.image) == o.image {
@@ -103,7 +103,7 @@ impl Network {
     fn check_datum(&self) -> Result<(), NetworkError> {
         if let Datum::Minimal { horizontal, vertical } = &self.datum {
             for &index in horizontal.iter().chain(vertical) {
-                within("the datum", "point", index, self.points.len())?;
+                within(|| "the datum".into(), "point", index, self.points.len())?;
             }
             if horizontal[0] == horizontal[1] || (0..3).any(|i| vertical[i] == vertical[(i + 1) % 3]) {
                 return Err(NetworkError::Datum("a control point is named twice".into()));
@@ -113,8 +113,8 @@ impl Network {
     }
 }
 
-fn within(of: &str, what: &'static str, index: usize, count: usize) -> Result<(), NetworkError> {
-    if index < count { Ok(()) } else { Err(NetworkError::NoSuch { of: of.into(), what, index, count }) }
+fn within(of: impl Fn() -> String, what: &'static str, index: usize, count: usize) -> Result<(), NetworkError> {
+    if index < count { Ok(()) } else { Err(NetworkError::NoSuch { of: of(), what, index, count }) }
 }
 
 fn finite(of: impl Fn() -> String, values: impl IntoIterator<Item = f64>) -> Result<(), NetworkError> {

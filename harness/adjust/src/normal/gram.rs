@@ -12,26 +12,40 @@ pub(crate) const BLOCK: usize = 2 * LANES;
 /// No fused operations: any machine gives the same bits.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(crate) fn gram(rows: &[f64], columns: usize, products: &mut [f64]) {
-    let (blocks, _) = rows.as_chunks::<LANES>();
-    for i in (0..columns).step_by(2) {
-        for j in (0..=i).step_by(2) {
+    let (pairs, _) = rows.as_chunks::<{ 2 * BLOCK }>();
+    let across = columns / 2;
+    for i in 0..across {
+        for j in 0..=i {
             let mut sums = [[0.0; LANES]; 4];
-            for block in blocks.chunks_exact(2 * columns) {
-                for half in 0..2 {
-                    let (a0, a1) = (&block[2 * i + half], &block[2 * i + 2 + half]);
-                    let (b0, b1) = (&block[2 * j + half], &block[2 * j + 2 + half]);
-                    for lane in 0..LANES {
-                        sums[0][lane] += a0[lane] * b0[lane];
-                        sums[1][lane] += a0[lane] * b1[lane];
-                        sums[2][lane] += a1[lane] * b0[lane];
-                        sums[3][lane] += a1[lane] * b1[lane];
-                    }
-                }
+            for block in pairs.chunks_exact(across) {
+                let ((a, _), (b, _)) = (block[i].as_chunks::<LANES>(), block[j].as_chunks::<LANES>());
+                let ([a0x, a0y, a1x, a1y], [b0x, b0y, b1x, b1y]) = (a, b) else { continue };
+                add(&mut sums[0], a0x, b0x);
+                add(&mut sums[1], a0x, b1x);
+                add(&mut sums[2], a1x, b0x);
+                add(&mut sums[3], a1x, b1x);
+                add(&mut sums[0], a0y, b0y);
+                add(&mut sums[1], a0y, b1y);
+                add(&mut sums[2], a1y, b0y);
+                add(&mut sums[3], a1y, b1y);
             }
-            let [p, q, r, s] = sums.map(|s| ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])));
-            (products[i * columns + j], products[i * columns + j + 1]) = (p, q);
-            (products[(i + 1) * columns + j], products[(i + 1) * columns + j + 1]) = (r, s);
+            let [p, q, r, s] = across_lanes(&sums);
+            (products[2 * i * columns + 2 * j], products[2 * i * columns + 2 * j + 1]) = (p, q);
+            (products[(2 * i + 1) * columns + 2 * j], products[(2 * i + 1) * columns + 2 * j + 1]) = (r, s);
         }
+    }
+}
+
+/// Apart, so that the loops above keep their lanes in order: compiled together, sums were shuffled at every step.
+#[inline(never)]
+fn across_lanes(sums: &[[f64; LANES]; 4]) -> [f64; 4] {
+    sums.map(|s| ((s[0] + s[4]) + (s[1] + s[5])) + ((s[2] + s[6]) + (s[3] + s[7])))
+}
+
+#[inline(always)]
+fn add(sum: &mut [f64; LANES], a: &[f64; LANES], b: &[f64; LANES]) {
+    for lane in 0..LANES {
+        sum[lane] += a[lane] * b[lane];
     }
 }
 

@@ -1,6 +1,7 @@
 //! The observation equations of one image.
 
 use calibench_model::Pose;
+use multiversion::multiversion;
 
 use super::gram::{BLOCK, LANES, gram};
 use super::optics::{Optics, POSE, Pictured};
@@ -18,6 +19,8 @@ pub(super) struct View {
     points: Vec<[f64; 3]>,
     pictured: Pictured,
     rows: Vec<f64>,
+    /// Columns of the camera's derivatives that are wanted.
+    places: Vec<usize>,
     /// `R^T R`, row by row, lower triangle.
     products: Vec<f64>,
     pub(super) columns: usize,
@@ -55,6 +58,8 @@ impl View {
         if let Some(i) = self.pictured.pixels.iter().position(|pixel| !pixel.is_finite()) {
             return Err(Lost(i));
         }
+        self.places.clear();
+        self.places.extend((0..POSE).chain(setting.free.iter().map(|i| POSE + i)));
         self.columns = (POSE + setting.free.len() + 1).next_multiple_of(2);
         self.rows.clear();
         self.rows.resize(sights.len().div_ceil(LANES) * self.columns * BLOCK, 0.0);
@@ -75,10 +80,7 @@ impl View {
                 let last = (POSE + setting.free.len()) * BLOCK + lane;
                 (rows[last], rows[last + LANES]) = (-v[0] * root, -v[1] * root);
             }
-            let places = (0..POSE).chain(setting.free.iter().map(|i| POSE + i));
-            for (into, place) in rows.chunks_exact_mut(BLOCK).zip(places) {
-                whiten(&white, &from[place * BLOCK..][..BLOCK], into);
-            }
+            whiten(&white, &self.places, from, rows);
         }
         Ok(())
     }
@@ -103,11 +105,15 @@ impl View {
     }
 }
 
-#[inline]
-fn whiten([a, b, c]: &[[f64; LANES]; 3], from: &[f64], into: &mut [f64]) {
-    let ((x, y), (wx, wy)) = (from.split_at(LANES), into.split_at_mut(LANES));
-    for lane in 0..LANES {
-        wx[lane] = a[lane] * x[lane];
-        wy[lane] = b[lane] * x[lane] + c[lane] * y[lane];
+/// Copies the columns `places` of a block, made white.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn whiten([a, b, c]: &[[f64; LANES]; 3], places: &[usize], from: &[f64], into: &mut [f64]) {
+    let ((from, _), (into, _)) = (from.as_chunks::<BLOCK>(), into.as_chunks_mut::<BLOCK>());
+    for (into, place) in into.iter_mut().zip(places) {
+        let from = &from[*place];
+        for lane in 0..LANES {
+            into[lane] = a[lane] * from[lane];
+            into[LANES + lane] = b[lane] * from[lane] + c[lane] * from[LANES + lane];
+        }
     }
 }

@@ -21,8 +21,10 @@ const FIRST: f64 = 1e-6;
 const LEAST: f64 = 1e-9;
 /// Damping beyond which nothing helps.
 const MOST: f64 = 1e12;
-/// Share of the sum of squares that a step must promise to be worth while.
-const WORTH: f64 = 1e-18;
+/// Share of the sum of squares that a step must promise for another to follow: it moves the unknowns by 1e-7 of their standard deviations.
+const WORTH: f64 = 1e-14;
+/// Share that is so little that the sums themselves may not tell it.
+const LITTLE: f64 = 1e-10;
 /// Share of the sum of squares by which rounding may raise it.
 const ROUNDING: f64 = 1e-12;
 
@@ -129,20 +131,20 @@ impl<'n> Engine<'n> {
         self.linearise(&start, &mut scratch, &mut normals).map_err(|lost| self.not_pictured(&start, lost))?;
         let (mut state, mut step, mut damping, mut gain) = (start, self.zero_step(), 0.0, f64::INFINITY);
         for iterations in 1..=most_iterations {
-            let promised = self.step(&normals, damping, &mut step);
             let mut accepted = false;
-            if let Some(promised) = promised {
-                gain = promised;
+            if let Some(promised) = self.step(&normals, damping, &mut step) {
+                let before = std::mem::replace(&mut gain, promised);
+                let cost = normals.cost;
                 let moved = state.moved(&self.layout, &step);
-                let pictured = self.linearise(&moved, &mut scratch, &mut trial).is_ok() && trial.cost.is_finite();
-                accepted = pictured && trial.cost <= normals.cost * (1.0 + ROUNDING) + self.floor;
-                let rest = gain <= WORTH * normals.cost + self.floor;
-                if accepted && (trial.cost <= normals.cost || rest) {
+                let pictured = self.linearise(&moved, &mut scratch, &mut trial).is_ok();
+                accepted = pictured && trial.cost <= cost * (1.0 + ROUNDING) + self.floor;
+                if accepted {
                     state = moved;
                     std::mem::swap(&mut normals, &mut trial);
                 }
-                // Nothing to gain, or rounding alone decides.
-                if rest || (accepted && gain <= 1e-9 * normals.cost && trial.cost <= normals.cost * (1.0 + 1e-15)) {
+                // Nothing to gain, or so little that rounding alone decides.
+                let stands = gain <= LITTLE * cost && gain > 0.25 * before;
+                if gain <= WORTH * cost + self.floor || (accepted && stands) {
                     return Ok(End { state, normals, iterations, gain, converged: true });
                 }
             }

@@ -3,7 +3,9 @@
 //! With `N_ee = L L^T` of an eliminated block and `Y = L^-1 N_ek`: the kept unknowns have `S = N_kk - sum Y^T Y` and `b = g_k - sum Y^T L^-1 g_e`; then
 //! `x_e = L^-T (L^-1 g_e - Y x_k)`.
 
-use super::plan::{Eliminated, Plan};
+use multiversion::multiversion;
+
+use super::plan::{Coupled, Eliminated, Plan};
 use super::reduced::Reduced;
 use super::small::{backward, cholesky, forward};
 use crate::network::Layout;
@@ -22,6 +24,7 @@ pub(crate) struct Schur {
     pub(crate) place: Vec<(usize, usize)>,
     /// `b`.
     pub(crate) reduced: Vec<f64>,
+    runs: Vec<Run>,
 }
 
 /// A member whose own unknowns are not determined, the others being known.
@@ -109,27 +112,20 @@ impl Schur {
     fn subtract<const D: usize>(&mut self, plan: &Plan, place: usize, z: &[f64; D], into: &mut Reduced) {
         let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
         let (first, columns) = self.place[place];
-        let y: [&[f64]; D] = std::array::from_fn(|d| &self.y[first + d * columns..][..columns]);
-        let mut across = 0;
-        for row in coupled {
-            let mut down = 0;
-            for column in coupled {
-                let (start, stride) = into.place((row.block, row.offset), (column.block, column.offset));
-                for j in 0..column.width {
-                    let factor: [f64; D] = std::array::from_fn(|d| y[d][down + j]);
-                    let target = &mut into.values[start + j * stride..][..row.width];
-                    subtract_column(&y.map(|y| &y[across..across + row.width]), &factor, target);
-                }
-                down += column.width;
-                if column.block == row.block {
-                    break;
-                }
+        let y = &self.y[first..first + D * columns];
+        let mut down = 0;
+        for (i, column) in coupled.iter().enumerate() {
+            let stride = runs(coupled, i, down, into, &mut self.runs);
+            if D == 3 {
+                subtract_3(y, columns, (down, column.width), &self.runs, stride, &mut into.values);
+            } else {
+                subtract_6(y, columns, (down, column.width), &self.runs, stride, &mut into.values);
             }
-            for i in 0..row.width {
-                let sum: f64 = (0..D).map(|d| y[d][across + i] * z[d]).sum();
-                self.reduced[row.offset + i] -= sum;
+            for j in 0..column.width {
+                let sum: f64 = (0..D).map(|d| y[d * columns + down + j] * z[d]).sum();
+                self.reduced[column.offset + j] -= sum;
             }
-            across += row.width;
+            down += column.width;
         }
     }
 
@@ -174,14 +170,68 @@ impl Schur {
     }
 }
 
-#[inline]
-fn subtract_column<const D: usize>(y: &[&[f64]; D], factor: &[f64; D], into: &mut [f64]) {
-    for (i, into) in into.iter_mut().enumerate() {
-        let mut sum = y[0][i] * factor[0];
-        for d in 1..D {
-            sum += y[d][i] * factor[d];
+/// Rows of a member's products that stand one after the other in a column of the reduced matrix.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    /// Their first column in `Y`.
+    from: usize,
+    /// The value of the first, in the first column of the block.
+    start: usize,
+    length: usize,
+}
+
+/// The rows at and below the diagonal in the columns of `coupled[i]`, which begin at column `from` of `Y`; returns the distance of columns.
+fn runs(coupled: &[Coupled], i: usize, mut from: usize, into: &Reduced, runs: &mut Vec<Run>) -> usize {
+    let (column, mut distance) = (&coupled[i], 0);
+    runs.clear();
+    for row in &coupled[i..] {
+        let (start, stride) = into.place((row.block, row.offset), (column.block, column.offset));
+        distance = stride;
+        match runs.last_mut() {
+            Some(last) if last.start + last.length == start => last.length += row.width,
+            _ => runs.push(Run { from, start, length: row.width }),
         }
-        *into -= sum;
+        from += row.width;
+    }
+    distance
+}
+
+macro_rules! subtract {
+    ($($name:ident: $depth:expr;)*) => {
+        $(#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+        fn $name(y: &[f64], columns: usize, own: (usize, usize), runs: &[Run], stride: usize, values: &mut [f64]) {
+            subtract_columns::<$depth>(y, columns, own, runs, stride, values);
+        })*
+    };
+}
+
+subtract! {
+    subtract_3: 3;
+    subtract_6: 6;
+}
+
+#[inline(always)]
+fn subtract_columns<const D: usize>(
+    y: &[f64],
+    columns: usize,
+    (first, width): (usize, usize),
+    runs: &[Run],
+    stride: usize,
+    values: &mut [f64],
+) {
+    for j in 0..width {
+        let factor: [f64; D] = std::array::from_fn(|d| y[d * columns + first + j]);
+        for run in runs {
+            let target = &mut values[run.start + j * stride..][..run.length];
+            let rows: [&[f64]; D] = std::array::from_fn(|d| &y[d * columns + run.from..][..run.length]);
+            for (i, target) in target.iter_mut().enumerate() {
+                let mut sum = rows[0][i] * factor[0];
+                for d in 1..D {
+                    sum += rows[d][i] * factor[d];
+                }
+                *target -= sum;
+            }
+        }
     }
 }
 

@@ -10,7 +10,7 @@ mod undistort;
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
-use super::plane::is_contraction;
+use super::plane::is_one_to_one;
 use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::PixelPoint;
 
@@ -185,7 +185,7 @@ impl Pinhole for OpenCv {
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         let d = &self.distortion;
-        d[5..].iter().all(|&more| more == 0.0) && is_contraction(radius, &[d[0], d[1], d[4]], &d[2..4], 0.0)
+        d[5..].iter().all(|&more| more == 0.0) && is_one_to_one(radius, &[d[0], d[1], d[4]], &d[2..4], 0.0)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::measured::{self, Correction};
 use super::newton::ValueAndDerivatives;
-use super::plane::{PlaneMap, is_contraction};
+use super::plane::{PlaneMap, is_one_to_one};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
@@ -84,7 +84,7 @@ impl PlaneMap for Photogrammetric {
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
-        is_contraction(radius, &self.k, &self.p, self.b[0].abs() + self.b[1].abs())
+        is_one_to_one(radius, &self.k.map(|k| -k), &self.p, self.b[0].abs() + self.b[1].abs())
     }
 }
 

@@ -151,6 +151,6 @@ impl Brown {
     }
 
     pub(super) fn is_surely_one_to_one(&self, radius: f64) -> bool {
-        self.p[2] == 0.0 && self.p[3] == 0.0 && super::plane::is_contraction(radius, &self.k, &self.p[..2], 0.0)
+        self.p[2] == 0.0 && self.p[3] == 0.0 && super::plane::is_one_to_one(radius, &self.k, &self.p[..2], 0.0)
     }
 }
