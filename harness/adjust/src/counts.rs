@@ -16,9 +16,9 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Those of a network with `constraints` of its datum.
-    pub(crate) fn of(network: &Network, constraints: usize) -> Self {
-        let mut counts = Self { image_coordinates: 2 * network.observations.len(), constraints, ..Self::default() };
+    /// Those of a network with so many image points in use and `constraints` of its datum.
+    pub(crate) fn of(network: &Network, image_points: usize, constraints: usize) -> Self {
+        let mut counts = Self { image_coordinates: 2 * image_points, constraints, ..Self::default() };
         let parameters = network.cameras.iter().flat_map(|camera| &camera.parameters);
         let coordinates = network.points.iter().flat_map(|point| &point.coordinates);
         parameters.chain(coordinates).for_each(|status| counts.add(status.is_unknown(), matches!(status, Status::Observed { .. }), 1));

@@ -64,9 +64,9 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// The layout of a checked network of which the datum holds the coordinates `held` (point, axis).
-    pub(crate) fn new(network: &Network, held: &[(usize, usize)]) -> Result<Self, NetworkError> {
-        let sights = sights(network);
+    /// The layout of a checked network of which the datum holds the coordinates `held` (point, axis), without the observations `left_out`.
+    pub(crate) fn new(network: &Network, held: &[(usize, usize)], left_out: &[usize]) -> Result<Self, NetworkError> {
+        let sights = sights(network, left_out);
         let of_image = ranges(network.images.len(), sights.iter().map(|sight| sight.image));
         let (by_point, point_start) = by_point(network.points.len(), &sights);
         let mut point_free: Vec<[bool; 3]> = network.points.iter().map(|point| point.coordinates.map(Status::is_unknown)).collect();
@@ -80,7 +80,7 @@ impl Layout {
         let (cameras, width) = cameras(network);
         let pose_free =
             network.images.iter().map(|image| [image.attitude != Attitude::Fixed, image.centre != Centre::Fixed]).collect::<Vec<_>>();
-        let counts = Counts::of(network, held.len());
+        let counts = Counts::of(network, sights.len(), held.len());
         let mut layout = Self {
             sights,
             of_image,
@@ -157,11 +157,18 @@ impl Layout {
     }
 }
 
-fn sights(network: &Network) -> Vec<Sight> {
+fn sights(network: &Network, left_out: &[usize]) -> Vec<Sight> {
+    let mut takes_part = vec![true; network.observations.len()];
+    for &index in left_out {
+        if let Some(part) = takes_part.get_mut(index) {
+            *part = false;
+        }
+    }
     let mut sights: Vec<Sight> = network
         .observations
         .iter()
         .enumerate()
+        .filter(|(given, _)| takes_part[*given])
         .map(|(given, o)| {
             let at = [o.position.x, o.position.y];
             Sight { image: o.image, point: o.point, given, at, whiten: whiten(o.precision), pair: usize::MAX }

@@ -1,5 +1,11 @@
 //! What the result is worth.
 
+mod counted;
 mod defect;
+mod directions;
+mod geometry;
+mod names;
 
-pub use defect::Defect;
+pub(crate) use counted::counted;
+pub use defect::{Defect, Direction, Reason};
+pub(crate) use directions::directions;

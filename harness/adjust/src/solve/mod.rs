@@ -1,6 +1,7 @@
 //! From start values to the minimum: Gauss-Newton, damped after Levenberg and Marquardt where it does not descend.
 
 mod factor;
+mod inverse;
 mod plan;
 mod reduced;
 mod schur;
@@ -11,10 +12,10 @@ use crate::network::{Layout, Network};
 use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise};
 use crate::state::State;
 use factor::{Factor, Structure};
+pub(crate) use inverse::{Inverse, Member};
 pub(crate) use plan::{Eliminated, Plan};
 use reduced::Reduced;
 pub(crate) use schur::Schur;
-pub(crate) use small::{backward, cholesky};
 
 /// Damping that is tried first, and below which there is none.
 const FIRST: f64 = 1e-6;
@@ -107,6 +108,16 @@ impl<'n> Engine<'n> {
             });
         }
         scale
+    }
+
+    /// The blocks of the inverse that covariances need.
+    pub(crate) fn inverse(&self, solved: &Solved) -> Inverse {
+        Inverse::of(solved, &self.plan, &self.blank)
+    }
+
+    /// `N^-1 right`.
+    pub(crate) fn answer(&self, solved: &Solved, right: &Step) -> Step {
+        solved.schur.answer(&self.plan, &self.layout, right, |x| solved.factor.solve(x))
     }
 
     pub(crate) fn zero_step(&self) -> Step {

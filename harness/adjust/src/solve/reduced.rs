@@ -123,3 +123,17 @@ impl Reduced {
         full
     }
 }
+
+impl Reduced {
+    /// Takes the values of a column of blocks from full columns.
+    pub(crate) fn fill_column(&mut self, column: usize, kept: &[usize], from: &[f64]) {
+        let Some(pattern) = &self.sparse else { return };
+        let (first, height) = pattern.values[column];
+        for &(row, place) in &pattern.rows[pattern.start[column]..pattern.start[column + 1]] {
+            for j in 0..kept[column + 1] - kept[column] {
+                let rows = kept[row]..kept[row + 1];
+                self.values[first + j * height + place..][..rows.len()].copy_from_slice(&from[j * self.size..][rows]);
+            }
+        }
+    }
+}

@@ -131,6 +131,15 @@ impl Schur {
 
     /// The step of all unknowns, of which `kept` are known.
     pub(crate) fn back(&self, plan: &Plan, layout: &Layout, kept: &[f64], step: &mut Step) {
+        self.back_with(plan, layout, kept, &self.right, step);
+    }
+
+    /// The change of all unknowns that goes with a change of those that are kept, while no observation asks for any.
+    pub(crate) fn follow(&self, plan: &Plan, layout: &Layout, kept: &[f64], step: &mut Step) {
+        self.back_with(plan, layout, kept, &[], step);
+    }
+
+    fn back_with(&self, plan: &Plan, layout: &Layout, kept: &[f64], right: &[f64], step: &mut Step) {
         step.cameras.copy_from_slice(&kept[..layout.width]);
         for (index, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
             let from = &kept[plan.kept[block]..plan.kept[block + 1]];
@@ -141,15 +150,15 @@ impl Schur {
         }
         for (place, &member) in plan.members.iter().enumerate() {
             match plan.eliminated {
-                Eliminated::Poses => step.poses[member] = self.back_to(plan, place, kept, true),
-                Eliminated::Points => step.points[member] = self.back_to(plan, place, kept, true),
+                Eliminated::Poses => step.poses[member] = self.back_to(plan, place, kept, right),
+                Eliminated::Points => step.points[member] = self.back_to(plan, place, kept, right),
             }
         }
     }
 
-    /// `L^-T (z - Y x_k)` of a member; without `z` for changes that no observation asks for.
-    pub(crate) fn back_to<const D: usize>(&self, plan: &Plan, place: usize, kept: &[f64], with_right: bool) -> [f64; D] {
-        let mut x: [f64; D] = std::array::from_fn(|d| if with_right { self.right[place * D + d] } else { 0.0 });
+    /// `L^-T (z - Y x_k)` of a member, where `right` holds all `z` or nothing.
+    fn back_to<const D: usize>(&self, plan: &Plan, place: usize, kept: &[f64], right: &[f64]) -> [f64; D] {
+        let mut x: [f64; D] = std::array::from_fn(|d| right.get(place * D + d).copied().unwrap_or(0.0));
         let (first, columns) = self.place[place];
         let mut column = 0;
         for coupled in &plan.coupled[plan.start[place]..plan.start[place + 1]] {
@@ -164,6 +173,44 @@ impl Schur {
         x
     }
 
+    /// The step that answers to other right sides.
+    pub(crate) fn answer(&self, plan: &Plan, layout: &Layout, right: &Step, solve: impl Fn(&mut [f64])) -> Step {
+        let (mut kept, mut rights) = (vec![0.0; plan.size()], Vec::with_capacity(self.right.len()));
+        kept[..layout.width].copy_from_slice(&right.cameras);
+        for (index, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+            let into = &mut kept[plan.kept[block]..plan.kept[block + 1]];
+            match plan.eliminated {
+                Eliminated::Poses => into.copy_from_slice(&right.points[index]),
+                Eliminated::Points => into.copy_from_slice(&right.poses[index]),
+            }
+        }
+        for (place, &member) in plan.members.iter().enumerate() {
+            match plan.eliminated {
+                Eliminated::Poses => rights.extend(self.take_off::<6>(plan, place, right.poses[member], &mut kept)),
+                Eliminated::Points => rights.extend(self.take_off::<3>(plan, place, right.points[member], &mut kept)),
+            }
+        }
+        solve(&mut kept);
+        let mut step = Step::zero(layout.width, layout.pose_free.len(), layout.point_free.len());
+        self.back_with(plan, layout, &kept, &rights, &mut step);
+        step
+    }
+
+    /// `z = L^-1 g`, after `Y^T z` is taken off the right side of what is kept.
+    fn take_off<const D: usize>(&self, plan: &Plan, place: usize, mut right: [f64; D], kept: &mut [f64]) -> [f64; D] {
+        forward(&self.factor::<D>(place), &mut right);
+        let (first, columns) = self.place[place];
+        let mut column = 0;
+        for coupled in &plan.coupled[plan.start[place]..plan.start[place + 1]] {
+            for j in 0..coupled.width {
+                let sum: f64 = (0..D).map(|d| self.y[first + d * columns + column + j] * right[d]).sum();
+                kept[coupled.offset + j] -= sum;
+            }
+            column += coupled.width;
+        }
+        right
+    }
+
     /// `L` of a member.
     pub(crate) fn factor<const D: usize>(&self, place: usize) -> [[f64; D]; D] {
         std::array::from_fn(|i| std::array::from_fn(|j| self.factors[place * D * D + i * D + j]))
@@ -172,16 +219,16 @@ impl Schur {
 
 /// Rows of a member's products that stand one after the other in a column of the reduced matrix.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+pub(crate) struct Run {
     /// Their first column in `Y`.
-    from: usize,
+    pub(crate) from: usize,
     /// The value of the first, in the first column of the block.
-    start: usize,
-    length: usize,
+    pub(crate) start: usize,
+    pub(crate) length: usize,
 }
 
 /// The rows at and below the diagonal in the columns of `coupled[i]`, which begin at column `from` of `Y`; returns the distance of columns.
-fn runs(coupled: &[Coupled], i: usize, mut from: usize, into: &Reduced, runs: &mut Vec<Run>) -> usize {
+pub(crate) fn runs(coupled: &[Coupled], i: usize, mut from: usize, into: &Reduced, runs: &mut Vec<Run>) -> usize {
     let (column, mut distance) = (&coupled[i], 0);
     runs.clear();
     for row in &coupled[i..] {
