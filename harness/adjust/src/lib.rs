@@ -16,5 +16,5 @@ pub use error::AdjustError;
 pub use network::{
     Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, Precision, Status,
 };
-pub use quality::{Defect, Direction, Reason};
+pub use quality::{Correlation, Covariances, Defect, Direction, Reason, Variance};
 pub use solution::{Options, Solution, adjust};

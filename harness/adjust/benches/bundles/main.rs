@@ -6,7 +6,7 @@ mod common;
 use std::hint::black_box;
 use std::time::Instant;
 
-use calibench_adjust::{AdjustError, Network, Options, adjust};
+use calibench_adjust::{AdjustError, Network, Options, Variance, adjust};
 use calibench_model::camera::CameraModel;
 
 fn main() -> Result<(), AdjustError> {
@@ -38,6 +38,11 @@ fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<
         best[0] = best[0].min(clock.elapsed().as_secs_f64());
     }
     let solution = adjust(network, &options)?;
+    for _ in 0..rounds {
+        let clock = Instant::now();
+        black_box(solution.covariances(Variance::Estimated)?);
+        best[1] = best[1].min(clock.elapsed().as_secs_f64());
+    }
     let (counts, sigma0) = (solution.counts(), solution.sigma0().unwrap_or(f64::NAN));
     let (observed, unknowns, steps) = (counts.observations(), counts.unknowns, solution.iterations());
     println!("{what:<44} {observed:>8} {unknowns:>8} {steps:>6} {:>10.5} {:>12.5} {sigma0:>10.5}", best[0], best[1]);

@@ -61,6 +61,18 @@ impl Inverse {
             .collect()
     }
 
+    /// A block of `Q_kk` of two cameras, row by row, in the pattern or not.
+    pub(crate) fn interior_block(&self, solved: &Solved, plan: &Plan, row: usize, column: usize) -> Vec<f64> {
+        if self.0.sparse.is_none() || row == column {
+            return self.block(plan, row, column);
+        }
+        let (n, height, width) = (plan.size(), plan.width(row), plan.width(column));
+        let mut identity = vec![0.0; n * width];
+        (0..width).for_each(|j| identity[j * n + plan.kept[column] + j] = 1.0);
+        solved.factor.solve(&mut identity);
+        (0..height * width).map(|k| identity[(k % width) * n + plan.kept[row] + k / width]).collect()
+    }
+
     /// Cofactors of a member.
     pub(crate) fn member<const D: usize>(&self, solved: &Solved, plan: &Plan, place: usize) -> Member<D> {
         let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];

@@ -120,6 +120,17 @@ impl<'n> Engine<'n> {
         solved.schur.answer(&self.plan, &self.layout, right, |x| solved.factor.solve(x))
     }
 
+    /// Zeros where nothing may change.
+    pub(crate) fn mask(&self, step: &mut Step) {
+        for (image, values) in step.poses.iter_mut().enumerate() {
+            let free = self.layout.pose_mask(image);
+            values.iter_mut().zip(free).filter(|(_, free)| !free).for_each(|(value, _)| *value = 0.0);
+        }
+        for (values, free) in step.points.iter_mut().zip(&self.layout.point_free) {
+            values.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(value, _)| *value = 0.0);
+        }
+    }
+
     pub(crate) fn zero_step(&self) -> Step {
         Step::zero(self.layout.width, self.layout.pose_free.len(), self.layout.point_free.len())
     }
