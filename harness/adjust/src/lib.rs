@@ -16,5 +16,8 @@ pub use error::AdjustError;
 pub use network::{
     Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, Precision, Status,
 };
-pub use quality::{Correlation, Covariances, Defect, Direction, Reason, Variance};
+pub use quality::{
+    Comparison, Correlation, Covariances, Defect, Direction, Found, ObservedReliability, PointReliability, Reason, Reliability, Residual,
+    Significance, Snooping, Test, Use, Variance, compare, snoop,
+};
 pub use solution::{Options, Solution, adjust};

@@ -65,6 +65,31 @@ pub(crate) fn linearise(
     Ok(())
 }
 
+/// White derivatives of every sight: by the unknown parameters of its camera, then six by its pose, then three by its point; zero where nothing may change.
+///
+/// # Errors
+/// [`Lost`], if a measured point is not pictured.
+pub(crate) fn rows(network: &Network, layout: &Layout, state: &State, loss: Loss) -> Result<Vec<Vec<[f64; 2]>>, Lost> {
+    let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
+    let (mut view, mut all) = (View::default(), Vec::with_capacity(layout.sights.len()));
+    for (image, range) in layout.of_image.iter().enumerate() {
+        let camera = network.images[image].camera;
+        let (free, pose) = (&layout.cameras[camera].free, &state.poses[image]);
+        let setting = Setting { optics: &optics[camera], pose, free, loss };
+        let sights = &layout.sights[range.clone()];
+        let mut residuals = vec![Residual::default(); sights.len()];
+        view.linearise(setting, sights, &state.points, &mut residuals).map_err(|Lost(i)| Lost(range.start + i))?;
+        let mask = layout.pose_mask(image);
+        for (k, sight) in sights.iter().enumerate() {
+            let parameters = (0..free.len()).map(|i| view.at(k, POSE + i));
+            let of_pose = (0..POSE).map(|i| if mask[i] { view.at(k, i) } else { [0.0; 2] });
+            let of_point = view.by_point(k, &pose.rotation, layout.point_free[sight.point]);
+            all.push(parameters.chain(of_pose).chain(of_point).collect());
+        }
+    }
+    Ok(all)
+}
+
 impl Normals {
     fn reset(&mut self, layout: &Layout, state: &State) {
         let (images, points) = (state.poses.len(), state.points.len());
@@ -127,10 +152,7 @@ impl Normals {
                 continue;
             }
             let pose: [[f64; 2]; POSE] = std::array::from_fn(|column| view.at(k, column));
-            let by: [[f64; 2]; 3] = std::array::from_fn(|axis| {
-                let along = |row: usize| pose[3][row] * m[(0, axis)] + pose[4][row] * m[(1, axis)] + pose[5][row] * m[(2, axis)];
-                if free[axis] { [along(0), along(1)] } else { [0.0; 2] }
-            });
+            let by = view.by_point(k, m, free);
             let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
             let misclosure = view.at(k, POSE + width);
             for i in 0..3 {

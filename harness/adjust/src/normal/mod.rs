@@ -7,7 +7,7 @@ mod prior;
 mod robust;
 mod view;
 
-pub(crate) use blocks::{Normals, Scratch, linearise};
+pub(crate) use blocks::{Normals, Scratch, linearise, rows};
 pub(crate) use robust::Loss;
 pub(crate) use view::Lost;
 

@@ -2,6 +2,7 @@
 
 use calibench_model::Pose;
 use multiversion::multiversion;
+use nalgebra::Matrix3;
 
 use super::gram::{BLOCK, LANES, gram};
 use super::optics::{Optics, POSE, Pictured};
@@ -95,6 +96,17 @@ impl View {
     pub(super) fn product(&self, i: usize, j: usize) -> f64 {
         let (high, low) = (i.max(j), i.min(j));
         self.products[high * self.columns + low]
+    }
+
+    /// White derivatives of a sight by its point, zero along what may not change; the rows must be those of `rotation`.
+    #[inline]
+    pub(super) fn by_point(&self, sight: usize, rotation: &Matrix3<f64>, free: [bool; 3]) -> [[f64; 2]; 3] {
+        // d N = M dX: what a shift along the camera's axes does, turned.
+        let shift: [[f64; 2]; 3] = std::array::from_fn(|column| self.at(sight, 3 + column));
+        std::array::from_fn(|axis| {
+            let along = |row: usize| (0..3).map(|k| shift[k][row] * rotation[(k, axis)]).sum();
+            if free[axis] { [along(0), along(1)] } else { [0.0; 2] }
+        })
     }
 
     /// White derivatives of a sight by a column: x and y.

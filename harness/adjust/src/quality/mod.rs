@@ -6,8 +6,16 @@ mod defect;
 mod directions;
 mod geometry;
 mod names;
+mod reliability;
+mod residuals;
+mod significance;
+mod snooping;
 
 pub(crate) use counted::counted;
 pub use covariance::{Correlation, Covariances, Variance};
 pub use defect::{Defect, Direction, Reason};
 pub(crate) use directions::directions;
+pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
+pub use residuals::{Residual, Use};
+pub use significance::{Comparison, Significance, compare};
+pub use snooping::{Found, Snooping, snoop};

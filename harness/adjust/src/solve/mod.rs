@@ -13,7 +13,7 @@ use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise};
 use crate::state::State;
 use factor::{Factor, Structure};
 pub(crate) use inverse::{Inverse, Member};
-pub(crate) use plan::{Eliminated, Plan};
+pub(crate) use plan::{Coupled, Eliminated, Plan};
 use reduced::Reduced;
 pub(crate) use schur::Schur;
 
@@ -42,7 +42,7 @@ pub(crate) struct Engine<'n> {
     pub(crate) network: &'n Network,
     pub(crate) layout: Layout,
     pub(crate) plan: Plan,
-    loss: Loss,
+    pub(crate) loss: Loss,
     structure: Option<Structure>,
     blank: Reduced,
     /// What rounding of pixels makes of the sum of squares.
