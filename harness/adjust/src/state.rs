@@ -61,6 +61,13 @@ pub(crate) fn camera_from_world(pose: &Pose) -> CameraFromWorld {
 
 /// The rotation vector of `rotation`, radians: about the camera's axes, as in the step of a pose.
 pub(crate) fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
+    let m = rotation;
+    let v = Vector3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]) * 0.5;
+    let (sine, cosine) = (v.norm(), 0.5 * (m.trace() - 1.0));
+    // The trace alone loses small angles, the antisymmetric part those near a half turn.
+    if cosine > -0.9 {
+        return if sine > 0.0 { v * (sine.atan2(cosine) / sine) } else { v };
+    }
     Rotation3::from_matrix_unchecked(*rotation).scaled_axis()
 }
 

@@ -1,7 +1,7 @@
 //! Seconds of adjustments, one thread. `cargo bench -p calibench-adjust --bench bundles`.
 
-#[path = "../../tests/common/mod.rs"]
-mod common;
+#[path = "../../tests/adjustment/scenes.rs"]
+mod scenes;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -17,11 +17,11 @@ fn main() -> Result<(), AdjustError> {
     for views in [17, 100, 1000, 5000] {
         race(&format!("board of 54 corners, {views} views"), || board(views), if views > 500 { 5 } else { 50 })?;
     }
-    race("36 images x 256 points, OpenCV's camera", || ring(common::opencv(), &common::FIVE), 9)?;
-    race("200 images x 5000 points, OpenCV's camera", || flight(common::opencv(), &common::FIVE), 3)?;
+    race("36 images x 256 points, OpenCV's camera", || ring(scenes::opencv(), &scenes::FIVE), 9)?;
+    race("200 images x 5000 points, OpenCV's camera", || flight(scenes::opencv(), &scenes::FIVE), 3)?;
     let names = ["c", "x0", "y0", "k1", "k2", "p1", "p2"];
-    race("36 images x 256 points, photogrammetric", || ring(common::photogrammetric(), &names), 9)?;
-    race("200 images x 5000 points, photogrammetric", || flight(common::photogrammetric(), &names), 3)
+    race("36 images x 256 points, photogrammetric", || ring(scenes::photogrammetric(), &names), 9)?;
+    race("200 images x 5000 points, photogrammetric", || flight(scenes::photogrammetric(), &names), 3)
 }
 
 /// The best of some rounds.
@@ -50,36 +50,36 @@ fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<
 }
 
 fn board(views: usize) -> Network {
-    let mut network = common::board(common::opencv(), views, 1);
-    common::free(&mut network, &common::FIVE);
-    let mut random = common::random(2);
-    common::shake_pixels(&mut network, 0.2, &mut random);
+    let mut network = scenes::board(scenes::opencv(), views, 1);
+    scenes::free(&mut network, &scenes::FIVE);
+    let mut random = scenes::random(2);
+    scenes::shake_pixels(&mut network, 0.2, &mut random);
     // As good as Zhang's closed form and a homography.
-    common::shake_poses(&mut network, 5.0, 0.02, &mut random);
+    scenes::shake_poses(&mut network, 5.0, 0.02, &mut random);
     start(&mut network, 1.03);
     network
 }
 
 fn ring(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
-    let mut network = common::ring(camera, 36, 256, 1);
+    let mut network = scenes::ring(camera, 36, 256, 1);
     prepared(&mut network, names, 0.05, 0.01, 32);
     network
 }
 
 fn flight(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
-    let mut network = common::flight(camera, 1);
+    let mut network = scenes::flight(camera, 1);
     prepared(&mut network, names, 1.0, 0.01, 100);
     network
 }
 
 fn prepared(network: &mut Network, names: &[&str], shift: f64, turn: f64, control: usize) {
-    common::free(network, names);
-    common::control(network, control, 1e-4 * shift);
-    let mut random = common::random(2);
-    common::shake_pixels(network, 0.2, &mut random);
-    common::shake_poses(network, shift, turn, &mut random);
+    scenes::free(network, names);
+    scenes::control(network, control, 1e-4 * shift);
+    let mut random = scenes::random(2);
+    scenes::shake_pixels(network, 0.2, &mut random);
+    scenes::shake_poses(network, shift, turn, &mut random);
     for point in &mut network.points {
-        point.position += nalgebra::Vector3::from_fn(|_, _| shift * common::normal(&mut random));
+        point.position += nalgebra::Vector3::from_fn(|_, _| shift * scenes::normal(&mut random));
     }
     start(network, 1.02);
 }

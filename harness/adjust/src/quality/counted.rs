@@ -1,19 +1,28 @@
 //! Defects that counting finds before anything is computed.
 
-use super::defect::Defect;
+use super::defect::{Defect, Reason};
+use super::geometry::reasons;
 use crate::datum::undetermined;
 use crate::network::{Attitude, Centre, Layout, Network, Status};
+use crate::state::State;
 
 /// What cannot be determined whatever the values are; `None` if counting finds nothing.
 pub(crate) fn counted(network: &Network, layout: &Layout, held: &[(usize, usize)]) -> Option<Defect> {
-    points(network, layout).or_else(|| images(network, layout)).or_else(|| cameras(network, layout)).or_else(|| {
+    let frame = || {
         let free = undetermined(network, held);
-        (!free.is_empty()).then_some(Defect::Datum { free })
-    }).or_else(|| {
+        if free.is_empty() {
+            return None;
+        }
+        let mut reasons = reasons(layout, &State::of(network));
+        reasons.retain(|reason| *reason == Reason::OnALine);
+        Some(Defect::Datum { free, reasons })
+    };
+    let count = || {
         let (observations, unknowns) = (layout.counts.observations(), layout.counts.unknowns);
-        (layout.counts.redundancy() < 0)
-            .then(|| Defect::Count { missing: format!("{observations} observations cannot determine {unknowns} unknowns") })
-    })
+        let missing = format!("{observations} observations cannot determine {unknowns} unknowns");
+        (layout.counts.redundancy() < 0).then_some(Defect::Count { missing })
+    };
+    points(network, layout).or_else(|| images(network, layout)).or_else(|| cameras(network, layout)).or_else(frame).or_else(count)
 }
 
 fn points(network: &Network, layout: &Layout) -> Option<Defect> {

@@ -9,6 +9,8 @@ pub enum Defect {
     Datum {
         /// What is free: origin, rotations, scale.
         free: Vec<&'static str>,
+        /// What of the geometry explains it.
+        reasons: Vec<Reason>,
     },
     /// Points of which there are too few rays, by name, with the images that see them.
     Points {
@@ -87,18 +89,25 @@ impl fmt::Display for Defect {
             if all.len() > 10 { format!("{shown} and {} more", all.len() - 10) } else { shown }
         };
         match self {
-            Self::Datum { free } => write!(f, "nothing fixes the frame of the object: {}", free.join(", ")),
+            Self::Datum { free, reasons } => {
+                write!(f, "nothing fixes the frame of the object: {}", free.join(", "))?;
+                because(f, reasons)
+            }
             Self::Points { points } => write!(f, "too few rays: {}", counted(points, "point", "images")),
             Self::Images { images } => write!(f, "too few points: {}", counted(images, "image", "points")),
             Self::Count { missing } => f.write_str(missing),
             Self::Directions { directions, reasons } => {
                 let directions = directions.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
                 write!(f, "not determined: {directions}")?;
-                if !reasons.is_empty() {
-                    write!(f, ": {}", reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))?;
-                }
-                Ok(())
+                because(f, reasons)
             }
         }
     }
+}
+
+fn because(f: &mut fmt::Formatter<'_>, reasons: &[Reason]) -> fmt::Result {
+    if reasons.is_empty() {
+        return Ok(());
+    }
+    write!(f, ": {}", reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
 }

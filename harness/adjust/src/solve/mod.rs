@@ -26,6 +26,8 @@ const MOST: f64 = 1e12;
 const WORTH: f64 = 1e-14;
 /// Share that is so little that the sums themselves may not tell it.
 const LITTLE: f64 = 1e-10;
+/// How far rounding of object coordinates may exceed that of pixels, squared.
+const NOISE: f64 = 1e4;
 /// Share of the sum of squares by which rounding may raise it.
 const ROUNDING: f64 = 1e-12;
 
@@ -159,13 +161,13 @@ impl<'n> Engine<'n> {
                 let cost = normals.cost;
                 let moved = state.moved(&self.layout, &step);
                 let pictured = self.linearise(&moved, &mut scratch, &mut trial).is_ok();
-                accepted = pictured && trial.cost <= cost * (1.0 + ROUNDING) + self.floor;
+                accepted = pictured && trial.cost <= cost * (1.0 + ROUNDING) + NOISE * self.floor;
                 if accepted {
                     state = moved;
                     std::mem::swap(&mut normals, &mut trial);
                 }
-                // Nothing to gain, or so little that rounding alone decides.
-                let stands = gain <= LITTLE * cost && gain > 0.25 * before;
+                // Nothing to gain, or so little that rounding alone decides: it no longer falls.
+                let stands = (gain <= LITTLE * cost || gain <= NOISE * self.floor) && gain > 0.25 * before;
                 if gain <= WORTH * cost + self.floor || (accepted && stands) {
                     return Ok(End { state, normals, iterations, gain, converged: true });
                 }
