@@ -13,9 +13,7 @@ mod state;
 
 pub use counts::Counts;
 pub use error::AdjustError;
-pub use network::{
-    Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, Precision, Status,
-};
+pub use network::{Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, Precision, Status};
 pub use quality::{
     Comparison, Correlation, Covariances, Defect, Direction, Found, ObservedReliability, PointReliability, Reason, Reliability, Residual,
     Significance, Snooping, Test, Use, Variance, compare, snoop,

@@ -13,7 +13,10 @@ fn main() -> Result<(), AdjustError> {
     if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
         return Ok(());
     }
-    println!("{:<44} {:>8} {:>8} {:>6} {:>10} {:>12} {:>10}", "", "observed", "unknown", "steps", "solution s", "covariance s", "sigma0 px");
+    println!(
+        "{:<44} {:>8} {:>8} {:>6} {:>10} {:>12} {:>10}",
+        "", "observed", "unknown", "steps", "solution s", "covariance s", "sigma0 px"
+    );
     for views in [17, 100, 1000, 5000] {
         race(&format!("board of 54 corners, {views} views"), || board(views), if views > 500 { 5 } else { 50 })?;
     }

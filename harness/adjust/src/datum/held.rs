@@ -94,7 +94,12 @@ pub(crate) fn undetermined(network: &Network, held: &[(usize, usize)]) -> Vec<&'
 }
 
 /// What the datum's constraints look at: for each a linear form of the points, `(point, axis, factor)`.
-pub(crate) fn constraints(network: &Network, datum: &Datum, similarity: &Similarity, points: &[Point3<f64>]) -> Vec<Vec<(usize, usize, f64)>> {
+pub(crate) fn constraints(
+    network: &Network,
+    datum: &Datum,
+    similarity: &Similarity,
+    points: &[Point3<f64>],
+) -> Vec<Vec<(usize, usize, f64)>> {
     match datum {
         Datum::Control => Vec::new(),
         Datum::Minimal { .. } => {

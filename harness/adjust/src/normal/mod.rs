@@ -7,6 +7,9 @@ mod prior;
 mod robust;
 mod view;
 
+#[cfg(test)]
+mod tests;
+
 pub(crate) use blocks::{Normals, Scratch, linearise, rows};
 pub(crate) use robust::Loss;
 pub(crate) use view::Lost;

@@ -56,7 +56,11 @@ impl Covariances {
     /// Correlations of all interior parameters: ones on the diagonal.
     pub fn correlations(&self) -> DMatrix<f64> {
         let n = self.interior.nrows();
-        DMatrix::from_fn(n, n, |i, j| if i == j { 1.0 } else { self.interior[(i, j)] / (self.interior[(i, i)] * self.interior[(j, j)]).sqrt() })
+        DMatrix::from_fn(
+            n,
+            n,
+            |i, j| if i == j { 1.0 } else { self.interior[(i, j)] / (self.interior[(i, i)] * self.interior[(j, j)]).sqrt() },
+        )
     }
 
     /// Pairs of interior parameters whose correlation exceeds `bound` (0.9 is usual) in absolute value, the strongest first.
@@ -78,9 +82,10 @@ impl Solution<'_> {
     pub fn variance_factor(&self, variance: Variance) -> Result<f64, AdjustError> {
         match variance {
             Variance::Apriori => Ok(1.0),
-            Variance::Estimated => {
-                self.sigma0().map(|sigma0| sigma0 * sigma0).ok_or(AdjustError::NotAvailable("without redundancy no variance can be estimated"))
-            }
+            Variance::Estimated => self
+                .sigma0()
+                .map(|sigma0| sigma0 * sigma0)
+                .ok_or(AdjustError::NotAvailable("without redundancy no variance can be estimated")),
         }
     }
 
@@ -97,7 +102,13 @@ impl Solution<'_> {
         }
         let poses = poses.iter().enumerate().map(|(image, block)| self.in_object_axes(image, block) * variance_factor).collect();
         points.iter_mut().for_each(|block| *block *= variance_factor);
-        Ok(Covariances { variance_factor, interior: self.interior(&inverse) * variance_factor, parameters: self.parameters(), poses, points })
+        Ok(Covariances {
+            variance_factor,
+            interior: self.interior(&inverse) * variance_factor,
+            parameters: self.parameters(),
+            poses,
+            points,
+        })
     }
 
     /// The covariance of all unknowns, on request: of `n` of them, `n^2` numbers. Rows: the parameters of [`Covariances::interior`], then six for each
@@ -108,7 +119,9 @@ impl Solution<'_> {
     pub fn full_covariance(&self, variance: Variance) -> Result<DMatrix<f64>, AdjustError> {
         let variance_factor = self.variance_factor(variance)?;
         if self.is_transformed() {
-            return Err(AdjustError::NotAvailable("the full covariance belongs to the datum of the adjustment: control or minimal constraints"));
+            return Err(AdjustError::NotAvailable(
+                "the full covariance belongs to the datum of the adjustment: control or minimal constraints",
+            ));
         }
         let (engine, zero) = (&self.engine, self.engine.zero_step());
         let (width, images, points) = (zero.cameras.len(), zero.poses.len(), zero.points.len());

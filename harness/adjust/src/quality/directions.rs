@@ -98,11 +98,12 @@ fn senseless(engine: &Engine, state: &State, step: &Step, deviation: f64) -> boo
         let parameters = state.cameras[camera].parameters();
         matches!(parameters[parameter].name, "c" | "f" | "F" | "fx" | "fy").then(|| parameters[parameter].value.abs())
     };
-    let camera = engine.layout.cameras.iter().enumerate().any(|(i, place)| {
-        place.free.iter().enumerate().any(|(k, &parameter)| {
-            distance(i, parameter).is_some_and(|c| step.cameras[place.offset + k].abs() * deviation > SENSELESS * c)
-        })
-    });
+    let camera =
+        engine.layout.cameras.iter().enumerate().any(|(i, place)| {
+            place.free.iter().enumerate().any(|(k, &parameter)| {
+                distance(i, parameter).is_some_and(|c| step.cameras[place.offset + k].abs() * deviation > SENSELESS * c)
+            })
+        });
     camera
         || engine.layout.of_image.iter().enumerate().any(|(i, range)| {
             let Some(sight) = engine.layout.sights.get(range.start).filter(|_| !range.is_empty()) else { return false };

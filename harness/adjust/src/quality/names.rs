@@ -43,7 +43,13 @@ pub(super) fn participants(network: &Network, layout: &Layout, state: &State, no
 }
 
 /// "X0 of image 3", "X0 of images 3, 4", "X0 of 12 images", "X0 of all images".
-fn of_some<'a>(all: &[usize], takes_part: impl Fn(usize) -> bool, name: impl Fn(usize) -> &'a str, what: &str, kind: &str) -> Option<String> {
+fn of_some<'a>(
+    all: &[usize],
+    takes_part: impl Fn(usize) -> bool,
+    name: impl Fn(usize) -> &'a str,
+    what: &str,
+    kind: &str,
+) -> Option<String> {
     let some: Vec<usize> = all.iter().copied().filter(|&i| takes_part(i)).collect();
     match some.len() {
         0 => None,

@@ -66,7 +66,9 @@ impl Solution<'_> {
 pub fn compare(first: &Solution, second: &Solution) -> Result<Comparison, AdjustError> {
     let (a, b) = (first.counts(), second.counts());
     if a.observations() != b.observations() || b.unknowns <= a.unknowns || b.redundancy() <= 0 {
-        return Err(AdjustError::NotAvailable("only solutions of the same observations compare, the second with more parameters and redundancy"));
+        return Err(AdjustError::NotAvailable(
+            "only solutions of the same observations compare, the second with more parameters and redundancy",
+        ));
     }
     let (more, redundancy, n) = (b.unknowns - a.unknowns, b.redundancy() as f64, a.observations() as f64);
     let f = ((first.cost() - second.cost()).max(0.0) / more as f64) / (second.cost() / redundancy).max(f64::MIN_POSITIVE);

@@ -103,7 +103,7 @@ impl Factor {
     /// `S^-1 x`, in place.
     pub(crate) fn solve(&self, x: &mut [f64]) {
         let n = self.size();
-        let columns = if n == 0 { 0 } else { x.len() / n };
+        let columns = x.len().checked_div(n).unwrap_or(0);
         for column in x.chunks_exact_mut(n.max(1)) {
             column.iter_mut().zip(&self.scale).for_each(|(x, scale)| *x /= scale);
         }

@@ -8,10 +8,8 @@ pub(crate) fn cholesky<const D: usize>(normal: &[[f64; D]; D]) -> Option<[[f64; 
     let mut l = [[0.0; D]; D];
     for i in 0..D {
         for j in 0..=i {
-            let mut sum = normal[i][j];
-            for k in 0..j {
-                sum -= l[i][k] * l[j][k];
-            }
+            let known: f64 = l[i][..j].iter().zip(&l[j]).map(|(a, b)| a * b).sum();
+            let sum = normal[i][j] - known;
             if i > j {
                 l[i][j] = sum / l[j][j];
             } else if sum > LOST * normal[i][i] {

@@ -70,11 +70,13 @@ fn inner_constraints_have_the_smallest_trace_and_leave_the_middle() {
     let network = network();
     let inner = in_datum(&network, Datum::Inner);
     let inner = adjust(&inner, &Options::default()).unwrap();
-    let trace = |solution: &Solution| solution.covariances(Variance::Apriori).unwrap().points.iter().map(nalgebra::Matrix3::trace).sum::<f64>();
+    let trace =
+        |solution: &Solution| solution.covariances(Variance::Apriori).unwrap().points.iter().map(nalgebra::Matrix3::trace).sum::<f64>();
     for datum in [A, B] {
         assert!(trace(&inner) < trace(&inner.in_datum(&datum).unwrap()));
     }
-    let middle = |points: &mut dyn Iterator<Item = nalgebra::Point3<f64>>| points.fold(nalgebra::Vector3::zeros(), |sum, point| sum + point.coords);
+    let middle =
+        |points: &mut dyn Iterator<Item = nalgebra::Point3<f64>>| points.fold(nalgebra::Vector3::zeros(), |sum, point| sum + point.coords);
     let off = middle(&mut inner.points().iter().copied()) - middle(&mut network.points.iter().map(|point| point.position));
     assert!(off.norm() < 1e-9, "{off}");
     assert_eq!(inner.counts().constraints, 7);

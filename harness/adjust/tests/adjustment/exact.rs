@@ -75,6 +75,15 @@ fn more_views_than_board_points_eliminate_views_even_if_the_board_is_free() {
 }
 
 #[test]
+fn from_afar() {
+    let mut network = scenes::ring(scenes::photogrammetric(), 10, 50, 4);
+    scenes::free(&mut network, &["c", "x0", "y0", "k1"]);
+    scenes::control(&mut network, 4, 1e-3);
+    comes_back(&network, 0.3, 0.1);
+    comes_back(&board(scenes::opencv(), &scenes::FIVE), 40.0, 0.15);
+}
+
+#[test]
 fn a_sparse_network() {
     let network = sparse();
     comes_back(&network, 0.3, 0.003);

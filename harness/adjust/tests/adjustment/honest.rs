@@ -40,9 +40,12 @@ fn drawn(truth: &Network, seed: u64) -> Network {
     network
 }
 
+/// Errors and their covariance.
+type Group = (DVector<f64>, DMatrix<f64>);
+
 /// Errors and covariances of one trial, group by group: interior orientation, images, points.
 struct Trial {
-    groups: Vec<(DVector<f64>, DMatrix<f64>)>,
+    groups: Vec<Group>,
     factor: f64,
 }
 
@@ -114,7 +117,7 @@ fn sigmas_are_honest() {
     }
     for group in 0..trials[0].groups.len() {
         for i in 0..trials[0].groups[group].0.len() {
-            let of = |value: &dyn Fn(&(DVector<f64>, DMatrix<f64>)) -> f64| {
+            let of = |value: &dyn Fn(&Group) -> f64| {
                 (trials.iter().map(|trial| value(&trial.groups[group])).sum::<f64>() / trials.len() as f64).sqrt()
             };
             let (empirical, predicted) = (of(&|(error, _)| error[i] * error[i]), of(&|(_, covariance)| covariance[(i, i)]));

@@ -11,7 +11,6 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-
 pub const FIVE: [&str; 9] = ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"];
 
 pub fn opencv() -> Camera {
@@ -121,13 +120,13 @@ pub fn ring_from(camera: Camera, distance: f64, images: usize, points: usize, se
 /// A flight of 10 strips of 20 images over 100 x 50 points: about ten images see a point.
 pub fn flight(camera: Camera, seed: u64) -> Network {
     let mut random = random(seed);
-    let (strips, per_strip, height) = (10, 20, 100.0);
+    let (strips, per_strip, height) = (10_u32, 20, 100.0);
     let mut uniform = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     // The frame on the ground is about 110 x 82 units.
     let (east, north) = (24.0, 27.0);
-    let points = (0..5000)
+    let points = (0..5000_u32)
         .map(|i| {
-            let (column, row) = ((i % 100) as f64, (i / 100) as f64);
+            let (column, row) = (f64::from(i % 100), f64::from(i / 100));
             let position = Point3::new(
                 (column / 99.0) * 19.0 * east + uniform(-2.0, 2.0),
                 (row / 49.0) * 9.0 * north + uniform(-2.0, 2.0),
@@ -138,7 +137,7 @@ pub fn flight(camera: Camera, seed: u64) -> Network {
         .collect();
     let mut images = Vec::new();
     for i in 0..strips * per_strip {
-        let ground = Point3::new((i % per_strip) as f64 * east, (i / per_strip) as f64 * north, 0.0);
+        let ground = Point3::new(f64::from(i % per_strip) * east, f64::from(i / per_strip) * north, 0.0);
         let centre = ground + Vector3::new(uniform(-3.0, 3.0), uniform(-3.0, 3.0), height + uniform(-5.0, 5.0));
         let roll = if i / per_strip % 2 == 0 { 0.0 } else { std::f64::consts::PI } + uniform(-0.1, 0.1);
         let target = ground + Vector3::new(uniform(-6.0, 6.0), uniform(-6.0, 6.0), 0.0);
@@ -183,9 +182,8 @@ pub fn shake_start(network: &mut Network, shift: f64, turn: f64, seed: u64) {
             .iter()
             .zip(&interior.parameters)
             .map(|(p, status)| match (status, p.name) {
-                (Status::Fixed, _) => p.value,
+                (Status::Fixed, _) | (_, "cx" | "cy" | "Px" | "Py" | "x0" | "y0") => p.value,
                 (_, "c" | "f" | "F" | "fx" | "fy") => 1.01 * p.value,
-                (_, "cx" | "cy" | "Px" | "Py" | "x0" | "y0") => p.value,
                 _ => 0.0,
             })
             .collect();
@@ -196,7 +194,8 @@ pub fn shake_start(network: &mut Network, shift: f64, turn: f64, seed: u64) {
 /// Every model, as a camera of 1280 x 960 px or so, and which of its parameters a good network determines.
 pub fn cameras() -> Vec<(Camera, Vec<&'static str>)> {
     let size = ImageSize { width: 1280, height: 960 };
-    let base = Photogrammetric { size, pitch_um: 5.0, c: 5.4, x0: 0.02, y0: -0.03, k: [-3e-3, 4e-5, 0.0], p: [1e-4, -2e-4], b: [2e-4, -1e-4] };
+    let base =
+        Photogrammetric { size, pitch_um: 5.0, c: 5.4, x0: 0.02, y0: -0.03, k: [-3e-3, 4e-5, 0.0], p: [1e-4, -2e-4], b: [2e-4, -1e-4] };
     let mut eight = [0.0; 14];
     eight[..8].copy_from_slice(&[-0.1, 0.05, 2e-4, -3e-4, 0.01, 0.15, 0.02, 0.01]);
     let eight = OpenCv { size, fx: 1070.0, fy: 1072.0, cx: 644.3, cy: 471.8, distortion: eight, coefficients: 8 };
@@ -231,12 +230,14 @@ pub fn vosselman_foerstner() -> Network {
     let points = (0..32).map(|i| ObjectPoint::free(format!("{i}"), circle(i))).collect();
     let mut network = Network { points, ..Network::default() };
     for group in 0..8 {
-        let parameters = std::array::from_fn(|i| 1e-5 * ((group + i) % 5) as f64 / [1.0, 1.0, 5.0, 5.0, 5.0, 5.0, 25.0, 25.0, 25.0, 25.0, 125.0, 125.0][i]);
+        let parameters = std::array::from_fn(|i| {
+            1e-5 * ((group + i) % 5) as f64 / [1.0, 1.0, 5.0, 5.0, 5.0, 5.0, 25.0, 25.0, 25.0, 25.0, 125.0, 125.0][i]
+        });
         let camera = Ebner { base, b_mm: 5.0, parameters };
         network.cameras.push(Interior::fixed(format!("group {group}"), camera).free(&names).expect("Ebner's parameters"));
         let (tilt, roll) = ([30.0_f64, 45.0][group / 4].to_radians(), (group % 4) as f64 * std::f64::consts::FRAC_PI_2);
         for side in 0..4 {
-            let around = side as f64 * std::f64::consts::FRAC_PI_2;
+            let around = f64::from(side) * std::f64::consts::FRAC_PI_2;
             let centre = Point3::new(tilt.sin() * around.cos(), tilt.sin() * around.sin(), tilt.cos()) * 4.7;
             let pose = Pose::looking_at(centre, Point3::origin(), Vector3::new(-around.cos(), -around.sin(), 1.0), roll).expect("a pose");
             network.images.push(Exterior::free(format!("{group}.{side}"), group, pose));
@@ -255,7 +256,10 @@ pub fn strip(camera: Camera, images: usize, seed: u64) -> Network {
     let points = (0..images * 12)
         .map(|i| {
             let along = length * (i / 4) as f64 / (3 * images - 1) as f64;
-            ObjectPoint::free(format!("P{i}"), Point3::new(along + uniform(-2.0, 2.0), (i % 4) as f64 * 10.0 - 15.0 + uniform(-3.0, 3.0), uniform(0.0, 20.0)))
+            ObjectPoint::free(
+                format!("P{i}"),
+                Point3::new(along + uniform(-2.0, 2.0), (i % 4) as f64 * 10.0 - 15.0 + uniform(-3.0, 3.0), uniform(0.0, 20.0)),
+            )
         })
         .collect();
     let image = |i: usize| {

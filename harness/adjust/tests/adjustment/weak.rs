@@ -1,6 +1,8 @@
 //! Networks that do not determine what is asked of them: each gets an answer by name.
 
-use calibench_adjust::{AdjustError, Attitude, Datum, Defect, Exterior, Interior, Network, ObjectPoint, Options, Reason, Status, Variance, adjust};
+use calibench_adjust::{
+    AdjustError, Attitude, Datum, Defect, Exterior, Interior, Network, ObjectPoint, Options, Reason, Status, Variance, adjust,
+};
 use calibench_model::Pose;
 use nalgebra::{Point3, Vector3};
 
@@ -46,7 +48,10 @@ fn a_plane_seen_frontally() {
     let network = frontal(plane(), &["c"], 1.0);
     let (names, reasons) = directions(&network);
     assert!(names.contains("c of camera") && names.contains("Z0 of all images"), "{names}");
-    assert!(reasons.contains(&Reason::NoDepth) && reasons.contains(&Reason::NoConvergence) && !reasons.contains(&Reason::NoRoll), "{reasons:?}");
+    assert!(
+        reasons.contains(&Reason::NoDepth) && reasons.contains(&Reason::NoConvergence) && !reasons.contains(&Reason::NoRoll),
+        "{reasons:?}"
+    );
     let message = defect(&network).to_string();
     assert!(message.contains("no depth, no convergence"), "{message}");
 }
@@ -86,7 +91,10 @@ fn no_roll_and_no_convergence() {
     let network = Network { datum: datum.clone(), ..frontal(points.clone(), &["c", "x0", "y0"], 0.0) };
     let (names, reasons) = directions(&network);
     assert!(["c", "x0", "y0"].iter().all(|name| names.contains(name)), "{names}");
-    assert!(reasons.contains(&Reason::NoRoll) && reasons.contains(&Reason::NoConvergence) && !reasons.contains(&Reason::NoDepth), "{reasons:?}");
+    assert!(
+        reasons.contains(&Reason::NoRoll) && reasons.contains(&Reason::NoConvergence) && !reasons.contains(&Reason::NoDepth),
+        "{reasons:?}"
+    );
     // Rolled images determine the principal point, not c.
     let rolled = Network { datum, ..frontal(points, &["c", "x0", "y0"], 1.5) };
     let (names, reasons) = directions(&rolled);

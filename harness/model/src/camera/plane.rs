@@ -144,7 +144,10 @@ mod tests {
             assert!(!sure(1.001 * fold) || fold == 3.0, "{radial:?} folds at {fold}");
             assert!(sure(0.9 * fold), "{radial:?} is safe up to {fold}");
             let margin = 8.0 * 0.9 * fold * 0.2;
-            assert_eq!(is_one_to_one(0.9 * fold, &radial, &[0.2], 0.0), margin < 1.0 && (0..=900).all(|i| slope(1e-3 * f64::from(i) * fold) > margin));
+            assert_eq!(
+                is_one_to_one(0.9 * fold, &radial, &[0.2], 0.0),
+                margin < 1.0 && (0..=900).all(|i| slope(1e-3 * f64::from(i) * fold) > margin)
+            );
         }
     }
 }
