@@ -15,7 +15,7 @@ pub use counts::Counts;
 pub use error::AdjustError;
 pub use network::{Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, Precision, Status};
 pub use quality::{
-    Comparison, Correlation, Covariances, Defect, Direction, Found, ObservedReliability, PointReliability, Reason, Reliability, Residual,
-    Significance, Snooping, Test, Use, Variance, compare, snoop,
+    Comparison, Correlation, Covariances, Defect, Direction, Distance, Found, ObservedReliability, PointReliability, Reason, Reliability,
+    Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, compare, frame_uncertainty, snoop,
 };
 pub use solution::{Options, Solution, adjust};

@@ -68,21 +68,13 @@ fn members(engine: &Engine, normals: &Normals) -> Vec<Found> {
 
 /// Singular or senseless directions of what is kept.
 fn kept(engine: &Engine, normals: &Normals, state: &State, sigma0: f64) -> Vec<Found> {
-    let Some((schur, matrix, scale)) = engine.reduced(normals, 0.0) else { return Vec::new() };
-    let n = scale.len();
-    if n == 0 {
-        return Vec::new();
-    }
-    let eigen = SymmetricEigen::new(DMatrix::from_fn(n, n, |i, j| matrix[j * n + i] / (scale[i] * scale[j])));
-    let mut order: Vec<usize> = (0..n).filter(|&k| eigen.eigenvalues[k] < WEAK).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
-    let found = |k: usize| {
-        let kept: Vec<f64> = (0..n).map(|i| eigen.eigenvectors[(i, k)] / scale[i]).collect();
-        let (step, eigenvalue) = (whole(engine, &schur, &kept), eigen.eigenvalues[k].max(0.0));
+    let Some((schur, pairs)) = engine.weakest(normals) else { return Vec::new() };
+    let found = |(eigenvalue, kept): (f64, Vec<f64>)| {
+        let (step, eigenvalue) = (whole(engine, &schur, &kept), eigenvalue.max(0.0));
         let deviation = sigma0 / eigenvalue.max(f64::MIN_POSITIVE).sqrt();
         (eigenvalue < SINGULAR || senseless(engine, state, &step, deviation)).then_some(Found { step, eigenvalue })
     };
-    order.into_iter().filter_map(found).collect()
+    pairs.into_iter().take_while(|(eigenvalue, _)| *eigenvalue < WEAK).filter_map(found).collect()
 }
 
 /// A direction of all unknowns from that of those that are kept.

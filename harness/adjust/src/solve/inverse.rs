@@ -6,9 +6,9 @@
 use multiversion::multiversion;
 
 use super::Solved;
+use super::kernel::{Run, runs};
 use super::plan::Plan;
 use super::reduced::Reduced;
-use super::schur::{Run, runs};
 use super::small::backward;
 
 /// Blocks of `Q_kk`.

@@ -1,7 +1,9 @@
 //! From start values to the minimum: Gauss-Newton, damped after Levenberg and Marquardt where it does not descend.
 
+mod eigen;
 mod factor;
 mod inverse;
+mod kernel;
 mod plan;
 mod reduced;
 mod schur;
@@ -84,12 +86,19 @@ impl<'n> Engine<'n> {
         Some(Solved { schur, factor })
     }
 
-    /// The reduced matrix, scaled, as it is: for the search for what is not determined.
-    pub(crate) fn reduced(&self, normals: &Normals, damping: f64) -> Option<(Schur, Vec<f64>, Vec<f64>)> {
+    /// Eigenvalues and eigenvectors of the reduced matrix, scaled to ones on the diagonal of the normal equations, from the smallest on: all of a small
+    /// matrix, a few of a large one. Vectors are in the unknowns' own units. `None` if an eliminated block is singular by itself.
+    pub(crate) fn weakest(&self, normals: &Normals) -> Option<(Schur, Vec<(f64, Vec<f64>)>)> {
         let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
-        schur.eliminate(&self.plan, &self.layout, normals, damping, &mut reduced).ok()?;
+        schur.eliminate(&self.plan, &self.layout, normals, 0.0, &mut reduced).ok()?;
         let scale = self.scale(normals);
-        Some((schur, reduced.into_dense(), scale))
+        let pairs = if scale.len() <= eigen::FULL {
+            eigen::all(&reduced.into_dense(), &scale)
+        } else {
+            eigen::few(&self.decompose(normals, eigen::SHIFT)?.factor, &scale)
+        };
+        let own = |(value, vector): (f64, Vec<f64>)| (value, vector.iter().zip(&scale).map(|(x, scale)| x / scale).collect());
+        Some((schur, pairs.into_iter().map(own).collect()))
     }
 
     /// Roots of the diagonal of the kept unknowns.
@@ -138,11 +147,13 @@ impl<'n> Engine<'n> {
     }
 
     /// The step with `damping`, and what it promises; `None` if there is none.
-    fn step(&self, normals: &Normals, damping: f64, step: &mut Step) -> Option<f64> {
-        let solved = self.decompose(normals, damping)?;
-        let mut kept = solved.schur.reduced.clone();
-        solved.factor.solve(&mut kept);
-        solved.schur.back(&self.plan, &self.layout, &kept, step);
+    fn step(&self, normals: &Normals, damping: f64, schur: &mut Schur, step: &mut Step) -> Option<f64> {
+        let mut reduced = self.blank.clone();
+        schur.eliminate(&self.plan, &self.layout, normals, damping, &mut reduced).ok()?;
+        let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;
+        let mut kept = schur.reduced.clone();
+        factor.solve(&mut kept);
+        schur.back(&self.plan, &self.layout, &kept, step);
         step.is_finite().then(|| normals.along(step))
     }
 
@@ -154,9 +165,10 @@ impl<'n> Engine<'n> {
         let (mut scratch, mut normals, mut trial) = (Scratch::default(), Normals::default(), Normals::default());
         self.linearise(&start, &mut scratch, &mut normals).map_err(|lost| self.not_pictured(&start, lost))?;
         let (mut state, mut step, mut damping, mut gain) = (start, self.zero_step(), 0.0, f64::INFINITY);
+        let mut schur = Schur::default();
         for iterations in 1..=most_iterations {
             let mut accepted = false;
-            if let Some(promised) = self.step(&normals, damping, &mut step) {
+            if let Some(promised) = self.step(&normals, damping, &mut schur, &mut step) {
                 let before = std::mem::replace(&mut gain, promised);
                 let cost = normals.cost;
                 let moved = state.moved(&self.layout, &step);

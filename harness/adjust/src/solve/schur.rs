@@ -3,9 +3,8 @@
 //! With `N_ee = L L^T` of an eliminated block and `Y = L^-1 N_ek`: the kept unknowns have `S = N_kk - sum Y^T Y` and `b = g_k - sum Y^T L^-1 g_e`; then
 //! `x_e = L^-T (L^-1 g_e - Y x_k)`.
 
-use multiversion::multiversion;
-
-use super::plan::{Coupled, Eliminated, Plan};
+use super::kernel::{Run, runs, subtract_3, subtract_6};
+use super::plan::{Eliminated, Plan};
 use super::reduced::Reduced;
 use super::small::{backward, cholesky, forward};
 use crate::network::Layout;
@@ -214,71 +213,6 @@ impl Schur {
     /// `L` of a member.
     pub(crate) fn factor<const D: usize>(&self, place: usize) -> [[f64; D]; D] {
         std::array::from_fn(|i| std::array::from_fn(|j| self.factors[place * D * D + i * D + j]))
-    }
-}
-
-/// Rows of a member's products that stand one after the other in a column of the reduced matrix.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Run {
-    /// Their first column in `Y`.
-    pub(crate) from: usize,
-    /// The value of the first, in the first column of the block.
-    pub(crate) start: usize,
-    pub(crate) length: usize,
-}
-
-/// The rows at and below the diagonal in the columns of `coupled[i]`, which begin at column `from` of `Y`; returns the distance of columns.
-pub(crate) fn runs(coupled: &[Coupled], i: usize, mut from: usize, into: &Reduced, runs: &mut Vec<Run>) -> usize {
-    let (column, mut distance) = (&coupled[i], 0);
-    runs.clear();
-    for row in &coupled[i..] {
-        let (start, stride) = into.place((row.block, row.offset), (column.block, column.offset));
-        distance = stride;
-        match runs.last_mut() {
-            Some(last) if last.start + last.length == start => last.length += row.width,
-            _ => runs.push(Run { from, start, length: row.width }),
-        }
-        from += row.width;
-    }
-    distance
-}
-
-macro_rules! subtract {
-    ($($name:ident: $depth:expr;)*) => {
-        $(#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-        fn $name(y: &[f64], columns: usize, own: (usize, usize), runs: &[Run], stride: usize, values: &mut [f64]) {
-            subtract_columns::<$depth>(y, columns, own, runs, stride, values);
-        })*
-    };
-}
-
-subtract! {
-    subtract_3: 3;
-    subtract_6: 6;
-}
-
-#[inline(always)]
-fn subtract_columns<const D: usize>(
-    y: &[f64],
-    columns: usize,
-    (first, width): (usize, usize),
-    runs: &[Run],
-    stride: usize,
-    values: &mut [f64],
-) {
-    for j in 0..width {
-        let factor: [f64; D] = std::array::from_fn(|d| y[d * columns + first + j]);
-        for run in runs {
-            let target = &mut values[run.start + j * stride..][..run.length];
-            let rows: [&[f64]; D] = std::array::from_fn(|d| &y[d * columns + run.from..][..run.length]);
-            for (i, target) in target.iter_mut().enumerate() {
-                let mut sum = rows[0][i] * factor[0];
-                for d in 1..D {
-                    sum += rows[d][i] * factor[d];
-                }
-                *target -= sum;
-            }
-        }
     }
 }
 
