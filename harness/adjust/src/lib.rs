@@ -1,4 +1,13 @@
 //! Image coordinates and control to orientations, object points and their covariance. Truth is not known here.
+//!
+//! A [`Network`] says what was measured, what is known beforehand and where the unknowns start; [`adjust`] returns a [`Solution`], or says by name what
+//! the observations do not determine. Image coordinates are adjusted in pixels of each camera's own model, so that all models stand on equal terms.
+//! Resection is a network with known points and camera, intersection one with known images, relative orientation one of two images and
+//! [`Datum::Inner`].
+//!
+//! From a solution: [`Solution::covariances`] (blocks by selected inversion), [`Solution::full_covariance`], [`Solution::residuals`],
+//! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::significance`] of parameters,
+//! [`Solution::in_datum`] (S-transformation), [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart, [`snoop`] looks for blunders.
 
 pub mod approximate;
 mod counts;

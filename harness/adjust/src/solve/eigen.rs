@@ -12,22 +12,25 @@ pub(super) const SHIFT: f64 = 1e-12;
 const FEW: usize = 12;
 const ITERATIONS: usize = 12;
 
+/// An eigenvalue and its vector.
+pub(crate) type Pair = (f64, Vec<f64>);
+
 /// All, of a symmetric matrix kept column by column, scaled.
-pub(super) fn all(matrix: &[f64], scale: &[f64]) -> Vec<(f64, Vec<f64>)> {
+pub(super) fn all(matrix: &[f64], scale: &[f64]) -> Vec<Pair> {
     let n = scale.len();
     if n == 0 {
         return Vec::new();
     }
-    sorted(SymmetricEigen::new(DMatrix::from_fn(n, n, |i, j| matrix[j * n + i] / (scale[i] * scale[j]))))
+    sorted(DMatrix::from_fn(n, n, |i, j| matrix[j * n + i] / (scale[i] * scale[j])))
 }
 
 /// A few, by inverse iteration on a subspace.
-pub(super) fn few(factor: &Factor, scale: &[f64]) -> Vec<(f64, Vec<f64>)> {
+pub(super) fn few(factor: &Factor, scale: &[f64]) -> Vec<Pair> {
     let n = scale.len();
     let mut basis = DMatrix::from_fn(n, FEW, |i, j| (((i + 1) * (j + 1)) as f64 * 0.618_033_988_749).fract() - 0.5);
-    let mut inner = DMatrix::identity(FEW, FEW);
+    let (mut q, mut inner) = (basis.clone(), DMatrix::identity(FEW, FEW));
     for _ in 0..ITERATIONS {
-        let q = basis.qr().q();
+        q = basis.qr().q();
         // The factor undoes its own scale: S'^-1 y = D S^-1 D y.
         let scaled = |matrix: DMatrix<f64>| DMatrix::from_fn(n, FEW, |i, j| matrix[(i, j)] * scale[i]);
         let mut image = scaled(q.clone());
@@ -36,20 +39,20 @@ pub(super) fn few(factor: &Factor, scale: &[f64]) -> Vec<(f64, Vec<f64>)> {
         inner = q.tr_mul(&basis);
     }
     // Ritz values of the inverse, the largest first.
-    let ritz = sorted(SymmetricEigen::new((&inner + inner.transpose()) * -0.5));
-    let q = basis.qr().q();
+    let ritz = sorted((&inner + inner.transpose()) * -0.5);
     let vector = |small: &[f64]| (&q * nalgebra::DVector::from_row_slice(small)).as_slice().to_vec();
     ritz.into_iter().map(|(value, small)| (-1.0 / value, vector(&small))).collect()
 }
 
-fn sorted(eigen: SymmetricEigen<f64, nalgebra::Dyn>) -> Vec<(f64, Vec<f64>)> {
+fn sorted(matrix: DMatrix<f64>) -> Vec<Pair> {
+    let eigen = SymmetricEigen::new(matrix);
     let mut pairs: Vec<_> = eigen
         .eigenvalues
         .iter()
         .zip(eigen.eigenvectors.column_iter())
         .map(|(value, vector)| (*value, vector.iter().copied().collect()))
         .collect();
-    pairs.sort_by(|a: &(f64, Vec<f64>), b| a.0.total_cmp(&b.0));
+    pairs.sort_by(|a: &Pair, b| a.0.total_cmp(&b.0));
     pairs
 }
 
@@ -71,10 +74,7 @@ mod tests {
         let scale: Vec<f64> = (0..n).map(|i| matrix[(i, i)].sqrt()).collect();
         let all = all(matrix.as_slice(), &scale);
         let reduced = Reduced { size: n, values: matrix.as_slice().to_vec(), sparse: None };
-        let few = few(
-            &Factor::of(reduced, scale, None).unwrap(),
-            &vec![1.0; n].iter().zip(0..n).map(|(_, i)| matrix[(i, i)].sqrt()).collect::<Vec<_>>(),
-        );
+        let few = few(&Factor::of(reduced, scale.clone(), None).unwrap(), &scale);
         for ((a, x), (b, y)) in all.iter().zip(&few).take(3) {
             let along: f64 = x.iter().zip(y).map(|(x, y)| x * y).sum();
             assert!((a / b - 1.0).abs() < 1e-3 && (along.abs() - 1.0).abs() < 1e-3, "{a:e} {b:e} {along}");

@@ -88,7 +88,7 @@ impl<'n> Engine<'n> {
 
     /// Eigenvalues and eigenvectors of the reduced matrix, scaled to ones on the diagonal of the normal equations, from the smallest on: all of a small
     /// matrix, a few of a large one. Vectors are in the unknowns' own units. `None` if an eliminated block is singular by itself.
-    pub(crate) fn weakest(&self, normals: &Normals) -> Option<(Schur, Vec<(f64, Vec<f64>)>)> {
+    pub(crate) fn weakest(&self, normals: &Normals) -> Option<(Schur, Vec<eigen::Pair>)> {
         let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
         schur.eliminate(&self.plan, &self.layout, normals, 0.0, &mut reduced).ok()?;
         let scale = self.scale(normals);
@@ -97,7 +97,7 @@ impl<'n> Engine<'n> {
         } else {
             eigen::few(&self.decompose(normals, eigen::SHIFT)?.factor, &scale)
         };
-        let own = |(value, vector): (f64, Vec<f64>)| (value, vector.iter().zip(&scale).map(|(x, scale)| x / scale).collect());
+        let own = |(value, vector): eigen::Pair| (value, vector.iter().zip(&scale).map(|(x, scale)| x / scale).collect());
         Some((schur, pairs.into_iter().map(own).collect()))
     }
 
