@@ -33,6 +33,21 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    fn check(&self, network: &Network) -> Result<(), NetworkError> {
+        let count = network.observations.len();
+        if let Some(&index) = self.left_out.iter().find(|&&index| index >= count) {
+            return Err(NetworkError::NoSuch { of: "left_out".into(), what: "observation", index, count });
+        }
+        match self.huber {
+            Some(bound) if !(bound > 0.0 && bound.is_finite()) => {
+                Err(NetworkError::NotANumber { of: "Huber's bound".into(), what: "it is not a positive number" })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// The result of an adjustment.
 #[derive(Clone, Debug)]
 pub struct Solution<'n> {
@@ -54,6 +69,7 @@ pub fn adjust<'n>(network: &'n Network, options: &Options) -> Result<Solution<'n
 /// [`adjust`] from other start values.
 pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: State) -> Result<Solution<'n>, AdjustError> {
     network.check()?;
+    options.check(network)?;
     let held = hold(network, &network.datum)?;
     let layout = Layout::new(network, &held, &options.left_out)?;
     if let Some(defect) = counted(network, &layout, &held) {

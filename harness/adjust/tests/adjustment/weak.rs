@@ -176,6 +176,9 @@ fn what_is_no_network_is_refused() {
     refused(&|network| network.images[1].camera = 1);
     refused(&|network| network.cameras[0].parameters.truncate(3));
     refused(&|network| network.points[4].position.z = f64::INFINITY);
+    for options in [Options { left_out: vec![108], ..Options::default() }, Options { huber: Some(f64::NAN), ..Options::default() }] {
+        assert!(matches!(adjust(&good, &options), Err(AdjustError::Network(_))));
+    }
     let unknown = good.cameras[0].clone().free(&["c"]).unwrap_err().to_string();
     assert!(unknown.contains("fx, fy"), "{unknown}");
     let mut behind = good.clone();
