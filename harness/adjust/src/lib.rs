@@ -1,3 +1,30 @@
 //! Image coordinates and control to orientations, object points and their covariance. Truth is not known here.
+//!
+//! A [`Network`] says what was measured, what is known beforehand and where the unknowns start; [`adjust`] returns a [`Solution`], or says by name what
+//! the observations do not determine. Image coordinates are adjusted in pixels of each camera's own model, so that all models stand on equal terms.
+//! Resection is a network with known points and camera, intersection one with known images, relative orientation one of two images and
+//! [`Datum::Inner`].
+//!
+//! From a solution: [`Solution::covariances`] (blocks by selected inversion), [`Solution::full_covariance`], [`Solution::residuals`],
+//! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::significance`] of parameters,
+//! [`Solution::in_datum`] (S-transformation), [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart, [`snoop`] looks for blunders.
 
 pub mod approximate;
+mod counts;
+mod datum;
+mod error;
+mod network;
+mod normal;
+mod quality;
+mod solution;
+mod solve;
+mod state;
+
+pub use counts::Counts;
+pub use error::AdjustError;
+pub use network::{Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, Precision, Status};
+pub use quality::{
+    Comparison, Correlation, Covariances, Defect, Direction, Distance, Found, ObservedReliability, PointReliability, Reason, Reliability,
+    Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, compare, frame_uncertainty, snoop,
+};
+pub use solution::{Options, Solution, adjust};

@@ -3,7 +3,7 @@
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Brown, Pinhole};
-use super::{CameraParameter, ImageSize, named};
+use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::CornerPoint;
 
 /// Whose formulas and origins an [`Agisoft`] camera follows.
@@ -173,11 +173,16 @@ impl Pinhole for Agisoft {
         Affinity { a: self.f + self.b1, b: self.b2, d: self.f, shift: shift.to_pixel() }
     }
 
-    fn by_parameters(&self, ideal: [f64; 2], distorted @ [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
+    fn by_parameters(&self, ideal: [f64; 2], distorted @ [x, y]: [f64; 2], into: &mut DerivativeBuffer) {
         let Affinity { a, b, d, .. } = self.affinity();
         let [k1, k2, k3, k4, first, second, p3, p4] = self.brown().by_coefficients(ideal).map(|[x, y]| [a * x + b * y, d * y]);
         let (p1, p2) = if self.is_old() { (second, first) } else { (first, second) };
-        self.own([distorted, [1.0, 0.0], [0.0, 1.0], [x, 0.0], [y, 0.0], k1, k2, k3, k4, p1, p2, p3, p4])
+        let all = [distorted, [1.0, 0.0], [0.0, 1.0], [x, 0.0], [y, 0.0], k1, k2, k3, k4, p1, p2, p3, p4];
+        if self.is_old() {
+            into.extend(OLD.map(|i| all[i]));
+        } else {
+            into.extend(all);
+        }
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {

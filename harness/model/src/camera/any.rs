@@ -1,8 +1,8 @@
 //! All models behind one dispatch.
 
 use super::{
-    Agisoft, CameraModel, CameraParameter, Convention, Derivatives, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, NoCounterpart, Omni,
-    OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, Ray, agisoft, double_sphere, ebner, eucm, fov, micmac, moniwa, omni,
+    Agisoft, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, NoCounterpart,
+    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, Ray, agisoft, double_sphere, ebner, eucm, fov, micmac, moniwa, omni,
     opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, tools,
 };
 use crate::PixelPoint;
@@ -137,8 +137,8 @@ impl CameraModel for Camera {
         each!(self, camera => camera.unproject(point))
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
-        each!(self, camera => camera.derivatives(ray))
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+        each!(self, camera => camera.derivatives_into(ray, into))
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -2,7 +2,7 @@
 
 use super::newton::{ValueAndDerivatives, determinant};
 use super::plane::{PlaneMap, first_fold, invert, is_on_branch};
-use super::{CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray, named};
+use super::{CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
 /// Halvings that find an angle; Newton's steps end them sooner.
@@ -77,7 +77,7 @@ impl PlaneMap for Plane {
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         let prism = 2.0 * radius * self.s[0].hypot(self.s[1]);
-        super::plane::is_contraction(radius, &self.k, &self.p, prism)
+        super::plane::is_one_to_one(radius, &self.k, &self.p, prism)
     }
 }
 
@@ -165,7 +165,7 @@ fn angle(camera: &impl Axial, radius: f64) -> Result<f64, NoCounterpart> {
     Ok(theta)
 }
 
-pub(super) fn derivatives(camera: &impl Axial, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+pub(super) fn derivatives_into(camera: &impl Axial, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
     let ([x, y, z], r, theta) = polar(camera, ray)?;
     let (radius, slope) = camera.radius(theta);
     let length2 = r * r + z * z;
@@ -183,11 +183,13 @@ pub(super) fn derivatives(camera: &impl Axial, ray: Ray) -> Result<Derivatives, 
     let after = |[dx, dy]: [f64; 2]| scaled([by[0][0] * dx + by[0][1] * dy, by[1][0] * dx + by[1][1] * dy]);
     let columns: [[f64; 2]; 3] = std::array::from_fn(|i| after([at[0][i], at[1][i]]));
     let signs = [1.0, -1.0, -1.0];
-    let by_ray = [0, 1].map(|row| std::array::from_fn(|i| signs[i] * columns[i][row]));
-    let mut by_parameters = vec![[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]];
-    by_parameters.extend(camera.by_lens(theta).into_iter().map(|d| after([d * cos, d * sin])));
-    by_parameters.extend(Plane::by_coefficients(flat).into_iter().take(camera.plane_parameters()).map(scaled));
-    Ok(Derivatives { point: pixel(&focal, distorted), by_ray, by_parameters })
+    into.clear();
+    into.point = pixel(&focal, distorted);
+    into.by_ray = [0, 1].map(|row| std::array::from_fn(|i| signs[i] * columns[i][row]));
+    into.extend([[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]]);
+    into.extend(camera.by_lens(theta).into_iter().map(|d| after([d * cos, d * sin])));
+    into.extend(Plane::by_coefficients(flat).into_iter().take(camera.plane_parameters()).map(scaled));
+    Ok(())
 }
 
 pub(super) fn fold_towards(camera: &impl Axial, angle: f64) -> Option<PixelPoint> {
@@ -228,8 +230,12 @@ macro_rules! axial_camera {
                 $crate::camera::axial::unproject(self, point)
             }
 
-            fn derivatives(&self, ray: $crate::camera::Ray) -> Result<$crate::camera::Derivatives, $crate::camera::NoCounterpart> {
-                $crate::camera::axial::derivatives(self, ray)
+            fn derivatives_into(
+                &self,
+                ray: $crate::camera::Ray,
+                into: &mut $crate::camera::DerivativeBuffer,
+            ) -> Result<(), $crate::camera::NoCounterpart> {
+                $crate::camera::axial::derivatives_into(self, ray, into)
             }
 
             fn fold_towards(&self, angle: f64) -> Option<$crate::PixelPoint> {

@@ -4,7 +4,7 @@ use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Ver
 use super::measured::{self, Correction};
 use super::newton::ValueAndDerivatives;
 use super::plane::PlaneMap;
-use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Photogrammetric, Ray, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Photogrammetric, Ray, named};
 use crate::PixelPoint;
 
 /// [`Photogrammetric`] with Ebner's twelve additional parameters. Direction: **measured to ideal**; mm; y points up.
@@ -121,10 +121,9 @@ impl Correction for Ebner {
         &self.base
     }
 
-    fn by_coefficients(&self, at: [f64; 2]) -> Vec<[f64; 2]> {
-        let mut all = self.base.by_coefficients(at);
-        all.extend(self.effects(at).map(|[x, y]| [-x, -y]));
-        all
+    fn by_coefficients(&self, at: [f64; 2], into: &mut DerivativeBuffer) {
+        self.base.by_coefficients(at, into);
+        into.extend(self.effects(at).map(|[x, y]| [-x, -y]));
     }
 }
 
@@ -158,8 +157,8 @@ impl CameraModel for Ebner {
         measured::unproject(self, point)
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
-        measured::derivatives(self, ray)
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+        measured::derivatives_into(self, ray, into)
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -2,7 +2,7 @@
 
 use super::newton::{self, determinant};
 use super::plane::{self, PlaneMap};
-use super::{Derivatives, NoCounterpart, Photogrammetric, Ray};
+use super::{DerivativeBuffer, NoCounterpart, Photogrammetric, Ray};
 use crate::{Frame, PixelPoint, SensorPoint};
 
 /// Places between the principal point and the farthest corner where a fold is looked for.
@@ -12,8 +12,8 @@ const PLACES: usize = 200;
 pub(super) trait Correction: PlaneMap {
     /// Principal distance, principal point, pitch and size.
     fn base(&self) -> &Photogrammetric;
-    /// d(ideal) / d(coefficient) at measured coordinates from the principal point, mm; without those of c, x0, y0.
-    fn by_coefficients(&self, at: [f64; 2]) -> Vec<[f64; 2]>;
+    /// Adds d(ideal) / d(coefficient) at measured coordinates from the principal point, mm; without those of c, x0, y0.
+    fn by_coefficients(&self, at: [f64; 2], into: &mut DerivativeBuffer);
 }
 
 fn frame(base: &Photogrammetric) -> Result<Frame, NoCounterpart> {
@@ -60,7 +60,7 @@ pub(super) fn unproject(camera: &impl Correction, point: PixelPoint) -> Result<R
     Ok(Ray::from_tangent(x / base.c, y / base.c))
 }
 
-pub(super) fn derivatives(camera: &impl Correction, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+pub(super) fn derivatives_into(camera: &impl Correction, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
     let base = camera.base();
     let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
     let at = measured(camera, ray)?;
@@ -68,12 +68,15 @@ pub(super) fn derivatives(camera: &impl Correction, ray: Ray) -> Result<Derivati
     let (det, per_mm) = (determinant(by), 1e3 / base.pitch_um);
     // F(measured, parameters) = c tangent: d(measured) = F_m^-1 (d(c tangent) - F_parameters), then mm upwards to px downwards.
     let pixel = |g: [f64; 2]| [per_mm * (by[1][1] * g[0] - by[0][1] * g[1]) / det, -per_mm * (by[0][0] * g[1] - by[1][0] * g[0]) / det];
-    let mut by_parameters = vec![pixel([u, v]), [per_mm, 0.0], [0.0, -per_mm]];
-    by_parameters.extend(camera.by_coefficients(at).into_iter().map(|[x, y]| pixel([-x, -y])));
+    into.clear();
+    into.extend([pixel([u, v]), [per_mm, 0.0], [0.0, -per_mm]]);
+    camera.by_coefficients(at, into);
+    into.change_from(3, |[x, y]| pixel([-x, -y]));
     let (by_u, by_v) = (pixel([base.c, 0.0]), pixel([0.0, base.c]));
     let tangent = ray.tangent_derivatives();
-    let by_ray = std::array::from_fn(|row| std::array::from_fn(|axis| by_u[row] * tangent[0][axis] + by_v[row] * tangent[1][axis]));
-    Ok(Derivatives { point: to_pixel(base, at)?, by_ray, by_parameters })
+    into.by_ray = std::array::from_fn(|row| std::array::from_fn(|axis| by_u[row] * tangent[0][axis] + by_v[row] * tangent[1][axis]));
+    into.point = to_pixel(base, at)?;
+    Ok(())
 }
 
 pub(super) fn fold_towards(camera: &impl Correction, angle: f64) -> Option<PixelPoint> {

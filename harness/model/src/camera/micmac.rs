@@ -3,8 +3,8 @@
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
-use super::plane::is_contraction;
-use super::{CameraParameter, ImageSize, named};
+use super::plane::is_one_to_one;
+use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::PixelPoint;
 
 /// MicMac's camera with `ModRad` or `ModPhgrStd` (Fraser). Direction: **ideal to image** (`eConvApero_DistM2C`); y points down; px throughout.
@@ -112,19 +112,18 @@ impl Pinhole for MicMac {
         Affinity { a: self.f, b: 0.0, d: self.f, shift: PixelPoint::new(self.pp[0], self.pp[1]) }
     }
 
-    fn by_parameters(&self, ideal: [f64; 2], _distorted: [f64; 2]) -> Vec<[f64; 2]> {
+    fn by_parameters(&self, ideal: [f64; 2], _distorted: [f64; 2], into: &mut DerivativeBuffer) {
         let at @ [x, y] = self.about_centre(ideal);
         let (_, by) = self.displacement(at);
         let r2 = x * x + y * y;
         let moved = |[dx, dy]: [f64; 2]| [dx + by[0][0] * dx + by[0][1] * dy, dy + by[1][0] * dx + by[1][1] * dy];
-        let mut all = vec![moved(ideal), [1.0, 0.0], [0.0, 1.0], [-by[0][0], -by[1][0]], [-by[0][1], -by[1][1]]];
-        all.extend((1..=5).map(|power| [x * r2.powi(power), y * r2.powi(power)]));
-        all.extend([[r2 + 2.0 * x * x, 2.0 * x * y], [2.0 * x * y, r2 + 2.0 * y * y], [x, 0.0], [y, 0.0]]);
-        all
+        into.extend([moved(ideal), [1.0, 0.0], [0.0, 1.0], [-by[0][0], -by[1][0]], [-by[0][1], -by[1][1]]]);
+        into.extend((1..=5).map(|power| [x * r2.powi(power), y * r2.powi(power)]));
+        into.extend([[r2 + 2.0 * x * x, 2.0 * x * y], [2.0 * x * y, r2 + 2.0 * y * y], [x, 0.0], [y, 0.0]]);
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
-        self.offset == [0.0; 2] && is_contraction(radius * self.f, &self.k, &self.p, self.b[0].abs() + self.b[1].abs())
+        self.offset == [0.0; 2] && is_one_to_one(radius * self.f, &self.k, &self.p, self.b[0].abs() + self.b[1].abs())
     }
 }
 

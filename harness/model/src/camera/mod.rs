@@ -8,6 +8,7 @@ mod any;
 mod axial;
 pub mod conformance;
 pub mod convention;
+mod derivatives;
 pub mod double_sphere;
 pub mod ebner;
 pub mod eucm;
@@ -36,6 +37,7 @@ use crate::PixelPoint;
 pub use agisoft::{Agisoft, AgisoftVersion};
 pub use any::{Camera, conventions};
 pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
+pub use derivatives::{DerivativeBuffer, Derivatives, MOST_PARAMETERS};
 pub use double_sphere::DoubleSphere;
 pub use ebner::Ebner;
 pub use eucm::Eucm;
@@ -70,17 +72,6 @@ pub struct CameraParameter {
     pub unit: &'static str,
     /// Its value.
     pub value: f64,
-}
-
-/// A projection with its derivatives.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Derivatives {
-    /// The projected point.
-    pub point: PixelPoint,
-    /// d(x, y) / d(ray), px per unit of the ray's components: rows x, y.
-    pub by_ray: [[f64; 3]; 2],
-    /// d(x, y) / d(parameter), in the order of [`CameraModel::parameters`].
-    pub by_parameters: Vec<[f64; 2]>,
 }
 
 /// Why a ray or a pixel has no counterpart.
@@ -133,11 +124,19 @@ pub trait CameraModel {
     /// A pixel that no ray comes to on the branch of the mapping that holds the principal point.
     fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart>;
 
+    /// [`Self::project`] with its analytic derivatives, into memory that is used again. What `into` holds after an error means nothing.
+    ///
+    /// # Errors
+    /// As [`Self::project`].
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart>;
+
     /// [`Self::project`] with its analytic derivatives.
     ///
     /// # Errors
     /// As [`Self::project`].
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart>;
+    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+        DerivativeBuffer::owned(|buffer| self.derivatives_into(ray, buffer))
+    }
 
     /// The image of the first fold on the way from the axis, where the mapping stops being one to one, inside or outside the frame; `angle` is that in
     /// the image at the axis, from x towards y, radians. See [`fold()`] for what is inside the frame.

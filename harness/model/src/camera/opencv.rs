@@ -10,11 +10,12 @@ mod undistort;
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
-use super::plane::is_contraction;
-use super::{CameraParameter, ImageSize, named};
+use super::plane::is_one_to_one;
+use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::PixelPoint;
 
 pub use jacobian::{CameraFromWorld, Jacobian};
+pub use project::Prepared;
 
 /// OpenCV's camera. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0); normalised by the focal length.
 ///
@@ -156,7 +157,7 @@ impl Pinhole for OpenCv {
         Affinity { a: self.fx, b: 0.0, d: self.fy, shift: PixelPoint::new(self.cx, self.cy) }
     }
 
-    fn by_parameters(&self, ideal @ [x, y]: [f64; 2], distorted: [f64; 2]) -> Vec<[f64; 2]> {
+    fn by_parameters(&self, ideal @ [x, y]: [f64; 2], distorted: [f64; 2], into: &mut DerivativeBuffer) {
         let Lens { r2, q, inverse, value, .. } = self.lens(ideal);
         let mut lens = [[0.0; 2]; 12];
         for (power, place) in (1..).zip(RADIAL) {
@@ -170,19 +171,21 @@ impl Pinhole for OpenCv {
         lens[2] = [2.0 * x * y, r2 + 2.0 * y * y];
         lens[3] = [r2 + 2.0 * x * x, 2.0 * x * y];
         (lens[8], lens[9], lens[10], lens[11]) = ([r2, 0.0], [r2 * r2, 0.0], [0.0, r2], [0.0, r2 * r2]);
-        let mut all = vec![[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]];
+        into.extend([[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]]);
         let scaled = |[x, y]: [f64; 2]| [self.fx * x, self.fy * y];
+        let coefficients = self.coefficients.min(14);
+        if !self.is_tilted() && coefficients < 14 {
+            return into.extend(lens.into_iter().take(coefficients).map(scaled));
+        }
         let tilt = tilt::Tilt::new(self.distortion[12], self.distortion[13]);
         let (_, [of_x, of_y]) = tilt.apply(value);
-        all.extend(lens.map(|[x, y]| scaled([of_x[0] * x + of_x[1] * y, of_y[0] * x + of_y[1] * y])));
-        all.extend(tilt.by_angles(value).map(scaled));
-        all.truncate(4 + self.coefficients.min(14));
-        all
+        let lens = lens.map(|[x, y]| scaled([of_x[0] * x + of_x[1] * y, of_y[0] * x + of_y[1] * y]));
+        into.extend(lens.into_iter().chain(tilt.by_angles(value).map(scaled)).take(coefficients));
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         let d = &self.distortion;
-        d[5..].iter().all(|&more| more == 0.0) && is_contraction(radius, &[d[0], d[1], d[4]], &d[2..4], 0.0)
+        d[5..].iter().all(|&more| more == 0.0) && is_one_to_one(radius, &[d[0], d[1], d[4]], &d[2..4], 0.0)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::plane::first_fold;
-use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
 /// OpenCV's fisheye camera, of Kannala and Brandt. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
@@ -148,7 +148,7 @@ impl CameraModel for OpenCvFisheye {
         Ok(Ray { x: x * scale, y: -y * scale, z: -cos })
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
         let ([x, y, z], r, theta) = self.polar(ray)?;
         let (distorted, slope) = self.distort(theta);
         let length2 = r * r + z * z;
@@ -160,18 +160,19 @@ impl CameraModel for OpenCvFisheye {
         let at =
             [[scale + change * cos * cos, change * cos * sin, back * cos], [change * cos * sin, scale + change * sin * sin, back * sin]];
         let signs = [1.0, -1.0, -1.0];
-        let by_ray = [
+        into.by_ray = [
             std::array::from_fn(|i| self.fx * (at[0][i] + self.skew * at[1][i]) * signs[i]),
             std::array::from_fn(|i| self.fy * at[1][i] * signs[i]),
         ];
         let [dx, dy] = [x * scale, y * scale];
-        let point = self.pixel([dx, dy]);
-        let mut by_parameters = vec![[dx + self.skew * dy, 0.0], [0.0, dy], [1.0, 0.0], [0.0, 1.0], [self.fx * dy, 0.0]];
-        by_parameters.extend((1..=4).map(|power| {
+        into.point = self.pixel([dx, dy]);
+        into.clear();
+        into.extend([[dx + self.skew * dy, 0.0], [0.0, dy], [1.0, 0.0], [0.0, 1.0], [self.fx * dy, 0.0]]);
+        into.extend((1..=4).map(|power| {
             let d = theta.powi(2 * power + 1);
             [self.fx * d * (cos + self.skew * sin), self.fy * d * sin]
         }));
-        Ok(Derivatives { point, by_ray, by_parameters })
+        Ok(())
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

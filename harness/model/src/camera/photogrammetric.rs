@@ -3,8 +3,8 @@
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::measured::{self, Correction};
 use super::newton::ValueAndDerivatives;
-use super::plane::{PlaneMap, is_contraction};
-use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray, named};
+use super::plane::{PlaneMap, is_one_to_one};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
 /// Interior orientation in mm, y up, from the centre of the frame. Direction: **measured to ideal**.
@@ -84,7 +84,7 @@ impl PlaneMap for Photogrammetric {
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
-        is_contraction(radius, &self.k, &self.p, self.b[0].abs() + self.b[1].abs())
+        is_one_to_one(radius, &self.k.map(|k| -k), &self.p, self.b[0].abs() + self.b[1].abs())
     }
 }
 
@@ -93,10 +93,10 @@ impl Correction for Photogrammetric {
         self
     }
 
-    fn by_coefficients(&self, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
+    fn by_coefficients(&self, [x, y]: [f64; 2], into: &mut DerivativeBuffer) {
         let r2 = x * x + y * y;
         let radial = |power: f64| [-x * power, -y * power];
-        vec![
+        into.extend([
             radial(r2),
             radial(r2 * r2),
             radial(r2 * r2 * r2),
@@ -104,7 +104,7 @@ impl Correction for Photogrammetric {
             [-2.0 * x * y, -(r2 + 2.0 * y * y)],
             [-x, 0.0],
             [-y, 0.0],
-        ]
+        ]);
     }
 }
 
@@ -136,8 +136,8 @@ impl CameraModel for Photogrammetric {
         measured::unproject(self, point)
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
-        measured::derivatives(self, ray)
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+        measured::derivatives_into(self, ray, into)
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -2,7 +2,7 @@
 
 use super::newton::{ValueAndDerivatives, determinant};
 use super::plane::{PlaneMap, first_fold, invert, is_on_branch};
-use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray};
 use crate::PixelPoint;
 
 /// The widest angle from the axis at which folds are looked for, radians, and the places on the way.
@@ -42,8 +42,8 @@ pub trait Pinhole: Copy {
     fn distort(&self, ideal: [f64; 2]) -> ValueAndDerivatives;
     /// Distorted tangents to pixels.
     fn affinity(&self) -> Affinity;
-    /// d(pixel) / d(parameter) at ideal tangents, of which the distorted ones are given.
-    fn by_parameters(&self, ideal: [f64; 2], distorted: [f64; 2]) -> Vec<[f64; 2]>;
+    /// Adds d(pixel) / d(parameter) at ideal tangents, of which the distorted ones are given.
+    fn by_parameters(&self, ideal: [f64; 2], distorted: [f64; 2], into: &mut DerivativeBuffer);
     /// Is the distortion certainly one to one within `radius`?
     fn is_surely_one_to_one(&self, radius: f64) -> bool;
 }
@@ -90,7 +90,7 @@ impl<P: Pinhole> CameraModel for P {
         Ok(Ray::from_tangent(x, -y))
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
         let at = ideal(self, ray)?;
         let (distorted, slope) = self.distort(at);
         let affinity = self.affinity();
@@ -99,8 +99,11 @@ impl<P: Pinhole> CameraModel for P {
             [affinity.d * slope[1][0], affinity.d * slope[1][1]],
         ];
         let tangent = ray.tangent_derivatives();
-        let by_ray = by_ideal.map(|[x, y]| std::array::from_fn(|axis| x * tangent[0][axis] - y * tangent[1][axis]));
-        Ok(Derivatives { point: affinity.to_pixel(distorted), by_ray, by_parameters: self.by_parameters(at, distorted) })
+        into.clear();
+        into.point = affinity.to_pixel(distorted);
+        into.by_ray = by_ideal.map(|[x, y]| std::array::from_fn(|axis| x * tangent[0][axis] - y * tangent[1][axis]));
+        self.by_parameters(at, distorted, into);
+        Ok(())
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
@@ -148,6 +151,6 @@ impl Brown {
     }
 
     pub(super) fn is_surely_one_to_one(&self, radius: f64) -> bool {
-        self.p[2] == 0.0 && self.p[3] == 0.0 && super::plane::is_contraction(radius, &self.k, &self.p[..2], 0.0)
+        self.p[2] == 0.0 && self.p[3] == 0.0 && super::plane::is_one_to_one(radius, &self.k, &self.p[..2], 0.0)
     }
 }

@@ -3,7 +3,7 @@
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Brown, Pinhole};
-use super::{CameraParameter, ImageSize, named};
+use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::CornerPoint;
 
 /// Pix4D's perspective camera. Direction: **ideal to distorted**; y points down as in its camera matrix; the outer corner of the first pixel is
@@ -83,11 +83,10 @@ impl Pinhole for Pix4d {
         Affinity { a: self.f_px, b: 0.0, d: self.f_px, shift: CornerPoint { x: self.px, y: self.py }.to_pixel() }
     }
 
-    fn by_parameters(&self, ideal: [f64; 2], distorted: [f64; 2]) -> Vec<[f64; 2]> {
+    fn by_parameters(&self, ideal: [f64; 2], distorted: [f64; 2], into: &mut DerivativeBuffer) {
         let scaled = self.brown().by_coefficients(ideal).map(|[x, y]| [self.f_px * x, self.f_px * y]);
-        let mut all = vec![distorted, [1.0, 0.0], [0.0, 1.0], scaled[0], scaled[1], scaled[2]];
-        all.extend(if self.order == TangentialOrder::OpenCv { [scaled[5], scaled[4]] } else { [scaled[4], scaled[5]] });
-        all
+        into.extend([distorted, [1.0, 0.0], [0.0, 1.0], scaled[0], scaled[1], scaled[2]]);
+        into.extend(if self.order == TangentialOrder::OpenCv { [scaled[5], scaled[4]] } else { [scaled[4], scaled[5]] });
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {

@@ -101,16 +101,53 @@ fn minimum(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Brown's polynomials stay one to one where the derivatives of their terms sum up to less than one: then the map differs from the identity by a
-/// contraction. `radial` holds the coefficients of r^2, r^4, ...; `tangential` those of the decentring terms.
-pub(super) fn is_contraction(radius: f64, radial: &[f64], tangential: &[f64], linear: f64) -> bool {
+/// Brown's polynomials stay one to one where the symmetric part of their derivatives is positive. `radial` holds the signed coefficients of r^2, r^4, ...
+/// of the factor `1 + ...`; `tangential` those of the decentring terms; `linear` bounds what else there is.
+///
+/// Across the radius the derivative is the factor itself, along it the derivative of r times the factor; the other terms change both by no more than their
+/// norm. Cheap bounds first: most points of most lenses need no more.
+pub(super) fn is_one_to_one(radius: f64, radial: &[f64], tangential: &[f64], linear: f64) -> bool {
     let r2 = radius * radius;
-    let (mut power, mut sum) = (1.0, linear);
+    let (mut power, mut sum) = (1.0, 0.0);
     for (i, k) in radial.iter().enumerate() {
         power *= r2;
         sum += (2 * i + 3) as f64 * k.abs() * power;
     }
     // The derivatives of p1 (r^2 + 2 x^2) and 2 p1 x y are below 6 r and 2 r, whatever the direction: 8 r bounds their norm.
-    sum += 8.0 * radius * tangential.iter().map(|p| p.abs()).sum::<f64>();
-    sum < 1.0
+    let rest = linear + 8.0 * radius * tangential.iter().map(|p| p.abs()).sum::<f64>();
+    sum + rest < 1.0 || (rest < 1.0 && stays_above(rest, r2, radial, |_| 1.0) && stays_above(rest, r2, radial, |i| (2 * i + 3) as f64))
+}
+
+/// Is `1 + sum weight(i) k_i s^(i+1)` above `bound` for all s from 0 to `end`? By the middle of each of some pieces and a bound of the slope there.
+fn stays_above(bound: f64, end: f64, radial: &[f64], weight: impl Fn(usize) -> f64) -> bool {
+    const PIECES: usize = 24;
+    let half = 0.5 * end / PIECES as f64;
+    let polynomial = |s: f64| radial.iter().enumerate().rev().fold(0.0, |sum, (i, k)| (sum + weight(i) * k) * s);
+    (0..PIECES).all(|piece| {
+        let (middle, high) = ((2 * piece + 1) as f64 * half, (2 * piece + 2) as f64 * half);
+        let steepest = radial.iter().enumerate().rev().fold(0.0, |sum, (i, k)| sum * high + weight(i) * (i + 1) as f64 * k.abs());
+        1.0 + polynomial(middle) - half * steepest > bound
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The radial polynomials of real lenses, and where the derivative of r (1 + k1 r^2 + k2 r^4 + k3 r^6) first vanishes.
+    #[test]
+    fn what_is_surely_one_to_one_has_no_fold() {
+        for radial in [[-0.28, 0.09, -0.012], [-0.4, 0.15, 0.0], [-0.1, -0.05, 0.0], [0.2, -0.3, 0.05], [-0.5, 0.5, -0.4]] {
+            let slope = |r: f64| 1.0 + r * r * (3.0 * radial[0] + r * r * (5.0 * radial[1] + r * r * 7.0 * radial[2]));
+            let fold = first_fold(slope, 3.0, 3000).unwrap_or(3.0);
+            let sure = |radius: f64| is_one_to_one(radius, &radial, &[], 0.0);
+            assert!(!sure(1.001 * fold) || fold == 3.0, "{radial:?} folds at {fold}");
+            assert!(sure(0.9 * fold), "{radial:?} is safe up to {fold}");
+            let margin = 8.0 * 0.9 * fold * 0.2;
+            assert_eq!(
+                is_one_to_one(0.9 * fold, &radial, &[0.2], 0.0),
+                margin < 1.0 && (0..=900).all(|i| slope(1e-3 * f64::from(i) * fold) > margin)
+            );
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::newton::{self, ValueAndDerivatives, determinant};
 use super::plane::{PlaneMap, first_fold, is_on_branch};
-use super::{CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray, named};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
 /// mrcal's `LENSMODEL_SPLINED_STEREOGRAPHIC`. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
@@ -161,15 +161,17 @@ impl CameraModel for Splined {
         Ok(Ray { x: ux / (1.0 + quarter), y: -uy / (1.0 + quarter), z: -(1.0 - quarter) / (1.0 + quarter) })
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
         let (u, by_u) = stereographic(ray)?;
         if !is_on_branch(self, u) {
             return Err(NoCounterpart::Fold);
         }
         let (distorted, by) = self.map(u);
-        let by_ray = [0, 1].map(|row| std::array::from_fn(|i| self.core[row] * (by[row][0] * by_u[0][i] + by[row][1] * by_u[1][i])));
-        let by_parameters = vec![[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]];
-        Ok(Derivatives { point: self.pixel(distorted), by_ray, by_parameters })
+        into.clear();
+        into.by_ray = [0, 1].map(|row| std::array::from_fn(|i| self.core[row] * (by[row][0] * by_u[0][i] + by[row][1] * by_u[1][i])));
+        into.point = self.pixel(distorted);
+        into.extend([[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]]);
+        Ok(())
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -5,7 +5,7 @@ use super::grid::{Region, Sight, Spread, Vector, axis, nodes_in, normalise, spre
 use super::rotation::between;
 use super::{COLUMNS, ConvertError, Rotation};
 use crate::PixelPoint;
-use crate::camera::{Camera, CameraModel, CameraParameter, Derivatives, ImageSize, NoCounterpart, Ray};
+use crate::camera::{Camera, CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray};
 
 /// How to compare.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,11 +157,14 @@ impl CameraModel for Enlarged<'_> {
         self.camera.unproject(PixelPoint::new(back(point.x, self.centre.x, self.shift[0]), back(point.y, self.centre.y, self.shift[1])))
     }
 
-    fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
-        let inner = self.camera.derivatives(ray)?;
-        let by_ray = inner.by_ray.map(|row| row.map(|value| value * (1.0 + self.scale)));
-        let by_scale = [inner.point.x - self.centre.x, inner.point.y - self.centre.y];
-        Ok(Derivatives { point: self.image(inner.point), by_ray, by_parameters: vec![by_scale, [1.0, 0.0], [0.0, 1.0]] })
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+        self.camera.derivatives_into(ray, into)?;
+        let by_scale = [into.point.x - self.centre.x, into.point.y - self.centre.y];
+        into.point = self.image(into.point);
+        into.by_ray = into.by_ray.map(|row| row.map(|value| value * (1.0 + self.scale)));
+        into.clear();
+        into.extend([by_scale, [1.0, 0.0], [0.0, 1.0]]);
+        Ok(())
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -36,9 +36,9 @@ impl OpenCv {
     pub fn project_all(&self, pose: &CameraFromWorld, points: &[[f64; 3]], pixels: &mut [PixelPoint]) {
         assert_eq!(points.len(), pixels.len(), "a pixel for every point");
         if self.has_five() {
-            pixels_five(&job(self, pose), self, points, pixels);
+            pixels_five(&job(self, pose, region::of(self).safe), self, points, pixels);
         } else {
-            pixels_twelve(&job(self, pose), self, points, pixels);
+            pixels_twelve(&job(self, pose, region::of(self).safe), self, points, pixels);
         }
     }
 
@@ -54,16 +54,12 @@ impl OpenCv {
         jacobian: &mut Jacobian,
     ) {
         assert_eq!(points.len(), pixels.len(), "a pixel for every point");
-        let parameters = self.parameters().len();
-        let values = jacobian.fit(points.len(), POSE + parameters);
-        match self.coefficients {
-            0 if self.has_five() => slopes_0(&job(self, pose), self, points, pixels, values),
-            4 if self.has_five() => slopes_4(&job(self, pose), self, points, pixels, values),
-            5 if self.has_five() => slopes_5(&job(self, pose), self, points, pixels, values),
-            8 => slopes_8(&job(self, pose), self, points, pixels, values),
-            12 => slopes_12(&job(self, pose), self, points, pixels, values),
-            _ => slopes_14(&job(self, pose), self, points, pixels, values),
-        }
+        self.prepared().project_all_with_derivatives(pose, points, pixels, jacobian);
+    }
+
+    /// The camera with what many calls for few points each would look for again: where it is surely one to one.
+    pub fn prepared(&self) -> Prepared {
+        Prepared { camera: *self, safe: region::of(self).safe }
     }
 
     fn has_five(&self) -> bool {
@@ -71,8 +67,40 @@ impl OpenCv {
     }
 }
 
-fn job<L: Lens>(camera: &OpenCv, pose: &CameraFromWorld) -> Job<L> {
-    let safe = region::of(camera).safe;
+/// A camera that is ready to picture many sets of points: [`OpenCv::prepared`].
+#[derive(Clone, Copy, Debug)]
+pub struct Prepared {
+    camera: OpenCv,
+    safe: f64,
+}
+
+impl Prepared {
+    /// As [`OpenCv::project_all_with_derivatives`].
+    ///
+    /// # Panics
+    /// If `pixels` is not as long as `points`.
+    pub fn project_all_with_derivatives(
+        &self,
+        pose: &CameraFromWorld,
+        points: &[[f64; 3]],
+        pixels: &mut [PixelPoint],
+        jacobian: &mut Jacobian,
+    ) {
+        assert_eq!(points.len(), pixels.len(), "a pixel for every point");
+        let (camera, safe) = (&self.camera, self.safe);
+        let values = jacobian.fit(points.len(), POSE + MATRIX + camera.coefficients.min(14));
+        match camera.coefficients {
+            0 if camera.has_five() => slopes_0(&job(camera, pose, safe), camera, points, pixels, values),
+            4 if camera.has_five() => slopes_4(&job(camera, pose, safe), camera, points, pixels, values),
+            5 if camera.has_five() => slopes_5(&job(camera, pose, safe), camera, points, pixels, values),
+            8 => slopes_8(&job(camera, pose, safe), camera, points, pixels, values),
+            12 => slopes_12(&job(camera, pose, safe), camera, points, pixels, values),
+            _ => slopes_14(&job(camera, pose, safe), camera, points, pixels, values),
+        }
+    }
+}
+
+fn job<L: Lens>(camera: &OpenCv, pose: &CameraFromWorld, safe: f64) -> Job<L> {
     // Without an angle, its derivatives are wanted all the same.
     let tilt =
         (camera.is_tilted() || camera.coefficients == 14).then(|| tilt::Tilt::new(camera.distortion[12], camera.distortion[13]).all_rows());

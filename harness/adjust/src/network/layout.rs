@@ -1,0 +1,229 @@
+//! Where everything stands: observations by image and by point, unknowns by block.
+
+use std::ops::Range;
+
+use calibench_model::camera::CameraModel;
+
+use super::{Attitude, Centre, Network, NetworkError, Precision, Status};
+use crate::counts::Counts;
+
+/// An image point, ready for the loops.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight {
+    pub(crate) image: usize,
+    pub(crate) point: usize,
+    /// Place among the observations as given.
+    pub(crate) given: usize,
+    pub(crate) at: [f64; 2],
+    /// Lower triangle `[a, b, c]` of the matrix that makes residuals white: `(a x, b x + c y)`.
+    pub(crate) whiten: [f64; 3],
+    /// The pair of its point and its camera; of no meaning for a point that is known or a camera that is.
+    pub(crate) pair: usize,
+}
+
+/// Unknowns of a camera.
+#[derive(Clone, Debug)]
+pub(crate) struct CameraPlace {
+    /// Parameters that are unknown.
+    pub(crate) free: Vec<usize>,
+    /// First of them among those of all cameras.
+    pub(crate) offset: usize,
+}
+
+/// A point and a camera that pictures it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pair {
+    pub(crate) camera: usize,
+    /// Of its 3 x n block.
+    pub(crate) offset: usize,
+}
+
+/// The order of observations and unknowns.
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    /// By image, then by point.
+    pub(crate) sights: Vec<Sight>,
+    pub(crate) of_image: Vec<Range<usize>>,
+    /// Sights by point.
+    by_point: Vec<usize>,
+    point_start: Vec<usize>,
+    pub(crate) cameras: Vec<CameraPlace>,
+    /// The camera of each image.
+    pub(crate) camera_of: Vec<usize>,
+    /// Unknowns of all cameras together.
+    pub(crate) width: usize,
+    /// May rotation and centre of an image change?
+    pub(crate) pose_free: Vec<[bool; 2]>,
+    /// May X, Y and Z of a point change?
+    pub(crate) point_free: Vec<[bool; 3]>,
+    has_unknown_points: bool,
+    pub(crate) pairs: Vec<Pair>,
+    pair_start: Vec<usize>,
+    pub(crate) pair_values: usize,
+    pub(crate) counts: Counts,
+}
+
+impl Layout {
+    /// The layout of a checked network of which the datum holds the coordinates `held` (point, axis), without the observations `left_out`.
+    pub(crate) fn new(network: &Network, held: &[(usize, usize)], left_out: &[usize]) -> Result<Self, NetworkError> {
+        let sights = sights(network, left_out);
+        let of_image = ranges(network.images.len(), sights.iter().map(|sight| sight.image));
+        let (by_point, point_start) = by_point(network.points.len(), &sights);
+        let mut point_free: Vec<[bool; 3]> = network.points.iter().map(|point| point.coordinates.map(Status::is_unknown)).collect();
+        for &(point, axis) in held {
+            if network.points[point].coordinates[axis] != Status::Free {
+                let (name, axis) = (&network.points[point].name, ["X", "Y", "Z"][axis]);
+                return Err(NetworkError::Datum(format!("{axis} of point {name} is known already")));
+            }
+            point_free[point][axis] = false;
+        }
+        let (cameras, width) = cameras(network);
+        let pose_free =
+            network.images.iter().map(|image| [image.attitude != Attitude::Fixed, image.centre != Centre::Fixed]).collect::<Vec<_>>();
+        let counts = Counts::of(network, sights.len(), held.len());
+        let mut layout = Self {
+            sights,
+            of_image,
+            by_point,
+            point_start,
+            cameras,
+            camera_of: network.images.iter().map(|image| image.camera).collect(),
+            width,
+            pose_free,
+            has_unknown_points: point_free.iter().any(|free| *free != [false; 3]),
+            point_free,
+            pairs: Vec::new(),
+            pair_start: vec![0],
+            pair_values: 0,
+            counts,
+        };
+        layout.find_pairs();
+        if counts.unknowns == 0 { Err(NetworkError::NothingUnknown) } else { Ok(layout) }
+    }
+
+    fn find_pairs(&mut self) {
+        let mut seen = Vec::new();
+        for point in 0..self.point_free.len() {
+            let sights = self.point_start[point]..self.point_start[point + 1];
+            if self.is_point_unknown(point) {
+                seen.clear();
+                seen.extend(sights.clone().map(|k| self.camera_of[self.sights[self.by_point[k]].image]));
+                seen.sort_unstable();
+                seen.dedup();
+                seen.retain(|&camera| !self.cameras[camera].free.is_empty());
+            }
+            let first = self.pairs.len();
+            for &camera in &seen {
+                self.pairs.push(Pair { camera, offset: self.pair_values });
+                self.pair_values += 3 * self.cameras[camera].free.len();
+            }
+            for k in sights {
+                let sight = &mut self.sights[self.by_point[k]];
+                if let Ok(place) = seen.binary_search(&self.camera_of[sight.image]) {
+                    sight.pair = first + place;
+                }
+            }
+            seen.clear();
+            self.pair_start.push(self.pairs.len());
+        }
+    }
+
+    /// Sights of a point.
+    pub(crate) fn of_point(&self, point: usize) -> &[usize] {
+        &self.by_point[self.point_start[point]..self.point_start[point + 1]]
+    }
+
+    /// Pairs of a point.
+    pub(crate) fn pairs_of(&self, point: usize) -> Range<usize> {
+        self.pair_start[point]..self.pair_start[point + 1]
+    }
+
+    pub(crate) fn is_point_unknown(&self, point: usize) -> bool {
+        self.point_free[point] != [false; 3]
+    }
+
+    pub(crate) fn has_unknown_points(&self) -> bool {
+        self.has_unknown_points
+    }
+
+    pub(crate) fn is_pose_unknown(&self, image: usize) -> bool {
+        self.pose_free[image] != [false; 2]
+    }
+
+    /// May each of the six unknowns of an image change?
+    pub(crate) fn pose_mask(&self, image: usize) -> [bool; 6] {
+        let [rotation, centre] = self.pose_free[image];
+        [rotation, rotation, rotation, centre, centre, centre]
+    }
+}
+
+fn sights(network: &Network, left_out: &[usize]) -> Vec<Sight> {
+    let mut takes_part = vec![true; network.observations.len()];
+    for &index in left_out {
+        if let Some(part) = takes_part.get_mut(index) {
+            *part = false;
+        }
+    }
+    let mut sights: Vec<Sight> = network
+        .observations
+        .iter()
+        .enumerate()
+        .filter(|(given, _)| takes_part[*given])
+        .map(|(given, o)| {
+            let at = [o.position.x, o.position.y];
+            Sight { image: o.image, point: o.point, given, at, whiten: whiten(o.precision), pair: usize::MAX }
+        })
+        .collect();
+    sights.sort_by_key(|sight| (sight.image, sight.point));
+    sights
+}
+
+/// The inverse of the covariance's Cholesky factor.
+fn whiten(precision: Precision) -> [f64; 3] {
+    match precision {
+        Precision::Sigma(sigma) => [1.0 / sigma, 0.0, 1.0 / sigma],
+        Precision::Covariance(c) => {
+            let first = c.sxx.sqrt();
+            let lean = c.sxy / first;
+            let second = (c.syy - lean * lean).sqrt();
+            [1.0 / first, -lean / (first * second), 1.0 / second]
+        }
+    }
+}
+
+/// Ranges of equal keys, of sorted keys below `count`.
+fn ranges(count: usize, keys: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
+    let mut sizes = vec![0; count];
+    keys.for_each(|key| sizes[key] += 1);
+    let mut start = 0;
+    let range = |size: usize| {
+        start += size;
+        start - size..start
+    };
+    sizes.into_iter().map(range).collect()
+}
+
+fn by_point(count: usize, sights: &[Sight]) -> (Vec<usize>, Vec<usize>) {
+    let mut start = vec![0; count + 1];
+    sights.iter().for_each(|sight| start[sight.point + 1] += 1);
+    (0..count).for_each(|i| start[i + 1] += start[i]);
+    let (mut next, mut order) = (start.clone(), vec![0; sights.len()]);
+    for (i, sight) in sights.iter().enumerate() {
+        order[next[sight.point]] = i;
+        next[sight.point] += 1;
+    }
+    (order, start)
+}
+
+fn cameras(network: &Network) -> (Vec<CameraPlace>, usize) {
+    let mut width = 0;
+    let place = |interior: &super::Interior| {
+        let unknown = |i: &usize| interior.parameters[*i].is_unknown();
+        let free: Vec<usize> = (0..interior.camera.parameters().len()).filter(unknown).collect();
+        let offset = width;
+        width += free.len();
+        CameraPlace { free, offset }
+    };
+    let cameras = network.cameras.iter().map(place).collect();
+    (cameras, width)
+}

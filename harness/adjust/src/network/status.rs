@@ -1,0 +1,61 @@
+//! Fixed, free or observed.
+
+use nalgebra::{Matrix3, Point3};
+
+/// What is known of a number before the adjustment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Status {
+    /// Nothing but a start value.
+    #[default]
+    Free,
+    /// All: it keeps its start value and is no unknown.
+    Fixed,
+    /// It was observed.
+    Observed {
+        /// What was observed, in the number's own unit.
+        value: f64,
+        /// Its standard deviation, a priori.
+        sigma: f64,
+    },
+}
+
+/// What is known of a projection centre.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Centre {
+    /// Nothing but a start value.
+    #[default]
+    Free,
+    /// All.
+    Fixed,
+    /// It was observed.
+    Observed {
+        /// X0, object units.
+        value: Point3<f64>,
+        /// Standard deviations of X0, Y0 and Z0.
+        sigma: [f64; 3],
+    },
+}
+
+/// What is known of a rotation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Attitude {
+    /// Nothing but a start value.
+    #[default]
+    Free,
+    /// All.
+    Fixed,
+    /// It was observed.
+    Observed {
+        /// M.
+        value: Matrix3<f64>,
+        /// Standard deviations about the camera's axes x, y and z, radians.
+        sigma: [f64; 3],
+    },
+}
+
+impl Status {
+    /// Is it an unknown?
+    pub const fn is_unknown(self) -> bool {
+        !matches!(self, Self::Fixed)
+    }
+}

@@ -1,0 +1,200 @@
+//! The normal equations of the whole network, block by block. Sums run in the order of images and points: the same bits every time.
+
+use super::optics::{Optics, POSE};
+use super::prior;
+use super::robust::Loss;
+use super::view::{Lost, Residual, Setting, View};
+use crate::network::{Layout, Network};
+use crate::state::State;
+
+/// Blocks of `N dx = g`, matrices row by row. An unknown that may not change has a one on its diagonal and nothing else.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Normals {
+    /// Weighted sum of squares, or what a robust loss makes of it.
+    pub(crate) cost: f64,
+    /// Of each camera: n x n.
+    pub(crate) camera: Vec<Vec<f64>>,
+    pub(crate) camera_right: Vec<f64>,
+    pub(crate) pose: Vec<[f64; 36]>,
+    pub(crate) pose_right: Vec<[f64; 6]>,
+    /// Of each image: 6 x n of its camera.
+    pub(crate) pose_camera: Vec<Vec<f64>>,
+    pub(crate) point: Vec<[f64; 9]>,
+    pub(crate) point_right: Vec<[f64; 3]>,
+    /// Of each pair of a point and a camera: 3 x n, one after the other.
+    pub(crate) point_camera: Vec<f64>,
+    /// Of each sight: 3 x 6.
+    pub(crate) point_pose: Vec<[f64; 18]>,
+    /// Of each sight.
+    pub(crate) residuals: Vec<Residual>,
+}
+
+/// Memory that is used again from iteration to iteration.
+#[derive(Default)]
+pub(crate) struct Scratch(View);
+
+/// Linearises all observation equations at `state`.
+///
+/// # Errors
+/// [`Lost`], if a measured point is not pictured.
+pub(crate) fn linearise(
+    network: &Network,
+    layout: &Layout,
+    state: &State,
+    loss: Loss,
+    scratch: &mut Scratch,
+    into: &mut Normals,
+) -> Result<(), Lost> {
+    into.reset(layout, state);
+    let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
+    let view = &mut scratch.0;
+    for (image, range) in layout.of_image.iter().enumerate() {
+        let camera = network.images[image].camera;
+        let free = &layout.cameras[camera].free;
+        let setting = Setting { optics: &optics[camera], pose: &state.poses[image], free, loss };
+        let sights = &layout.sights[range.clone()];
+        let residuals = &mut into.residuals[range.clone()];
+        view.linearise(setting, sights, &state.points, residuals).map_err(|Lost(i)| Lost(range.start + i))?;
+        view.sum();
+        into.cost += view.cost;
+        into.add_view(layout, image, camera, view);
+        into.add_points(layout, state, image, view);
+    }
+    prior::add(network, layout, state, into);
+    into.hold(layout);
+    Ok(())
+}
+
+/// White derivatives of every sight: by the unknown parameters of its camera, then six by its pose, then three by its point; zero where nothing may change.
+///
+/// # Errors
+/// [`Lost`], if a measured point is not pictured.
+pub(crate) fn rows(network: &Network, layout: &Layout, state: &State, loss: Loss) -> Result<Vec<Vec<[f64; 2]>>, Lost> {
+    let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
+    let (mut view, mut all) = (View::default(), Vec::with_capacity(layout.sights.len()));
+    for (image, range) in layout.of_image.iter().enumerate() {
+        let camera = network.images[image].camera;
+        let (free, pose) = (&layout.cameras[camera].free, &state.poses[image]);
+        let setting = Setting { optics: &optics[camera], pose, free, loss };
+        let sights = &layout.sights[range.clone()];
+        let mut residuals = vec![Residual::default(); sights.len()];
+        view.linearise(setting, sights, &state.points, &mut residuals).map_err(|Lost(i)| Lost(range.start + i))?;
+        let mask = layout.pose_mask(image);
+        for (k, sight) in sights.iter().enumerate() {
+            let parameters = (0..free.len()).map(|i| view.at(k, POSE + i));
+            let of_pose = (0..POSE).map(|i| if mask[i] { view.at(k, i) } else { [0.0; 2] });
+            let of_point = view.by_point(k, &pose.rotation, layout.point_free[sight.point]);
+            all.push(parameters.chain(of_pose).chain(of_point).collect());
+        }
+    }
+    Ok(all)
+}
+
+impl Normals {
+    fn reset(&mut self, layout: &Layout, state: &State) {
+        let (images, points) = (state.poses.len(), state.points.len());
+        self.cost = 0.0;
+        self.camera.resize_with(state.cameras.len(), Vec::new);
+        for (block, place) in self.camera.iter_mut().zip(&layout.cameras) {
+            zero(block, place.free.len() * place.free.len());
+        }
+        zero(&mut self.camera_right, layout.width);
+        self.pose.resize(images, [0.0; 36]);
+        self.pose_right.resize(images, [0.0; 6]);
+        self.pose_camera.resize_with(images, Vec::new);
+        self.point.clear();
+        self.point.resize(points, [0.0; 9]);
+        self.point_right.clear();
+        self.point_right.resize(points, [0.0; 3]);
+        zero(&mut self.point_camera, layout.pair_values);
+        let coupled = if layout.has_unknown_points() { layout.sights.len() } else { 0 };
+        self.point_pose.resize(coupled, [0.0; 18]);
+        self.residuals.resize(layout.sights.len(), Residual::default());
+    }
+
+    /// What an image says of its pose and its camera.
+    fn add_view(&mut self, layout: &Layout, image: usize, camera: usize, view: &View) {
+        let width = layout.cameras[camera].free.len();
+        let last = POSE + width;
+        let free = layout.pose_mask(image);
+        let keep = |i: usize| if free[i] { 1.0 } else { 0.0 };
+        for i in 0..POSE {
+            for j in 0..=i {
+                let value = view.product(i, j) * keep(i) * keep(j);
+                (self.pose[image][i * POSE + j], self.pose[image][j * POSE + i]) = (value, value);
+            }
+            self.pose_right[image][i] = view.product(last, i) * keep(i);
+        }
+        let coupling = &mut self.pose_camera[image];
+        coupling.clear();
+        coupling.extend((0..POSE * width).map(|k| view.product(POSE + k % width, k / width) * keep(k / width)));
+        let (block, right) = (&mut self.camera[camera], &mut self.camera_right[layout.cameras[camera].offset..]);
+        for i in 0..width {
+            for j in 0..=i {
+                block[i * width + j] += view.product(POSE + i, POSE + j);
+                block[j * width + i] = block[i * width + j];
+            }
+            right[i] += view.product(last, POSE + i);
+        }
+    }
+
+    /// What an image says of its points.
+    fn add_points(&mut self, layout: &Layout, state: &State, image: usize, view: &View) {
+        if !layout.has_unknown_points() {
+            return;
+        }
+        let width = layout.cameras[layout.camera_of[image]].free.len();
+        let (m, range) = (&state.poses[image].rotation, layout.of_image[image].clone());
+        let (pose_mask, is_pose_unknown) = (layout.pose_mask(image), layout.is_pose_unknown(image));
+        for (k, sight) in layout.sights[range.clone()].iter().enumerate() {
+            let free = layout.point_free[sight.point];
+            if free == [false; 3] {
+                continue;
+            }
+            let pose: [[f64; 2]; POSE] = std::array::from_fn(|column| view.at(k, column));
+            let by = view.by_point(k, m, free);
+            let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+            let misclosure = view.at(k, POSE + width);
+            for i in 0..3 {
+                (0..3).for_each(|j| self.point[sight.point][3 * i + j] += dot(by[i], by[j]));
+                self.point_right[sight.point][i] += dot(by[i], misclosure);
+            }
+            if is_pose_unknown {
+                let block = &mut self.point_pose[range.start + k];
+                for (j, (column, free)) in pose.iter().zip(pose_mask).enumerate() {
+                    (0..3).for_each(|i| block[POSE * i + j] = if free { dot(by[i], *column) } else { 0.0 });
+                }
+            }
+            if width > 0 {
+                let block = &mut self.point_camera[layout.pairs[sight.pair].offset..][..3 * width];
+                for j in 0..width {
+                    let column = view.at(k, POSE + j);
+                    (0..3).for_each(|i| block[i * width + j] += dot(by[i], column));
+                }
+            }
+        }
+    }
+
+    /// Ones on the diagonal of what may not change.
+    fn hold(&mut self, layout: &Layout) {
+        for (image, block) in self.pose.iter_mut().enumerate() {
+            for (i, free) in layout.pose_mask(image).into_iter().enumerate() {
+                if !free {
+                    block[7 * i] = 1.0;
+                }
+            }
+        }
+        for (block, free) in self.point.iter_mut().zip(&layout.point_free) {
+            for (i, free) in free.iter().enumerate() {
+                if !free {
+                    block[4 * i] = 1.0;
+                }
+            }
+        }
+    }
+}
+
+fn zero(values: &mut Vec<f64>, length: usize) {
+    values.clear();
+    values.resize(length, 0.0);
+}

@@ -1,0 +1,259 @@
+//! Redundancy numbers, tests of single observations, and the smallest errors that these would find.
+
+use calibench_model::camera::CameraModel;
+use nalgebra::{Matrix2, Matrix3, Vector2};
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use crate::AdjustError;
+use crate::network::{Attitude, Centre, Sight, Status};
+use crate::normal::rows;
+use crate::solution::Solution;
+use crate::solve::{Coupled, Eliminated, Inverse, Member};
+use crate::state::{rotation_vector, rotation_vector_slope};
+
+use super::covariance::Variance;
+
+/// A test of single observations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Test {
+    /// Probability of rejecting a good observation.
+    pub alpha: f64,
+    /// Probability of rejecting one that is wrong by its minimal detectable bias.
+    pub power: f64,
+    /// Whose variance factor counts: Baarda's test takes the a-priori one.
+    pub variance: Variance,
+}
+
+impl Default for Test {
+    fn default() -> Self {
+        Self { alpha: 0.001, power: 0.8, variance: Variance::Apriori }
+    }
+}
+
+/// How well an image point is checked by the others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointReliability {
+    /// Its index among the observations given.
+    pub observation: usize,
+    /// Redundancy numbers of x and y, from 0 (not checked) to 1: diagonal of `Q_vv P`.
+    pub redundancy: [f64; 2],
+    /// Normalised residuals of x and y: normal with variance 1 if nothing is wrong; zero where nothing checks.
+    pub w: [f64; 2],
+    /// Minimal detectable biases of x and y, px; infinite where nothing checks.
+    pub detectable: [f64; 2],
+}
+
+/// The same of an observed parameter, coordinate or orientation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObservedReliability {
+    /// Its name, as in "X of point 12".
+    pub what: String,
+    /// Adjusted less observed, in its unit.
+    pub v: f64,
+    /// Redundancy number.
+    pub redundancy: f64,
+    /// Normalised residual.
+    pub w: f64,
+    /// Minimal detectable bias, in its unit.
+    pub detectable: f64,
+}
+
+/// Reliability of all observations in use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reliability {
+    /// The test that it was computed for.
+    pub test: Test,
+    /// Normalised residuals beyond it are rejected.
+    pub critical: f64,
+    /// Shift of the test's distribution that it detects with the power asked for.
+    pub noncentrality: f64,
+    /// Image points, in the order given.
+    pub points: Vec<PointReliability>,
+    /// Observed parameters, centres, rotations and coordinates.
+    pub observed: Vec<ObservedReliability>,
+}
+
+impl Reliability {
+    /// Sum of all redundancy numbers: the redundancy of the network.
+    pub fn redundancy(&self) -> f64 {
+        let points: f64 = self.points.iter().map(|point| point.redundancy[0] + point.redundancy[1]).sum();
+        points + self.observed.iter().map(|observed| observed.redundancy).sum::<f64>()
+    }
+}
+
+/// A redundancy number below which an observation is not checked at all.
+const UNCHECKED: f64 = 1e-9;
+
+impl Solution<'_> {
+    /// Redundancy numbers, normalised residuals and minimal detectable biases of all observations in use.
+    ///
+    /// # Errors
+    /// [`AdjustError::NotAvailable`] for a test that is none, or if the variance is to be estimated without redundancy.
+    ///
+    /// Source: Baarda 1968.
+    pub fn reliability(&self, test: Test) -> Result<Reliability, AdjustError> {
+        let possible = |p: f64| p > 0.0 && p < 1.0;
+        if !(possible(test.alpha) && possible(test.power)) {
+            return Err(AdjustError::NotAvailable("alpha and power of a test lie between 0 and 1"));
+        }
+        let critical = Normal::standard().inverse_cdf(1.0 - 0.5 * test.alpha);
+        let noncentrality = critical + Normal::standard().inverse_cdf(test.power);
+        let scale = [self.variance_factor(test.variance)?.sqrt(), noncentrality];
+        let inverse = self.engine.inverse(&self.solved);
+        let mut points = self.image_points(&inverse, scale)?;
+        points.sort_by_key(|point| point.observation);
+        let observed = self.observed(scale)?;
+        Ok(Reliability { test, critical, noncentrality, points, observed })
+    }
+
+    fn image_points(&self, inverse: &Inverse, scale: [f64; 2]) -> Result<Vec<PointReliability>, AdjustError> {
+        let engine = &self.engine;
+        let rows = rows(engine.network, &engine.layout, &self.end.state, engine.loss);
+        let rows = rows.map_err(|_| AdjustError::NotAvailable("the result does not picture its points"))?;
+        let mut found = Vec::with_capacity(rows.len());
+        let mut add = |sight: usize, adjusted: Matrix2<f64>| found.push(self.image_point(sight, adjusted, scale));
+        let plan = &engine.plan;
+        let is_member = |i: usize| plan.members.binary_search(&i).is_ok();
+        for (place, &member) in plan.members.iter().enumerate() {
+            let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
+            match plan.eliminated {
+                Eliminated::Points => {
+                    let of = inverse.member::<3>(&self.solved, plan, place);
+                    for &sight in engine.layout.of_point(member) {
+                        add(sight, self.adjusted(inverse, sight, &rows[sight], Some((&of, coupled))));
+                    }
+                }
+                Eliminated::Poses => {
+                    let of = inverse.member::<6>(&self.solved, plan, place);
+                    for sight in engine.layout.of_image[member].clone() {
+                        add(sight, self.adjusted(inverse, sight, &rows[sight], Some((&of, coupled))));
+                    }
+                }
+            }
+        }
+        for (i, sight) in engine.layout.sights.iter().enumerate() {
+            let member = if plan.eliminated == Eliminated::Points { sight.point } else { sight.image };
+            if !is_member(member) {
+                add(i, self.adjusted::<3>(inverse, i, &rows[i], None));
+            }
+        }
+        Ok(found)
+    }
+
+    /// `A Q A^T` of an image point, white.
+    fn adjusted<const D: usize>(
+        &self,
+        inverse: &Inverse,
+        index: usize,
+        row: &[[f64; 2]],
+        member: Option<(&Member<D>, &[Coupled])>,
+    ) -> Matrix2<f64> {
+        let (plan, layout, sight) = (&self.engine.plan, &self.engine.layout, &self.engine.layout.sights[index]);
+        let camera = layout.camera_of[sight.image];
+        let width = layout.cameras[camera].free.len();
+        let (of_pose, of_point) = (&row[width..width + 6], &row[width + 6..]);
+        let (own, other, kept) = match plan.eliminated {
+            Eliminated::Points => (of_point, of_pose, plan.block_of[sight.image]),
+            Eliminated::Poses => (of_pose, of_point, plan.block_of[sight.point]),
+        };
+        let parts: Vec<(usize, &[[f64; 2]])> =
+            [(camera, &row[..width]), (kept, other)].into_iter().filter(|(block, part)| *block != usize::MAX && !part.is_empty()).collect();
+        let column = |by: [f64; 2]| Vector2::from(by);
+        let mut sum = Matrix2::zeros();
+        for &(a, left) in &parts {
+            for &(b, right) in &parts {
+                let block = inverse.block(plan, a, b);
+                for (k, q) in block.into_iter().enumerate() {
+                    sum += column(left[k / right.len()]) * column(right[k % right.len()]).transpose() * q;
+                }
+            }
+        }
+        let Some((member, coupled)) = member else { return sum };
+        for d in 0..D {
+            (0..D).for_each(|e| sum += column(own[d]) * column(own[e]).transpose() * member.own[d][e]);
+        }
+        let mut first = 0;
+        for coupled in coupled {
+            if let Some((_, part)) = parts.iter().find(|(block, _)| *block == coupled.block) {
+                for (d, own) in own.iter().enumerate() {
+                    for (q, by) in member.cross(d, first, coupled.width).iter().zip(*part) {
+                        let cross = column(*own) * column(*by).transpose() * *q;
+                        sum += cross + cross.transpose();
+                    }
+                }
+            }
+            first += coupled.width;
+        }
+        sum
+    }
+
+    fn image_point(&self, index: usize, adjusted: Matrix2<f64>, [sigma0, noncentrality]: [f64; 2]) -> PointReliability {
+        let (sight, residual): (&Sight, _) = (&self.engine.layout.sights[index], &self.end.normals.residuals[index]);
+        let [a, b, c] = sight.whiten.map(|w| w * residual.weight.sqrt());
+        let white = Matrix2::new(a, 0.0, b, c);
+        let rest = Matrix2::identity() - adjusted;
+        // Q_vv P = W^-1 (1 - A Q A^T) W and P Q_vv P = W^T (1 - A Q A^T) W, with P = W^T W.
+        let numbers = white.try_inverse().map_or_else(Matrix2::zeros, |inverse| inverse * rest * white);
+        let test = white.transpose() * rest * white;
+        let weighted = white.transpose() * (white * Vector2::from(residual.px));
+        let root = |i: usize| (numbers[(i, i)] > UNCHECKED && test[(i, i)] > 0.0).then(|| test[(i, i)].sqrt());
+        PointReliability {
+            observation: sight.given,
+            redundancy: [0, 1].map(|i| numbers[(i, i)].clamp(0.0, 1.0)),
+            w: [0, 1].map(|i| root(i).map_or(0.0, |root| weighted[i] / (sigma0 * root))),
+            detectable: [0, 1].map(|i| root(i).map_or(f64::INFINITY, |root| noncentrality * sigma0 / root)),
+        }
+    }
+
+    fn observed(&self, scale: [f64; 2]) -> Result<Vec<ObservedReliability>, AdjustError> {
+        let (network, state, covariances) = (self.engine.network, &self.end.state, self.covariances(Variance::Apriori)?);
+        let mut found = Vec::new();
+        let mut add = |what: String, v: f64, sigma: f64, cofactor: f64| found.push(observed(what, v, sigma, cofactor, scale));
+        for (k, (camera, name)) in covariances.parameters.iter().enumerate() {
+            let parameters = state.cameras[*camera].parameters();
+            let place = parameters.iter().position(|parameter| parameter.name == *name).unwrap_or_default();
+            if let Status::Observed { value, sigma } = network.cameras[*camera].parameters[place] {
+                let what = format!("{name} of {}", network.cameras[*camera].name);
+                add(what, parameters[place].value - value, sigma, covariances.interior[(k, k)]);
+            }
+        }
+        for (i, image) in network.images.iter().enumerate() {
+            let (pose, q) = (&state.poses[i], &covariances.poses[i]);
+            if let Centre::Observed { value, sigma } = image.centre {
+                for k in 0..3 {
+                    add(format!("{} of image {}", ["X0", "Y0", "Z0"][k], image.name), pose.centre[k] - value[k], sigma[k], q[(k, k)]);
+                }
+            }
+            if let Attitude::Observed { value, sigma } = image.attitude {
+                let off = rotation_vector(&(pose.rotation * value.transpose()));
+                let slope = rotation_vector_slope(&off);
+                let turned: Matrix3<f64> = slope * q.fixed_view::<3, 3>(3, 3) * slope.transpose();
+                for k in 0..3 {
+                    add(format!("rotation about {} of image {}", ["x", "y", "z"][k], image.name), off[k], sigma[k], turned[(k, k)]);
+                }
+            }
+        }
+        for (i, point) in network.points.iter().enumerate() {
+            for (k, status) in point.coordinates.iter().enumerate() {
+                if let Status::Observed { value, sigma } = *status {
+                    let what = format!("{} of point {}", ["X", "Y", "Z"][k], point.name);
+                    add(what, state.points[i][k] - value, sigma, covariances.points[i][(k, k)]);
+                }
+            }
+        }
+        Ok(found)
+    }
+}
+
+fn observed(what: String, v: f64, sigma: f64, cofactor: f64, [sigma0, noncentrality]: [f64; 2]) -> ObservedReliability {
+    let redundancy = (1.0 - cofactor / (sigma * sigma)).clamp(0.0, 1.0);
+    let deviation = sigma * redundancy.sqrt();
+    let checked = redundancy > UNCHECKED;
+    ObservedReliability {
+        what,
+        v,
+        redundancy,
+        w: if checked { v / (sigma0 * deviation) } else { 0.0 },
+        detectable: if checked { noncentrality * sigma0 * sigma * sigma / deviation } else { f64::INFINITY },
+    }
+}

@@ -1,0 +1,68 @@
+//! Data snooping: one suspect after the other.
+
+use super::reliability::Test;
+use crate::AdjustError;
+use crate::network::Network;
+use crate::solution::{Options, Solution, adjust_from};
+use crate::state::State;
+
+/// How to look for wrong observations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Snooping {
+    /// The test.
+    pub test: Test,
+    /// Image points that may be left out at most.
+    pub most: usize,
+}
+
+impl Default for Snooping {
+    fn default() -> Self {
+        Self { test: Test::default(), most: 100 }
+    }
+}
+
+/// A rejected image point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Its index among the observations given.
+    pub observation: usize,
+    /// The normalised residual for which it was rejected, the larger of x and y.
+    pub w: f64,
+    /// What it would have had to exceed.
+    pub critical: f64,
+    /// Was it left out? Not if the network needs it, or if as many were left out as may be.
+    pub left_out: bool,
+}
+
+/// Adjusts, leaves out the image point with the largest normalised residual beyond the critical value, adjusts again, until none is left.
+///
+/// Returns the last solution and every image point that was rejected, in that order; none disappears: [`Solution::residuals`] lists them as left out.
+///
+/// # Errors
+/// As [`crate::adjust`], of the network as given.
+///
+/// Source: Baarda 1968.
+pub fn snoop<'n>(network: &'n Network, options: &Options, snooping: Snooping) -> Result<(Solution<'n>, Vec<Found>), AdjustError> {
+    let mut options = options.clone();
+    let mut solution = adjust_from(network, &options, State::of(network))?;
+    let mut found: Vec<Found> = Vec::new();
+    loop {
+        let reliability = solution.reliability(snooping.test)?;
+        let refused = |observation: usize| found.iter().any(|found| found.observation == observation);
+        let size = |w: [f64; 2]| w[0].abs().max(w[1].abs());
+        let worst = reliability.points.iter().filter(|point| !refused(point.observation)).max_by(|a, b| size(a.w).total_cmp(&size(b.w)));
+        let Some(worst) = worst.filter(|worst| size(worst.w) > reliability.critical) else { return Ok((solution, found)) };
+        let mut suspect = Found { observation: worst.observation, w: size(worst.w), critical: reliability.critical, left_out: false };
+        if found.iter().filter(|found| found.left_out).count() < snooping.most {
+            options.left_out.push(suspect.observation);
+            match adjust_from(network, &options, solution.end.state.clone()) {
+                Ok(better) => (solution, suspect.left_out) = (better, true),
+                Err(_) => drop(options.left_out.pop()),
+            }
+        }
+        found.push(suspect);
+        if found.len() >= network.observations.len() {
+            return Ok((solution, found));
+        }
+    }
+}

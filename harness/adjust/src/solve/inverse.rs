@@ -1,0 +1,178 @@
+//! Those blocks of the inverse that covariances need: no full inverse of the network's normal equations is ever made.
+//!
+//! With `Q_kk = S^-1`, of which only the blocks of the reduced matrix's own pattern are kept if it is sparse: `Q_ee = L^-T (1 + Z Y^T) L^-1` and
+//! `Q_ek = -L^-T Z` with `Z = Y Q_kk`.
+
+use multiversion::multiversion;
+
+use super::Solved;
+use super::kernel::{Run, runs};
+use super::plan::Plan;
+use super::reduced::Reduced;
+use super::small::backward;
+
+/// Blocks of `Q_kk`.
+#[derive(Clone, Debug)]
+pub(crate) struct Inverse(Reduced);
+
+/// Of an eliminated block with `D` unknowns: its cofactors, and those with the columns that it is coupled with, D rows of so many.
+#[derive(Clone, Debug)]
+pub(crate) struct Member<const D: usize> {
+    pub(crate) own: [[f64; D]; D],
+    cross: Vec<f64>,
+    columns: usize,
+}
+
+impl<const D: usize> Member<D> {
+    /// Cofactors with the coupled columns from `first` on: row `d`.
+    pub(crate) fn cross(&self, d: usize, first: usize, width: usize) -> &[f64] {
+        &self.cross[d * self.columns + first..][..width]
+    }
+}
+
+impl Inverse {
+    pub(crate) fn of(solved: &Solved, plan: &Plan, blank: &Reduced) -> Self {
+        let n = plan.size();
+        if blank.sparse.is_none() {
+            return Self(Reduced { size: n, values: solved.factor.inverse(), sparse: None });
+        }
+        let mut kept = blank.clone();
+        for column in 0..plan.kept.len() - 1 {
+            let width = plan.width(column);
+            let mut identity = vec![0.0; n * width];
+            (0..width).for_each(|j| identity[j * n + plan.kept[column] + j] = 1.0);
+            solved.factor.solve(&mut identity);
+            kept.fill_column(column, &plan.kept, &identity);
+        }
+        Self(kept)
+    }
+
+    /// A block of `Q_kk`, row by row; it must be one of the pattern.
+    pub(crate) fn block(&self, plan: &Plan, row: usize, column: usize) -> Vec<f64> {
+        let (low, high) = (row.max(column), row.min(column));
+        let (start, stride) = self.0.place((low, plan.kept[low]), (high, plan.kept[high]));
+        let (height, width) = (plan.width(row), plan.width(column));
+        let at = |i: usize, j: usize| if row >= column { (i, j) } else { (j, i) };
+        (0..height * width)
+            .map(|k| {
+                let (i, j) = at(k / width, k % width);
+                self.0.values[start + j * stride + i]
+            })
+            .collect()
+    }
+
+    /// A block of `Q_kk` of two cameras, row by row, in the pattern or not.
+    pub(crate) fn interior_block(&self, solved: &Solved, plan: &Plan, row: usize, column: usize) -> Vec<f64> {
+        if self.0.sparse.is_none() || row == column {
+            return self.block(plan, row, column);
+        }
+        let (n, height, width) = (plan.size(), plan.width(row), plan.width(column));
+        let mut identity = vec![0.0; n * width];
+        (0..width).for_each(|j| identity[j * n + plan.kept[column] + j] = 1.0);
+        solved.factor.solve(&mut identity);
+        (0..height * width).map(|k| identity[(k % width) * n + plan.kept[row] + k / width]).collect()
+    }
+
+    /// Cofactors of a member.
+    pub(crate) fn member<const D: usize>(&self, solved: &Solved, plan: &Plan, place: usize) -> Member<D> {
+        let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
+        let (first, columns) = solved.schur.place[place];
+        let y = &solved.schur.y[first..first + D * columns];
+        let (mut z, mut found, mut down) = (vec![0.0; D * columns], Vec::new(), 0);
+        for (i, column) in coupled.iter().enumerate() {
+            let stride = runs(coupled, i, down, &self.0, &mut found);
+            let own = Own { first: down, width: column.width };
+            if D == 3 {
+                multiply_3(y, columns, own, &found, stride, &self.0.values, &mut z);
+            } else {
+                multiply_6(y, columns, own, &found, stride, &self.0.values, &mut z);
+            }
+            down += column.width;
+        }
+        let l = solved.schur.factor::<D>(place);
+        let mut own = [[0.0; D]; D];
+        for i in 0..D {
+            for j in 0..D {
+                let sum: f64 = z[i * columns..(i + 1) * columns].iter().zip(&y[j * columns..]).map(|(z, y)| z * y).sum();
+                own[i][j] = sum + if i == j { 1.0 } else { 0.0 };
+            }
+        }
+        let cofactors = both_sides(&l, own);
+        // Q_ek = -L^-T Z, from the last row up.
+        for d in (0..D).rev() {
+            for k in d + 1..D {
+                for column in 0..columns {
+                    z[d * columns + column] -= l[k][d] * z[k * columns + column];
+                }
+            }
+            z[d * columns..(d + 1) * columns].iter_mut().for_each(|z| *z /= l[d][d]);
+        }
+        z.iter_mut().for_each(|z| *z = -*z);
+        Member { own: cofactors, cross: z, columns }
+    }
+}
+
+/// `L^-T A L^-1` of a symmetric `A`.
+fn both_sides<const D: usize>(l: &[[f64; D]; D], mut a: [[f64; D]; D]) -> [[f64; D]; D] {
+    for row in &mut a {
+        backward(l, row);
+    }
+    let mut turned: [[f64; D]; D] = std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]));
+    for row in &mut turned {
+        backward(l, row);
+    }
+    std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (turned[i][j] + turned[j][i])))
+}
+
+/// Columns of `Y` that belong to a kept block.
+#[derive(Clone, Copy)]
+struct Own {
+    first: usize,
+    width: usize,
+}
+
+macro_rules! multiply {
+    ($($name:ident: $depth:expr;)*) => {
+        $(#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+        fn $name(y: &[f64], columns: usize, own: Own, runs: &[Run], stride: usize, values: &[f64], z: &mut [f64]) {
+            multiply::<$depth>(y, columns, own, runs, stride, values, z);
+        })*
+    };
+}
+
+multiply! {
+    multiply_3: 3;
+    multiply_6: 6;
+}
+
+/// Adds what the lower triangle's columns of one block give to `Y Q`: to their own columns, and to those below by symmetry.
+#[inline(always)]
+fn multiply<const D: usize>(y: &[f64], columns: usize, own: Own, runs: &[Run], stride: usize, values: &[f64], z: &mut [f64]) {
+    for j in 0..own.width {
+        let factor: [f64; D] = std::array::from_fn(|d| y[d * columns + own.first + j]);
+        for (k, run) in runs.iter().enumerate() {
+            let q = &values[run.start + j * stride..][..run.length];
+            let diagonal = if k == 0 { own.width } else { 0 };
+            for d in 0..D {
+                let from = &y[d * columns + run.from..][..run.length];
+                z[d * columns + own.first + j] += dot(from, q);
+                let below = &mut z[d * columns + run.from + diagonal..][..run.length - diagonal];
+                below.iter_mut().zip(&q[diagonal..]).for_each(|(z, q)| *z += factor[d] * q);
+            }
+        }
+    }
+}
+
+/// In eight sums, whatever the machine.
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let ((a, ra), (b, rb)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..8 {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest: f64 = ra.iter().zip(rb).map(|(a, b)| a * b).sum();
+    ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7])) + rest
+}

@@ -1,0 +1,153 @@
+//! Which unknowns are eliminated first, and where the others stand in what remains.
+
+use std::collections::BTreeSet;
+
+use crate::network::Layout;
+use crate::normal::Normals;
+
+/// The blocks that are eliminated one by one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Eliminated {
+    /// Exterior orientations: of boards, whose points are known or few.
+    Poses,
+    /// Object points: of bundles.
+    Points,
+}
+
+/// Where the coupling of an eliminated block with a kept one comes from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Source {
+    /// A camera with an image: the image.
+    PoseCamera(usize),
+    /// A camera with a point: the first of the 3 x n values.
+    PointCamera(usize),
+    /// A pose with a point: the sight.
+    Sight(usize),
+}
+
+/// A kept block that an eliminated one is coupled with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coupled {
+    pub(crate) source: Source,
+    /// Among the kept blocks.
+    pub(crate) block: usize,
+    pub(crate) offset: usize,
+    pub(crate) width: usize,
+}
+
+/// The order of elimination.
+#[derive(Clone, Debug)]
+pub(crate) struct Plan {
+    pub(crate) eliminated: Eliminated,
+    /// Images or points that are eliminated.
+    pub(crate) members: Vec<usize>,
+    /// Of each member: its range in `coupled`.
+    pub(crate) start: Vec<usize>,
+    /// Sorted by offset within a member.
+    pub(crate) coupled: Vec<Coupled>,
+    /// First unknown of each kept block, and of none at the end.
+    pub(crate) kept: Vec<usize>,
+    /// The kept block of each point or image that is kept, or `usize::MAX`.
+    pub(crate) block_of: Vec<usize>,
+}
+
+impl Plan {
+    pub(crate) fn of(layout: &Layout) -> Self {
+        let points = (0..layout.point_free.len()).filter(|&i| layout.is_point_unknown(i)).collect::<Vec<_>>();
+        let poses = (0..layout.pose_free.len()).filter(|&i| layout.is_pose_unknown(i)).collect::<Vec<_>>();
+        let (eliminated, members, others, size, count) = if 6 * poses.len() > 3 * points.len() {
+            (Eliminated::Poses, poses, points, 3, layout.point_free.len())
+        } else {
+            (Eliminated::Points, points, poses, 6, layout.pose_free.len())
+        };
+        let mut kept: Vec<usize> = layout.cameras.iter().map(|camera| camera.offset).collect();
+        let mut block_of = vec![usize::MAX; count];
+        for (i, other) in others.into_iter().enumerate() {
+            block_of[other] = layout.cameras.len() + i;
+            kept.push(layout.width + i * size);
+        }
+        kept.push(layout.width + (kept.len() - layout.cameras.len()) * size);
+        let mut plan = Self { eliminated, members, start: vec![0], coupled: Vec::new(), kept, block_of };
+        plan.couple(layout);
+        plan
+    }
+
+    fn couple(&mut self, layout: &Layout) {
+        for i in 0..self.members.len() {
+            let member = self.members[i];
+            match self.eliminated {
+                Eliminated::Poses => {
+                    let camera = layout.camera_of[member];
+                    self.push(Source::PoseCamera(member), camera);
+                    for sight in layout.of_image[member].clone() {
+                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].point]);
+                    }
+                }
+                Eliminated::Points => {
+                    for pair in &layout.pairs[layout.pairs_of(member)] {
+                        self.push(Source::PointCamera(pair.offset), pair.camera);
+                    }
+                    for &sight in layout.of_point(member) {
+                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].image]);
+                    }
+                }
+            }
+            self.start.push(self.coupled.len());
+        }
+    }
+
+    fn push(&mut self, source: Source, block: usize) {
+        if block != usize::MAX && self.width(block) > 0 {
+            self.coupled.push(Coupled { source, block, offset: self.kept[block], width: self.width(block) });
+        }
+    }
+
+    /// Unknowns of a kept block.
+    pub(crate) fn width(&self, block: usize) -> usize {
+        self.kept[block + 1] - self.kept[block]
+    }
+
+    /// Unknowns that are kept.
+    pub(crate) fn size(&self) -> usize {
+        self.kept[self.kept.len() - 1]
+    }
+
+    /// Unknowns of a member.
+    pub(crate) const fn depth(&self) -> usize {
+        match self.eliminated {
+            Eliminated::Poses => 6,
+            Eliminated::Points => 3,
+        }
+    }
+
+    /// Pairs of kept blocks (row, column) that have a block in the reduced matrix: row at or below column.
+    pub(crate) fn pattern(&self, layout: &Layout) -> BTreeSet<(usize, usize)> {
+        let mut pattern: BTreeSet<_> = (0..self.kept.len() - 1).map(|block| (block, block)).collect();
+        for window in self.start.windows(2) {
+            let coupled = &self.coupled[window[0]..window[1]];
+            for (i, row) in coupled.iter().enumerate() {
+                pattern.extend(coupled[..=i].iter().map(|column| (row.block, column.block)));
+            }
+        }
+        for (kept, &block) in self.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
+            match self.eliminated {
+                Eliminated::Points => {
+                    pattern.insert((block, layout.camera_of[kept]));
+                }
+                Eliminated::Poses => pattern.extend(layout.pairs[layout.pairs_of(kept)].iter().map(|pair| (block, pair.camera))),
+            }
+        }
+        pattern
+    }
+
+    /// Adds row `d` of a coupling, of `width` numbers, to `into`.
+    #[inline]
+    pub(crate) fn coupling_row(&self, normals: &Normals, coupled: &Coupled, d: usize, into: &mut [f64]) {
+        match (coupled.source, self.eliminated) {
+            (Source::PoseCamera(image), _) => into.copy_from_slice(&normals.pose_camera[image][d * coupled.width..][..coupled.width]),
+            (Source::PointCamera(first), _) => into.copy_from_slice(&normals.point_camera[first + d * coupled.width..][..coupled.width]),
+            (Source::Sight(sight), Eliminated::Points) => into.copy_from_slice(&normals.point_pose[sight][6 * d..6 * d + 6]),
+            (Source::Sight(sight), Eliminated::Poses) => (0..3).for_each(|i| into[i] = normals.point_pose[sight][6 * i + d]),
+        }
+    }
+}

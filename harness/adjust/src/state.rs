@@ -1,0 +1,80 @@
+//! Values of all unknowns, and how a step changes them.
+
+use calibench_model::Pose;
+use calibench_model::camera::opencv::CameraFromWorld;
+use calibench_model::camera::{Camera, CameraModel};
+use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
+
+use crate::network::{Layout, Network};
+use crate::normal::Step;
+
+/// Values of all unknowns.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    pub(crate) cameras: Vec<Camera>,
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) points: Vec<Point3<f64>>,
+}
+
+impl State {
+    /// The start values.
+    pub(crate) fn of(network: &Network) -> Self {
+        Self {
+            cameras: network.cameras.iter().map(|interior| interior.camera).collect(),
+            poses: network.images.iter().map(|image| image.pose).collect(),
+            points: network.points.iter().map(|point| point.position).collect(),
+        }
+    }
+
+    /// After a step.
+    pub(crate) fn moved(&self, layout: &Layout, step: &Step) -> Self {
+        let camera = |(camera, place): (&Camera, &crate::network::CameraPlace)| {
+            if place.free.is_empty() {
+                return *camera;
+            }
+            let mut values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value).collect();
+            place.free.iter().zip(&step.cameras[place.offset..]).for_each(|(&i, change)| values[i] += change);
+            camera.with_parameters(&values)
+        };
+        let cameras = self.cameras.iter().zip(&layout.cameras).map(camera).collect();
+        let pose = |(i, pose): (usize, &Pose)| if layout.is_pose_unknown(i) { turned(pose, &step.poses[i]) } else { *pose };
+        let poses = self.poses.iter().enumerate().map(pose).collect();
+        let points = self.points.iter().zip(&step.points).map(|(point, change)| point + Vector3::from(*change)).collect();
+        Self { cameras, poses, points }
+    }
+}
+
+/// The pose after a small rotation about the camera's axes and a shift along them, `N + d x N + s`.
+fn turned(pose: &Pose, step: &[f64; 6]) -> Pose {
+    let [a, b, c, x, y, z] = *step;
+    let mut rotation = Rotation3::new(Vector3::new(a, b, c)) * Rotation3::from_matrix_unchecked(pose.rotation);
+    rotation.renormalize();
+    Pose { rotation: *rotation.matrix(), centre: pose.centre - pose.rotation.tr_mul(&Vector3::new(x, y, z)) }
+}
+
+/// `N = M X - M X0`.
+pub(crate) fn camera_from_world(pose: &Pose) -> CameraFromWorld {
+    let m = &pose.rotation;
+    let shift = -(m * pose.centre.coords);
+    CameraFromWorld { rotation: std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)])), translation: shift.into() }
+}
+
+/// The rotation vector of `rotation`, radians: about the camera's axes, as in the step of a pose.
+pub(crate) fn rotation_vector(rotation: &Matrix3<f64>) -> Vector3<f64> {
+    let m = rotation;
+    let v = Vector3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]) * 0.5;
+    let (sine, cosine) = (v.norm(), 0.5 * (m.trace() - 1.0));
+    // The trace alone loses small angles, the antisymmetric part those near a half turn.
+    if cosine > -0.9 {
+        return if sine > 0.0 { v * (sine.atan2(cosine) / sine) } else { v };
+    }
+    Rotation3::from_matrix_unchecked(*rotation).scaled_axis()
+}
+
+/// d(rotation vector of exp(d) R) / d(d) where R has the rotation vector `r`.
+pub(crate) fn rotation_vector_slope(r: &Vector3<f64>) -> Matrix3<f64> {
+    let (angle, cross) = (r.norm(), r.cross_matrix());
+    // 1 / t^2 - (1 + cos t) / (2 t sin t), which tends to 1 / 12.
+    let second = if angle < 1e-3 { 1.0 / 12.0 } else { 1.0 / (angle * angle) - (1.0 + angle.cos()) / (2.0 * angle * angle.sin()) };
+    Matrix3::identity() - cross * 0.5 + cross * cross * second
+}
