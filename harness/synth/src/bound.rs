@@ -4,25 +4,11 @@
 //! has a smaller covariance than `(J^T S^-1 J)^-1`. What an operator has to estimate beside the position (directions and sizes, grey levels, sharpness)
 //! widens the bound of the position.
 
-use calibench_model::{Covariance, PixelPoint};
+use calibench_model::{Covariance, PixelPoint, Unknowns};
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
 use crate::raster::{Picture, Piece, Renderer};
-
-/// What an operator estimates beside the position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(clippy::struct_excessive_bools, reason = "any of them can be there without the others")]
-pub struct Unknowns {
-    /// The other four parameters of an affine map: directions and sizes.
-    pub shape: bool,
-    /// The two grey levels.
-    pub levels: bool,
-    /// The standard deviation of the blur.
-    pub blur: bool,
-    /// A linear change of the grey values over the window.
-    pub gradient: bool,
-}
 
 /// Steps of the differences: px of a shift, and of a deformation at the window's edge.
 const STEP: f64 = 0.05;

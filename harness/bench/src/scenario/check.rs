@@ -22,6 +22,9 @@ use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject,
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
 
+/// Side of the bound's window where the file gives none, px.
+const BOUND_WINDOW: usize = 15;
+
 /// The keys of the file's top level that are tables of their own.
 pub const TOP_TABLES: [&str; 11] =
     ["method", "scene", "figure", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
@@ -95,8 +98,19 @@ fn read(name: &str, folder: &Path, text: &str, registry: &Registry, problems: &m
     let trials = head.trials.map_or(1, |trials| trials.into_inner().0);
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));
     let notes = head.notes.unwrap_or_default();
-    let scenario =
-        Scenario { name: name.to_owned(), why, source, notes, seed: head.seed.0, trials, methods, subject, text: text.to_owned() };
+    let bound_window = head.bound_window.map_or(BOUND_WINDOW, |window| window.0);
+    let scenario = Scenario {
+        name: name.to_owned(),
+        why,
+        source,
+        notes,
+        seed: head.seed.0,
+        trials,
+        methods,
+        bound_window,
+        subject,
+        text: text.to_owned(),
+    };
     if trials > 1 && scenario.is_deterministic() {
         let problem = Problem::new(trials_span.unwrap_or(0..0), format!("{trials} trials of a scenario in which nothing is random"));
         problems.push(problem.help("expected 1, or `grey_noise`, `phase = \"uniform\"` or [scene.pointing]"));
