@@ -7,6 +7,7 @@ mod convert;
 mod detect;
 mod list;
 mod measure;
+mod output;
 mod print;
 mod progress;
 mod render;

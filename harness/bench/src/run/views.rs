@@ -46,7 +46,10 @@ impl<'a> Prepared<'a> {
     }
 
     /// Projects the field for `stations`.
-    fn of(subject: &'a ViewsSubject, stations: &'a [Station]) -> Result<Self, RunError> {
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of(subject: &'a ViewsSubject, stations: &'a [Station]) -> Result<Self, RunError> {
         let size = subject.camera.size();
         let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
         let margin = subject.imaging.optics.reach();
@@ -83,13 +86,10 @@ impl<'a> Prepared<'a> {
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
     let subject = prepared.subject;
-    match &subject.redraw {
-        None => run_views(plan, prepared, key),
-        Some(drawing) => {
-            let stations = drawing.generate(&subject.field, &subject.camera, key)?;
-            run_views(plan, &Prepared::of(subject, &stations)?, key)
-        }
+    if subject.redraw.is_none() {
+        return run_views(plan, prepared, key);
     }
+    run_views(plan, &Prepared::of(subject, &subject.stations_of(key)?)?, key)
 }
 
 fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {

@@ -93,6 +93,10 @@ fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut V
         problems.push(Problem::new(span, format!("[camera] has no {}", missing.join(", "))).help(help));
         return None;
     };
+    if wire.name.is_some() {
+        problems.push(Problem::new(span, "[camera] has a `name` and no `file`").help("`name` tells which camera of a file is meant"));
+        return None;
+    }
     let place = |value: Option<Place>| value.map_or(0.0, |value| value.0);
     let term = |value: Option<Coefficient>| value.map_or(0.0, |value| value.0);
     let camera = Photogrammetric {
@@ -109,8 +113,9 @@ fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut V
 }
 
 fn of_file(wire: &CameraWire, file: &Spanned<String>, path: &Path, problems: &mut Vec<Problem>) -> Option<Camera> {
-    let beside = [wire.pitch.is_some(), wire.c.is_some(), wire.k1.is_some(), wire.x0.is_some(), wire.y0.is_some()];
-    if beside.contains(&true) {
+    let written = [wire.k1, wire.k2, wire.k3, wire.p1, wire.p2, wire.b1, wire.b2];
+    let beside = wire.pitch.is_some() || wire.c.is_some() || wire.x0.is_some() || wire.y0.is_some();
+    if beside || written.iter().any(Option::is_some) {
         let problem = Problem::new(file.span(), "`file` beside an interior orientation that is written out: expected one of them");
         problems.push(problem);
         return None;
@@ -130,7 +135,11 @@ fn of_file(wire: &CameraWire, file: &Spanned<String>, path: &Path, problems: &mu
         None => read.cameras.first().filter(|_| read.cameras.len() == 1),
     };
     if chosen.is_none() {
-        problems.push(Problem::new(file.span(), "which camera of the file?").help(format!("expected `name`, one of {}", names.join(", "))));
+        let help = match names[..] {
+            [""] => "the file holds one camera, which has no name: leave `name` out".to_owned(),
+            _ => format!("expected `name`, one of {}", names.join(", ")),
+        };
+        problems.push(Problem::new(file.span(), "which camera of the file?").help(help));
     }
     chosen.map(|camera| camera.camera)
 }
