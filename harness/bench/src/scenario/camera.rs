@@ -62,14 +62,23 @@ pub struct CameraWire {
 /// The largest image, px: 400 megapixels take about 5 GB.
 const MOST_PIXELS: u64 = 400_000_000;
 
+/// Where a run keeps the scenario's camera file, in the folder of its records: they are read without what they were made from.
+pub const KEPT: &str = "camera-of-the-run";
+
+/// The file that a scenario in `folder` names, or what a run kept of it.
+fn located(folder: &Path, file: &str) -> PathBuf {
+    let kept = Path::new(file).file_name().map(|name| folder.join(KEPT).join(name));
+    kept.filter(|kept| kept.is_file()).unwrap_or_else(|| folder.join(file))
+}
+
 /// Reads a `[camera]` table; `folder` is where the scenario's file is. With the camera comes the file that it was read from.
-pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<(Camera, Option<(String, PathBuf)>)> {
+pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<(Camera, Option<PathBuf>)> {
     let span = section.span.clone();
     let wire: CameraWire = section.read(&[], problems)?;
     let read = match &wire.file {
         Some(file) => {
-            let source = (file.get_ref().clone(), folder.join(file.get_ref()));
-            of_file(&wire, file, &source.1, problems).map(|camera| (camera, Some(source)))
+            let path = located(folder, file.get_ref());
+            of_file(&wire, file, &path, problems).map(|camera| (camera, Some(path)))
         }
         None => written_out(&wire, span.clone(), problems).map(|camera| (camera, None)),
     }?;

@@ -1,6 +1,6 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
-mod camera;
+pub mod camera;
 pub mod catalogue;
 mod check;
 mod figure;
@@ -107,8 +107,8 @@ pub struct ViewsSubject {
     pub unit: Unit,
     /// With which interior orientation.
     pub camera: Camera,
-    /// The file that it was read from, as the scenario names it, and where that is.
-    pub camera_file: Option<(String, PathBuf)>,
+    /// The file that it was read from.
+    pub camera_file: Option<PathBuf>,
     /// From where, in the order of reports; those of the first trial if they change.
     pub stations: Vec<Station>,
     /// What draws other stations in each trial.
