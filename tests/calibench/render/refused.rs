@@ -30,6 +30,7 @@ const MISTAKES: &[(&str, &str, &[&str])] = &[
     ("blur = 0.6", "blur = 500", &["the blur is 500", "0.02 to 100 px"]),
     ("blur = 0.6", "blur = nan", &["mine.toml:20:8", "NaN"]),
     ("blur = 0.6", "defocus = 3", &["a defocus disc needs a Gaussian blur"]),
+    ("blur = 0.6", "blur = 0.6\nmotion = { length = 8 }", &["mine.toml:21:10", "invalid type: a table, expected a list"]),
     ("square = 25", "square = 0", &["mine.toml:14:10"]),
     ("rows = 4", "rows = 100000", &["`rows` is 100000"]),
     ("unit = \"mm\"", "unit = \"furlong\"", &["furlong"]),
