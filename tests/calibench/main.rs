@@ -13,4 +13,5 @@ mod measure;
 mod opencv_gate;
 mod photographs;
 mod project;
+mod render;
 mod schema;

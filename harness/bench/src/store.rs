@@ -8,6 +8,7 @@ use calibench_exchange::FolderWriter;
 
 use crate::records::{RecordWriter, RunInfo};
 use crate::run::{Plan, RunError};
+use crate::scenario::camera::KEPT;
 use crate::scenario::{Scenario, Subject};
 
 /// The records' file in a scenario's folder.
@@ -15,15 +16,13 @@ pub const RECORDS: &str = "records.csv";
 /// The scenario as it was run, in the same folder.
 pub const SCENARIO: &str = "scenario.toml";
 
-/// The scenario's camera file, where the scenario as it was run looks for it: records are read without what they were made from.
+/// Copies the scenario's camera file to where the scenario as it was run looks for it.
 fn keep_camera(scenario: &Scenario, folder: &Path) -> Result<(), RunError> {
     let Subject::Views(views) = &scenario.subject else { return Ok(()) };
-    let Some((name, path)) = &views.camera_file else { return Ok(()) };
-    let place = folder.join(name);
-    if place != *path && place.starts_with(folder) && !name.contains("..") {
-        place.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-        std::fs::copy(path, place)?;
-    }
+    let Some((path, name)) = views.camera_file.as_deref().and_then(|path| Some((path, path.file_name()?))) else { return Ok(()) };
+    let kept = folder.join(KEPT);
+    std::fs::create_dir(&kept)?;
+    std::fs::copy(path, kept.join(name))?;
     Ok(())
 }
 

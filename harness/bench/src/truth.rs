@@ -37,6 +37,9 @@ const VIEW_COLUMNS: [&str; 20] = [
     "warning",
 ];
 
+/// What the names of images before the sensor end in.
+pub const NOISE_FREE: &str = "-noise-free";
+
 /// A station and what its image clipped.
 pub struct StationRow<'a> {
     station: &'a Station,
@@ -120,7 +123,10 @@ pub fn warnings(subject: &ViewsSubject, view: &PreparedView<'_>) -> Vec<String> 
             None => counted.push((warning, 1)),
         }
     }
-    counted.into_iter().map(|(warning, count)| format!("{}: {count} targets {warning}", view.station.name)).collect()
+    counted
+        .into_iter()
+        .map(|(warning, count)| format!("{}: {count} of {} targets: {warning}", view.station.name, view.truth.len()))
+        .collect()
 }
 
 /// How much of an image was clipped, if any.

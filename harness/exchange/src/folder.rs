@@ -33,7 +33,7 @@ impl FolderWriter {
             let entry = entry?;
             let name = entry.file_name().to_string_lossy().into_owned();
             if name.starts_with(PARTIAL) {
-                fs::remove_dir_all(entry.path())?;
+                if entry.file_type()?.is_dir() { fs::remove_dir_all(entry.path())? } else { fs::remove_file(entry.path())? }
             } else if let Some(place) = name.strip_prefix(ASIDE) {
                 recover(&entry.path(), &parent.join(place.replace("--", "/")))?;
             }

@@ -8,6 +8,7 @@ mod detect;
 mod diff;
 mod list;
 mod measure;
+mod output;
 mod print;
 mod progress;
 mod reading;

@@ -1,13 +1,13 @@
 //! `calibench print`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use calibench_exchange::FolderWriter;
 use calibench_exchange::print::{Paper, PrintError, PrintOptions, write_pdf, write_svg};
 use clap::{Args, ValueEnum};
 
 use super::Failure;
 use super::context::Context;
+use super::output::OutputFolder;
 use crate::scenario::Subject;
 
 /// Writes a scenario's testfield at true scale, as SVG and PDF.
@@ -15,7 +15,7 @@ use crate::scenario::Subject;
 pub struct Print {
     /// Name of a scenario, or a TOML file
     scenario: String,
-    /// The folder; one that is there is replaced as a whole
+    /// The folder; one that calibench wrote is replaced as a whole
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Pages as large as each plate, or tiles of this paper with marks to join them
@@ -40,10 +40,6 @@ impl Print {
         let Subject::Views(subject) = &scenario.subject else {
             return Err(Failure::input(format!("`{}` has no testfield to print; expected a scenario with [testfield]", scenario.name)));
         };
-        let (Some(name), parent) = (self.output.file_name().and_then(|name| name.to_str()), self.output.parent()) else {
-            return Err(Failure::input(format!("-o {}: expected the name of a folder", self.output.display())));
-        };
-        let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let paper = match self.paper {
             Size::Whole => Paper::Whole,
             Size::A4 => Paper::A4,
@@ -51,7 +47,7 @@ impl Print {
         };
         let stem = scenario.name.replace('/', "-");
         let options = PrintOptions { name: stem.clone(), mm_per_unit: subject.unit.mm(), paper };
-        FolderWriter::new(parent)?.replace::<PrintError>(name, |folder| {
+        OutputFolder::open(&self.output)?.replace::<PrintError>(|folder| {
             write_svg(folder, &subject.field, &options)?;
             write_pdf(&folder.join(format!("{stem}.pdf")), &subject.field, &options)
         })?;

@@ -2,25 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{FolderWriter, write_png};
+use calibench_exchange::write_png;
 use calibench_model::camera::Camera;
 use calibench_synth::random::Key;
+use calibench_synth::stations::Station;
 use clap::Args;
 
 use super::context::Context;
+use super::output::OutputFolder;
 use super::progress::Progress;
 use super::{Failure, print};
 use crate::run::views::Prepared;
 use crate::run::{RunError, VIEW, trial_picture, trial_truth};
 use crate::scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
-use crate::truth;
+use crate::truth::{self, NOISE_FREE};
 
 /// Writes a scenario's images with the truth about every target, the camera and the poses.
 #[derive(Args)]
 pub struct Render {
     /// Name of a scenario, or a TOML file
     scenario: String,
-    /// The folder; one that is there is replaced as a whole
+    /// The folder; one that calibench wrote is replaced as a whole
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Which trial, counted from 0
@@ -40,14 +42,10 @@ pub struct Render {
 impl Render {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let scenario = context.scenario(&self.scenario)?;
-        let (Some(name), parent) = (self.output.file_name().and_then(|name| name.to_str()), self.output.parent()) else {
-            return Err(Failure::input(format!("-o {}: expected the name of a folder", self.output.display())));
-        };
-        let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let writer = FolderWriter::new(parent)?;
+        let output = OutputFolder::open(&self.output)?;
         let key = Key { seed: self.seed.unwrap_or(scenario.seed), scenario: &scenario.name, trial: self.trial, view: "", target: "" };
         let mut notes = Vec::new();
-        writer.replace::<RunError>(name, |folder| {
+        output.replace::<RunError>(|folder| {
             notes = match &scenario.subject {
                 Subject::Views(subject) => self.views(context, &scenario, subject, key, folder)?,
                 Subject::Scene(subject) => self.scene(subject, key, folder)?,
@@ -59,6 +57,9 @@ impl Render {
     }
 
     fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &Path) -> Result<Vec<String>, RunError> {
+        if let Some(name) = self.stations.iter().find(|name| *name != VIEW) {
+            return Err(RunError::NoStation { name: name.clone(), known: VIEW.into() });
+        }
         let key = Key { view: VIEW, ..key };
         let scene = trial_truth(subject, key);
         let renderer = subject.renderer()?;
@@ -66,7 +67,7 @@ impl Render {
         write_png(&folder.join(format!("{VIEW}.png")), &exposure.image, subject.is_deep())?;
         if self.noise_free {
             let picture = calibench_synth::raster::Picture::from(&scene);
-            write_png(&folder.join(format!("{VIEW}-noise-free.png")), &renderer.render(&picture, &[]), true)?;
+            write_png(&folder.join(format!("{VIEW}{NOISE_FREE}.png")), &renderer.render(&picture, &[]), true)?;
         }
         truth::write_scene(&folder.join(format!("{VIEW}.csv")), &scene)?;
         Ok(truth::clipping_note(VIEW, exposure.clipped, exposure.image.grey().len()).into_iter().collect())
@@ -80,21 +81,22 @@ impl Render {
         key: Key<'_>,
         folder: &Path,
     ) -> Result<Vec<String>, RunError> {
-        if let Some(unknown) = self.stations.iter().find(|name| subject.stations.iter().all(|station| station.name != **name)) {
-            let known: Vec<&str> = subject.stations.iter().map(|station| station.name.as_str()).collect();
+        let drawn = subject.stations_of(key)?;
+        if let Some(unknown) = self.stations.iter().find(|name| drawn.iter().all(|station| station.name != **name)) {
+            let known: Vec<&str> = drawn.iter().map(|station| station.name.as_str()).collect();
             return Err(RunError::NoStation { name: unknown.clone(), known: known.join(", ") });
         }
-        let prepared = Prepared::new(subject)?;
-        let chosen = |name: &String| self.stations.is_empty() || self.stations.contains(name);
-        let views: Vec<_> = prepared.views.iter().filter(|view| chosen(&view.station.name)).collect();
-        let progress = Progress::start(&scenario.name, views.len() as u64, context.quiet);
+        let chosen = |station: &&Station| self.stations.is_empty() || self.stations.contains(&station.name);
+        let stations: Vec<Station> = drawn.iter().filter(chosen).cloned().collect();
+        let prepared = Prepared::of(subject, &stations)?;
+        let progress = Progress::start(&scenario.name, stations.len() as u64, context.quiet);
         let (mut notes, mut rows) = (Vec::new(), Vec::new());
-        for view in &views {
+        for view in &prepared.views {
             let name = &view.station.name;
             let exposure = prepared.image(view, key)?;
             write_png(&folder.join(format!("{name}.png")), &exposure.image, prepared.is_deep())?;
             if self.noise_free {
-                write_png(&folder.join(format!("{name}-noise-free.png")), &prepared.irradiance(view), true)?;
+                write_png(&folder.join(format!("{name}{NOISE_FREE}.png")), &prepared.irradiance(view), true)?;
             }
             truth::write_view(&folder.join(format!("{name}.csv")), subject, view)?;
             notes.extend(truth::clipping_note(name, exposure.clipped, exposure.image.grey().len()));
@@ -105,7 +107,7 @@ impl Render {
         truth::write_stations(&folder.join("stations.csv"), &rows)?;
         truth::write_control(&folder.join("control.csv"), subject)?;
         write_camera(&folder.join("camera"), &subject.camera)?;
-        progress.finish(&format!("{} images", views.len()));
+        progress.finish(&format!("{} images", stations.len()));
         Ok(notes)
     }
 }

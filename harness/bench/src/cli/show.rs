@@ -113,7 +113,7 @@ fn views(text: &mut String, subject: &ViewsSubject) {
         let seen = sees(&subject.camera, &station.pose, field) * targets as f64;
         let [omega, phi, kappa] = angles;
         let _ = writeln!(text, "\n[[station]]\nname = \"{}\" # sees {seen:.0} targets", station.name);
-        let _ = writeln!(text, "position = [{}, {}, {}]\nangles = [{omega:.6}, {phi:.6}, {kappa:.6}]", at.x, at.y, at.z);
+        let _ = writeln!(text, "at = [{}, {}, {}]\nangles = [{omega}, {phi}, {kappa}]", at.x, at.y, at.z);
     }
     let _ = writeln!(text, "\n[pointing]\nsigma = {}\nwhole_pixels = {}", subject.hand.sigma, subject.hand.whole_pixels);
 }

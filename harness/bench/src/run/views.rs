@@ -46,16 +46,27 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// A view that cannot be pictured, by the name of its station.
     pub fn new(subject: &'a ViewsSubject) -> Result<Self, RunError> {
-        Self::of(subject, &subject.stations, None)
+        Self::with(subject, &subject.stations, None)
+    }
+
+    /// As [`Self::new`], for other stations.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of(subject: &'a ViewsSubject, stations: &'a [Station]) -> Result<Self, RunError> {
+        Self::with(subject, stations, None)
     }
 
     /// As [`Self::new`], with the bounds of `plan`'s methods.
     pub(super) fn with_bounds(subject: &'a ViewsSubject, bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
-        Self::of(subject, &subject.stations, bounds)
+        Self::with(subject, &subject.stations, bounds)
     }
 
     /// Projects the field for `stations`.
-    fn of(subject: &'a ViewsSubject, stations: &'a [Station], bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    fn with(subject: &'a ViewsSubject, stations: &'a [Station], bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
         let size = subject.camera.size();
         let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
         let margin = subject.imaging.optics.reach();
@@ -104,13 +115,10 @@ pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<T
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option<&TargetBounds>, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
     let subject = prepared.subject;
-    match &subject.redraw {
-        None => run_views(plan, prepared, key),
-        Some(drawing) => {
-            let stations = drawing.generate(&subject.field, &subject.camera, key)?;
-            run_views(plan, &Prepared::of(subject, &stations, bounds)?, key)
-        }
+    if subject.redraw.is_none() {
+        return run_views(plan, prepared, key);
     }
+    run_views(plan, &Prepared::with(subject, &subject.stations_of(key)?, bounds)?, key)
 }
 
 fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {

@@ -62,14 +62,23 @@ pub struct CameraWire {
 /// The largest image, px: 400 megapixels take about 5 GB.
 const MOST_PIXELS: u64 = 400_000_000;
 
+/// Where a run keeps the scenario's camera file, in the folder of its records: they are read without what they were made from.
+pub const KEPT: &str = "camera-of-the-run";
+
+/// The file that a scenario in `folder` names, or what a run kept of it.
+fn located(folder: &Path, file: &str) -> PathBuf {
+    let kept = Path::new(file).file_name().map(|name| folder.join(KEPT).join(name));
+    kept.filter(|kept| kept.is_file()).unwrap_or_else(|| folder.join(file))
+}
+
 /// Reads a `[camera]` table; `folder` is where the scenario's file is. With the camera comes the file that it was read from.
-pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<(Camera, Option<(String, PathBuf)>)> {
+pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<(Camera, Option<PathBuf>)> {
     let span = section.span.clone();
     let wire: CameraWire = section.read(&[], problems)?;
     let read = match &wire.file {
         Some(file) => {
-            let source = (file.get_ref().clone(), folder.join(file.get_ref()));
-            of_file(&wire, file, &source.1, problems).map(|camera| (camera, Some(source)))
+            let path = located(folder, file.get_ref());
+            of_file(&wire, file, &path, problems).map(|camera| (camera, Some(path)))
         }
         None => written_out(&wire, span.clone(), problems).map(|camera| (camera, None)),
     }?;
@@ -93,6 +102,10 @@ fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut V
         problems.push(Problem::new(span, format!("[camera] has no {}", missing.join(", "))).help(help));
         return None;
     };
+    if wire.name.is_some() {
+        problems.push(Problem::new(span, "[camera] has a `name` and no `file`").help("`name` tells which camera of a file is meant"));
+        return None;
+    }
     let place = |value: Option<Place>| value.map_or(0.0, |value| value.0);
     let term = |value: Option<Coefficient>| value.map_or(0.0, |value| value.0);
     let camera = Photogrammetric {
@@ -109,8 +122,9 @@ fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut V
 }
 
 fn of_file(wire: &CameraWire, file: &Spanned<String>, path: &Path, problems: &mut Vec<Problem>) -> Option<Camera> {
-    let beside = [wire.pitch.is_some(), wire.c.is_some(), wire.k1.is_some(), wire.x0.is_some(), wire.y0.is_some()];
-    if beside.contains(&true) {
+    let written = [wire.k1, wire.k2, wire.k3, wire.p1, wire.p2, wire.b1, wire.b2];
+    let beside = wire.pitch.is_some() || wire.c.is_some() || wire.x0.is_some() || wire.y0.is_some();
+    if beside || written.iter().any(Option::is_some) {
         let problem = Problem::new(file.span(), "`file` beside an interior orientation that is written out: expected one of them");
         problems.push(problem);
         return None;
@@ -130,7 +144,11 @@ fn of_file(wire: &CameraWire, file: &Spanned<String>, path: &Path, problems: &mu
         None => read.cameras.first().filter(|_| read.cameras.len() == 1),
     };
     if chosen.is_none() {
-        problems.push(Problem::new(file.span(), "which camera of the file?").help(format!("expected `name`, one of {}", names.join(", "))));
+        let help = match names[..] {
+            [""] => "the file holds one camera, which has no name: leave `name` out".to_owned(),
+            _ => format!("expected `name`, one of {}", names.join(", ")),
+        };
+        problems.push(Problem::new(file.span(), "which camera of the file?").help(help));
     }
     chosen.map(|camera| camera.camera)
 }

@@ -1,6 +1,6 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
-mod camera;
+pub mod camera;
 pub mod catalogue;
 mod check;
 mod figure;
@@ -15,6 +15,7 @@ pub mod testfield;
 mod views;
 mod wire;
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use calibench_measure::{Board, Configured};
@@ -22,8 +23,9 @@ use calibench_model::camera::Camera;
 use calibench_model::{PixelPoint, Scene, Testfield};
 use calibench_synth::optics::OpticsError;
 use calibench_synth::pointing::Hand;
+use calibench_synth::random::Key;
 use calibench_synth::raster::Renderer;
-use calibench_synth::stations::Station;
+use calibench_synth::stations::{Station, StationError};
 
 pub use crate::imaging::Imaging;
 pub use check::parse;
@@ -107,8 +109,8 @@ pub struct ViewsSubject {
     pub unit: Unit,
     /// With which interior orientation.
     pub camera: Camera,
-    /// The file that it was read from, as the scenario names it, and where that is.
-    pub camera_file: Option<(String, PathBuf)>,
+    /// The file that it was read from.
+    pub camera_file: Option<PathBuf>,
     /// From where, in the order of reports; those of the first trial if they change.
     pub stations: Vec<Station>,
     /// What draws other stations in each trial.
@@ -117,6 +119,19 @@ pub struct ViewsSubject {
     pub imaging: Imaging,
     /// Who points at the targets.
     pub hand: Hand,
+}
+
+impl ViewsSubject {
+    /// The stations of the trial of `key`.
+    ///
+    /// # Errors
+    /// No poses within the bounds of stations that are drawn anew in each trial.
+    pub fn stations_of(&self, key: Key<'_>) -> Result<Cow<'_, [Station]>, StationError> {
+        match &self.redraw {
+            None => Ok(Cow::Borrowed(&self.stations)),
+            Some(drawing) => drawing.generate(&self.field, &self.camera, key).map(Cow::Owned),
+        }
+    }
 }
 
 /// Approximate positions.

@@ -94,7 +94,16 @@ impl<'i> Section<'i> {
 
 /// serde names Rust's types; a scenario's author knows numbers.
 fn plain(message: &str) -> String {
-    let words = [("i64", "a whole number"), ("u64", "a whole number"), (" as i128", ""), ("f64", "a number"), ("bool", "true or false")];
+    let words = [
+        ("i64", "a whole number"),
+        ("u64", "a whole number"),
+        (" as i128", ""),
+        ("f64", "a number"),
+        ("bool", "true or false"),
+        ("type: map", "type: a table"),
+        ("type: sequence", "type: a list"),
+        ("a sequence", "a list"),
+    ];
     words.iter().fold(message.to_owned(), |text, (rust, word)| text.replace(rust, word))
 }
 

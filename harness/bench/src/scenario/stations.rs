@@ -10,6 +10,7 @@ use toml::de::DeTable;
 use super::problem::Problem;
 use super::section::Section;
 use super::testfield::{Spans, take_kind, wire::Degrees};
+use crate::truth;
 
 pub mod wire;
 
@@ -19,6 +20,8 @@ use wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StationWi
 pub const KINDS: [&str; 4] = ["convergent", "arc", "board", "random"];
 /// The keys of `[stations]` that every kind has.
 const COMMON: [&str; 5] = ["sees", "middle", "facing", "up", "each_trial"];
+/// The files that are written beside the images, without their endings.
+const TAKEN: [&str; 4] = ["stations", "control", "camera", "records"];
 
 /// What makes stations.
 #[derive(Clone, Debug, PartialEq)]
@@ -202,6 +205,11 @@ fn read_generator(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Opti
     }
 }
 
+/// Can images be called by this name on any file system?
+fn names_a_file(name: &str) -> bool {
+    !name.starts_with('.') && name.len() <= 100 && !name.contains(['/', '\\', ':', '*', '?', '"', '<', '>', '|'])
+}
+
 fn read_given(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Given> {
     let wire: StationWire = section.read(&[], problems)?;
     let name = wire.name.get_ref().clone();
@@ -211,6 +219,12 @@ fn read_given(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Given
     };
     if name.trim().is_empty() || name.chars().any(char::is_control) {
         return wrong("has a name that cannot be read", "expected a word");
+    }
+    if !names_a_file(&name) {
+        return wrong("is no plain file name", "its image is the file of that name");
+    }
+    if TAKEN.contains(&name.to_lowercase().as_str()) || name.ends_with(truth::NOISE_FREE) {
+        return wrong("has the name of another file that is written", "expected another name");
     }
     let attitude = match (wire.angles, wire.towards) {
         (Some(_), None) if wire.up.is_some() || wire.roll.is_some() => {

@@ -128,8 +128,28 @@ pub(crate) fn run() {
     for blur in [0.0, 0.3, 2.0, 5.0] {
         row(&format!("chessboard, 4272 x 2848, blur {blur}"), &Job::new(board(), 4272, 2848, blur));
     }
+    memory(&Job::new(board(), 4272, 2848, 0.7), &sensor);
     stages(&Job::new(board(), 4272, 2848, 0.7), &sensor);
     warp::run();
+}
+
+/// The peak of the memory that a view takes, where the system tells it.
+fn memory(job: &Job, sensor: &Sensor) {
+    let figure = |key: &str| -> Option<f64> {
+        let status = std::fs::read_to_string("/proc/self/status").ok()?;
+        let line = status.lines().find(|line| line.starts_with(key))?;
+        line.split_whitespace().nth(1)?.parse().ok()
+    };
+    // Writing a 5 makes the peak what is resident now.
+    let peak = std::fs::write("/proc/self/clear_refs", "5").ok().and_then(|()| {
+        let before = figure("VmRSS:")?;
+        on_threads(2, || job.whole(sensor));
+        Some((figure("VmHWM:")? - before) * 1024.0 / (job.megapixels() * 1e6))
+    });
+    match peak {
+        Some(bytes) => println!("\nPeak memory, chessboard 10 x 7, 4272 x 2848: {bytes:.1} bytes a pixel"),
+        None => println!("\nPeak memory: the system does not tell"),
+    }
 }
 
 /// Seconds of each stage on one thread.

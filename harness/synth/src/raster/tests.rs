@@ -1,6 +1,8 @@
 //! Renders against closed forms and quadrature that share nothing with the renderer.
 
 mod areas;
+mod far;
+mod fits;
 mod shapes;
 
 use calibench_model::Scene;

@@ -77,6 +77,23 @@ impl Spot {
     }
 }
 
+/// The share of the unit photosite at (`x`, `y`) that lies in a disc of `radius` around the origin, in closed form.
+pub fn disc_area(x: f64, y: f64, radius: f64) -> f64 {
+    let half = |u: f64| (radius * radius - u * u).max(0.0).sqrt();
+    // The integral of the half chord up to u.
+    let swept = |u: f64| 0.5 * (u * half(u) + radius * radius * (u / radius).clamp(-1.0, 1.0).asin());
+    // The area of the disc's part left of a and above b.
+    let quadrant = |a: f64, b: f64| {
+        let (a, b) = (a.clamp(-radius, radius), b.clamp(-radius, radius));
+        let w = half(b);
+        let (low, high) = (a.min(-w), a.clamp(-w, w));
+        let whole = if b > 0.0 { 2.0 * (swept(low) - swept(-radius) + swept(a.max(w)) - swept(w)) } else { 0.0 };
+        whole + b * (high + w) + swept(high) - swept(-w)
+    };
+    let (left, right, top, bottom) = (x - 0.5, x + 0.5, y - 0.5, y + 0.5);
+    quadrant(right, bottom) - quadrant(left, bottom) - quadrant(right, top) + quadrant(left, top)
+}
+
 /// The mean of `f(t)` with the density of a unit disc's points across an edge, `2/pi sqrt(1 - t^2)`, by midpoints in the angle.
 pub fn half_circle(n: u32, f: impl Fn(f64) -> f64) -> f64 {
     let term = |i: u32| {
