@@ -89,8 +89,8 @@ fn methods_trials_and_seed_can_be_changed() {
         first.starts_with("corners/noise,0,image,corner-90-at-0,pixel,1,x,") && first.contains(",px,") && first.contains(",,5,"),
         "{first}"
     );
-    // Header, and 3 trials of 8 targets with 2 methods and 4 metrics.
-    assert_eq!(records.lines().count(), 1 + 3 * 8 * 2 * 4);
+    // Header, and 3 trials of 8 targets: with two methods x, y, dx, dy and the bound, with one its own standard deviation.
+    assert_eq!(records.lines().count(), 1 + 3 * 8 * (2 * 5 + 1));
     assert!(records.contains("forstner:window=7") && !records.contains("harris"));
     let output = run(project.path(), &["run", "corners/noise", "--trials", "2", "--quiet"]);
     assert!(output.status.success() && stderr(&output).is_empty(), "{}", stderr(&output));

@@ -8,11 +8,26 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ lies in the project").to_owned()
 }
 
-/// A temporary project with the real scenarios and references, and no records or reports.
+/// Families of scenarios whose run takes long: only tests of their own copy them.
+const LARGE: [&str; 3] = ["operators", "testfields", "sweeps"];
+
+/// A temporary project with the real scenarios and references, but for the large ones, and no records or reports.
 pub fn copy() -> tempfile::TempDir {
+    copy_with(&[])
+}
+
+/// As [`copy`], with some of the large families.
+pub fn copy_with(families: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for part in ["scenarios", "reference"] {
         copy_folder(&root().join(part), &folder.path().join(part));
+    }
+    for family in LARGE.iter().filter(|family| !families.contains(family)) {
+        std::fs::remove_dir_all(folder.path().join("scenarios").join(family)).ok();
+        let baselines =
+            std::fs::read_dir(folder.path().join("reference/baselines")).expect("baselines").map(|entry| entry.expect("a file"));
+        let of_family = baselines.filter(|file| file.file_name().to_string_lossy().starts_with(&format!("{family}--")));
+        of_family.for_each(|file| std::fs::remove_file(file.path()).expect("a baseline"));
     }
     folder
 }

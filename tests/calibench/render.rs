@@ -11,7 +11,7 @@ use calibench_bench::scenario::Subject;
 use calibench_bench::scenario::catalogue::Catalogue;
 use calibench_exchange::camera::read_camera;
 
-use crate::project::{copy, files, program, root, run, stderr};
+use crate::project::{copy_with, files, program, root, run, stderr};
 
 /// A board of 4 x 5 squares from one station, with noise.
 pub(crate) const BOARD: &str = r#"why = "To see what is written."
@@ -54,7 +54,7 @@ fn render(project: &Path, scenario: &str, folder: &str, more: &[&str]) -> PathBu
 
 /// A project with [`BOARD`], in which `old` stands as `new`, as `mine.toml`.
 pub(crate) fn with_board(old: &str, new: &str) -> tempfile::TempDir {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     assert!(BOARD.contains(old), "{old}");
     std::fs::write(project.path().join("mine.toml"), BOARD.replacen(old, new, 1)).unwrap();
     project
@@ -62,7 +62,7 @@ pub(crate) fn with_board(old: &str, new: &str) -> tempfile::TempDir {
 
 #[test]
 fn every_station_has_its_image_and_truth_beside_the_camera_and_the_control() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     let folder = render(project.path(), "testfields/wall", "out", &["--noise-free"]);
     let mut names: Vec<String> = files(&folder).iter().map(|(path, _)| path.display().to_string()).collect();
     names.retain(|name| !name.starts_with('.'));
@@ -107,7 +107,7 @@ fn the_noise_is_what_lies_between_the_image_and_the_noise_free_one() {
 
 #[test]
 fn the_camera_file_holds_the_camera_of_the_scenario() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     for name in ["testfields/chessboard", "testfields/wall"] {
         let folder = render(project.path(), name, "out", &[]);
         let read = read_camera(&folder.join("camera.toml")).unwrap();
@@ -120,7 +120,7 @@ fn the_camera_file_holds_the_camera_of_the_scenario() {
 
 #[test]
 fn the_same_bytes_on_one_thread_on_two_and_again() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     for name in ["testfields/chessboard", "testfields/house"] {
         let one = files(&render(project.path(), name, "one", &["--threads", "1", "--noise-free"]));
         for threads in ["2", "2", "3"] {
@@ -169,7 +169,7 @@ fn what_is_rendered_is_what_a_run_measures_in() {
 
 #[test]
 fn one_station_has_the_image_that_it_has_among_all() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     let all = files(&render(project.path(), "testfields/wall", "all", &[]));
     let one = files(&render(project.path(), "testfields/wall", "one", &["--station", "s03-r2"]));
     let image = |files: &[(PathBuf, Vec<u8>)]| files.iter().find(|(path, _)| path.ends_with("s03-r2.png")).unwrap().1.clone();
@@ -199,7 +199,7 @@ fn records_are_read_without_the_camera_file_that_they_were_made_with() {
 
 #[test]
 fn a_render_that_fails_or_is_killed_leaves_the_old_folder() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     let before = files(&render(project.path(), "testfields/house", "out", &[]));
     std::fs::write(project.path().join("fold.toml"), BOARD.replace("k1 = -0.01", "k1 = 0.5")).unwrap();
     let failed = run(project.path(), &["render", "fold.toml", "-o", "out"]);

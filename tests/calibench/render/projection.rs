@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::render;
-use crate::project::copy;
+use crate::project::copy_with;
 
 /// The rows of a table as maps from column to cell.
 fn table(path: &Path) -> Vec<HashMap<String, String>> {
@@ -76,7 +76,7 @@ fn turned(angles: [f64; 3], by: [f64; 3]) -> [f64; 3] {
 
 /// Compares every image of `scenario`; the number of targets compared.
 fn compare(scenario: &str) -> usize {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     let folder = render(project.path(), scenario, "out", &[]);
     let camera = Camera::read(&folder.join("camera.toml"));
     let mut compared = 0;
@@ -113,7 +113,7 @@ fn the_truth_of_a_wall_is_the_projection_of_its_targets() {
 
 #[test]
 fn control_points_are_the_targets_to_the_accuracy_of_the_survey() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     let folder = render(project.path(), "testfields/wall", "out", &["--station", "s01-r1"]);
     let control = table(&folder.join("control.csv"));
     let truth = table(&folder.join("s01-r1.csv"));

@@ -1,7 +1,7 @@
 //! What cannot be pictured is refused by name, or is named in the truth.
 
 use super::{BOARD, render, with_board};
-use crate::project::{copy, run, stderr, stdout};
+use crate::project::{copy_with, run, stderr, stdout};
 
 const FRONT: &str = "name = \"front\"";
 const AT: &str = "at = [50, -40, 300]";
@@ -57,7 +57,7 @@ const MISTAKES: &[(&str, &str, &[&str])] = &[
 
 #[test]
 fn each_mistake_is_told_with_its_culprit_and_nothing_is_written() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     for (old, new, parts) in MISTAKES {
         assert_eq!(BOARD.matches(old).count(), 1, "`{old}` stands once");
         std::fs::write(project.path().join("mine.toml"), BOARD.replace(old, new)).unwrap();
@@ -88,7 +88,7 @@ fn what_is_doubtful_is_named_in_the_truth() {
 
 #[test]
 fn a_folder_of_the_users_own_is_never_replaced() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     let own = project.path().join("own");
     std::fs::create_dir(&own).unwrap();
     std::fs::write(own.join("thesis.txt"), "years of work").unwrap();
@@ -109,7 +109,7 @@ fn a_folder_of_the_users_own_is_never_replaced() {
 
 #[test]
 fn what_the_command_line_asks_for_must_be_there() {
-    let project = copy();
+    let project = copy_with(&["testfields"]);
     for (arguments, expected) in [
         (&["render", "testfields/house", "-o", "out", "--station", "back"][..], "no station is called `back`; expected one of front, side"),
         (&["render", "galo-2011/corners", "-o", "out", "--station", "front"], "no station is called `front`"),

@@ -44,6 +44,8 @@ pub struct Plan<'a> {
     pub detector: Option<&'a dyn BoardDetector>,
     /// Where photographs are.
     pub data: PathBuf,
+    /// Is the Cramér-Rao bound of each target wanted?
+    pub bounds: bool,
     /// Where the images of the first trial are written, if anywhere.
     pub images: Option<&'a Path>,
 }
@@ -90,7 +92,16 @@ pub enum RunError {
 impl<'a> Plan<'a> {
     /// The scenario as its file says, with no images kept.
     pub fn new(scenario: &'a Scenario, detector: Option<&'a dyn BoardDetector>, data: PathBuf) -> Self {
-        Self { scenario, methods: &scenario.methods, seed: scenario.seed, trials: scenario.trials, detector, data, images: None }
+        Self {
+            scenario,
+            methods: &scenario.methods,
+            seed: scenario.seed,
+            trials: scenario.trials,
+            detector,
+            data,
+            bounds: true,
+            images: None,
+        }
     }
 
     /// The methods as results list them.
@@ -138,7 +149,7 @@ impl<'a> Plan<'a> {
                 self.trials(step, sink, &|number| scene::run_trial(self, &prepared, number))
             }
             Subject::Views(subject) => {
-                let bounds = views::bounds(self, subject)?;
+                let bounds = if self.bounds { views::bounds(self, subject)? } else { None };
                 // Stations that are drawn anew have their bounds in each trial.
                 let fixed = bounds.as_ref().filter(|_| subject.redraw.is_none());
                 let prepared = views::Prepared::with_bounds(subject, fixed)?;

@@ -34,8 +34,10 @@ impl<'a> Prepared<'a> {
         let size = [scene.width, scene.height];
         // Drawn pixels are not what a lens makes: the bound is of another image.
         let bounds = match subject.pixels {
-            Pixels::Area => TargetBounds::new(&subject.imaging, variance, size, plan.scenario.bound_window, plan.all_unknowns())?,
-            Pixels::Centre => None,
+            Pixels::Area if plan.bounds => {
+                TargetBounds::new(&subject.imaging, variance, size, plan.scenario.bound_window, plan.all_unknowns())?
+            }
+            _ => None,
         };
         Ok(Self { subject, renderer: subject.renderer()?, bounds })
     }

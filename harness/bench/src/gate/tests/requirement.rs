@@ -42,7 +42,7 @@ fn pointing() -> Scenario {
 
 fn run(scenario: &Scenario, seed: u64, trials: u64) -> Vec<Trial> {
     let mut plan = Plan::new(scenario, None, PathBuf::new());
-    (plan.seed, plan.trials) = (seed, trials);
+    (plan.seed, plan.trials, plan.bounds) = (seed, trials, false);
     let mut all = Vec::new();
     plan.run(&|| (), &mut |trial| {
         all.push(trial);
