@@ -69,7 +69,8 @@ impl<W: Write> RecordWriter<W> {
         Ok(writer)
     }
 
-    /// Adds a trial: for each measured point its metrics x and y, and dx and dy where the truth is known; for each rejected one a row.
+    /// Adds a trial: for each measured point its metrics x and y, dx and dy where the truth is known, its bound and the method's own standard deviation where
+    /// there are such; for each rejected one a row.
     ///
     /// # Errors
     /// What the output refuses.
@@ -86,8 +87,9 @@ impl<W: Write> RecordWriter<W> {
                 Outcome::Rejected(why) => self.row(place, point.method, ["x", "", "px"], "rejected", why.name())?,
                 Outcome::Measured { position, error } => {
                     let status = if point.outcome.is_lost() { "lost" } else { "measured" };
-                    let metrics =
-                        [("x", Some(position.x)), ("y", Some(position.y)), ("dx", error.map(|e| e.0)), ("dy", error.map(|e| e.1))];
+                    let [dx, dy] = [error.map(|e| e.0), error.map(|e| e.1)];
+                    let [x, y] = [Some(position.x), Some(position.y)];
+                    let metrics = [("x", x), ("y", y), ("dx", dx), ("dy", dy), ("bound", point.bound), ("predicted", point.predicted)];
                     for (metric, value) in metrics {
                         if let Some(value) = value {
                             self.row(place, point.method, [metric, &value.to_string(), "px"], status, "")?;
@@ -219,7 +221,7 @@ fn add(trial: &mut Trial, row: &Row<'_>, method: usize) -> Result<(), RecordErro
     if row.text(9) == "rejected" {
         let why = Rejection::ALL.into_iter().find(|why| why.name() == row.text(10));
         let why = why.ok_or_else(|| row.wrong("unknown reason"))?;
-        trial.points.push(PointResult { view: view.into(), target: target.into(), method, outcome: Outcome::Rejected(why) });
+        trial.points.push(PointResult::new(view, target, method, Outcome::Rejected(why)));
         return Ok(());
     }
     let value: f64 = row.parse(7)?;
@@ -227,17 +229,19 @@ fn add(trial: &mut Trial, row: &Row<'_>, method: usize) -> Result<(), RecordErro
         let share = |old: Option<&Arc<str>>, new: &str| old.filter(|old| &***old == new).cloned().unwrap_or_else(|| new.into());
         let view = share(trial.points.last().map(|p| &p.view), view);
         let outcome = Outcome::Measured { position: PixelPoint::new(value, f64::NAN), error: None };
-        trial.points.push(PointResult { view, target: target.into(), method, outcome });
+        trial.points.push(PointResult::new(view, target, method, outcome));
         return Ok(());
     }
     let last = trial.points.last_mut().filter(|p| p.method == method && &*p.target == target && &*p.view == view);
-    let Some(PointResult { outcome: Outcome::Measured { position, error }, .. }) = last else {
+    let Some(PointResult { outcome: Outcome::Measured { position, error }, bound, predicted, .. }) = last else {
         return Err(row.wrong("a metric without its point"));
     };
     match row.text(6) {
         "y" => position.y = value,
         "dx" => *error = Some((value, f64::NAN)),
         "dy" => *error = error.map(|(dx, _)| (dx, value)),
+        "bound" => *bound = Some(value),
+        "predicted" => *predicted = Some(value),
         _ => return Err(row.wrong("unknown metric")),
     }
     Ok(())
@@ -266,13 +270,17 @@ mod tests {
     fn example() -> (Vec<MethodInfo>, Vec<Trial>) {
         let info =
             |label: &str, why: Option<&str>| MethodInfo { label: label.into(), version: "1".into(), unavailable: why.map(str::to_owned) };
-        let point = |method, target: &str, outcome| PointResult { view: "v".into(), target: target.into(), method, outcome };
+        let point = |method, target: &str, outcome| PointResult::new("v", target, method, outcome);
         let measured = |x: f64, error| Outcome::Measured { position: PixelPoint::new(x, 1.0 / 3.0), error };
         let trials = vec![
             Trial {
                 number: 0,
                 points: vec![
-                    point(1, "a", measured(0.1 + 0.2, Some((1e-17, -3.5)))),
+                    PointResult {
+                        bound: Some(0.012_345),
+                        predicted: Some(1.0 / 7.0),
+                        ..point(1, "a", measured(0.1 + 0.2, Some((1e-17, -3.5))))
+                    },
                     point(1, "b", Outcome::Rejected(Rejection::NoCorner)),
                     point(2, "a", measured(7.0, None)),
                 ],

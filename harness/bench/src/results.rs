@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_model::{PixelPoint, Rejection};
+use calibench_model::{Measurement, PixelPoint, Rejection};
 
 /// A point more than this far from the truth, px, is lost: something else was measured.
 pub const LOST: f64 = 1.0;
@@ -29,6 +29,29 @@ pub struct PointResult {
     pub method: usize,
     /// Measured or rejected.
     pub outcome: Outcome,
+    /// The Cramér-Rao bound of the position for what the method estimates, px: the square root of its trace. `None` where there is none.
+    pub bound: Option<f64>,
+    /// The standard deviation of the position as the method itself gives it, px: the square root of the trace of its covariance.
+    pub predicted: Option<f64>,
+}
+
+impl PointResult {
+    /// A result of which no uncertainty is known.
+    pub fn new(view: impl Into<Arc<str>>, target: impl Into<Arc<str>>, method: usize, outcome: Outcome) -> Self {
+        Self { view: view.into(), target: target.into(), method, outcome, bound: None, predicted: None }
+    }
+
+    /// What came of measuring a target that is truly at `truth`.
+    pub fn scored(view: Arc<str>, target: Arc<str>, method: usize, truth: PixelPoint, result: Result<Measurement, Rejection>) -> Self {
+        match result {
+            Err(rejection) => Self::new(view, target, method, Outcome::Rejected(rejection)),
+            Ok(found) => {
+                let error = Some((found.position.x - truth.x, found.position.y - truth.y));
+                let predicted = found.covariance.map(|covariance| (covariance.sxx + covariance.syy).sqrt());
+                Self { predicted, ..Self::new(view, target, method, Outcome::Measured { position: found.position, error }) }
+            }
+        }
+    }
 }
 
 /// Measured or rejected.

@@ -114,8 +114,18 @@ pub struct Score {
     pub whole: Errors,
     /// Errors of the points that every operator measured and none lost.
     pub common: Errors,
+    /// Squared errors of the kept points in units of their squared bound.
+    pub to_bound: Pooled,
+    /// Squared errors of the kept points in units of the variance that the method itself gives.
+    pub to_predicted: Pooled,
     /// By target, or by group of targets, in the order in which they come.
     pub targets: Vec<TargetScore>,
+}
+
+/// `sqrt` of a pooled mean of squares with its interval at `level`.
+pub fn root(squares: &Pooled, level: f64) -> Option<(f64, Option<(f64, f64)>)> {
+    let interval = squares.interval(level).map(|(low, high)| (low.max(0.0).sqrt(), high.sqrt()));
+    Some((squares.mean()?.sqrt(), interval))
 }
 
 /// The figures of one method on one target.
@@ -145,6 +155,7 @@ impl Score {
 
     fn add(&mut self, points: &[&PointResult], common: &BTreeSet<PointKey>, groups: &Groups) {
         let mut errors: [Vec<(f64, f64)>; 3] = Default::default();
+        let (mut to_bound, mut to_predicted) = (Vec::new(), Vec::new());
         let mut targets: BTreeMap<&Arc<str>, Vec<(f64, f64)>> = BTreeMap::new();
         for point in points {
             let group = groups.get(&point.target).unwrap_or(&point.target);
@@ -164,6 +175,10 @@ impl Score {
             errors[0].push(error);
             if !point.outcome.is_lost() {
                 errors[1].push(error);
+                let square = error.0 * error.0 + error.1 * error.1;
+                let in_units_of = |sigma: Option<f64>| sigma.filter(|sigma| *sigma > 0.0).map(|sigma| square / (sigma * sigma));
+                to_bound.extend(in_units_of(point.bound));
+                to_predicted.extend(in_units_of(point.predicted));
             }
             if common.contains(&(point.view.clone(), point.target.clone())) {
                 errors[2].push(error);
@@ -172,6 +187,8 @@ impl Score {
         self.whole.add(&errors[0]);
         self.kept.add(&errors[1]);
         self.common.add(&errors[2]);
+        self.to_bound.add(&to_bound);
+        self.to_predicted.add(&to_predicted);
         targets.into_iter().for_each(|(target, errors)| self.target(target).whole.add(&errors));
     }
 }
@@ -234,7 +251,7 @@ mod tests {
             position: PixelPoint::new(0.0, 0.0),
             error: Some(error),
         });
-        PointResult { view: "v".into(), target: target.into(), method, outcome }
+        PointResult::new("v", target, method, outcome)
     }
 
     #[test]

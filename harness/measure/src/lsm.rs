@@ -181,6 +181,10 @@ impl Operator for Lsm {
         let mut work = self.work();
         starts.iter().map(|start| self.measure_with(&mut work, image, start)).collect()
     }
+
+    fn unknowns(&self) -> calibench_model::Unknowns {
+        calibench_model::Unknowns { shape: true, levels: true, blur: self.limits.blur, gradient: false }
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What every operator does.
 
-use calibench_model::{Image, Measurement, Rejection, Start};
+use calibench_model::{Image, Measurement, Rejection, Start, Unknowns};
 
 /// A way of measuring points in an image, with its parameters set.
 pub trait Operator: Send + Sync {
@@ -13,6 +13,11 @@ pub trait Operator: Send + Sync {
     /// Measures many points of one image, in the order given.
     fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
         starts.iter().map(|start| self.measure(image, start)).collect()
+    }
+
+    /// What the operator estimates beside the position: with it, and with it alone, its precision is compared to the bound.
+    fn unknowns(&self) -> Unknowns {
+        Unknowns::default()
     }
 
     /// Does the result depend on the grey values? Only pointing at a pixel does not.

@@ -81,6 +81,10 @@ impl Operator for ParametricCircle {
         let position = PixelPoint::new(found.x[0] + disc.first[0], found.x[1] + disc.first[1]);
         Ok(Measurement { position, covariance: Some(covariance) })
     }
+
+    fn unknowns(&self) -> calibench_model::Unknowns {
+        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: false }
+    }
 }
 
 /// A disc in a window, as a least-squares problem.

@@ -164,6 +164,10 @@ impl Operator for ParametricCorner {
             (true, true) => self.fit::<11, true, true>(image, &guess),
         }
     }
+
+    fn unknowns(&self) -> calibench_model::Unknowns {
+        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: self.gradient }
+    }
 }
 
 fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {

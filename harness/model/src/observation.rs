@@ -33,6 +33,20 @@ pub struct Measurement {
     pub covariance: Option<Covariance>,
 }
 
+/// What an operator estimates beside the position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(clippy::struct_excessive_bools, reason = "any of them can be there without the others")]
+pub struct Unknowns {
+    /// The other four parameters of an affine map: directions and sizes.
+    pub shape: bool,
+    /// The two grey levels.
+    pub levels: bool,
+    /// The standard deviation of the blur.
+    pub blur: bool,
+    /// A linear change of the grey values over the window.
+    pub gradient: bool,
+}
+
 /// Why a point was not measured. A missed point is data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Rejection {

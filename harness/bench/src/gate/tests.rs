@@ -15,7 +15,7 @@ pub(super) fn info(label: &str, version: &str) -> MethodInfo {
 pub(super) fn point(method: usize, target: &str, error: [f64; 2]) -> PointResult {
     let position = PixelPoint::new(10.0 + error[0], 20.0 + error[1]);
     let outcome = Outcome::Measured { position, error: Some((error[0], error[1])) };
-    PointResult { view: "image".into(), target: target.into(), method, outcome }
+    PointResult::new("image", target, method, outcome)
 }
 
 pub(super) fn rejected(method: usize, target: &str) -> PointResult {

@@ -2,7 +2,7 @@
 
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed, signed};
-use crate::score::{Errors, Pooled, Score};
+use crate::score::{Errors, Pooled, Score, root};
 
 /// Fewer common points than this are not worth a figure.
 const FEW: u64 = 10;
@@ -22,6 +22,8 @@ pub fn section(loaded: &Loaded) -> String {
         "scatter",
         "RMSE",
         "95 %",
+        "RMSE / bound (99 %)",
+        "own sigma / scatter",
         "RMSE, lost too",
         "RMSE, common",
         "common points",
@@ -42,12 +44,15 @@ pub fn section(loaded: &Loaded) -> String {
     format!(
         "{}\n{trials} {}, seed {}. Errors in px: bias is the mean error over all targets, in which opposite ones cancel (see below by target), scatter the 2D deviation \
          about it, RMSE `sqrt(mean(dx^2 + dy^2))`. {uncertainty}. Lost points (more than 1 px off) and rejected ones are counted and not averaged, except under `lost \
-         too`. `Common` are the points that every operator measured and none lost, whatever became of `pixel`: only there are operators compared on equal terms, and what \
+         too`. `RMSE / bound` is `sqrt(mean(e^2 / trace of the bound))` over the kept points, with its 99 % interval: the Cramér-Rao bound of a {window} x {window} px window from the noise-free \
+         image, for the position and what the method estimates beside it; an operator that sees more of the image can be below 1, a biased one too. `Own sigma / scatter` is the same ratio \
+         turned over for the standard deviation that the method itself gives: 1 is honest, less is too hopeful. `Common` are the points that every operator measured and none lost, whatever became of `pixel`: only there are operators compared on equal terms, and what \
          the worst of them loses drops out for all; fewer than {FEW} are no basis.\n\n{}",
         rows.render(),
         if trials == 1 { "trial" } else { "trials" },
         loaded.head.run.seed,
-        by_target(loaded)
+        by_target(loaded),
+        window = loaded.scenario.bound_window
     )
 }
 
@@ -82,10 +87,26 @@ fn cells(label: &str, score: &Score) -> Vec<String> {
         score.kept.scatter().map_or("none".into(), |value| fixed(value, 4)),
         score.kept.rmse().map_or("none".into(), |value| fixed(value, 4)),
         interval,
+        to_bound(score),
+        to_predicted(score),
         rmse_with_error(&score.whole, 4),
         if common < FEW { "too few".into() } else { rmse_with_error(&score.common, 4) },
         common.to_string(),
     ]
+}
+
+/// `1.02 (0.99 to 1.05)`, or nothing where there is no bound.
+fn to_bound(score: &Score) -> String {
+    match root(&score.to_bound, 0.99) {
+        None => String::new(),
+        Some((ratio, None)) => fixed(ratio, 3),
+        Some((ratio, Some((low, high)))) => format!("{} ({} to {})", fixed(ratio, 3), fixed(low, 3), fixed(high, 3)),
+    }
+}
+
+/// What the method says of its own scatter.
+fn to_predicted(score: &Score) -> String {
+    root(&score.to_predicted, 0.99).filter(|(ratio, _)| *ratio > 0.0).map_or(String::new(), |(ratio, _)| fixed(1.0 / ratio, 3))
 }
 
 /// A count and its share with the standard error of the binomial.

@@ -1,5 +1,6 @@
 //! Scenarios to results: truth-blind measuring, scored against the truth at the end.
 
+mod bounds;
 mod photographs;
 mod scene;
 pub mod views;
@@ -8,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::PhotoError;
 use calibench_measure::{BoardDetector, Configured};
-use calibench_model::{Image, Rejection, Start};
+use calibench_model::{Image, Rejection, Start, Unknowns};
 use calibench_synth::optics::OpticsError;
 use calibench_synth::sensor::SensorError;
 use calibench_synth::stations::StationError;
@@ -133,12 +134,15 @@ impl<'a> Plan<'a> {
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
             Subject::Scene(subject) => {
-                let renderer = subject.renderer()?;
-                self.trials(step, sink, &|number| scene::run_trial(self, subject, &renderer, number))
+                let prepared = scene::Prepared::new(self, subject)?;
+                self.trials(step, sink, &|number| scene::run_trial(self, &prepared, number))
             }
             Subject::Views(subject) => {
-                let prepared = views::Prepared::new(subject)?;
-                self.trials(step, sink, &|number| views::run_trial(self, &prepared, number))
+                let bounds = views::bounds(self, subject)?;
+                // Stations that are drawn anew have their bounds in each trial.
+                let fixed = bounds.as_ref().filter(|_| subject.redraw.is_none());
+                let prepared = views::Prepared::with_bounds(subject, fixed)?;
+                self.trials(step, sink, &|number| views::run_trial(self, &prepared, bounds.as_ref(), number))
             }
         }
     }
@@ -162,6 +166,15 @@ impl<'a> Plan<'a> {
             }
         }
         Ok(())
+    }
+
+    /// What method `index` estimates beside the position.
+    fn unknowns(&self, index: usize) -> Unknowns {
+        self.methods[index].operator.as_ref().map_or_else(|_| Unknowns::default(), |operator| operator.unknowns())
+    }
+
+    fn all_unknowns(&self) -> impl Iterator<Item = Unknowns> {
+        (0..self.methods.len()).map(|index| self.unknowns(index))
     }
 
     /// Every available method on one image: (method, results in the order of `starts`).

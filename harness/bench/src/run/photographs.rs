@@ -71,7 +71,7 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
                 Ok(found) => Outcome::Measured { position: found.position, error: None },
                 Err(rejection) => Outcome::Rejected(rejection),
             };
-            trial.points.push(PointResult { view: view.clone(), target: subject.board.target(index).into(), method, outcome });
+            trial.points.push(PointResult::new(view.clone(), subject.board.target(index), method, outcome));
         }
     }
     Ok(trial)

@@ -11,14 +11,39 @@ use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::{Clipped, Exposure};
 use rand::RngExt;
 
+use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
-use crate::results::{Outcome, PointResult, Trial};
+use crate::results::{PointResult, Trial};
 use crate::scenario::{Phase, Pixels, SceneSubject, Starts};
 
 /// The name of the only view.
 pub const VIEW: &str = "image";
 
-pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, renderer: &Renderer, number: u64) -> Result<Trial, RunError> {
+/// What is the same in all trials.
+pub(super) struct Prepared<'a> {
+    subject: &'a SceneSubject,
+    renderer: Renderer,
+    bounds: Option<TargetBounds>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(super) fn new(plan: &Plan<'_>, subject: &'a SceneSubject) -> Result<Self, RunError> {
+        let (scene, quantised) = (&subject.scene, subject.bits.map_or(0.0, |bits| ((1_u64 << bits) - 1) as f64));
+        let rounding = if quantised > 0.0 { 1.0 / (12.0 * quantised * quantised) } else { 0.0 };
+        let variance = subject.grey_noise * subject.grey_noise + rounding;
+        let size = [scene.width, scene.height];
+        // Drawn pixels are not what a lens makes: the bound is of another image.
+        let bounds = match subject.pixels {
+            Pixels::Area => TargetBounds::new(&subject.imaging, variance, size, plan.scenario.bound_window, plan.all_unknowns())?,
+            Pixels::Centre => None,
+        };
+        Ok(Self { subject, renderer: subject.renderer()?, bounds })
+    }
+}
+
+pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
+    let Prepared { subject, renderer, bounds } = prepared;
+    let (subject, bounds) = (*subject, bounds.as_ref());
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };
     let truth = trial_truth(subject, key);
     let image = trial_picture(subject, renderer, &truth, key)?.image;
@@ -28,17 +53,14 @@ pub(super) fn run_trial(plan: &Plan<'_>, subject: &SceneSubject, renderer: &Rend
     let starts = starts(subject, &truth, key);
     let view: Arc<str> = VIEW.into();
     let targets: Vec<Arc<str>> = truth.targets.iter().map(|target| target.id.as_str().into()).collect();
+    let picture = Picture::from(&truth);
+    let by_target: Vec<BySet> = truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.at))).collect();
     let mut points = Vec::new();
     for (method, results) in plan.measure(&image, &starts) {
-        for ((target, truth), result) in targets.iter().zip(&truth.targets).zip(results) {
-            let outcome = match result {
-                Ok(found) => {
-                    let error = (found.position.x - truth.at.x, found.position.y - truth.at.y);
-                    Outcome::Measured { position: found.position, error: Some(error) }
-                }
-                Err(rejection) => Outcome::Rejected(rejection),
-            };
-            points.push(PointResult { view: view.clone(), target: target.clone(), method, outcome });
+        let unknowns = plan.unknowns(method);
+        for (((target, truth), by_set), result) in targets.iter().zip(&truth.targets).zip(&by_target).zip(results) {
+            let bound = by_set.get(&unknowns).copied().flatten();
+            points.push(PointResult { bound, ..PointResult::scored(view.clone(), target.clone(), method, truth.at, result) });
         }
     }
     Ok(Trial { number, points, missed_views: Vec::new() })

@@ -10,9 +10,11 @@ use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::Exposure;
 use calibench_synth::stations::Station;
 use calibench_synth::view::{TargetTruth, View, Visibility};
+use rayon::prelude::*;
 
+use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
-use crate::results::{Outcome, PointResult, Trial};
+use crate::results::{PointResult, Trial};
 use crate::scenario::ViewsSubject;
 
 /// What is the same in all trials.
@@ -33,6 +35,8 @@ pub struct PreparedView<'a> {
     pub picture: Picture,
     /// The truth about each target of the field.
     pub truth: Vec<TargetTruth>,
+    /// The bound of each target that is measured.
+    bounds: Vec<BySet>,
     name: Arc<str>,
 }
 
@@ -42,11 +46,16 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// A view that cannot be pictured, by the name of its station.
     pub fn new(subject: &'a ViewsSubject) -> Result<Self, RunError> {
-        Self::of(subject, &subject.stations)
+        Self::of(subject, &subject.stations, None)
+    }
+
+    /// As [`Self::new`], with the bounds of `plan`'s methods.
+    pub(super) fn with_bounds(subject: &'a ViewsSubject, bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
+        Self::of(subject, &subject.stations, bounds)
     }
 
     /// Projects the field for `stations`.
-    fn of(subject: &'a ViewsSubject, stations: &'a [Station]) -> Result<Self, RunError> {
+    fn of(subject: &'a ViewsSubject, stations: &'a [Station], bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
         let size = subject.camera.size();
         let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
         let margin = subject.imaging.optics.reach();
@@ -54,7 +63,12 @@ impl<'a> Prepared<'a> {
             let view = View { field: &subject.field, camera: &subject.camera, pose: &station.pose };
             let failed = |source| RunError::View { station: station.name.clone(), source };
             let (picture, truth) = (view.picture(margin).map_err(failed)?, view.truth(margin).map_err(failed)?);
-            Ok(PreparedView { station, picture, truth, name: station.name.as_str().into() })
+            let bound = |truth: &TargetTruth| match (bounds, truth.at) {
+                (Some(bounds), Some(at)) if truth.visibility == Visibility::Visible => bounds.of(&picture, at),
+                _ => BySet::new(),
+            };
+            let bounds = truth.par_iter().map(bound).collect();
+            Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into() })
         };
         let views = stations.iter().map(view).collect::<Result<Vec<_>, RunError>>()?;
         let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
@@ -80,14 +94,21 @@ impl<'a> Prepared<'a> {
     }
 }
 
-pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
+/// What bounds the methods of `plan` in the images of `subject`.
+pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<TargetBounds>, RunError> {
+    let size = subject.camera.size();
+    let size = [size.width as usize, size.height as usize];
+    Ok(TargetBounds::new(&subject.imaging, 0.0, size, plan.scenario.bound_window, plan.all_unknowns())?)
+}
+
+pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option<&TargetBounds>, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
     let subject = prepared.subject;
     match &subject.redraw {
         None => run_views(plan, prepared, key),
         Some(drawing) => {
             let stations = drawing.generate(&subject.field, &subject.camera, key)?;
-            run_views(plan, &Prepared::of(subject, &stations)?, key)
+            run_views(plan, &Prepared::of(subject, &stations, bounds)?, key)
         }
     }
 }
@@ -103,15 +124,11 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
         let starts: Vec<Start> = seen.iter().map(|point| point.start).collect();
         for (method, results) in plan.measure(&image, &starts) {
+            let unknowns = plan.unknowns(method);
             let points = seen.iter().zip(results).map(|(point, result)| {
-                let outcome = match result {
-                    Ok(found) => {
-                        let error = (found.position.x - point.truth.x, found.position.y - point.truth.y);
-                        Outcome::Measured { position: found.position, error: Some(error) }
-                    }
-                    Err(rejection) => Outcome::Rejected(rejection),
-                };
-                PointResult { view: view.name.clone(), target: prepared.targets[point.target].clone(), method, outcome }
+                let bound = view.bounds[point.target].get(&unknowns).copied().flatten();
+                let target = prepared.targets[point.target].clone();
+                PointResult { bound, ..PointResult::scored(view.name.clone(), target, method, point.truth, result) }
             });
             by_method[method].extend(points);
         }

@@ -23,6 +23,9 @@ use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject,
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
 
+/// Side of the bound's window where the file gives none, px.
+const BOUND_WINDOW: usize = 15;
+
 /// The keys of the file's top level that are tables of their own.
 pub const TOP_TABLES: [&str; 12] =
     ["sweep", "method", "scene", "figure", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
@@ -159,6 +162,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let mut trials = head.trials.map_or(1, |trials| trials.into_inner().0);
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));
     let notes = head.notes.unwrap_or_default();
+    let bound_window = head.bound_window.map_or(BOUND_WINDOW, |window| window.0);
     let scenario = Scenario {
         name: name.to_owned(),
         why,
@@ -167,6 +171,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         seed: head.seed.0,
         trials,
         methods,
+        bound_window,
         subject,
         sweep: None,
         text: text.to_owned(),

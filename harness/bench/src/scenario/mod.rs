@@ -50,6 +50,8 @@ pub struct Scenario {
     pub trials: u64,
     /// The methods, with distinct labels.
     pub methods: Vec<Configured>,
+    /// Side of the window to which the Cramér-Rao bound belongs, px.
+    pub bound_window: usize,
     /// What is measured.
     pub subject: Subject,
     /// Its sweep, if it has one; all else is then that of the first cell.

@@ -147,6 +147,8 @@ pub struct Head {
     pub notes: Option<Vec<String>>,
     /// Seed of all random numbers, chosen before looking at results and never changed to pass.
     pub seed: Seed,
+    /// Side of the window to which the Cramér-Rao bound of each target belongs, px, odd: no operator that sees no more can be better. Default 15.
+    pub bound_window: Option<OddWindow>,
     /// Number of trials; each has its own phase, noise and pointing. Default 1.
     #[schemars(with = "Option<Trials>")]
     pub trials: Option<Spanned<Trials>>,
@@ -201,6 +203,37 @@ impl JsonSchema for Bits {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "enum": [8, 12, 16] })
+    }
+}
+
+/// An odd side of a window, px.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "i64")]
+pub struct OddWindow(pub usize);
+
+impl TryFrom<i64> for OddWindow {
+    type Error = String;
+
+    fn try_from(side: i64) -> Result<Self, String> {
+        if (3..=201).contains(&side) && side % 2 == 1 {
+            Ok(Self(side as usize))
+        } else {
+            Err(format!("expected an odd number from 3 to 201, found {side}"))
+        }
+    }
+}
+
+impl JsonSchema for OddWindow {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "OddWindow".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "integer", "minimum": 3, "maximum": 201, "not": { "multipleOf": 2 } })
     }
 }
 

@@ -22,7 +22,10 @@ const APART: f64 = 4.0;
 
 const MARKS: [Mark; 5] = [Mark::Circle, Mark::Triangle, Mark::Cross, Mark::Diamond, Mark::Square];
 
-/// The look of a curve; colour and mark together are no other curve's among the first 30.
+/// After the palette, before it starts anew.
+const GREY: RGBColor = RGBColor(90, 90, 90);
+
+/// The look of a curve; colour and mark together are no other curve's among the first 35.
 #[derive(Clone, Copy)]
 struct Look {
     colour: RGBColor,
@@ -32,7 +35,9 @@ struct Look {
 
 impl Look {
     fn of(index: usize) -> Self {
-        Self { colour: COLOURS[index % COLOURS.len()], mark: MARKS[index % MARKS.len()], dashed: index / COLOURS.len() % 2 == 1 }
+        let cycle = COLOURS.len() + 1;
+        let colour = COLOURS.get(index % cycle).copied().unwrap_or(GREY);
+        Self { colour, mark: MARKS[index % MARKS.len()], dashed: index / cycle % 2 == 1 }
     }
 }
 

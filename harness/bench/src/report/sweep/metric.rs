@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 
-use crate::score::{Pooled, Score};
+use crate::score::{Pooled, Score, root};
 
 /// What is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -13,6 +13,10 @@ pub enum Metric {
     Bias,
     /// Their 2D deviation about the mean error, px
     Scatter,
+    /// Root mean squared error in units of the Cramér-Rao bound of each point
+    Ratio,
+    /// Root mean squared error in units of the method's own standard deviation of each point
+    Predicted,
     /// Share of points measured more than 1 px from the truth, %
     Lost,
     /// Share of points that the operator rejected, %
@@ -37,6 +41,8 @@ impl Metric {
             Self::Rmse => "RMSE, px",
             Self::Bias => "bias (length), px",
             Self::Scatter => "scatter, px",
+            Self::Ratio => "RMSE / bound",
+            Self::Predicted => "RMSE / predicted",
             Self::Lost => "lost, %",
             Self::Rejected => "rejected, %",
         }
@@ -48,6 +54,8 @@ impl Metric {
             Self::Rmse => ("rmse", "px"),
             Self::Bias => ("bias", "px"),
             Self::Scatter => ("scatter", "px"),
+            Self::Ratio => ("ratio", ""),
+            Self::Predicted => ("predicted", ""),
             Self::Lost => ("lost", "%"),
             Self::Rejected => ("rejected", "%"),
         }
@@ -59,6 +67,8 @@ impl Metric {
             Self::Rmse => Some(Estimate { value: score.kept.rmse()?, interval: score.kept.rmse_interval() }),
             Self::Bias => bias(score),
             Self::Scatter => scatter(score),
+            Self::Ratio => ratio(&score.to_bound),
+            Self::Predicted => ratio(&score.to_predicted),
             Self::Lost => share(score.lost, score.points()),
             Self::Rejected => share(score.rejected.values().sum(), score.points()),
         }
@@ -97,6 +107,10 @@ fn scatter(score: &Score) -> Option<Estimate> {
         None
     };
     Some(Estimate { value, interval })
+}
+
+fn ratio(squares: &Pooled) -> Option<Estimate> {
+    root(squares, LEVEL).map(|(value, interval)| Estimate { value, interval })
 }
 
 /// A share in %, with the interval of Wilson (1927): it takes points as independent of each other.
