@@ -14,3 +14,4 @@ mod opencv_gate;
 mod photographs;
 mod project;
 mod schema;
+mod sweeps;
