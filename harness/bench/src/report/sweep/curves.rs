@@ -15,7 +15,7 @@ const PANEL: (u32, u32) = (500, 360);
 const LEFT: u32 = 78;
 const TOP: u32 = 50;
 const RIGHT: u32 = 20;
-const BOTTOM: u32 = 62;
+const BOTTOM: u32 = 68;
 const LINE: u32 = 26;
 /// From one curve's marks to the next one's, px: bars that stand side by side are told apart.
 const APART: f64 = 4.0;
@@ -65,7 +65,7 @@ pub fn curves(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
     let mut canvas = Canvas::new(across * width, rows * height + (legend + 1) * LINE);
     for (index, (title, curves)) in (0_u32..).zip(&panels) {
         let origin = (index % across * width + LEFT, index / across * height + TOP);
-        frame(&mut canvas, origin, &places, &scale, (title, &axis_title(loaded, layout), layout.metric.title()));
+        frame(&mut canvas, origin, &places, &scale, layout.metric.reference(), (title, &axis_title(loaded, layout), layout.metric.title()));
         curves.iter().for_each(|curve| draw(&mut canvas, origin, &scale, curve));
     }
     let by = format!("{}{}; bars: 95 %", title(loaded, layout.by), layout.held(loaded));
@@ -101,8 +101,15 @@ fn panel_curves(loaded: &LoadedSweep, layout: &Layout, places: &Places, at: &At)
     shown.into_iter().enumerate().map(curve).collect()
 }
 
-/// Frame, grid, ticks and titles of a panel whose upper left corner is `origin`.
-fn frame(canvas: &mut Canvas, (x, y): (u32, u32), places: &Places, scale: &Scale, (title, below, left): (&str, &str, &str)) {
+/// Frame, grid, ticks, the reference and titles of a panel whose upper left corner is `origin`.
+fn frame(
+    canvas: &mut Canvas,
+    (x, y): (u32, u32),
+    places: &Places,
+    scale: &Scale,
+    reference: Option<f64>,
+    (title, below, left): (&str, &str, &str),
+) {
     let (left_px, top, right, bottom) = (x as i32, y as i32, (x + PANEL.0) as i32, (y + PANEL.1) as i32);
     canvas.paint(|area: &Area<'_>| {
         for (value, label) in scale.ticks() {
@@ -113,10 +120,14 @@ fn frame(canvas: &mut Canvas, (x, y): (u32, u32), places: &Places, scale: &Scale
         for (part, label) in places.ticks(PANEL.0) {
             let at = left_px + (part * f64::from(PANEL.0)).round() as i32;
             area.draw(&PathElement::new([(at, top), (at, bottom)], RGBColor(225, 225, 225))).ok();
-            write(area, label, (at, bottom + 14), HPos::Center);
+            write(area, label, (at, bottom + 20), HPos::Center);
+        }
+        if let Some(value) = reference {
+            let at = bottom - (scale.part(value) * f64::from(PANEL.1)).round() as i32;
+            area.draw(&PathElement::new([(left_px, at), (right, at)], BLACK)).ok();
         }
         area.draw(&Rectangle::new([(left_px, top), (right, bottom)], BLACK)).ok();
-        write(area, below, ((left_px + right) / 2, bottom + 38), HPos::Center);
+        write(area, below, ((left_px + right) / 2, bottom + 44), HPos::Center);
         write(area, left, (left_px, top - 14), HPos::Left);
         write(area, title, (right, top - 14), HPos::Right);
     });

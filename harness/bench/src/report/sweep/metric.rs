@@ -61,6 +61,11 @@ impl Metric {
         }
     }
 
+    /// Where it should be: a line across the plot.
+    pub fn reference(self) -> Option<f64> {
+        matches!(self, Self::Ratio | Self::Predicted).then_some(1.0)
+    }
+
     /// The figure of a method in a cell; `None` where no point says anything of it.
     pub fn of(self, score: &Score) -> Option<Estimate> {
         match self {
