@@ -81,7 +81,7 @@ fn each_mistake_in_a_sweep_is_one_diagnostic_with_its_place() {
         ("\"optics.blur\" = [0.5, 1, 0.50]", "7:26", &["listed twice"]),
         ("\"optics.blur\" = [0.5, -1]", "7:23", &["number from 0", "found -1", "in the cell blur=-1"]),
         ("\"method.window\" = [7, 8]", "7:23", &["odd"]),
-        ("\"scene.polygon.a.vertices\" = [[[20, 20], [60, 20],\n [60, -50, 1]]]", "8:2", &["two numbers [x, y], found 3"]),
+        ("\"scene.polygon.a.vertices\" = [[[20, 20], [60, 20],\n [60, \"x\"]]]", "8:7", &["string \"x\"", "a number"]),
         ("\"optics.blur\" = { from = 0, to = 3, count = 4, scale = \"log\" }", "7:26", &["ends above 0"]),
         ("\"optics.blur\" = { from = 1, to = 1, count = 4 }", "7:34", &["ends where it begins"]),
         ("\"optics.blur\" = { from = 1, to = 2, cont = 4 }", "7:37", &["unknown key `cont` in the range", "did you mean `count`"]),
