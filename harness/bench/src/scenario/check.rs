@@ -37,7 +37,7 @@ pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 /// # Errors
 /// Every mistake with its place in the text.
 pub fn parse(name: &str, file: &str, text: &str, registry: &Registry) -> Result<Scenario, Problems> {
-    File { name, file, text, registry }.parse(None)
+    File { name, path: file, text, registry }.parse(None)
 }
 
 /// Reads cell `index` of a swept scenario: the scenario with the cell's values in their places.
@@ -45,14 +45,14 @@ pub fn parse(name: &str, file: &str, text: &str, registry: &Registry) -> Result<
 /// # Errors
 /// None for a scenario that [`parse`] returned, unless files that it names have changed since.
 pub fn parse_cell(scenario: &Scenario, sweep: &Sweep, index: usize, registry: &Registry) -> Result<Scenario, Problems> {
-    File { name: &scenario.name, file: &sweep.file, text: &scenario.text, registry }.parse(Some(index))
+    File { name: &scenario.name, path: &sweep.file, text: &scenario.text, registry }.parse(Some(index))
 }
 
 /// A file to be read.
 #[derive(Clone, Copy)]
 struct File<'a> {
     name: &'a str,
-    file: &'a str,
+    path: &'a str,
     text: &'a str,
     registry: &'a Registry,
 }
@@ -66,7 +66,7 @@ impl File<'_> {
             Some(scenario) if problems.is_empty() => Ok(scenario),
             _ => {
                 problems.sort_by_key(|problem| problem.span.start);
-                Err(Problems { file: self.file.to_owned(), text: self.text.to_owned(), problems })
+                Err(Problems { file: self.path.to_owned(), text: self.text.to_owned(), problems })
             }
         }
     }
@@ -79,7 +79,7 @@ impl File<'_> {
         }
         let mut root = root.into_inner();
         let swept = root.contains_key("sweep");
-        match sweep::read::take(&mut root, self.text, self.file, problems) {
+        match sweep::read::take(&mut root, self.text, self.path, problems) {
             Some(sweep) => self.cells(&root, sweep, cell, problems),
             None if swept => None,
             None => read(self, root, false, problems),
@@ -117,7 +117,7 @@ const MOST_PROBLEMS: usize = 10;
 
 fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Problem>) -> Option<Scenario> {
     let File { name, text, registry, .. } = file;
-    let folder = Path::new(file.file).parent().unwrap_or(Path::new(""));
+    let folder = Path::new(file.path).parent().unwrap_or(Path::new(""));
     let mut root = Section { name: "the scenario", span: 0..text.lines().next().map_or(0, str::len), table: root };
     let listed = root.take_tables("method", "[[method]]", problems);
     let methods_missing = listed.as_ref().is_none_or(Vec::is_empty);

@@ -91,8 +91,8 @@ impl Scale {
         let raw = (self.high - self.low) / 5.0;
         let decade = 10_f64.powf(raw.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|f| f * decade).find(|step| *step >= raw).unwrap_or(raw);
-        let first = (self.low / step).ceil() as i64;
-        (first..).map(|index| index as f64 * step).take_while(|value| *value <= self.high).collect()
+        let (first, last) = ((self.low / step).ceil() as i64, (self.high / step).floor() as i64);
+        (first..=last).map(|index| index as f64 * step).collect()
     }
 
     fn factors(&self) -> Vec<f64> {

@@ -4,6 +4,7 @@ use std::io::Write;
 
 use super::layout::{Dimension, Layout};
 use super::load::LoadedSweep;
+use crate::score::Score;
 
 /// Writes what a plot shows as CSV, one row a point: the value of each swept key, method, figure, its 95 % interval, points and trials.
 ///
@@ -25,7 +26,7 @@ pub fn write_numbers(output: impl Write, loaded: &LoadedSweep, layout: &Layout) 
                 let mut row: Vec<String> = loaded.sweep.values(cell).iter().map(|value| value.text.clone()).collect();
                 row.extend([loaded.methods[method].name.clone(), metric.into(), unit.into()]);
                 row.extend([text(found.map(|found| found.value)), text(interval.map(|ends| ends.0)), text(interval.map(|ends| ends.1))]);
-                row.push(loaded.score(cell, method).map_or(0, |score| score.points()).to_string());
+                row.push(loaded.score(cell, method).map_or(0, Score::points).to_string());
                 row.push(loaded.cells[cell].trials.to_string());
                 csv.write_record(&row)?;
             }

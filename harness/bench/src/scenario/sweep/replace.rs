@@ -55,7 +55,7 @@ fn in_value<'i>(old: &mut DeValue<'i>, parts: &[&'i str], span: &Range<usize>, v
 fn in_list<'i>(list: &mut DeArray<'i>, parts: &[&'i str], span: &Range<usize>, value: &Spanned<DeValue<'i>>) -> bool {
     let Some((first, rest)) = parts.split_first() else { return false };
     if let Ok(index) = first.parse::<usize>() {
-        return match (list.iter_mut().nth(index), rest.is_empty()) {
+        return match (list.get_mut(index), rest.is_empty()) {
             (Some(element), true) => {
                 *element = value.clone();
                 true
