@@ -15,3 +15,4 @@ mod photographs;
 mod project;
 mod render;
 mod schema;
+mod sweeps;

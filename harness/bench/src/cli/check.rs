@@ -148,6 +148,14 @@ fn measure(context: &Context<'_>, names: &[String]) -> Result<Vec<Measured>, Fai
     let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
     let mut measured = Vec::new();
     for scenario in scenarios {
+        if let Some(sweep) = &scenario.sweep {
+            print(&format!(
+                "{}: a sweep of {} cells, not compared: bless a scenario of the cell that matters\n",
+                scenario.name,
+                sweep.cells()
+            ))?;
+            continue;
+        }
         // The gate compares errors with errors.
         let plan = Plan { bounds: false, ..Plan::new(&scenario, context.toolbox.detector.as_deref(), context.data()?) };
         if let Some(why) = plan.missing() {

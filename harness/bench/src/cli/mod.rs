@@ -9,6 +9,7 @@ mod diff;
 mod list;
 mod measure;
 mod output;
+mod plot;
 mod print;
 mod progress;
 mod reading;
@@ -71,6 +72,8 @@ enum Command {
     Print(print::Print),
     /// Write reports from records alone; runs nothing
     Report(report::Report),
+    /// Draw the records of a sweep as curves or maps, with the numbers beside them; runs nothing
+    Plot(plot::Plot),
     /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
     Check(check::Check),
     /// Accept today's accuracy as the baseline: lists what gets worse, and asks
@@ -133,6 +136,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Print(print) => print.run(&context),
         Command::Render(render) => render.run(&context),
         Command::Report(report) => report.run(&context),
+        Command::Plot(plot) => plot.run(&context),
         Command::Check(check) => check.run(&context),
         Command::Bless(bless) => bless.run(&context),
         Command::Measure(measure) => measure.run(&context),

@@ -53,6 +53,9 @@ impl Render {
             };
             Ok(())
         })?;
+        if let Some(sweep) = &scenario.sweep {
+            notes.insert(0, format!("of the sweep's {} cells the first: {}", sweep.cells(), sweep.label(0)));
+        }
         print(&format!("{}\n{}", self.output.display(), notes.iter().map(|note| format!("  {note}\n")).collect::<String>()))
     }
 

@@ -10,8 +10,8 @@ use super::Failure;
 use super::context::Context;
 use super::progress::Progress;
 use crate::run::Plan;
-use crate::scenario::{Scenario, Subject};
-use crate::store;
+use crate::scenario::{Scenario, Subject, Sweep};
+use crate::store::{self, SweepPlan};
 
 #[derive(Args)]
 pub struct Run {
@@ -63,6 +63,10 @@ impl Run {
         let writer = FolderWriter::new(&context.places()?.records)?;
         let revision = context.revision()?;
         for scenario in &scenarios {
+            if let Some(sweep) = &scenario.sweep {
+                self.sweep(context, scenario, sweep, &methods, (&writer, &revision))?;
+                continue;
+            }
             let mut plan = Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?);
             if !methods.is_empty() {
                 plan.methods = &methods;
@@ -74,6 +78,28 @@ impl Run {
             store::run(&writer, &mut plan, &revision, &|| progress.step())?;
             progress.finish(&summary(&plan, started.elapsed().as_secs_f64()));
         }
+        Ok(())
+    }
+
+    fn sweep(
+        &self,
+        context: &Context<'_>,
+        scenario: &Scenario,
+        sweep: &Sweep,
+        methods: &[Configured],
+        (writer, revision): (&FolderWriter, &str),
+    ) -> Result<(), Failure> {
+        if sweep.changes_methods() && !methods.is_empty() {
+            return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
+        }
+        let Changes { seed, trials, .. } = self.changes;
+        let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
+        let plan = SweepPlan { scenario, sweep, methods, seed, trials, detector, data: context.data()?, registry };
+        let (started, cells) = (Instant::now(), sweep.cells());
+        let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
+        store::run_sweep(writer, &plan, revision, &|| progress.step())?;
+        let trials = trials.unwrap_or(scenario.trials);
+        progress.finish(&format!("{cells} cells of {trials} trials in {:.1} s", started.elapsed().as_secs_f64()));
         Ok(())
     }
 }

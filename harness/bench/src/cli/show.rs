@@ -52,6 +52,13 @@ fn card(scenario: &Scenario) -> String {
     // Writing to a String cannot fail.
     let _ = writeln!(text, "why = {}\nsource = {}", quoted(&scenario.why), quoted(&scenario.source));
     let _ = writeln!(text, "seed = {}\ntrials = {}", scenario.seed, scenario.trials);
+    if let Some(sweep) = &scenario.sweep {
+        let _ = writeln!(text, "\n[sweep] # {} cells; what follows is the first", sweep.cells());
+        for axis in &sweep.axes {
+            let values: Vec<&str> = axis.values.iter().map(|value| value.text.as_str()).collect();
+            let _ = writeln!(text, "\"{}\" = [{}]", axis.path, values.join(", "));
+        }
+    }
     match &scenario.subject {
         Subject::Scene(subject) => scene(&mut text, subject),
         Subject::Views(subject) => views(&mut text, subject),

@@ -123,7 +123,7 @@ impl Field {
     }
 }
 
-type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
 
 /// A round number of times by which arrows are lengthened so that the longest is about `room` px of the image.
 fn stretch(room: f64, longest: f64) -> f64 {
@@ -133,7 +133,7 @@ fn stretch(room: f64, longest: f64) -> f64 {
 }
 
 /// Light to dark, readable in grey and without colour vision: a part of viridis turned round, so that nothing is nearly white.
-fn shade(part: f64) -> RGBColor {
+pub(super) fn shade(part: f64) -> RGBColor {
     const STOPS: [(f64, f64, f64); 5] =
         [(250.0, 248.0, 220.0), (180.0, 222.0, 130.0), (53.0, 183.0, 121.0), (49.0, 104.0, 142.0), (68.0, 1.0, 84.0)];
     let scaled = part.clamp(0.0, 1.0) * 4.0;
@@ -175,7 +175,7 @@ fn arrow(area: &Area<'_>, from: (i32, i32), to: (i32, i32)) {
     }
 }
 
-fn write(area: &Area<'_>, text: &str, at: (i32, i32), side: HPos) {
+pub(super) fn write(area: &Area<'_>, text: &str, at: (i32, i32), side: HPos) {
     let style = ("sans-serif", 16).into_font().color(&BLACK).pos(Pos::new(side, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).ok();
 }

@@ -88,7 +88,7 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
 pub const MOST_TARGETS: usize = 24;
 
 /// The kinds of a testfield's targets, if there are too many to be listed one by one.
-fn groups(scenario: &Scenario) -> Groups {
+pub(super) fn groups(scenario: &Scenario) -> Groups {
     match &scenario.subject {
         Subject::Views(views) if views.field.targets.len() > MOST_TARGETS => {
             views.field.targets.iter().map(|target| (target.id.as_str().into(), target.kind.name().into())).collect()
@@ -102,8 +102,10 @@ pub fn recorded(records: &Path) -> Vec<String> {
     let mut names = Vec::new();
     let mut folders = vec![(records.to_owned(), String::new())];
     while let Some((folder, name)) = folders.pop() {
-        if folder.join(RECORDS).is_file() {
+        if folder.join(SCENARIO).is_file() {
+            // The cells of a sweep lie below it.
             names.push(name.clone());
+            continue;
         }
         for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten().filter(|entry| entry.path().is_dir()) {
             let part = entry.file_name().to_string_lossy().into_owned();

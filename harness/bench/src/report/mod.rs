@@ -10,6 +10,7 @@ mod photographs;
 mod published_section;
 mod scene_figures;
 mod scores_section;
+pub mod sweep;
 
 use std::fs;
 use std::io;
@@ -20,7 +21,7 @@ use calibench_measure::Registry;
 use thiserror::Error;
 
 use crate::published::{self, PublishedError};
-use crate::scenario::Subject;
+use crate::scenario::{Scenario, Subject};
 pub use canvas::Canvas;
 pub use field::{Field, plain};
 pub use load::{LoadError, Loaded, load, recorded};
@@ -77,22 +78,56 @@ pub enum Written {
 /// # Errors
 /// Records or tables that cannot be read; the older report is then as it was.
 pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Registry) -> Result<Written, ReportError> {
-    let loaded = scenarios.iter().map(|name| load(&places.records, name, registry)).collect::<Result<Vec<_>, _>>()?;
+    let of = |name: &String| {
+        Ok::<_, LoadError>(match sweep::load(&places.records, name, registry)? {
+            Some(sweep) => Either::Sweep(Box::new(sweep)),
+            None => Either::Plain(Box::new(load(&places.records, name, registry)?)),
+        })
+    };
+    let all = scenarios.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let loaded: Vec<&Loaded> = all.iter().filter_map(Either::plain).collect();
     let page_path = places.reports.join(family).join(PAGE);
-    if page_path.is_file() && loaded.iter().all(|loaded| loaded.unavailable().is_some()) {
+    if page_path.is_file() && all.iter().all(Either::is_unavailable) {
         return Ok(Written::Kept(page_path));
     }
     let tables = published::tables(&places.published, family)?;
     let mut page = Page::new(family);
-    let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).ok_or_else(|| LoadError::None(name.clone()));
+    let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
     for (_, table) in &tables {
         let beside = table.beside.iter().map(by_name).collect::<Result<Vec<_>, _>>()?;
         page.text.push_str(&published_section::section(table, by_name(&table.scenario)?, &beside));
     }
-    loaded.iter().for_each(|loaded| page.scenario(loaded));
+    for one in &all {
+        match one {
+            Either::Plain(loaded) => page.scenario(loaded),
+            Either::Sweep(loaded) => page.sweep(loaded),
+        }
+    }
     let writer = FolderWriter::new(&places.reports)?;
     writer.replace(family, |folder| page.write(folder))?;
     Ok(Written::New(page_path))
+}
+
+/// What the records of a scenario are.
+enum Either {
+    Plain(Box<Loaded>),
+    Sweep(Box<sweep::LoadedSweep>),
+}
+
+impl Either {
+    fn plain(&self) -> Option<&Loaded> {
+        match self {
+            Self::Plain(loaded) => Some(loaded),
+            Self::Sweep(_) => None,
+        }
+    }
+
+    fn is_unavailable(&self) -> bool {
+        match self {
+            Self::Plain(loaded) => loaded.unavailable().is_some(),
+            Self::Sweep(loaded) => loaded.is_unavailable(),
+        }
+    }
 }
 
 /// Writes the page that lists the reports that are there.
@@ -150,22 +185,34 @@ impl Page {
         Self { text, pictures: Vec::new() }
     }
 
-    fn scenario(&mut self, loaded: &Loaded) {
-        let scenario = &loaded.scenario;
-        let stem = scenario.name.split_once('/').map_or(scenario.name.as_str(), |(_, rest)| rest).replace('/', "-");
+    /// The heading of a scenario; the stem of its pictures' names.
+    fn head(&mut self, scenario: &Scenario, deviations: &str) -> String {
         self.text.push_str(&format!(
             "## Scenario `{}`\n\n{}\n\nSource: {}.\n\n",
             scenario.name,
             scenario.why.trim(),
             scenario.source.trim_end_matches('.')
         ));
-        self.text.push_str(&deviations(loaded));
+        self.text.push_str(deviations);
         for note in &scenario.notes {
             self.text.push_str(&format!("- {}\n", note.split_whitespace().collect::<Vec<_>>().join(" ")));
         }
         if !scenario.notes.is_empty() {
             self.text.push('\n');
         }
+        scenario.name.split_once('/').map_or(scenario.name.as_str(), |(_, rest)| rest).replace('/', "-")
+    }
+
+    fn sweep(&mut self, loaded: &sweep::LoadedSweep) {
+        let stem = self.head(&loaded.scenario, &sweep::deviations(loaded));
+        let (text, picture) = sweep::section(loaded, &stem);
+        self.text.push_str(&text);
+        self.pictures.extend(picture.map(|picture| (format!("{stem}.png"), picture)));
+    }
+
+    fn scenario(&mut self, loaded: &Loaded) {
+        let scenario = &loaded.scenario;
+        let stem = self.head(scenario, &deviations(loaded));
         match &scenario.subject {
             Subject::Photographs(_) => {
                 let (text, pictures) = photographs::section(loaded);

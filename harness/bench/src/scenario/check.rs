@@ -15,6 +15,7 @@ use super::methods::methods;
 use super::problem::{Problem, Problems};
 use super::section::Section;
 use super::sensor::Surroundings;
+use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, Position, SceneWire, TargetWire};
 use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject, figure};
@@ -26,8 +27,8 @@ const MOST_PIXELS: usize = 400_000_000;
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 11] =
-    ["method", "scene", "figure", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
+pub const TOP_TABLES: [&str; 12] =
+    ["sweep", "method", "scene", "figure", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
 /// The keys of `[scene]` that are tables of their own.
 pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 
@@ -36,25 +37,88 @@ pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 /// # Errors
 /// Every mistake with its place in the text.
 pub fn parse(name: &str, file: &str, text: &str, registry: &Registry) -> Result<Scenario, Problems> {
-    let mut problems = Vec::new();
-    let folder = Path::new(file).parent().unwrap_or(Path::new(""));
-    let scenario = read(name, folder, text, registry, &mut problems);
-    match scenario {
-        Some(scenario) if problems.is_empty() => Ok(scenario),
-        _ => {
-            problems.sort_by_key(|problem| problem.span.start);
-            Err(Problems { file: file.to_owned(), text: text.to_owned(), problems })
+    File { name, path: file, text, registry }.parse(None)
+}
+
+/// Reads cell `index` of a swept scenario: the scenario with the cell's values in their places.
+///
+/// # Errors
+/// None for a scenario that [`parse`] returned, unless files that it names have changed since.
+pub fn parse_cell(scenario: &Scenario, sweep: &Sweep, index: usize, registry: &Registry) -> Result<Scenario, Problems> {
+    File { name: &scenario.name, path: &sweep.file, text: &scenario.text, registry }.parse(Some(index))
+}
+
+/// A file to be read.
+#[derive(Clone, Copy)]
+struct File<'a> {
+    name: &'a str,
+    path: &'a str,
+    text: &'a str,
+    registry: &'a Registry,
+}
+
+impl File<'_> {
+    /// The scenario, or one cell of it.
+    fn parse(self, cell: Option<usize>) -> Result<Scenario, Problems> {
+        let mut problems = Vec::new();
+        let scenario = self.tables(cell, &mut problems);
+        match scenario {
+            Some(scenario) if problems.is_empty() => Ok(scenario),
+            _ => {
+                problems.sort_by_key(|problem| problem.span.start);
+                Err(Problems { file: self.path.to_owned(), text: self.text.to_owned(), problems })
+            }
         }
+    }
+
+    fn tables(self, cell: Option<usize>, problems: &mut Vec<Problem>) -> Option<Scenario> {
+        let (root, errors) = DeTable::parse_recoverable(self.text);
+        if !errors.is_empty() {
+            problems.extend(errors.iter().map(|error| Problem::new(error.span().unwrap_or(0..0), error.message())));
+            return None;
+        }
+        let mut root = root.into_inner();
+        let swept = root.contains_key("sweep");
+        match sweep::read::take(&mut root, self.text, self.path, problems) {
+            Some(sweep) => self.cells(&root, sweep, cell, problems),
+            None if swept => None,
+            None => read(self, root, false, problems),
+        }
+    }
+
+    /// Checks every cell, or one. The scenario is that of the first, with the sweep beside it.
+    fn cells(self, root: &DeTable<'_>, sweep: Sweep, cell: Option<usize>, problems: &mut Vec<Problem>) -> Option<Scenario> {
+        let mut first = None;
+        for index in cell.map_or(0..sweep.cells(), |index| index..index + 1) {
+            let mut found = Vec::new();
+            let table = sweep.replaced(root, index, self.registry, &mut found);
+            let scenario = if found.is_empty() { read(self, table, true, &mut found) } else { None };
+            let plain = index == 0;
+            for problem in found {
+                if !problems.iter().any(|known| known.span == problem.span && known.message == problem.message) {
+                    let help =
+                        problem.help.clone().filter(|_| plain).or_else(|| (!plain).then(|| format!("in the cell {}", sweep.label(index))));
+                    problems.push(Problem { help, ..problem });
+                }
+            }
+            first = first.or(scenario);
+            // What is wrong everywhere is said once; what is wrong here and there is not said a thousand times.
+            if problems.len() >= MOST_PROBLEMS {
+                break;
+            }
+        }
+        let sweep = Some(sweep).filter(|_| cell.is_none());
+        first.map(|scenario| Scenario { sweep, ..scenario })
     }
 }
 
-fn read(name: &str, folder: &Path, text: &str, registry: &Registry, problems: &mut Vec<Problem>) -> Option<Scenario> {
-    let (root, errors) = DeTable::parse_recoverable(text);
-    if !errors.is_empty() {
-        problems.extend(errors.iter().map(|error| Problem::new(error.span().unwrap_or(0..0), error.message())));
-        return None;
-    }
-    let mut root = Section { name: "the scenario", span: 0..text.lines().next().map_or(0, str::len), table: root.into_inner() };
+/// Cells are not checked further once there are this many problems.
+const MOST_PROBLEMS: usize = 10;
+
+fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Problem>) -> Option<Scenario> {
+    let File { name, text, registry, .. } = file;
+    let folder = Path::new(file.path).parent().unwrap_or(Path::new(""));
+    let mut root = Section { name: "the scenario", span: 0..text.lines().next().map_or(0, str::len), table: root };
     let listed = root.take_tables("method", "[[method]]", problems);
     let methods_missing = listed.as_ref().is_none_or(Vec::is_empty);
     let scene = root.take_table("scene", "[scene]", problems);
@@ -95,7 +159,7 @@ fn read(name: &str, folder: &Path, text: &str, registry: &Registry, problems: &m
     };
     let (head, subject) = (head?, subject?);
     let trials_span = head.trials.as_ref().map(Spanned::span);
-    let trials = head.trials.map_or(1, |trials| trials.into_inner().0);
+    let mut trials = head.trials.map_or(1, |trials| trials.into_inner().0);
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));
     let notes = head.notes.unwrap_or_default();
     let bound_window = head.bound_window.map_or(BOUND_WINDOW, |window| window.0);
@@ -109,13 +173,18 @@ fn read(name: &str, folder: &Path, text: &str, registry: &Registry, problems: &m
         methods,
         bound_window,
         subject,
+        sweep: None,
         text: text.to_owned(),
     };
+    if in_sweep && scenario.is_deterministic() {
+        // Noise may be swept from nothing: one trial says all of such a cell.
+        trials = 1;
+    }
     if trials > 1 && scenario.is_deterministic() {
         let problem = Problem::new(trials_span.unwrap_or(0..0), format!("{trials} trials of a scenario in which nothing is random"));
         problems.push(problem.help("expected 1, or `grey_noise`, `phase = \"uniform\"` or [scene.pointing]"));
     }
-    Some(scenario)
+    Some(Scenario { trials, ..scenario })
 }
 
 fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> String {

@@ -11,6 +11,7 @@ pub mod schema;
 mod section;
 pub mod sensor;
 pub mod stations;
+pub mod sweep;
 pub mod testfield;
 mod views;
 mod wire;
@@ -28,9 +29,10 @@ use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
 pub use crate::imaging::Imaging;
-pub use check::parse;
+pub use check::{parse, parse_cell};
 pub use problem::{Problem, Problems};
 pub use stations::StationPlan;
+pub use sweep::Sweep;
 pub use testfield::Unit;
 pub use wire::{Phase, Pixels};
 
@@ -54,6 +56,8 @@ pub struct Scenario {
     pub bound_window: usize,
     /// What is measured.
     pub subject: Subject,
+    /// Its sweep, if it has one; all else is then that of the first cell.
+    pub sweep: Option<Sweep>,
     /// The text of its file.
     pub text: String,
 }

@@ -10,6 +10,7 @@ use super::figure::FigureWire;
 use super::optics::OpticsWire;
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StationWire};
+use super::sweep::wire::SweepWire;
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
 
@@ -27,6 +28,7 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["photographs"] = table::<PhotographsWire>();
     root["properties"]["method"] = list(&json!({ "oneOf": registry.methods().iter().map(method).collect::<Vec<_>>() }));
     require(&mut root, &["method"]);
+    root["properties"]["sweep"] = table::<SweepWire>();
     root["properties"]["figure"] = table::<FigureWire>();
     root["properties"]["figure"]["properties"]["pointing"] = table::<PointingWire>();
     root["properties"]["camera"] = table::<CameraWire>();

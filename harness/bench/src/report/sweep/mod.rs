@@ -1,0 +1,18 @@
+//! Swept scenarios: their figures over what is swept, as curves, maps and tables.
+
+mod axes;
+mod curves;
+mod layout;
+mod load;
+mod map;
+mod metric;
+mod numbers;
+mod section;
+
+pub use curves::curves;
+pub use layout::{Choice, Dimension, Layout, LayoutError};
+pub use load::{LoadedSweep, load};
+pub use map::map;
+pub use metric::{Estimate, Metric};
+pub use numbers::write_numbers;
+pub use section::{deviations, section};
