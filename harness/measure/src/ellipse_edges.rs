@@ -17,7 +17,7 @@ const VAGUE: f64 = 1.0;
 
 /// Ellipse through edge points: profiles across the outline, four a pixel, the edge in each to a fraction of a pixel, the ellipse through these points.
 ///
-/// Grey values are interpolated by cubic convolution from 4 px inside (less in small discs) to 4 px outside. An edge blurred by a Gaussian is fitted to the mean of all profiles, and
+/// Grey values are interpolated bilinearly from 4 px inside (less in small discs) to 4 px outside. An edge blurred by a Gaussian is fitted to the mean of all profiles, and
 /// then shifted along each. The first ellipse is the direct one of least algebraic distance, the last that of least orthogonal distances. The start is the
 /// area nearest to the given position that stands out from its ground. The result is the centre of the *ellipse*, as with `parametric_circle`.
 /// The covariance (px^2) is that of the distances, of which one a pixel is taken as independent:
@@ -56,6 +56,10 @@ impl Operator for EllipseEdges {
             ellipse = fit.ellipse;
         }
         Err(Rejection::NotConverged)
+    }
+
+    fn unknowns(&self) -> calibench_model::Unknowns {
+        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: false }
     }
 }
 

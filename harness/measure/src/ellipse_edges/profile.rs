@@ -58,24 +58,15 @@ fn distance(sample: usize) -> f64 {
     (sample as f64 - HALF as f64) * SPACING
 }
 
-/// Cubic convolution: right to the third order, where the bilinear rule would blur each profile by how far its samples lie from pixels.
-///
-/// Source: Keys 1981, with a = -1/2.
+/// Bilinear.
 fn interpolate(image: &Image, at: Vector2<f64>) -> Option<f64> {
     let (x, y) = (at.x.floor(), at.y.floor());
-    if !image.holds(x as i64, y as i64, 1) || !image.holds(x as i64 + 1, y as i64 + 1, 1) {
+    if !image.holds(x as i64, y as i64, 0) || !image.holds(x as i64 + 1, y as i64 + 1, 0) {
         return None;
     }
-    let (across, down, x, y) = (cubic(at.x - x), cubic(at.y - y), x as usize - 1, y as usize - 1);
-    let row = |y: usize| across.iter().zip(&image.row(y)[x..x + 4]).map(|(weight, &grey)| weight * f64::from(grey)).sum::<f64>();
-    Some(down.iter().enumerate().map(|(i, weight)| weight * row(y + i)).sum())
-}
-
-/// Weights of the four values at -1, 0, 1 and 2 for a place `f` from 0 to 1.
-fn cubic(f: f64) -> [f64; 4] {
-    let near = |t: f64| (1.5 * t - 2.5) * t * t + 1.0;
-    let far = |t: f64| ((-0.5 * t + 2.5) * t - 4.0) * t + 2.0;
-    [far(1.0 + f), near(f), near(1.0 - f), far(2.0 - f)]
+    let (fx, fy, x, y) = (at.x - x, at.y - y, x as usize, y as usize);
+    let row = |y: usize| f64::from(image.at(x, y)) * (1.0 - fx) + f64::from(image.at(x + 1, y)) * fx;
+    Some(row(y) * (1.0 - fy) + row(y + 1) * fy)
 }
 
 /// A blurred step and its slope at a distance from the edge, in blurs.

@@ -28,6 +28,9 @@ struct Row<'a> {
     least: f64,
 }
 
+/// Name, operator, what it measures, the rival, and the least ratio or rate.
+type Pair<'a> = (&'a str, &'a str, (&'a Image, &'a [Start]), Option<&'a dyn Fn()>, f64);
+
 pub(crate) fn run() {
     let (image, corners) = scene::corners();
     let image = scene::spoil(image);
@@ -47,7 +50,7 @@ fn points(image: &Image, starts: &[Start]) {
     let n = starts.len() as f64;
     let peer = |half, iterations, epsilon| move || drop(black_box(corner_sub_pix(image, starts, half, iterations, epsilon)));
     let (small, once, large) = (peer(5, 40, 1e-3), peer(5, 1, 0.0), peer(7, 40, 1e-3));
-    let rows: [(&str, &str, (&Image, &[Start]), Option<&dyn Fn()>, f64); 4] = [
+    let rows: [Pair<'_>; 4] = [
         ("Förstner 11x11 / cornerSubPix 11x11, 40 iterations", "forstner:window=11", (image, starts), Some(&small), 5.0),
         ("Förstner 11x11 / cornerSubPix 11x11, 1 iteration", "forstner:window=11", (image, starts), Some(&once), 2.0),
         ("LSM, eight parameters / cornerSubPix, 40 iterations", "lsm:window=15,sigma=0.7", (&squares, &targets), Some(&large), 0.5),
