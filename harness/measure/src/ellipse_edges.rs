@@ -57,10 +57,6 @@ impl Operator for EllipseEdges {
         }
         Err(Rejection::NotConverged)
     }
-
-    fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: false }
-    }
 }
 
 fn distance(a: &Ellipse, b: &Ellipse) -> f64 {
