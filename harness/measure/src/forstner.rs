@@ -151,7 +151,7 @@ impl Forstner {
             }
             _ => Some(scatter),
         };
-        Ok(Solution { dx, dy, covariance, roundness: 4.0 * (sums.gxx * sums.gyy - sums.gxy * sums.gxy) / (sums.gxx + sums.gyy).powi(2) })
+        Ok(Solution { dx, dy, covariance, roundness: roundness(&sums) })
     }
 
     /// The test of the error ellipse.
@@ -169,6 +169,11 @@ struct Solution {
     roundness: f64,
 }
 
+/// Roundness of the error ellipse: 1 a circle, 0 a line.
+fn roundness(s: &kernel::Sums) -> f64 {
+    4.0 * (s.gxx * s.gyy - s.gxy * s.gxy) / (s.gxx + s.gyy).powi(2)
+}
+
 /// The longest semi-axis of an error ellipse, px.
 fn longest(c: &Covariance) -> f64 {
     let (mean, difference) = ((c.sxx + c.syy) / 2.0, (c.sxx - c.syy) / 2.0);
@@ -181,8 +186,35 @@ impl Operator for Forstner {
     /// vanishing eigenvalue (an edge) or two (a flat patch), [`Rejection::LeftWindow`] when the point is not in the window, or the last window farther
     /// from the first than that is wide; [`Rejection::ErrorEllipse`]; [`Rejection::NotConverged`] when the window still moves after all passes.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
+        let first = window_centre(image, start, self.window as i64 / 2 + 1)?;
+        if self.is_plain() { self.plain(image, first) } else { self.follow(image, start, first) }
+    }
+}
+
+impl Forstner {
+    /// One pass with equal weights, the covariance from the scatter: as published.
+    fn is_plain(&self) -> bool {
+        self.iterations == 1 && self.gauss <= 0.0 && !self.from_noise
+    }
+
+    /// [`Self::once`] for [`Self::is_plain`], without what only the other settings need: it is to cost little more than its sums.
+    fn plain(&self, image: &Image, (x, y): (i64, i64)) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
-        let first = window_centre(image, start, half + 1)?;
+        let sums = kernel::sums(image, (x - half - 1) as usize, (y - half - 1) as usize, self.window);
+        let (dx, dy, covariance) = solve(&sums, (self.window * self.window) as f64)?;
+        if dx.abs() > half as f64 || dy.abs() > half as f64 {
+            return Err(Rejection::LeftWindow);
+        }
+        if self.roundness > 0.0 || self.size > 0.0 {
+            self.judge(&Solution { dx, dy, covariance: Some(covariance), roundness: roundness(&sums) })?;
+        }
+        Ok(Measurement { position: PixelPoint::new(x as f64 + dx, y as f64 + dy), covariance: Some(covariance) })
+    }
+
+    /// Passes with a window that follows the result.
+    #[inline(never)]
+    fn follow(&self, image: &Image, start: &Start, first: (i64, i64)) -> Result<Measurement, Rejection> {
+        let half = self.window as i64 / 2;
         let (mut centre, mut before) = (first, first);
         let mut at = start.position;
         for _ in 0..self.iterations {

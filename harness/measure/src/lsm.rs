@@ -3,6 +3,7 @@
 mod border;
 mod fit;
 mod mask;
+mod middle;
 mod planes;
 mod profile;
 mod start;
@@ -132,8 +133,13 @@ impl Lsm {
         let first = window_centre(image, start, half)?;
         admit(image, first, half)?;
         let mask = self.mask(start).ok_or(Rejection::NoCorner)?;
-        let blob = start::blob(mask, image, first, half, start.position);
-        let position = blob.as_ref().map_or(start.position, crate::blob::Blob::centre);
+        let blob = if start.affine.is_some() { None } else { start::blob(mask, image, first, half, start.position) };
+        let middle = match &blob {
+            Some(blob) => Some(blob.centre()),
+            None if start.affine.is_some() => start::middle(mask, image, first, half, start.position),
+            None => None,
+        };
+        let position = middle.unwrap_or(start.position);
         // The target may be whole in the first window and the second still reach past the image.
         let (x, y) = window_centre(image, &Start::at(position), half).unwrap_or(first);
         admit(image, (x, y), half)?;

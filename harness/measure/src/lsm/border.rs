@@ -49,10 +49,10 @@ impl Axis {
     }
 
     #[inline(always)]
-    fn sample(&mut self, node: usize, profile: &Profile, at: f64) -> (usize, usize) {
+    fn sample<const INTEGRAL: bool>(&mut self, node: usize, profile: &Profile, at: f64, blur: bool) -> (usize, usize) {
         let span = node * self.stride..(node + 1) * self.stride;
         let (integral, value, slope) = (&mut self.integral[span.clone()], &mut self.value[span.clone()], &mut self.slope[span]);
-        profile.sample(at, self.stride - LANES, &mut Samples { integral, value, slope })
+        profile.sample::<INTEGRAL>(at, self.stride - LANES, &mut Samples { integral, value, slope }, blur)
     }
 }
 
@@ -84,13 +84,13 @@ pub(super) fn integrate(mut window: Window<'_>, bank: &mut Bank, mask: &Mask, po
             match *curve {
                 Curve::Line { from, to } => {
                     let line = Line::new(a, from, to, sense);
-                    fill(bank, panel, profile, pose.at, |t| line.at(t));
+                    fill(bank, panel, profile, pose.at, blur, |t| line.at(t));
                     add::<2>(&mut window, bank, &line.expansion, |t| [1.0, t], profile.sigma(), blur);
                 }
                 Curve::Arc { centre, radius, start, sweep } => {
                     let arc = Arc::new(a, centre, radius, sweep, sense);
                     let angle = |t: f64| (start + t * sweep).sin_cos();
-                    fill(bank, panel, profile, pose.at, |t| arc.at(a, angle(t)));
+                    fill(bank, panel, profile, pose.at, blur, |t| arc.at(a, angle(t)));
                     let functions = |t: f64| {
                         let (sine, cosine) = angle(t);
                         [cosine, sine, cosine * cosine, cosine * sine, sine * sine]
@@ -156,13 +156,13 @@ impl Arc {
 
 /// Samples at the nodes of a panel; `place` gives where a parameter is, from the reference point, and its step.
 #[inline(always)]
-fn fill(bank: &mut Bank, panel: Panel, profile: &Profile, [x, y]: [f64; 2], place: impl Fn(f64) -> ([f64; 2], [f64; 2])) {
+fn fill(bank: &mut Bank, panel: Panel, profile: &Profile, [x, y]: [f64; 2], blur: bool, place: impl Fn(f64) -> ([f64; 2], [f64; 2])) {
     bank.clear();
     for (t, weight) in panel.nodes() {
         let ([px, py], step) = place(t);
         let node = bank.at.len();
-        bank.columns.sample(node, profile, x + px);
-        let seen = bank.rows.sample(node, profile, y + py);
+        bank.columns.sample::<true>(node, profile, x + px, blur);
+        let seen = bank.rows.sample::<false>(node, profile, y + py, blur);
         bank.seen.push(seen);
         bank.steps.push(step.map(|s| s * weight));
         bank.weights.push(weight);

@@ -73,33 +73,47 @@ impl Profile {
     /// Samples of the first `pixels` pixels for the point `at`; returns from which to which these see it.
     ///
     /// Outside the value is zero and the integral one (before the point) or zero (after it). The slices are `LANES` longer than `pixels`.
+    /// Without `INTEGRAL` that is left as it is, without `with_slope` the slope.
     #[inline(always)]
-    pub(super) fn sample(&self, at: f64, pixels: usize, out: &mut Samples<'_>) -> (usize, usize) {
+    pub(super) fn sample<const INTEGRAL: bool>(&self, at: f64, pixels: usize, out: &mut Samples<'_>, with_slope: bool) -> (usize, usize) {
         let whole = at.floor();
         let scaled = (at - whole) * STEPS as f64;
         let step = (scaled as usize).min(STEPS - 1);
         let d = (scaled - step as f64 - 0.5) / STEPS as f64;
         let (first, limit) = (whole as i64 - self.half as i64, pixels as i64);
         let (low, high) = (first.clamp(0, limit) as usize, (first + self.width() as i64).clamp(0, limit) as usize);
-        out.integral[..low].fill(1.0);
-        out.integral[low..].fill(0.0);
+        if INTEGRAL {
+            out.integral[..low].fill(1.0);
+            out.integral[low..].fill(0.0);
+        }
         out.value.fill(0.0);
-        out.slope.fill(0.0);
+        if with_slope {
+            out.slope.fill(0.0);
+        }
         let skipped = (low as i64 - first) as usize;
         let row = &self.table[step * DERIVATIVES * self.stride()..(step + 1) * DERIVATIVES * self.stride()];
         for chunk in 0..(high - low).div_ceil(LANES) {
             let entry = |i: usize| *lanes(row, i * self.stride() + skipped + chunk * LANES);
             let [w, k, k1, k2, k3, k4] = [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)];
-            let (mut integral, mut value, mut slope) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            let mut lanes = [0.0; LANES];
+            let to = low + chunk * LANES;
             for i in 0..LANES {
-                slope[i] = k1[i] + d * (k2[i] + d * (k3[i] * (1.0 / 2.0) + d * (k4[i] * (1.0 / 6.0))));
-                value[i] = k[i] + d * (k1[i] + d * (k2[i] * (1.0 / 2.0) + d * (k3[i] * (1.0 / 6.0) + d * (k4[i] * (1.0 / 24.0)))));
-                integral[i] = w[i] + d * (k[i] + d * (k1[i] * (1.0 / 2.0) + d * (k2[i] * (1.0 / 6.0) + d * (k3[i] * (1.0 / 24.0)))));
+                lanes[i] = k[i] + d * (k1[i] + d * (k2[i] * (1.0 / 2.0) + d * (k3[i] * (1.0 / 6.0) + d * (k4[i] * (1.0 / 24.0)))));
             }
-            let to = low + chunk * LANES..low + (chunk + 1) * LANES;
-            out.integral[to.clone()].copy_from_slice(&integral);
-            out.value[to.clone()].copy_from_slice(&value);
-            out.slope[to].copy_from_slice(&slope);
+            // Slices of a length that the compiler knows: otherwise each is a call.
+            out.value[to..][..LANES].copy_from_slice(&lanes);
+            if INTEGRAL {
+                for i in 0..LANES {
+                    lanes[i] = w[i] + d * (k[i] + d * (k1[i] * (1.0 / 2.0) + d * (k2[i] * (1.0 / 6.0) + d * (k3[i] * (1.0 / 24.0)))));
+                }
+                out.integral[to..][..LANES].copy_from_slice(&lanes);
+            }
+            if with_slope {
+                for i in 0..LANES {
+                    lanes[i] = k1[i] + d * (k2[i] + d * (k3[i] * (1.0 / 2.0) + d * (k4[i] * (1.0 / 6.0))));
+                }
+                out.slope[to..][..LANES].copy_from_slice(&lanes);
+            }
         }
         (low, high)
     }
@@ -158,7 +172,8 @@ mod tests {
 
     fn samples(profile: &Profile, at: f64) -> Sampled {
         let [mut integral, mut value, mut slope] = [(); 3].map(|()| vec![0.0; 40 + LANES]);
-        let (low, high) = profile.sample(at, 40, &mut Samples { integral: &mut integral, value: &mut value, slope: &mut slope });
+        let (low, high) =
+            profile.sample::<true>(at, 40, &mut Samples { integral: &mut integral, value: &mut value, slope: &mut slope }, true);
         Sampled { low, high, integral, value, slope }
     }
 

@@ -4,6 +4,7 @@ use calibench_model::{Affine, Image, PixelPoint};
 
 use super::fit::{Parameters, Work};
 use super::mask::Mask;
+use super::middle;
 use super::planes::Pose;
 use crate::blob::{Blob, Polarity, Segmentation};
 
@@ -13,6 +14,11 @@ const TURNS: u32 = 6;
 const TURNS_OF_A_CORNER: u32 = 12;
 /// The fewest pixels whose moments give a shape.
 const FEWEST: usize = 8;
+
+/// The middle of the target's pixels, as [`blob`] has it, where their shape is not wanted: see [`super::middle`].
+pub(super) fn middle(mask: &Mask, image: &Image, centre: (i64, i64), half: i64, start: PixelPoint) -> Option<PixelPoint> {
+    if mask.is_open() { None } else { middle::of(image, centre, half, start, FEWEST) }
+}
 
 /// The target's pixels, if they can be told from the ground and the window holds all of them.
 pub(super) fn blob(mask: &Mask, image: &Image, centre: (i64, i64), half: i64, start: PixelPoint) -> Option<Blob> {

@@ -5,6 +5,7 @@
 mod classical;
 mod points;
 mod render;
+mod required;
 mod scene;
 mod warp;
 
@@ -18,8 +19,13 @@ fn main() {
         return;
     }
     // A part alone, by its name: `cargo bench --workspace --bench perf -- rendering`.
-    let parts: [(&str, fn()); 4] =
-        [("points", points::run), ("classical", classical::run), ("rendering", render::run), ("detection", detection)];
+    let parts: [(&str, fn()); 5] = [
+        ("required", required::run),
+        ("points", points::run),
+        ("classical", classical::run),
+        ("rendering", render::run),
+        ("detection", detection),
+    ];
     let asked: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
     for (_, run) in parts.iter().filter(|(name, _)| asked.is_empty() || asked.iter().any(|part| part == name)) {
         run();
