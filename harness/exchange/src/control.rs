@@ -6,8 +6,7 @@ use std::path::Path;
 use crate::points::PointFileError;
 use crate::sheet::{Form, Row, wrong};
 
-const FORM: Form =
-    Form { what: "control file", key: "target", required: &["X", "Y", "Z"], optional: &["sX", "sY", "sZ"], others: false };
+const FORM: Form = Form { what: "control file", key: "target", required: &["X", "Y", "Z"], optional: &["sX", "sY", "sZ"], others: false };
 
 /// A point of known object coordinates.
 #[derive(Clone, Debug, PartialEq)]

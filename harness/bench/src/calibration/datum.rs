@@ -28,7 +28,9 @@ pub enum DatumChoice {
 
 /// Text that is no datum.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("`{0}` is no datum: expected control, fixed, free, or minimal:A,B/C,D,E with two targets whose X and Y are held and three whose Z is")]
+#[error(
+    "`{0}` is no datum: expected control, fixed, free, or minimal:A,B,C,D,E with two targets whose X and Y are held and three whose Z is"
+)]
 pub struct NoDatum(String);
 
 impl FromStr for DatumChoice {
@@ -45,10 +47,9 @@ impl FromStr for DatumChoice {
 }
 
 fn minimal(text: &str) -> Option<DatumChoice> {
-    let (horizontal, vertical) = text.strip_prefix("minimal:")?.split_once('/')?;
-    let names = |text: &str| text.split(',').map(|name| name.trim().to_owned()).collect::<Vec<_>>();
-    let (horizontal, vertical) = (names(horizontal).try_into().ok()?, names(vertical).try_into().ok()?);
-    Some(DatumChoice::Minimal { horizontal, vertical })
+    let names: Vec<String> = text.strip_prefix("minimal:")?.split(',').map(|name| name.trim().to_owned()).collect();
+    let [a, b, c, d, e] = <[String; 5]>::try_from(names).ok()?;
+    Some(DatumChoice::Minimal { horizontal: [a, b], vertical: [c, d, e] })
 }
 
 impl DatumChoice {
@@ -91,11 +92,11 @@ mod tests {
         assert_eq!("free".parse(), Ok(DatumChoice::Free));
         let names = |n: &[&str]| n.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
         let expected = DatumChoice::Minimal {
-            horizontal: names(&["a", "b"]).try_into().unwrap(),
+            horizontal: names(&["a", "b/1"]).try_into().unwrap(),
             vertical: names(&["c", "d", "e"]).try_into().unwrap(),
         };
-        assert_eq!("minimal:a,b/c, d,e".parse(), Ok(expected));
-        for wrong in ["", "minimal", "minimal:a/b,c,d", "minimal:a,b/c,d", "inner "] {
+        assert_eq!("minimal:a,b/1,c, d,e".parse(), Ok(expected));
+        for wrong in ["", "minimal", "minimal:a,b,c,d", "minimal:a,b,c,d,e,f", "inner "] {
             assert!(wrong.parse::<DatumChoice>().is_err(), "{wrong}");
         }
     }

@@ -63,7 +63,10 @@ fn unknown(name: &str, _: &Settings) -> CalibrationError {
 pub(super) fn camera(start: &Camera, settings: &Settings) -> Result<Camera, CalibrationError> {
     let target = target(name(settings), settings)?;
     // Of a start the misfit does not matter.
-    Ok(convert(start, target, &ConvertOptions { accept: true, ..ConvertOptions::default() })?.camera)
+    let camera = convert(start, target, &ConvertOptions { accept: true, ..ConvertOptions::default() })?.camera;
+    // A zero without a sign.
+    let values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value + 0.0).collect();
+    Ok(camera.with_parameters(&values))
 }
 
 /// Is the model known, and what it needs given? Asked before start values are looked for.

@@ -67,16 +67,31 @@ fn facts(calibration: &Calibration<'_>) -> String {
     let control = prepared.survey.targets.iter().filter(|target| target.control.is_some()).count();
     let mut lines = vec![
         format!("camera model: {}", calibration.camera().convention().name),
-        format!("{} images, {} image points, {control} of {} targets are control points", solution.poses().len(), prepared.network.observations.len(), prepared.network.points.len()),
+        format!(
+            "{} images, {} image points, {control} of {} targets are control points",
+            solution.poses().len(),
+            prepared.network.observations.len(),
+            prepared.network.points.len()
+        ),
         format!("datum: {}", settings.datum.words()),
         format!("start: {}", prepared.origin),
-        format!("{} observations, {} constraints, {} unknowns, redundancy {}", counts.observations() - counts.constraints, counts.constraints, counts.unknowns, counts.redundancy()),
+        format!(
+            "{} observations, {} constraints, {} unknowns, redundancy {}",
+            counts.observations() - counts.constraints,
+            counts.constraints,
+            counts.unknowns,
+            counts.redundancy()
+        ),
         format!("residuals {} px RMS", plain(calibration.rms_px())),
     ];
     if let Some(sigma0) = solution.sigma0() {
         let sigma = settings.sigma();
         let known = if settings.sigma_px.is_some() { "given" } else { "assumed" };
-        lines.push(format!("sigma0 {} for a standard deviation of {sigma} px ({known}): {} px for an image coordinate", plain(sigma0), plain(sigma0 * sigma)));
+        lines.push(format!(
+            "sigma0 {} for a standard deviation of {sigma} px ({known}): {} px for an image coordinate",
+            plain(sigma0),
+            plain(sigma0 * sigma)
+        ));
     }
     lines.iter().map(|line| format!("- {line}\n")).collect()
 }
@@ -124,8 +139,9 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     let basic = ["c", "f", "fx", "fy", "x0", "y0", "cx", "cy"];
     let tests = calibration.solution.significance().unwrap_or_default();
     for test in tests.iter().filter(|test| test.p > DOUBTFUL && !basic.contains(&test.parameter)) {
-        warnings.push(format!("{} is not told from zero (t {:.1}): solve without it", test.parameter, test.t));
+        warnings.push(format!("{} is not told from zero (t {:.1}); a set without it may do", test.parameter, test.t));
     }
+    warnings.extend(weights(calibration));
     let rejected = calibration.found.iter().filter(|found| found.left_out).count();
     if rejected > 0 {
         warnings.push(format!("{rejected} image points were rejected and left out"));
@@ -143,6 +159,16 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
     }
     warnings
+}
+
+/// Image points and weighted control share one variance factor: an assumed standard deviation must be about right.
+fn weights(calibration: &Calibration<'_>) -> Option<String> {
+    let settings = &calibration.prepared.settings;
+    let weighted = calibration.solution.counts().observed > 0;
+    let sigma0 = calibration.solution.sigma0().filter(|sigma0| *sigma0 > 0.0 && !(0.67..=1.5).contains(sigma0))?;
+    let sigma = settings.sigma();
+    (weighted && settings.sigma_px.is_none())
+        .then(|| format!("control is weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
 }
 
 fn images(calibration: &Calibration<'_>) -> String {

@@ -90,7 +90,8 @@ fn from_depth(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String
     let side = f64::from(size.width.max(size.height));
     let centre = middle(size)?;
     let mut focal: Vec<(f64, &str)> = FOCAL.iter().map(|f| (f * side, "the best of some usual focal lengths")).collect();
-    let mut linear: Vec<f64> = views.iter().filter_map(|view| direct_linear(view, size, 1000.0, None).ok()).map(|dlt| dlt.camera.c).collect();
+    let mut linear: Vec<f64> =
+        views.iter().filter_map(|view| direct_linear(view, size, 1000.0, None).ok()).map(|dlt| dlt.camera.c).collect();
     linear.retain(|f| *f > 0.2 * side && *f < 20.0 * side);
     linear.sort_by(f64::total_cmp);
     if let Some(median) = linear.get(linear.len() / 2) {
@@ -155,9 +156,8 @@ fn orient(survey: &Survey, camera: &Camera, mut known: Vec<Option<Point3<f64>>>)
 
 fn tie_point(survey: &Survey, camera: &Camera, poses: &[Result<Pose, String>], target: usize) -> Result<Point3<f64>, String> {
     let seen = survey.sights.iter().filter(|sight| sight.target == target);
-    let rays: Vec<Ray<'_>> = seen
-        .filter_map(|sight| Some(Ray { camera, pose: poses[sight.image].as_ref().ok()?, image: sight.position }))
-        .collect();
+    let rays: Vec<Ray<'_>> =
+        seen.filter_map(|sight| Some(Ray { camera, pose: poses[sight.image].as_ref().ok()?, image: sight.position })).collect();
     if rays.len() < 2 {
         return Err("no control point, and not seen in two oriented images".into());
     }

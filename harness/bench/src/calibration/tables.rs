@@ -74,8 +74,21 @@ fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         rows[left.sight] = Some(row);
     }
     let columns = [
-        "image", "target", "x", "y", "vx", "vy", "redundancy_x", "redundancy_y", "w_x", "w_y", "detectable_x", "detectable_y", "weight",
-        "status", "reason",
+        "image",
+        "target",
+        "x",
+        "y",
+        "vx",
+        "vy",
+        "redundancy_x",
+        "redundancy_y",
+        "w_x",
+        "w_y",
+        "detectable_x",
+        "detectable_y",
+        "weight",
+        "status",
+        "reason",
     ];
     table(path, &columns, rows.into_iter().flatten())
 }
@@ -108,7 +121,21 @@ fn correlations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
 /// Poses as `render` writes them, with standard deviations: of X0 in object units, of a small rotation about the camera's axes in degrees.
 fn stations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
     let columns = [
-        "image", "X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg", "sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg", "points", "rms_px",
+        "image",
+        "X0",
+        "Y0",
+        "Z0",
+        "omega_deg",
+        "phi_deg",
+        "kappa_deg",
+        "sX0",
+        "sY0",
+        "sZ0",
+        "sx_deg",
+        "sy_deg",
+        "sz_deg",
+        "points",
+        "rms_px",
     ];
     let (poses, rms) = (calibration.solution.poses(), calibration.solution.rms_by_image());
     let observations = &calibration.prepared.network.observations;

@@ -45,7 +45,7 @@ pub struct Calibrate {
     /// Parameters to solve for, as in c,x0,y0,k1; the others keep their start values [default: what the model usually needs]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     solve: Option<Vec<String>>,
-    /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, or minimal:A,B/C,D,E
+    /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, or minimal:A,B,C,D,E (X and Y of two, Z of three)
     #[arg(long, value_name = "DATUM", default_value = "control")]
     datum: DatumChoice,
     /// A-priori standard deviation of an image coordinate, px [default: 0.1, and the estimated one in tests]

@@ -36,10 +36,7 @@ impl Map {
     pub(super) fn place(&self, at: PixelPoint) -> (i32, i32) {
         let corner = at.to_corner();
         let part = |value: f64, size: u32, px: u32| (value / f64::from(size) * f64::from(px)).round() as i32;
-        (
-            self.corner.0 + part(corner.x, self.size.width, self.extent.0),
-            self.corner.1 + part(corner.y, self.size.height, self.extent.1),
-        )
+        (self.corner.0 + part(corner.x, self.size.width, self.extent.0), self.corner.1 + part(corner.y, self.size.height, self.extent.1))
     }
 
     /// Cell (column, row) of a grid over the frame, in the picture.

@@ -17,13 +17,16 @@ pub(super) fn pictures(calibration: &Calibration<'_>) -> Vec<(&'static str, Stri
     let near = working_distance(calibration);
     let title = |what: &str| format!("Standard deviation of a projected point, {what}");
     let caption = |what: &str| {
-        format!("Standard deviation (2D) of the image of a point {what} that stems from the interior orientation, after what the exterior makes up for.")
+        format!(
+            "Standard deviation (2D) of the image of a point {what} that stems from the interior orientation, after what the exterior makes up for."
+        )
     };
     let far = map(calibration, Distance::Far, &title("far away"));
     let far = far.map(|canvas| ("uncertainty-far.png", caption("far away"), canvas));
     let distance = plain(near);
     let near = map(calibration, Distance::Near(near), &title(&format!("at {distance} object units")));
-    let near = near.map(|canvas| ("uncertainty-near.png", caption(&format!("at the distance of the object ({distance} object units)")), canvas));
+    let near =
+        near.map(|canvas| ("uncertainty-near.png", caption(&format!("at the distance of the object ({distance} object units)")), canvas));
     far.into_iter().chain(near).collect()
 }
 

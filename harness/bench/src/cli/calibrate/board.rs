@@ -25,7 +25,8 @@ impl FromStr for Chessboard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("`{text}` is no chessboard: expected inner corners and the side of a square as COLUMNSxROWS:SIDE, as in 9x6:25");
+        let wrong =
+            || format!("`{text}` is no chessboard: expected inner corners and the side of a square as COLUMNSxROWS:SIDE, as in 9x6:25");
         let (board, side) = text.split_once(':').ok_or_else(wrong)?;
         let board = board.parse().map_err(|_| wrong())?;
         let side = side.parse().ok().filter(|side: &f64| side.is_finite() && *side > 0.0).ok_or_else(wrong)?;

@@ -44,14 +44,16 @@ fn by_ending(path: &Path, source: &NamedCamera) -> Option<&'static str> {
 
 /// The first format that holds the camera exactly: with the file's ending, or with any.
 fn as_it_is(path: &Path, source: &NamedCamera) -> Result<&'static CameraFormat, Failure> {
-    let ending = ending(path).map(|ending| if ending == "yml" { "yaml".to_owned() } else { ending });
+    let spelt = |ending: &str| if ending == "yml" { "yaml".to_owned() } else { ending.to_owned() };
+    let ending = ending(path).map(|ending| spelt(&ending));
     let fits = |format: &&&'static CameraFormat| format.is_written() && camera_text(format, std::slice::from_ref(source)).is_ok();
-    let same = |format: &&&'static CameraFormat| Some(format.extension) == ending.as_deref();
+    let same = |format: &&&'static CameraFormat| Some(spelt(format.extension)) == ending;
     // OpenCV's YAML is what most tools read; other YAMLs are asked for by name.
     let first = FORMATS.iter().filter(|format| format.name.starts_with("opencv")).chain(FORMATS.iter()).filter(same).find(fits);
-    first.or_else(|| FORMATS.iter().find(fits)).copied().ok_or_else(|| {
-        Failure::input(format!("-o {}: no format holds the camera as it is; name one with --to CONVENTION", path.display()))
-    })
+    first
+        .or_else(|| FORMATS.iter().find(fits))
+        .copied()
+        .ok_or_else(|| Failure::input(format!("-o {}: no format holds the camera as it is; name one with --to CONVENTION", path.display())))
 }
 
 fn converted(source: &NamedCamera, to: &str, path: &Path) -> Result<(&'static CameraFormat, NamedCamera), Failure> {
@@ -61,7 +63,9 @@ fn converted(source: &NamedCamera, to: &str, path: &Path) -> Result<(&'static Ca
     let options = ConvertOptions { covariance, ..ConvertOptions::default() };
     let conversion: Conversion = match goal.way {
         Way::One(target) => convert(&source.camera, target, &options).map_err(|error| advise(&error))?,
-        Way::Best => fit_to_format(goal.format, &source.camera, None, source.pitch_um, &options).map_err(|e| Failure::input(e.to_string()))?.0,
+        Way::Best => {
+            fit_to_format(goal.format, &source.camera, None, source.pitch_um, &options).map_err(|e| Failure::input(e.to_string()))?.0
+        }
     };
     if conversion.method != Method::Exact {
         eprintln!("{}: converted to {to} by a fit: residuals {}", path.display(), size_of(&conversion.residual));
