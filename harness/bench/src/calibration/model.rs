@@ -6,23 +6,23 @@ use calibench_model::convert::{ConvertOptions, Target, convert};
 use super::{CalibrationError, Settings};
 use crate::scenario::problem::nearest;
 
-/// The models that can be calibrated, with the parameters that are solved for if nothing else is asked.
-pub const MODELS: [(&str, &str); 15] = [
-    ("photogrammetric", "c,x0,y0,k1,k2,p1,p2"),
-    ("ebner", "c,x0,y0 and the twelve"),
-    ("opencv4", "all"),
-    ("opencv5", "all"),
-    ("opencv8", "all"),
-    ("opencv12", "all"),
-    ("opencv14", "all"),
-    ("opencv-fisheye", "all"),
-    ("metashape", "all but b1, b2, k4, p3 and p4"),
-    ("pix4d", "all"),
-    ("double-sphere", "all"),
-    ("eucm", "all"),
-    ("omni", "all"),
-    ("fov", "all"),
-    ("prism-fisheye", "all"),
+/// The models that can be calibrated.
+pub const MODELS: [&str; 15] = [
+    "photogrammetric",
+    "ebner",
+    "opencv4",
+    "opencv5",
+    "opencv8",
+    "opencv12",
+    "opencv14",
+    "opencv-fisheye",
+    "metashape",
+    "pix4d",
+    "double-sphere",
+    "eucm",
+    "omni",
+    "fov",
+    "prism-fisheye",
 ];
 
 /// What the user asked for, or the model that suits what is known.
@@ -48,15 +48,14 @@ fn target(name: &str, settings: &Settings) -> Result<Target, CalibrationError> {
         "prism-fisheye" => Target::PrismFisheye,
         _ => match name.strip_prefix("opencv").map(|n| if n.is_empty() { Ok(5) } else { n.parse() }) {
             Some(Ok(coefficients @ (4 | 5 | 8 | 12 | 14))) => Target::OpenCv { coefficients },
-            _ => return Err(unknown(name, settings)),
+            _ => return Err(unknown(name)),
         },
     })
 }
 
-fn unknown(name: &str, _: &Settings) -> CalibrationError {
-    let known: Vec<&str> = MODELS.iter().map(|(name, _)| *name).collect();
-    let near = nearest(name, known.iter().copied()).map(str::to_owned);
-    CalibrationError::UnknownModel { name: name.to_owned(), known: known.join(", "), near }
+fn unknown(name: &str) -> CalibrationError {
+    let near = nearest(name, MODELS).map(str::to_owned);
+    CalibrationError::UnknownModel { name: name.to_owned(), known: MODELS.join(", "), near }
 }
 
 /// The model that the user asked for, as near to `start` as it comes.

@@ -205,3 +205,22 @@ fn rejected(calibration: &Calibration<'_>) -> String {
     }
     format!("\n## Rejected image points\n\n{}", table.render())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_has_the_digits_that_its_standard_deviation_leaves() {
+        let text = |value: f64, sigma: f64| {
+            let (value, sigma) = rounded(value, sigma);
+            format!("{value} {sigma}")
+        };
+        assert_eq!(text(532.8163, 0.441), "532.82 0.44");
+        assert_eq!(text(-0.2809, 0.0054), "-0.2809 0.0054");
+        assert_eq!(text(1234.5, 31.0), "1234 31");
+        assert_eq!(text(1.234_567e-9, 2.5e-11), "1.235e-9 2.5e-11");
+        assert_eq!(text(0.0, 2.5e-11), "0.0e0 2.5e-11");
+        assert_eq!(text(3.5, 0.0), "3.5 0");
+    }
+}

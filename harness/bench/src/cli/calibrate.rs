@@ -9,7 +9,7 @@ use clap::Args;
 use super::context::Context;
 use super::convert::positive;
 use super::{Failure, print};
-use crate::calibration::{Calibration, DatumChoice, MODELS, Settings, prepare, summary, write_report};
+use crate::calibration::{Calibration, DatumChoice, Settings, prepare, summary, write_report};
 
 mod board;
 mod camera_file;
@@ -96,11 +96,6 @@ impl Calibrate {
     }
 
     fn settings(&self, size: ImageSize) -> Result<Settings, Failure> {
-        if let (Some(to), known) = (&self.model, MODELS.map(|(name, _)| name)) {
-            if to == "help" {
-                return Err(Failure::input(format!("camera models are {}", known.join(", "))));
-            }
-        }
         Ok(Settings {
             pitch_um: self.pitch,
             model: self.model.clone(),

@@ -62,7 +62,10 @@ fn map(calibration: &Calibration<'_>, distance: Distance, title: &str) -> Option
         colour_bar(area, map.extent, most);
     });
     let mean = (found.iter().map(|u| sigma(u).powi(2)).sum::<f64>() / found.len().max(1) as f64).sqrt();
-    let said = format!("{} px at most, {} px RMS over the frame", plain(most), plain(mean));
+    let mut sigmas: Vec<f64> = found.iter().map(sigma).collect();
+    sigmas.sort_by(f64::total_cmp);
+    let median = sigmas.get(sigmas.len() / 2).copied().unwrap_or(0.0);
+    let said = format!("{} px at most, {} px RMS, median {} px over the frame", plain(most), plain(mean), plain(median));
     canvas.text(&said, 16, (LEFT, TOP + map.extent.1 + BOTTOM - 20));
     Some(canvas)
 }

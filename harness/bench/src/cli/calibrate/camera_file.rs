@@ -33,12 +33,13 @@ fn ending(path: &Path) -> Option<String> {
 
 /// The convention that an ending asks for, where no format of that ending holds the camera as it is.
 fn by_ending(path: &Path, source: &NamedCamera) -> Option<&'static str> {
-    match (ending(path)?.as_str(), &source.camera) {
-        ("yaml" | "yml" | "xml", Camera::OpenCv(_) | Camera::OpenCvFisheye(_)) => None,
-        ("xml", Camera::Agisoft(_)) => None,
-        ("yaml" | "yml" | "xml", _) => Some("opencv5"),
-        ("toml", Camera::OpenCv(_)) if source.pitch_um.is_some() => Some("photogrammetric"),
-        _ => None,
+    let ending = ending(path)?;
+    let of_opencv = matches!(ending.as_str(), "yaml" | "yml" | "xml");
+    match source.camera {
+        Camera::OpenCv(_) => (ending == "toml" && source.pitch_um.is_some()).then_some("photogrammetric"),
+        Camera::OpenCvFisheye(_) => None,
+        Camera::Agisoft(_) if ending == "xml" => None,
+        _ => of_opencv.then_some("opencv5"),
     }
 }
 
