@@ -129,10 +129,13 @@ fn a_blunder_is_found_and_named_and_a_point_of_no_control_is_intersected() {
     let output = run(folder.path(), &[&WALL[..], &["--snoop", "--report", "report"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     let residuals = table(&folder.path().join("report/residuals.csv"));
-    let of = |status: &str| residuals.iter().filter(|row| row["status"] == status).map(|row| (row["image"].clone(), row["target"].clone()));
-    assert!(of("rejected").any(|row| row == (image.clone(), target.clone())), "{:?}", of("rejected").collect::<Vec<_>>());
-    assert!(of("rejected").count() < 5);
-    assert_eq!(of("left_out").map(|(_, target)| target).collect::<Vec<_>>(), ["lonely"]);
+    let of = |status: &str| -> Vec<(String, String)> {
+        let rows = residuals.iter().filter(|row| row["status"] == status);
+        rows.map(|row| (row["image"].clone(), row["target"].clone())).collect()
+    };
+    assert!(of("rejected").contains(&(image, target)), "{:?}", of("rejected"));
+    assert!(of("rejected").len() < 5);
+    assert_eq!(of("left_out").into_iter().map(|(_, target)| target).collect::<Vec<_>>(), ["lonely"]);
     assert_eq!(residuals.len(), lines.len() - 1);
     let points = read_control(&folder.path().join("report/points.csv")).unwrap();
     let found = points.iter().find(|row| row.target == tie).unwrap();
