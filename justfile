@@ -46,9 +46,9 @@ lint:
     RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
     sh -n bootstrap
 
-# Points per second of every operator, and of cameras, beside their peers
+# Points per second of every operator, of cameras, and seconds of adjustments, beside their peers
 perf:
-    cargo bench --workspace --bench perf --bench cameras
+    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards
 
 # Write the JSON Schema of scenario files
 schema: build

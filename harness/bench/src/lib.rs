@@ -1,5 +1,6 @@
 //! Scenarios, runs, records, gates, reports and the command line.
 
+pub mod calibration;
 pub mod cli;
 pub mod data;
 pub mod gate;

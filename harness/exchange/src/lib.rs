@@ -1,15 +1,20 @@
-//! Files of other tools: cameras, image coordinates and photographs; testfields for the printer.
+//! Files of other tools: cameras, image coordinates, control, stations and photographs; testfields for the printer.
 
 pub mod atomic;
 pub mod camera;
+pub mod control;
 pub mod folder;
 pub mod photo;
 pub mod points;
 pub mod points_write;
 pub mod print;
+mod sheet;
+pub mod stations;
 
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
+pub use control::{ControlRow, read_control, write_control};
 pub use folder::FolderWriter;
 pub use photo::{PhotoError, read_photo, write_png};
 pub use points::{PointFile, PointFileError, PointRow, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
+pub use stations::{StationRow, read_stations, station_numbers};

@@ -38,7 +38,7 @@ pub struct PointFile {
     pub without_position: usize,
 }
 
-/// What is wrong with a point file, and where.
+/// What is wrong with a file of points, control or stations, and where.
 #[derive(Debug, Error, PartialEq, Eq)]
 #[error("{file}{place}: {problem}", place = place(*line, column.as_deref()))]
 pub struct PointFileError {
@@ -117,13 +117,13 @@ pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, Point
 }
 
 /// The line of a record: the reader's own count starts at the empty lines before it.
-fn line_of(text: &[u8], record: &StringRecord) -> u64 {
+pub(crate) fn line_of(text: &[u8], record: &StringRecord) -> u64 {
     let Some(position) = record.position() else { return 0 };
     let before = text[position.byte() as usize..].iter().take_while(|byte| matches!(byte, b'\n' | b'\r'));
     position.line() + before.filter(|byte| **byte == b'\n').count() as u64
 }
 
-fn csv_error(file: &str, error: &csv::Error) -> PointFileError {
+pub(crate) fn csv_error(file: &str, error: &csv::Error) -> PointFileError {
     let problem = match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("expected {expected_len} cells as in the header, found {len}")

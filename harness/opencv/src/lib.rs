@@ -5,6 +5,8 @@ mod camera_files;
 #[cfg(test)]
 mod cameras;
 pub mod chessboard;
+#[cfg(test)]
+mod optimum;
 pub mod subpix;
 
 use calibench_measure::{BoardDetector, Registry};

@@ -242,7 +242,7 @@ fn summary(conversion: &Conversion) -> String {
 }
 
 /// The covariance over all parameters of a camera; those that the file held fixed have none.
-fn whole(camera: &Camera, covariance: &ParameterCovariance) -> Result<nalgebra::DMatrix<f64>, Failure> {
+pub fn whole(camera: &Camera, covariance: &ParameterCovariance) -> Result<nalgebra::DMatrix<f64>, Failure> {
     let parameters = camera.parameters();
     let place = |name: &String| parameters.iter().position(|p| p.name == name);
     let places: Option<Vec<usize>> = covariance.parameters.iter().map(place).collect();
@@ -255,7 +255,8 @@ fn whole(camera: &Camera, covariance: &ParameterCovariance) -> Result<nalgebra::
     Ok(q)
 }
 
-fn named(camera: &Camera, q: &nalgebra::DMatrix<f64>) -> Result<ParameterCovariance, Failure> {
+/// The same for a file.
+pub fn named(camera: &Camera, q: &nalgebra::DMatrix<f64>) -> Result<ParameterCovariance, Failure> {
     let names = camera.parameters().iter().map(|p| p.name.to_owned()).collect();
     let symmetric = |i: usize, j: usize| f64::midpoint(q[(i, j)], q[(j, i)]);
     let values = (0..q.nrows()).flat_map(|i| (0..q.ncols()).map(move |j| symmetric(i, j))).collect();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::{PointRow, read_photo, write_points};
 use calibench_measure::{Board, BoardDetector};
-use calibench_model::{Affine, PixelPoint, Start, TargetKind};
+use calibench_model::{Affine, Image, PixelPoint, Start, TargetKind};
 use clap::Args;
 use rayon::prelude::*;
 
@@ -51,15 +51,19 @@ impl Detect {
 }
 
 fn rows(detector: &dyn BoardDetector, path: &Path, board: Board) -> Result<Vec<PointRow>, Failure> {
-    let image = read_photo(path)?;
-    let corners = detector.detect(&image, board).unwrap_or_default();
+    Ok(corners_of(detector, &read_photo(path)?, path, board))
+}
+
+/// The corners of a board in the photograph at `path`; none if it is not seen whole.
+pub fn corners_of(detector: &dyn BoardDetector, image: &Image, path: &Path, board: Board) -> Vec<PointRow> {
+    let corners = detector.detect(image, board).unwrap_or_default();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let row = |(index, position): (usize, &PixelPoint)| PointRow {
         image: name.clone().into_owned(),
         target: board.target(index),
         start: Start { kind: Some(TargetKind::ChessCorner), affine: Some(affine(&corners, board, index)), ..Start::at(*position) },
     };
-    Ok(corners.iter().enumerate().map(row).collect())
+    corners.iter().enumerate().map(row).collect()
 }
 
 /// One square along the rows and one along the columns, px, from the neighbouring corners.

@@ -1,11 +1,13 @@
 //! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
 
+mod calibrate;
 mod camera;
 mod check;
 mod context;
 mod convert;
 mod detect;
 mod diff;
+mod intersect;
 mod list;
 mod measure;
 mod output;
@@ -15,6 +17,7 @@ mod progress;
 mod reading;
 mod render;
 mod report;
+mod resect;
 mod run;
 mod show;
 mod target;
@@ -82,6 +85,12 @@ enum Command {
     Measure(measure::Measure),
     /// Find a chessboard's corners in photographs: approximate positions for `measure`
     Detect(detect::Detect),
+    /// Calibrate a camera from measured points and control, or from photographs of a chessboard
+    Calibrate(Box<calibrate::Calibrate>),
+    /// Orient images from control points; the camera is known
+    Resect(resect::Resect),
+    /// Intersect object points from oriented images; camera and poses are known
+    Intersect(intersect::Intersect),
     /// Convert a camera file to another convention
     Convert(convert::Convert),
     /// Show what is in a camera file: parameters, field of view, distortion, fold-over
@@ -141,6 +150,9 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Bless(bless) => bless.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
+        Command::Calibrate(calibrate) => calibrate.run(&context),
+        Command::Resect(resect) => resect.run(&context),
+        Command::Intersect(intersect) => intersect.run(&context),
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),

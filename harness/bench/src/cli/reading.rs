@@ -166,7 +166,7 @@ pub fn shifted(camera: &Camera, by: f64) -> Camera {
     camera.with_parameters(&values.collect::<Vec<_>>())
 }
 
-fn size(text: &str) -> Result<ImageSize, String> {
+pub fn size(text: &str) -> Result<ImageSize, String> {
     let side = |text: &str| text.parse().ok().filter(|n| *n > 0);
     let size = text.split_once(['x', 'X']).and_then(|(w, h)| Some(ImageSize { width: side(w)?, height: side(h)? }));
     size.ok_or_else(|| "expected columns x rows, as in 4272x2848".into())

@@ -19,11 +19,11 @@ pub struct Field {
 }
 
 /// Width of the picture's map, px of the picture.
-const MAP: u32 = 900;
-const LEFT: u32 = 70;
-const TOP: u32 = 50;
-const RIGHT: u32 = 150;
-const BOTTOM: u32 = 80;
+pub(crate) const MAP: u32 = 900;
+pub(crate) const LEFT: u32 = 70;
+pub(crate) const TOP: u32 = 50;
+pub(crate) const RIGHT: u32 = 150;
+pub(crate) const BOTTOM: u32 = 80;
 /// Arrows across the longer side, about.
 const ARROWS: usize = 21;
 
@@ -123,17 +123,18 @@ impl Field {
     }
 }
 
-pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+/// Where is drawn.
+pub(crate) type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
 
 /// A round number of times by which arrows are lengthened so that the longest is about `room` px of the image.
-fn stretch(room: f64, longest: f64) -> f64 {
+pub(crate) fn stretch(room: f64, longest: f64) -> f64 {
     let wanted = room / longest;
     let decade = 10_f64.powf(wanted.log10().floor());
     [5.0, 2.0, 1.0].into_iter().map(|step| step * decade).find(|round| *round <= wanted).unwrap_or(wanted)
 }
 
 /// Light to dark, readable in grey and without colour vision: a part of viridis turned round, so that nothing is nearly white.
-pub(super) fn shade(part: f64) -> RGBColor {
+pub(crate) fn shade(part: f64) -> RGBColor {
     const STOPS: [(f64, f64, f64); 5] =
         [(250.0, 248.0, 220.0), (180.0, 222.0, 130.0), (53.0, 183.0, 121.0), (49.0, 104.0, 142.0), (68.0, 1.0, 84.0)];
     let scaled = part.clamp(0.0, 1.0) * 4.0;
@@ -144,7 +145,8 @@ pub(super) fn shade(part: f64) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-fn colour_bar(area: &Area<'_>, map: (u32, u32), top: f64) {
+/// The scale of colours beside a map of a size, from 0 to `top` px.
+pub(crate) fn colour_bar(area: &Area<'_>, map: (u32, u32), top: f64) {
     let x = (LEFT + map.0) as i32 + 20;
     let (up, down) = (TOP as i32, (TOP + map.1) as i32);
     for y in up..down {
@@ -160,7 +162,8 @@ fn colour_bar(area: &Area<'_>, map: (u32, u32), top: f64) {
     write(area, "px", (x, up - 14), HPos::Left);
 }
 
-fn arrow(area: &Area<'_>, from: (i32, i32), to: (i32, i32)) {
+/// An arrow.
+pub(crate) fn arrow(area: &Area<'_>, from: (i32, i32), to: (i32, i32)) {
     let style = BLACK.stroke_width(1);
     area.draw(&PathElement::new([from, to], style)).ok();
     let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
@@ -175,7 +178,8 @@ fn arrow(area: &Area<'_>, from: (i32, i32), to: (i32, i32)) {
     }
 }
 
-pub(super) fn write(area: &Area<'_>, text: &str, at: (i32, i32), side: HPos) {
+/// Text, its middle or its side at a place.
+pub(crate) fn write(area: &Area<'_>, text: &str, at: (i32, i32), side: HPos) {
     let style = ("sans-serif", 16).into_font().color(&BLACK).pos(Pos::new(side, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).ok();
 }

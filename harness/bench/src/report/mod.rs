@@ -2,10 +2,10 @@
 
 mod canvas;
 pub mod conventions;
-mod field;
+pub(crate) mod field;
 mod figures;
 mod load;
-mod markdown;
+pub(crate) mod markdown;
 mod photographs;
 mod published_section;
 mod scene_figures;

@@ -1,0 +1,58 @@
+//! Why there is no calibration.
+
+use calibench_adjust::AdjustError;
+use calibench_adjust::approximate::ApproximateError;
+use calibench_model::convert::ConvertError;
+use thiserror::Error;
+
+/// Why there is no calibration.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum CalibrationError {
+    /// No measured target is a control point.
+    #[error("no measured target is a control point: `{measured}` was measured, `{control}` is known{}", near.as_ref().map_or(String::new(), |near| format!("; is it `{near}`?")))]
+    NothingInCommon {
+        /// The first measured target.
+        measured: String,
+        /// The first control point.
+        control: String,
+        /// The control point whose name is nearest.
+        near: Option<String>,
+    },
+    /// Images without a pose.
+    #[error("no exterior orientation: {}", images.iter().map(|(name, why)| format!("image {name}: {why}")).collect::<Vec<_>>().join("; "))]
+    NoPose {
+        /// Each with the reason.
+        images: Vec<(String, String)>,
+    },
+    /// A model that is not known.
+    #[error("no camera model is called {name}; known are {known}{}", near.as_ref().map_or(String::new(), |near| format!("; did you mean `{near}`?")))]
+    UnknownModel {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+        /// The nearest.
+        near: Option<String>,
+    },
+    /// A model in mm without a pixel pitch.
+    #[error("{what} in mm: give the pixel pitch with --pitch UM (width of the sensor over columns)")]
+    NoPitch {
+        /// Whose units they are.
+        what: String,
+    },
+    /// A datum's target that is no measured control point.
+    #[error("the datum names {target}, which is no measured control point")]
+    DatumTarget {
+        /// Its name.
+        target: String,
+    },
+    /// The start cannot be put into the model.
+    #[error("the start values do not fit the model: {0}")]
+    Convert(#[from] ConvertError),
+    /// No start values.
+    #[error("no start values: {0}")]
+    Start(#[from] ApproximateError),
+    /// No adjustment.
+    #[error(transparent)]
+    Adjust(#[from] AdjustError),
+}

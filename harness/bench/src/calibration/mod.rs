@@ -1,0 +1,155 @@
+//! From measured points to a calibrated camera, for users: start values without truth, the adjustment, and what is to be said of it.
+
+mod datum;
+mod error;
+mod model;
+mod network;
+mod page;
+mod pictures;
+mod start;
+mod survey;
+mod tables;
+
+use calibench_adjust::{Covariances, Found, Network, Options, Reliability, Snooping, Solution, Test, Variance, adjust, snoop};
+use calibench_exchange::{ControlRow, PointRow};
+use calibench_model::camera::{Camera, ImageSize};
+
+pub use datum::{DatumChoice, NoDatum};
+pub use error::CalibrationError;
+pub use model::MODELS;
+pub use page::{summary, write_report};
+pub use start::{control_of, pose_of};
+pub use survey::{LeftOut, Sight, Survey};
+
+/// How to calibrate.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Size of the images.
+    pub size: ImageSize,
+    /// Pixel pitch, um, for models in mm.
+    pub pitch_um: Option<f64>,
+    /// The camera model, one of [`MODELS`]; `None` for photogrammetric with a pitch and OpenCV's five coefficients without.
+    pub model: Option<String>,
+    /// The parameters to be solved for; `None` for those that the model usually needs.
+    pub solve: Option<Vec<String>>,
+    /// What fixes the frame of the object.
+    pub datum: DatumChoice,
+    /// Bound of Huber's weights, in standard deviations.
+    pub huber: Option<f64>,
+    /// Leave out what Baarda's test rejects?
+    pub snoop: bool,
+    /// A-priori standard deviation of an image coordinate, px; `None` for [`USUAL_SIGMA`], about which nothing is known but its order of magnitude.
+    pub sigma_px: Option<f64>,
+    /// Weigh image points by their own covariances, where they have them?
+    pub covariances: bool,
+    /// An interior orientation to start from; parameters that are not solved for keep its values.
+    pub start: Option<Camera>,
+}
+
+/// The a-priori standard deviation of an image coordinate where none is given, px.
+pub const USUAL_SIGMA: f64 = 0.1;
+
+impl Settings {
+    /// The usual ones for images of a size.
+    pub fn new(size: ImageSize) -> Self {
+        Self {
+            size,
+            pitch_um: None,
+            model: None,
+            solve: None,
+            datum: DatumChoice::Control,
+            huber: None,
+            snoop: false,
+            sigma_px: None,
+            covariances: false,
+            start: None,
+        }
+    }
+
+    /// The a-priori standard deviation of an image coordinate, px.
+    pub fn sigma(&self) -> f64 {
+        self.sigma_px.unwrap_or(USUAL_SIGMA)
+    }
+
+    /// Whose variance factor tests and standard deviations take: the a-priori one means something only if the user stated it.
+    fn tested(&self) -> Variance {
+        if self.sigma_px.is_some() { Variance::Apriori } else { Variance::Estimated }
+    }
+}
+
+/// A network with its start values.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// How it was asked for.
+    pub settings: Settings,
+    /// Who measured what.
+    pub survey: Survey,
+    /// Where the interior orientation started.
+    pub origin: String,
+    /// What is adjusted.
+    pub network: Network,
+    /// The sight behind each observation of the network.
+    pub sights: Vec<usize>,
+    /// Rows that take no part, with the reason.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A calibration and its quality.
+#[derive(Clone, Debug)]
+pub struct Calibration<'n> {
+    /// What was adjusted.
+    pub prepared: &'n Prepared,
+    /// The result.
+    pub solution: Solution<'n>,
+    /// Image points that were rejected, if they were looked for.
+    pub found: Vec<Found>,
+    /// Covariances, with the estimated variance factor where there is redundancy.
+    pub covariances: Covariances,
+    /// Redundancy numbers and tests of the image points; `None` if the test cannot be made for want of redundancy.
+    pub reliability: Option<Reliability>,
+}
+
+/// Joins points with control and finds start values for everything.
+///
+/// # Errors
+/// No point in common, an unknown model or parameter, too few control points in an image, a datum of unknown targets.
+pub fn prepare(points: &[PointRow], control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
+    let survey = Survey::new(points, control)?;
+    let starts = start::starts(&survey, settings)?;
+    let (network, sights, left_out) = network::network(&survey, &starts, settings)?;
+    Ok(Prepared { settings: settings.clone(), survey, origin: starts.origin, network, sights, left_out })
+}
+
+impl Prepared {
+    /// Adjusts.
+    ///
+    /// # Errors
+    /// What the network does not determine, by name; what else [`adjust`] refuses.
+    pub fn adjust(&self) -> Result<Calibration<'_>, CalibrationError> {
+        let options = Options { huber: self.settings.huber, ..Options::default() };
+        let test = Test { variance: self.settings.tested(), ..Test::default() };
+        let (solution, found) = if self.settings.snoop {
+            snoop(&self.network, &options, Snooping { test, ..Snooping::default() })?
+        } else {
+            (adjust(&self.network, &options)?, Vec::new())
+        };
+        let checked = solution.counts().redundancy() > 0;
+        let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
+        let reliability = if checked { Some(solution.reliability(test)?) } else { None };
+        Ok(Calibration { prepared: self, solution, found, covariances, reliability })
+    }
+}
+
+impl Calibration<'_> {
+    /// The interior orientation.
+    pub fn camera(&self) -> &Camera {
+        &self.solution.cameras()[0]
+    }
+
+    /// Root mean square of the residuals in use, px: `sqrt(mean(vx^2 + vy^2))`.
+    pub fn rms_px(&self) -> f64 {
+        let used = self.solution.residuals().into_iter().filter(|r| r.used != calibench_adjust::Use::LeftOut).filter_map(|r| r.v);
+        let (sum, count) = used.fold((0.0, 0), |(sum, count), [x, y]| (sum + x * x + y * y, count + 1));
+        (sum / f64::from(count.max(1))).sqrt()
+    }
+}

@@ -1,0 +1,91 @@
+//! Camera models by name, for start values and unknowns.
+
+use calibench_model::camera::{Camera, CameraModel, TangentialOrder};
+use calibench_model::convert::{ConvertOptions, Target, convert};
+
+use super::{CalibrationError, Settings};
+use crate::scenario::problem::nearest;
+
+/// The models that can be calibrated.
+pub const MODELS: [&str; 15] = [
+    "photogrammetric",
+    "ebner",
+    "opencv4",
+    "opencv5",
+    "opencv8",
+    "opencv12",
+    "opencv14",
+    "opencv-fisheye",
+    "metashape",
+    "pix4d",
+    "double-sphere",
+    "eucm",
+    "omni",
+    "fov",
+    "prism-fisheye",
+];
+
+/// What the user asked for, or the model that suits what is known.
+pub(super) fn name(settings: &Settings) -> &str {
+    let usual = if settings.pitch_um.is_some() { "photogrammetric" } else { "opencv5" };
+    settings.model.as_deref().unwrap_or(usual)
+}
+
+fn target(name: &str, settings: &Settings) -> Result<Target, CalibrationError> {
+    let pitch = || settings.pitch_um.ok_or_else(|| CalibrationError::NoPitch { what: format!("{name} is") });
+    let width_mm = |pitch_um: f64| f64::from(settings.size.width) * pitch_um * 1e-3;
+    Ok(match name {
+        "photogrammetric" => Target::photogrammetric(pitch()?),
+        // The grid's outer points lie at four tenths of the width.
+        "ebner" => Target::Ebner { pitch_um: pitch()?, b_mm: 0.4 * width_mm(pitch()?) },
+        "opencv-fisheye" => Target::OpenCvFisheye,
+        "metashape" => Target::metashape(),
+        "pix4d" => Target::Pix4d { sensor_width_mm: width_mm(pitch()?), order: TangentialOrder::OpenCv },
+        "double-sphere" => Target::DoubleSphere,
+        "eucm" => Target::Eucm,
+        "omni" => Target::Omni { distortion: true },
+        "fov" => Target::Fov,
+        "prism-fisheye" => Target::PrismFisheye,
+        _ => match name.strip_prefix("opencv").map(|n| if n.is_empty() { Ok(5) } else { n.parse() }) {
+            Some(Ok(coefficients @ (4 | 5 | 8 | 12 | 14))) => Target::OpenCv { coefficients },
+            _ => return Err(unknown(name)),
+        },
+    })
+}
+
+fn unknown(name: &str) -> CalibrationError {
+    let near = nearest(name, MODELS).map(str::to_owned);
+    CalibrationError::UnknownModel { name: name.to_owned(), known: MODELS.join(", "), near }
+}
+
+/// The model that the user asked for, as near to `start` as it comes.
+pub(super) fn camera(start: &Camera, settings: &Settings) -> Result<Camera, CalibrationError> {
+    let target = target(name(settings), settings)?;
+    // Of a start the misfit does not matter.
+    let camera = convert(start, target, &ConvertOptions { accept: true, ..ConvertOptions::default() })?.camera;
+    // A zero without a sign.
+    let values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value + 0.0).collect();
+    Ok(camera.with_parameters(&values))
+}
+
+/// Is the model known, and what it needs given? Asked before start values are looked for.
+pub(super) fn check(settings: &Settings) -> Result<(), CalibrationError> {
+    if settings.model.is_none() && settings.pitch_um.is_none() && settings.solve.iter().flatten().any(|name| name == "c") {
+        return Err(CalibrationError::NoPitch { what: "c, x0 and y0 are".into() });
+    }
+    target(name(settings), settings).map(|_| ())
+}
+
+/// The parameters to be solved for.
+pub(super) fn unknowns(camera: &Camera, settings: &Settings) -> Vec<String> {
+    if let Some(names) = &settings.solve {
+        return names.clone();
+    }
+    let rarely: &[&str] = match camera {
+        Camera::Photogrammetric(_) => &["k3", "b1", "b2"],
+        Camera::Ebner(_) => &["k1", "k2", "k3", "p1", "p2", "b1", "b2"],
+        Camera::Agisoft(_) => &["b1", "b2", "k4", "p3", "p4"],
+        _ => &[],
+    };
+    camera.parameters().iter().map(|parameter| parameter.name.to_owned()).filter(|name| !rarely.contains(&name.as_str())).collect()
+}

@@ -1,0 +1,59 @@
+//! The network of a survey.
+
+use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Precision};
+
+use super::start::Starts;
+use super::survey::Target;
+use super::{CalibrationError, DatumChoice, LeftOut, Settings, Survey, model};
+
+/// The name of the camera in messages.
+const CAMERA: &str = "the camera";
+
+/// The network, the sight behind each of its observations, and the sights that take no part.
+pub(super) fn network(
+    survey: &Survey,
+    starts: &Starts,
+    settings: &Settings,
+) -> Result<(Network, Vec<usize>, Vec<LeftOut>), CalibrationError> {
+    let names = model::unknowns(&starts.camera, settings);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let interior = Interior::fixed(CAMERA, starts.camera).free(&names)?;
+    let images = survey.images.iter().zip(&starts.poses).map(|(name, pose)| Exterior::free(name.clone(), 0, *pose)).collect();
+    let (mut points, mut place) = (Vec::new(), vec![None; survey.targets.len()]);
+    for (index, (target, position)) in survey.targets.iter().zip(&starts.points).enumerate() {
+        if let Ok(position) = position {
+            place[index] = Some(points.len());
+            points.push(point(target, *position, &settings.datum));
+        }
+    }
+    let (mut observations, mut sights, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, sight) in survey.sights.iter().enumerate() {
+        match (place[sight.target], &starts.points[sight.target]) {
+            (Some(point), _) => {
+                let own = sight.covariance.filter(|_| settings.covariances);
+                let precision = own.map_or(Precision::Sigma(settings.sigma()), Precision::Covariance);
+                observations.push(ImageObservation { image: sight.image, point, position: sight.position, precision });
+                sights.push(index);
+            }
+            (None, why) => {
+                let why = why.as_ref().err().cloned().unwrap_or_default();
+                left_out.push(LeftOut { sight: index, why });
+            }
+        }
+    }
+    let control = |name: &str| survey.targets.iter().position(|t| t.name == name && t.control.is_some()).and_then(|i| place[i]);
+    let datum = settings.datum.datum(control)?;
+    Ok((Network { cameras: vec![interior], images, points, observations, datum }, sights, left_out))
+}
+
+fn point(target: &Target, position: nalgebra::Point3<f64>, datum: &DatumChoice) -> ObjectPoint {
+    let name = target.name.clone();
+    match &target.control {
+        Some(_) if datum.is_minimal() => ObjectPoint::free(name, position),
+        Some(control) => match control.sigmas.filter(|_| *datum == DatumChoice::Control) {
+            Some(sigmas) => ObjectPoint::observed(name, position, sigmas),
+            None => ObjectPoint::fixed(name, position),
+        },
+        None => ObjectPoint::free(name, position),
+    }
+}

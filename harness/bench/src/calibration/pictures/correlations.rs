@@ -1,0 +1,53 @@
+//! The correlation matrix of the interior orientation.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::super::Calibration;
+use super::super::page::CORRELATED;
+use crate::report::Canvas;
+use crate::report::field::write;
+
+/// Side of a cell, room for names, room for the title, px of the picture.
+const CELL: u32 = 56;
+const NAMES: u32 = 60;
+const TITLE: u32 = 50;
+
+/// A cell for each pair of parameters: blue for negative, orange for positive correlation.
+pub(super) fn picture(calibration: &Calibration<'_>) -> Canvas {
+    let rho = calibration.covariances.correlations();
+    let names: Vec<&str> = calibration.covariances.parameters.iter().map(|(_, name)| *name).collect();
+    let n = names.len() as u32;
+    let mut canvas = Canvas::new((NAMES + n * CELL + 20).max(420), TITLE + NAMES / 2 + n * CELL + 20);
+    canvas.text("Correlations of the interior orientation", 18, (12, TITLE / 2));
+    let corner = |i: u32| ((NAMES + i * CELL) as i32, (TITLE + NAMES / 2 + i * CELL) as i32);
+    canvas.paint(|area| {
+        for i in 0..n {
+            let middle = (CELL / 2) as i32;
+            write(area, names[i as usize], (corner(i).0 + middle, corner(0).1 - 12), HPos::Center);
+            write(area, names[i as usize], (corner(0).0 - 8, corner(i).1 + middle), HPos::Right);
+            for j in 0..n {
+                let value = rho[(i as usize, j as usize)];
+                let corners = [(corner(j).0, corner(i).1), (corner(j + 1).0, corner(i + 1).1)];
+                area.draw(&Rectangle::new(corners, tint(value).filled())).ok();
+                area.draw(&Rectangle::new(corners, RGBColor(200, 200, 200))).ok();
+                write(area, &format!("{value:.2}"), (corner(j).0 + middle, corner(i).1 + middle), HPos::Center);
+            }
+        }
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).filter(|(i, j)| i != j) {
+            if rho[(i as usize, j as usize)].abs() > CORRELATED {
+                let corners = [(corner(j).0 + 1, corner(i).1 + 1), (corner(j + 1).0 - 1, corner(i + 1).1 - 1)];
+                area.draw(&Rectangle::new(corners, BLACK.stroke_width(3))).ok();
+            }
+        }
+    });
+    canvas
+}
+
+/// White for none; full colours stay light enough for black digits.
+fn tint(value: f64) -> RGBColor {
+    let full = if value < 0.0 { (86.0, 180.0, 233.0) } else { (230.0, 159.0, 0.0) };
+    let part = value.abs().min(1.0);
+    let mix = |channel: f64| (255.0 + (channel - 255.0) * part).round() as u8;
+    RGBColor(mix(full.0), mix(full.1), mix(full.2))
+}

@@ -1,0 +1,165 @@
+//! Start values without truth.
+
+use calibench_adjust::approximate::{
+    Assumed, Control, Search, Sight as Ray, Tolerance, direct_linear, interior_from_planes, interior_from_size, intersect, planar_poses,
+    resect,
+};
+use calibench_model::Pose;
+use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
+use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+
+use super::{CalibrationError, Settings, Survey, model};
+
+/// Height of control, as a share of its extent, below which it is a plane for start values.
+const FLAT: f64 = 1e-4;
+/// Focal lengths that are tried for control with depth, in longer sides.
+const FOCAL: [f64; 4] = [0.6, 1.2, 2.4, 4.8];
+/// Rounds of resection and intersection for images that see too little control.
+const ROUNDS: usize = 3;
+/// Rays that meet at less are parallel, rad.
+const PARALLEL: f64 = 1e-3;
+
+/// Start values of everything.
+pub(super) struct Starts {
+    pub(super) camera: Camera,
+    /// Where the camera comes from, in words.
+    pub(super) origin: String,
+    pub(super) poses: Vec<Pose>,
+    /// Of each target, or why there is none.
+    pub(super) points: Vec<Result<Point3<f64>, String>>,
+}
+
+/// Start values of a survey: from planes by Zhang's closed form, from control with depth by the direct linear transformation or the best of some usual
+/// focal lengths; then resections and intersections in turn.
+pub(super) fn starts(survey: &Survey, settings: &Settings) -> Result<Starts, CalibrationError> {
+    model::check(settings)?;
+    let known: Vec<Option<Point3<f64>>> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
+    let views: Vec<Vec<Control>> = (0..survey.images.len()).map(|image| control_of(survey, &known, image)).collect();
+    let (rough, origin) = match settings.start {
+        Some(camera) => (camera, "the camera file given".to_owned()),
+        None if is_flat(&known) => from_plane(&views, settings.size)?,
+        None => from_depth(&views, settings.size)?,
+    };
+    let (poses, points) = orient(survey, &rough, known)?;
+    Ok(Starts { camera: model::camera(&rough, settings)?, origin, poses, points })
+}
+
+/// What an image sees of the points that are known.
+pub fn control_of(survey: &Survey, known: &[Option<Point3<f64>>], image: usize) -> Vec<Control> {
+    let seen = survey.sights.iter().filter(|sight| sight.image == image);
+    seen.filter_map(|sight| Some(Control { object: known[sight.target]?, image: sight.position })).collect()
+}
+
+fn is_flat(known: &[Option<Point3<f64>>]) -> bool {
+    let points: Vec<Vector3<f64>> = known.iter().flatten().map(|point| point.coords).collect();
+    let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    let spread: Matrix3<f64> = points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum();
+    let values = SymmetricEigen::new(spread).eigenvalues;
+    values.min().max(0.0) <= FLAT * FLAT * values.max()
+}
+
+fn pinhole(size: ImageSize, focal: f64, [cx, cy]: [f64; 2]) -> Camera {
+    OpenCv { size, fx: focal, fy: focal, cx, cy, distortion: [0.0; 14], coefficients: 5 }.into()
+}
+
+/// Where the principal point of a camera of which nothing is known lies.
+fn middle(size: ImageSize) -> Result<[f64; 2], CalibrationError> {
+    let guess = interior_from_size(size)?;
+    let named = |name: &str| guess.parameters().iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+    Ok([named("cx"), named("cy")])
+}
+
+fn from_plane(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String), CalibrationError> {
+    let usable: Vec<&[Control]> = views.iter().filter(|view| view.len() >= 4).map(Vec::as_slice).collect();
+    let Ok(found) = interior_from_planes(&usable, size) else {
+        // The adjustment says what of it cannot be determined.
+        return Ok((interior_from_size(size)?, "the size of the images alone: no view of the plane shows the principal distance".into()));
+    };
+    let value = |name: &str| found.camera.parameters().iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
+    let assumed = match found.assumed {
+        Assumed::Nothing => "",
+        Assumed::Centre => ", with the principal point in the centre of the frame",
+        Assumed::CentreAndSquare => ", with the principal point in the centre of the frame and square pixels",
+    };
+    let origin = format!("Zhang's closed form from {} views of the plane{assumed}", found.used.len());
+    // Square pixels: what is not solved for must not keep a difference that comes from distortion.
+    Ok((pinhole(size, (value("fx") * value("fy")).sqrt(), [value("cx"), value("cy")]), origin))
+}
+
+fn from_depth(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String), CalibrationError> {
+    let side = f64::from(size.width.max(size.height));
+    let centre = middle(size)?;
+    let mut focal: Vec<(f64, &str)> = FOCAL.iter().map(|f| (f * side, "the best of some usual focal lengths")).collect();
+    let mut linear: Vec<f64> =
+        views.iter().filter_map(|view| direct_linear(view, size, 1000.0, None).ok()).map(|dlt| dlt.camera.c).collect();
+    linear.retain(|f| *f > 0.2 * side && *f < 20.0 * side);
+    linear.sort_by(f64::total_cmp);
+    if let Some(median) = linear.get(linear.len() / 2) {
+        focal.push((*median, "the direct linear transformation (median of the images)"));
+    }
+    let misfit = |camera: &Camera| {
+        let sigma = |view: &Vec<Control>| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
+        let mut sigmas: Vec<f64> = views.iter().filter(|view| view.len() >= 4).map(sigma).collect();
+        sigmas.sort_by(f64::total_cmp);
+        sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::INFINITY)
+    };
+    let tried = focal.into_iter().map(|(focal, origin)| {
+        let camera = pinhole(size, focal, centre);
+        (misfit(&camera), camera, origin)
+    });
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
+    let (camera, origin) = best.map_or_else(|| (pinhole(size, side, centre), "a guess"), |(_, camera, origin)| (camera, origin));
+    Ok((camera, origin.to_owned()))
+}
+
+/// The pose of an image: before a plane, or else by resection, against gross errors if it does not work without.
+///
+/// # Errors
+/// In words.
+pub fn pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, String> {
+    if control.len() < 4 {
+        return Err(format!("{} known points, a resection takes at least 4", control.len()));
+    }
+    if let Some(best) = planar_poses(camera, control).ok().and_then(|poses| poses.first().copied()) {
+        return Ok(best.pose);
+    }
+    let against = Search { seed: 1, tolerance: Tolerance::Unknown };
+    let found = resect(camera, control, None).or_else(|error| resect(camera, control, Some(&against)).map_err(|_| error));
+    found.map(|found| found.pose).map_err(|error| error.to_string())
+}
+
+type Points = Vec<Result<Point3<f64>, String>>;
+
+/// Poses from known points and tie points from oriented images, in turn.
+fn orient(survey: &Survey, camera: &Camera, mut known: Vec<Option<Point3<f64>>>) -> Result<(Vec<Pose>, Points), CalibrationError> {
+    let mut poses: Vec<Result<Pose, String>> = vec![Err(String::new()); survey.images.len()];
+    let mut why = vec![String::new(); known.len()];
+    for _ in 0..ROUNDS {
+        for (image, pose) in poses.iter_mut().enumerate().filter(|(_, pose)| pose.is_err()) {
+            *pose = pose_of(camera, &control_of(survey, &known, image));
+        }
+        for target in (0..known.len()).filter(|&target| survey.targets[target].control.is_none()) {
+            match tie_point(survey, camera, &poses, target) {
+                Ok(point) => known[target] = Some(point),
+                Err(reason) => why[target] = reason,
+            }
+        }
+    }
+    let lost: Vec<_> =
+        survey.images.iter().zip(&poses).filter_map(|(name, pose)| Some((name.clone(), pose.as_ref().err()?.clone()))).collect();
+    if !lost.is_empty() {
+        return Err(CalibrationError::NoPose { images: lost });
+    }
+    let points = known.into_iter().zip(why).map(|(point, why)| point.ok_or(why)).collect();
+    Ok((poses.into_iter().flatten().collect(), points))
+}
+
+fn tie_point(survey: &Survey, camera: &Camera, poses: &[Result<Pose, String>], target: usize) -> Result<Point3<f64>, String> {
+    let seen = survey.sights.iter().filter(|sight| sight.target == target);
+    let rays: Vec<Ray<'_>> =
+        seen.filter_map(|sight| Some(Ray { camera, pose: poses[sight.image].as_ref().ok()?, image: sight.position })).collect();
+    if rays.len() < 2 {
+        return Err("no control point, and not seen in two oriented images".into());
+    }
+    intersect(&rays, PARALLEL, None).map(|found| found.point).map_err(|error| format!("no control point, and no intersection: {error}"))
+}

@@ -1,0 +1,146 @@
+//! `calibench calibrate`: a camera from measured points and control, or from photographs of a chessboard.
+
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::{ControlRow, FolderWriter, PointRow, ReadOptions, read_camera_with, read_control, read_points};
+use calibench_model::camera::{Camera, ImageSize};
+use clap::Args;
+
+use super::context::Context;
+use super::convert::positive;
+use super::{Failure, print};
+use crate::calibration::{Calibration, DatumChoice, Settings, prepare, summary, write_report};
+
+mod board;
+mod camera_file;
+
+use board::Chessboard;
+
+#[derive(Args)]
+pub struct Calibrate {
+    /// Photographs of a chessboard, in place of --points and --control
+    #[arg(value_name = "PHOTO", requires = "chessboard")]
+    photos: Vec<PathBuf>,
+    /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
+    #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos")]
+    chessboard: Option<Chessboard>,
+    /// The method that measures the chessboard's corners
+    #[arg(short, long, value_name = "METHOD", default_value = "forstner", requires = "photos")]
+    method: String,
+    /// Measured points: CSV with image,target,x,y, as `measure` writes it
+    #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
+    points: Option<PathBuf>,
+    /// Control points: CSV with target,X,Y,Z, and optionally sX,sY,sZ
+    #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
+    control: Option<PathBuf>,
+    /// Size of the images, px
+    #[arg(long, value_name = "WxH", value_parser = super::reading::size, required_unless_present = "photos", conflicts_with = "photos")]
+    size: Option<ImageSize>,
+    /// Pixel pitch, um, for models in mm
+    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true)]
+    pitch: Option<f64>,
+    /// Camera model: photogrammetric, opencv5, metashape and others [default: photogrammetric with --pitch, or else opencv5]
+    #[arg(long, value_name = "MODEL")]
+    model: Option<String>,
+    /// Parameters to solve for, as in c,x0,y0,k1; the others keep their start values [default: what the model usually needs]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    solve: Option<Vec<String>>,
+    /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, or minimal:A,B,C,D,E (X and Y of two, Z of three)
+    #[arg(long, value_name = "DATUM", default_value = "control")]
+    datum: DatumChoice,
+    /// A-priori standard deviation of an image coordinate, px [default: 0.1, and the estimated one in tests]
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
+    sigma: Option<f64>,
+    /// Weigh image points by the covariances of the point file
+    #[arg(long)]
+    covariances: bool,
+    /// Robust weights: bound in standard deviations of an image point, as in 2
+    #[arg(long, value_name = "K", value_parser = positive, allow_negative_numbers = true)]
+    huber: Option<f64>,
+    /// Leave out image points that Baarda's test rejects, one after the other
+    #[arg(long, conflicts_with = "huber")]
+    snoop: bool,
+    /// A camera file to start from, and whose values the parameters keep that are not solved for
+    #[arg(long, value_name = "FILE")]
+    start: Option<PathBuf>,
+    /// The camera file [default: none is written]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Convention or tool of the camera file, as for `convert` [default: by model and ending]
+    #[arg(long, value_name = "CONVENTION", requires = "output")]
+    to: Option<String>,
+    /// Folder for a report with pictures and tables; one that is there is replaced as a whole
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+}
+
+impl Calibrate {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let (points, control, size) = self.input(context)?;
+        let settings = self.settings(size)?;
+        let prepared = prepare(&points, &control, &settings)?;
+        let calibration = prepared.adjust()?;
+        self.deliver(&calibration)?;
+        print(&summary(&calibration))
+    }
+
+    fn input(&self, context: &Context<'_>) -> Result<(Vec<PointRow>, Vec<ControlRow>, ImageSize), Failure> {
+        match (&self.points, &self.control, self.size, self.chessboard) {
+            (Some(points), Some(control), Some(size), _) => Ok((read_measured(points)?, read_control(control)?, size)),
+            (_, _, _, Some(chessboard)) => {
+                let (points, size) = chessboard.measure(context, &self.photos, &self.method)?;
+                Ok((points, chessboard.control(), size))
+            }
+            _ => Err(Failure::input("expected --points, --control and --size, or photographs and --chessboard")),
+        }
+    }
+
+    fn settings(&self, size: ImageSize) -> Result<Settings, Failure> {
+        Ok(Settings {
+            pitch_um: self.pitch,
+            model: self.model.clone(),
+            solve: self.solve.clone(),
+            datum: self.datum.clone(),
+            huber: self.huber,
+            snoop: self.snoop,
+            sigma_px: self.sigma,
+            covariances: self.covariances,
+            start: self.start.as_deref().map(|path| camera(path, Some(size))).transpose()?,
+            ..Settings::new(size)
+        })
+    }
+
+    fn deliver(&self, calibration: &Calibration<'_>) -> Result<(), Failure> {
+        if let Some(path) = &self.output {
+            camera_file::write(path, calibration, self.to.as_deref(), self.pitch)?;
+        }
+        let Some(folder) = &self.report else { return Ok(()) };
+        let (Some(name), parent) = (folder.file_name().and_then(|name| name.to_str()), folder.parent()) else {
+            return Err(Failure::input(format!("--report {}: expected the name of a folder", folder.display())));
+        };
+        let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Ok(FolderWriter::new(parent)?.replace(name, |folder| write_report(calibration, folder))?)
+    }
+}
+
+/// The rows of a point file that have a position, with a word about the others.
+pub fn read_measured(path: &Path) -> Result<Vec<PointRow>, Failure> {
+    let file = read_points(path)?;
+    if file.without_position > 0 {
+        eprintln!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.without_position);
+    }
+    if file.rows.is_empty() {
+        return Err(Failure::input(format!("{}: no row has a position", path.display())));
+    }
+    Ok(file.rows)
+}
+
+/// The first camera of a file.
+pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
+    let file = read_camera_with(path, &ReadOptions { size, fisheye: None })?;
+    if file.cameras.len() > 1 {
+        eprintln!("{}: the first of {} cameras", path.display(), file.cameras.len());
+    }
+    let first = file.cameras.first().map(|named| named.camera);
+    first.ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
+}

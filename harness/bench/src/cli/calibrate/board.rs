@@ -1,0 +1,121 @@
+//! A chessboard's corners, found and measured.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use calibench_exchange::{ControlRow, PointRow, read_photo};
+use calibench_measure::{Board, BoardDetector, Operator};
+use calibench_model::Start;
+use calibench_model::camera::ImageSize;
+use rayon::prelude::*;
+
+use super::super::Failure;
+use super::super::context::Context;
+use super::super::detect::corners_of;
+use super::super::progress::Progress;
+
+/// A chessboard and the side of its squares.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chessboard {
+    board: Board,
+    side: f64,
+}
+
+impl FromStr for Chessboard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong =
+            || format!("`{text}` is no chessboard: expected inner corners and the side of a square as COLUMNSxROWS:SIDE, as in 9x6:25");
+        let (board, side) = text.split_once(':').ok_or_else(wrong)?;
+        let board = board.parse().map_err(|_| wrong())?;
+        let side = side.parse().ok().filter(|side: &f64| side.is_finite() && *side > 0.0).ok_or_else(wrong)?;
+        Ok(Self { board, side })
+    }
+}
+
+impl Chessboard {
+    /// Its inner corners: X along the rows, Y upwards, Z towards the viewer.
+    pub fn control(&self) -> Vec<ControlRow> {
+        let corner = |index: usize| {
+            let (column, row) = (index % self.board.columns, index / self.board.columns);
+            let position = [column as f64 * self.side, -(row as f64 * self.side), 0.0];
+            ControlRow { target: self.board.target(index), position, sigmas: None }
+        };
+        (0..self.board.corners()).map(corner).collect()
+    }
+
+    /// The corners in photographs: approximately by the detector, then by the method. Those that the method rejects are said to be missing.
+    pub fn measure(&self, context: &Context<'_>, photos: &[PathBuf], method: &str) -> Result<(Vec<PointRow>, ImageSize), Failure> {
+        let detector = context.toolbox.detector.as_deref();
+        let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
+        let method = context.method(method)?;
+        let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
+        let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
+        let one = |path: &PathBuf| {
+            let found = self.in_photo(path, detector, operator.as_ref());
+            progress.step();
+            found
+        };
+        let found = photos.par_iter().map(one).collect::<Result<Vec<_>, Failure>>()?;
+        let size = same_size(photos, &found)?;
+        let mut seen = 0;
+        for (path, (rows, _)) in photos.iter().zip(&found) {
+            let missing = self.board.corners() - rows.len();
+            seen += usize::from(!rows.is_empty());
+            match rows.len() {
+                0 => eprintln!("{}: no board of {} x {} inner corners found", path.display(), self.board.columns, self.board.rows),
+                _ if missing > 0 => eprintln!("{}: {missing} corners were rejected by {}", path.display(), method.label),
+                _ => {}
+            }
+        }
+        progress.finish(&format!("the board was found in {seen} of {} photographs, measured by {}", photos.len(), method.label));
+        if seen == 0 {
+            return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
+        }
+        Ok((found.into_iter().flat_map(|(rows, _)| rows).collect(), size))
+    }
+
+    fn in_photo(&self, path: &Path, detector: &dyn BoardDetector, operator: &dyn Operator) -> Result<(Vec<PointRow>, ImageSize), Failure> {
+        let image = read_photo(path)?;
+        let rows = corners_of(detector, &image, path, self.board);
+        let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();
+        let measured = operator.measure_all(&image, &starts);
+        let with = |(row, result): (PointRow, Result<calibench_model::Measurement, _>)| {
+            let found = result.ok()?;
+            Some(PointRow { start: Start { position: found.position, covariance: found.covariance, ..row.start }, ..row })
+        };
+        let rows = rows.into_iter().zip(measured).filter_map(with).collect();
+        Ok((rows, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
+    }
+}
+
+fn same_size(photos: &[PathBuf], found: &[(Vec<PointRow>, ImageSize)]) -> Result<ImageSize, Failure> {
+    let Some((_, first)) = found.first() else { return Err(Failure::input("no photograph was given")) };
+    match found.iter().position(|(_, size)| size != first) {
+        None => Ok(*first),
+        Some(other) => {
+            let (a, b, size) = (photos[0].display(), photos[other].display(), found[other].1);
+            Err(Failure::input(format!(
+                "{a} has {} x {} px, {b} has {} x {}: photographs of one camera have one size",
+                first.width, first.height, size.width, size.height
+            )))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chessboard_is_seen_from_its_front() {
+        let board: Chessboard = "3x4:2.5".parse().unwrap();
+        let control = board.control();
+        assert_eq!(control.len(), 12);
+        assert_eq!((control[4].target.as_str(), control[4].position), ("r2c2", [2.5, -2.5, 0.0]));
+        for wrong in ["9x6", "9x6:", "9x6:0", "9x6:-1", "9x6:NaN", "9:25", "2x2:1"] {
+            assert!(wrong.parse::<Chessboard>().is_err(), "{wrong}");
+        }
+    }
+}

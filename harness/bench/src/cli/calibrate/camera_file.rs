@@ -1,0 +1,76 @@
+//! The calibrated camera as a file of any format.
+
+use std::path::Path;
+
+use calibench_exchange::camera::fit::{fit_to_format, losses};
+use calibench_exchange::camera::{CameraFormat, FORMATS, NamedCamera, ParameterCovariance, camera_text, write_camera};
+use calibench_model::camera::{Camera, TangentialOrder};
+use calibench_model::convert::{Conversion, ConvertOptions, Method, convert};
+
+use super::super::Failure;
+use super::super::convert::{advise, named, size_of, whole};
+use super::super::target::{Given, Way, goal};
+use crate::calibration::Calibration;
+
+/// Writes the camera with its covariance: in the convention asked for, or in the first format that holds it as it is and has the file's ending.
+pub fn write(path: &Path, calibration: &Calibration<'_>, to: Option<&str>, pitch_um: Option<f64>) -> Result<(), Failure> {
+    let (names, covariance) = calibration.covariances.of_camera(0);
+    let n = names.len();
+    let values = (0..n * n).map(|k| f64::midpoint(covariance[(k / n, k % n)], covariance[(k % n, k / n)])).collect();
+    let covariance = ParameterCovariance::new(names.iter().map(|name| (*name).to_owned()).collect(), values).map_err(Failure::Input)?;
+    let source = NamedCamera { pitch_um, covariance: Some(covariance), ..NamedCamera::new("", *calibration.camera()) };
+    let (format, result) = match to.or_else(|| by_ending(path, &source)) {
+        Some(to) => converted(&source, to, path)?,
+        None => (as_it_is(path, &source)?, source),
+    };
+    losses(format, &result).iter().for_each(|what| eprintln!("warning: lost: {what}"));
+    Ok(write_camera(path, format, &[result])?)
+}
+
+fn ending(path: &Path) -> Option<String> {
+    path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase)
+}
+
+/// The convention that an ending asks for, where no format of that ending holds the camera as it is.
+fn by_ending(path: &Path, source: &NamedCamera) -> Option<&'static str> {
+    let ending = ending(path)?;
+    let of_opencv = matches!(ending.as_str(), "yaml" | "yml" | "xml");
+    match source.camera {
+        Camera::OpenCv(_) => (ending == "toml" && source.pitch_um.is_some()).then_some("photogrammetric"),
+        Camera::OpenCvFisheye(_) => None,
+        Camera::Agisoft(_) if ending == "xml" => None,
+        _ => of_opencv.then_some("opencv5"),
+    }
+}
+
+/// The first format that holds the camera exactly: with the file's ending, or with any.
+fn as_it_is(path: &Path, source: &NamedCamera) -> Result<&'static CameraFormat, Failure> {
+    let spelt = |ending: &str| if ending == "yml" { "yaml".to_owned() } else { ending.to_owned() };
+    let ending = ending(path).map(|ending| spelt(&ending));
+    let fits = |format: &&&'static CameraFormat| format.is_written() && camera_text(format, std::slice::from_ref(source)).is_ok();
+    let same = |format: &&&'static CameraFormat| Some(spelt(format.extension)) == ending;
+    // OpenCV's YAML is what most tools read; other YAMLs are asked for by name.
+    let first = FORMATS.iter().filter(|format| format.name.starts_with("opencv")).chain(FORMATS.iter()).filter(same).find(fits);
+    first
+        .or_else(|| FORMATS.iter().find(fits))
+        .copied()
+        .ok_or_else(|| Failure::input(format!("-o {}: no format holds the camera as it is; name one with --to CONVENTION", path.display())))
+}
+
+fn converted(source: &NamedCamera, to: &str, path: &Path) -> Result<(&'static CameraFormat, NamedCamera), Failure> {
+    let order = TangentialOrder::OpenCv;
+    let goal = goal(to, &Given { source, pitch_um: source.pitch_um, base_mm: None, order, output: Some(path) })?;
+    let covariance = source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?;
+    let options = ConvertOptions { covariance, ..ConvertOptions::default() };
+    let conversion: Conversion = match goal.way {
+        Way::One(target) => convert(&source.camera, target, &options).map_err(|error| advise(&error))?,
+        Way::Best => {
+            fit_to_format(goal.format, &source.camera, None, source.pitch_um, &options).map_err(|e| Failure::input(e.to_string()))?.0
+        }
+    };
+    if conversion.method != Method::Exact {
+        eprintln!("{}: converted to {to} by a fit: residuals {}", path.display(), size_of(&conversion.residual));
+    }
+    let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
+    Ok((goal.format, NamedCamera { pitch_um: source.pitch_um, covariance, ..NamedCamera::new("", conversion.camera) }))
+}

@@ -1,0 +1,109 @@
+//! `calibench resect`: exterior orientations from control points, interior orientation fixed.
+
+use std::path::PathBuf;
+
+use calibench_adjust::approximate::{Resection, Search, Tolerance, resect};
+use calibench_exchange::{read_control, station_numbers};
+use clap::Args;
+
+use super::calibrate::{camera, read_measured};
+use super::context::Context;
+use super::{Failure, deliver};
+use crate::calibration::{Survey, control_of};
+
+#[derive(Args)]
+pub struct Resect {
+    /// A camera file of any known format
+    #[arg(long, value_name = "FILE")]
+    camera: PathBuf,
+    /// Measured points: CSV with image,target,x,y, as `measure` writes it
+    #[arg(long, value_name = "CSV")]
+    points: PathBuf,
+    /// Control points: CSV with target,X,Y,Z
+    #[arg(long, value_name = "CSV")]
+    control: PathBuf,
+    /// Size of the images, for camera files that do not state it
+    #[arg(long, value_name = "WxH", value_parser = super::reading::size)]
+    size: Option<calibench_model::camera::ImageSize>,
+    /// Search for gross errors: residuals longer than this are left out, px
+    #[arg(long, value_name = "PX", value_parser = super::convert::positive, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+    /// The poses, as a station file [default: standard output]
+    #[arg(short, long, value_name = "CSV")]
+    output: Option<PathBuf>,
+}
+
+const COLUMNS: [&str; 19] = [
+    "image",
+    "X0",
+    "Y0",
+    "Z0",
+    "omega_deg",
+    "phi_deg",
+    "kappa_deg",
+    "sX0",
+    "sY0",
+    "sZ0",
+    "sx_deg",
+    "sy_deg",
+    "sz_deg",
+    "points",
+    "sigma0_px",
+    "redundancy",
+    "rejected",
+    "another",
+    "note",
+];
+
+impl Resect {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let camera = camera(&self.camera, self.size)?;
+        let survey = Survey::new(&read_measured(&self.points)?, &read_control(&self.control)?)?;
+        let known: Vec<_> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
+        let against = self.tolerance.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
+        let (mut rows, mut failed) = (Vec::new(), Vec::new());
+        for (index, image) in survey.images.iter().enumerate() {
+            let control = control_of(&survey, &known, index);
+            let rejected = |found: &Resection| {
+                let seen = survey.sights.iter().filter(|s| s.image == index && known[s.target].is_some());
+                let names: Vec<&str> = seen.map(|sight| survey.targets[sight.target].name.as_str()).collect();
+                found.rejected.iter().map(|&i| names[i]).collect::<Vec<_>>().join(" ")
+            };
+            match resect(&camera, &control, against.as_ref()) {
+                Ok(found) => rows.push(row(image, control.len(), &found, rejected(&found))),
+                Err(error) => failed.push(format!("image {image}: {error}")),
+            }
+        }
+        failed.iter().for_each(|failed| eprintln!("{failed}"));
+        if rows.is_empty() {
+            return Err(Failure::input(format!("no image could be oriented: {}", failed.join("; "))));
+        }
+        if !context.quiet {
+            eprintln!("resect: {} of {} images oriented", rows.len(), survey.images.len());
+        }
+        deliver(self.output.as_deref(), |file| {
+            let mut writer = csv::Writer::from_writer(file);
+            writer.write_record(COLUMNS)?;
+            rows.iter().try_for_each(|row| writer.write_record(row))?;
+            writer.flush()
+        })?;
+        if failed.is_empty() { Ok(()) } else { Err(Failure::input(format!("{} images could not be oriented", failed.len()))) }
+    }
+}
+
+/// A pose with standard deviations from the residuals: of X0 in object units, of a small rotation about the camera's axes in degrees; and how close
+/// another minimum comes, as the ratio of the sums of squares.
+fn row(image: &str, points: usize, found: &Resection, rejected: String) -> Vec<String> {
+    let sigma = |i: usize| found.sigma0 * found.cofactor[(i, i)].sqrt();
+    let numbers = station_numbers(&found.pose).into_iter().chain([sigma(3), sigma(4), sigma(5)]);
+    let turns = [sigma(0), sigma(1), sigma(2)].map(f64::to_degrees);
+    let mut row = vec![image.to_owned()];
+    row.extend(numbers.chain(turns).map(|number| number.to_string()));
+    let squares = found.sigma0 * found.sigma0 * found.redundancy as f64;
+    let another = found.rival.map(|rival| rival.squares / squares.max(f64::MIN_POSITIVE));
+    let doubtful = another.is_some_and(|ratio| ratio < 2.0);
+    row.extend([points.to_string(), found.sigma0.to_string(), found.redundancy.to_string(), rejected]);
+    row.push(another.map_or(String::new(), |ratio| ratio.to_string()));
+    row.push(if doubtful { "another pose fits nearly as well" } else { "" }.to_owned());
+    row
+}

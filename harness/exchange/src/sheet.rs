@@ -1,0 +1,126 @@
+//! Sheets of named rows and numbers as CSV, with errors that say line and column.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use csv::StringRecord;
+
+use crate::points::{PointFileError, csv_error, line_of};
+
+/// The columns of a kind of sheet.
+pub(crate) struct Form {
+    /// What it is called in messages.
+    pub(crate) what: &'static str,
+    /// The column with the name of a row, of which each is there once.
+    pub(crate) key: &'static str,
+    /// Columns of numbers that must be there.
+    pub(crate) required: &'static [&'static str],
+    /// Columns of numbers that may be there, all or none.
+    pub(crate) optional: &'static [&'static str],
+    /// Are columns of other names read over?
+    pub(crate) others: bool,
+}
+
+/// A row: its name, its numbers, and those of the optional columns if it has them.
+pub(crate) struct Row {
+    pub(crate) line: u64,
+    pub(crate) name: String,
+    pub(crate) numbers: Vec<f64>,
+    pub(crate) optional: Option<Vec<f64>>,
+}
+
+impl Form {
+    /// Reads a file.
+    pub(crate) fn read(&self, path: &Path) -> Result<Vec<Row>, PointFileError> {
+        let name = path.display().to_string();
+        let file = File::open(path).map_err(|error| wrong(&name, None, None, error.to_string()))?;
+        self.parse(&name, file)
+    }
+
+    /// Reads a text; `file` is its name in errors.
+    pub(crate) fn parse(&self, file: &str, mut input: impl Read) -> Result<Vec<Row>, PointFileError> {
+        let mut text = Vec::new();
+        input.read_to_end(&mut text).map_err(|error| wrong(file, None, None, error.to_string()))?;
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
+        let header = reader.headers().map_err(|error| csv_error(file, &error))?.clone();
+        let places = self.places(file, &header)?;
+        let (mut rows, mut seen) = (Vec::new(), HashMap::new());
+        for record in reader.records() {
+            let record = record.map_err(|error| csv_error(file, &error))?;
+            let line = line_of(&text, &record);
+            let row = self.row(&Cells { file, places: &places, record: &record, line })?;
+            if let Some(earlier) = seen.insert(row.name.clone(), line) {
+                let problem = format!("`{}` is already on line {earlier}; expected each {} once", row.name, self.key);
+                return Err(wrong(file, Some(line), Some(self.key), problem));
+            }
+            rows.push(row);
+        }
+        let empty = || wrong(file, None, None, format!("holds no row; expected one for each {} below the header", self.key));
+        if rows.is_empty() { Err(empty()) } else { Ok(rows) }
+    }
+
+    fn columns(&self) -> Vec<&'static str> {
+        std::iter::once(self.key).chain(self.required.iter().copied()).collect()
+    }
+
+    fn places(&self, file: &str, header: &StringRecord) -> Result<HashMap<String, usize>, PointFileError> {
+        let known = [&self.columns()[..], self.optional].concat();
+        let mut places = HashMap::new();
+        for (index, name) in header.iter().enumerate() {
+            if !known.contains(&name) && !self.others {
+                return Err(wrong(file, Some(1), Some(name), format!("unknown; {} has {}", self.what, known.join(", "))));
+            }
+            if places.insert(name.to_owned(), index).is_some() {
+                return Err(wrong(file, Some(1), Some(name), "stands in the header twice".into()));
+            }
+        }
+        if let Some(missing) = self.columns().into_iter().find(|name| !places.contains_key(*name)) {
+            let problem = format!("missing in the header; every {} has {}", self.what, self.columns().join(","));
+            return Err(wrong(file, Some(1), Some(missing), problem));
+        }
+        let absent: Vec<_> = self.optional.iter().copied().filter(|name| !places.contains_key(*name)).collect();
+        if !absent.is_empty() && absent.len() < self.optional.len() {
+            let problem = format!("missing in the header; these go together: {}", self.optional.join(","));
+            return Err(wrong(file, Some(1), Some(absent[0]), problem));
+        }
+        Ok(places)
+    }
+
+    fn row(&self, cells: &Cells<'_>) -> Result<Row, PointFileError> {
+        let name = cells.text(self.key).ok_or_else(|| cells.wrong(self.key, "is empty; expected a name".into()))?.to_owned();
+        let numbers = self.required.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()?;
+        let given = self.optional.iter().any(|column| cells.text(column).is_some());
+        let optional = given.then(|| self.optional.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()).transpose()?;
+        Ok(Row { line: cells.line, name, numbers, optional })
+    }
+}
+
+struct Cells<'a> {
+    file: &'a str,
+    places: &'a HashMap<String, usize>,
+    record: &'a StringRecord,
+    line: u64,
+}
+
+impl Cells<'_> {
+    fn text(&self, column: &str) -> Option<&str> {
+        self.places.get(column).and_then(|&index| self.record.get(index)).filter(|text| !text.is_empty())
+    }
+
+    fn number(&self, column: &str) -> Result<f64, PointFileError> {
+        let text = self.text(column).ok_or_else(|| self.wrong(column, "is empty; expected a number".into()))?;
+        let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+        number.ok_or_else(|| self.wrong(column, format!("expected a finite number with a decimal point, found `{text}`")))
+    }
+
+    fn wrong(&self, column: &str, problem: String) -> PointFileError {
+        wrong(self.file, Some(self.line), Some(column), problem)
+    }
+}
+
+/// An error with its place.
+pub(crate) fn wrong(file: &str, line: Option<u64>, column: Option<&str>, problem: String) -> PointFileError {
+    PointFileError { file: file.to_owned(), line, column: column.map(str::to_owned), problem }
+}

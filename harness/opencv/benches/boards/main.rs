@@ -1,0 +1,141 @@
+//! Seconds to calibrate from views of a board, beside OpenCV in process, on the same corners. `cargo bench --workspace --bench boards`.
+//!
+//! One thread, best of some interleaved rounds. OpenCV stops when the parameters change by less than 1e-12 of their norm, we when a step gains nothing;
+//! that both reach one optimum is checked.
+
+#[path = "../../../adjust/tests/adjustment/scenes.rs"]
+mod scenes;
+#[path = "../../src/optimum/theirs.rs"]
+mod theirs;
+
+use std::error::Error;
+use std::hint::black_box;
+use std::process::Command;
+use std::time::Instant;
+
+use calibench_adjust::approximate::{Control, interior_from_planes, planar_starts};
+use calibench_adjust::{Network, Options, Solution, Variance, adjust};
+use calibench_model::camera::{CameraModel, ImageSize};
+use theirs::{Board, Theirs, calibrate};
+
+/// Relative differences of RMS and of parameters above which the optima are not one.
+const SAME_RMS: f64 = 1e-8;
+const SAME: f64 = 1e-4;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
+        return Ok(());
+    }
+    opencv::core::set_num_threads(1)?;
+    println!("Boards of 54 corners, five coefficients, one thread; OpenCV {}", calibench_opencv::version());
+    println!(
+        "{:>6} {:>14} {:>14} {:>14} {:>14} {:>8} {:>12} {:>12}",
+        "views", "given start s", "corners s", "covariance s", "OpenCV s", "ratio", "RMS differ", "parameters"
+    );
+    for (views, rounds) in [(17, 20), (100, 10), (1000, 3)] {
+        race(views, rounds)?;
+    }
+    println!("mrcal: {}\npyceres: {}", elsewhere("mrcal"), elsewhere("pyceres"));
+    Ok(())
+}
+
+/// Is a Python package on this machine?
+fn elsewhere(package: &str) -> &'static str {
+    let found = Command::new("python3").args(["-c", &format!("import {package}")]).output().is_ok_and(|output| output.status.success());
+    if found { "on this machine, not compared here" } else { "not on this machine" }
+}
+
+fn race(views: usize, rounds: usize) -> Result<(), Box<dyn Error>> {
+    let network = problem(views);
+    let (board, control) = (board(&network, views), control(&network, views));
+    let size = network.cameras[0].camera.size();
+    let mut best = [f64::INFINITY; 4];
+    let mut keep = |place: usize, clock: Instant| best[place] = best[place].min(clock.elapsed().as_secs_f64());
+    let (mut theirs, mut differ) = (None, [0.0_f64; 2]);
+    for _ in 0..rounds {
+        let clock = Instant::now();
+        black_box(adjust(black_box(&network), &Options::default())?);
+        keep(0, clock);
+        let clock = Instant::now();
+        let started = from_corners(&network, &control, size)?;
+        let solution = adjust(&started, &Options::default())?;
+        keep(1, clock);
+        let clock = Instant::now();
+        black_box(solution.covariances(Variance::Estimated)?);
+        keep(2, clock);
+        let clock = Instant::now();
+        let found = calibrate(&board, 100, 1e-12)?;
+        keep(3, clock);
+        differ = differences(&solution, &found, views);
+        theirs = Some(found);
+    }
+    if theirs.is_none() || differ[0] > SAME_RMS || differ[1] > SAME {
+        return Err(
+            format!("{views} views: the optima differ by {:.1e} in the RMS and {:.1e} in the parameters", differ[0], differ[1]).into()
+        );
+    }
+    let [given, corners, covariance, opencv] = best;
+    let ratio = opencv / corners;
+    println!(
+        "{views:>6} {given:>14.5} {corners:>14.5} {covariance:>14.5} {opencv:>14.4} {ratio:>8.1} {:>12.1e} {:>12.1e}",
+        differ[0], differ[1]
+    );
+    Ok(())
+}
+
+/// The board with noisy corners in single precision, which is what OpenCV takes, and a start as good as Zhang's.
+fn problem(views: usize) -> Network {
+    let mut network = scenes::board(scenes::opencv(), views, 1);
+    scenes::free(&mut network, &scenes::FIVE);
+    let mut random = scenes::random(2);
+    scenes::shake_pixels(&mut network, 0.2, &mut random);
+    for observation in &mut network.observations {
+        let at = &mut observation.position;
+        (at.x, at.y) = (f64::from(at.x as f32), f64::from(at.y as f32));
+    }
+    scenes::shake_poses(&mut network, 5.0, 0.02, &mut random);
+    network
+}
+
+fn control(network: &Network, views: usize) -> Vec<Vec<Control>> {
+    let mut control = vec![Vec::new(); views];
+    for o in &network.observations {
+        control[o.image].push(Control { object: network.points[o.point].position, image: o.position });
+    }
+    control
+}
+
+fn board(network: &Network, views: usize) -> Board {
+    let size = network.cameras[0].camera.size();
+    let control = control(network, views);
+    let objects = control.iter().map(|view| view.iter().map(|point| [point.object.x, point.object.y]).collect()).collect();
+    let images = control.iter().map(|view| view.iter().map(|point| [point.image.x, point.image.y]).collect()).collect();
+    Board { size: (size.width as i32, size.height as i32), objects, images }
+}
+
+/// The same network with start values from the corners alone.
+fn from_corners(network: &Network, control: &[Vec<Control>], size: ImageSize) -> Result<Network, Box<dyn Error>> {
+    let mut network = network.clone();
+    let views: Vec<&[Control]> = control.iter().map(Vec::as_slice).collect();
+    network.cameras[0].camera = interior_from_planes(&views, size)?.camera;
+    for (image, view) in network.images.iter_mut().zip(&views) {
+        image.pose = planar_starts(&network.cameras[0].camera, view)?[0];
+    }
+    Ok(network)
+}
+
+/// Relative differences of the RMS and of the parameters, at most.
+fn differences(ours: &Solution, theirs: &Theirs, views: usize) -> [f64; 2] {
+    let rms = (ours.cost() / (54 * views) as f64).sqrt() * sigma(ours);
+    let parameters = ours.cameras()[0].parameters();
+    let relative = parameters.iter().zip(theirs.parameters).map(|(p, other)| (other / p.value - 1.0).abs());
+    [(theirs.rms / rms - 1.0).abs(), relative.fold(0.0, f64::max)]
+}
+
+/// The a-priori standard deviation of all corners.
+fn sigma(solution: &Solution) -> f64 {
+    match solution.network().observations[0].precision {
+        calibench_adjust::Precision::Sigma(sigma) => sigma,
+        calibench_adjust::Precision::Covariance(_) => 1.0,
+    }
+}
