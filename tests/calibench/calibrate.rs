@@ -210,7 +210,7 @@ fn what_cannot_be_estimated_is_named() {
     let common = ["calibrate", "--points", "p.csv", "--control", "c.csv", "--size", "800x600", "--pitch", "5"];
     for (images, solve, expected) in [
         (3, "c", &["c of the camera", "Z0 of all images", "no depth", "no convergence"][..]),
-        (3, "c,x0,y0", &["x0, y0 of the camera", "X0 of all images"]),
+        (3, "c,x0,y0", &["c of the camera", "Z0 of all images"]),
         (1, "c", &["c of the camera", "Z0 of image i0", "one image"]),
     ] {
         let (points, control) = frontal(images);

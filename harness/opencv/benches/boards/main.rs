@@ -29,8 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     opencv::core::set_num_threads(1)?;
     println!("Boards of 54 corners, five coefficients, one thread; OpenCV {}", calibench_opencv::version());
     println!(
-        "{:>6} {:>14} {:>14} {:>14} {:>14} {:>8} {:>12} {:>12}",
-        "views", "given start s", "corners s", "covariance s", "OpenCV s", "ratio", "RMS differ", "parameters"
+        "{:>6} {:>14} {:>14} {:>14} {:>14} {:>8} {:>12} {:>12} {:>8}",
+        "views", "given start s", "corners s", "covariance s", "OpenCV s", "ratio", "RMS differ", "parameters", "sigmas"
     );
     for (views, rounds) in [(17, 20), (100, 10), (1000, 3)] {
         race(views, rounds)?;
@@ -52,6 +52,7 @@ fn race(views: usize, rounds: usize) -> Result<(), Box<dyn Error>> {
     let mut best = [f64::INFINITY; 4];
     let mut keep = |place: usize, clock: Instant| best[place] = best[place].min(clock.elapsed().as_secs_f64());
     let (mut theirs, mut differ) = (None, [0.0_f64; 2]);
+    let mut spread = 0.0;
     for _ in 0..rounds {
         let clock = Instant::now();
         black_box(adjust(black_box(&network), &Options::default())?);
@@ -61,12 +62,13 @@ fn race(views: usize, rounds: usize) -> Result<(), Box<dyn Error>> {
         let solution = adjust(&started, &Options::default())?;
         keep(1, clock);
         let clock = Instant::now();
-        black_box(solution.covariances(Variance::Estimated)?);
+        let covariances = black_box(solution.covariances(Variance::Estimated)?);
         keep(2, clock);
         let clock = Instant::now();
         let found = calibrate(&board, 100, 1e-12)?;
         keep(3, clock);
         differ = differences(&solution, &found, views);
+        spread = found.sigmas[0] / covariances.interior[(0, 0)].sqrt();
         theirs = Some(found);
     }
     if theirs.is_none() || differ[0] > SAME_RMS || differ[1] > SAME {
@@ -77,7 +79,7 @@ fn race(views: usize, rounds: usize) -> Result<(), Box<dyn Error>> {
     let [given, corners, covariance, opencv] = best;
     let ratio = opencv / corners;
     println!(
-        "{views:>6} {given:>14.5} {corners:>14.5} {covariance:>14.5} {opencv:>14.4} {ratio:>8.1} {:>12.1e} {:>12.1e}",
+        "{views:>6} {given:>14.5} {corners:>14.5} {covariance:>14.5} {opencv:>14.4} {ratio:>8.1} {:>12.1e} {:>12.1e} {spread:>8.4}",
         differ[0], differ[1]
     );
     Ok(())
