@@ -17,7 +17,7 @@ pub struct ConvergentWire {
     pub start: Option<Degrees>,
     /// Distances from the field's middle, object units, taken in turn.
     pub distances: Vec<Length>,
-    /// Rolls (kappa), degrees; at every place one image for each. Default [0].
+    /// Rolls (kappa), degrees; at every place one image for each. Default: 0 alone.
     pub rolls: Option<Vec<Degrees>>,
 }
 
@@ -31,9 +31,9 @@ pub struct ArcWire {
     pub convergence: Degrees,
     /// Distances from the field's middle, before heights, object units, taken in turn.
     pub distances: Vec<Length>,
-    /// Heights over the field's middle, object units, taken in turn. Default [0].
+    /// Heights over the field's middle, object units, taken in turn. Default: 0 alone.
     pub heights: Option<Vec<Height>>,
-    /// Rolls (kappa), degrees; at every place one image for each. Default [0].
+    /// Rolls (kappa), degrees; at every place one image for each. Default: 0 alone.
     pub rolls: Option<Vec<Degrees>>,
 }
 
@@ -45,7 +45,7 @@ pub struct BoardWire {
     pub tilts: Vec<Tuple<2>>,
     /// Distances from the board's middle, object units.
     pub distances: Vec<Length>,
-    /// Rolls (kappa), degrees. Default [0].
+    /// Rolls (kappa), degrees. Default: 0 alone.
     pub rolls: Option<Vec<Degrees>>,
 }
 

@@ -234,7 +234,7 @@ pub struct FillWire {
     pub distance: Option<Length>,
     /// How all are turned, degrees. Default: each at random.
     pub turn: Option<Degrees>,
-    /// The angles of corners, 30 to 150 degrees, in turn. Default [90].
+    /// The angles of corners, 30 to 150 degrees, in turn. Default: 90 alone.
     pub angles: Option<Vec<Degrees>>,
     /// The width of crosses' bars as a fraction of their length, 0.05 to 0.5. Default 0.3.
     pub bar: Option<Fraction>,
