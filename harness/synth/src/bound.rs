@@ -49,91 +49,122 @@ impl Bounds {
 
     /// What the grey values of the window around `at` tell; `None` if it leaves the image.
     pub fn window<'a>(&'a self, picture: &'a Picture, at: PixelPoint) -> Option<Window<'a>> {
-        let (left, top) = (at.x.round() as i64 - self.half, at.y.round() as i64 - self.half);
+        let corner = [at.x.round() as i64 - self.half, at.y.round() as i64 - self.half];
         let side = 2 * self.half + 1;
-        let inside = left >= 0 && top >= 0 && left + side <= picture.width as i64 && top + side <= picture.height as i64;
-        inside.then(|| {
-            let window = Window { bounds: self, picture, at, left, top, side: side as usize, grey: Vec::new() };
-            let grey = window.grey_of(&self.renderer, |p| p);
-            Window { grey, ..window }
-        })
+        let inside =
+            corner.iter().all(|&c| c >= 0) && corner[0] + side <= picture.width as i64 && corner[1] + side <= picture.height as i64;
+        inside.then(|| Window { bounds: self, near: self.near(picture, at, corner), at, corner, side: side as usize })
+    }
+
+    /// The picture with only those pieces that can matter to a window, moved by a step of any parameter or not.
+    fn near(&self, picture: &Picture, at: PixelPoint, [left, top]: [i64; 2]) -> Picture {
+        let reach = [&self.renderer].into_iter().chain(self.blurred.iter().flat_map(|(low, high, _)| [low, high]));
+        let [reach_x, reach_y] = reach.map(Renderer::reach).fold([0.0_f64; 2], |[x, y], [rx, ry]| [x.max(rx), y.max(ry)]);
+        let (low, high) = (top as f64 - reach_y - 2.0, (top + 2 * self.half) as f64 + reach_y + 3.0);
+        let right = (left + 2 * self.half) as f64 + reach_x + 3.0;
+        // A deformation moves what is further off the further.
+        let rate = STEP / self.half.max(1) as f64;
+        let kept = |piece: &&Piece| {
+            let [rows, columns] = [piece.rows(), piece.columns()];
+            let far = |[low, high]: [f64; 2], middle: f64| (low - middle).abs().max((high - middle).abs());
+            let moved = STEP + rate * far(rows, at.y).max(far(columns, at.x));
+            rows[1] + moved > low && rows[0] - moved < high && columns[0] - moved < right
+        };
+        Picture { pieces: picture.pieces.iter().filter(kept).copied().collect(), ..*picture }
     }
 }
 
 /// The window around a target.
 pub struct Window<'a> {
     bounds: &'a Bounds,
-    picture: &'a Picture,
+    /// What matters to the window.
+    near: Picture,
     at: PixelPoint,
-    left: i64,
-    top: i64,
+    /// Left and top pixel.
+    corner: [i64; 2],
     side: usize,
-    grey: Vec<f64>,
 }
 
+/// The grey values' derivatives by everything that somebody may have to estimate, in groups: position, shape, blur, levels, gradient.
+type Columns = [Vec<Vec<f64>>; 5];
+
 impl Window<'_> {
-    /// The bound of the position, px^2, beside `unknowns`. `mean` is what the sensor makes of light and `variance` the variance of that grey value,
+    /// The bounds of the position, px^2, beside each of `sets`. `mean` is what the sensor makes of light and `variance` the variance of that grey value,
     /// `None` where the chain has none.
     ///
-    /// `None` also where the window does not determine the position.
-    pub fn bound(
+    /// A bound is `None` also where the window does not determine the position.
+    pub fn bounds(
         &self,
-        unknowns: Unknowns,
+        sets: &[Unknowns],
         mean: impl Fn(f64) -> Option<f64>,
         variance: impl Fn(f64) -> Option<f64>,
-    ) -> Option<Covariance> {
-        // Differences of what the sensor makes of light: its curve counts.
-        let read = |light: &[f64]| light.iter().map(|&light| mean(light)).collect::<Option<Vec<f64>>>();
-        let grey = read(&self.grey)?;
-        let weights = grey.iter().map(|&grey| variance(grey).filter(|v| *v > 0.0).map(|v| 1.0 / v)).collect::<Option<Vec<f64>>>()?;
-        let mut columns = Vec::new();
-        for (high, low, step) in self.differences(unknowns) {
-            let (high, low) = (read(&high)?, read(&low)?);
-            columns.push(high.iter().zip(&low).map(|(high, low)| (high - low) / step).collect::<Vec<f64>>());
-        }
-        if unknowns.levels {
-            columns.push(vec![1.0; grey.len()]);
-            columns.push(grey.clone());
-        }
-        if unknowns.gradient {
-            let middle = self.bounds.half as f64;
-            columns.push((0..grey.len()).map(|i| (i % self.side) as f64 - middle).collect());
-            columns.push((0..grey.len()).map(|i| (i / self.side) as f64 - middle).collect());
-        }
-        position(&columns, &weights)
+    ) -> Vec<Option<Covariance>> {
+        let normal = || {
+            let grey = self.grey_of(&self.bounds.renderer, |p| p).into_iter().map(&mean).collect::<Option<Vec<f64>>>()?;
+            let weights = grey.iter().map(|&grey| variance(grey).filter(|v| *v > 0.0).map(|v| 1.0 / v)).collect::<Option<Vec<f64>>>()?;
+            let columns = self.columns(sets, &grey, &mean)?;
+            let groups = columns.each_ref().map(Vec::len);
+            let columns: Vec<&Vec<f64>> = columns.iter().flatten().collect();
+            let product = |i: usize, j: usize| columns[i].iter().zip(columns[j]).zip(&weights).map(|((a, b), w)| a * b * w).sum::<f64>();
+            Some((groups, DMatrix::from_fn(columns.len(), columns.len(), product)))
+        };
+        let Some((groups, normal)) = normal() else { return vec![None; sets.len()] };
+        sets.iter().map(|&set| position(&normal.select_rows(&chosen(groups, set)).select_columns(&chosen(groups, set)))).collect()
     }
 
-    /// Pairs of windows on both sides of a parameter, and the step between them.
-    fn differences(&self, unknowns: Unknowns) -> Vec<(Vec<f64>, Vec<f64>, f64)> {
+    /// The derivatives that one of `sets` needs. They are differences of what the sensor makes of light: its curve counts.
+    fn columns(&self, sets: &[Unknowns], grey: &[f64], mean: &impl Fn(f64) -> Option<f64>) -> Option<Columns> {
+        let wanted = |of: fn(&Unknowns) -> bool| sets.iter().any(of);
         let renderer = &self.bounds.renderer;
-        let (x0, y0) = (self.at.x, self.at.y);
-        let pair = |moved: &dyn Fn([f64; 2], f64) -> [f64; 2], step: f64| {
-            (self.grey_of(renderer, |p| moved(p, step / 2.0)), self.grey_of(renderer, |p| moved(p, -step / 2.0)), step)
+        let moved = |by: &dyn Fn([f64; 2], f64) -> [f64; 2], step: f64| {
+            let [high, low] = [0.5, -0.5].map(|half| self.grey_of(renderer, |p| by(p, half * step)));
+            slope(&high, &low, step, mean)
         };
-        let mut pairs = vec![pair(&|[x, y], h| [x + h, y], STEP), pair(&|[x, y], h| [x, y + h], STEP)];
-        if unknowns.shape {
+        let (x0, y0) = (self.at.x, self.at.y);
+        let shift = [moved(&|[x, y], h| [x + h, y], STEP)?, moved(&|[x, y], h| [x, y + h], STEP)?];
+        let mut columns: Columns = [shift.into(), Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+        if wanted(|set| set.shape) {
             let step = STEP / self.bounds.half.max(1) as f64;
-            pairs.push(pair(&|[x, y], h| [x + h * (x - x0), y], step));
-            pairs.push(pair(&|[x, y], h| [x + h * (y - y0), y], step));
-            pairs.push(pair(&|[x, y], h| [x, y + h * (x - x0)], step));
-            pairs.push(pair(&|[x, y], h| [x, y + h * (y - y0)], step));
+            let [across, along] = [moved(&|[x, y], h| [x + h * (x - x0), y], step)?, moved(&|[x, y], h| [x + h * (y - y0), y], step)?];
+            let [rising, up] = [moved(&|[x, y], h| [x, y + h * (x - x0)], step)?, moved(&|[x, y], h| [x, y + h * (y - y0)], step)?];
+            columns[1] = vec![across, along, rising, up];
         }
-        if let Some((sharper, softer, step)) = self.bounds.blurred.as_ref().filter(|_| unknowns.blur) {
-            pairs.push((self.grey_of(softer, |p| p), self.grey_of(sharper, |p| p), *step));
+        if let Some((sharper, softer, step)) = self.bounds.blurred.as_ref().filter(|_| wanted(|set| set.blur)) {
+            columns[2] = vec![slope(&self.grey_of(softer, |p| p), &self.grey_of(sharper, |p| p), *step, mean)?];
         }
-        pairs
+        columns[3] = vec![vec![1.0; grey.len()], grey.to_vec()];
+        let middle = self.bounds.half as f64;
+        let ramp = |of: fn(usize, usize) -> usize| (0..grey.len()).map(|i| of(i, self.side) as f64 - middle).collect();
+        columns[4] = vec![ramp(|i, side| i % side), ramp(|i, side| i / side)];
+        Some(columns)
     }
 
     fn grey_of(&self, renderer: &Renderer, moved: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
         let move_piece = |piece: &Piece| Piece { points: piece.points.map(&moved), ..*piece };
-        renderer.render_window(self.picture, move_piece, [self.left, self.top], self.side)
+        renderer.render_window(&self.near, move_piece, self.corner, self.side)
     }
 }
 
+/// The slope between two windows that lie `step` apart, of what the sensor makes of their light.
+fn slope(high: &[f64], low: &[f64], step: f64, mean: &impl Fn(f64) -> Option<f64>) -> Option<Vec<f64>> {
+    high.iter().zip(low).map(|(&high, &low)| Some((mean(high)? - mean(low)?) / step)).collect()
+}
+
+/// The places of a set's unknowns among all columns.
+fn chosen(groups: [usize; 5], set: Unknowns) -> Vec<usize> {
+    let members = [true, set.shape, set.blur, set.levels, set.gradient];
+    let mut first = 0;
+    let mut chosen = Vec::new();
+    for (count, member) in groups.into_iter().zip(members) {
+        chosen.extend((first..first + count).filter(|_| member));
+        first += count;
+    }
+    chosen
+}
+
 /// The position's part of the inverse of the normal equations: what is left of its information when the other unknowns have taken theirs.
-fn position(columns: &[Vec<f64>], weights: &[f64]) -> Option<Covariance> {
-    let n = columns.len();
-    let normal = DMatrix::from_fn(n, n, |i, j| columns[i].iter().zip(&columns[j]).zip(weights).map(|((a, b), w)| a * b * w).sum::<f64>());
+fn position(normal: &DMatrix<f64>) -> Option<Covariance> {
+    let n = normal.nrows();
     // Scaled to a unit diagonal, so that units do not decide what is singular. What has no information at all stays out.
     let scale: Vec<f64> = (0..n).map(|i| if normal[(i, i)] > 0.0 { 1.0 / normal[(i, i)].sqrt() } else { 0.0 }).collect();
     let scaled = DMatrix::from_fn(n, n, |i, j| normal[(i, j)] * scale[i] * scale[j]);
@@ -189,7 +220,7 @@ mod tests {
     fn bound(picture: &Picture, blur: f64, window: usize, unknowns: Unknowns) -> Option<Covariance> {
         let bounds = Bounds::new(&Optics { blur, ..Optics::default() }, 41, 41, window).unwrap();
         let window = bounds.window(picture, PixelPoint::new(20.2, 19.9)).unwrap();
-        window.bound(unknowns, Some, |_| Some(SIGMA * SIGMA))
+        window.bounds(&[unknowns], Some, |_| Some(SIGMA * SIGMA))[0]
     }
 
     fn chess() -> Picture {
@@ -256,7 +287,10 @@ mod tests {
         let picture = chess();
         assert!(bounds.window(&picture, PixelPoint::new(3.0, 20.0)).is_none(), "the window leaves the image");
         let window = bounds.window(&picture, PixelPoint::new(20.2, 19.9)).unwrap();
-        assert_eq!(window.bound(Unknowns::default(), Some, |_| None), None, "a chain without a variance");
-        assert!(window.bound(Unknowns { blur: true, ..Unknowns::default() }, Some, |_| Some(1e-4)).is_some(), "no blur to be estimated");
+        assert_eq!(window.bounds(&[Unknowns::default()], Some, |_| None), [None], "a chain without a variance");
+        assert!(
+            window.bounds(&[Unknowns { blur: true, ..Unknowns::default() }], Some, |_| Some(1e-4))[0].is_some(),
+            "no blur to be estimated"
+        );
     }
 }

@@ -57,13 +57,12 @@ impl TargetBounds {
 
     /// The bounds of the target at `at`.
     pub fn of(&self, picture: &Picture, at: PixelPoint) -> BySet {
-        let window = self.bounds.window(picture, at);
-        let bound = |unknowns: &Unknowns| {
-            let window = window.as_ref()?;
-            let covariance = window.bound(*unknowns, |light| self.chain.mean(light), |grey| self.chain.variance(grey))?;
-            Some((covariance.sxx + covariance.syy).sqrt())
+        let covariances = match self.bounds.window(picture, at) {
+            Some(window) => window.bounds(&self.sets, |light| self.chain.mean(light), |grey| self.chain.variance(grey)),
+            None => vec![None; self.sets.len()],
         };
-        self.sets.iter().map(|unknowns| (*unknowns, bound(unknowns))).collect()
+        let bounds = covariances.into_iter().map(|covariance| covariance.map(|c| (c.sxx + c.syy).sqrt()));
+        self.sets.iter().copied().zip(bounds).collect()
     }
 }
 

@@ -73,7 +73,8 @@ impl<'a> Prepared<'a> {
         let view = |station: &'a Station| {
             let view = View { field: &subject.field, camera: &subject.camera, pose: &station.pose };
             let failed = |source| RunError::View { station: station.name.clone(), source };
-            let (picture, truth) = (view.picture(margin).map_err(failed)?, view.truth(margin).map_err(failed)?);
+            let seen = view.seen(margin).map_err(failed)?;
+            let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
             let bound = |truth: &TargetTruth| match (bounds, truth.at) {
                 (Some(bounds), Some(at)) if truth.visibility == Visibility::Visible => bounds.of(&picture, at),
                 _ => BySet::new(),

@@ -59,6 +59,11 @@ impl Renderer {
         Ok(Self { width, height, levels: Levels::new(optics, width, height), rules: Rules::all() })
     }
 
+    /// How far around a pixel light matters to it, px: along the row and along the column.
+    pub(crate) fn reach(&self) -> [f64; 2] {
+        self.levels.reach()
+    }
+
     /// The noise-free image. `jitter` is the shift of each row to the right, px, or empty.
     pub fn render(&self, picture: &Picture, jitter: &[f64]) -> Image {
         self.render_with(picture, jitter, |_, _| ())
@@ -118,30 +123,41 @@ impl Renderer {
 
     /// Renders a band and hands on its rows, counted from its first.
     fn band(&self, strip: &mut Strip, band: &Band<'_>, mut row: impl FnMut(usize, &[f64])) {
-        let mut levels = self.levels.kernels.iter();
-        let (first, n) = (levels.next(), self.levels.kernels.len());
-        if let (Some(kernel), 1) = (first, n) {
+        if let [kernel] = &*self.levels.kernels {
             strip.reset(band.top, band.rows);
             strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
             return strip.finish(band.background, row);
         }
         // At every level of blur, blended at each pixel.
-        let mut blended: Vec<Vec<f64>> = vec![Vec::new(); band.rows];
-        let mut weights = vec![0.0; n];
+        let n = self.levels.kernels.len();
+        let (mut blended, mut weights) = (vec![Vec::new(); band.rows], Vec::new());
         for (level, kernel) in self.levels.kernels.iter().enumerate() {
             strip.reset(band.top, band.rows);
             strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
             strip.finish(band.background, |y, values| {
-                let sums = &mut blended[y];
+                if weights.is_empty() {
+                    weights = self.weights(band, values.len());
+                }
+                let sums: &mut Vec<f64> = &mut blended[y];
                 sums.resize(values.len(), 0.0);
-                for (x, (sum, value)) in sums.iter_mut().zip(values).enumerate() {
-                    let (column, line) = (band.origin[0] + x as i64, band.origin[1] + band.top + y as i64);
-                    self.levels.weights(column as f64, line as f64, &mut weights);
+                let weights = weights[y * values.len() * n..].chunks_exact(n);
+                for ((sum, value), weights) in sums.iter_mut().zip(values).zip(weights) {
                     *sum += weights[level] * value;
                 }
             });
         }
         blended.iter().enumerate().for_each(|(y, values)| row(y, values));
+    }
+
+    /// The share of every level of blur in every pixel of a band of `columns`, pixel by pixel.
+    fn weights(&self, band: &Band<'_>, columns: usize) -> Vec<f64> {
+        let n = self.levels.kernels.len();
+        let mut weights = vec![0.0; band.rows * columns * n];
+        for (index, weights) in weights.chunks_exact_mut(n).enumerate() {
+            let (column, line) = (band.origin[0] + (index % columns) as i64, band.origin[1] + band.top + (index / columns) as i64);
+            self.levels.weights(column as f64, line as f64, weights);
+        }
+        weights
     }
 
     /// The pieces that matter, none of them long.

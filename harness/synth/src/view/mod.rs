@@ -68,33 +68,23 @@ pub enum ViewError {
     },
 }
 
-impl View<'_> {
-    /// The outlines in the image. `margin` is how far around the frame light matters, px: the reach of the optics.
+impl<'a> View<'a> {
+    /// What of the testfield comes to the image: the ground of outlines and truth. `margin` is how far around the frame light matters, px: the reach of the optics.
+    ///
+    /// # Errors
+    /// What cannot be pictured, by name.
+    pub fn seen(&self, margin: f64) -> Result<Seen<'a>, ViewError> {
+        let frame = self.frame(margin)?;
+        let sheets = occlusion::sheets(self, &frame)?;
+        Ok(Seen { view: *self, frame, sheets })
+    }
+
+    /// The outlines in the image: [`Seen::picture`] of [`Self::seen`].
     ///
     /// # Errors
     /// What cannot be pictured, by name.
     pub fn picture(&self, margin: f64) -> Result<Picture, ViewError> {
-        let size = self.camera.size();
-        let frame = self.frame(margin)?;
-        let sheets = occlusion::sheets(self, &frame)?;
-        if !self.field.plates.is_empty() && sheets.iter().all(Option::is_none) {
-            return Err(ViewError::Behind);
-        }
-        let mut pieces = Vec::new();
-        for sheet in sheets.iter().flatten() {
-            outline::sheet(self, sheet, &frame, &mut pieces)?;
-        }
-        Ok(Picture { width: size.width as usize, height: size.height as usize, background: self.field.background, pieces })
-    }
-
-    /// The truth about every target, in the order of the testfield's.
-    ///
-    /// # Errors
-    /// As [`Self::picture`].
-    pub fn truth(&self, margin: f64) -> Result<Vec<TargetTruth>, ViewError> {
-        let frame = self.frame(margin)?;
-        let sheets = occlusion::sheets(self, &frame)?;
-        Ok(self.field.targets.iter().map(|target| truth::truth(self, target, sheets[target.plate].as_ref())).collect())
+        self.seen(margin)?.picture()
     }
 
     fn frame(&self, margin: f64) -> Result<Frame, ViewError> {
@@ -122,5 +112,34 @@ pub(crate) struct Frame {
     pub directions: Convex,
 }
 
-/// A plate, as far as it is seen.
-pub(crate) type Seen<'a> = Sheet<'a>;
+/// What a camera sees of a testfield.
+pub struct Seen<'a> {
+    view: View<'a>,
+    frame: Frame,
+    /// In the order of the testfield's plates; `None` for one that does not come to the frame.
+    sheets: Vec<Option<Sheet<'a>>>,
+}
+
+impl Seen<'_> {
+    /// The outlines in the image.
+    ///
+    /// # Errors
+    /// A testfield that is wholly behind the camera or outside the frame; a part of a plate to which the camera model gives no place.
+    pub fn picture(&self) -> Result<Picture, ViewError> {
+        let (field, size) = (self.view.field, self.view.camera.size());
+        if !field.plates.is_empty() && self.sheets.iter().all(Option::is_none) {
+            return Err(ViewError::Behind);
+        }
+        let mut pieces = Vec::new();
+        for sheet in self.sheets.iter().flatten() {
+            outline::sheet(&self.view, sheet, &self.frame, &mut pieces)?;
+        }
+        Ok(Picture { width: size.width as usize, height: size.height as usize, background: field.background, pieces })
+    }
+
+    /// The truth about every target, in the order of the testfield's.
+    pub fn truth(&self) -> Vec<TargetTruth> {
+        let targets = self.view.field.targets.iter();
+        targets.map(|target| truth::truth(&self.view, target, self.sheets[target.plate].as_ref())).collect()
+    }
+}

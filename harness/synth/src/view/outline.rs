@@ -5,16 +5,17 @@ use calibench_model::{Outline, PixelPoint, Plate};
 
 use rayon::prelude::*;
 
+use super::occlusion::Sheet;
 use super::polygon::{Tangent, apart, bounds, doubled_area};
 use super::trace::trace;
-use super::{Frame, Seen, View, ViewError, clip};
+use super::{Frame, View, ViewError, clip};
 use crate::raster::{Piece, orient};
 
 /// Areas that a thread takes at a time.
 const JOB: usize = 64;
 
 /// Appends the pieces of a plate: its sheet and what is printed on it.
-pub(super) fn sheet(view: &View<'_>, sheet: &Seen<'_>, frame: &Frame, pieces: &mut Vec<Piece>) -> Result<(), ViewError> {
+pub(super) fn sheet(view: &View<'_>, sheet: &Sheet<'_>, frame: &Frame, pieces: &mut Vec<Piece>) -> Result<(), ViewError> {
     let plate = sheet.plate;
     outline(view, sheet, frame, &plate.border(), plate.level - view.field.background, pieces)?;
     if sheet.front {
@@ -34,7 +35,7 @@ pub(super) fn sheet(view: &View<'_>, sheet: &Seen<'_>, frame: &Frame, pieces: &m
 
 fn outline(
     view: &View<'_>,
-    sheet: &Seen<'_>,
+    sheet: &Sheet<'_>,
     frame: &Frame,
     outline: &Outline,
     contrast: f64,
@@ -67,7 +68,7 @@ fn outline(
 }
 
 /// Does nothing hide any part of an outline? Boxes tell.
-fn is_free(view: &View<'_>, sheet: &Seen<'_>, outline: &Outline) -> bool {
+fn is_free(view: &View<'_>, sheet: &Sheet<'_>, outline: &Outline) -> bool {
     let around = bounds(&clip::tangents(view.pose, sheet.plate, outline));
     sheet.hidden_by.iter().all(|hull| apart(hull.bounds(), around))
 }

@@ -136,7 +136,7 @@ fn a_disc_has_its_centre_and_its_ellipse() {
     let camera = OpenCv { size, fx: 1000.0, fy: 990.0, cx: 590.0, cy: 460.0, distortion: [0.0; 14], coefficients: 5 }.into();
     let pose = pose(1.6, -0.9, 1.9, 0.4);
     let view = View { field: &field, camera: &camera, pose: &pose };
-    let truth = &view.truth(5.0).unwrap()[0];
+    let truth = &view.seen(5.0).unwrap().truth()[0];
     let at = camera.project(pose.ray(&field.position(&field.targets[0]))).unwrap();
     assert_eq!((truth.at, truth.visibility), (Some(at), Visibility::Visible));
     let ellipse = truth.ellipse.unwrap();
@@ -171,7 +171,7 @@ fn what_is_not_seen_is_said() {
     field.plates[1].areas.clear();
     field.targets.push(disc_target(0, 1.0));
     let camera = camera([0.0; 3]);
-    let seen = |pose: Pose| View { field: &field, camera: &camera, pose: &pose }.truth(3.0).unwrap()[0].visibility;
+    let seen = |pose: Pose| View { field: &field, camera: &camera, pose: &pose }.seen(3.0).unwrap().truth()[0].visibility;
     assert_eq!(seen(pose(-0.4, 0.3, 2.0, 0.0)), Visibility::Hidden);
     assert_eq!(seen(pose(1.5, -1.5, 2.0, 0.0)), Visibility::Visible);
     assert_eq!(seen(pose(1.4, 0.3, 2.0, 0.0)), Visibility::Clipped, "the near plate hides a part");

@@ -4,7 +4,8 @@ use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::{Affine, ObjectTarget, PixelPoint, TargetKind};
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
 
-use super::{Seen, View};
+use super::View;
+use super::occlusion::Sheet;
 
 /// How much of a target is in the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +57,7 @@ pub struct TargetTruth {
 }
 
 /// The truth about `target`, which is on `sheet`, if that is in the image.
-pub(super) fn truth(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Seen<'_>>) -> TargetTruth {
+pub(super) fn truth(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Sheet<'_>>) -> TargetTruth {
     let point = view.field.position(target);
     let at = view.camera.project(view.pose.ray(&point)).ok();
     let visibility = at.map_or(Visibility::Hidden, |at| visibility(view, target, sheet, &point, at));
@@ -65,7 +66,7 @@ pub(super) fn truth(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Seen<
     TargetTruth { at, visibility, affine, ellipse }
 }
 
-fn visibility(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Seen<'_>>, point: &Point3<f64>, at: PixelPoint) -> Visibility {
+fn visibility(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Sheet<'_>>, point: &Point3<f64>, at: PixelPoint) -> Visibility {
     // Without a sheet the whole plate is outside the frame.
     let shows = |point: &Point3<f64>| sheet.is_none_or(|sheet| sheet.shows(view, point));
     if !shows(point) {
