@@ -5,6 +5,7 @@ use std::path::Path;
 
 use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::camera::{FORMATS, NamedCamera, write_camera as write_file};
+use calibench_exchange::{ControlRow, POSE_COLUMNS, station_numbers, write_table};
 use calibench_model::camera::Camera;
 use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene};
 use calibench_synth::sensor::Clipped;
@@ -54,14 +55,7 @@ impl<'a> StationRow<'a> {
 }
 
 fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
-    write_atomically(path, |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        writer.write_record(columns)?;
-        for row in rows {
-            writer.write_record(row)?;
-        }
-        writer.flush()
-    })
+    write_atomically(path, |file| write_table(file, columns, rows))
 }
 
 /// All targets of a flat scene: name, kind, true position (px).
@@ -138,13 +132,11 @@ pub fn clipping_note(view: &str, clipped: Clipped, pixels: usize) -> Option<Stri
 
 /// Poses, and what was clipped. Angles in degrees.
 pub fn write_stations(path: &Path, rows: &[StationRow<'_>]) -> io::Result<()> {
-    let columns = ["image", "X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg", "clipped_low", "clipped_high"];
+    let columns = [&["image"], &POSE_COLUMNS[..], &["clipped_low", "clipped_high"]].concat();
     let row = |row: &StationRow<'_>| {
-        let (pose, clipped) = (&row.station.pose, row.clipped);
         let mut cells = vec![row.station.name.clone()];
-        cells.extend([pose.centre.x, pose.centre.y, pose.centre.z].iter().map(f64::to_string));
-        cells.extend(pose.angles().iter().map(|angle| angle.to_degrees().to_string()));
-        cells.extend([clipped.low.to_string(), clipped.high.to_string()]);
+        cells.extend(station_numbers(&row.station.pose).iter().map(f64::to_string));
+        cells.extend([row.clipped.low, row.clipped.high].iter().map(u64::to_string));
         cells
     };
     table(path, &columns, rows.iter().map(row))
@@ -152,11 +144,9 @@ pub fn write_stations(path: &Path, rows: &[StationRow<'_>]) -> io::Result<()> {
 
 /// The targets as a user knows them: surveyed coordinates, object units.
 pub fn write_control(path: &Path, subject: &ViewsSubject) -> io::Result<()> {
-    let row = |target: &ObjectTarget| {
-        let at = target.surveyed;
-        vec![target.id.clone(), at.x.to_string(), at.y.to_string(), at.z.to_string()]
-    };
-    table(path, &["target", "X", "Y", "Z"], subject.field.targets.iter().map(row))
+    let row = |target: &ObjectTarget| ControlRow { target: target.id.clone(), position: target.surveyed.coords.into(), sigmas: None };
+    let rows: Vec<ControlRow> = subject.field.targets.iter().map(row).collect();
+    write_atomically(path, |file| calibench_exchange::write_control(file, &rows))
 }
 
 /// The camera as a file of the first format that holds it as it is; its ending is put to `stem`.

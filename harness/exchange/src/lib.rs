@@ -10,6 +10,7 @@ pub mod points_write;
 pub mod print;
 mod sheet;
 pub mod stations;
+pub mod table;
 
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use control::{ControlRow, read_control, write_control};
@@ -17,4 +18,5 @@ pub use folder::FolderWriter;
 pub use photo::{PhotoError, read_photo, write_png};
 pub use points::{PointFile, PointFileError, PointRow, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
-pub use stations::{StationRow, read_stations, station_numbers};
+pub use stations::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_stations, station_numbers};
+pub use table::write_table;

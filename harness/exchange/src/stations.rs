@@ -8,13 +8,12 @@ use calibench_model::Pose;
 use crate::points::PointFileError;
 use crate::sheet::{Form, Row};
 
-const FORM: Form = Form {
-    what: "station file",
-    key: "image",
-    required: &["X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg"],
-    optional: &[],
-    others: true,
-};
+/// The columns of a pose in a station file.
+pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg"];
+/// The columns of its standard deviations: of X0, Y0, Z0 in object units, of small rotations about the camera's axes in degrees.
+pub const POSE_SIGMA_COLUMNS: [&str; 6] = ["sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg"];
+
+const FORM: Form = Form { what: "station file", key: "image", required: &POSE_COLUMNS, optional: &[], others: true };
 
 /// An image and its exterior orientation.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use calibench_adjust::Use;
 use calibench_exchange::atomic::write_atomically;
-use calibench_exchange::{ControlRow, station_numbers, write_control};
+use calibench_exchange::{ControlRow, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control, write_table};
 use calibench_model::camera::CameraModel;
 
 use super::Calibration;
@@ -21,12 +21,7 @@ pub(super) fn write(calibration: &Calibration<'_>, folder: &Path) -> io::Result<
 }
 
 fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
-    write_atomically(path, |file| {
-        let mut writer = csv::Writer::from_writer(file);
-        writer.write_record(columns)?;
-        rows.into_iter().try_for_each(|row| writer.write_record(row))?;
-        writer.flush()
-    })
+    write_atomically(path, |file| write_table(file, columns, rows))
 }
 
 fn texts<const N: usize>(values: Option<[f64; N]>) -> Vec<String> {
@@ -120,23 +115,7 @@ fn correlations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
 
 /// Poses as `render` writes them, with standard deviations: of X0 in object units, of a small rotation about the camera's axes in degrees.
 fn stations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
-    let columns = [
-        "image",
-        "X0",
-        "Y0",
-        "Z0",
-        "omega_deg",
-        "phi_deg",
-        "kappa_deg",
-        "sX0",
-        "sY0",
-        "sZ0",
-        "sx_deg",
-        "sy_deg",
-        "sz_deg",
-        "points",
-        "rms_px",
-    ];
+    let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &["points", "rms_px"]].concat();
     let (poses, rms) = (calibration.solution.poses(), calibration.solution.rms_by_image());
     let observations = &calibration.prepared.network.observations;
     let row = |(index, name): (usize, &String)| {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_adjust::approximate::{Intersection, Search, Sight, Tolerance, intersect};
-use calibench_exchange::{StationRow, read_stations};
+use calibench_exchange::{StationRow, read_stations, write_table};
 use calibench_model::Pose;
 use clap::Args;
 
@@ -75,12 +75,7 @@ impl Intersect {
         if !context.quiet {
             eprintln!("intersect: {} of {} targets, {failed} without a result", rows.len(), survey.targets.len());
         }
-        deliver(self.output.as_deref(), |file| {
-            let mut writer = csv::Writer::from_writer(file);
-            writer.write_record(COLUMNS)?;
-            rows.iter().try_for_each(|row| writer.write_record(row))?;
-            writer.flush()
-        })
+        deliver(self.output.as_deref(), |file| write_table(file, &COLUMNS, &rows))
     }
 }
 

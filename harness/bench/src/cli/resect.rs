@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_adjust::approximate::{Resection, Search, Tolerance, resect};
-use calibench_exchange::{read_control, station_numbers};
+use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_control, station_numbers, write_table};
 use clap::Args;
 
 use super::calibrate::{camera, read_measured};
@@ -33,27 +33,7 @@ pub struct Resect {
     output: Option<PathBuf>,
 }
 
-const COLUMNS: [&str; 19] = [
-    "image",
-    "X0",
-    "Y0",
-    "Z0",
-    "omega_deg",
-    "phi_deg",
-    "kappa_deg",
-    "sX0",
-    "sY0",
-    "sZ0",
-    "sx_deg",
-    "sy_deg",
-    "sz_deg",
-    "points",
-    "sigma0_px",
-    "redundancy",
-    "rejected",
-    "another",
-    "note",
-];
+const FURTHER_COLUMNS: [&str; 6] = ["points", "sigma0_px", "redundancy", "rejected", "another", "note"];
 
 impl Resect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
@@ -81,12 +61,8 @@ impl Resect {
         if !context.quiet {
             eprintln!("resect: {} of {} images oriented", rows.len(), survey.images.len());
         }
-        deliver(self.output.as_deref(), |file| {
-            let mut writer = csv::Writer::from_writer(file);
-            writer.write_record(COLUMNS)?;
-            rows.iter().try_for_each(|row| writer.write_record(row))?;
-            writer.flush()
-        })?;
+        let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &FURTHER_COLUMNS].concat();
+        deliver(self.output.as_deref(), |file| write_table(file, &columns, &rows))?;
         if failed.is_empty() { Ok(()) } else { Err(Failure::input(format!("{} images could not be oriented", failed.len()))) }
     }
 }
