@@ -12,6 +12,7 @@ mod gate;
 mod killed;
 mod measure;
 mod opencv_gate;
+mod operators;
 mod photographs;
 mod project;
 mod render;

@@ -173,6 +173,8 @@ fn deviations(loaded: &Loaded) -> String {
 
 struct Page {
     text: String,
+    /// Are there tables of scores?
+    scored: bool,
     pictures: Vec<(String, Canvas)>,
 }
 
@@ -182,7 +184,7 @@ impl Page {
             "# {family}\n\nMade by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. \
              Some of the methods compared here are our own, `forstner` and `harris_paraboloid` among them: each gets the same images, the same starts and the same score.\n\n"
         );
-        Self { text, pictures: Vec::new() }
+        Self { text, scored: false, pictures: Vec::new() }
     }
 
     /// The heading of a scenario; the stem of its pictures' names.
@@ -220,6 +222,7 @@ impl Page {
                 self.pictures.extend(pictures);
             }
             Subject::Scene(_) | Subject::Views(_) => {
+                self.scored = true;
                 self.text.push_str(&scores_section::section(loaded));
                 self.text.push('\n');
                 if let Some((overview, panels)) = scene_figures::figures(loaded) {
@@ -238,7 +241,8 @@ impl Page {
         for (name, picture) in &self.pictures {
             picture.write(&folder.join(name))?;
         }
-        let text = self.text.trim_end().to_owned() + "\n";
+        let legend = if self.scored { format!("\n\n{}", scores_section::legend()) } else { "\n".to_owned() };
+        let text = self.text.trim_end().to_owned() + &legend;
         fs::write(folder.join(PAGE), text)
     }
 }

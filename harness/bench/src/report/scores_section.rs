@@ -36,23 +36,49 @@ pub fn section(loaded: &Loaded) -> String {
             None => rows.row(cells(&info.label, score)),
         }
     }
-    let uncertainty = if trials > 1 {
-        "After \u{b1} stands the standard error from the scatter between trials; the interval holds the RMSE at 95 %"
-    } else {
-        "One trial has no standard error and no interval"
+    let trials = match trials {
+        1 => "One trial, without standard errors and intervals".to_owned(),
+        _ => format!("{trials} trials"),
     };
     format!(
-        "{}\n{trials} {}, seed {}. Errors in px: bias is the mean error over all targets, in which opposite ones cancel (see below by target), scatter the 2D deviation \
-         about it, RMSE `sqrt(mean(dx^2 + dy^2))`. {uncertainty}. Lost points (more than 1 px off) and rejected ones are counted and not averaged, except under `lost \
-         too`. `RMSE / bound` is `sqrt(mean(e^2 / trace of the bound))` over the kept points, with its 99 % interval: the Cramér-Rao bound of a {window} x {window} px window from the noise-free \
-         image, for the position and what the method estimates beside it; an operator that sees more of the image can be below 1, a biased one too. `Own sigma / scatter` is the same ratio \
-         turned over for the standard deviation that the method itself gives: 1 is honest, less is too hopeful. `Common` are the points that every operator measured and none lost, whatever became of `pixel`: only there are operators compared on equal terms, and what \
-         the worst of them loses drops out for all; fewer than {FEW} are no basis.\n\n{}",
+        "{}\n{trials}, seed {}, errors in px, bounds of a {window} x {window} px window. [What the columns mean]({LEGEND_ANCHOR}).\n\n{}",
         rows.render(),
-        if trials == 1 { "trial" } else { "trials" },
         loaded.head.run.seed,
         by_target(loaded),
         window = loaded.scenario.bound_window
+    )
+}
+
+/// The link to [`legend`].
+const LEGEND_ANCHOR: &str = "#what-the-columns-mean";
+
+/// What the columns of the tables mean, once for a page.
+pub fn legend() -> String {
+    let entries = [
+        (
+            "bias",
+            "the mean error over all targets, in which opposite ones cancel (see the tables by target), in px; after \u{b1} stands the standard error from the scatter between trials",
+        ),
+        ("scatter", "the 2D deviation about the bias"),
+        ("RMSE", "`sqrt(mean(dx^2 + dy^2))`, with the interval that holds it at 95 %"),
+        (
+            "rejected, lost",
+            "refused by the method, with its reason; more than 1 px off. Both are counted and not averaged, except under `RMSE, lost too`",
+        ),
+        (
+            "RMSE / bound",
+            "`sqrt(mean(e^2 / trace of the bound))` over the kept points, with its 99 % interval. The bound is Cram\u{e9}r and Rao's, of a window in the noise-free image, for the position and \
+             what the method estimates beside it. An operator that sees more of the image can be below 1, a biased one too",
+        ),
+        (
+            "own sigma / scatter",
+            "the same for the standard deviation that the method itself gives, turned over: 1 is honest, less is too hopeful",
+        ),
+    ];
+    let entries: String = entries.iter().map(|(name, meaning)| format!("- **{name}**: {meaning}.\n")).collect();
+    format!(
+        "## What the columns mean\n\n{entries}- **common**: the points that every operator measured and none lost, whatever became of `pixel`: only there are operators compared on equal terms, and what \
+         the worst of them loses drops out for all; fewer than {FEW} are no basis.\n"
     )
 }
 

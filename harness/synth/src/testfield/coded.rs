@@ -13,7 +13,7 @@ use cluster::Cluster;
 pub use cluster::code;
 
 /// The four shapes, in the order of sizes and codes. The bars of crosses are a third of their length wide.
-pub const SHAPES: [Shape; 4] = [Shape::Square, Shape::Triangle, Shape::Cross { bar: 1.0 / 3.0 }, Shape::Disc];
+pub const SHAPES: [Shape; 4] = [Shape::Square, Shape::Triangle, Shape::Cross { bar: BAR }, Shape::Disc];
 
 /// A plane field of 8 x 8 squares between straight lines; in each square two small and two large targets of each of four shapes.
 ///

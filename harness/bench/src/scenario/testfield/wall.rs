@@ -12,8 +12,6 @@ use super::{BACKGROUND, Generator, Spans, bend, levels};
 
 /// The tables within, for proposals.
 const TABLES: [&str; 6] = ["plate", "target", "panels", "fill", "kind", "unit"];
-/// A cross's bar where the file gives none.
-const BAR: f64 = 0.3;
 /// Kinds that can be put on a wall.
 const SHAPES: [&str; 6] = ["cross", "chess_corner", "disc", "square", "triangle", "corner"];
 
@@ -123,7 +121,7 @@ fn shapes(
     problems: &mut Vec<Problem>,
 ) -> Option<Vec<Shape>> {
     let shapes = match kind.parse::<TargetKind>() {
-        Ok(TargetKind::Cross) => vec![Shape::Cross { bar: bar.map_or(BAR, |bar| bar.0) }],
+        Ok(TargetKind::Cross) => vec![Shape::Cross { bar: bar.map_or(calibench_model::target::BAR, |bar| bar.0) }],
         Ok(TargetKind::ChessCorner) => vec![Shape::Chess],
         Ok(TargetKind::Disc) => vec![Shape::Disc],
         Ok(TargetKind::Square) => vec![Shape::Square],

@@ -209,7 +209,7 @@ pub struct WallTargetWire {
     pub turn: Option<Degrees>,
     /// The angle of a corner, 30 to 150 degrees. Default 90.
     pub angle: Option<Degrees>,
-    /// The width of a cross's bars as a fraction of their length, 0.05 to 0.5. Default 0.3.
+    /// The width of a cross's bars as a fraction of their length, 0.05 to 0.5. Default a third, which is what `lsm` matches.
     pub bar: Option<Fraction>,
     /// Its surveyed position [x, y, z], object units. Default: the true one at the time of the survey with the survey's error.
     pub surveyed: Option<Tuple<3>>,
@@ -236,6 +236,6 @@ pub struct FillWire {
     pub turn: Option<Degrees>,
     /// The angles of corners, 30 to 150 degrees, in turn. Default: 90 alone.
     pub angles: Option<Vec<Degrees>>,
-    /// The width of crosses' bars as a fraction of their length, 0.05 to 0.5. Default 0.3.
+    /// The width of crosses' bars as a fraction of their length, 0.05 to 0.5. Default a third, which is what `lsm` matches.
     pub bar: Option<Fraction>,
 }
