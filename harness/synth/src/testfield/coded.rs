@@ -1,5 +1,6 @@
 //! The coded target field of Vosselman & Förstner: squares between straight lines, sixteen targets in each.
 
+use calibench_model::target::BAR;
 use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield};
 use nalgebra::{Point3, Vector3};
 use rand::seq::SliceRandom;
