@@ -17,3 +17,4 @@ mod project;
 mod render;
 mod schema;
 mod sweeps;
+mod zhu;

@@ -39,6 +39,8 @@ struct Picturing {
     /// Does the corner lie at a pixel's centre rather than between four?
     at_centre: bool,
     stroke: f64,
+    /// Width of the pen that draws the outline, px; 0.02 decides that pixels on it are drawn.
+    pen: f64,
     /// Is one edge along +x rather than the bisector?
     edge_along_x: bool,
 }
@@ -73,7 +75,7 @@ type Grid = Vec<f64>;
 fn picture(p: Picturing, figure: Figure4) -> (Grid, f64) {
     let middle = SIDE as f64 / 2.0 - if p.at_centre { 0.0 } else { 0.5 };
     let at = PixelPoint::new(middle, middle);
-    let zhu = Zhu { side: SIDE, at, arm: 24.0, stroke: p.stroke, ..Zhu::default() };
+    let zhu = Zhu { side: SIDE, at, arm: 24.0, stroke: p.stroke, pen: p.pen, ..Zhu::default() };
     let mut scene = zhu.scene(figure).expect("a figure");
     if p.edge_along_x && !matches!(figure, Figure4::EndPoint | Figure4::Solid90) {
         turn(&mut scene, at, 0.5 * figure.degrees().to_radians());
@@ -165,13 +167,14 @@ fn v(f: &[[f64; 3]; 3], x: f64, y: f64, k: f64) -> f64 {
 }
 
 fn picturings() -> Vec<Picturing> {
-    let drawings =
-        [Drawing::Hard, Drawing::Area, Drawing::Blurred(0.5), Drawing::Blurred(0.7), Drawing::Blurred(1.0), Drawing::Blurred(1.5)];
+    let drawings = [Drawing::Hard, Drawing::Area, Drawing::Blurred(0.5), Drawing::Blurred(0.7), Drawing::Blurred(1.0)];
     let mut all = Vec::new();
     for drawing in drawings {
         for at_centre in [false, true] {
             for edge_along_x in [false, true] {
-                all.extend([1.0, 2.0, 3.0, 4.0, 5.0].map(|stroke| Picturing { drawing, at_centre, stroke, edge_along_x }));
+                for pen in [0.0, 0.02, 0.5, 0.9, 1.1, 1.42] {
+                    all.extend([1.0, 2.0, 3.0].map(|stroke| Picturing { drawing, at_centre, stroke, pen, edge_along_x }));
+                }
             }
         }
     }
@@ -200,9 +203,9 @@ fn search(picturing: Picturing) -> Vec<Found> {
 
 fn print(found: &[&Found], title: &str) {
     println!(
-        "\n{title}\n\n| m | rms from printed | drawing | corner | stroke | edge | derivative | integration | alpha | k | a b c d e f g h |"
+        "\n{title}\n\n| m | rms from printed | drawing | corner | stroke | pen | edge | derivative | integration | alpha | k | a b c d e f g h |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for f in found.iter().take(12) {
         let (p, d) = (f.picturing, f.detector);
         let place = if p.at_centre { "pixel centre" } else { "pixel corner" };
@@ -210,9 +213,10 @@ fn print(found: &[&Found], title: &str) {
         let v: Vec<String> = f.v.iter().map(|v| format!("{v:.3}")).collect();
         let (m, off) = (f.m(), f.off());
         println!(
-            "| {m:.3} | {off:.3} | {:?} | {place} | {} | {edge} | {:?} | {} | {} | {} | {} |",
+            "| {m:.3} | {off:.3} | {:?} | {place} | {} | {} | {edge} | {:?} | {} | {} | {} | {} |",
             p.drawing,
             p.stroke,
+            p.pen,
             d.derivative,
             d.integration,
             d.alpha,

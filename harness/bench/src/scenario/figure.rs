@@ -19,6 +19,8 @@ bounded! {
     DrawingLength(f64), f64 "f64", 0.1, 10_000.0;
     /// An angle in a drawing, degrees.
     DrawingAngle(f64), f64 "f64", 5.0, 175.0;
+    /// The width of a pen, px.
+    DrawingPen(f64), f64 "f64", 0.0, 5.0;
 }
 
 /// The keys of `[figure]` that are tables of their own.
@@ -37,6 +39,10 @@ pub struct FigureWire {
     pub arm: Option<DrawingLength>,
     /// Width of lines, px. Default 3.
     pub stroke: Option<DrawingLength>,
+    /// Width of the round pen that draws the outline beside the filling, px: what is drawn reaches half of it past its geometry. Default 0.
+    pub pen: Option<DrawingPen>,
+    /// Does one edge of (b) to (g) run along +x, rather than the bisector? Default false.
+    pub edge_along_x: Option<bool>,
     /// Another angle of a line or solid corner, degrees; it then opens to the right. Default: that of the image.
     #[schemars(with = "Option<DrawingAngle>")]
     pub angle: Option<Spanned<DrawingAngle>>,
@@ -79,6 +85,8 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
         stroke: length(wire.stroke, plain.stroke),
         ink: grey(wire.ink, plain.ink),
         background: grey(wire.background, plain.background),
+        edge_along_x: wire.edge_along_x.unwrap_or(false),
+        pen: wire.pen.map_or(0.0, |pen| pen.0),
         angle: wire.angle.as_ref().map(|angle| angle.get_ref().0),
     };
     if let Some(angle) = wire.angle.as_ref().filter(|_| matches!(figure, None | Some(Figure4::EndPoint))) {

@@ -2,6 +2,7 @@
 
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
 
+use super::pen::grown;
 use super::{FieldError, check};
 
 /// An image of Fig. 4.
@@ -66,11 +67,25 @@ pub struct Zhu {
     pub background: f64,
     /// Another angle for line and solid corners, degrees; solid ones then open about +x. `None`: that of the image.
     pub angle: Option<f64>,
+    /// The width of the pen, px, with which the outline is drawn beside the filling: what is drawn reaches half of it past the geometry, as in drawing programs.
+    pub pen: f64,
+    /// Does one edge of a corner run along +x, rather than its bisector? (h) stays as it is.
+    pub edge_along_x: bool,
 }
 
 impl Default for Zhu {
     fn default() -> Self {
-        Self { side: 498, at: PixelPoint::new(248.5, 248.5), arm: 150.0, stroke: 3.0, ink: 0.0, background: 1.0, angle: None }
+        Self {
+            side: 498,
+            at: PixelPoint::new(248.5, 248.5),
+            arm: 150.0,
+            stroke: 3.0,
+            ink: 0.0,
+            background: 1.0,
+            angle: None,
+            pen: 0.0,
+            edge_along_x: false,
+        }
     }
 }
 
@@ -82,13 +97,15 @@ impl Zhu {
     pub fn scene(&self, figure: Figure4) -> Result<Scene, FieldError> {
         self.check(figure)?;
         let id = figure.letter().to_owned();
-        let vertices = self.vertices(figure);
+        let fixed = figure == Figure4::EndPoint || (figure == Figure4::Solid90 && self.angle.is_none());
+        let turn = if self.edge_along_x && !fixed { 0.5 * self.degrees(figure).to_radians() } else { 0.0 };
+        let vertices = self.vertices(figure).into_iter().map(|vertex| turned(vertex, self.at, turn)).collect();
         let target = SceneTarget { id: id.clone(), kind: TargetKind::Corner, at: self.at };
         Ok(Scene {
             width: self.side,
             height: self.side,
             background: self.background,
-            polygons: vec![Polygon { id, vertices, grey: self.ink }],
+            polygons: vec![grown(&Polygon { id, vertices, grey: self.ink }, self.pen)],
             targets: vec![target],
         })
     }
@@ -127,6 +144,7 @@ impl Zhu {
         let sine = (0.5 * self.degrees(figure).to_radians()).sin();
         let narrow = if figure != Figure4::EndPoint { sine.min(0.25) } else { 0.25 };
         check::within("stroke", self.stroke, 0.01..=narrow * self.arm)?;
+        check::within("pen", self.pen, 0.0..=5.0)?;
         check::within("ink", self.ink, 0.0..=1.0)?;
         check::within("background", self.background, 0.0..=1.0)?;
         if (self.ink - self.background).abs() < 1e-3 {
@@ -155,6 +173,12 @@ impl Zhu {
             }
         }
     }
+}
+
+/// `point` turned about `at` by `angle`, from x towards y.
+fn turned(point: PixelPoint, at: PixelPoint, angle: f64) -> PixelPoint {
+    let ((sine, cosine), x, y) = (angle.sin_cos(), point.x - at.x, point.y - at.y);
+    PixelPoint::new(at.x + cosine * x - sine * y, at.y + sine * x + cosine * y)
 }
 
 #[cfg(test)]
@@ -199,6 +223,14 @@ mod tests {
         assert_eq!((sheet.targets[0].at, sheet.targets[6].at), (PixelPoint::new(30.0, 30.0), PixelPoint::new(152.0, 91.0)));
         let alone = zhu.scene(Figure4::Solid60).unwrap();
         assert_eq!(sheet.polygons[6].vertices, alone.shifted(122.0, 61.0).polygons[0].vertices);
+    }
+
+    #[test]
+    fn an_edge_can_run_along_x() {
+        let zhu = Zhu { edge_along_x: true, ..Zhu::default() };
+        let v = zhu.scene(Figure4::Solid30).unwrap().polygons[0].vertices.clone();
+        assert!((v[1].y - v[0].y).abs() < 1e-9 && v[1].x > v[0].x && v[2].y > v[0].y);
+        assert_eq!(zhu.scene(Figure4::Solid90), Zhu::default().scene(Figure4::Solid90));
     }
 
     #[test]
