@@ -18,3 +18,4 @@ mod project;
 mod render;
 mod schema;
 mod sweeps;
+mod zhu;

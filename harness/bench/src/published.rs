@@ -1,5 +1,6 @@
 //! What papers printed, and which of our figures stands behind each cell.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -67,6 +68,15 @@ pub struct Cell {
     /// Targets left out of a statistic.
     #[serde(default)]
     pub except: Vec<String>,
+    /// Added to our error to give what was printed: the true coordinate in the paper's own image.
+    #[serde(default)]
+    pub plus: f64,
+    /// Which cell of a sweep is meant: the value of each key that is swept.
+    #[serde(default)]
+    pub at: BTreeMap<String, f64>,
+    /// What is wrong in print, if anything is: what it must have been.
+    #[serde(default)]
+    pub misprint: Option<String>,
     /// Why the two cannot be compared, if so.
     #[serde(default)]
     pub not_comparable: Option<String>,
@@ -98,6 +108,8 @@ pub enum Metric {
     MeanDistance,
     /// Root mean square distance from the truth.
     RmseXy,
+    /// None of ours: what is printed stands alone.
+    Unscored,
 }
 
 impl Metric {
@@ -264,6 +276,9 @@ mod tests {
             metric: Metric::X,
             target: Some("1".into()),
             except: Vec::new(),
+            plus: 0.0,
+            at: BTreeMap::new(),
+            misprint: None,
             not_comparable: why.map(str::to_owned),
         };
         assert_eq!(cell("22.520", None).verdict(Some(22.5205)), Verdict::Reproduces);

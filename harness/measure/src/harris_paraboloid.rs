@@ -2,13 +2,15 @@
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 
-use crate::harris::{Harris, Strengths};
+use crate::harris::{Harris, Strengths, smooth};
 use crate::operator::{Operator, window_centre};
 use crate::paraboloid::Weights;
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
 
 /// Harris paraboloid: the strongest pixel of the window, refined by the maximum of a paraboloid through its 3 x 3 strengths.
+///
+/// With a derivation Gaussian the strength is the scale-adapted one of Eq. 2.
 ///
 /// The window of odd side, px, is centred on the pixel nearest to the start: it is where the strongest pixel is sought. The paper detects on
 /// the whole image; an approximation says which of its detections is meant. The strength looks `3 sigma + 1` px past it, and one more for the fit.
@@ -18,6 +20,8 @@ pub struct HarrisParaboloid {
     half: usize,
     refinement: Refinement,
     harris: Harris,
+    /// Standard deviation of the derivation Gaussian, px; 0: Sobel gradients of the image as it is.
+    derivation: f64,
 }
 
 /// From the 3 x 3 strengths around the strongest pixel to a position.
@@ -75,6 +79,14 @@ const ALPHA: Parameter = Parameter {
     always_shown: false,
 };
 
+const DERIVATION: Parameter = Parameter {
+    name: "derivation",
+    about: "standard deviation of the derivation Gaussian, px; 0: Sobel gradients",
+    domain: Domain::Real { min: 0.0, max: 5.0 },
+    default: 0.0,
+    always_shown: false,
+};
+
 /// The method's entry.
 pub fn method() -> Method {
     Method {
@@ -82,8 +94,8 @@ pub fn method() -> Method {
         about: "maximum of the Harris strength in the window, refined by a paraboloid through its 3x3 strengths",
         source: "Zhu et al. 2007, Eq. 1, 4, 9 to 13",
         version: "1".into(),
-        parameters: const { &[WINDOW, K, SIGMA, ALPHA] },
-        build: Build::With(|settings| Box::new(HarrisParaboloid::new(settings, Refinement::Paraboloid(Weights::new(settings.get("k")))))),
+        parameters: const { &[WINDOW, K, SIGMA, ALPHA, DERIVATION] },
+        build: Build::With(|settings| Box::new(HarrisParaboloid::of(settings))),
     }
 }
 
@@ -94,15 +106,69 @@ pub fn linear() -> Method {
         about: "maximum of the Harris strength in the window, refined by the strengths of its four neighbours",
         source: "Malik et al. 2002, as described in Zhu et al. 2007",
         version: "1".into(),
-        parameters: const { &[WINDOW, SIGMA, ALPHA] },
+        parameters: const { &[WINDOW, SIGMA, ALPHA, DERIVATION] },
         build: Build::With(|settings| Box::new(HarrisParaboloid::new(settings, Refinement::Linear))),
     }
 }
 
 impl HarrisParaboloid {
     fn new(settings: &Settings, refinement: Refinement) -> Self {
-        let harris = Harris::new(settings.get("alpha"), settings.get("sigma"));
-        Self { half: settings.whole("window") / 2, refinement, harris }
+        let [alpha, sigma, derivation] = ["alpha", "sigma", "derivation"].map(|key| settings.get(key));
+        let harris = if derivation > 0.0 { Harris::scale_adapted(alpha, derivation, sigma) } else { Harris::new(alpha, sigma) };
+        Self { half: settings.whole("window") / 2, refinement, harris, derivation }
+    }
+
+    /// As a method of this name with `settings` has it.
+    pub fn of(settings: &Settings) -> Self {
+        Self::new(settings, Refinement::Paraboloid(Weights::new(settings.get("k"))))
+    }
+
+    /// The pixel from which the paraboloid is fitted: the strongest one of the window around `start`.
+    ///
+    /// # Errors
+    /// As [`Operator::measure`] has them.
+    pub fn strongest_pixel(&self, image: &Image, start: &Start) -> Result<(i64, i64), Rejection> {
+        self.peak(image, start).map(|(pixel, _)| pixel)
+    }
+
+    /// The strongest pixel and the 3 x 3 strengths around it.
+    fn peak(&self, image: &Image, start: &Start) -> Result<((i64, i64), [[f64; 3]; 3]), Rejection> {
+        let ring = self.half + 1;
+        let (x, y) = window_centre(image, start, (ring + self.harris.reach() + self.smoothing()) as i64)?;
+        let strengths = self.strengths(image, (x, y), ring)?;
+        let (column, row) = strongest(&strengths, start.position, (x, y))?;
+        let whole = |index: usize, centre: i64| centre + index as i64 - ring as i64;
+        Ok(((whole(column, x), whole(row, y)), strengths.around(column, row)))
+    }
+
+    /// The strengths of the pixels within `half` px of `pixel`.
+    ///
+    /// # Errors
+    /// [`Rejection::Border`], [`Rejection::NotFinite`].
+    pub fn strengths_around(&self, image: &Image, pixel: (i64, i64), half: usize) -> Result<Strengths, Rejection> {
+        self.strengths(image, pixel, half)
+    }
+
+    /// How far from a pixel grey values have a part in the strengths of its 3 x 3 surroundings, px.
+    pub fn reach(&self) -> usize {
+        1 + self.harris.reach() + self.smoothing()
+    }
+
+    /// The strengths within `ring` px of pixel (`x`, `y`).
+    fn strengths(&self, image: &Image, (x, y): (i64, i64), ring: usize) -> Result<Strengths, Rejection> {
+        if self.derivation == 0.0 {
+            return self.harris.strengths(image, x, y, ring);
+        }
+        let reach = ring + self.harris.reach() + self.smoothing();
+        let rows = image.rows_around(x, y, reach as i64).ok_or(Rejection::Border)?;
+        let side = 2 * reach + 1;
+        let around = Image::new(side, side, rows.flatten().copied().collect());
+        self.harris.strengths(&smooth(&around, self.derivation), reach as i64, reach as i64, ring)
+    }
+
+    /// How far the derivation Gaussian looks, px.
+    fn smoothing(&self) -> usize {
+        (4.0 * self.derivation).ceil() as usize
     }
 }
 
@@ -112,16 +178,12 @@ impl Operator for HarrisParaboloid {
     /// maximum, [`Rejection::NoMaximum`] when the strength still grows at the window's border, [`Rejection::LeftWindow`] when the paraboloid's
     /// maximum is more than a pixel from the strongest one.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
-        let ring = self.half + 1;
-        let (x, y) = window_centre(image, start, (ring + self.harris.reach()) as i64)?;
-        let strengths = self.harris.strengths(image, x, y, ring)?;
-        let (column, row) = strongest(&strengths, start.position, (x, y))?;
-        let (dx, dy) = self.refinement.apply(&strengths.around(column, row)).ok_or(Rejection::NoCorner)?;
+        let ((x, y), around) = self.peak(image, start)?;
+        let (dx, dy) = self.refinement.apply(&around).ok_or(Rejection::NoCorner)?;
         if dx.abs() > 1.0 || dy.abs() > 1.0 {
             return Err(Rejection::LeftWindow);
         }
-        let whole = |index: usize, centre: i64| (centre + index as i64 - ring as i64) as f64;
-        Ok(Measurement { position: PixelPoint::new(whole(column, x) + dx, whole(row, y) + dy), covariance: None })
+        Ok(Measurement { position: PixelPoint::new(x as f64 + dx, y as f64 + dy), covariance: None })
     }
 }
 
@@ -158,7 +220,7 @@ mod tests {
 
     #[test]
     fn conforms_at_several_settings() {
-        for spec in ["window=11", "window=5,k=1", "window=7,sigma=2,k=100", "window=31,alpha=0.06"] {
+        for spec in ["window=11", "window=5,k=1", "window=7,sigma=2,k=100", "window=31,alpha=0.06", "window=7,derivation=0.7,sigma=0.5"] {
             conformance::check(&*operator(&format!("harris_paraboloid:{spec}")), 1e-7);
         }
     }

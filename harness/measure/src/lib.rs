@@ -31,6 +31,7 @@ pub mod pixel;
 pub mod precision;
 pub mod registry;
 pub mod saddle;
+pub mod strength_noise;
 
 pub use board::{Board, BoardDetector};
 pub use operator::Operator;

@@ -64,12 +64,22 @@ pub enum Rejection {
     NotConverged,
     /// The error ellipse of the solution is too large or too flat.
     ErrorEllipse,
+    /// The detector found nothing near the target: no operator was given a start.
+    NotDetected,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 7] =
-        [Self::Border, Self::NotFinite, Self::NoCorner, Self::NoMaximum, Self::LeftWindow, Self::NotConverged, Self::ErrorEllipse];
+    pub const ALL: [Self; 8] = [
+        Self::Border,
+        Self::NotFinite,
+        Self::NoCorner,
+        Self::NoMaximum,
+        Self::LeftWindow,
+        Self::NotConverged,
+        Self::ErrorEllipse,
+        Self::NotDetected,
+    ];
 
     /// The name in files.
     pub const fn name(self) -> &'static str {
@@ -81,6 +91,7 @@ impl Rejection {
             Self::LeftWindow => "left_window",
             Self::NotConverged => "not_converged",
             Self::ErrorEllipse => "error_ellipse",
+            Self::NotDetected => "not_detected",
         }
     }
 
@@ -94,6 +105,7 @@ impl Rejection {
             Self::LeftWindow => "the solution lies outside the window",
             Self::NotConverged => "the iteration did not converge",
             Self::ErrorEllipse => "the error ellipse is too large or too flat",
+            Self::NotDetected => "the detector found nothing near the target",
         }
     }
 }

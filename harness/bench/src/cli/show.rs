@@ -95,11 +95,14 @@ fn scene(text: &mut String, subject: &SceneSubject) {
     if let Starts::Pointed(hand) = &subject.starts {
         let _ = writeln!(text, "pointing = {{ sigma = {}, whole_pixels = {} }}", hand.sigma, hand.whole_pixels);
     }
+    if let Starts::Detected(detector) = &subject.starts {
+        let _ = writeln!(text, "pointing = {{ detector = \"harris\", within = {} }}", detector.within);
+    }
     for (index, target) in scene.targets.iter().enumerate() {
         let _ = write!(text, "# target {} ({}) at ({}, {})", target.id, target.kind, target.at.x, target.at.y);
         let _ = match &subject.starts {
             Starts::Given(starts) => writeln!(text, ", start ({}, {})", starts[index].x, starts[index].y),
-            Starts::Pointed(_) => writeln!(text),
+            Starts::Pointed(_) | Starts::Detected(_) => writeln!(text),
         };
     }
 }
@@ -121,6 +124,10 @@ fn views(text: &mut String, subject: &ViewsSubject) {
         let [omega, phi, kappa] = angles;
         let _ = writeln!(text, "\n[[station]]\nname = \"{}\" # sees {seen:.0} targets", station.name);
         let _ = writeln!(text, "at = [{}, {}, {}]\nangles = [{omega}, {phi}, {kappa}]", at.x, at.y, at.z);
+    }
+    if let Some(detector) = &subject.detector {
+        let _ = writeln!(text, "\n[pointing]\ndetector = \"harris\"\nwithin = {}", detector.within);
+        return;
     }
     let _ = writeln!(text, "\n[pointing]\nsigma = {}\nwhole_pixels = {}", subject.hand.sigma, subject.hand.whole_pixels);
 }

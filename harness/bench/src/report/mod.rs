@@ -8,9 +8,11 @@ mod load;
 pub(crate) mod markdown;
 mod photographs;
 mod published_section;
+mod published_sweep;
 mod scene_figures;
 mod scores_section;
 pub mod sweep;
+mod zhu;
 
 use std::fs;
 use std::io;
@@ -94,8 +96,17 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
     let mut page = Page::new(family);
     let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
     for (_, table) in &tables {
+        if let Some(swept) = all.iter().filter_map(Either::sweep).find(|swept| swept.scenario.name == table.scenario) {
+            page.text.push_str(&published_sweep::section(table, swept));
+            continue;
+        }
         let beside = table.beside.iter().map(by_name).collect::<Result<Vec<_>, _>>()?;
         page.text.push_str(&published_section::section(table, by_name(&table.scenario)?, &beside));
+    }
+    if family == zhu::FAMILY {
+        let (text, pictures) = zhu::section(&loaded, &all.iter().filter_map(Either::sweep).collect::<Vec<_>>());
+        page.text.push_str(&text);
+        page.pictures.extend(pictures);
     }
     for one in &all {
         match one {
@@ -119,6 +130,13 @@ impl Either {
         match self {
             Self::Plain(loaded) => Some(loaded),
             Self::Sweep(_) => None,
+        }
+    }
+
+    fn sweep(&self) -> Option<&sweep::LoadedSweep> {
+        match self {
+            Self::Plain(_) => None,
+            Self::Sweep(sweep) => Some(sweep),
         }
     }
 

@@ -41,6 +41,7 @@ fn figure(loaded: &Loaded, method: usize, metric: Metric, target: Option<&str>, 
         Metric::RmseX => mean(|e| e.0 * e.0).map(f64::sqrt),
         Metric::RmseY => mean(|e| e.1 * e.1).map(f64::sqrt),
         Metric::MeanDistance => mean(|e| e.0.hypot(e.1)),
+        Metric::Unscored => None,
         Metric::RmseXy => mean(|e| e.0 * e.0 + e.1 * e.1).map(f64::sqrt),
     }
 }
@@ -55,13 +56,7 @@ pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> String {
             let _ = writeln!(text, "The records of `{}` hold no method `{}`: nothing to compare.\n", table.scenario, table.method);
         }
     }
-    if !table.findings.is_empty() {
-        text.push_str("### What was found out\n\n");
-        for finding in &table.findings {
-            let _ = writeln!(text, "- {}", finding.trim().replace('\n', " "));
-        }
-        text.push('\n');
-    }
+    text.push_str(&findings(table));
     text.push_str("### Every method on the same points\n\n");
     text.push_str(
         "Distances from the truth in px, and as fractions of a pixel. One image without noise: the figures have no scatter. `dx` is \
@@ -71,6 +66,15 @@ pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> String {
         let _ = writeln!(text, "**`{}`**\n\n{}", loaded.scenario.name, every_method(table, loaded));
     }
     text
+}
+
+/// What was found out about a table.
+pub(super) fn findings(table: &Table) -> String {
+    if table.findings.is_empty() {
+        return String::new();
+    }
+    let lines: String = table.findings.iter().map(|finding| format!("- {}\n", finding.trim().replace('\n', " "))).collect();
+    format!("### What was found out\n\n{lines}\n")
 }
 
 fn comparison(table: &Table, main: &Loaded, method: usize) -> String {
@@ -89,22 +93,25 @@ fn comparison(table: &Table, main: &Loaded, method: usize) -> String {
     }
     for label in labels {
         let mut cells = vec![label.to_owned()];
-        let mut verdicts = Vec::new();
+        let (mut verdicts, mut misprints) = (Vec::new(), Vec::new());
         for column in &table.columns {
             let Some(cell) = table.cells.iter().find(|cell| cell.row == label && cell.column == *column) else {
                 cells.extend([String::new(), String::new()]);
                 continue;
             };
-            let ours = figure(main, method, cell.metric, cell.target.as_deref(), &cell.except);
+            let ours = figure(main, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus);
             let verdict = cell.verdict(ours);
             tally[place(&verdict)] += 1;
             cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);
             verdicts.push(verdict);
+            misprints.extend(cell.misprint.as_ref().map(|misprint| format!("misprint in {column}: {misprint}")));
         }
         // A row is as good as its worst cell.
         let worst = verdicts.into_iter().max_by_key(|verdict| [0, 2, 1][place(verdict)]);
         let (word, why) = worst.map_or((String::new(), String::new()), |verdict| words(&verdict));
-        cells.extend([word, why]);
+        misprints.insert(0, why);
+        misprints.retain(|why| !why.is_empty());
+        cells.extend([word, misprints.join("; ")]);
         rows.row(cells);
     }
     let [reproduces, differs, not_comparable] = tally;
@@ -119,7 +126,7 @@ fn comparison(table: &Table, main: &Loaded, method: usize) -> String {
 }
 
 /// Ours with one digit more than printed, in the form of the printed figure.
-fn like(cell: &Cell, value: f64) -> String {
+pub(super) fn like(cell: &Cell, value: f64) -> String {
     if cell.printed.contains('/') {
         return fraction(value);
     }
@@ -127,7 +134,7 @@ fn like(cell: &Cell, value: f64) -> String {
     fixed(value, digits)
 }
 
-fn place(verdict: &Verdict) -> usize {
+pub(super) fn place(verdict: &Verdict) -> usize {
     match verdict {
         Verdict::Reproduces => 0,
         Verdict::Differs => 1,
@@ -135,7 +142,7 @@ fn place(verdict: &Verdict) -> usize {
     }
 }
 
-fn words(verdict: &Verdict) -> (String, String) {
+pub(super) fn words(verdict: &Verdict) -> (String, String) {
     match verdict {
         Verdict::Reproduces => ("reproduces".into(), String::new()),
         Verdict::Differs => ("differs".into(), "further off than rounding explains".into()),

@@ -74,7 +74,7 @@ fn round(value: f64) -> f64 {
 }
 
 /// Every target of a view of the first trial with its true position: a measured position less its error.
-fn targets(loaded: &Loaded, view: &str) -> Vec<(String, PixelPoint)> {
+pub(super) fn targets(loaded: &Loaded, view: &str) -> Vec<(String, PixelPoint)> {
     let mut targets: Vec<(String, PixelPoint)> = Vec::new();
     for point in loaded.first.points.iter().filter(|point| &*point.view == view) {
         let Outcome::Measured { position, error: Some((dx, dy)) } = point.outcome else { continue };

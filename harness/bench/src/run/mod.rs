@@ -188,6 +188,17 @@ impl<'a> Plan<'a> {
         (0..self.methods.len()).map(|index| self.unknowns(index))
     }
 
+    /// As [`Self::measure`], with targets that nobody found: where there is no start, no operator is asked.
+    fn measure_found(&self, image: &Image, starts: &[Option<Start>]) -> Vec<(usize, Vec<Result<calibench_model::Measurement, Rejection>>)> {
+        let found: Vec<Start> = starts.iter().copied().flatten().collect();
+        let whole = |(method, results): (usize, Vec<_>)| {
+            let mut results = results.into_iter();
+            let of = |start: &Option<Start>| start.and_then(|_| results.next()).unwrap_or(Err(Rejection::NotDetected));
+            (method, starts.iter().map(of).collect())
+        };
+        self.measure(image, &found).into_iter().map(whole).collect()
+    }
+
     /// Every available method on one image: (method, results in the order of `starts`).
     fn measure(&self, image: &Image, starts: &[Start]) -> Vec<(usize, Vec<Result<calibench_model::Measurement, Rejection>>)> {
         let available = self.methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?)));

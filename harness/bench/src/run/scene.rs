@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use calibench_exchange::write_png;
-use calibench_model::{Scene, Start};
+use calibench_model::{Image, Scene, Start};
 use calibench_synth::draw;
 use calibench_synth::noise::{add_grey_noise, quantise};
 use calibench_synth::random::{Key, Purpose, stream};
@@ -52,13 +52,13 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     if let Some(folder) = plan.images.filter(|_| number == 0) {
         write_png(&super::kept_image(folder, VIEW), &image, subject.is_deep())?;
     }
-    let starts = starts(subject, &truth, key);
+    let starts = starts(subject, &image, &truth, key);
     let view: Arc<str> = VIEW.into();
     let targets: Vec<Arc<str>> = truth.targets.iter().map(|target| target.id.as_str().into()).collect();
     let picture = Picture::from(&truth);
     let by_target: Vec<BySet> = truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.at))).collect();
     let mut points = Vec::new();
-    for (method, results) in plan.measure(&image, &starts) {
+    for (method, results) in plan.measure_found(&image, &starts) {
         let unknowns = plan.unknowns(method);
         for (((target, truth), by_set), result) in targets.iter().zip(&truth.targets).zip(&by_target).zip(results) {
             let bound = by_set.get(&unknowns).copied().flatten();
@@ -96,8 +96,9 @@ pub fn trial_picture(subject: &SceneSubject, renderer: &Renderer, truth: &Scene,
     Ok(exposure)
 }
 
-fn starts(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Vec<Start> {
+fn starts(subject: &SceneSubject, image: &Image, truth: &Scene, key: Key<'_>) -> Vec<Option<Start>> {
     let positions: Vec<_> = match &subject.starts {
+        Starts::Detected(detector) => return detector.starts(image, truth.targets.iter().map(|target| target.at)),
         Starts::Given(positions) => positions.clone(),
         Starts::Pointed(hand) => {
             let point = |target: &calibench_model::SceneTarget| {
@@ -106,6 +107,6 @@ fn starts(subject: &SceneSubject, truth: &Scene, key: Key<'_>) -> Vec<Start> {
             truth.targets.iter().map(point).collect()
         }
     };
-    let with_kind = |(position, target): (_, &calibench_model::SceneTarget)| Start { kind: Some(target.kind), ..Start::at(position) };
+    let with_kind = |(position, target): (_, &calibench_model::SceneTarget)| Some(Start { kind: Some(target.kind), ..Start::at(position) });
     positions.into_iter().zip(&truth.targets).map(with_kind).collect()
 }

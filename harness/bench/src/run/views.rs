@@ -131,8 +131,11 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
             write_png(&super::kept_image(folder, &view.station.name), &image, prepared.is_deep())?;
         }
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
-        let starts: Vec<Start> = seen.iter().map(|point| point.start).collect();
-        for (method, results) in plan.measure(&image, &starts) {
+        let starts = match &prepared.subject.detector {
+            Some(detector) => detector.starts(&image, seen.iter().map(|point| point.truth)),
+            None => seen.iter().map(|point| Some(point.start)).collect(),
+        };
+        for (method, results) in plan.measure_found(&image, &starts) {
             let unknowns = plan.unknowns(method);
             let points = seen.iter().zip(results).map(|(point, result)| {
                 let bound = view.bounds[point.target].get(&unknowns).copied().flatten();

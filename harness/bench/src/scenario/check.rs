@@ -6,7 +6,6 @@ use std::path::{Component, Path};
 use calibench_measure::{Board, Registry};
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
 use calibench_synth::overlap::{crosses_itself, overlap};
-use calibench_synth::pointing::Hand;
 use calibench_synth::random::Key;
 use toml::Spanned;
 use toml::de::DeTable;
@@ -17,8 +16,8 @@ use super::section::Section;
 use super::sensor::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
-use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, Position, SceneWire, TargetWire};
-use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject, figure};
+use super::wire::{Head, PhotographsWire, PolygonWire, Position, SceneWire, TargetWire};
+use super::{PhotographsSubject, Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, figure};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
@@ -220,7 +219,7 @@ fn read_scene(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &m
     let targets = section.take_tables("target", "[[scene.target]]", problems).unwrap_or_default();
     let pointing = section.take_table("pointing", "[scene.pointing]", problems);
     let pointed = pointing.is_some();
-    let pointing: Option<PointingWire> = pointing.and_then(|section| section.read(&[], problems));
+    let pointing = pointing.and_then(|section| Pointing::read(section, problems));
     let span = section.span.clone();
     for (missing, list) in [("polygon", polygons.is_empty()), ("target", targets.is_empty())] {
         if list {
@@ -240,9 +239,8 @@ fn read_scene(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &m
     let areas = areas(&polygons, problems);
     let mut scene = Scene { width, height, background: wire.background.0, polygons: areas, targets: Vec::new() };
     let mut given = Vec::new();
-    let hand = pointing.map(|p| Hand { sigma: p.sigma.0, whole_pixels: p.whole_pixels });
     for target in &targets {
-        given.extend(check_start(target, pointed, hand.is_some(), problems));
+        given.extend(check_start(target, pointed, pointing.is_some(), problems));
         scene.targets.extend(check_target(target, &scene, problems));
     }
     let phase = wire.phase.unwrap_or_default();
@@ -250,7 +248,7 @@ fn read_scene(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &m
         problems
             .push(Problem::new(span, "`phase = \"uniform\"` moves the targets: their starts must move too").help("add [scene.pointing]"));
     }
-    let starts = hand.map_or(Starts::Given(given), Starts::Pointed);
+    let starts = pointing.map_or(Starts::Given(given), Starts::from);
     let pixels = wire.pixels.unwrap_or_default();
     check_imaging(&imaging, pixels, &wire, problems);
     let imaging = imaging.read(&surroundings(&scene), problems)?;

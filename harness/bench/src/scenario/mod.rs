@@ -6,6 +6,7 @@ mod check;
 mod figure;
 mod methods;
 mod optics;
+pub mod pointing;
 pub mod problem;
 pub mod schema;
 mod section;
@@ -30,6 +31,7 @@ use calibench_synth::stations::{Station, StationError};
 
 pub use crate::imaging::Imaging;
 pub use check::{parse, parse_cell};
+pub use pointing::{Detector, Pointing};
 pub use problem::{Problem, Problems};
 pub use stations::StationPlan;
 pub use sweep::Sweep;
@@ -121,8 +123,10 @@ pub struct ViewsSubject {
     pub redraw: Option<StationPlan>,
     /// Lens and sensor.
     pub imaging: Imaging,
-    /// Who points at the targets.
+    /// Who points at the targets, unless a detector does.
     pub hand: Hand,
+    /// What finds them in place of a hand.
+    pub detector: Option<Detector>,
 }
 
 impl ViewsSubject {
@@ -144,6 +148,28 @@ pub enum Starts {
     Given(Vec<PixelPoint>),
     /// Pointed at anew in each trial.
     Pointed(Hand),
+    /// Found in each image.
+    Detected(Detector),
+}
+
+impl Starts {
+    /// Are they the same for the same image?
+    fn are_fixed(&self) -> bool {
+        match self {
+            Self::Given(_) | Self::Detected(_) => true,
+            // A hand that does not shake, whether it stops at whole pixels or not.
+            Self::Pointed(hand) => hand.sigma == 0.0,
+        }
+    }
+}
+
+impl From<Pointing> for Starts {
+    fn from(pointing: Pointing) -> Self {
+        match pointing {
+            Pointing::Hand(hand) => Self::Pointed(hand),
+            Pointing::Detector(detector) => Self::Detected(detector),
+        }
+    }
 }
 
 /// Photographs of a chessboard.
@@ -161,7 +187,7 @@ impl Scenario {
     pub fn is_deterministic(&self) -> bool {
         match &self.subject {
             Subject::Scene(scene) => {
-                let still = scene.phase == Phase::Fixed && matches!(scene.starts, Starts::Given(_));
+                let still = scene.phase == Phase::Fixed && scene.starts.are_fixed();
                 still && scene.grey_noise == 0.0 && !scene.imaging.is_random()
             }
             Subject::Views(views) => views.hand.sigma == 0.0 && views.redraw.is_none() && !views.imaging.is_random(),

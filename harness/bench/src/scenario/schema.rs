@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use super::camera::CameraWire;
 use super::figure::FigureWire;
 use super::optics::OpticsWire;
+use super::pointing::DetectorWire;
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StationWire};
 use super::sweep::wire::SweepWire;
@@ -22,7 +23,7 @@ pub fn schema(registry: &Registry) -> Value {
     let mut scene = table::<SceneWire>();
     scene["properties"]["polygon"] = list(&table::<PolygonWire>());
     scene["properties"]["target"] = list(&table::<TargetWire>());
-    scene["properties"]["pointing"] = table::<PointingWire>();
+    scene["properties"]["pointing"] = pointing();
     require(&mut scene, &["polygon", "target"]);
     root["properties"]["scene"] = scene;
     root["properties"]["photographs"] = table::<PhotographsWire>();
@@ -30,17 +31,22 @@ pub fn schema(registry: &Registry) -> Value {
     require(&mut root, &["method"]);
     root["properties"]["sweep"] = table::<SweepWire>();
     root["properties"]["figure"] = table::<FigureWire>();
-    root["properties"]["figure"]["properties"]["pointing"] = table::<PointingWire>();
+    root["properties"]["figure"]["properties"]["pointing"] = pointing();
     root["properties"]["camera"] = table::<CameraWire>();
     root["properties"]["testfield"] = testfield();
     root["properties"]["stations"] = stations();
     root["properties"]["station"] = list(&table::<StationWire>());
     root["properties"]["optics"] = table::<OpticsWire>();
     root["properties"]["sensor"] = table::<SensorWire>();
-    root["properties"]["pointing"] = table::<PointingWire>();
+    root["properties"]["pointing"] = pointing();
     let subjects = [vec!["scene"], vec!["figure"], vec!["camera", "testfield", "pointing"], vec!["photographs"]];
     root["oneOf"] = subjects.iter().map(|keys| json!({ "required": keys })).collect();
     root
+}
+
+/// A hand, or a detector.
+fn pointing() -> Value {
+    json!({ "oneOf": [table::<PointingWire>(), table::<DetectorWire>()] })
 }
 
 fn testfield() -> Value {

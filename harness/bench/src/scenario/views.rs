@@ -12,8 +12,7 @@ use calibench_synth::random::Key;
 use super::problem::Problem;
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
-use super::wire::PointingWire;
-use super::{Imaging, ViewsSubject, camera, optics, stations, testfield};
+use super::{Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};
 
 /// Lens and sensor as they stand in the file, not read yet: a sensor's contrast depends on what it sees.
 pub struct ImagingTables<'i> {
@@ -104,7 +103,7 @@ impl<'i> ViewTables<'i> {
             missing("[pointing]", "measuring starts where somebody points: add `sigma` (px) and `whole_pixels`");
         }
         let camera = self.camera.and_then(|section| camera::read(section, folder, problems));
-        let pointing: Option<PointingWire> = self.pointing.and_then(|section| section.read(&[], problems));
+        let pointing = self.pointing.and_then(|section| Pointing::read(section, problems));
         let plan = self.testfield.and_then(|section| testfield::read(section, key, problems));
         let ((camera, camera_file), pointing, plan) = (camera?, pointing?, plan?);
         let field = plan.generate(key).map_err(|error| problems.push(plan.problem(&error))).ok()?;
@@ -113,8 +112,11 @@ impl<'i> ViewTables<'i> {
         let drawn = plan_of_stations.generate(&field, &camera, key);
         let stations = drawn.map_err(|error| problems.push(plan_of_stations.problem(&error))).ok()?;
         let redraw = Some(plan_of_stations).filter(|plan| plan.each_trial);
-        let hand = Hand { sigma: pointing.sigma.0, whole_pixels: pointing.whole_pixels };
-        Some(ViewsSubject { field, unit: plan.unit, camera, camera_file, stations, redraw, imaging: imaging?, hand })
+        let (hand, detector) = match pointing {
+            Pointing::Hand(hand) => (hand, None),
+            Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true }, Some(detector)),
+        };
+        Some(ViewsSubject { field, unit: plan.unit, camera, camera_file, stations, redraw, imaging: imaging?, hand, detector })
     }
 }
 

@@ -10,10 +10,11 @@ mod fill;
 pub mod house;
 mod outline;
 pub mod panels;
+pub mod pen;
 mod placed;
 pub mod shape;
 pub mod wall;
-pub mod zhu;
+mod zhu;
 
 use calibench_model::PixelPoint;
 use calibench_model::testfield::{Bend, PlatePoint};

@@ -2,6 +2,7 @@
 
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
 
+use super::pen::grown;
 use super::{FieldError, check};
 
 /// An image of Fig. 4.
@@ -64,11 +65,27 @@ pub struct Zhu {
     pub ink: f64,
     /// Grey value around them.
     pub background: f64,
+    /// Another angle for line and solid corners, degrees; solid ones then open about +x. `None`: that of the image.
+    pub angle: Option<f64>,
+    /// The width of the pen, px, with which the outline is drawn beside the filling: what is drawn reaches half of it past the geometry, as in drawing programs.
+    pub pen: f64,
+    /// Does one edge of a corner run along +x, rather than its bisector? (h) stays as it is.
+    pub edge_along_x: bool,
 }
 
 impl Default for Zhu {
     fn default() -> Self {
-        Self { side: 498, at: PixelPoint::new(248.5, 248.5), arm: 150.0, stroke: 3.0, ink: 0.0, background: 1.0 }
+        Self {
+            side: 498,
+            at: PixelPoint::new(248.5, 248.5),
+            arm: 150.0,
+            stroke: 3.0,
+            ink: 0.0,
+            background: 1.0,
+            angle: None,
+            pen: 0.0,
+            edge_along_x: false,
+        }
     }
 }
 
@@ -80,15 +97,39 @@ impl Zhu {
     pub fn scene(&self, figure: Figure4) -> Result<Scene, FieldError> {
         self.check(figure)?;
         let id = figure.letter().to_owned();
-        let vertices = self.vertices(figure);
+        let fixed = figure == Figure4::EndPoint || (figure == Figure4::Solid90 && self.angle.is_none());
+        let turn = if self.edge_along_x && !fixed { 0.5 * self.degrees(figure).to_radians() } else { 0.0 };
+        let vertices = self.vertices(figure).into_iter().map(|vertex| turned(vertex, self.at, turn)).collect();
         let target = SceneTarget { id: id.clone(), kind: TargetKind::Corner, at: self.at };
         Ok(Scene {
             width: self.side,
             height: self.side,
             background: self.background,
-            polygons: vec![Polygon { id, vertices, grey: self.ink }],
+            polygons: vec![grown(&Polygon { id, vertices, grey: self.ink }, self.pen)],
             targets: vec![target],
         })
+    }
+
+    /// All eight images on one sheet, (a) to (d) above (e) to (h), each `side` px wide and with its own reference point.
+    ///
+    /// # Errors
+    /// A parameter out of its range.
+    pub fn sheet(&self) -> Result<Scene, FieldError> {
+        let side = self.side;
+        let mut sheet = Scene { width: 4 * side, height: 2 * side, background: self.background, polygons: Vec::new(), targets: Vec::new() };
+        for (index, figure) in Figure4::ALL.into_iter().enumerate() {
+            let (left, top) = ((index % 4 * side) as f64, (index / 4 * side) as f64);
+            let own = Self { angle: None, ..*self };
+            let image = own.scene(figure)?.shifted(left, top);
+            sheet.polygons.extend(image.polygons);
+            sheet.targets.extend(image.targets);
+        }
+        Ok(sheet)
+    }
+
+    /// The angle of an image's corner, degrees.
+    fn degrees(&self, figure: Figure4) -> f64 {
+        self.angle.filter(|_| figure != Figure4::EndPoint).unwrap_or_else(|| figure.degrees())
     }
 
     fn check(&self, figure: Figure4) -> Result<(), FieldError> {
@@ -97,9 +138,13 @@ impl Zhu {
         check::within("at", self.at.x, 0.0..=inside)?;
         check::within("at", self.at.y, 0.0..=inside)?;
         check::within("arm", self.arm, 4.0..=f64::from(40_000))?;
-        let sine = (0.5 * figure.degrees().to_radians()).sin();
-        let narrow = if figure.degrees() > 0.0 { sine.min(0.25) } else { 0.25 };
+        if let Some(angle) = self.angle {
+            check::within("angle", angle, 5.0..=175.0)?;
+        }
+        let sine = (0.5 * self.degrees(figure).to_radians()).sin();
+        let narrow = if figure != Figure4::EndPoint { sine.min(0.25) } else { 0.25 };
         check::within("stroke", self.stroke, 0.01..=narrow * self.arm)?;
+        check::within("pen", self.pen, 0.0..=5.0)?;
         check::within("ink", self.ink, 0.0..=1.0)?;
         check::within("background", self.background, 0.0..=1.0)?;
         if (self.ink - self.background).abs() < 1e-3 {
@@ -110,16 +155,16 @@ impl Zhu {
 
     /// How far the lines' edges meet from where their middles do.
     fn half_width_along(&self, figure: Figure4) -> f64 {
-        0.5 * self.stroke / (0.5 * figure.degrees().to_radians()).sin()
+        0.5 * self.stroke / (0.5 * self.degrees(figure).to_radians()).sin()
     }
 
     fn vertices(&self, figure: Figure4) -> Vec<PixelPoint> {
         let (half, arm) = (0.5 * self.stroke, self.arm);
         let at = |x: f64, y: f64| PixelPoint::new(self.at.x + x, self.at.y + y);
-        let (sine, cosine) = (0.5 * figure.degrees().to_radians()).sin_cos();
+        let (sine, cosine) = (0.5 * self.degrees(figure).to_radians()).sin_cos();
         match figure {
             Figure4::EndPoint => vec![at(0.0, -half), at(arm, -half), at(arm, half), at(0.0, half)],
-            Figure4::Solid90 => vec![at(0.0, 0.0), at(0.0, -arm), at(arm, -arm), at(arm, 0.0)],
+            Figure4::Solid90 if self.angle.is_none() => vec![at(0.0, 0.0), at(0.0, -arm), at(arm, -arm), at(arm, 0.0)],
             _ if figure.is_solid() => vec![at(0.0, 0.0), at(arm * cosine, -arm * sine), at(arm * cosine, arm * sine)],
             _ => {
                 let apex = self.half_width_along(figure);
@@ -128,6 +173,12 @@ impl Zhu {
             }
         }
     }
+}
+
+/// `point` turned about `at` by `angle`, from x towards y.
+fn turned(point: PixelPoint, at: PixelPoint, angle: f64) -> PixelPoint {
+    let ((sine, cosine), x, y) = (angle.sin_cos(), point.x - at.x, point.y - at.y);
+    PixelPoint::new(at.x + cosine * x - sine * y, at.y + sine * x + cosine * y)
 }
 
 #[cfg(test)]
@@ -163,6 +214,37 @@ mod tests {
     }
 
     #[test]
+    fn a_sheet_holds_all_eight_where_they_were() {
+        let zhu = Zhu { side: 61, at: PixelPoint::new(30.0, 30.0), arm: 20.0, ..Zhu::default() };
+        let sheet = zhu.sheet().unwrap();
+        assert_eq!((sheet.width, sheet.height, sheet.polygons.len()), (244, 122, 8));
+        let letters: Vec<&str> = sheet.targets.iter().map(|target| target.id.as_str()).collect();
+        assert_eq!(letters, ["a", "b", "c", "d", "e", "f", "g", "h"]);
+        assert_eq!((sheet.targets[0].at, sheet.targets[6].at), (PixelPoint::new(30.0, 30.0), PixelPoint::new(152.0, 91.0)));
+        let alone = zhu.scene(Figure4::Solid60).unwrap();
+        assert_eq!(sheet.polygons[6].vertices, alone.shifted(122.0, 61.0).polygons[0].vertices);
+    }
+
+    #[test]
+    fn an_edge_can_run_along_x() {
+        let zhu = Zhu { edge_along_x: true, ..Zhu::default() };
+        let v = zhu.scene(Figure4::Solid30).unwrap().polygons[0].vertices.clone();
+        assert!((v[1].y - v[0].y).abs() < 1e-9 && v[1].x > v[0].x && v[2].y > v[0].y);
+        assert_eq!(zhu.scene(Figure4::Solid90), Zhu::default().scene(Figure4::Solid90));
+    }
+
+    #[test]
+    fn a_corner_can_have_any_angle() {
+        for (figure, angle) in [(Figure4::Solid90, 120.0_f64), (Figure4::Solid30, 75.0), (Figure4::Line45, 100.0)] {
+            let scene = Zhu { angle: Some(angle), ..Zhu::default() }.scene(figure).unwrap();
+            let v = &scene.polygons[0].vertices;
+            let (first, last) = (v[1], v[v.len() - 1]);
+            let direction = |to: PixelPoint| (to.y - v[0].y).atan2(to.x - v[0].x).to_degrees();
+            assert!((direction(last) - direction(first) - angle).abs() < 1e-9 && (direction(last) + direction(first)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
     fn line_corners_meet_where_their_middles_do() {
         let zhu = Zhu { stroke: 4.0, ..Zhu::default() };
         let v = zhu.scene(Figure4::Line60).unwrap().polygons[0].vertices.clone();
@@ -186,6 +268,7 @@ mod tests {
             ("stroke", Zhu { stroke: 38.0, ..z }),
             ("ink", Zhu { ink: 1.0, ..z }),
             ("background", Zhu { background: 1.5, ..z }),
+            ("angle", Zhu { angle: Some(180.0), ..z }),
         ];
         for (name, zhu) in bad {
             match zhu.scene(Figure4::Line30) {

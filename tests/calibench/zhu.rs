@@ -1,0 +1,177 @@
+//! Zhu, Wu & Wan 2007: the printed tables, starts from a detector, and the bias of the strength's maximum.
+
+use calibench_bench::run::Plan;
+use calibench_bench::scenario::parse;
+use calibench_measure::Registry;
+use calibench_measure::harris_paraboloid::HarrisParaboloid;
+use calibench_measure::{Operator, Settings};
+use calibench_model::{PixelPoint, Rejection, Start};
+use calibench_synth::optics::Optics;
+use calibench_synth::raster::{Picture, Renderer};
+use calibench_synth::testfield::{Figure4, Zhu};
+
+/// A printed table: its cells as (row, column, printed).
+fn printed(table: &str) -> Vec<[String; 3]> {
+    let path = crate::project::root().join(format!("reference/published/zhu-2007/{table}.toml"));
+    let text: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
+    let cells = text["cell"].as_array().unwrap();
+    cells.iter().map(|cell| ["row", "column", "printed"].map(|key| cell[key].as_str().unwrap().to_owned())).collect()
+}
+
+/// The transcription of a table, where this machine has it.
+fn transcription(name: &str) -> Option<Vec<Vec<String>>> {
+    let folder =
+        std::env::var_os("CALIBENCH_TRANSCRIPTIONS").map_or_else(|| crate::project::root().join("../shared/published"), Into::into);
+    let Ok(text) = std::fs::read_to_string(folder.join(name)) else {
+        eprintln!("skipped: {name} is not on this machine");
+        return None;
+    };
+    let lines = text.lines().filter(|line| !line.starts_with('#')).skip(1);
+    Some(lines.map(|line| line.split(',').map(str::to_owned).collect()).collect())
+}
+
+#[test]
+fn table_1_is_the_transcription() {
+    let Some(rows) = transcription("zhu-2007-table1.csv") else { return };
+    let cells = printed("table-1");
+    for row in &rows {
+        for (column, index) in [("x", 3), ("y", 4), ("v", 5)] {
+            let cell = cells.iter().find(|[r, c, _]| *r == format!("({})", row[0]) && c == column).unwrap();
+            assert_eq!(cell[2], row[index], "({}) {column}", row[0]);
+        }
+    }
+    assert_eq!((rows.len(), cells.len()), (8, 41));
+}
+
+#[test]
+fn the_printed_residuals_are_those_of_the_coordinates() {
+    let cells = printed("table-1");
+    let value = |row: &str, column: &str| cells.iter().find(|[r, c, _]| r == row && c == column).unwrap()[2].parse::<f64>().unwrap();
+    for row in ["(a)", "(b)", "(c)", "(d)", "(e)", "(f)", "(g)", "(h)"] {
+        for (coordinate, residual) in [("x", "v_x"), ("y", "v_y")] {
+            assert!((value(row, coordinate) - 248.5 - value(row, residual)).abs() < 1.001e-3, "{row} {residual}");
+        }
+        let misprint = (value(row, "v_x").hypot(value(row, "v_y")) - value(row, "v")).abs() > 5.5e-4;
+        assert_eq!(misprint, ["(b)", "(f)", "(g)", "(h)"].contains(&row), "{row}");
+    }
+}
+
+#[test]
+fn table_2_is_the_transcription_in_both_readings() {
+    let Some(rows) = transcription("zhu-2007-table2.csv") else { return };
+    let cells = printed("table-2");
+    assert_eq!((rows.len(), cells.len()), (5, 10));
+    for row in &rows {
+        assert_eq!(cells.iter().filter(|cell| cell[0] == row[0] && cell[2] == row[1]).count(), 2, "{row:?}");
+    }
+}
+
+fn corner(angle: f64, phase: (f64, f64)) -> (calibench_model::Image, PixelPoint) {
+    let at = PixelPoint::new(31.5 + phase.0, 31.5 + phase.1);
+    let zhu = Zhu { side: 64, at, arm: 26.0, angle: Some(angle), stroke: 1.0, ..Zhu::default() };
+    let scene = zhu.scene(Figure4::Solid30).unwrap();
+    let optics = Optics { blur: 0.7, ..Optics::default() };
+    (Renderer::new(&optics, 64, 64).unwrap().render(&Picture::from(&scene), &[]), at)
+}
+
+/// Mean error along and across the bisector over phases, px.
+fn bias(angle: f64, sigma: f64) -> (f64, f64) {
+    let configured = Registry::builtin().parse(&format!("harris_paraboloid:window=17,sigma={sigma}")).unwrap();
+    let operator = HarrisParaboloid::of(&configured.settings as &Settings);
+    // Phases that no symmetry of the grid makes ties of.
+    let phases = [-0.4, -0.2, 0.0, 0.2, 0.4].into_iter().flat_map(|x| [-0.31, -0.11, 0.09, 0.29].map(move |y| (x + 0.03, y)));
+    let errors: Vec<(f64, f64)> = phases
+        .map(|phase| {
+            let (image, at) = corner(angle, phase);
+            let found = operator.measure(&image, &Start::at(at)).unwrap().position;
+            (found.x - at.x, found.y - at.y)
+        })
+        .collect();
+    let mean = |of: fn(&(f64, f64)) -> f64| errors.iter().map(of).sum::<f64>() / errors.len() as f64;
+    (mean(|e| e.0), mean(|e| e.1))
+}
+
+#[test]
+fn the_bias_runs_along_the_bisector_and_grows_with_sharpness_and_integration() {
+    let mut last = f64::INFINITY;
+    for angle in [30.0, 60.0, 90.0, 120.0] {
+        let (along, across) = bias(angle, 1.0);
+        assert!(along > 0.3 && across.abs() < 0.06 * along, "{angle}: {along} {across}");
+        assert!(along < last, "{angle}: {along} after {last}");
+        last = along;
+    }
+    let widths = [0.7, 1.0, 1.5, 2.0].map(|sigma| bias(90.0, sigma).0);
+    assert!(widths.windows(2).all(|pair| pair[0] < pair[1]), "{widths:?}");
+}
+
+const DETECTED: &str = r#"why = "A corner that is found and a place where nothing is."
+source = "a test"
+seed = 1
+
+[scene]
+width = 80
+height = 80
+background = 0.8
+
+[scene.pointing]
+detector = "harris"
+within = 4
+
+[[scene.polygon]]
+id = "a"
+grey = 0.2
+vertices = [[20, 20], [60, 20], [60, 60], [20, 60]]
+
+[[scene.target]]
+id = "there"
+kind = "corner"
+at = [20, 20]
+
+[[scene.target]]
+id = "nowhere"
+kind = "junction"
+at = [40, 40]
+
+[[method]]
+name = "pixel"
+
+[[method]]
+name = "harris_paraboloid"
+"#;
+
+#[test]
+fn a_target_without_detection_is_a_missed_row_of_every_method() {
+    let scenario = parse("family/test", "test.toml", DETECTED, &Registry::builtin()).unwrap();
+    assert!(scenario.is_deterministic());
+    let mut trials = Vec::new();
+    let plan = Plan::new(&scenario, None, std::path::PathBuf::new());
+    plan.run(&|| (), &mut |trial| {
+        trials.push(trial);
+        Ok(())
+    })
+    .unwrap();
+    let outcomes: Vec<_> = trials[0].points.iter().map(|point| (point.method, &*point.target, point.outcome)).collect();
+    assert_eq!(outcomes.len(), 4);
+    for (method, target, outcome) in outcomes {
+        if target == "nowhere" {
+            assert_eq!(outcome, calibench_bench::results::Outcome::Rejected(Rejection::NotDetected), "{method}");
+        } else {
+            assert!(outcome.position().unwrap().distance(PixelPoint::new(20.0, 20.0)) < 2.0, "{method}");
+        }
+    }
+}
+
+#[test]
+fn mistakes_in_a_detector_have_their_place() {
+    let cases = [
+        ("within = 4", "withn = 4", "12:1", "did you mean `within`"),
+        ("within = 4", "within = -1", "12:10", "found -1"),
+        ("detector = \"harris\"", "detector = \"haris\"", "11:12", "harris"),
+        ("within = 4", "whole_pixels = true", "12:1", "unknown key `whole_pixels`"),
+    ];
+    for (old, new, place, part) in cases {
+        let found =
+            parse("family/test", "test.toml", &DETECTED.replace(old, new), &Registry::builtin()).err().expect("a mistake").to_string();
+        assert!(found.contains(&format!("test.toml:{place}")) && found.contains(part), "{new}: {found}");
+    }
+}
