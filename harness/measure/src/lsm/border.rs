@@ -66,7 +66,7 @@ struct Axis {
 
 impl Axis {
     fn new(pixels: usize) -> Self {
-        Self { stride: pixels + LANES, integral: Vec::new(), value: Vec::new(), slope: Vec::new() }
+        Self { stride: pixels.next_multiple_of(LANES), integral: Vec::new(), value: Vec::new(), slope: Vec::new() }
     }
 
     #[inline(always)]
@@ -76,7 +76,7 @@ impl Axis {
             [&mut self.integral, &mut self.value, &mut self.slope].into_iter().for_each(|samples| samples.resize(2 * span.end, 0.0));
         }
         let (integral, value, slope) = (&mut self.integral[span.clone()], &mut self.value[span.clone()], &mut self.slope[span]);
-        profile.sample(at, self.stride - LANES, &mut Samples { integral, value, slope }, wanted)
+        profile.sample(at, &mut Samples { integral, value, slope }, wanted)
     }
 }
 
@@ -227,22 +227,27 @@ fn sweep<const MOVED: bool, const BLURRED: bool>(window: Window<'_>, bank: &Bank
                 }
             }
             // Nothing lies behind the window's last column.
-            let inside: [f32; LANES] = std::array::from_fn(|lane| if column + lane < window.pixels { 1.0 } else { 0.0 });
+            let mut inside = [0.0; LANES];
+            inside[..LANES.min(window.pixels - column)].fill(1.0);
             let start = row * window.stride + column;
-            let mut put = |plane: usize, lanes: &[f32; LANES], scale: f32| {
-                let to = &mut window.values[plane * area + start..][..LANES];
-                for lane in 0..LANES {
-                    to[lane] = lanes[lane] * inside[lane] * scale;
-                }
-            };
-            put(COVERAGE, &sums.coverage, 1.0);
+            put(&mut window.values[COVERAGE * area + start..], &sums.coverage, &inside);
             if MOVED {
-                sums.moving.iter().enumerate().for_each(|(plane, lanes)| put(plane, lanes, 1.0));
+                for (plane, lanes) in sums.moving.iter().enumerate() {
+                    put(&mut window.values[plane * area + start..], lanes, &inside);
+                }
             }
             if BLURRED {
-                put(BLUR, &sums.blur, sigma);
+                put(&mut window.values[BLUR * area + start..], &sums.blur, &inside.map(|one| one * sigma));
             }
         }
+    }
+}
+
+#[inline(always)]
+fn put(to: &mut [f32], lanes: &[f32; LANES], factors: &[f32; LANES]) {
+    let to: &mut [f32; LANES] = (&mut to[..LANES]).try_into().expect("a slice of that length");
+    for lane in 0..LANES {
+        to[lane] = lanes[lane] * factors[lane];
     }
 }
 
@@ -268,10 +273,10 @@ fn add<const B: usize, const MOVED: bool, const BLURRED: bool>(
         }
         if MOVED {
             let value = lanes(&bank.columns.value);
-            for (moment, function) in moments.iter_mut().zip(node.functions) {
-                let factor = function * k;
+            for function in 0..B {
+                let factor = node.functions[function] * k;
                 for lane in 0..LANES {
-                    moment[lane] += value[lane] * factor;
+                    moments[function][lane] += value[lane] * factor;
                 }
             }
             if BLURRED {
@@ -284,12 +289,24 @@ fn add<const B: usize, const MOVED: bool, const BLURRED: bool>(
     }
     sums.coverage = coverage;
     if MOVED {
-        for (to, factors) in sums.moving.iter_mut().zip(expansion) {
-            for (factor, moment) in factors.iter().zip(&moments) {
-                for lane in 0..LANES {
-                    to[lane] += factor * moment[lane];
-                }
-            }
+        // One by one: in a loop they would be worked out across the planes, with gathered numbers.
+        let [x, y, axx, axy, ayx, ayy] = &mut sums.moving;
+        combine(x, &expansion[0], &moments);
+        combine(y, &expansion[1], &moments);
+        combine(axx, &expansion[2], &moments);
+        combine(axy, &expansion[3], &moments);
+        combine(ayx, &expansion[4], &moments);
+        combine(ayy, &expansion[5], &moments);
+    }
+}
+
+#[inline(always)]
+fn combine<const B: usize>(to: &mut [f32; LANES], factors: &[f32; B], moments: &[[f32; LANES]; B]) {
+    let mut sum = *to;
+    for function in 0..B {
+        for lane in 0..LANES {
+            sum[lane] += factors[function] * moments[function][lane];
         }
     }
+    *to = sum;
 }

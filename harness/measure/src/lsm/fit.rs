@@ -14,11 +14,6 @@ const SHAPE: f64 = 10.0;
 /// Damping from which a step tells nothing of convergence, and at which there is no way down.
 const DAMPED: (f64, f64) = (1e-3, 1e6);
 
-/// After a step this many times the last one or shorter the derivatives are kept: by so little they do not change.
-const KEPT: f64 = 50.0;
-/// With derivatives that were kept, steps shrink in proportion only: the last is to be this fraction of what it is with fresh ones.
-const LAST: f64 = 0.2;
-
 /// All parameters. Positions count from the window's first pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parameters {
@@ -84,7 +79,7 @@ impl Work {
     }
 
     /// The least-squares fit from `start` on (its levels are taken from the image), by Gauss-Newton; where a step leads upwards, it is damped
-    /// (Levenberg-Marquardt). Near the end only the residuals are taken anew.
+    /// (Levenberg-Marquardt).
     ///
     /// # Errors
     /// [`Rejection::NoCorner`] for a window in which the parameters cannot be told apart, [`Rejection::LeftWindow`], [`Rejection::NotConverged`].
@@ -95,25 +90,19 @@ impl Work {
         (now.ground, now.contrast) = self.planes.levels().ok_or(Rejection::NoCorner)?;
         let mut omega = self.planes.compare(now.ground, now.contrast);
         let mut system = self.system(mask, &now, limits.blur).ok_or(Rejection::NoCorner)?;
-        let (mut damping, mut kept) = (0.0, false);
+        let mut damping = 0.0;
         for _ in 0..limits.iterations {
             let step = system.step(damping).ok_or(Rejection::NoCorner)?;
             let next = now.moved(&step).ok_or(Rejection::NotConverged)?;
-            let last = if kept { LAST * limits.epsilon } else { limits.epsilon };
-            if damping <= DAMPED.0 && step.is_small(mask, last) {
+            if damping <= DAMPED.0 && step.is_small(mask, limits.epsilon) {
                 return self.conclude(next, &system, omega);
             }
-            let keep = damping == 0.0 && step.is_small(mask, KEPT * limits.epsilon);
-            let there = self.evaluate(mask, &next, if keep { Derivatives::None } else { all });
+            let there = self.evaluate(mask, &next, all);
             // Sums of squares in single precision are right to some 1e-7.
             if there.is_finite() && there <= omega * (1.0 + 1e-6) {
-                (now, omega, kept) = (next, there, keep);
+                (now, omega) = (next, there);
                 damping = if damping <= DAMPED.0 { 0.0 } else { damping / 10.0 };
-                if keep {
-                    system.look(&now, &self.planes.right(unknowns(limits.blur)));
-                } else {
-                    system = self.system(mask, &now, limits.blur).ok_or(Rejection::NoCorner)?;
-                }
+                system = self.system(mask, &now, limits.blur).ok_or(Rejection::NoCorner)?;
             } else {
                 damping = if damping == 0.0 { 1e-2 } else { damping * 10.0 };
                 if damping > DAMPED.1 {
@@ -169,8 +158,6 @@ impl Parameters {
 /// The normal equations of the parameters that can be told apart.
 struct System {
     columns: Columns,
-    /// What the planes are multiplied with.
-    scale: [f64; UNKNOWNS],
     normal: [[f64; UNKNOWNS]; UNKNOWNS],
     right: [f64; UNKNOWNS],
     factor: Factor<UNKNOWNS>,
@@ -178,35 +165,21 @@ struct System {
 
 impl System {
     /// `None` if it is singular.
-    fn new(
-        kind: TargetKind,
-        at: &Parameters,
-        products: &[[f64; UNKNOWNS]; UNKNOWNS],
-        right: &[f64; UNKNOWNS],
-        blur: bool,
-    ) -> Option<Self> {
+    fn new(kind: TargetKind, at: &Parameters, products: &[[f64; UNKNOWNS]; UNKNOWNS], right: &[f64; UNKNOWNS], blur: bool) -> Option<Self> {
         let columns = Columns::new(kind, &at.pose.affine, blur);
-        let scale = scale(at);
-        let mut normal = [[0.0; UNKNOWNS]; UNKNOWNS];
+        // The planes are derivatives of the coverage: the grey value's are the contrast times these, but for the levels' own.
+        let scale: [f64; UNKNOWNS] = std::array::from_fn(|i| if i == GROUND || i == COVERAGE { 1.0 } else { at.contrast });
+        let (mut normal, mut of_residuals) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
         for (i, column) in columns.iter().enumerate() {
             let row: [f64; UNKNOWNS] = std::array::from_fn(|k| column.terms().map(|(l, factor)| factor * scale[l] * products[l][k]).sum());
             for (j, other) in columns.iter().enumerate().take(i + 1) {
                 let sum = other.terms().map(|(k, factor)| row[k] * scale[k] * factor).sum();
                 (normal[i][j], normal[j][i]) = (sum, sum);
             }
+            of_residuals[i] = column.terms().map(|(k, factor)| factor * scale[k] * right[k]).sum();
         }
         let factor = cholesky::factor(&normal, columns.count)?;
-        let mut system = Self { columns, scale, normal, right: [0.0; UNKNOWNS], factor };
-        system.look(at, right);
-        Some(system)
-    }
-
-    /// Takes residuals anew.
-    fn look(&mut self, at: &Parameters, sums: &[f64; UNKNOWNS]) {
-        self.scale = scale(at);
-        for (right, column) in self.right.iter_mut().zip(self.columns.iter()) {
-            *right = column.terms().map(|(k, factor)| factor * self.scale[k] * sums[k]).sum();
-        }
+        Some(Self { columns, normal, right: of_residuals, factor })
     }
 
     fn step(&self, damping: f64) -> Option<Step> {
@@ -229,11 +202,6 @@ impl System {
         let (x, y) = (column(0), column(1));
         Covariance { sxx: x[0], sxy: x[1], syy: y[1] }
     }
-}
-
-/// The planes are derivatives of the coverage: the grey value's are the contrast times these, but for the levels' own.
-fn scale(at: &Parameters) -> [f64; UNKNOWNS] {
-    std::array::from_fn(|i| if i == GROUND || i == COVERAGE { 1.0 } else { at.contrast })
 }
 
 /// A parameter that can be told, as a change of some of the nine.

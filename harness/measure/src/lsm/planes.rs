@@ -144,9 +144,13 @@ fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, 
 fn products(planes: &Planes, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
     let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
     for i in 0..unknowns {
-        for j in 0..=i {
-            let sum = dot(planes.plane(i), planes.plane(j));
-            (products[i][j], products[j][i]) = (sum, sum);
+        let plane = planes.plane(i);
+        // Four at a time: one sum alone would wait for each of its additions.
+        for first in (0..=i).step_by(4) {
+            let sums = dots(plane, std::array::from_fn::<_, 4, _>(|j| planes.plane((first + j).min(i))));
+            for (j, sum) in (first..=i).zip(sums) {
+                (products[i][j], products[j][i]) = (sum, sum);
+            }
         }
     }
     products
@@ -154,22 +158,41 @@ fn products(planes: &Planes, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn right(planes: &Planes, unknowns: usize) -> [f64; UNKNOWNS] {
-    std::array::from_fn(|i| if i < unknowns { dot(planes.plane(i), planes.plane(RESIDUAL)) } else { 0.0 })
+    let mut right = [0.0; UNKNOWNS];
+    let residual = planes.plane(RESIDUAL);
+    for first in (0..unknowns).step_by(3) {
+        let sums = dots(residual, std::array::from_fn::<_, 3, _>(|i| planes.plane(first + i)));
+        right[first..first + 3].copy_from_slice(&sums);
+    }
+    right
 }
 
-/// Sums of `LANES` products side by side; these sums are added up in double precision.
 #[inline(always)]
 fn dot(a: &[f32], b: &[f32]) -> f64 {
-    let mut sums = [0.0_f32; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-        for i in 0..LANES {
-            sums[i] += a[i] * b[i];
+    dots(a, [b])[0]
+}
+
+/// Of `a` with each of `others`: sums of `LANES` products side by side, which are added up in double precision.
+#[inline(always)]
+fn dots<const N: usize>(a: &[f32], others: [&[f32]; N]) -> [f64; N] {
+    let mut sums = [[0.0_f32; LANES]; N];
+    let others = others.map(|other| &other[..a.len()]);
+    for start in (0..a.len()).step_by(LANES) {
+        let lanes = |values: &[f32]| -> [f32; LANES] { values[start..start + LANES].try_into().expect("whole lanes") };
+        let here = lanes(a);
+        for n in 0..N {
+            let there = lanes(others[n]);
+            for lane in 0..LANES {
+                sums[n][lane] += here[lane] * there[lane];
+            }
         }
     }
-    let mut halves = [0.0; LANES / 2];
-    for (i, half) in halves.iter_mut().enumerate() {
-        *half = f64::from(sums[i]) + f64::from(sums[i + LANES / 2]);
-    }
-    let [a, b, c, d, e, f, g, h] = halves;
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
+    sums.map(|sums| {
+        let mut halves = [0.0; LANES / 2];
+        for (i, half) in halves.iter_mut().enumerate() {
+            *half = f64::from(sums[i]) + f64::from(sums[i + LANES / 2]);
+        }
+        let [a, b, c, d, e, f, g, h] = halves;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
+    })
 }

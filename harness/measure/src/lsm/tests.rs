@@ -212,30 +212,3 @@ fn the_image_gives_the_start() {
         assert_eq!(lost, 0, "{kind}");
     }
 }
-
-#[test]
-#[ignore = "prints speeds"]
-fn speed() {
-    let spent = || -> f64 {
-        std::fs::read_to_string("/proc/thread-self/schedstat").unwrap().split(' ').next().unwrap().parse::<f64>().unwrap() / 1e9
-    };
-    let mut noise = Noise(5);
-    let cases: Vec<(Image, Start)> = (0..200)
-        .map(|variant| {
-            let picture = picture(TargetKind::Square, 8.0, 0.7, variant);
-            let (dx, dy) = (0.8 * f64::from(variant).cos(), 0.8 * f64::from(variant).sin());
-            (noise.on(&picture.image(SIDE), 2.0 / 255.0), start(&picture, dx, dy))
-        })
-        .collect();
-    for spec in ["lsm:window=15,sigma=0.7", "lsm:window=15,sigma=0.7,sharpness=1"] {
-        let operator = Registry::builtin().parse(spec).unwrap().operator.unwrap();
-        let clock = spent();
-        for _ in 0..60 {
-            for (image, start) in &cases {
-                let starts = [start.clone(), start.clone(), start.clone(), start.clone(), start.clone()];
-                std::hint::black_box(operator.measure_all(image, &starts));
-            }
-        }
-        println!("{spec}: {:.2} us", (spent() - clock) / 60000.0 * 1e6);
-    }
-}
