@@ -5,101 +5,125 @@
 //! by the blur, as K obeys the equation of heat, is `sigma` times the integral of `grad K x dp`.
 //!
 //! Along one curve, whatever an affine map's parameters do to the border is a combination of a few functions: 1 and t on a line; on an arc cosine, sine
-//! and their products. The integrals of K times these are added up in registers, pixel by pixel, and combined at the end.
+//! and their products. The integrals of K times these are added up in registers, a row of pixels at a time over the whole border, and combined there.
 
 use calibench_model::{Affine, Curve};
 use multiversion::multiversion;
 
-use super::mask::{LONGEST, Mask, Panel, map};
-use super::planes::{BLUR, COVERAGE, Pose, Window};
-use super::profile::{LANES, Profile, Samples};
+use super::mask::{Mask, Panel, map};
+use super::planes::{BLUR, COVERAGE, Derivatives, Pose, Window};
+use super::profile::{LANES, Profile, Samples, Wanted};
 
 /// Affine parameters and the position: planes 0 to 5.
 const MOVING: usize = 6;
 
-/// Samples at the nodes of one panel.
+/// The most functions of which a curve's movements are combined.
+const FUNCTIONS: usize = 5;
+
+/// Samples at the nodes of a border. Its memory is used again for the next.
 #[derive(Clone, Debug)]
 pub(super) struct Bank {
     rows: Axis,
     columns: Axis,
-    /// Of each node: the first and the last row that see it.
-    seen: Vec<(usize, usize)>,
-    /// Weighted steps dx, dy of each node, px.
-    steps: Vec<[f64; 2]>,
-    /// Weights of each node.
-    weights: Vec<f64>,
-    /// Parameter of each node.
-    at: Vec<f64>,
+    nodes: Vec<Node>,
+    panels: Vec<Stretch>,
+}
+
+/// A point of the border.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    /// The first and the last row that see it.
+    seen: (usize, usize),
+    /// Weighted step dx, dy, px.
+    step: [f32; 2],
+    /// Weighted functions of which the curve's movements are combined.
+    functions: [f32; FUNCTIONS],
+}
+
+/// The nodes of one panel, and how the derivatives come of their functions.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    first: usize,
+    end: usize,
+    expansion: Expansion,
+}
+
+/// Factors of the functions, for each of the [`MOVING`] parameters.
+#[derive(Clone, Copy, Debug)]
+enum Expansion {
+    Line([[f32; 2]; MOVING]),
+    Arc([[f32; 5]; MOVING]),
 }
 
 /// Samples of all nodes along one axis.
 #[derive(Clone, Debug)]
 struct Axis {
     stride: usize,
-    integral: Vec<f64>,
-    value: Vec<f64>,
-    slope: Vec<f64>,
+    integral: Vec<f32>,
+    value: Vec<f32>,
+    slope: Vec<f32>,
 }
 
 impl Axis {
     fn new(pixels: usize) -> Self {
-        let stride = pixels + LANES;
-        let [integral, value, slope] = [(); 3].map(|()| vec![0.0; LONGEST * stride]);
-        Self { stride, integral, value, slope }
+        Self { stride: pixels.next_multiple_of(LANES), integral: Vec::new(), value: Vec::new(), slope: Vec::new() }
     }
 
     #[inline(always)]
-    fn sample<const INTEGRAL: bool>(&mut self, node: usize, profile: &Profile, at: f64, blur: bool) -> (usize, usize) {
+    fn sample(&mut self, node: usize, profile: &Profile, at: f64, wanted: Wanted) -> (usize, usize) {
         let span = node * self.stride..(node + 1) * self.stride;
+        if span.end > self.value.len() {
+            [&mut self.integral, &mut self.value, &mut self.slope].into_iter().for_each(|samples| samples.resize(2 * span.end, 0.0));
+        }
         let (integral, value, slope) = (&mut self.integral[span.clone()], &mut self.value[span.clone()], &mut self.slope[span]);
-        profile.sample::<INTEGRAL>(at, self.stride - LANES, &mut Samples { integral, value, slope }, blur)
+        profile.sample(at, &mut Samples { integral, value, slope }, wanted)
     }
 }
 
 impl Bank {
     /// For a window of `pixels`, whose rows are `stride` apart.
     pub(super) fn new(pixels: usize, stride: usize) -> Self {
-        let (rows, columns) = (Axis::new(pixels), Axis::new(stride));
-        let [weights, at] = [(); 2].map(|()| Vec::with_capacity(LONGEST));
-        Self { rows, columns, seen: Vec::with_capacity(LONGEST), steps: Vec::with_capacity(LONGEST), weights, at }
-    }
-
-    fn clear(&mut self) {
-        self.seen.clear();
-        self.steps.clear();
-        self.weights.clear();
-        self.at.clear();
+        Self { rows: Axis::new(pixels), columns: Axis::new(stride), nodes: Vec::new(), panels: Vec::new() }
     }
 }
 
-/// Adds coverage and derivatives of a mask to the planes.
+/// Coverage and derivatives of a mask, written to their planes.
+pub(super) fn draw(window: Window<'_>, bank: &mut Bank, mask: &Mask, pose: &Pose, profile: &Profile, derivatives: Derivatives) {
+    match derivatives {
+        Derivatives::None => integrate::<false, false>(window, bank, mask, pose, profile),
+        Derivatives::Pose => integrate::<true, false>(window, bank, mask, pose, profile),
+        Derivatives::PoseAndBlur => integrate::<true, true>(window, bank, mask, pose, profile),
+    }
+}
+
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-pub(super) fn integrate(mut window: Window<'_>, bank: &mut Bank, mask: &Mask, pose: &Pose, profile: &Profile, blur: bool) {
+fn integrate<const MOVED: bool, const BLURRED: bool>(window: Window<'_>, bank: &mut Bank, mask: &Mask, pose: &Pose, profile: &Profile) {
     let a = &pose.affine;
     // Where the affine reflects, the border runs the other way round.
     let sense = if a.axx * a.ayy - a.axy * a.ayx < 0.0 { -1.0 } else { 1.0 };
     let rows = (-profile.reach(), window.pixels as f64 - 1.0 + profile.reach());
+    bank.nodes.clear();
+    bank.panels.clear();
     for curve in mask.curves() {
         for panel in Panel::of(curve, a, pose.at[1], profile.sigma(), rows) {
             match *curve {
                 Curve::Line { from, to } => {
                     let line = Line::new(a, from, to, sense);
-                    fill(bank, panel, profile, pose.at, blur, |t| line.at(t));
-                    add::<2>(&mut window, bank, &line.expansion, |t| [1.0, t], profile.sigma(), blur);
+                    let expansion = Expansion::Line(line.expansion.map(|factors| factors.map(|f| f as f32)));
+                    fill::<2, MOVED, BLURRED>(bank, panel, profile, pose.at, expansion, |t| (line.at(t), [1.0, t]));
                 }
                 Curve::Arc { centre, radius, start, sweep } => {
                     let arc = Arc::new(a, centre, radius, sweep, sense);
-                    let angle = |t: f64| (start + t * sweep).sin_cos();
-                    fill(bank, panel, profile, pose.at, blur, |t| arc.at(a, angle(t)));
-                    let functions = |t: f64| {
-                        let (sine, cosine) = angle(t);
-                        [cosine, sine, cosine * cosine, cosine * sine, sine * sine]
-                    };
-                    add::<5>(&mut window, bank, &arc.expansion, functions, profile.sigma(), blur);
+                    let expansion = Expansion::Arc(arc.expansion.map(|factors| factors.map(|f| f as f32)));
+                    fill::<5, MOVED, BLURRED>(bank, panel, profile, pose.at, expansion, |t| {
+                        let (sine, cosine) = (start + t * sweep).sin_cos();
+                        (arc.at(a, (sine, cosine)), [cosine, sine, cosine * cosine, cosine * sine, sine * sine])
+                    });
                 }
             }
         }
     }
+    sweep::<MOVED, BLURRED>(window, bank, profile.sigma() as f32);
 }
 
 /// A line in the image.
@@ -154,105 +178,135 @@ impl Arc {
     }
 }
 
-/// Samples at the nodes of a panel; `place` gives where a parameter is, from the reference point, and its step.
+/// Samples at the nodes of a panel; `place` gives where a parameter is, from the reference point, its step, and the functions there.
 #[inline(always)]
-fn fill(bank: &mut Bank, panel: Panel, profile: &Profile, [x, y]: [f64; 2], blur: bool, place: impl Fn(f64) -> ([f64; 2], [f64; 2])) {
-    bank.clear();
+fn fill<const B: usize, const MOVED: bool, const BLURRED: bool>(
+    bank: &mut Bank,
+    panel: Panel,
+    profile: &Profile,
+    [x, y]: [f64; 2],
+    expansion: Expansion,
+    place: impl Fn(f64) -> (([f64; 2], [f64; 2]), [f64; B]),
+) {
+    let first = bank.nodes.len();
     for (t, weight) in panel.nodes() {
-        let ([px, py], step) = place(t);
-        let node = bank.at.len();
-        bank.columns.sample::<true>(node, profile, x + px, blur);
-        let seen = bank.rows.sample::<false>(node, profile, y + py, blur);
-        bank.seen.push(seen);
-        bank.steps.push(step.map(|s| s * weight));
-        bank.weights.push(weight);
-        bank.at.push(t);
+        let (([px, py], step), values) = place(t);
+        let node = bank.nodes.len();
+        bank.columns.sample(node, profile, x + px, Wanted { integral: true, value: MOVED, slope: BLURRED });
+        let seen = bank.rows.sample(node, profile, y + py, Wanted { integral: false, value: true, slope: BLURRED });
+        let mut functions = [0.0; FUNCTIONS];
+        functions.iter_mut().zip(values).for_each(|(to, value)| *to = (value * weight) as f32);
+        bank.nodes.push(Node { seen, step: step.map(|s| (s * weight) as f32), functions });
     }
+    bank.panels.push(Stretch { first, end: bank.nodes.len(), expansion });
 }
 
-/// Adds the integrals of a panel; `functions` are what the border's movements are combined from, by `expansion`.
+/// A row of `LANES` pixels: coverage, its derivatives by position and shape, and by the blur.
+struct Sums {
+    coverage: [f32; LANES],
+    moving: [[f32; LANES]; MOVING],
+    blur: [f32; LANES],
+}
+
+/// The planes, row by row.
 #[inline(always)]
-fn add<const B: usize>(
-    window: &mut Window<'_>,
-    bank: &Bank,
-    expansion: &[[f64; B]; MOVING],
-    functions: impl Fn(f64) -> [f64; B],
-    sigma: f64,
-    blur: bool,
-) {
-    let mut values = [[0.0; B]; LONGEST];
-    for (value, (&t, &weight)) in values.iter_mut().zip(bank.at.iter().zip(&bank.weights)) {
-        *value = functions(t).map(|f| f * weight);
-    }
+fn sweep<const MOVED: bool, const BLURRED: bool>(window: Window<'_>, bank: &Bank, sigma: f32) {
     let area = window.pixels * window.stride;
     for row in 0..window.pixels {
-        let sees = |&(low, high): &(usize, usize)| low <= row && row < high;
-        let Some(first) = bank.seen.iter().position(sees) else { continue };
-        let end = bank.seen.iter().rposition(sees).map_or(first, |last| last + 1);
         for column in (0..window.stride).step_by(LANES) {
-            let sums = sum(bank, &values, row, column, first..end, blur);
-            let start = row * window.stride + column;
-            let mut put = |plane: usize, lanes: [f64; LANES]| {
-                let to = &mut window.values[plane * area + start..][..LANES];
-                for lane in 0..LANES {
-                    to[lane] += lanes[lane];
+            let mut sums = Sums { coverage: [0.0; LANES], moving: [[0.0; LANES]; MOVING], blur: [0.0; LANES] };
+            for panel in &bank.panels {
+                let nodes = &bank.nodes[panel.first..panel.end];
+                let sees = |node: &Node| node.seen.0 <= row && row < node.seen.1;
+                let Some(first) = nodes.iter().position(sees) else { continue };
+                let last = nodes.iter().rposition(sees).unwrap_or(first);
+                let seen = (panel.first + first, panel.first + last + 1);
+                match &panel.expansion {
+                    Expansion::Line(factors) => add::<2, MOVED, BLURRED>(&mut sums, bank, seen, (row, column), factors),
+                    Expansion::Arc(factors) => add::<5, MOVED, BLURRED>(&mut sums, bank, seen, (row, column), factors),
                 }
-            };
-            put(COVERAGE, sums.coverage);
-            for (plane, factors) in expansion.iter().enumerate() {
-                let mut combined = [0.0; LANES];
-                for (factor, moment) in factors.iter().zip(&sums.moments) {
-                    for (to, moment) in combined.iter_mut().zip(moment) {
-                        *to += factor * moment;
-                    }
-                }
-                put(plane, combined);
             }
-            if blur {
-                put(BLUR, sums.blur.map(|s| s * sigma));
+            // Nothing lies behind the window's last column.
+            let mut inside = [0.0; LANES];
+            inside[..LANES.min(window.pixels - column)].fill(1.0);
+            let start = row * window.stride + column;
+            put(&mut window.values[COVERAGE * area + start..], &sums.coverage, &inside);
+            if MOVED {
+                for (plane, lanes) in sums.moving.iter().enumerate() {
+                    put(&mut window.values[plane * area + start..], lanes, &inside);
+                }
+            }
+            if BLURRED {
+                put(&mut window.values[BLUR * area + start..], &sums.blur, &inside.map(|one| one * sigma));
             }
         }
     }
-}
-
-/// Integrals over a panel at `LANES` pixels.
-struct Sums<const B: usize> {
-    coverage: [f64; LANES],
-    moments: [[f64; LANES]; B],
-    blur: [f64; LANES],
 }
 
 #[inline(always)]
-fn sum<const B: usize>(
+fn put(to: &mut [f32], lanes: &[f32; LANES], factors: &[f32; LANES]) {
+    let to: &mut [f32; LANES] = (&mut to[..LANES]).try_into().expect("a slice of that length");
+    for lane in 0..LANES {
+        to[lane] = lanes[lane] * factors[lane];
+    }
+}
+
+/// Adds the integrals over the nodes `first..end` of one panel at the pixels from (`row`, `column`) on.
+#[inline(always)]
+fn add<const B: usize, const MOVED: bool, const BLURRED: bool>(
+    sums: &mut Sums,
     bank: &Bank,
-    values: &[[f64; B]; LONGEST],
-    row: usize,
-    column: usize,
-    nodes: std::ops::Range<usize>,
-    blur: bool,
-) -> Sums<B> {
-    let mut sums = Sums { coverage: [0.0; LANES], moments: [[0.0; LANES]; B], blur: [0.0; LANES] };
-    for node in nodes {
-        let (across, down) = (node * bank.columns.stride + column, node * bank.rows.stride + row);
-        let lanes = |values: &[f64]| -> [f64; LANES] { values[across..across + LANES].try_into().expect("a slice of that length") };
-        let ([dx, dy], k) = (bank.steps[node], bank.rows.value[down]);
-        let (integral, value) = (lanes(&bank.columns.integral), lanes(&bank.columns.value));
+    (first, end): (usize, usize),
+    (row, column): (usize, usize),
+    expansion: &[[f32; B]; MOVING],
+) {
+    let mut moments = [[0.0; LANES]; B];
+    let mut coverage = sums.coverage;
+    for (index, node) in bank.nodes[first..end].iter().enumerate() {
+        let (across, down) = ((first + index) * bank.columns.stride + column, (first + index) * bank.rows.stride + row);
+        let lanes = |values: &[f32]| -> [f32; LANES] { values[across..across + LANES].try_into().expect("a slice of that length") };
+        let ([dx, dy], k) = (node.step, bank.rows.value[down]);
+        let integral = lanes(&bank.columns.integral);
         let weight = k * dy;
-        for (to, integral) in sums.coverage.iter_mut().zip(&integral) {
-            *to += weight * integral;
+        for lane in 0..LANES {
+            coverage[lane] += weight * integral[lane];
         }
-        let factors = values[node].map(|value| value * k);
-        for (moment, factor) in sums.moments.iter_mut().zip(&factors) {
-            for (to, value) in moment.iter_mut().zip(&value) {
-                *to += value * factor;
+        if MOVED {
+            let value = lanes(&bank.columns.value);
+            for function in 0..B {
+                let factor = node.functions[function] * k;
+                for lane in 0..LANES {
+                    moments[function][lane] += value[lane] * factor;
+                }
             }
-        }
-        if blur {
-            let (slope, sideways) = (lanes(&bank.columns.slope), bank.rows.slope[down] * dx);
-            for lane in 0..LANES {
-                sums.blur[lane] += weight * slope[lane] - sideways * value[lane];
+            if BLURRED {
+                let (slope, sideways) = (lanes(&bank.columns.slope), bank.rows.slope[down] * dx);
+                for lane in 0..LANES {
+                    sums.blur[lane] += weight * slope[lane] - sideways * value[lane];
+                }
             }
         }
     }
-    sums
+    sums.coverage = coverage;
+    if MOVED {
+        // One by one: in a loop they would be worked out across the planes, with gathered numbers.
+        let [x, y, axx, axy, ayx, ayy] = &mut sums.moving;
+        combine(x, &expansion[0], &moments);
+        combine(y, &expansion[1], &moments);
+        combine(axx, &expansion[2], &moments);
+        combine(axy, &expansion[3], &moments);
+        combine(ayx, &expansion[4], &moments);
+        combine(ayy, &expansion[5], &moments);
+    }
+}
+
+#[inline(always)]
+fn combine<const B: usize>(to: &mut [f32; LANES], factors: &[f32; B], moments: &[[f32; LANES]; B]) {
+    let mut sum = *to;
+    for function in 0..B {
+        for lane in 0..LANES {
+            sum[lane] += factors[function] * moments[function][lane];
+        }
+    }
+    *to = sum;
 }

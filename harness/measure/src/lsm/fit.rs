@@ -3,9 +3,9 @@
 use calibench_model::{Affine, Covariance, Rejection, TargetKind};
 
 use super::mask::Mask;
-use super::planes::{BLUR, COVERAGE, GROUND, Normal, Planes, Pose, UNKNOWNS};
+use super::planes::{BLUR, COVERAGE, Derivatives, GROUND, Planes, Pose, UNKNOWNS};
 use super::profile::Profile;
-use crate::cholesky;
+use crate::cholesky::{self, Factor};
 
 /// The blur that is sought, px.
 const BLURS: (f64, f64) = (0.15, 5.0);
@@ -57,27 +57,39 @@ pub(super) struct Work {
 
 impl Work {
     /// Draws the mask and takes the levels that fit best; the sum of squared residuals with them. `None` if the mask has no contrast in the window.
-    pub(super) fn levels(&mut self, mask: &Mask, parameters: &mut Parameters, blur: bool) -> Option<f64> {
-        self.profile.set(parameters.sigma);
-        self.planes.draw(mask, &parameters.pose, &self.profile, blur);
+    pub(super) fn levels(&mut self, mask: &Mask, parameters: &mut Parameters) -> Option<f64> {
+        self.draw(mask, parameters, Derivatives::None);
         (parameters.ground, parameters.contrast) = self.planes.levels()?;
         Some(self.planes.compare(parameters.ground, parameters.contrast))
     }
 
-    fn evaluate(&mut self, mask: &Mask, parameters: &Parameters, blur: bool) -> f64 {
+    fn draw(&mut self, mask: &Mask, parameters: &Parameters, derivatives: Derivatives) {
         self.profile.set(parameters.sigma);
-        self.planes.draw(mask, &parameters.pose, &self.profile, blur);
+        self.planes.draw(mask, &parameters.pose, &self.profile, derivatives);
+    }
+
+    fn evaluate(&mut self, mask: &Mask, parameters: &Parameters, derivatives: Derivatives) -> f64 {
+        self.draw(mask, parameters, derivatives);
         self.planes.compare(parameters.ground, parameters.contrast)
     }
 
-    /// The least-squares fit from `start` on (its levels are taken from the image), by Gauss-Newton; where a step leads upwards, it is damped (Levenberg-Marquardt).
+    fn system(&self, mask: &Mask, at: &Parameters, blur: bool) -> Option<System> {
+        let count = unknowns(blur);
+        System::new(mask.kind, at, &self.planes.products(count), &self.planes.right(count), blur)
+    }
+
+    /// The least-squares fit from `start` on (its levels are taken from the image), by Gauss-Newton; where a step leads upwards, it is damped
+    /// (Levenberg-Marquardt).
     ///
     /// # Errors
     /// [`Rejection::NoCorner`] for a window in which the parameters cannot be told apart, [`Rejection::LeftWindow`], [`Rejection::NotConverged`].
     pub(super) fn fit(&mut self, mask: &Mask, start: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
+        let all = if limits.blur { Derivatives::PoseAndBlur } else { Derivatives::Pose };
         let mut now = start;
-        let mut omega = self.levels(mask, &mut now, limits.blur).ok_or(Rejection::NoCorner)?;
-        let mut system = System::new(mask.kind, &now, &self.planes.normal(unknowns(limits.blur)), limits.blur);
+        self.draw(mask, &now, all);
+        (now.ground, now.contrast) = self.planes.levels().ok_or(Rejection::NoCorner)?;
+        let mut omega = self.planes.compare(now.ground, now.contrast);
+        let mut system = self.system(mask, &now, limits.blur).ok_or(Rejection::NoCorner)?;
         let mut damping = 0.0;
         for _ in 0..limits.iterations {
             let step = system.step(damping).ok_or(Rejection::NoCorner)?;
@@ -85,11 +97,12 @@ impl Work {
             if damping <= DAMPED.0 && step.is_small(mask, limits.epsilon) {
                 return self.conclude(next, &system, omega);
             }
-            let there = self.evaluate(mask, &next, limits.blur);
-            if there.is_finite() && there <= omega * (1.0 + 1e-12) {
+            let there = self.evaluate(mask, &next, all);
+            // Sums of squares in single precision are right to some 1e-7.
+            if there.is_finite() && there <= omega * (1.0 + 1e-6) {
                 (now, omega) = (next, there);
-                system = System::new(mask.kind, &now, &self.planes.normal(unknowns(limits.blur)), limits.blur);
                 damping = if damping <= DAMPED.0 { 0.0 } else { damping / 10.0 };
+                system = self.system(mask, &now, limits.blur).ok_or(Rejection::NoCorner)?;
             } else {
                 damping = if damping == 0.0 { 1e-2 } else { damping * 10.0 };
                 if damping > DAMPED.1 {
@@ -105,9 +118,8 @@ impl Work {
         if parameters.pose.at.iter().any(|&p| p < 0.0 || p > last) {
             return Err(Rejection::LeftWindow);
         }
-        let variance = omega / (self.planes.count() - system.count) as f64;
-        let covariance = system.covariance(variance).ok_or(Rejection::NoCorner)?;
-        Ok(Fitted { parameters, covariance })
+        let variance = omega / (self.planes.count() - system.columns.count) as f64;
+        Ok(Fitted { parameters, covariance: system.covariance(variance) })
     }
 }
 
@@ -145,75 +157,112 @@ impl Parameters {
 
 /// The normal equations of the parameters that can be told apart.
 struct System {
-    /// How many these are.
-    count: usize,
-    /// Each as a change of all nine.
-    basis: [[f64; UNKNOWNS]; UNKNOWNS],
+    columns: Columns,
     normal: [[f64; UNKNOWNS]; UNKNOWNS],
     right: [f64; UNKNOWNS],
+    factor: Factor<UNKNOWNS>,
 }
 
 impl System {
-    fn new(kind: TargetKind, at: &Parameters, sums: &Normal, blur: bool) -> Self {
-        let (basis, count) = basis(kind, &at.pose.affine, blur);
+    /// `None` if it is singular.
+    fn new(kind: TargetKind, at: &Parameters, products: &[[f64; UNKNOWNS]; UNKNOWNS], right: &[f64; UNKNOWNS], blur: bool) -> Option<Self> {
+        let columns = Columns::new(kind, &at.pose.affine, blur);
         // The planes are derivatives of the coverage: the grey value's are the contrast times these, but for the levels' own.
         let scale: [f64; UNKNOWNS] = std::array::from_fn(|i| if i == GROUND || i == COVERAGE { 1.0 } else { at.contrast });
-        let mut system = Self { count, basis, normal: [[0.0; UNKNOWNS]; UNKNOWNS], right: [0.0; UNKNOWNS] };
-        for i in 0..count {
-            let row: [f64; UNKNOWNS] = std::array::from_fn(|k| (0..UNKNOWNS).map(|l| basis[i][l] * scale[l] * sums.products[l][k]).sum());
-            for (j, other) in basis.iter().enumerate().take(i + 1) {
-                let sum = (0..UNKNOWNS).map(|k| row[k] * scale[k] * other[k]).sum();
-                (system.normal[i][j], system.normal[j][i]) = (sum, sum);
+        let (mut normal, mut of_residuals) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
+        for (i, column) in columns.iter().enumerate() {
+            let row: [f64; UNKNOWNS] = std::array::from_fn(|k| column.terms().map(|(l, factor)| factor * scale[l] * products[l][k]).sum());
+            for (j, other) in columns.iter().enumerate().take(i + 1) {
+                let sum = other.terms().map(|(k, factor)| row[k] * scale[k] * factor).sum();
+                (normal[i][j], normal[j][i]) = (sum, sum);
             }
-            system.right[i] = (0..UNKNOWNS).map(|k| basis[i][k] * scale[k] * sums.right[k]).sum();
+            of_residuals[i] = column.terms().map(|(k, factor)| factor * scale[k] * right[k]).sum();
         }
-        system
+        let factor = cholesky::factor(&normal, columns.count)?;
+        Some(Self { columns, normal, right: of_residuals, factor })
     }
 
     fn step(&self, damping: f64) -> Option<Step> {
-        let mut damped = self.normal;
-        (0..self.count).for_each(|i| damped[i][i] *= 1.0 + damping);
-        let solution = cholesky::factor(&damped, self.count)?.solve(&self.right);
-        let all = std::array::from_fn(|k| (0..self.count).map(|i| solution[i] * self.basis[i][k]).sum());
+        let solution = if damping == 0.0 {
+            self.factor.solve(&self.right)
+        } else {
+            let mut damped = self.normal;
+            (0..self.columns.count).for_each(|i| damped[i][i] *= 1.0 + damping);
+            cholesky::factor(&damped, self.columns.count)?.solve(&self.right)
+        };
+        let mut all = [0.0; UNKNOWNS];
+        for (change, column) in solution.iter().zip(self.columns.iter()) {
+            column.terms().for_each(|(k, factor)| all[k] += change * factor);
+        }
         Some(Step(all))
     }
 
-    fn covariance(&self, variance: f64) -> Option<Covariance> {
-        let factor = cholesky::factor(&self.normal, self.count)?;
-        let column = |i: usize| factor.solve(&std::array::from_fn(|k| if k == i { variance } else { 0.0 }));
+    fn covariance(&self, variance: f64) -> Covariance {
+        let column = |i: usize| self.factor.solve(&std::array::from_fn(|k| if k == i { variance } else { 0.0 }));
         let (x, y) = (column(0), column(1));
-        Some(Covariance { sxx: x[0], sxy: x[1], syy: y[1] })
+        Covariance { sxx: x[0], sxy: x[1], syy: y[1] }
+    }
+}
+
+/// A parameter that can be told, as a change of some of the nine.
+#[derive(Clone, Copy, Default)]
+struct Column {
+    terms: [(usize, f64); 4],
+    count: usize,
+}
+
+impl Column {
+    fn of(terms: &[(usize, f64)]) -> Self {
+        let mut column = Self { count: terms.len(), ..Self::default() };
+        column.terms[..terms.len()].copy_from_slice(terms);
+        column
+    }
+
+    fn terms(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.terms[..self.count].iter().copied()
     }
 }
 
 /// Position, what can be told of the shape, levels, and the blur if unknown.
-///
-/// A disc looks the same after a turn of its own plane: of the four affine terms the three are left that change the ellipse, `dA = A S` with
-/// `S` symmetric. Edges without an end have no length: of an open mask each is left its direction.
-fn basis(kind: TargetKind, a: &Affine, blur: bool) -> ([[f64; UNKNOWNS]; UNKNOWNS], usize) {
-    let unit = |i: usize| std::array::from_fn(|k| if k == i { 1.0 } else { 0.0 });
-    let shape = |d: [f64; 4]| std::array::from_fn(|k| if (2..6).contains(&k) { d[k - 2] } else { 0.0 });
-    let mut basis = [[0.0; UNKNOWNS]; UNKNOWNS];
-    let mut count = 0;
-    let mut push = |column: [f64; UNKNOWNS]| {
-        basis[count] = column;
-        count += 1;
-    };
-    push(unit(0));
-    push(unit(1));
-    match kind {
-        TargetKind::Disc => {
-            [[a.axx, 0.0, a.ayx, 0.0], [0.0, a.axy, 0.0, a.ayy], [a.axy, a.axx, a.ayy, a.ayx]].map(shape).into_iter().for_each(&mut push);
+struct Columns {
+    all: [Column; UNKNOWNS],
+    count: usize,
+}
+
+impl Columns {
+    /// A disc looks the same after a turn of its own plane: of the four affine terms the three are left that change the ellipse, `dA = A S` with
+    /// `S` symmetric. Edges without an end have no length: of an open mask each is left its direction.
+    fn new(kind: TargetKind, a: &Affine, blur: bool) -> Self {
+        let mut columns = Self { all: [Column::default(); UNKNOWNS], count: 0 };
+        let (axx, axy, ayx, ayy) = (2, 3, 4, 5);
+        columns.push(&[(0, 1.0)]);
+        columns.push(&[(1, 1.0)]);
+        match kind {
+            TargetKind::Disc => {
+                columns.push(&[(axx, a.axx), (ayx, a.ayx)]);
+                columns.push(&[(axy, a.axy), (ayy, a.ayy)]);
+                columns.push(&[(axx, a.axy), (axy, a.axx), (ayx, a.ayy), (ayy, a.ayx)]);
+            }
+            TargetKind::Corner | TargetKind::ChessCorner => {
+                columns.push(&[(axx, -a.ayx), (ayx, a.axx)]);
+                columns.push(&[(axy, -a.ayy), (ayy, a.axy)]);
+            }
+            _ => [axx, axy, ayx, ayy].into_iter().for_each(|i| columns.push(&[(i, 1.0)])),
         }
-        TargetKind::Corner | TargetKind::ChessCorner => {
-            [[-a.ayx, 0.0, a.axx, 0.0], [0.0, -a.ayy, 0.0, a.axy]].map(shape).into_iter().for_each(&mut push);
+        columns.push(&[(GROUND, 1.0)]);
+        columns.push(&[(COVERAGE, 1.0)]);
+        if blur {
+            columns.push(&[(BLUR, 1.0)]);
         }
-        _ => (2..6).map(unit).for_each(&mut push),
+        columns
     }
-    push(unit(GROUND));
-    push(unit(COVERAGE));
-    if blur {
-        push(unit(BLUR));
+
+    fn push(&mut self, terms: &[(usize, f64)]) {
+        self.all[self.count] = Column::of(terms);
+        self.count += 1;
     }
-    (basis, count)
+
+    fn iter(&self) -> impl Iterator<Item = &Column> {
+        self.all[..self.count].iter()
+    }
 }

@@ -24,30 +24,30 @@ pub(super) struct Planes {
     pixels: usize,
     /// From row to row: the window's columns and zeros up to whole lanes.
     stride: usize,
-    values: Vec<f64>,
-    grey: Vec<f64>,
+    values: Vec<f32>,
+    grey: Vec<f32>,
     bank: Bank,
 }
 
-/// The normal equations, `N dx = g`, before the contrast scales the derivatives; and the sum of the squared residuals.
-#[derive(Clone, Debug)]
-pub(super) struct Normal {
-    /// Sums of products of two planes.
-    pub(super) products: [[f64; UNKNOWNS]; UNKNOWNS],
-    /// Sums of products with the residuals.
-    pub(super) right: [f64; UNKNOWNS],
-    /// Sum of squared residuals.
-    pub(super) omega: f64,
-}
-
-/// The planes as [`border`] adds to them.
+/// The planes as [`border`] fills them.
 pub(super) struct Window<'a> {
     /// Pixels on a side.
     pub(super) pixels: usize,
     /// From row to row.
     pub(super) stride: usize,
     /// All planes.
-    pub(super) values: &'a mut [f64],
+    pub(super) values: &'a mut [f32],
+}
+
+/// What is worked out beside the coverage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Derivatives {
+    /// Nothing.
+    None,
+    /// Derivatives by position and shape.
+    Pose,
+    /// Those and the one by the blur.
+    PoseAndBlur,
 }
 
 /// What the mask is mapped and blurred by. Positions count from the window's first pixel.
@@ -77,7 +77,7 @@ impl Planes {
         let area = self.area();
         let ones = &mut self.values[GROUND * area..(GROUND + 1) * area];
         for ((row, line), one) in rows.zip(self.grey.chunks_exact_mut(self.stride)).zip(ones.chunks_exact_mut(self.stride)) {
-            line.iter_mut().zip(row).for_each(|(to, &grey)| *to = f64::from(grey));
+            line[..row.len()].copy_from_slice(row);
             one[..row.len()].fill(1.0);
         }
     }
@@ -87,24 +87,14 @@ impl Planes {
     }
 
     /// One plane, with its padding.
-    fn plane(&self, index: usize) -> &[f64] {
+    fn plane(&self, index: usize) -> &[f32] {
         &self.values[index * self.area()..(index + 1) * self.area()]
     }
 
-    /// Coverage and derivatives for a mask.
-    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, blur: bool) {
-        let area = self.area();
-        for index in (0..=BLUR).filter(|&index| index != GROUND) {
-            self.values[index * area..(index + 1) * area].fill(0.0);
-        }
+    /// Coverage for a mask, and of its derivatives those that are asked for: the others keep what they were.
+    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, derivatives: Derivatives) {
         let window = Window { pixels: self.pixels, stride: self.stride, values: &mut self.values };
-        border::integrate(window, &mut self.bank, mask, pose, profile, blur);
-        for line in self.values[..GROUND * area].chunks_exact_mut(self.stride) {
-            line[self.pixels..].fill(0.0);
-        }
-        for line in self.values[COVERAGE * area..].chunks_exact_mut(self.stride) {
-            line[self.pixels..].fill(0.0);
-        }
+        border::draw(window, &mut self.bank, mask, pose, profile, derivatives);
     }
 
     /// Ground and contrast that fit the coverages best; `None` if these do not differ.
@@ -116,52 +106,93 @@ impl Planes {
         (determinant > 1e-9 * n * n).then(|| ((cc * g - c * cg) / determinant, (n * cg - c * g) / determinant))
     }
 
-    /// Sum of squared residuals for these levels, and the residuals, ready for [`Self::normal`].
+    /// Sum of squared residuals for these levels, and the residuals, ready for [`Self::right`].
     pub(super) fn compare(&mut self, ground: f64, contrast: f64) -> f64 {
         let area = self.area();
         let (before, residual) = self.values.split_at_mut(RESIDUAL * area);
         let (ones, coverage) = (&before[GROUND * area..(GROUND + 1) * area], &before[COVERAGE * area..(COVERAGE + 1) * area]);
-        for (((to, grey), one), c) in residual.iter_mut().zip(&self.grey).zip(ones).zip(coverage) {
-            *to = grey - ground * one - contrast * c;
-        }
-        dot(residual, residual)
+        subtract(&mut residual[..area], [&self.grey, ones, coverage], [ground as f32, contrast as f32])
     }
 
-    /// The normal equations of the first `unknowns`.
-    pub(super) fn normal(&self, unknowns: usize) -> Normal {
+    /// Sums of products of two planes, before the contrast scales the derivatives: of the first `unknowns`.
+    pub(super) fn products(&self, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
         products(self, unknowns)
+    }
+
+    /// Sums of products with the residuals.
+    pub(super) fn right(&self, unknowns: usize) -> [f64; UNKNOWNS] {
+        right(self, unknowns)
     }
 
     /// The value of `plane` at a pixel.
     #[cfg(test)]
     pub(super) fn at(&self, plane: usize, column: usize, row: usize) -> f64 {
-        self.plane(plane)[row * self.stride + column]
+        f64::from(self.plane(plane)[row * self.stride + column])
     }
+}
+
+/// Residuals, and the sum of their squares.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, contrast]: [f32; 2]) -> f64 {
+    for (((to, grey), one), c) in residual.iter_mut().zip(grey).zip(ones).zip(coverage) {
+        *to = grey - ground * one - contrast * c;
+    }
+    dot(residual, residual)
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn products(planes: &Planes, unknowns: usize) -> Normal {
-    let mut normal = Normal { products: [[0.0; UNKNOWNS]; UNKNOWNS], right: [0.0; UNKNOWNS], omega: 0.0 };
-    let residual = planes.plane(RESIDUAL);
+fn products(planes: &Planes, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
+    let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
     for i in 0..unknowns {
         let plane = planes.plane(i);
-        for j in 0..=i {
-            let sum = dot(plane, planes.plane(j));
-            (normal.products[i][j], normal.products[j][i]) = (sum, sum);
+        // Four at a time: one sum alone would wait for each of its additions.
+        for first in (0..=i).step_by(4) {
+            let sums = dots(plane, std::array::from_fn::<_, 4, _>(|j| planes.plane((first + j).min(i))));
+            for (j, sum) in (first..=i).zip(sums) {
+                (products[i][j], products[j][i]) = (sum, sum);
+            }
         }
-        normal.right[i] = dot(plane, residual);
     }
-    normal.omega = dot(residual, residual);
-    normal
+    products
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn right(planes: &Planes, unknowns: usize) -> [f64; UNKNOWNS] {
+    let mut right = [0.0; UNKNOWNS];
+    let residual = planes.plane(RESIDUAL);
+    for first in (0..unknowns).step_by(3) {
+        let sums = dots(residual, std::array::from_fn::<_, 3, _>(|i| planes.plane(first + i)));
+        right[first..first + 3].copy_from_slice(&sums);
+    }
+    right
 }
 
 #[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-        for i in 0..LANES {
-            sums[i] += a[i] * b[i];
+fn dot(a: &[f32], b: &[f32]) -> f64 {
+    dots(a, [b])[0]
+}
+
+/// Of `a` with each of `others`: sums of `LANES` products side by side, which are added up in double precision.
+#[inline(always)]
+fn dots<const N: usize>(a: &[f32], others: [&[f32]; N]) -> [f64; N] {
+    let mut sums = [[0.0_f32; LANES]; N];
+    let others = others.map(|other| &other[..a.len()]);
+    for start in (0..a.len()).step_by(LANES) {
+        let lanes = |values: &[f32]| -> [f32; LANES] { values[start..start + LANES].try_into().expect("whole lanes") };
+        let here = lanes(a);
+        for n in 0..N {
+            let there = lanes(others[n]);
+            for lane in 0..LANES {
+                sums[n][lane] += here[lane] * there[lane];
+            }
         }
     }
-    sums.iter().sum()
+    sums.map(|sums| {
+        let mut halves = [0.0; LANES / 2];
+        for (i, half) in halves.iter_mut().enumerate() {
+            *half = f64::from(sums[i]) + f64::from(sums[i + LANES / 2]);
+        }
+        let [a, b, c, d, e, f, g, h] = halves;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
+    })
 }

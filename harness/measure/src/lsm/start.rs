@@ -66,7 +66,7 @@ pub(super) fn best(work: &mut Work, mask: &Mask, at: [f64; 2], shapes: &[Affine]
     let mut found: Option<(f64, Parameters)> = None;
     for &affine in shapes {
         let mut parameters = of(affine);
-        let Some(omega) = work.levels(mask, &mut parameters, false) else { continue };
+        let Some(omega) = work.levels(mask, &mut parameters) else { continue };
         if found.is_none_or(|(best, _)| omega < best) {
             found = Some((omega, parameters));
         }

@@ -1,6 +1,6 @@
 use calibench_model::Affine;
 
-use super::planes::{BLUR, COVERAGE, Pose};
+use super::planes::{BLUR, COVERAGE, Derivatives, Pose};
 use super::*;
 use crate::analytic::{Noise, Picture};
 use crate::conformance;
@@ -45,7 +45,7 @@ fn conforms() {
 fn drawn(picture: &Picture, pixels: usize) -> Planes {
     let mut planes = Planes::new(pixels);
     let mask = Mask::new(picture.kind).unwrap();
-    planes.draw(&mask, &Pose { at: picture.at, affine: picture.affine }, &Profile::new(picture.sigma), true);
+    planes.draw(&mask, &Pose { at: picture.at, affine: picture.affine }, &Profile::new(picture.sigma), Derivatives::PoseAndBlur);
     planes
 }
 
