@@ -1,5 +1,6 @@
 //! What is measured: 12 megapixels with a corner in every cell, and frames for the detector.
 
+use calibench_measure::harris::smooth;
 use calibench_model::{Image, PixelPoint, Polygon, Scene, Start};
 use calibench_synth::noise::{add_grey_noise, quantise};
 use calibench_synth::pointing::Hand;
@@ -47,6 +48,36 @@ pub(crate) fn corners() -> (Image, Vec<PixelPoint>) {
         corners.push(PixelPoint::new(corner.x + left as f64, corner.y + top as f64));
     }
     (image, corners)
+}
+
+/// A crossing of two turned, tilted edges in each cell, its dark areas opposite each other, smoothed by `blur` px; without noise. And where they are.
+pub(crate) fn crossings(blur: f64) -> (Image, Vec<PixelPoint>) {
+    let (mut image, mut places) = (Image::new(WIDTH, HEIGHT, vec![0.0; WIDTH * HEIGHT]), Vec::new());
+    let columns = WIDTH / CELL.0;
+    for index in 0..columns * (HEIGHT / CELL.1) {
+        let (i, left, top) = (index as f64, index % columns * CELL.0, index / columns * CELL.1);
+        let centre = PixelPoint::new(19.5 + (i * 0.754_877_666).fract(), 14.5 + (i * 0.569_840_291).fract());
+        let turn = std::f64::consts::TAU * (i * 0.618_033_988_749_895).fract();
+        // Edges that cross at 70 to 90 degrees.
+        let between = std::f64::consts::FRAC_PI_2 - 0.35 * (i * 0.414_213_562).fract();
+        let reach = (CELL.0 + CELL.1) as f64;
+        let quarter = |sign: f64| {
+            let along = |angle: f64| (sign * reach * angle.cos(), sign * reach * angle.sin());
+            let (u, v) = (along(turn), along(turn + between));
+            let vertex = |(x, y): (f64, f64)| PixelPoint::new(centre.x + x, centre.y + y);
+            let vertices = [(0.0, 0.0), u, (u.0 + v.0, u.1 + v.1), v].map(vertex).into();
+            Polygon { id: String::new(), vertices, grey: 0.2 }
+        };
+        let scene =
+            Scene { width: CELL.0, height: CELL.1, background: 0.8, polygons: vec![quarter(1.0), quarter(-1.0)], targets: Vec::new() };
+        let tile = calibench_synth::render(&scene);
+        for y in 0..CELL.1 {
+            let start = (top + y) * WIDTH + left;
+            image.grey_mut()[start..start + CELL.0].copy_from_slice(tile.row(y));
+        }
+        places.push(PixelPoint::new(centre.x + left as f64, centre.y + top as f64));
+    }
+    (smooth(&image, blur), places)
 }
 
 /// Noise of two grey levels, 8 bit.
