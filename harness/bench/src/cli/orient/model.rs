@@ -38,12 +38,39 @@ pub(super) enum Lost {
 }
 
 const POINT_COLUMNS: [&str; 15] = [
-    "target", "X", "Y", "Z", "sX", "sY", "sZ", "angle_deg", "v_left_x", "v_left_y", "v_right_x", "v_right_y", "parallax_px", "status",
+    "target",
+    "X",
+    "Y",
+    "Z",
+    "sX",
+    "sY",
+    "sZ",
+    "angle_deg",
+    "v_left_x",
+    "v_left_y",
+    "v_right_x",
+    "v_right_y",
+    "parallax_px",
+    "status",
     "reason",
 ];
 const POSE_COLUMNS: [&str; 16] = [
-    "image", "X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg", "sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg", "points",
-    "sigma0_px", "redundancy",
+    "image",
+    "X0",
+    "Y0",
+    "Z0",
+    "omega_deg",
+    "phi_deg",
+    "kappa_deg",
+    "sX0",
+    "sY0",
+    "sZ0",
+    "sx_deg",
+    "sy_deg",
+    "sz_deg",
+    "points",
+    "sigma0_px",
+    "redundancy",
 ];
 
 impl<'a> Model<'a> {

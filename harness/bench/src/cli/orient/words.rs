@@ -12,7 +12,8 @@ const FLAT: f64 = 0.01;
 const SMALL_ANGLE: f64 = 2.0;
 /// Correlations beyond this are flagged.
 const CORRELATED: f64 = 0.9;
-const ELEMENTS: [&str; 5] = ["rotation about x", "rotation about y", "rotation about z", "base across (first axis)", "base across (second axis)"];
+const ELEMENTS: [&str; 5] =
+    ["rotation about x", "rotation about y", "rotation about z", "base across (first axis)", "base across (second axis)"];
 
 /// The elements with their standard deviations, sigma0 and redundancy.
 pub(super) fn summary(model: &Model<'_>, [left, right]: [&str; 2]) -> String {
