@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use calibench_exchange::ControlRow;
 use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::camera::{FORMATS, NamedCamera, write_camera as write_file};
 use calibench_model::camera::Camera;
@@ -150,13 +151,12 @@ pub fn write_stations(path: &Path, rows: &[StationRow<'_>]) -> io::Result<()> {
     table(path, &columns, rows.iter().map(row))
 }
 
-/// The targets as a user knows them: surveyed coordinates, object units.
+/// The targets as a user knows them: surveyed coordinates, object units, with their standard deviations where the testfield was surveyed with any error.
 pub fn write_control(path: &Path, subject: &ViewsSubject) -> io::Result<()> {
-    let row = |target: &ObjectTarget| {
-        let at = target.surveyed;
-        vec![target.id.clone(), at.x.to_string(), at.y.to_string(), at.z.to_string()]
-    };
-    table(path, &["target", "X", "Y", "Z"], subject.field.targets.iter().map(row))
+    let sigmas = subject.survey_sigma.map(|sigma| [sigma; 3]);
+    let row = |target: &ObjectTarget| ControlRow { target: target.id.clone(), position: target.surveyed.coords.into(), sigmas };
+    let rows: Vec<ControlRow> = subject.field.targets.iter().map(row).collect();
+    write_atomically(path, |file| calibench_exchange::write_control(file, &rows))
 }
 
 /// The camera as a file of the first format that holds it as it is; its ending is put to `stem`.

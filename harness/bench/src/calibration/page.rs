@@ -160,7 +160,8 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         .map(|found| format!("{} and {} are hardly told apart: correlation {:.3}", names[found.pair[0]], names[found.pair[1]], found.rho))
         .collect();
     let tests = calibration.solution.significance().unwrap_or_default();
-    for test in tests.iter().filter(|test| test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
+    let observed = |name: &str| calibration.prepared.settings.priors.iter().any(|prior| prior.parameter == name);
+    for test in tests.iter().filter(|test| !observed(test.parameter) && test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
         warnings.push(format!("{} is not told from zero (t {:.1}); a set without it may do", test.parameter, test.t));
     }
     warnings.extend(weights(calibration));

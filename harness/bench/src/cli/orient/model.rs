@@ -152,7 +152,8 @@ impl<'a> Model<'a> {
             let [sx, sy, sz, turns @ ..] = sigmas;
             let numbers = station_numbers(&pose).into_iter().chain([sx, sy, sz]).chain(turns.map(f64::to_degrees));
             let mut row = vec![name.to_owned()];
-            row.extend(numbers.map(|number| number.to_string()));
+            // Zeros without a sign.
+            row.extend(numbers.map(|number| (number + 0.0).to_string()));
             row.extend([points.to_string(), self.found.sigma0.to_string(), self.found.redundancy.to_string()]);
             writer.write_record(&row)?;
         }
