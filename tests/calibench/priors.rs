@@ -118,7 +118,7 @@ fn every_corner_of_a_photograph_has_a_row() {
     black.save(folder.path().join("black.png")).unwrap();
     photos.push("black.png".into());
     // A roundness that corners seen obliquely do not have.
-    let mut arguments = vec!["calibrate", "--chessboard", "9x6:25", "-m", "forstner:window=9,roundness=0.9", "--report", "report", "-q"];
+    let mut arguments = vec!["calibrate", "--chessboard", "9x6:25", "-m", "forstner:window=9,roundness=0.98", "--report", "report", "-q"];
     arguments.extend(photos.iter().map(String::as_str));
     let output = run(folder.path(), &arguments);
     assert!(output.status.success(), "{}", stderr(&output));

@@ -30,6 +30,7 @@ mod pose_fit;
 mod projective;
 mod relative;
 mod resection;
+mod rival;
 mod roots;
 mod shape;
 mod similarity;

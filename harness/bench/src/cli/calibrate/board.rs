@@ -83,7 +83,10 @@ impl Chessboard {
         }
         progress.finish(&format!("the board was found in {seen} of {} photographs, measured by {}", photos.len(), method.label));
         if seen == 0 {
-            return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
+            return Err(Failure::input(
+                "no corner was measured: no board was found (expected one whose inner corners are all visible, counted as COLUMNSxROWS), or the method \
+                 rejected every corner",
+            ));
         }
         let mut all = Corners { points: Vec::new(), lost: Vec::new(), size };
         for one in found {
