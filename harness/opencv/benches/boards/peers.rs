@@ -26,12 +26,12 @@ pub(crate) struct Mrcal {
 pub(crate) fn mrcal(network: &Network, rounds: usize) -> io::Result<Option<Mrcal>> {
     let folder = std::env::temp_dir().join(format!("calibench-boards-{}", std::process::id()));
     fs::create_dir_all(&folder)?;
-    let found = write_problem(network, &folder).and_then(|()| solve(&folder, rounds));
+    let found = write_problem(network, &folder).map(|()| solve(&folder, rounds));
     fs::remove_dir_all(&folder)?;
     found
 }
 
-fn solve(folder: &Path, rounds: usize) -> io::Result<Option<Mrcal>> {
+fn solve(folder: &Path, rounds: usize) -> Option<Mrcal> {
     for python in PYTHONS {
         // One thread, as for all others.
         let run = Command::new(python).arg(SCRIPT).arg(folder).arg(rounds.to_string()).env("OMP_NUM_THREADS", "1").output();
@@ -39,10 +39,10 @@ fn solve(folder: &Path, rounds: usize) -> io::Result<Option<Mrcal>> {
         let text = String::from_utf8_lossy(&output.stdout);
         let numbers: Vec<f64> = text.split_whitespace().filter_map(|number| number.parse().ok()).collect();
         if let [seconds, rms, parameters @ ..] = &numbers[..] {
-            return Ok(Some(Mrcal { seconds: *seconds, rms: *rms, parameters: parameters.to_vec() }));
+            return Some(Mrcal { seconds: *seconds, rms: *rms, parameters: parameters.to_vec() });
         }
     }
-    Ok(None)
+    None
 }
 
 fn write_problem(network: &Network, folder: &Path) -> io::Result<()> {

@@ -53,7 +53,7 @@ impl Map {
     }
 
     /// How far a place of the picture is inside the frame, px of the picture.
-    pub(super) fn to_edge(&self, (x, y): (i32, i32)) -> f64 {
+    pub(super) fn inside_by(&self, (x, y): (i32, i32)) -> f64 {
         let (x, y) = (x - self.corner.0, y - self.corner.1);
         f64::from(x.min(y).min(self.extent.0 as i32 - x).min(self.extent.1 as i32 - y))
     }

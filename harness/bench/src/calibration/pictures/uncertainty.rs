@@ -92,7 +92,7 @@ fn contours(area: &Area<'_>, map: &Map, values: &[f64], grid: (usize, usize), sc
         }
         let room = |at: (i32, i32)| {
             let others = labels.iter().map(|(other, _)| f64::from(at.0 - other.0).hypot(f64::from(at.1 - other.1)));
-            others.chain([map.to_edge(at)]).fold(f64::INFINITY, f64::min)
+            others.chain([map.inside_by(at)]).fold(f64::INFINITY, f64::min)
         };
         let free = pieces.iter().map(|ends| (room(ends[0]), ends[0])).max_by(|a, b| a.0.total_cmp(&b.0));
         labels.extend(free.filter(|(room, _)| *room > LABEL).map(|(_, at)| (at, level)));
