@@ -9,23 +9,23 @@ use calibench_model::camera::CameraModel;
 
 use crate::project::{root, run, stderr, stdout};
 
-type Table = Vec<HashMap<String, String>>;
+pub type Table = Vec<HashMap<String, String>>;
 
 /// A CSV by columns; no cell of these files holds a comma.
-fn table(path: &Path) -> Table {
+pub fn table(path: &Path) -> Table {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let header = lines.next().unwrap();
     lines.map(|cells| header.iter().cloned().zip(cells).collect()).collect()
 }
 
-fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+pub fn number(row: &HashMap<String, String>, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column}: {row:?}"))
 }
 
 /// The wall of control points, rendered and measured at its chess corners: the truth in `wall/`, `points.csv`, and `control.csv` with the standard
 /// deviations of the survey.
-fn wall() -> tempfile::TempDir {
+pub fn wall() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let root = root();
     let output = run(folder.path(), &["--root", root.to_str().unwrap(), "render", "testfields/wall", "-o", "wall", "-q"]);
@@ -46,22 +46,21 @@ fn wall() -> tempfile::TempDir {
     let mut arguments = vec!["measure", "--points", "starts.csv", "-m", "forstner:window=11", "-o", "points.csv", "-q"];
     arguments.extend(photos.iter().map(String::as_str));
     assert!(run(folder.path(), &arguments).status.success());
-    let control = std::fs::read_to_string(folder.path().join("wall/control.csv")).unwrap();
-    let weighted: String =
-        control.lines().enumerate().map(|(i, line)| format!("{line}{}\n", if i == 0 { ",sX,sY,sZ" } else { ",2e-4,2e-4,2e-4" })).collect();
-    write(folder.path(), "control.csv", &weighted);
+    // The survey's standard deviation stands in the scenario.
+    assert!(read_control(&folder.path().join("wall/control.csv")).unwrap().iter().all(|row| row.sigmas == Some([2e-4; 3])));
+    std::fs::copy(folder.path().join("wall/control.csv"), folder.path().join("control.csv")).unwrap();
     folder
 }
 
-fn write(folder: &Path, name: &str, text: &str) {
+pub fn write(folder: &Path, name: &str, text: &str) {
     std::fs::write(folder.join(name), text).unwrap();
 }
 
-fn one(path: &Path) -> NamedCamera {
+pub fn one(path: &Path) -> NamedCamera {
     read_camera(path).unwrap().cameras.remove(0)
 }
 
-const WALL: [&str; 11] =
+pub const WALL: [&str; 11] =
     ["calibrate", "--points", "points.csv", "--control", "control.csv", "--size", "1600x1200", "--pitch", "4.5", "--sigma", "0.02"];
 
 #[test]

@@ -142,9 +142,10 @@ pub fn write_stations(path: &Path, rows: &[StationRow<'_>]) -> io::Result<()> {
     table(path, &columns, rows.iter().map(row))
 }
 
-/// The targets as a user knows them: surveyed coordinates, object units.
+/// The targets as a user knows them: surveyed coordinates, object units, with their standard deviations where the testfield was surveyed with any error.
 pub fn write_control(path: &Path, subject: &ViewsSubject) -> io::Result<()> {
-    let row = |target: &ObjectTarget| ControlRow { target: target.id.clone(), position: target.surveyed.coords.into(), sigmas: None };
+    let sigmas = subject.survey_sigma.map(|sigma| [sigma; 3]);
+    let row = |target: &ObjectTarget| ControlRow { target: target.id.clone(), position: target.surveyed.coords.into(), sigmas };
     let rows: Vec<ControlRow> = subject.field.targets.iter().map(row).collect();
     write_atomically(path, |file| calibench_exchange::write_control(file, &rows))
 }

@@ -36,6 +36,21 @@ pub struct PointFile {
     pub rows: Vec<PointRow>,
     /// How many rows had none because `measure` rejected them or could not try them: left out.
     pub without_position: usize,
+    /// Those rows.
+    pub lost: Vec<LostRow>,
+}
+
+/// A row without a position.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LostRow {
+    /// The image's file name.
+    pub image: String,
+    /// The target's name.
+    pub target: String,
+    /// What `measure` says became of it: `rejected` or `unavailable`.
+    pub status: String,
+    /// Why, as `measure` says it.
+    pub reason: String,
 }
 
 /// What is wrong with a file of points, control or stations, and where.
@@ -88,13 +103,13 @@ pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, Point
     let columns = Columns::new(file, &header)?;
     let mut seen: HashMap<(String, String), u64> = HashMap::new();
     let mut rows = Vec::new();
-    let mut without_position = 0;
+    let mut lost = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| csv_error(file, &error))?;
         let line = line_of(&text, &record);
         let cells = Cells { file, columns: &columns, record: &record, line };
-        if matches!(cells.text("status"), Some("rejected" | "unavailable")) {
-            without_position += 1;
+        if let Some(status @ ("rejected" | "unavailable")) = cells.text("status") {
+            lost.push(cells.lost(status));
             continue;
         }
         let row = cells.row()?;
@@ -109,11 +124,11 @@ pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, Point
         }
         rows.push(row);
     }
-    if rows.is_empty() && without_position == 0 {
+    if rows.is_empty() && lost.is_empty() {
         let problem = "holds no point; expected one row a point below the header".to_owned();
         return Err(PointFileError { file: file.to_owned(), line: None, column: None, problem });
     }
-    Ok(PointFile { rows, without_position })
+    Ok(PointFile { rows, without_position: lost.len(), lost })
 }
 
 /// The line of a record: the reader's own count starts at the empty lines before it.
@@ -185,6 +200,11 @@ impl Cells<'_> {
         }
         let start = Start { position, kind, affine, covariance };
         Ok(PointRow { image: self.required_text("image")?, target: self.required_text("target")?, start })
+    }
+
+    fn lost(&self, status: &str) -> LostRow {
+        let text = |column: &str| self.text(column).unwrap_or_default().to_owned();
+        LostRow { image: text("image"), target: text("target"), status: status.to_owned(), reason: text("reason") }
     }
 
     /// What to do about a point that stands twice because several methods measured it.

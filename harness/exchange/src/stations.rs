@@ -6,7 +6,7 @@ use std::path::Path;
 use calibench_model::Pose;
 
 use crate::points::PointFileError;
-use crate::sheet::{Form, Row};
+use crate::sheet::{Form, Row, wrong};
 
 /// The columns of a pose in a station file.
 pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg"];
@@ -14,6 +14,10 @@ pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "
 pub const POSE_SIGMA_COLUMNS: [&str; 6] = ["sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg"];
 
 const FORM: Form = Form { what: "station file", key: "image", required: &POSE_COLUMNS, optional: &[], others: true };
+/// Standard deviations of the centre; each group is there whole or not at all.
+const CENTRES: Form = Form { optional: POSE_SIGMA_COLUMNS.split_at(3).0, ..FORM };
+/// Standard deviations of a small rotation about the camera's axes.
+const TURNS: Form = Form { optional: POSE_SIGMA_COLUMNS.split_at(3).1, ..FORM };
 
 /// An image and its exterior orientation.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +26,57 @@ pub struct StationRow {
     pub image: String,
     /// Its pose.
     pub pose: Pose,
+}
+
+/// An image whose exterior orientation was observed, or a part of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObservedStation {
+    /// The image and its pose.
+    pub station: StationRow,
+    /// Standard deviations of X0, Y0, Z0, object units; `None` where the file gives none.
+    pub centre: Option<[f64; 3]>,
+    /// Standard deviations of a small rotation about the camera's axes x, y, z, radians; `None` where the file gives none.
+    pub rotation: Option<[f64; 3]>,
+}
+
+/// As [`read_stations`], with the standard deviations `sX0,sY0,sZ0` (object units) and `sx_deg,sy_deg,sz_deg` (about the camera's axes), of which either
+/// group may be missing or left empty in a row.
+///
+/// # Errors
+/// As [`read_stations`]; a standard deviation that is not positive, a group that is there in part, a file without any standard deviation.
+pub fn read_observed_stations(path: &Path) -> Result<Vec<ObservedStation>, PointFileError> {
+    let name = path.display().to_string();
+    let text = std::fs::read(path).map_err(|error| wrong(&name, None, None, error.to_string()))?;
+    parse_observed_stations(&name, &text)
+}
+
+/// As [`read_observed_stations`], from a text; `file` is its name in errors.
+///
+/// # Errors
+/// As [`read_observed_stations`].
+pub fn parse_observed_stations(file: &str, text: &[u8]) -> Result<Vec<ObservedStation>, PointFileError> {
+    let (centres, turns) = (CENTRES.parse(file, text)?, TURNS.parse(file, text)?);
+    let observed = |(centre, turn): (&Row, &Row)| {
+        let rotation = sigmas(file, &TURNS, turn)?.map(|sigmas| sigmas.map(f64::to_radians));
+        Ok(ObservedStation { station: station(centre), centre: sigmas(file, &CENTRES, centre)?, rotation })
+    };
+    let rows = centres.iter().zip(&turns).map(observed).collect::<Result<Vec<_>, PointFileError>>()?;
+    if rows.iter().all(|row| row.centre.is_none() && row.rotation.is_none()) {
+        let problem = format!("holds no standard deviation; expected {} or {}", CENTRES.optional.join(","), TURNS.optional.join(","));
+        return Err(wrong(file, None, None, problem));
+    }
+    Ok(rows)
+}
+
+fn sigmas(file: &str, form: &Form, row: &Row) -> Result<Option<[f64; 3]>, PointFileError> {
+    let Some([a, b, c]) = row.optional.as_deref().and_then(|sigmas| <&[f64; 3]>::try_from(sigmas).ok()) else { return Ok(None) };
+    match [a, b, c].iter().position(|sigma| **sigma <= 0.0) {
+        None => Ok(Some([*a, *b, *c])),
+        Some(axis) => {
+            let problem = "expected a positive standard deviation; leave all three empty for what was not observed".to_owned();
+            Err(wrong(file, Some(row.line), Some(form.optional[axis]), problem))
+        }
+    }
 }
 
 /// Reads a station file: header `image,X0,Y0,Z0,omega_deg,phi_deg,kappa_deg`; other columns are read over. Object units and degrees.
@@ -63,6 +118,22 @@ mod tests {
         assert_eq!(rows[0].image, "a");
         let numbers = station_numbers(&rows[0].pose);
         assert!(numbers.iter().zip([1.0, 2.0, 3.0, 10.0, -20.0, 130.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{numbers:?}");
+    }
+
+    #[test]
+    fn centres_and_rotations_are_observed_apart() {
+        let header = "image,X0,Y0,Z0,omega_deg,phi_deg,kappa_deg,sX0,sY0,sZ0,sx_deg,sy_deg,sz_deg,rms_px\n";
+        let text = format!("{header}a,1,2,3,10,-20,130,0.1,0.2,0.3,,,,1\nb,1,2,3,0,0,0,,,,180,90,45,1\nc,1,2,3,0,0,0,,,,,,,1\n");
+        let rows = parse_observed_stations("s", text.as_bytes()).unwrap();
+        assert_eq!((rows[0].centre, rows[0].rotation), (Some([0.1, 0.2, 0.3]), None));
+        let turns = rows[1].rotation.unwrap();
+        assert!(rows[1].centre.is_none() && (turns[0] - std::f64::consts::PI).abs() < 1e-12 && (turns[2] * 4.0 - turns[0]).abs() < 1e-12);
+        assert_eq!((rows[2].centre, rows[2].rotation), (None, None));
+        let error = |text: &str| parse_observed_stations("s.csv", text.as_bytes()).unwrap_err().to_string();
+        let header = "image,X0,Y0,Z0,omega_deg,phi_deg,kappa_deg,sX0,sY0,sZ0\n";
+        assert!(error(&format!("{header}a,1,2,3,4,5,6,1,0,1\n")).starts_with("s.csv:2, column `sY0`: expected a positive"));
+        assert!(error(&format!("{header}a,1,2,3,4,5,6,,,\n")).starts_with("s.csv: holds no standard deviation; expected sX0,sY0,sZ0 or"));
+        assert!(error("image,X0,Y0,Z0,omega_deg,phi_deg,kappa_deg,sx_deg\na,1,2,3,4,5,6,1\n").contains("these go together"));
     }
 
     #[test]

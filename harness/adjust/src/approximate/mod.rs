@@ -9,6 +9,7 @@
 //! | control points alone | camera and pose | [`direct_linear`] |
 //! | oriented pictures of a point | [`Intersection`] | [`intersect`] |
 //! | two pictures of the same points | [`RelativeOrientation`] | [`orient_relatively`] |
+//! | a pair so oriented | [`ModelPoint`] | [`RelativeOrientation::model_point`] |
 //! | two sets of object points | [`Similarity`] | [`similarity`] |
 //!
 //! Residuals are computed minus measured, px. A cofactor matrix is the covariance for a standard deviation of 1 px of each image coordinate.
@@ -22,12 +23,14 @@ mod homography;
 mod interior;
 mod intersection;
 mod least_squares;
+mod model;
 mod p3p;
 mod planar;
 mod pose_fit;
 mod projective;
 mod relative;
 mod resection;
+mod rival;
 mod roots;
 mod shape;
 mod similarity;
@@ -42,6 +45,7 @@ pub use error::ApproximateError;
 pub use homography::{Homography, homography, refine_homography};
 pub use interior::{interior_from_data_sheet, interior_from_size};
 pub use intersection::{Intersection, Sight, intersect};
+pub use model::ModelPoint;
 pub use p3p::{p3p, poses_of_three};
 pub use planar::{planar_poses, planar_starts};
 pub use pose_fit::{Control, FittedPose, fit_pose};

@@ -14,15 +14,13 @@ use super::error::at_least;
 use super::essential::{distances, essential_matrices, motion};
 use super::least_squares::minimise;
 use super::planar::orthogonal;
+use super::rival::is_worth;
 
 /// Points that determine the five unknowns, up to ten solutions.
 const NEEDED: usize = 5;
 /// Samples from which a second solution is looked for, and the norm by which it must differ.
 const RIVAL_SAMPLES: usize = 12;
 const DIFFERENT: f64 = 1e-4;
-/// The sum of squares of five points' motion, relative to that of a rival, above which no minimum is near; and a squared residual that is always worth it, px^2.
-const HOPELESS: f64 = 50.0;
-const NEARLY_EXACT: f64 = 1e-6;
 /// A standard deviation that is none, px.
 const ROUNDING: f64 = 1e-7;
 
@@ -183,7 +181,7 @@ impl<'a> Network<'a> {
             let sampled: Vec<_> = sample(&mut random, chosen.len(), NEEDED).iter().map(|i| chosen[i]).collect();
             for start in self.motions(&sampled) {
                 let squares: f64 = chosen.iter().map(|&i| self.square(&start, i)).sum();
-                if squares > HOPELESS * limit + chosen.len() as f64 * NEARLY_EXACT {
+                if !is_worth(squares, limit, chosen.len()) {
                     continue;
                 }
                 let Some(fit) = self.fit(&start, chosen).filter(|fit| fit.squares <= limit) else { continue };

@@ -10,17 +10,15 @@ use super::error::at_least;
 use super::p3p::p3p;
 use super::planar::flattened_starts;
 use super::pose_fit::{Control, FittedPose, all_finite, fit_pose, rays, residual, square};
+use super::rival::is_worth;
 use super::shape::Shape;
 
 /// The least number of points: three fit up to four poses.
 const NEEDED: usize = 4;
 /// Height of points above their plane, as a share of the extent, below which a second pose is looked for.
 const NEARLY_FLAT: f64 = 0.1;
-/// Triples of which the poses may lead to a second minimum; the sum of squares, relative to the best minimum's, above which none is near; and a squared
-/// residual that is always worth it, px^2.
+/// Triples of which the poses may lead to a second minimum.
 const RIVAL_TRIPLES: usize = 6;
-const HOPELESS: f64 = 50.0;
-const NEARLY_EXACT: f64 = 1e-6;
 /// Rotations that differ by less are one, as the norm of the difference.
 const SAME: f64 = 1e-5;
 
@@ -108,9 +106,8 @@ fn best_of(
         return Err(ApproximateError::Collinear);
     }
     let first = fit_pose(camera, start, chosen)?;
-    let limit = HOPELESS * first.squares + chosen.len() as f64 * NEARLY_EXACT;
     let squares = |pose: &Pose| chosen.iter().map(|point| square(camera, pose, point)).sum::<f64>();
-    let mut starts: Vec<Pose> = others.into_iter().filter(|pose| squares(pose) <= limit).collect();
+    let mut starts: Vec<Pose> = others.into_iter().filter(|pose| is_worth(squares(pose), first.squares, chosen.len())).collect();
     if shape.extents[2] < NEARLY_FLAT * shape.extents[0] {
         starts.extend(flattened_starts(camera, chosen, &shape).into_iter().flatten());
     }

@@ -5,17 +5,19 @@ use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
 use super::defect::{Defect, Direction};
 use super::geometry::reasons;
-use super::names::participants;
+use super::names::{cameras, participants};
 use crate::normal::{Normals, Step};
 use crate::solve::{Eliminated, Engine, Schur};
 use crate::state::State;
 
 /// An eigenvalue of the scaled normal equations that is rounding.
 const SINGULAR: f64 = 1e-11;
-/// One at which the result is asked whether it has any sense.
+/// One at which the result is asked whether it has any sense; where one direction has none, all below go with it.
 const WEAK: f64 = 1e-6;
 /// A standard deviation of a rotation (radians), or of a principal distance or a distance relative to itself, beyond which linear theory says nothing.
 const SENSELESS: f64 = 0.5;
+/// Part of the largest effect of an interior parameter below which the rest of the directions has none.
+const MIXED: f64 = 1e-3;
 /// Directions that are described.
 const MOST: usize = 12;
 
@@ -34,11 +36,17 @@ pub(crate) fn directions(engine: &Engine, state: &State, normals: &Normals, sigm
     if found.is_empty() {
         return None;
     }
+    separate(engine, normals, &mut found);
     let name = |found: &Found| Direction {
         unknowns: participants(engine.network, &engine.layout, state, normals, &found.step),
         eigenvalue: found.eigenvalue,
     };
-    let directions = found.iter().take(MOST).map(name).collect();
+    let mut directions: Vec<Direction> = Vec::new();
+    for direction in found.iter().take(MOST).map(name) {
+        if directions.iter().all(|known| known.unknowns != direction.unknowns) {
+            directions.push(direction);
+        }
+    }
     Some(Defect::Directions { directions, reasons: reasons(&engine.layout, state) })
 }
 
@@ -69,12 +77,47 @@ fn members(engine: &Engine, normals: &Normals) -> Vec<Found> {
 /// Singular or senseless directions of what is kept.
 fn kept(engine: &Engine, normals: &Normals, state: &State, sigma0: f64) -> Vec<Found> {
     let Some((schur, pairs)) = engine.weakest(normals) else { return Vec::new() };
-    let found = |(eigenvalue, kept): (f64, Vec<f64>)| {
-        let (step, eigenvalue) = (whole(engine, &schur, &kept), eigenvalue.max(0.0));
-        let deviation = sigma0 / eigenvalue.max(f64::MIN_POSITIVE).sqrt();
-        (eigenvalue < SINGULAR || senseless(engine, state, &step, deviation)).then_some(Found { step, eigenvalue })
+    let weak = pairs.into_iter().take_while(|(eigenvalue, _)| *eigenvalue < WEAK);
+    let mut weak: Vec<Found> = weak.map(|(value, kept)| Found { step: whole(engine, &schur, &kept), eigenvalue: value.max(0.0) }).collect();
+    let lost = |found: &Found| {
+        let deviation = sigma0 / found.eigenvalue.max(f64::MIN_POSITIVE).sqrt();
+        found.eigenvalue < SINGULAR || senseless(engine, state, &found.step, deviation)
     };
-    pairs.into_iter().take_while(|(eigenvalue, _)| *eigenvalue < WEAK).filter_map(found).collect()
+    // Noise decides which of several weak directions is past the bound, and how they mix: they go together.
+    if !weak.iter().any(lost) {
+        weak.clear();
+    }
+    weak
+}
+
+/// Makes of the directions others of the same space that do not mix: each changes one interior parameter that the others leave alone, as far as there are
+/// such parameters. Eigenvectors of nearly the same eigenvalue are any mixture, which noise chooses.
+fn separate(engine: &Engine, normals: &Normals, found: &mut [Found]) {
+    for row in 0..found.len() {
+        let effects = |found: &Found| cameras(&engine.layout, normals, &found.step).concat();
+        let rest = found[row..].iter().enumerate().flat_map(|(i, found)| {
+            let effects = effects(found);
+            (0..effects.len()).map(|k| (effects[k], row + i, k)).collect::<Vec<_>>()
+        });
+        let Some((effect, pivot, column)) = rest.max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+        let largest = found.iter().flat_map(effects).fold(0.0, f64::max);
+        if effect <= MIXED * largest {
+            return;
+        }
+        found.swap(row, pivot);
+        for other in (0..found.len()).filter(|&other| other != row) {
+            let share = found[other].step.cameras[column] / found[row].step.cameras[column];
+            let taken = found[row].step.clone();
+            subtract(&mut found[other].step, &taken, share);
+            found[other].step.cameras[column] = 0.0;
+        }
+    }
+}
+
+fn subtract(from: &mut Step, step: &Step, share: f64) {
+    from.cameras.iter_mut().zip(&step.cameras).for_each(|(a, b)| *a -= share * b);
+    from.poses.iter_mut().flatten().zip(step.poses.iter().flatten()).for_each(|(a, b)| *a -= share * b);
+    from.points.iter_mut().flatten().zip(step.points.iter().flatten()).for_each(|(a, b)| *a -= share * b);
 }
 
 /// A direction of all unknowns from that of those that are kept.

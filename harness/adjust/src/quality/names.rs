@@ -9,6 +9,8 @@ use crate::state::State;
 
 /// Part of the largest effect that an unknown must have to be named.
 const PART: f64 = 0.05;
+/// A change of a parameter that no observation feels, as part of a unit vector, below which it is none.
+const ROUNDING: f64 = 1e-6;
 
 /// A change of unknowns in words: who takes part, measured by what each alone would do to the observations.
 pub(super) fn participants(network: &Network, layout: &Layout, state: &State, normals: &Normals, step: &Step) -> Vec<String> {
@@ -17,7 +19,8 @@ pub(super) fn participants(network: &Network, layout: &Layout, state: &State, no
     let points = points(layout, normals, step);
     let all = cameras.iter().flatten().chain(poses.iter().flatten()).chain(points.iter().flatten());
     let largest = all.fold(0.0, |a: f64, b| a.max(*b));
-    let takes_part = |effect: f64| effect > PART * largest;
+    // What no observation feels is a direction by itself, and the rest of it rounding.
+    let takes_part = |effect: f64| if largest.is_infinite() { effect.is_infinite() } else { effect > PART * largest };
     let mut found = Vec::new();
     for (index, effects) in cameras.iter().enumerate() {
         let parameters = state.cameras[index].parameters();
@@ -60,11 +63,16 @@ fn of_some<'a>(
     }
 }
 
-/// Effects of each camera's parameters.
-fn cameras(layout: &Layout, normals: &Normals, step: &Step) -> Vec<Vec<f64>> {
+/// Effects of each camera's parameters; infinite for a parameter that changes while no observation feels it.
+pub(super) fn cameras(layout: &Layout, normals: &Normals, step: &Step) -> Vec<Vec<f64>> {
     let of = |(place, block): (&crate::network::CameraPlace, &Vec<f64>)| {
         let width = place.free.len();
-        (0..width).map(|i| (step.cameras[place.offset + i]).abs() * block[i * (width + 1)].max(0.0).sqrt()).collect()
+        let effect = |change: f64, felt: f64| match felt > 0.0 {
+            true => change * felt.sqrt(),
+            false if change > ROUNDING => f64::INFINITY,
+            false => 0.0,
+        };
+        (0..width).map(|i| effect(step.cameras[place.offset + i].abs(), block[i * (width + 1)])).collect()
     };
     layout.cameras.iter().zip(&normals.camera).map(of).collect()
 }

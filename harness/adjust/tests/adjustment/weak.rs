@@ -71,6 +71,23 @@ fn a_plane_seen_frontally_with_noise_has_an_answer_too() {
     }
 }
 
+/// A property: what is named does not depend on the noise, each direction once. Before a frontal plane c goes with the heights, and the principal point
+/// with the projection centres.
+#[test]
+fn the_names_of_a_frontal_plane_do_not_depend_on_the_noise() {
+    let mut named = Vec::new();
+    for seed in 0..12 {
+        let mut network = frontal(plane(), &["c", "x0", "y0"], 1.0);
+        let sigma = [0.0, 1e-4, 0.01, 0.05][seed % 4];
+        scenes::shake_pixels(&mut network, sigma, &mut scenes::random(30 + seed as u64));
+        let Defect::Directions { directions, .. } = defect(&network) else { panic!("another defect") };
+        let mut interior: Vec<String> = directions.iter().map(|direction| direction.unknowns[0].clone()).collect();
+        interior.sort();
+        named.push(interior);
+    }
+    assert!(named.iter().all(|names| *names == ["c of camera", "x0 of camera", "y0 of camera"]), "{named:?}");
+}
+
 #[test]
 fn one_image_of_a_plane() {
     let mut network = frontal(plane(), &["c", "x0", "y0"], 1.0);

@@ -46,6 +46,20 @@ pub enum CalibrationError {
         /// Its name.
         target: String,
     },
+    /// A parameter that is observed twice.
+    #[error("parameter {parameter} is observed twice; expected one value with its standard deviation")]
+    PriorTwice {
+        /// Its name.
+        parameter: String,
+    },
+    /// An observed pose of an image without points.
+    #[error("the pose of `{image}` was observed, but no point is of this image{}", near.as_ref().map_or(String::new(), |near| format!("; is it `{near}`?")))]
+    StationOfNone {
+        /// The image's name.
+        image: String,
+        /// The image whose name is nearest.
+        near: Option<String>,
+    },
     /// The start cannot be put into the model.
     #[error("the start values do not fit the model: {0}")]
     Convert(#[from] ConvertError),

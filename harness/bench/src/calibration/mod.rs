@@ -6,18 +6,23 @@ mod model;
 mod network;
 mod page;
 mod pictures;
+mod prior;
+mod sets;
+mod sets_page;
 mod start;
 mod survey;
 mod tables;
 
 use calibench_adjust::{Covariances, Found, Network, Options, Reliability, Snooping, Solution, Test, Variance, adjust, snoop};
-use calibench_exchange::{ControlRow, PointRow};
+use calibench_exchange::{ControlRow, LostRow, ObservedStation, PointRow};
 use calibench_model::camera::{Camera, ImageSize};
 
 pub use datum::{DatumChoice, NoDatum};
 pub use error::CalibrationError;
 pub use model::MODELS;
 pub use page::{summary, write_report};
+pub use prior::{NoPrior, Prior};
+pub use sets::{Compared, ComparedSet, compare_sets};
 pub use start::{control_of, pose_of};
 pub use survey::{LeftOut, Sight, Survey};
 
@@ -42,6 +47,10 @@ pub struct Settings {
     pub sigma_px: Option<f64>,
     /// Weigh image points by their own covariances, where they have them?
     pub covariances: bool,
+    /// Parameters that were observed; they are unknowns, solved for or not.
+    pub priors: Vec<Prior>,
+    /// Poses that were observed, or parts of them.
+    pub stations: Vec<ObservedStation>,
     /// An interior orientation to start from; parameters that are not solved for keep its values.
     pub start: Option<Camera>,
 }
@@ -62,6 +71,8 @@ impl Settings {
             snoop: false,
             sigma_px: None,
             covariances: false,
+            priors: Vec::new(),
+            stations: Vec::new(),
             start: None,
         }
     }
@@ -92,6 +103,8 @@ pub struct Prepared {
     pub sights: Vec<usize>,
     /// Rows that take no part, with the reason.
     pub left_out: Vec<LeftOut>,
+    /// Targets that a method was given and that have no position; [`prepare`] leaves it empty. They have a row in the residuals' table.
+    pub unmeasured: Vec<LostRow>,
 }
 
 /// A calibration and its quality.
@@ -107,6 +120,8 @@ pub struct Calibration<'n> {
     pub covariances: Covariances,
     /// Redundancy numbers and tests of the image points; `None` if the test cannot be made for want of redundancy.
     pub reliability: Option<Reliability>,
+    /// The same observations with other sets of parameters; `None` until [`Calibration::compare`].
+    pub compared: Option<Compared>,
 }
 
 /// Joins points with control and finds start values for everything.
@@ -117,7 +132,7 @@ pub fn prepare(points: &[PointRow], control: &[ControlRow], settings: &Settings)
     let survey = Survey::new(points, control)?;
     let starts = start::starts(&survey, settings)?;
     let (network, sights, left_out) = network::network(&survey, &starts, settings)?;
-    Ok(Prepared { settings: settings.clone(), survey, origin: starts.origin, network, sights, left_out })
+    Ok(Prepared { settings: settings.clone(), survey, origin: starts.origin, network, sights, left_out, unmeasured: Vec::new() })
 }
 
 impl Prepared {
@@ -136,11 +151,20 @@ impl Prepared {
         let checked = solution.counts().redundancy() > 0;
         let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
         let reliability = if checked { Some(solution.reliability(test)?) } else { None };
-        Ok(Calibration { prepared: self, solution, found, covariances, reliability })
+        Ok(Calibration { prepared: self, solution, found, covariances, reliability, compared: None })
     }
 }
 
 impl Calibration<'_> {
+    /// Adjusts with other sets of parameters as well; report and summary then have a table of them.
+    ///
+    /// # Errors
+    /// As [`compare_sets`].
+    pub fn compare(&mut self, sets: &[Vec<String>]) -> Result<(), CalibrationError> {
+        self.compared = Some(compare_sets(self, sets)?);
+        Ok(())
+    }
+
     /// The interior orientation.
     pub fn camera(&self) -> &Camera {
         &self.solution.cameras()[0]

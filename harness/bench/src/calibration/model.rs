@@ -1,10 +1,13 @@
 //! Camera models by name, for start values and unknowns.
 
-use calibench_model::camera::{Camera, CameraModel, TangentialOrder};
+use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, TangentialOrder};
 use calibench_model::convert::{ConvertOptions, Target, convert};
 
 use super::{CalibrationError, Settings};
 use crate::scenario::problem::nearest;
+
+/// Where spherical models start.
+const HALF_WAY: f64 = 0.5;
 
 /// The models that can be calibrated.
 pub const MODELS: [&str; 15] = [
@@ -63,9 +66,20 @@ pub(super) fn camera(start: &Camera, settings: &Settings) -> Result<Camera, Cali
     let target = target(name(settings), settings)?;
     // Of a start the misfit does not matter.
     let camera = convert(start, target, &ConvertOptions { accept: true, ..ConvertOptions::default() })?.camera;
+    let camera = if settings.start.is_some() { camera } else { regular(camera) };
     // A zero without a sign.
     let values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value + 0.0).collect();
     Ok(camera.with_parameters(&values))
+}
+
+/// Models of spheres hold a pinhole camera where some of their parameters have no effect; there no adjustment can start. The lens half-way to the other
+/// end of the range, with the same focal length, is as good a guess.
+fn regular(camera: Camera) -> Camera {
+    match camera {
+        Camera::Eucm(eucm) if eucm.alpha < HALF_WAY => Eucm { alpha: HALF_WAY, beta: 1.0, ..eucm }.into(),
+        Camera::DoubleSphere(sphere) if sphere.alpha < HALF_WAY => DoubleSphere { xi: 0.0, alpha: HALF_WAY, ..sphere }.into(),
+        other => other,
+    }
 }
 
 /// Is the model known, and what it needs given? Asked before start values are looked for.

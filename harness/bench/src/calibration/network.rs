@@ -4,7 +4,7 @@ use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoin
 
 use super::start::Starts;
 use super::survey::Target;
-use super::{CalibrationError, DatumChoice, LeftOut, Settings, Survey, model};
+use super::{CalibrationError, DatumChoice, LeftOut, Settings, Survey, model, prior};
 
 /// The name of the camera in messages.
 const CAMERA: &str = "the camera";
@@ -17,8 +17,11 @@ pub(super) fn network(
 ) -> Result<(Network, Vec<usize>, Vec<LeftOut>), CalibrationError> {
     let names = model::unknowns(&starts.camera, settings);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let interior = Interior::fixed(CAMERA, starts.camera).free(&names)?;
-    let images = survey.images.iter().zip(&starts.poses).map(|(name, pose)| Exterior::free(name.clone(), 0, *pose)).collect();
+    let interior = prior::observed(Interior::fixed(CAMERA, starts.camera).free(&names)?, &settings.priors)?;
+    let image = |(name, pose): (&String, &calibench_model::Pose)| {
+        prior::exterior(Exterior::free(name.clone(), 0, *pose), prior::station(&settings.stations, name))
+    };
+    let images = survey.images.iter().zip(&starts.poses).map(image).collect();
     let (mut points, mut place) = (Vec::new(), vec![None; survey.targets.len()]);
     for (index, (target, position)) in survey.targets.iter().zip(&starts.points).enumerate() {
         if let Ok(position) = position {

@@ -8,14 +8,16 @@ use calibench_adjust::Use;
 use calibench_exchange::atomic::write_atomically;
 use calibench_model::camera::CameraModel;
 
-use super::{Calibration, pictures, tables};
+use super::{Calibration, pictures, sets_page, tables};
 use crate::report::markdown::MarkdownTable;
 use crate::report::plain;
 
 /// Correlations beyond this are flagged.
 pub(super) const CORRELATED: f64 = 0.9;
-/// A parameter that chance would make as large in more than one case of this many is doubtful.
-const DOUBTFUL: f64 = 0.05;
+/// A parameter that chance would make as large in more than this share of all cases is doubtful.
+pub(super) const DOUBTFUL: f64 = 0.05;
+/// Parameters of which a test against zero means nothing.
+pub(super) const BASIC: [&str; 9] = ["c", "f", "F", "fx", "fy", "x0", "y0", "cx", "cy"];
 /// Images and rejected points that a page names one by one.
 const MOST: usize = 200;
 
@@ -30,14 +32,17 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &Path) -> io::Result<
     text.push_str(&parameters(calibration).render());
     text.push_str(&format!("\nStandard deviations {}.\n", scaled(calibration)));
     text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{warning}**\n")).collect::<String>());
+    if let Some(compared) = &calibration.compared {
+        let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
+    }
     for picture in pictures::draw(calibration, folder)? {
         let _ = write!(text, "\n![{0}]({1})\n\n{0}\n", picture.caption, picture.file);
     }
     text.push_str(&images(calibration));
     text.push_str(&rejected(calibration));
     text.push_str(
-        "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases), \
-         `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points).\n",
+        "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
+         targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points).\n",
     );
     write_atomically(&folder.join("README.md"), |file| file.write_all(text.as_bytes()))
 }
@@ -48,6 +53,9 @@ pub fn summary(calibration: &Calibration<'_>) -> String {
     text.push('\n');
     text.push_str(&parameters(calibration).render());
     text.push_str(&warnings(calibration).iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
+    if let Some(compared) = &calibration.compared {
+        let _ = write!(text, "\n{}", sets_page::section(compared));
+    }
     text
 }
 
@@ -84,6 +92,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
         ),
         format!("residuals {} px RMS", plain(calibration.rms_px())),
     ];
+    lines.extend(observed(calibration));
     if let Some(sigma0) = solution.sigma0() {
         let sigma = settings.sigma();
         let known = if settings.sigma_px.is_some() { "given" } else { "assumed" };
@@ -94,6 +103,20 @@ fn facts(calibration: &Calibration<'_>) -> String {
         ));
     }
     lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+/// What was observed beside image points and control.
+fn observed(calibration: &Calibration<'_>) -> Option<String> {
+    let settings = &calibration.prepared.settings;
+    let parameters = settings.priors.iter().map(|prior| format!("{} = {} \u{b1} {}", prior.parameter, prior.value, prior.sigma));
+    let (centres, rotations) = settings
+        .stations
+        .iter()
+        .fold((0, 0), |(c, r), row| (c + usize::from(row.centre.is_some()), r + usize::from(row.rotation.is_some())));
+    let counted = [(centres, "projection centres"), (rotations, "rotations")];
+    let poses = counted.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+    let all: Vec<String> = parameters.chain(poses).collect();
+    (!all.is_empty()).then(|| format!("observed as well: {}", all.join(", ")))
 }
 
 fn parameters(calibration: &Calibration<'_>) -> MarkdownTable {
@@ -136,9 +159,9 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         .iter()
         .map(|found| format!("{} and {} are hardly told apart: correlation {:.3}", names[found.pair[0]], names[found.pair[1]], found.rho))
         .collect();
-    let basic = ["c", "f", "fx", "fy", "x0", "y0", "cx", "cy"];
     let tests = calibration.solution.significance().unwrap_or_default();
-    for test in tests.iter().filter(|test| test.p > DOUBTFUL && !basic.contains(&test.parameter)) {
+    let observed = |name: &str| calibration.prepared.settings.priors.iter().any(|prior| prior.parameter == name);
+    for test in tests.iter().filter(|test| !observed(test.parameter) && test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
         warnings.push(format!("{} is not told from zero (t {:.1}); a set without it may do", test.parameter, test.t));
     }
     warnings.extend(weights(calibration));
@@ -153,6 +176,10 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     let weighted = calibration.solution.residuals().iter().filter(|r| matches!(r.used, Use::Downweighted(_))).count();
     if weighted > 0 {
         warnings.push(format!("{weighted} image points have less weight (Huber)"));
+    }
+    let lost = calibration.prepared.unmeasured.len();
+    if lost > 0 {
+        warnings.push(format!("{lost} targets were not measured: the method rejected them, or their board was not found"));
     }
     let absent = calibration.prepared.left_out.len();
     if absent > 0 {

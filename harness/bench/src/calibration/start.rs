@@ -8,7 +8,7 @@ use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
-use super::{CalibrationError, Settings, Survey, model};
+use super::{CalibrationError, Settings, Survey, model, prior};
 
 /// Height of control, as a share of its extent, below which it is a plane for start values.
 const FLAT: f64 = 1e-4;
@@ -33,6 +33,7 @@ pub(super) struct Starts {
 /// focal lengths; then resections and intersections in turn.
 pub(super) fn starts(survey: &Survey, settings: &Settings) -> Result<Starts, CalibrationError> {
     model::check(settings)?;
+    prior::check(&settings.stations, &survey.images)?;
     let known: Vec<Option<Point3<f64>>> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
     let views: Vec<Vec<Control>> = (0..survey.images.len()).map(|image| control_of(survey, &known, image)).collect();
     let (rough, origin) = match settings.start {
@@ -40,7 +41,9 @@ pub(super) fn starts(survey: &Survey, settings: &Settings) -> Result<Starts, Cal
         None if is_flat(&known) => from_plane(&views, settings.size)?,
         None => from_depth(&views, settings.size)?,
     };
-    let (poses, points) = orient(survey, &rough, known)?;
+    let observed: Vec<Option<Pose>> =
+        survey.images.iter().map(|image| prior::station(&settings.stations, image).map(|row| row.station.pose)).collect();
+    let (poses, points) = orient(survey, &rough, known, &observed)?;
     Ok(Starts { camera: model::camera(&rough, settings)?, origin, poses, points })
 }
 
@@ -130,13 +133,19 @@ pub fn pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, String> {
 
 type Points = Vec<Result<Point3<f64>, String>>;
 
-/// Poses from known points and tie points from oriented images, in turn.
-fn orient(survey: &Survey, camera: &Camera, mut known: Vec<Option<Point3<f64>>>) -> Result<(Vec<Pose>, Points), CalibrationError> {
+/// Poses from known points, or else as observed, and tie points from oriented images, in turn.
+fn orient(
+    survey: &Survey,
+    camera: &Camera,
+    mut known: Vec<Option<Point3<f64>>>,
+    observed: &[Option<Pose>],
+) -> Result<(Vec<Pose>, Points), CalibrationError> {
     let mut poses: Vec<Result<Pose, String>> = vec![Err(String::new()); survey.images.len()];
     let mut why = vec![String::new(); known.len()];
     for _ in 0..ROUNDS {
         for (image, pose) in poses.iter_mut().enumerate().filter(|(_, pose)| pose.is_err()) {
-            *pose = pose_of(camera, &control_of(survey, &known, image));
+            let found = pose_of(camera, &control_of(survey, &known, image));
+            *pose = found.or_else(|why| observed[image].ok_or(why));
         }
         for target in (0..known.len()).filter(|&target| survey.targets[target].control.is_none()) {
             match tie_point(survey, camera, &poses, target) {

@@ -1,9 +1,10 @@
 //! Everything as CSV.
 
+use std::collections::HashMap;
 use std::io;
 use std::path::Path;
 
-use calibench_adjust::Use;
+use calibench_adjust::{Found, PointReliability, Use};
 use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::{ControlRow, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control, write_table};
 use calibench_model::camera::CameraModel;
@@ -13,6 +14,9 @@ use super::Calibration;
 /// Writes all tables into `folder`.
 pub(super) fn write(calibration: &Calibration<'_>, folder: &Path) -> io::Result<()> {
     residuals(calibration, &folder.join("residuals.csv"))?;
+    if let Some(compared) = &calibration.compared {
+        super::sets_page::write(compared, &folder.join("sets.csv"))?;
+    }
     parameters(calibration, &folder.join("parameters.csv"))?;
     correlations(calibration, &folder.join("correlations.csv"))?;
     stations(calibration, &folder.join("stations.csv"))?;
@@ -20,7 +24,7 @@ pub(super) fn write(calibration: &Calibration<'_>, folder: &Path) -> io::Result<
     write_atomically(&folder.join("points.csv"), |file| write_control(file, &rows))
 }
 
-fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
+pub(super) fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
     write_atomically(path, |file| write_table(file, columns, rows))
 }
 
@@ -28,7 +32,7 @@ fn texts<const N: usize>(values: Option<[f64; N]>) -> Vec<String> {
     values.map_or_else(|| vec![String::new(); N], |values| values.iter().map(f64::to_string).collect())
 }
 
-/// Every row that was given, with what became of it. Residuals are adjusted less observed, px.
+/// Every row that was given, and every target that a method could not measure, with what became of it. Residuals are adjusted less observed, px.
 fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
     let prepared = calibration.prepared;
     let survey = &prepared.survey;
@@ -39,16 +43,18 @@ fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         row.extend(texts(Some([sight.position.x, sight.position.y])));
         row
     };
+    let checks = calibration.reliability.iter().flat_map(|r| &r.points);
+    let checked: HashMap<usize, &PointReliability> = checks.map(|point| (point.observation, point)).collect();
+    let rejected: HashMap<usize, &Found> = calibration.found.iter().map(|found| (found.observation, found)).collect();
     for residual in calibration.solution.residuals() {
         let sight = prepared.sights[residual.observation];
-        let of = |r: &calibench_adjust::Reliability| r.points.iter().find(|p| p.observation == residual.observation).copied();
-        let checked = calibration.reliability.as_ref().and_then(of);
+        let checked = checked.get(&residual.observation);
         let (used, weight) = match residual.used {
             Use::Full => ("used", Some(1.0)),
             Use::Downweighted(weight) => ("downweighted", Some(weight)),
             Use::LeftOut => ("rejected", Some(0.0)),
         };
-        let found = calibration.found.iter().find(|found| found.observation == residual.observation);
+        let found = rejected.get(&residual.observation);
         let why = found.map_or(String::new(), |found| {
             let kept = if found.left_out { "" } else { ", kept: the network needs it" };
             format!("normalised residual {:.2} beyond {:.2}{kept}", found.w, found.critical)
@@ -68,6 +74,12 @@ fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         row.extend(["left_out".to_owned(), left.why.clone()]);
         rows[left.sight] = Some(row);
     }
+    let unmeasured = prepared.unmeasured.iter().map(|lost| {
+        let mut row = vec![lost.image.clone(), lost.target.clone()];
+        row.extend(vec![String::new(); 11]);
+        row.extend([lost.status.clone(), lost.reason.clone()]);
+        row
+    });
     let columns = [
         "image",
         "target",
@@ -85,20 +97,31 @@ fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         "status",
         "reason",
     ];
-    table(path, &columns, rows.into_iter().flatten())
+    table(path, &columns, rows.into_iter().flatten().chain(unmeasured))
 }
 
 /// All parameters; those that were not solved for have no standard deviation.
 fn parameters(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
     let (names, covariance) = calibration.covariances.of_camera(0);
     let tests = calibration.solution.significance().unwrap_or_default();
+    let priors = &calibration.prepared.settings.priors;
     let row = |parameter: calibench_model::camera::CameraParameter| {
         let sigma = names.iter().position(|name| *name == parameter.name).map(|i| covariance[(i, i)].sqrt());
         let test = tests.iter().find(|test| test.parameter == parameter.name);
         let mut row = vec![parameter.name.to_owned(), parameter.unit.to_owned(), parameter.value.to_string()];
         row.extend(texts(sigma.map(|sigma| [sigma])));
         row.extend(texts(test.map(|test| [test.t, test.p])));
-        row.push(if sigma.is_some() { "free" } else { "fixed" }.to_owned());
+        let observed = priors.iter().any(|prior| prior.parameter == parameter.name);
+        row.push(
+            if observed {
+                "observed"
+            } else if sigma.is_some() {
+                "free"
+            } else {
+                "fixed"
+            }
+            .to_owned(),
+        );
         row
     };
     table(path, &["parameter", "unit", "value", "sigma", "t", "p", "status"], calibration.camera().parameters().into_iter().map(row))

@@ -2,19 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::{ControlRow, FolderWriter, PointRow, ReadOptions, read_camera_with, read_control, read_points};
+use calibench_exchange::{
+    ControlRow, FolderWriter, PointFile, PointRow, ReadOptions, read_camera_with, read_control, read_observed_stations, read_points,
+};
 use calibench_model::camera::{Camera, ImageSize};
 use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
 use super::{Failure, print};
-use crate::calibration::{Calibration, DatumChoice, Settings, prepare, summary, write_report};
+use crate::calibration::{Calibration, DatumChoice, Prior, Settings, prepare, summary, write_report};
 
 mod board;
 mod camera_file;
 
-use board::Chessboard;
+use board::{Chessboard, Corners};
 
 #[derive(Args)]
 pub struct Calibrate {
@@ -60,6 +62,15 @@ pub struct Calibrate {
     /// Leave out image points that Baarda's test rejects, one after the other
     #[arg(long, conflicts_with = "huber")]
     snoop: bool,
+    /// An observed parameter and its standard deviation, in the parameter's unit, as in k1=-3e-4:1e-5; may be repeated
+    #[arg(long = "prior", value_name = "NAME=VALUE:SIGMA", allow_hyphen_values = true)]
+    priors: Vec<Prior>,
+    /// Observed poses: a station file with sX0,sY0,sZ0 (object units) or sx_deg,sy_deg,sz_deg (about the camera's axes) or both
+    #[arg(long, value_name = "CSV")]
+    poses: Option<PathBuf>,
+    /// Sets of parameters to compare, as in "c,x0,y0,k1;c,x0,y0,k1,k2": sigma0, tests, change of the camera
+    #[arg(long, value_name = "SETS", value_delimiter = ';')]
+    compare: Vec<String>,
     /// A camera file to start from, and whose values the parameters keep that are not solved for
     #[arg(long, value_name = "FILE")]
     start: Option<PathBuf>,
@@ -76,21 +87,25 @@ pub struct Calibrate {
 
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let (points, control, size) = self.input(context)?;
-        let settings = self.settings(size)?;
-        let prepared = prepare(&points, &control, &settings)?;
-        let calibration = prepared.adjust()?;
+        let (corners, control) = self.input(context)?;
+        let settings = self.settings(corners.size)?;
+        let mut prepared = prepare(&corners.points, &control, &settings)?;
+        prepared.unmeasured = corners.lost;
+        let mut calibration = prepared.adjust()?;
+        if !self.compare.is_empty() {
+            calibration.compare(&sets(&self.compare)?)?;
+        }
         self.deliver(&calibration)?;
         print(&summary(&calibration))
     }
 
-    fn input(&self, context: &Context<'_>) -> Result<(Vec<PointRow>, Vec<ControlRow>, ImageSize), Failure> {
+    fn input(&self, context: &Context<'_>) -> Result<(Corners, Vec<ControlRow>), Failure> {
         match (&self.points, &self.control, self.size, self.chessboard) {
-            (Some(points), Some(control), Some(size), _) => Ok((read_measured(points)?, read_control(control)?, size)),
-            (_, _, _, Some(chessboard)) => {
-                let (points, size) = chessboard.measure(context, &self.photos, &self.method)?;
-                Ok((points, chessboard.control(), size))
+            (Some(points), Some(control), Some(size), _) => {
+                let PointFile { rows, lost, .. } = measured(points)?;
+                Ok((Corners { points: rows, lost, size }, read_control(control)?))
             }
+            (_, _, _, Some(chessboard)) => Ok((chessboard.measure(context, &self.photos, &self.method)?, chessboard.control())),
             _ => Err(Failure::input("expected --points, --control and --size, or photographs and --chessboard")),
         }
     }
@@ -105,6 +120,8 @@ impl Calibrate {
             snoop: self.snoop,
             sigma_px: self.sigma,
             covariances: self.covariances,
+            priors: self.priors.clone(),
+            stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
             start: self.start.as_deref().map(|path| camera(path, Some(size))).transpose()?,
             ..Settings::new(size)
         })
@@ -125,6 +142,10 @@ impl Calibrate {
 
 /// The rows of a point file that have a position, with a word about the others.
 pub fn read_measured(path: &Path) -> Result<Vec<PointRow>, Failure> {
+    Ok(measured(path)?.rows)
+}
+
+fn measured(path: &Path) -> Result<PointFile, Failure> {
     let file = read_points(path)?;
     if file.without_position > 0 {
         eprintln!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.without_position);
@@ -132,7 +153,24 @@ pub fn read_measured(path: &Path) -> Result<Vec<PointRow>, Failure> {
     if file.rows.is_empty() {
         return Err(Failure::input(format!("{}: no row has a position", path.display())));
     }
-    Ok(file.rows)
+    Ok(file)
+}
+
+/// Sets of parameters from their texts; a name that stands twice counts once.
+fn sets(texts: &[String]) -> Result<Vec<Vec<String>>, Failure> {
+    let set = |text: &String| {
+        let mut names: Vec<String> = Vec::new();
+        for name in text.split(',').map(str::trim) {
+            if name.is_empty() {
+                return Err(Failure::input(format!("--compare: `{text}` is no set of parameters: expected names, as in c,x0,y0,k1")));
+            }
+            if !names.iter().any(|known| known == name) {
+                names.push(name.to_owned());
+            }
+        }
+        Ok(names)
+    };
+    texts.iter().map(set).collect()
 }
 
 /// The first camera of a file.

@@ -38,7 +38,7 @@ impl Measure {
         if let Some(twice) = methods.iter().enumerate().find(|(i, m)| methods[..*i].iter().any(|earlier| earlier.label == m.label)) {
             return Err(Failure::input(format!("-m {}: asked for twice", twice.1.label)));
         }
-        let PointFile { rows: points, without_position } = read_points(&self.points)?;
+        let PointFile { rows: points, without_position, .. } = read_points(&self.points)?;
         if without_position > 0 {
             eprintln!("{}: {without_position} rows without a position (rejected or unavailable) are left out", self.points.display());
         }

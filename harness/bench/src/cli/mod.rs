@@ -10,6 +10,7 @@ mod diff;
 mod intersect;
 mod list;
 mod measure;
+mod orient;
 mod output;
 mod plot;
 mod print;
@@ -91,6 +92,8 @@ enum Command {
     Resect(resect::Resect),
     /// Intersect object points from oriented images; camera and poses are known
     Intersect(intersect::Intersect),
+    /// Orient two images relatively to each other, and intersect the model that they make; the cameras are known
+    Orient(orient::Orient),
     /// Convert a camera file to another convention
     Convert(convert::Convert),
     /// Show what is in a camera file: parameters, field of view, distortion, fold-over
@@ -153,6 +156,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Calibrate(calibrate) => calibrate.run(&context),
         Command::Resect(resect) => resect.run(&context),
         Command::Intersect(intersect) => intersect.run(&context),
+        Command::Orient(orient) => orient.run(&context),
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),

@@ -111,6 +111,8 @@ impl SceneSubject {
 pub struct ViewsSubject {
     /// What is seen.
     pub field: Testfield,
+    /// Standard deviation of its surveyed coordinates, object units, if it was surveyed with any error.
+    pub survey_sigma: Option<f64>,
     /// The object unit.
     pub unit: Unit,
     /// With which interior orientation.

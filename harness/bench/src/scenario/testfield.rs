@@ -90,6 +90,14 @@ impl FieldPlan {
         }
     }
 
+    /// Standard deviation of the surveyed coordinates, object units; `None` for a testfield that was made, not surveyed.
+    pub fn survey_sigma(&self) -> Option<f64> {
+        match &self.generator {
+            Generator::Wall(wall, _) => Some(wall.survey_sigma).filter(|sigma| *sigma > 0.0),
+            _ => None,
+        }
+    }
+
     /// An error of [`Self::generate`] at its place in the file.
     pub fn problem(&self, error: &FieldError) -> Problem {
         let span = match error {

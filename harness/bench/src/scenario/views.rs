@@ -116,7 +116,8 @@ impl<'i> ViewTables<'i> {
             Pointing::Hand(hand) => (hand, None),
             Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true }, Some(detector)),
         };
-        Some(ViewsSubject { field, unit: plan.unit, camera, camera_file, stations, redraw, imaging: imaging?, hand, detector })
+        let (unit, survey_sigma) = (plan.unit, plan.survey_sigma());
+        Some(ViewsSubject { field, survey_sigma, unit, camera, camera_file, stations, redraw, imaging: imaging?, hand, detector })
     }
 }
 

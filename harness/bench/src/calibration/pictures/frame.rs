@@ -46,6 +46,18 @@ impl Map {
         [at(column, row), at(column + 1, row + 1)]
     }
 
+    /// A node (column, row) of a grid over the frame, in the picture; it stands in the middle of its cell.
+    pub(super) fn node(&self, (column, row): (f64, f64), (columns, rows): (usize, usize)) -> (i32, i32) {
+        let middle = |i: f64, n: usize, px: u32| ((i + 0.5) / n as f64 * f64::from(px)).round() as i32;
+        (self.corner.0 + middle(column, columns, self.extent.0), self.corner.1 + middle(row, rows, self.extent.1))
+    }
+
+    /// How far a place of the picture is inside the frame, px of the picture.
+    pub(super) fn inside_by(&self, (x, y): (i32, i32)) -> f64 {
+        let (x, y) = (x - self.corner.0, y - self.corner.1);
+        f64::from(x.min(y).min(self.extent.0 as i32 - x).min(self.extent.1 as i32 - y))
+    }
+
     /// The frame's outline.
     pub(super) fn outline(&self, area: &Area<'_>) {
         let (left, up) = self.corner;

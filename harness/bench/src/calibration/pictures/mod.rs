@@ -3,6 +3,7 @@
 mod correlations;
 mod distribution;
 mod frame;
+mod levels;
 mod residuals;
 mod uncertainty;
 

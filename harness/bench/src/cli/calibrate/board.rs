@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use calibench_exchange::{ControlRow, PointRow, read_photo};
+use calibench_exchange::{ControlRow, LostRow, PointRow, read_photo};
 use calibench_measure::{Board, BoardDetector, Operator};
 use calibench_model::Start;
 use calibench_model::camera::ImageSize;
@@ -13,6 +13,9 @@ use super::super::Failure;
 use super::super::context::Context;
 use super::super::detect::corners_of;
 use super::super::progress::Progress;
+
+/// The status of a photograph in which the board was not found.
+const NOT_FOUND: &str = "not_found";
 
 /// A chessboard and the side of its squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +37,16 @@ impl FromStr for Chessboard {
     }
 }
 
+/// Measured points of photographs of one size.
+pub struct Corners {
+    /// Those with a position.
+    pub points: Vec<PointRow>,
+    /// Those without.
+    pub lost: Vec<LostRow>,
+    /// Size of the photographs.
+    pub size: ImageSize,
+}
+
 impl Chessboard {
     /// Its inner corners: X along the rows, Y upwards, Z towards the viewer.
     pub fn control(&self) -> Vec<ControlRow> {
@@ -45,57 +58,77 @@ impl Chessboard {
         (0..self.board.corners()).map(corner).collect()
     }
 
-    /// The corners in photographs: approximately by the detector, then by the method. Those that the method rejects are said to be missing.
-    pub fn measure(&self, context: &Context<'_>, photos: &[PathBuf], method: &str) -> Result<(Vec<PointRow>, ImageSize), Failure> {
+    /// The corners in photographs: approximately by the detector, then by the method. Those that the method rejects, and photographs without the board, are listed among the lost.
+    pub fn measure(&self, context: &Context<'_>, photos: &[PathBuf], method: &str) -> Result<Corners, Failure> {
         let detector = context.toolbox.detector.as_deref();
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let method = context.method(method)?;
         let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
         let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
         let one = |path: &PathBuf| {
-            let found = self.in_photo(path, detector, operator.as_ref());
+            let found = self.in_photo(path, detector, operator.as_ref(), &method.label);
             progress.step();
             found
         };
         let found = photos.par_iter().map(one).collect::<Result<Vec<_>, Failure>>()?;
         let size = same_size(photos, &found)?;
         let mut seen = 0;
-        for (path, (rows, _)) in photos.iter().zip(&found) {
-            let missing = self.board.corners() - rows.len();
-            seen += usize::from(!rows.is_empty());
-            match rows.len() {
-                0 => eprintln!("{}: no board of {} x {} inner corners found", path.display(), self.board.columns, self.board.rows),
-                _ if missing > 0 => eprintln!("{}: {missing} corners were rejected by {}", path.display(), method.label),
-                _ => {}
+        for (path, Corners { points, lost, .. }) in photos.iter().zip(&found) {
+            seen += usize::from(!points.is_empty());
+            match (lost.first(), lost.len()) {
+                (Some(LostRow { status, reason, .. }), 1) if status == NOT_FOUND => eprintln!("{}: {reason}", path.display()),
+                (Some(_), count) => eprintln!("{}: {count} corners were rejected by {}", path.display(), method.label),
+                (None, _) => {}
             }
         }
         progress.finish(&format!("the board was found in {seen} of {} photographs, measured by {}", photos.len(), method.label));
         if seen == 0 {
-            return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
+            return Err(Failure::input(
+                "no corner was measured: no board was found (expected one whose inner corners are all visible, counted as COLUMNSxROWS), or the method \
+                 rejected every corner",
+            ));
         }
-        Ok((found.into_iter().flat_map(|(rows, _)| rows).collect(), size))
+        let mut all = Corners { points: Vec::new(), lost: Vec::new(), size };
+        for one in found {
+            all.points.extend(one.points);
+            all.lost.extend(one.lost);
+        }
+        Ok(all)
     }
 
-    fn in_photo(&self, path: &Path, detector: &dyn BoardDetector, operator: &dyn Operator) -> Result<(Vec<PointRow>, ImageSize), Failure> {
+    fn in_photo(&self, path: &Path, detector: &dyn BoardDetector, operator: &dyn Operator, method: &str) -> Result<Corners, Failure> {
         let image = read_photo(path)?;
         let rows = corners_of(detector, &image, path, self.board);
         let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();
         let measured = operator.measure_all(&image, &starts);
-        let with = |(row, result): (PointRow, Result<calibench_model::Measurement, _>)| {
-            let found = result.ok()?;
-            Some(PointRow { start: Start { position: found.position, covariance: found.covariance, ..row.start }, ..row })
-        };
-        let rows = rows.into_iter().zip(measured).filter_map(with).collect();
-        Ok((rows, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
+        let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
+        let mut corners = Corners { points: Vec::new(), lost: Vec::new(), size };
+        let lost =
+            |image: String, target: String, status: &str, reason: String| LostRow { image, target, status: status.to_owned(), reason };
+        if rows.is_empty() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let reason = format!("no board of {} x {} inner corners found", self.board.columns, self.board.rows);
+            corners.lost.push(lost(name, String::new(), NOT_FOUND, reason));
+        }
+        for (row, result) in rows.into_iter().zip(measured) {
+            match result {
+                Ok(found) => {
+                    let start = Start { position: found.position, covariance: found.covariance, ..row.start };
+                    corners.points.push(PointRow { start, ..row });
+                }
+                Err(rejection) => corners.lost.push(lost(row.image, row.target, "rejected", format!("{method}: {rejection}"))),
+            }
+        }
+        Ok(corners)
     }
 }
 
-fn same_size(photos: &[PathBuf], found: &[(Vec<PointRow>, ImageSize)]) -> Result<ImageSize, Failure> {
-    let Some((_, first)) = found.first() else { return Err(Failure::input("no photograph was given")) };
-    match found.iter().position(|(_, size)| size != first) {
+fn same_size(photos: &[PathBuf], found: &[Corners]) -> Result<ImageSize, Failure> {
+    let Some(Corners { size: first, .. }) = found.first() else { return Err(Failure::input("no photograph was given")) };
+    match found.iter().position(|corners| corners.size != *first) {
         None => Ok(*first),
         Some(other) => {
-            let (a, b, size) = (photos[0].display(), photos[other].display(), found[other].1);
+            let (a, b, size) = (photos[0].display(), photos[other].display(), found[other].size);
             Err(Failure::input(format!(
                 "{a} has {} x {} px, {b} has {} x {}: photographs of one camera have one size",
                 first.width, first.height, size.width, size.height

@@ -5,7 +5,7 @@ use std::path::Path;
 use calibench_exchange::camera::fit::{fit_to_format, losses};
 use calibench_exchange::camera::{CameraFormat, FORMATS, NamedCamera, ParameterCovariance, camera_text, write_camera};
 use calibench_model::camera::{Camera, TangentialOrder};
-use calibench_model::convert::{Conversion, ConvertOptions, Method, convert};
+use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, convert};
 
 use super::super::Failure;
 use super::super::convert::{advise, named, size_of, whole};
@@ -57,13 +57,25 @@ fn as_it_is(path: &Path, source: &NamedCamera) -> Result<&'static CameraFormat, 
         .ok_or_else(|| Failure::input(format!("-o {}: no format holds the camera as it is; name one with --to CONVENTION", path.display())))
 }
 
+/// What to do when the camera does not go into the convention asked for.
+fn refused(path: &Path, to: &str, error: &ConvertError) -> Failure {
+    match error {
+        ConvertError::Residual { .. } => Failure::input(format!(
+            "-o {}: {to} does not hold the calibrated camera: {error}. Write it as it is (-o with the ending toml or json), name a richer convention with \
+             --to, or calibrate in that one with --model",
+            path.display()
+        )),
+        other => advise(other),
+    }
+}
+
 fn converted(source: &NamedCamera, to: &str, path: &Path) -> Result<(&'static CameraFormat, NamedCamera), Failure> {
     let order = TangentialOrder::OpenCv;
     let goal = goal(to, &Given { source, pitch_um: source.pitch_um, base_mm: None, order, output: Some(path) })?;
     let covariance = source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?;
     let options = ConvertOptions { covariance, ..ConvertOptions::default() };
     let conversion: Conversion = match goal.way {
-        Way::One(target) => convert(&source.camera, target, &options).map_err(|error| advise(&error))?,
+        Way::One(target) => convert(&source.camera, target, &options).map_err(|error| refused(path, to, &error))?,
         Way::Best => {
             fit_to_format(goal.format, &source.camera, None, source.pitch_um, &options).map_err(|e| Failure::input(e.to_string()))?.0
         }

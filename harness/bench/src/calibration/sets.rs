@@ -1,0 +1,98 @@
+//! Several sets of parameters for the same observations: which of them the network supports.
+
+use calibench_adjust::{Comparison, Interior, Network, Options, Significance, Solution, Status, adjust, compare};
+use calibench_model::convert::{DifferenceOptions, difference};
+
+use super::{Calibration, CalibrationError};
+
+/// The adjustments of several sets.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// In the order given.
+    pub sets: Vec<ComparedSet>,
+}
+
+/// A set and its adjustment.
+#[derive(Clone, Debug)]
+pub struct ComparedSet {
+    /// The parameters that are solved for.
+    pub names: Vec<String>,
+    /// What came out; or what the network does not determine, in words.
+    pub result: Result<SetResult, String>,
+    /// The largest other set that is a part of this one, and the test of what this one has more. `None` without such a set.
+    pub against: Option<(usize, Comparison)>,
+}
+
+/// What came out of a set.
+#[derive(Clone, Debug)]
+pub struct SetResult {
+    /// The estimated standard deviation of an image coordinate, px (that of unit weight times the a-priori one).
+    pub sigma0_px: f64,
+    /// Observations, unknowns.
+    pub counts: (usize, usize),
+    /// Akaike's criterion, corrected for few observations: the smaller is the better, its differences count.
+    pub aicc: f64,
+    /// Each parameter against zero.
+    pub tests: Vec<Significance>,
+    /// How far its camera lies from that of the calibration, after the best rotation: RMS and most over the frame, px; `None` where they cannot be compared.
+    pub change_px: Option<[f64; 2]>,
+}
+
+/// Adjusts the observations of `calibration` once more for every set of parameters, from the same start values and without the image points that it
+/// rejected. What is in no set keeps its start value; observed parameters stay observed in every set.
+///
+/// # Errors
+/// A name that the model does not have. A set that the network does not determine is no error: it says so.
+pub fn compare_sets(calibration: &Calibration<'_>, sets: &[Vec<String>]) -> Result<Compared, CalibrationError> {
+    let network = &calibration.prepared.network;
+    let left_out = calibration.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
+    let options = Options { huber: calibration.prepared.settings.huber, left_out, ..Options::default() };
+    let networks = sets.iter().map(|names| with(network, names)).collect::<Result<Vec<_>, _>>()?;
+    let solutions: Vec<Result<Solution<'_>, String>> =
+        networks.iter().map(|network| adjust(network, &options).map_err(|error| error.to_string())).collect();
+    let set = |index: usize| ComparedSet {
+        names: sets[index].clone(),
+        result: solutions[index].as_ref().map_err(Clone::clone).and_then(|solution| result(solution, calibration)),
+        against: against(index, sets, &solutions),
+    };
+    Ok(Compared { sets: (0..sets.len()).map(set).collect() })
+}
+
+/// The same network with other parameters solved for.
+fn with(network: &Network, names: &[String]) -> Result<Network, CalibrationError> {
+    let interior = &network.cameras[0];
+    let fixed = |status: &Status| if *status == Status::Free { Status::Fixed } else { *status };
+    let observed = Interior { parameters: interior.parameters.iter().map(fixed).collect(), ..interior.clone() };
+    let known = observed.parameters.clone();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mut free = observed.free(&names)?;
+    free.parameters.iter_mut().zip(known).filter(|(_, known)| known.is_unknown()).for_each(|(status, known)| *status = known);
+    Ok(Network { cameras: vec![free], ..network.clone() })
+}
+
+fn result(solution: &Solution<'_>, calibration: &Calibration<'_>) -> Result<SetResult, String> {
+    let counts = solution.counts();
+    let (n, u) = (counts.observations() as f64, counts.unknowns as f64);
+    let sigma0 = solution.sigma0().ok_or("without redundancy there is no test")?;
+    // The variance factor is an unknown of the distribution too.
+    let k = u + 1.0;
+    let correction = if n > k + 1.0 { 2.0 * k * (k + 1.0) / (n - k - 1.0) } else { f64::INFINITY };
+    let change = difference(calibration.camera(), &solution.cameras()[0], &DifferenceOptions::default());
+    Ok(SetResult {
+        sigma0_px: sigma0 * calibration.prepared.settings.sigma(),
+        counts: (counts.observations(), counts.unknowns),
+        aicc: n * (solution.cost().max(f64::MIN_POSITIVE) / n).ln() + 2.0 * k + correction,
+        tests: solution.significance().map_err(|error| error.to_string())?,
+        change_px: change.ok().map(|change| [change.spread.rms_px, change.spread.max_px]),
+    })
+}
+
+/// The largest set that is a part of another, and the test of the rest.
+fn against(index: usize, sets: &[Vec<String>], solutions: &[Result<Solution<'_>, String>]) -> Option<(usize, Comparison)> {
+    let second = solutions[index].as_ref().ok()?;
+    let is_part = |other: &usize| sets[*other].len() < sets[index].len() && sets[*other].iter().all(|name| sets[index].contains(name));
+    let parts = (0..sets.len()).filter(is_part).filter(|&other| solutions[other].is_ok());
+    let largest = parts.max_by_key(|&other| (sets[other].len(), std::cmp::Reverse(other)))?;
+    let first = solutions[largest].as_ref().ok()?;
+    compare(first, second).ok().map(|comparison| (largest, comparison))
+}
