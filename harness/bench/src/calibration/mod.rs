@@ -16,7 +16,7 @@ use calibench_model::camera::{Camera, ImageSize};
 
 pub use datum::{DatumChoice, NoDatum};
 pub use error::CalibrationError;
-pub use model::MODELS;
+pub use model::{MODELS, parameters};
 pub use page::{summary, write_report};
 pub use start::{control_of, pose_of};
 pub use survey::{LeftOut, Sight, Survey};

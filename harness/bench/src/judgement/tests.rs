@@ -1,0 +1,1 @@
+//! Rendered boards and simulated corners, whose truth is known.
