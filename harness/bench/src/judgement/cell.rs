@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use calibench_model::PixelPoint;
+use calibench_model::{PixelPoint, Pose};
 use calibench_model::camera::{Camera, CameraModel};
 
 use super::calibrated::{Calibrated, calibrate};
 use super::frame::Frame;
 use super::halves::{Map, apart, halves, vectors};
 use super::material::Material;
-use super::{HALF, ModelChoice, Options, Row, folds, holdout, lines, measure};
+use super::holdout::{Squares, Unseen};
+use super::{HALF, ModelChoice, Options, Row, folds, lines, measure};
 use crate::calibration::Settings;
 
 /// What one cell works on.
@@ -38,7 +39,7 @@ impl Job<'_> {
         let mut rows: Vec<Row> = left_out
             .map(|view| Row::without(measure::RESIDUALS, &self.material.views[view], "left out", "the operator measured too few corners in it"))
             .collect();
-        let all = match calibrate(self.material, self.operator, &self.views, &self.settings, None) {
+        let all = match calibrate(self.material, self.operator, &self.views, &self.settings) {
             Ok(all) => all,
             Err(error) => {
                 rows.push(Row::without(measure::RESIDUALS, "", "failed", &error.to_string()));
@@ -46,23 +47,23 @@ impl Job<'_> {
             }
         };
         rows.push(Row::plain(measure::PARAMETERS, "", all.names.len() as f64));
-        rows.extend(all.residuals.iter().map(|(view, rms, count)| Row::px(measure::RESIDUALS, view, *rms).of(*count)));
+        let residuals = all.views.iter().zip(&all.residuals);
+        rows.extend(residuals.map(|(view, (rms, count))| Row::px(measure::RESIDUALS, &self.material.views[*view], *rms).of(*count)));
         rows.extend(principal(&all, "all"));
         rows.extend(self.uncertainty(&all));
-        rows.extend(self.left_out(&all.camera));
-        rows.extend(self.splits(&all.camera));
+        rows.extend(self.left_out(&all));
+        rows.extend(self.splits(&all));
         rows.extend(self.options.published.iter().flat_map(|published| self.published(&all, published)));
         rows
     }
 
     /// Each fold of the views left out in turn: predictions, straight lines, principal point.
-    fn left_out(&self, start: &Camera) -> Vec<Row> {
+    fn left_out(&self, all: &Calibrated) -> Vec<Row> {
         let mut rows = Vec::new();
         for fold in folds(&self.views) {
             let name = |view: &usize| &self.material.views[*view];
             let others: Vec<usize> = self.views.iter().copied().filter(|view| !fold.contains(view)).collect();
-            let found = calibrate(self.material, self.operator, &others, &self.settings, Some(start));
-            let camera = match found {
+            let camera = match all.part(&others) {
                 Ok(found) => {
                     let without: Vec<&str> = fold.iter().map(|view| &**name(view)).collect();
                     rows.extend(principal(&found, &format!("without {}", without.join(", "))));
@@ -75,38 +76,38 @@ impl Job<'_> {
                 }
             };
             for view in &fold {
-                rows.extend(self.predicted(&camera, *view));
+                rows.extend(all.pose(*view).into_iter().flat_map(|near| self.predicted(&camera, *view, &near)));
             }
         }
         rows
     }
 
-    fn predicted(&self, camera: &Camera, view: usize) -> [Row; 3] {
+    fn predicted(&self, camera: &Camera, view: usize, near: &Pose) -> [Row; 3] {
         let (name, chosen) = (&self.material.views[view], &self.common[view][..]);
         let row = |measure: &str, found: Result<(f64, usize), String>| match found {
             Ok((value, count)) => Row::px(measure, name, value).of(count),
             Err(why) => Row::without(measure, name, "failed", &why),
         };
-        let rms = |found: Result<holdout::Squares, String>| found.map(|squares| (squares.rms().unwrap_or(f64::NAN), squares.count()));
+        let rms = |found: Result<Squares, String>| found.map(|squares| (squares.rms().unwrap_or(f64::NAN), squares.count()));
         let (material, operator) = (self.material, self.operator);
+        let unseen = Unseen { material, operator, view, camera, near };
         [
-            row(measure::HOLDOUT, rms(holdout::interleaved(material, operator, view, camera, chosen))),
-            row(measure::ACROSS, rms(holdout::across(material, operator, view, camera, chosen))),
+            row(measure::HOLDOUT, rms(unseen.interleaved(chosen))),
+            row(measure::ACROSS, rms(unseen.across(chosen))),
             row(measure::STRAIGHT, lines::straightness(material, operator, view, camera, chosen)),
         ]
     }
 
     /// Halves of the views, compared.
-    fn splits(&self, start: &Camera) -> Vec<Row> {
+    fn splits(&self, all: &Calibrated) -> Vec<Row> {
         let (mut rows, mut map) = (Vec::new(), Map::default());
         if self.views.len() < 2 * HALF {
             return vec![Row::without(measure::SPLIT, "", "failed", "the operator measured too few views for halves")];
         }
         for split in 0..self.options.splits {
             let place = (split + 1).to_string();
-            let half = |views: &Vec<usize>| calibrate(self.material, self.operator, views, &self.settings, Some(start));
             let [first, second] = halves(&self.views, (self.options.seed, &self.options.name), split);
-            let found = half(&first).and_then(|first| Ok((first, half(&second)?))).map_err(|error| error.to_string());
+            let found = all.part(&first).and_then(|first| Ok((first, all.part(&second)?))).map_err(|error| error.to_string());
             let found = found.and_then(|(first, second)| apart(&first, &second).map(|apart| (apart, first, second)));
             match found {
                 Err(why) => rows.push(Row::without(measure::SPLIT, &place, "failed", &why)),
@@ -152,9 +153,10 @@ impl Job<'_> {
                 rows.push(Row::px(measure::PUBLISHED_MOST, "", lengths.iter().copied().fold(0.0, f64::max)));
             }
         }
-        for view in &self.views {
-            let name = &self.material.views[*view];
-            rows.push(match holdout::resected(self.material, self.operator, *view, published) {
+        for (&view, near) in self.views.iter().filter_map(|view| Some((view, all.pose(*view)?))) {
+            let name = &self.material.views[view];
+            let unseen = Unseen { material: self.material, operator: self.operator, view, camera: published, near: &near };
+            rows.push(match unseen.resected() {
                 Ok(squares) => Row::px(measure::PUBLISHED_VIEW, name, squares.rms().unwrap_or(f64::NAN)).of(squares.count()),
                 Err(why) => Row::without(measure::PUBLISHED_VIEW, name, "failed", &why),
             });

@@ -59,7 +59,7 @@ pub struct Options {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum JudgementError {
     /// Halves would be too small.
-    #[error("the board was found in {found} photographs; judging takes at least {needed}: each half of them is calibrated by itself, from {HALF} views or more")]
+    #[error("judging takes at least {needed} photographs that show the board (each half of them is calibrated by itself, from {HALF} or more), found {found}")]
     TooFewViews {
         /// Where the board was found.
         found: usize,

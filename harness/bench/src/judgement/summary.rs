@@ -34,10 +34,10 @@ pub struct Split {
     pub predicted: f64,
     /// Empirical over predicted standard deviation in the modes of the difference: 1 if the sigmas are right.
     pub modes: f64,
-    /// The chance of as large differences if the sigmas are right. Splits of the same photographs depend on each other: twice the mean of their p-values,
-    /// which holds however they do.
+    /// The chance of as large differences if the sigmas are right, at most. Splits of the same photographs depend on each other: twice the median of their
+    /// p-values, which holds however they do.
     ///
-    /// Source: Vovk & Wang 2020, Combining p-values via averaging.
+    /// Source: Rüger 1978; used for repeated splits by Meinshausen, Meier & Bühlmann 2009.
     pub p: f64,
     /// How many splits.
     pub count: usize,
@@ -84,6 +84,8 @@ pub struct Cell {
     pub straight: Option<Estimate>,
     /// Halves.
     pub split: Option<Split>,
+    /// Over the frame: x, y, RMS difference of halves and the predicted one, px.
+    pub map: Vec<(f64, f64, f64, f64)>,
     /// Standard deviation of a projected point in the centre and in the worst corner, px.
     pub uncertainty: Option<(f64, f64)>,
     /// The principal point.
@@ -216,6 +218,7 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
         across: pooled(&by_view(measure::ACROSS), seed),
         straight: pooled(&by_view(measure::STRAIGHT), seed),
         split: split(rows),
+        map: of(measure::MAP).filter_map(|row| place(row)).collect(),
         uncertainty: value(measure::UNCERTAINTY, "centre").zip(value(measure::UNCERTAINTY, "corner")),
         principal: Principal::new(rows),
         published: of(measure::PUBLISHED)
@@ -224,6 +227,12 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
             .map(|((rms, predicted), most)| (rms, predicted, most)),
         published_views: by_view(measure::PUBLISHED_VIEW).into_iter().map(|(view, (rms, _))| (view, rms)).collect(),
     }
+}
+
+/// Place, value and what is predicted of a row of the map.
+fn place(row: &Row) -> Option<(f64, f64, f64, f64)> {
+    let (x, y) = row.place.split_once(':')?;
+    Some((x.parse().ok()?, y.parse().ok()?, row.value?, row.sigma?))
 }
 
 fn views<'r>(rows: impl Iterator<Item = &'r &'r Row>, parameters: usize) -> Vec<View> {
@@ -258,7 +267,13 @@ fn split(rows: &[&Row]) -> Option<Split> {
         difference: mean(&mut of(measure::SPLIT).map(|(found, _)| found * found)).sqrt(),
         predicted: mean(&mut of(measure::SPLIT).map(|(_, predicted)| predicted * predicted)).sqrt(),
         modes: mean(&mut of(measure::SPLIT_TEST).map(|(found, _)| found)).sqrt(),
-        p: (2.0 * mean(&mut of(measure::SPLIT_TEST).map(|(_, p)| p))).min(1.0),
+        p: twice_median(of(measure::SPLIT_TEST).map(|(_, p)| p).collect()),
         count,
     })
+}
+
+/// Twice the middle of p-values, of an even number the upper one of the two; 1 of none.
+fn twice_median(mut p: Vec<f64>) -> f64 {
+    p.sort_by(f64::total_cmp);
+    p.get(p.len() / 2).map_or(1.0, |middle| (2.0 * middle).min(1.0))
 }

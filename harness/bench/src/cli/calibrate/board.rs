@@ -17,8 +17,10 @@ use super::super::progress::Progress;
 /// A chessboard and the side of its squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chessboard {
-    board: Board,
-    side: f64,
+    /// Its inner corners.
+    pub board: Board,
+    /// Side of a square, object units.
+    pub side: f64,
 }
 
 impl FromStr for Chessboard {
@@ -58,7 +60,7 @@ impl Chessboard {
             found
         };
         let found = photos.par_iter().map(one).collect::<Result<Vec<_>, Failure>>()?;
-        let size = same_size(photos, &found)?;
+        let size = same_size(photos, &found.iter().map(|(_, size)| *size).collect::<Vec<_>>())?;
         let mut seen = 0;
         for (path, (rows, _)) in photos.iter().zip(&found) {
             let missing = self.board.corners() - rows.len();
@@ -90,12 +92,13 @@ impl Chessboard {
     }
 }
 
-fn same_size(photos: &[PathBuf], found: &[(Vec<PointRow>, ImageSize)]) -> Result<ImageSize, Failure> {
-    let Some((_, first)) = found.first() else { return Err(Failure::input("no photograph was given")) };
-    match found.iter().position(|(_, size)| size != first) {
+/// The size that all photographs have.
+pub fn same_size(photos: &[PathBuf], sizes: &[ImageSize]) -> Result<ImageSize, Failure> {
+    let Some(first) = sizes.first() else { return Err(Failure::input("no photograph was given")) };
+    match sizes.iter().position(|size| size != first) {
         None => Ok(*first),
         Some(other) => {
-            let (a, b, size) = (photos[0].display(), photos[other].display(), found[other].1);
+            let (a, b, size) = (photos[0].display(), photos[other].display(), sizes[other]);
             Err(Failure::input(format!(
                 "{a} has {} x {} px, {b} has {} x {}: photographs of one camera have one size",
                 first.width, first.height, size.width, size.height
