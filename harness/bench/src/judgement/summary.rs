@@ -76,6 +76,8 @@ pub struct Cell {
     pub views: Vec<View>,
     /// By view: hold-out RMS, px, and of how many corners.
     pub held_out: BTreeMap<Arc<str>, (f64, usize)>,
+    /// By view: the same, one side of the board from the other.
+    pub carried: BTreeMap<Arc<str>, (f64, usize)>,
     /// Over all views, px.
     pub holdout: Option<Estimate>,
     /// The same, one side of the board from the other, px.
@@ -205,7 +207,7 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
     let by_view = |name: &'static str| -> BTreeMap<Arc<str>, (f64, usize)> {
         of(name).filter_map(|row| Some((row.place.clone(), (row.value?, row.count?)))).collect()
     };
-    let held_out = by_view(measure::HOLDOUT);
+    let (held_out, carried) = (by_view(measure::HOLDOUT), by_view(measure::ACROSS));
     let parameters = value(measure::PARAMETERS, "").unwrap_or_default() as usize;
     Cell {
         method: rows[0].method.clone(),
@@ -215,7 +217,8 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
         views: views(of(measure::RESIDUALS), parameters),
         holdout: pooled(&held_out, seed),
         held_out,
-        across: pooled(&by_view(measure::ACROSS), seed),
+        across: pooled(&carried, seed),
+        carried,
         straight: pooled(&by_view(measure::STRAIGHT), seed),
         split: split(rows),
         map: of(measure::MAP).filter_map(|row| place(row)).collect(),

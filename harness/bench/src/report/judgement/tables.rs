@@ -20,7 +20,7 @@ pub fn about_holdout(summary: &Summary) -> String {
     let mut text = format!(
         "Each photograph is left out in turn; the camera calibrated from the others is held, the photograph is resected from every other corner of the board, \
          and the remaining ones are predicted, both ways. RMS (2D) in px with the 95 % interval over views (photographs drawn again). Operators are compared on \
-         the {} corners that all of them have, each calibrated with its own. Framed: trusted; bold frame: the least.",
+         the {} corners that all of them have, each calibrated with its own. Thin frame: trusted; bold frame: the least.",
         summary.common
     );
     for method in &summary.methods {
@@ -64,7 +64,7 @@ pub fn cells(summary: &Summary) -> String {
         ]);
     }
     let mut text = format!(
-        "`across` predicts one side of the board from the other, left, right, top and bottom: errors of the camera are carried on, and noise with them. \
+        "`across` predicts one side of the board from the other, left, right, top and bottom: errors of the camera are carried on, and noise with them; models are judged by it. \
          `straight` is how far undistorted rows and columns are from straight lines (standard deviation of a coordinate; the camera calibrated without the \
          photograph; no pose takes part). `residuals` are those of the adjustment of all photographs. `free`: how many parameters of the camera are solved for. All \
          but `straight` are 2D.\n\n{}\n",

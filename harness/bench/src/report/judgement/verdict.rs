@@ -8,15 +8,20 @@ use crate::report::plain;
 pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     let (cell, least) = (trusted.cell, trusted.least);
     let mut lines = vec![format!(
-        "**Of these photographs trust `{}` with the model `{}`.** It predicts corners of photographs that took no part in the calibration to {} px RMS.",
+        "**Of these photographs trust `{}` with the model `{}`.** It predicts corners of photographs that took no part in the calibration to {}.",
         cell.method,
         cell.model,
         cell.holdout.map_or_else(String::new, |holdout| interval(&holdout))
     )];
-    lines.push(format!("**Operators**, with `{}`: {}", least.model, ranking(&trusted.operators, &least.method, |cell| &cell.method)));
-    let mut models = format!("**Models**, with `{}`: {}", least.method, ranking(&trusted.models, &least.model, |cell| &cell.model));
-    if cell.model != least.model {
-        models.push_str(&format!(" `{}` is the simplest of these, with {} parameters in place of {}.", cell.model, cell.parameters, least.parameters));
+    lines.push(format!("**Operators**, with `{}`: {}", least.model, ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout))));
+    let farthest = trusted.farthest;
+    let mut models = format!(
+        "**Models**, with `{}`, by predicting one side of the board from the other (where a pose cannot make up for what a model lacks): {}",
+        least.method,
+        ranking(&trusted.models, &farthest.model, |cell| (&cell.model, cell.across))
+    );
+    if cell.model != farthest.model {
+        models.push_str(&format!(" `{}` is the simplest of these, with {} parameters in place of {}.", cell.model, cell.parameters, farthest.parameters));
     }
     let failed: Vec<String> =
         summary.cells.iter().filter(|other| other.method == least.method && other.holdout.is_none()).map(|other| format!("`{}`", other.model)).collect();
@@ -38,7 +43,7 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
 /// A figure with its interval.
 fn interval(estimate: &Estimate) -> String {
     let (low, high) = estimate.interval;
-    format!("{} (95 % over views {} to {})", plain(estimate.value), plain(low), plain(high))
+    format!("{} px RMS (95 % over views {} to {})", plain(estimate.value), plain(low), plain(high))
 }
 
 fn chance(p: f64) -> String {
@@ -53,12 +58,13 @@ pub(super) fn listed(names: &[String]) -> String {
     }
 }
 
-fn ranking(others: &[(&Cell, f64)], best: &str, name: impl Fn(&Cell) -> &str) -> String {
-    let rms = |cell: &Cell| cell.holdout.map_or_else(String::new, |holdout| plain(holdout.value));
+fn ranking(others: &[(&Cell, f64)], best: &str, of: impl Fn(&Cell) -> (&str, Option<Estimate>)) -> String {
+    let rms = |cell: &Cell| of(cell).1.map_or_else(String::new, |found| plain(found.value));
+    let name = |cell: &Cell| of(cell).0.to_owned();
     let alike: Vec<String> = others.iter().filter(|(_, p)| *p > ALPHA).map(|(cell, _)| format!("`{}` ({} px)", name(cell), rms(cell))).collect();
     let worse: Vec<String> =
         others.iter().filter(|(_, p)| *p <= ALPHA).map(|(cell, p)| format!("`{}` ({} px, {})", name(cell), rms(cell), chance(*p))).collect();
-    let mut text = format!("`{best}` has the least hold-out RMS.");
+    let mut text = format!("`{best}` has the least RMS.");
     text.push_str(&match alike.len() {
         0 => " None of the others is as good.".to_owned(),
         _ => format!(" Not to be told from it: {}.", listed(&alike)),
