@@ -18,7 +18,9 @@ use super::convert::positive;
 use super::output::OutputFolder;
 use super::progress::Progress;
 use super::{Failure, print};
-use crate::judgement::{HALF, JUDGEMENT, JudgementError, Material, ModelChoice, Options, Row, Summary, judge, published_camera, write_rows};
+use crate::judgement::{
+    HALF, JUDGEMENT, JudgementError, Material, ModelChoice, Options, Row, Summary, judge, published_camera, write_rows,
+};
 use crate::records::RunInfo;
 use crate::report::judgement::{section, verdict};
 use crate::results::{MethodInfo, Trial};
@@ -94,10 +96,10 @@ impl Judge {
         let (trial, size) = self.measure(context, &methods)?;
         let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
         let material = Material::new(&trial, &infos, self.chessboard.board, self.chessboard.side, size);
-        let published = self.published.as_deref().map(|path| published_camera(path, &path.display().to_string(), size).map_err(Failure::input));
+        let published =
+            self.published.as_deref().map(|path| published_camera(path, &path.display().to_string(), size).map_err(Failure::input));
         let published = published.transpose()?;
-        let options =
-            Options { models, pitch_um: self.pitch, splits: self.splits, seed: self.seed, name: "judge".into(), published };
+        let options = Options { models, pitch_um: self.pitch, splits: self.splits, seed: self.seed, name: "judge".into(), published };
         let rows = judge(&material, &options)?;
         let summary = Summary::new(&rows, self.seed);
         if let Some(folder) = folder {

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use calibench_model::{PixelPoint, Pose};
 use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::{PixelPoint, Pose};
 
 use super::calibrated::{Calibrated, calibrate};
 use super::frame::Frame;
 use super::halves::{Map, apart, halves, vectors};
-use super::material::Material;
 use super::holdout::{Squares, Unseen};
+use super::material::Material;
 use super::{HALF, ModelChoice, Options, Row, folds, lines, measure};
 use crate::calibration::Settings;
 
@@ -37,7 +37,9 @@ impl Job<'_> {
         let few = |view: &usize| !self.views.contains(view);
         let left_out = (0..self.material.views.len()).filter(few);
         let mut rows: Vec<Row> = left_out
-            .map(|view| Row::without(measure::RESIDUALS, &self.material.views[view], "left out", "the operator measured too few corners in it"))
+            .map(|view| {
+                Row::without(measure::RESIDUALS, &self.material.views[view], "left out", "the operator measured too few corners in it")
+            })
             .collect();
         let all = match calibrate(self.material, self.operator, &self.views, &self.settings) {
             Ok(all) => all,
@@ -122,7 +124,9 @@ impl Job<'_> {
                 }
             }
         }
-        rows.extend(map.places().map(|(at, found, predicted)| Row::px(measure::MAP, &format!("{}:{}", at.x, at.y), found).beside(predicted)));
+        rows.extend(
+            map.places().map(|(at, found, predicted)| Row::px(measure::MAP, &format!("{}:{}", at.x, at.y), found).beside(predicted)),
+        );
         rows
     }
 

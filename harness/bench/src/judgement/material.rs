@@ -106,7 +106,10 @@ impl Material {
     /// The corners of an operator in a view among those of `chosen`, as control of a resection.
     pub fn seen(&self, operator: usize, view: usize, chosen: &dyn Fn(usize) -> bool) -> Vec<Control> {
         let corners = self.operators[operator].at[view].iter().enumerate();
-        corners.filter(|(corner, _)| chosen(*corner)).filter_map(|(c, at)| Some(Control { object: Point3::from(self.object(c)), image: (*at)? })).collect()
+        corners
+            .filter(|(corner, _)| chosen(*corner))
+            .filter_map(|(c, at)| Some(Control { object: Point3::from(self.object(c)), image: (*at)? }))
+            .collect()
     }
 
     /// The views in which an operator measured enough.

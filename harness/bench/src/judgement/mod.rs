@@ -29,8 +29,8 @@ use thiserror::Error;
 pub use material::{COMPARABLE, Corners, Material};
 pub use model::{ModelChoice, ModelError, NOMINAL_PITCH};
 pub use outlier::{ALPHA as OUTLIER_ALPHA, outliers};
-pub use run::{camera as published_camera, write_judgement};
 pub use row::{JUDGEMENT, Row, read_rows, write_rows};
+pub use run::{camera as published_camera, write_judgement};
 pub use summary::{ALPHA, Cell, Estimate, HONEST, Point, Principal, Split, Summary, Trusted, View};
 
 /// Views that a half of the photographs needs.
@@ -59,7 +59,9 @@ pub struct Options {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum JudgementError {
     /// Halves would be too small.
-    #[error("judging takes at least {needed} photographs that show the board (each half of them is calibrated by itself, from {HALF} or more), found {found}")]
+    #[error(
+        "judging takes at least {needed} photographs that show the board (each half of them is calibrated by itself, from {HALF} or more), found {found}"
+    )]
     TooFewViews {
         /// Where the board was found.
         found: usize,
@@ -87,8 +89,10 @@ pub fn judge(material: &Material, options: &Options) -> Result<Vec<Row>, Judgeme
     let common = material.common();
     let mut rows: Vec<Row> = (0..material.operators.len()).flat_map(|operator| corners(material, operator, &common)).collect();
     let available = (0..material.operators.len()).filter(|&operator| material.operators[operator].unavailable.is_none());
-    let jobs: Vec<(usize, &ModelChoice)> = available.flat_map(|operator| options.models.iter().map(move |model| (operator, model))).collect();
-    let cells: Vec<Vec<Row>> = jobs.into_par_iter().map(|(operator, model)| cell::cell(material, &common, operator, model, options)).collect();
+    let jobs: Vec<(usize, &ModelChoice)> =
+        available.flat_map(|operator| options.models.iter().map(move |model| (operator, model))).collect();
+    let cells: Vec<Vec<Row>> =
+        jobs.into_par_iter().map(|(operator, model)| cell::cell(material, &common, operator, model, options)).collect();
     rows.extend(cells.into_iter().flatten());
     Ok(rows)
 }
@@ -102,7 +106,9 @@ fn corners(material: &Material, operator: usize, common: &[Vec<bool>]) -> Vec<Ro
     let view = |(view, name): (usize, &Arc<str>)| {
         let count = corners.at[view].iter().flatten().count();
         let shared = common[view].iter().filter(|common| **common).count();
-        Row { unit: "corners".into(), ..Row::plain(measure::CORNERS, name, count as f64) }.beside(shared as f64).of(material.board.corners())
+        Row { unit: "corners".into(), ..Row::plain(measure::CORNERS, name, count as f64) }
+            .beside(shared as f64)
+            .of(material.board.corners())
     };
     let missed = material.missed.iter().map(|(name, why)| Row::without(measure::CORNERS, name, "missed", why));
     let rejected = corners.rejected.iter().map(|(view, corner, why)| {

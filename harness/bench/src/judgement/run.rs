@@ -68,7 +68,8 @@ pub fn camera(path: &Path, name: &str, size: ImageSize) -> Result<Camera, String
     if !path.is_file() {
         return Err(format!("{name} is not beside the photographs"));
     }
-    let read = read_camera_with(path, &ReadOptions { size: Some(size), fisheye: None }).map_err(|_| format!("{name} cannot be read as a camera"))?;
+    let read = read_camera_with(path, &ReadOptions { size: Some(size), fisheye: None })
+        .map_err(|_| format!("{name} cannot be read as a camera"))?;
     let camera = read.cameras.first().map(|named| named.camera).ok_or_else(|| format!("{name} holds no camera"))?;
     let own = calibench_model::camera::CameraModel::size(&camera);
     if own == size { Ok(camera) } else { Err(format!("{name} is of images of {} x {} px", own.width, own.height)) }

@@ -108,7 +108,9 @@ fn judged(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
     let rows = File::open(loaded.folder.join(JUDGEMENT)).map_err(|error| error.to_string());
     match rows.and_then(|file| read_rows(file).map_err(|error| error.to_string())) {
         Ok((seed, rows)) => super::judgement::section(&Summary::new(&rows, seed)),
-        Err(why) => (format!("**unavailable**: the records of the judgement cannot be read ({why}): run the scenario again.\n\n"), Vec::new()),
+        Err(why) => {
+            (format!("**unavailable**: the records of the judgement cannot be read ({why}): run the scenario again.\n\n"), Vec::new())
+        }
     }
 }
 

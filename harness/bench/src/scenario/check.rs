@@ -27,8 +27,21 @@ const MOST_PIXELS: usize = 400_000_000;
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 13] =
-    ["sweep", "method", "scene", "figure", "photographs", "judgement", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
+pub const TOP_TABLES: [&str; 13] = [
+    "sweep",
+    "method",
+    "scene",
+    "figure",
+    "photographs",
+    "judgement",
+    "camera",
+    "testfield",
+    "stations",
+    "station",
+    "optics",
+    "sensor",
+    "pointing",
+];
 /// The keys of `[scene]` that are tables of their own.
 pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 
@@ -202,11 +215,7 @@ fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> Str
     value.into_inner()
 }
 
-fn read_photographs(
-    section: Section<'_>,
-    judged: Option<Section<'_>>,
-    problems: &mut Vec<Problem>,
-) -> Option<PhotographsSubject> {
+fn read_photographs(section: Section<'_>, judged: Option<Section<'_>>, problems: &mut Vec<Problem>) -> Option<PhotographsSubject> {
     let wire: PhotographsWire = section.read(&[], problems)?;
     let files_span = wire.files.span();
     let files = wire.files.into_inner();

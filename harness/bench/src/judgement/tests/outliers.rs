@@ -23,7 +23,10 @@ fn named(scenario: &str, trial: u64, spoiled: Option<(usize, f64)>) -> Vec<usize
 
 #[test]
 fn a_view_with_spoiled_corners_is_named_and_no_other() {
-    let right = (0..30_u64).into_par_iter().filter(|&trial| named("spoiled", trial, Some((trial as usize % 13, 0.5))) == [trial as usize % 13]).count();
+    let right = (0..30_u64)
+        .into_par_iter()
+        .filter(|&trial| named("spoiled", trial, Some((trial as usize % 13, 0.5))) == [trial as usize % 13])
+        .count();
     // Named for sure; another beside it in at most one case of a hundred or so.
     assert!(right >= 27, "{right} of 30");
 }

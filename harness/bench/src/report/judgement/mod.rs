@@ -31,7 +31,13 @@ pub fn section(summary: &Summary) -> (String, Vec<(String, Canvas)>) {
             pictures.push((file.to_owned(), canvas));
         }
     };
-    show(&mut text, "holdout.png", "Photographs that the camera has not seen", &tables::about_holdout(summary), Some(matrix::picture(summary, &trusted)));
+    show(
+        &mut text,
+        "holdout.png",
+        "Photographs that the camera has not seen",
+        &tables::about_holdout(summary),
+        Some(matrix::picture(summary, &trusted)),
+    );
     text.push_str(&tables::cells(summary));
     let about = "The photographs are split into two halves at random, each calibrates a camera, and the two are compared over the frame after the best rotation. \
                  The predicted difference comes from the covariances of both. Empirical over predicted: over the frame, and in the modes of the difference \
@@ -48,7 +54,13 @@ pub fn section(summary: &Summary) -> (String, Vec<(String, Canvas)>) {
     show(&mut text, "views.png", "Photograph by photograph", &about, Some(views::picture(summary, &trusted.cell.model)));
     text.push_str(&tables::views(summary, &trusted));
     let about = format!("With `{}` and `{}`.", trusted.cell.method, trusted.cell.model);
-    show(&mut text, "principal-point.png", "The principal point, again and again", &about, trusted.cell.principal.as_ref().map(principal::picture));
+    show(
+        &mut text,
+        "principal-point.png",
+        "The principal point, again and again",
+        &about,
+        trusted.cell.principal.as_ref().map(principal::picture),
+    );
     text.push_str(&tables::principal(summary, &trusted.cell.model));
     (text, pictures)
 }

@@ -70,8 +70,7 @@ pub fn cells(summary: &Summary) -> String {
          but `straight` are 2D.\n\n{}\n",
         table.render()
     );
-    let troubles: BTreeSet<(&str, &str)> =
-        summary.cells.iter().filter_map(|cell| Some((&*cell.model, cell.trouble.as_deref()?))).collect();
+    let troubles: BTreeSet<(&str, &str)> = summary.cells.iter().filter_map(|cell| Some((&*cell.model, cell.trouble.as_deref()?))).collect();
     let mut last = "";
     for (model, why) in troubles {
         if model != last {
@@ -92,8 +91,18 @@ fn residuals(cell: &Cell) -> Option<f64> {
 
 /// Differences of halves beside what is predicted.
 pub fn halves(summary: &Summary) -> String {
-    let mut table =
-        MarkdownTable::new(&["operator", "model", "difference px", "predicted px", "over the frame", "in modes", "p", "splits", "centre px", "corner px"]);
+    let mut table = MarkdownTable::new(&[
+        "operator",
+        "model",
+        "difference px",
+        "predicted px",
+        "over the frame",
+        "in modes",
+        "p",
+        "splits",
+        "centre px",
+        "corner px",
+    ]);
     for cell in &summary.cells {
         let Some(split) = cell.split else { continue };
         table.row([
@@ -140,8 +149,14 @@ pub fn views(summary: &Summary, trusted: &Trusted<'_>) -> String {
         }
         table.row(row);
     }
-    let published = if with_published { " `published camera`: RMS residual of the same corners with the published camera held." } else { "" };
-    format!("`{}` with `{}`; `named by`: operators that name the photograph as outlying.{published}\n\n{}\n", cell.method, cell.model, table.render())
+    let published =
+        if with_published { " `published camera`: RMS residual of the same corners with the published camera held." } else { "" };
+    format!(
+        "`{}` with `{}`; `named by`: operators that name the photograph as outlying.{published}\n\n{}\n",
+        cell.method,
+        cell.model,
+        table.render()
+    )
 }
 
 /// Scatter of the principal point beside its sigmas.

@@ -13,7 +13,11 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
         cell.model,
         cell.holdout.map_or_else(String::new, |holdout| interval(&holdout))
     )];
-    lines.push(format!("**Operators**, with `{}`: {}", least.model, ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout))));
+    lines.push(format!(
+        "**Operators**, with `{}`: {}",
+        least.model,
+        ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout))
+    ));
     let farthest = trusted.farthest;
     let mut models = format!(
         "**Models**, with `{}`, by predicting one side of the board from the other (where a pose cannot make up for what a model lacks): {}",
@@ -21,10 +25,17 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
         ranking(&trusted.models, &farthest.model, |cell| (&cell.model, cell.across))
     );
     if cell.model != farthest.model {
-        models.push_str(&format!(" `{}` is the simplest of these, with {} parameters in place of {}.", cell.model, cell.parameters, farthest.parameters));
+        models.push_str(&format!(
+            " `{}` is the simplest of these, with {} parameters in place of {}.",
+            cell.model, cell.parameters, farthest.parameters
+        ));
     }
-    let failed: Vec<String> =
-        summary.cells.iter().filter(|other| other.method == least.method && other.holdout.is_none()).map(|other| format!("`{}`", other.model)).collect();
+    let failed: Vec<String> = summary
+        .cells
+        .iter()
+        .filter(|other| other.method == least.method && other.holdout.is_none())
+        .map(|other| format!("`{}`", other.model))
+        .collect();
     if !failed.is_empty() {
         models.push_str(&format!(" These photographs do not determine {}.", listed(&failed)));
     }
@@ -61,9 +72,13 @@ pub(super) fn listed(names: &[String]) -> String {
 fn ranking(others: &[(&Cell, f64)], best: &str, of: impl Fn(&Cell) -> (&str, Option<Estimate>)) -> String {
     let rms = |cell: &Cell| of(cell).1.map_or_else(String::new, |found| plain(found.value));
     let name = |cell: &Cell| of(cell).0.to_owned();
-    let alike: Vec<String> = others.iter().filter(|(_, p)| *p > ALPHA).map(|(cell, _)| format!("`{}` ({} px)", name(cell), rms(cell))).collect();
-    let worse: Vec<String> =
-        others.iter().filter(|(_, p)| *p <= ALPHA).map(|(cell, p)| format!("`{}` ({} px, {})", name(cell), rms(cell), chance(*p))).collect();
+    let alike: Vec<String> =
+        others.iter().filter(|(_, p)| *p > ALPHA).map(|(cell, _)| format!("`{}` ({} px)", name(cell), rms(cell))).collect();
+    let worse: Vec<String> = others
+        .iter()
+        .filter(|(_, p)| *p <= ALPHA)
+        .map(|(cell, p)| format!("`{}` ({} px, {})", name(cell), rms(cell), chance(*p)))
+        .collect();
     let mut text = format!("`{best}` has the least RMS.");
     text.push_str(&match alike.len() {
         0 => " None of the others is as good.".to_owned(),
