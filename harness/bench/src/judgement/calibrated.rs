@@ -42,7 +42,7 @@ impl Calibrated {
         let (names, covariance) = solution.covariances(Variance::Estimated)?.of_camera(0);
         let mut counts = vec![0; views.len()];
         network.observations.iter().for_each(|observation| counts[observation.image] += 1);
-        let residuals = solution.rms_by_image().into_iter().map(|rms| rms.unwrap_or_default()).zip(counts).collect();
+        let residuals = solution.rms_by_image().into_iter().map(Option::unwrap_or_default).zip(counts).collect();
         let (camera, poses, redundancy) = (solution.cameras()[0], solution.poses().to_vec(), solution.counts().redundancy());
         network.cameras[0].camera = camera;
         network.images.iter_mut().zip(poses).for_each(|(image, pose)| image.pose = pose);

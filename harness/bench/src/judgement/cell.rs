@@ -52,7 +52,7 @@ impl Job<'_> {
         let residuals = all.views.iter().zip(&all.residuals);
         rows.extend(residuals.map(|(view, (rms, count))| Row::px(measure::RESIDUALS, &self.material.views[*view], *rms).of(*count)));
         rows.extend(principal(&all, "all"));
-        rows.extend(self.uncertainty(&all));
+        rows.extend(Self::uncertainty(&all));
         rows.extend(self.left_out(&all));
         rows.extend(self.splits(&all));
         rows.extend(self.options.published.iter().flat_map(|published| self.published(&all, published)));
@@ -130,7 +130,7 @@ impl Job<'_> {
         rows
     }
 
-    fn uncertainty(&self, all: &Calibrated) -> Vec<Row> {
+    fn uncertainty(all: &Calibrated) -> Vec<Row> {
         let size = all.camera.size();
         let (right, bottom) = (f64::from(size.width - 1), f64::from(size.height - 1));
         // The rotation is that of a grid over the whole frame: an odd one, with the corners and the centre among its places.

@@ -59,16 +59,19 @@ impl Row {
     }
 
     /// The same with what is predicted for it, where that is a number.
+    #[must_use]
     pub fn beside(self, sigma: f64) -> Self {
         Self { sigma: Some(sigma).filter(|sigma| sigma.is_finite()), ..self }
     }
 
     /// The same with a count.
+    #[must_use]
     pub fn of(self, count: usize) -> Self {
         Self { count: Some(count), ..self }
     }
 
     /// The same for an operator and a model.
+    #[must_use]
     pub fn by(self, method: &Arc<str>, model: &Arc<str>) -> Self {
         Self { method: method.clone(), model: model.clone(), ..self }
     }

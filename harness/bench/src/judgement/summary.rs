@@ -104,7 +104,7 @@ pub struct Measured {
     /// Its label.
     pub method: Arc<str>,
     /// Corners measured.
-    pub measured: usize,
+    pub found: usize,
     /// Of how many.
     pub of: usize,
     /// By reason.
@@ -146,7 +146,7 @@ impl Summary {
             let Some(method) = methods.last_mut() else { continue };
             match &*row.status {
                 "found" => {
-                    method.measured += row.value.unwrap_or_default() as usize;
+                    method.found += row.value.unwrap_or_default() as usize;
                     method.of += row.count.unwrap_or_default();
                     if !views.contains(&row.place) {
                         views.push(row.place.clone());

@@ -35,7 +35,7 @@ impl Layer {
             let wanted = USUAL.iter().position(|usual| *usual == name).unwrap_or(0);
             let cycle = METHOD_MARKS.len();
             let usual = (0..cycle).map(|step| (wanted + step) % cycle);
-            let place = usual.chain(cycle..).find(|place| !taken.contains(place)).unwrap_or(wanted);
+            let place = usual.chain(cycle..=cycle + taken.len()).find(|place| !taken.contains(place)).unwrap_or(wanted);
             taken.push(place);
             // Another colour for a mark that comes again: no two of the first twelve look alike.
             let colour = COLOURS[(place + place / cycle) % COLOURS.len()];

@@ -50,7 +50,7 @@ impl Summary {
     /// Did the operator measure enough to be compared?
     pub fn is_compared(&self, method: &str) -> bool {
         let found = self.methods.iter().find(|measured| &*measured.method == method);
-        found.is_some_and(|measured| measured.measured as f64 >= super::super::COMPARABLE * measured.of as f64)
+        found.is_some_and(|measured| measured.found as f64 >= super::super::COMPARABLE * measured.of as f64)
     }
 }
 

@@ -77,7 +77,7 @@ fn corners_that_one_operator_lacks_are_counted_and_not_compared() {
     let (rows, summary) = judged(&material, &options(&["opencv4"], 1));
     assert_eq!(rows.iter().filter(|row| &*row.measure == measure::REJECTED && &*row.status == "rejected").count(), 9);
     assert_eq!(summary.common, 8 * 54 - 9);
-    assert_eq!((summary.methods[0].measured, summary.methods[0].of), (8 * 54 - 9, 8 * 54));
+    assert_eq!((summary.methods[0].found, summary.methods[0].of), (8 * 54 - 9, 8 * 54));
     assert_eq!(summary.cell("operator-3", "opencv4").unwrap().held_out["v03"].1, 45);
     assert!(!summary.is_compared("operator-2") && summary.is_compared("operator-1"));
     assert!(summary.trusted().unwrap().operators.iter().all(|(cell, _)| &*cell.method != "operator-2"));

@@ -7,6 +7,11 @@ use crate::judgement::Cell;
 use crate::report::canvas::Canvas;
 use crate::report::field::{LEFT, TOP, colour_bar, shade, write};
 
+/// x, y, RMS difference and the predicted one.
+type Place = (f64, f64, f64, f64);
+/// What a panel shows of a place.
+type Shown = fn(&Place) -> f64;
+
 const MAP: u32 = 460;
 const GAP: u32 = 60;
 const RIGHT: u32 = 130;
@@ -15,7 +20,7 @@ const BOTTOM: u32 = 80;
 /// Two maps with one scale. `None` without halves.
 pub fn picture(cell: &Cell) -> Option<Canvas> {
     let places = &cell.map;
-    let ticks = |of: fn(&(f64, f64, f64, f64)) -> f64| {
+    let ticks = |of: fn(&Place) -> f64| {
         let mut ticks: Vec<f64> = places.iter().map(of).collect();
         ticks.sort_by(f64::total_cmp);
         ticks.dedup();
@@ -29,7 +34,7 @@ pub fn picture(cell: &Cell) -> Option<Canvas> {
     let mut canvas = Canvas::new(LEFT + both.0 + RIGHT, TOP + map.1 + BOTTOM);
     let split = cell.split?;
     canvas.paint(|area| {
-        let panels: [(&str, fn(&(f64, f64, f64, f64)) -> f64); 2] =
+        let panels: [(&str, Shown); 2] =
             [("RMS difference of halves", |place| place.2), ("predicted by their covariances", |place| place.3)];
         for (panel, (title, of)) in (0..).zip(panels) {
             let left = (LEFT + panel * (MAP + GAP)) as i32;

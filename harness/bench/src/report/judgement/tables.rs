@@ -26,14 +26,14 @@ pub fn about_holdout(summary: &Summary) -> String {
     for method in &summary.methods {
         if let Some(why) = &method.unavailable {
             text.push_str(&format!(" `{}` is unavailable: {why}.", method.method));
-        } else if method.measured < method.of {
+        } else if method.found < method.of {
             let reasons: Vec<String> = method.rejected.iter().map(|(why, count)| format!("{count} {why}")).collect();
             text.push_str(&format!(
                 " `{}` rejected {} of {} corners ({} %: {}).",
                 method.method,
-                method.of - method.measured,
+                method.of - method.found,
                 method.of,
-                fixed(100.0 * (method.of - method.measured) as f64 / method.of as f64, 1),
+                fixed(100.0 * (method.of - method.found) as f64 / method.of as f64, 1),
                 listed(&reasons)
             ));
             if !summary.is_compared(&method.method) {
