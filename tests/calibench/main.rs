@@ -9,6 +9,7 @@ mod determinism;
 mod diagnostics;
 mod galo;
 mod gate;
+mod judge;
 mod killed;
 mod measure;
 mod opencv_gate;

@@ -17,7 +17,9 @@ fn the_report_compares_all_operators_on_all_photographs() {
     let page = std::fs::read_to_string(folder.join("README.md")).unwrap();
     assert!(page.contains("The board was found in 13 of 13 photographs, 702 corners in all."), "{page}");
     assert!(page.contains("| `forstner:window=11` and `opencv_subpix:window=11` "), "{page}");
-    for picture in ["furthest.png", "usual.png"] {
+    assert!(page.contains("**Of these photographs trust `"), "{page}");
+    assert!(page.contains("**The published calibration** differs by "), "{page}");
+    for picture in ["furthest.png", "usual.png", "holdout.png", "halves.png", "views.png", "principal-point.png"] {
         assert!(page.contains(&format!("({picture})")));
         assert!(image::open(folder.join(picture)).is_ok(), "{picture}");
     }
@@ -52,7 +54,9 @@ fn without_photographs_the_scenario_is_unavailable_visibly() {
     let page = std::fs::read_to_string(project.path().join("reports/photographs/README.md")).unwrap();
     assert!(page.contains("**unavailable**: 13 of 13 photographs are not in `opencv-left`"), "{page}");
     let records = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/records.csv")).unwrap();
-    assert_eq!(records.matches(",unavailable,").count(), 4, "a row for each method");
+    assert_eq!(records.matches(",unavailable,").count(), 9, "a row for each method");
+    let judgement = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/judgement.csv")).unwrap();
+    assert_eq!(judgement.matches(",unavailable,").count(), 1, "{judgement}");
     assert!(command(&["show", "photographs/opencv-left"]).contains("no preview, unavailable"));
 }
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::FolderWriter;
 use calibench_measure::{BoardDetector, Configured, Registry};
 
+use crate::judgement::write_judgement;
 use crate::records::{RecordWriter, RunInfo};
 use crate::run::{Plan, RunError};
 use crate::scenario::camera::KEPT;
@@ -45,8 +46,11 @@ pub fn run(writer: &FolderWriter, plan: &mut Plan<'_>, revision: &str, step: &(d
 fn write_records(folder: &Path, name: &str, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
     let file = BufWriter::new(File::create(folder.join(RECORDS))?);
-    let mut records = RecordWriter::new(file, info, plan.method_infos()).map_err(std::io::Error::other)?;
-    plan.run(step, &mut |trial| Ok(records.trial(&trial).map_err(std::io::Error::other)?))?;
+    let mut records = RecordWriter::new(file, info.clone(), plan.method_infos()).map_err(std::io::Error::other)?;
+    plan.run(step, &mut |trial| {
+        records.trial(&trial).map_err(std::io::Error::other)?;
+        write_judgement(folder, plan, &info, &trial)
+    })?;
     Ok(records.finish().map_err(std::io::Error::other)?)
 }
 

@@ -37,6 +37,8 @@ pub enum Purpose {
     Texture = 36,
     /// Where a station is put.
     Station = 37,
+    /// Which photographs make the first half, and which are drawn again, when a calibration is judged.
+    Split = 48,
 }
 
 /// Which stream.

@@ -19,7 +19,7 @@ use calibench_model::camera::{Camera, ImageSize};
 
 pub use datum::{DatumChoice, NoDatum};
 pub use error::CalibrationError;
-pub use model::MODELS;
+pub use model::{MODELS, parameters};
 pub use page::{summary, write_report};
 pub use prior::{NoPrior, Prior};
 pub use sets::{Compared, ComparedSet, compare_sets};

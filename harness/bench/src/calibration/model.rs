@@ -1,5 +1,6 @@
 //! Camera models by name, for start values and unknowns.
 
+use calibench_adjust::approximate::interior_from_size;
 use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, TangentialOrder};
 use calibench_model::convert::{ConvertOptions, Target, convert};
 
@@ -88,6 +89,16 @@ pub(super) fn check(settings: &Settings) -> Result<(), CalibrationError> {
         return Err(CalibrationError::NoPitch { what: "c, x0 and y0 are".into() });
     }
     target(name(settings), settings).map(|_| ())
+}
+
+/// The names of all parameters of the model of `settings`.
+///
+/// # Errors
+/// As of an unknown model, or one in mm without a pitch.
+pub fn parameters(settings: &Settings) -> Result<Vec<&'static str>, CalibrationError> {
+    check(settings)?;
+    let camera = camera(&interior_from_size(settings.size)?, settings)?;
+    Ok(camera.parameters().iter().map(|parameter| parameter.name).collect())
 }
 
 /// The parameters to be solved for.

@@ -13,7 +13,7 @@ use super::convert::positive;
 use super::{Failure, print};
 use crate::calibration::{Calibration, DatumChoice, Prior, Settings, prepare, summary, write_report};
 
-mod board;
+pub(super) mod board;
 mod camera_file;
 
 use board::{Chessboard, Corners};

@@ -8,6 +8,7 @@ mod convert;
 mod detect;
 mod diff;
 mod intersect;
+mod judge;
 mod list;
 mod measure;
 mod orient;
@@ -88,6 +89,8 @@ enum Command {
     Detect(detect::Detect),
     /// Calibrate a camera from measured points and control, or from photographs of a chessboard
     Calibrate(Box<calibrate::Calibrate>),
+    /// Say which operator and which camera model to trust on photographs of a chessboard, and how far; without truth
+    Judge(judge::Judge),
     /// Orient images from control points; the camera is known
     Resect(resect::Resect),
     /// Intersect object points from oriented images; camera and poses are known
@@ -154,6 +157,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
         Command::Calibrate(calibrate) => calibrate.run(&context),
+        Command::Judge(judge) => judge.run(&context),
         Command::Resect(resect) => resect.run(&context),
         Command::Intersect(intersect) => intersect.run(&context),
         Command::Orient(orient) => orient.run(&context),

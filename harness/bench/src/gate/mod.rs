@@ -11,7 +11,7 @@ mod holm;
 mod missing;
 mod paired;
 mod render;
-mod statistics;
+pub(crate) mod statistics;
 mod table;
 mod worse;
 

@@ -33,10 +33,13 @@ impl Layer {
         let layer = |label: &str| {
             let name = label.split(':').next().unwrap_or(label);
             let wanted = USUAL.iter().position(|usual| *usual == name).unwrap_or(0);
-            let free = (0..METHOD_MARKS.len()).map(|step| (wanted + step) % METHOD_MARKS.len()).find(|place| !taken.contains(place));
-            let place = free.unwrap_or(wanted);
+            let cycle = METHOD_MARKS.len();
+            let usual = (0..cycle).map(|step| (wanted + step) % cycle);
+            let place = usual.chain(cycle..=cycle + taken.len()).find(|place| !taken.contains(place)).unwrap_or(wanted);
             taken.push(place);
-            Self { name: label.to_owned(), mark: METHOD_MARKS[place], colour: COLOURS[place] }
+            // Another colour for a mark that comes again: no two of the first twelve look alike.
+            let colour = COLOURS[(place + place / cycle) % COLOURS.len()];
+            Self { name: label.to_owned(), mark: METHOD_MARKS[place % cycle], colour }
         };
         labels.map(layer).collect()
     }

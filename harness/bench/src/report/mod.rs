@@ -4,6 +4,7 @@ mod canvas;
 pub mod conventions;
 pub(crate) mod field;
 mod figures;
+pub mod judgement;
 mod load;
 pub(crate) mod markdown;
 mod photographs;

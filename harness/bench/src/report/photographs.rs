@@ -1,6 +1,7 @@
 //! Photographs: how far the operators differ, where they refuse, and pictures of both.
 
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::sync::Arc;
 
 use calibench_model::{Image, PixelPoint};
@@ -10,6 +11,8 @@ use super::figures::{Layer, MarkAt, Panel, panels};
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed};
 use super::scores_section::reasons;
+use crate::judgement::{JUDGEMENT, Summary, read_rows};
+use crate::scenario::Subject;
 
 type PointKey = (Arc<str>, Arc<str>);
 
@@ -58,7 +61,9 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
     }
     let points = compared(loaded);
     let operators: Vec<usize> = (0..loaded.head.methods.len()).filter(|&m| &*loaded.head.methods[m].label != "pixel").collect();
-    let mut text = seen(loaded, &points);
+    let (mut text, mut pictures) = judged(loaded);
+    text.push_str("### What was measured\n\n");
+    text.push_str(&seen(loaded, &points));
     text.push_str(&counts(loaded));
     text.push_str(&differences(loaded, &points));
     let furthest = operators.iter().flat_map(|&m| ranked(loaded, &points, m, &operators).into_iter().take(SHOWN)).collect::<Vec<_>>();
@@ -73,7 +78,6 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
         refused.take(SHOWN).map(move |point| Chosen { point, title: title(loaded, point, m, None) })
     });
     let refused = refused.collect::<Vec<_>>();
-    let mut pictures = Vec::new();
     for (name, heading, about, chosen) in [
         (
             "furthest",
@@ -93,6 +97,21 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
         }
     }
     (text, pictures)
+}
+
+/// What the photographs say of operators and models, if the scenario asks for it.
+fn judged(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
+    let wanted = matches!(&loaded.scenario.subject, Subject::Photographs(subject) if subject.judgement.is_some());
+    if !wanted {
+        return (String::new(), Vec::new());
+    }
+    let rows = File::open(loaded.folder.join(JUDGEMENT)).map_err(|error| error.to_string());
+    match rows.and_then(|file| read_rows(file).map_err(|error| error.to_string())) {
+        Ok((seed, rows)) => super::judgement::section(&Summary::new(&rows, seed)),
+        Err(why) => {
+            (format!("**unavailable**: the records of the judgement cannot be read ({why}): run the scenario again.\n\n"), Vec::new())
+        }
+    }
 }
 
 /// The points that `method` measured, the one furthest from the others first.

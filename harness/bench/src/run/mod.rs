@@ -20,6 +20,7 @@ use thiserror::Error;
 use crate::results::{MethodInfo, Trial};
 use crate::scenario::{Scenario, Subject};
 
+pub use photographs::measured as measured_board;
 pub use scene::{VIEW, trial_picture, trial_truth};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.

@@ -17,7 +17,7 @@ use super::sensor::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::{Head, PhotographsWire, PolygonWire, Position, SceneWire, TargetWire};
-use super::{PhotographsSubject, Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, figure};
+use super::{PhotographsSubject, Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, figure, judgement};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
@@ -26,8 +26,21 @@ const MOST_PIXELS: usize = 400_000_000;
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 12] =
-    ["sweep", "method", "scene", "figure", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
+pub const TOP_TABLES: [&str; 13] = [
+    "sweep",
+    "method",
+    "scene",
+    "figure",
+    "photographs",
+    "judgement",
+    "camera",
+    "testfield",
+    "stations",
+    "station",
+    "optics",
+    "sensor",
+    "pointing",
+];
 /// The keys of `[scene]` that are tables of their own.
 pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 
@@ -123,6 +136,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let scene = root.take_table("scene", "[scene]", problems);
     let figure = root.take_table("figure", "[figure]", problems);
     let photographs = root.take_table("photographs", "[photographs]", problems);
+    let judgement = root.take_table("judgement", "[judgement]", problems);
     let views = ViewTables::take(&mut root, problems);
     let imaging = ImagingTables::take(&mut root, problems);
     let start = root.span.clone();
@@ -137,7 +151,14 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let subject = match (scene, figure, photographs, views.span()) {
         (Some(scene), None, None, None) => read_scene(scene, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
         (None, Some(figure), None, None) => figure::read(figure, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
-        (None, None, Some(photographs), None) if stray.is_none() => read_photographs(photographs, problems).map(Subject::Photographs),
+        (None, None, Some(photographs), None) if stray.is_none() => {
+            read_photographs(photographs, judgement, problems).map(Subject::Photographs)
+        }
+        (_, _, None, _) if judgement.is_some() => {
+            let message = "[judgement] without [photographs]: it judges calibrations of which no truth is known";
+            problems.push(Problem::new(judgement.map_or(start, |section| section.span), message));
+            None
+        }
         (None, None, None, Some(_)) => views.read(imaging, &start, folder, key, problems).map(|views| Subject::Views(Box::new(views))),
         (None, None, None, None) => {
             let problem = Problem::new(start, "the scenario has nothing to measure");
@@ -193,7 +214,7 @@ fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> Str
     value.into_inner()
 }
 
-fn read_photographs(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<PhotographsSubject> {
+fn read_photographs(section: Section<'_>, judged: Option<Section<'_>>, problems: &mut Vec<Problem>) -> Option<PhotographsSubject> {
     let wire: PhotographsWire = section.read(&[], problems)?;
     let files_span = wire.files.span();
     let files = wire.files.into_inner();
@@ -211,7 +232,11 @@ fn read_photographs(section: Section<'_>, problems: &mut Vec<Problem>) -> Option
     }
     let board = wire.board.get_ref().parse::<Board>();
     let board = board.map_err(|error| problems.push(Problem::new(wire.board.span(), error.to_string()))).ok()?;
-    Some(PhotographsSubject { folder: wire.folder.into_inner(), files, board })
+    let judgement = judged.map(|section| judgement::read(section, files.len(), problems));
+    if judgement.as_ref().is_some_and(Option::is_none) {
+        return None;
+    }
+    Some(PhotographsSubject { folder: wire.folder.into_inner(), files, board, judgement: judgement.flatten() })
 }
 
 fn read_scene(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut Vec<Problem>) -> Option<SceneSubject> {

@@ -4,6 +4,7 @@ pub mod camera;
 pub mod catalogue;
 mod check;
 mod figure;
+mod judgement;
 mod methods;
 mod optics;
 pub mod pointing;
@@ -31,6 +32,7 @@ use calibench_synth::stations::{Station, StationError};
 
 pub use crate::imaging::Imaging;
 pub use check::{parse, parse_cell};
+pub use judgement::JudgementPlan;
 pub use pointing::{Detector, Pointing};
 pub use problem::{Problem, Problems};
 pub use stations::StationPlan;
@@ -182,6 +184,8 @@ pub struct PhotographsSubject {
     pub files: Vec<String>,
     /// The board.
     pub board: Board,
+    /// How calibrations from them are judged, if they are.
+    pub judgement: Option<JudgementPlan>,
 }
 
 impl Scenario {

@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::camera::CameraWire;
 use super::figure::FigureWire;
+use super::judgement::JudgementWire;
 use super::optics::OpticsWire;
 use super::pointing::DetectorWire;
 use super::sensor::SensorWire;
@@ -27,6 +28,7 @@ pub fn schema(registry: &Registry) -> Value {
     require(&mut scene, &["polygon", "target"]);
     root["properties"]["scene"] = scene;
     root["properties"]["photographs"] = table::<PhotographsWire>();
+    root["properties"]["judgement"] = table::<JudgementWire>();
     root["properties"]["method"] = list(&json!({ "oneOf": registry.methods().iter().map(method).collect::<Vec<_>>() }));
     require(&mut root, &["method"]);
     root["properties"]["sweep"] = table::<SweepWire>();

@@ -20,8 +20,10 @@ const NOT_FOUND: &str = "not_found";
 /// A chessboard and the side of its squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chessboard {
-    board: Board,
-    side: f64,
+    /// Its inner corners.
+    pub board: Board,
+    /// Side of a square, object units.
+    pub side: f64,
 }
 
 impl FromStr for Chessboard {
@@ -71,7 +73,7 @@ impl Chessboard {
             found
         };
         let found = photos.par_iter().map(one).collect::<Result<Vec<_>, Failure>>()?;
-        let size = same_size(photos, &found)?;
+        let size = same_size(photos, &found.iter().map(|corners| corners.size).collect::<Vec<_>>())?;
         let mut seen = 0;
         for (path, Corners { points, lost, .. }) in photos.iter().zip(&found) {
             seen += usize::from(!points.is_empty());
@@ -123,12 +125,13 @@ impl Chessboard {
     }
 }
 
-fn same_size(photos: &[PathBuf], found: &[Corners]) -> Result<ImageSize, Failure> {
-    let Some(Corners { size: first, .. }) = found.first() else { return Err(Failure::input("no photograph was given")) };
-    match found.iter().position(|corners| corners.size != *first) {
+/// The size that all photographs have.
+pub fn same_size(photos: &[PathBuf], sizes: &[ImageSize]) -> Result<ImageSize, Failure> {
+    let Some(first) = sizes.first() else { return Err(Failure::input("no photograph was given")) };
+    match sizes.iter().position(|size| size != first) {
         None => Ok(*first),
         Some(other) => {
-            let (a, b, size) = (photos[0].display(), photos[other].display(), found[other].size);
+            let (a, b, size) = (photos[0].display(), photos[other].display(), sizes[other]);
             Err(Failure::input(format!(
                 "{a} has {} x {} px, {b} has {} x {}: photographs of one camera have one size",
                 first.width, first.height, size.width, size.height

@@ -1,0 +1,136 @@
+//! What was measured: a chessboard's corners in photographs, in the hands of several operators.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use calibench_adjust::approximate::Control;
+use calibench_exchange::{ControlRow, PointRow};
+use calibench_measure::Board;
+use calibench_model::camera::ImageSize;
+use calibench_model::{PixelPoint, Start};
+use nalgebra::Point3;
+
+use crate::results::{MethodInfo, Outcome, Trial};
+
+/// An operator that measured a smaller share of the corners does not decide on which corners the others are compared.
+pub const COMPARABLE: f64 = 0.8;
+/// A view with fewer corners of an operator does not take part in its calibration.
+const FEWEST: usize = 12;
+
+/// Corners of one operator.
+#[derive(Clone, Debug)]
+pub struct Corners {
+    /// The operator's label.
+    pub method: Arc<str>,
+    /// Why it measured nothing, if so.
+    pub unavailable: Option<String>,
+    /// By view, by corner along the rows of the board.
+    pub at: Vec<Vec<Option<PixelPoint>>>,
+    /// View, corner and reason of what it rejected.
+    pub rejected: Vec<(usize, usize, &'static str)>,
+}
+
+/// All corners.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// The board.
+    pub board: Board,
+    /// Side of its squares, object units.
+    pub side: f64,
+    /// Size of the photographs.
+    pub size: ImageSize,
+    /// Photographs that show the board.
+    pub views: Vec<Arc<str>>,
+    /// Photographs in which it was not found, and why.
+    pub missed: Vec<(Arc<str>, String)>,
+    /// The operators.
+    pub operators: Vec<Corners>,
+}
+
+impl Material {
+    /// The corners of a run of photographs.
+    pub fn new(trial: &Trial, methods: &[MethodInfo], board: Board, side: f64, size: ImageSize) -> Self {
+        let place: HashMap<String, usize> = (0..board.corners()).map(|index| (board.target(index), index)).collect();
+        let mut views: Vec<Arc<str>> = Vec::new();
+        for point in &trial.points {
+            if !views.contains(&point.view) {
+                views.push(point.view.clone());
+            }
+        }
+        let empty = |info: &MethodInfo| Corners {
+            method: info.label.clone(),
+            unavailable: info.unavailable.clone(),
+            at: vec![vec![None; board.corners()]; views.len()],
+            rejected: Vec::new(),
+        };
+        let mut operators: Vec<Corners> = methods.iter().map(empty).collect();
+        for point in &trial.points {
+            let view = views.iter().position(|view| *view == point.view);
+            let (Some(view), Some(&corner)) = (view, place.get(&*point.target)) else { continue };
+            match point.outcome {
+                Outcome::Measured { position, .. } => operators[point.method].at[view][corner] = Some(position),
+                Outcome::Rejected(why) => operators[point.method].rejected.push((view, corner, why.name())),
+            }
+        }
+        Self { board, side, size, views, missed: trial.missed_views.clone(), operators }
+    }
+
+    /// Column and row of a corner.
+    pub fn place(&self, corner: usize) -> (usize, usize) {
+        (corner % self.board.columns, corner / self.board.columns)
+    }
+
+    fn object(&self, corner: usize) -> [f64; 3] {
+        let (column, row) = self.place(corner);
+        [column as f64 * self.side, -(row as f64 * self.side), 0.0]
+    }
+
+    /// The board as control: X along the rows, Y upwards, Z towards the viewer.
+    pub fn control(&self) -> Vec<ControlRow> {
+        let row = |corner| ControlRow { target: self.board.target(corner), position: self.object(corner), sigmas: None };
+        (0..self.board.corners()).map(row).collect()
+    }
+
+    /// The corners of an operator in some views, in their order.
+    pub fn points(&self, operator: usize, views: &[usize]) -> Vec<PointRow> {
+        let of = |&view: &usize| {
+            let corners = self.operators[operator].at[view].iter().enumerate();
+            corners.filter_map(move |(corner, at)| {
+                let (image, target) = (self.views[view].to_string(), self.board.target(corner));
+                Some(PointRow { image, target, start: Start::at((*at)?) })
+            })
+        };
+        views.iter().flat_map(of).collect()
+    }
+
+    /// The corners of an operator in a view among those of `chosen`, as control of a resection.
+    pub fn seen(&self, operator: usize, view: usize, chosen: &dyn Fn(usize) -> bool) -> Vec<Control> {
+        let corners = self.operators[operator].at[view].iter().enumerate();
+        corners
+            .filter(|(corner, _)| chosen(*corner))
+            .filter_map(|(c, at)| Some(Control { object: Point3::from(self.object(c)), image: (*at)? }))
+            .collect()
+    }
+
+    /// The views in which an operator measured enough.
+    pub fn usable(&self, operator: usize) -> Vec<usize> {
+        let enough = |view: &usize| self.operators[operator].at[*view].iter().flatten().count() >= FEWEST.min(self.board.corners());
+        (0..self.views.len()).filter(enough).collect()
+    }
+
+    /// How many corners an operator measured.
+    pub fn measured(&self, operator: usize) -> usize {
+        self.operators[operator].at.iter().flatten().flatten().count()
+    }
+
+    /// By view and corner: did every operator that measured enough of them measure this one? Operators are compared on these.
+    pub fn common(&self) -> Vec<Vec<bool>> {
+        let all = self.views.len() * self.board.corners();
+        let enough: Vec<&Corners> = (0..self.operators.len())
+            .filter(|&operator| self.measured(operator) as f64 >= COMPARABLE * all as f64)
+            .map(|operator| &self.operators[operator])
+            .collect();
+        let by_corner = |view: usize| (0..self.board.corners()).map(|c| enough.iter().all(|o| o.at[view][c].is_some())).collect();
+        (0..self.views.len()).map(by_corner).collect()
+    }
+}

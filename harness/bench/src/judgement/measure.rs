@@ -1,0 +1,32 @@
+//! The names of what is measured.
+
+/// By operator and view: corners measured; beside it how many all comparable operators have; of how many.
+pub const CORNERS: &str = "corners";
+/// A corner that an operator rejected.
+pub const REJECTED: &str = "rejected";
+/// How many parameters a model solves for.
+pub const PARAMETERS: &str = "parameters";
+/// By view: RMS of the residuals of the adjustment of all views.
+pub const RESIDUALS: &str = "residuals";
+/// By view: RMS error of the half of its corners predicted from the other half, the camera calibrated without the view.
+pub const HOLDOUT: &str = "holdout";
+/// By view: the same, one side of the board from the other.
+pub const ACROSS: &str = "across";
+/// By view: how far rows and columns are from straight, the camera calibrated without the view.
+pub const STRAIGHT: &str = "straight";
+/// By split: RMS difference of the cameras of two halves over the frame; beside it the predicted one.
+pub const SPLIT: &str = "split";
+/// By split: the modes of that difference, squared over their predicted variance, mean; of how many; beside it the chance of as much.
+pub const SPLIT_TEST: &str = "split_test";
+/// By place `x:y`: RMS difference of halves over all splits; beside it the predicted one.
+pub const MAP: &str = "map";
+/// The principal point, by set of views; beside it the predicted standard deviation.
+pub const PRINCIPAL: [&str; 2] = ["principal_x", "principal_y"];
+/// Standard deviation (2D) of a projected point far away: `centre`, and `corner`, the worst of four.
+pub const UNCERTAINTY: &str = "uncertainty";
+/// RMS difference from the published camera over the frame; beside it the predicted standard deviation of ours.
+pub const PUBLISHED: &str = "published";
+/// The largest such difference.
+pub const PUBLISHED_MOST: &str = "published_most";
+/// By view: RMS residual of our corners with the published camera held.
+pub const PUBLISHED_VIEW: &str = "published_view";

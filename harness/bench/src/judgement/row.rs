@@ -1,0 +1,162 @@
+//! The records of a judgement: one tidy CSV beside the records of the corners.
+
+use std::io::{Read, Write};
+use std::sync::Arc;
+
+use crate::records::{RecordError, RunInfo};
+
+/// The file's name in a scenario's folder.
+pub const JUDGEMENT: &str = "judgement.csv";
+
+/// The columns of the file.
+pub const COLUMNS: [&str; 13] =
+    ["scenario", "method", "model", "measure", "place", "value", "sigma", "count", "unit", "status", "reason", "seed", "revision"];
+
+/// What came of one measure at one place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Row {
+    /// The operator.
+    pub method: Arc<str>,
+    /// The camera model; empty for what concerns none.
+    pub model: Arc<str>,
+    /// What was measured; one of [`super::measure`].
+    pub measure: Arc<str>,
+    /// The view, the split, the place in the frame.
+    pub place: Arc<str>,
+    /// Its value.
+    pub value: Option<f64>,
+    /// Its predicted standard deviation, or what the value is compared with.
+    pub sigma: Option<f64>,
+    /// Corners or modes behind it.
+    pub count: Option<usize>,
+    /// The unit of both.
+    pub unit: Arc<str>,
+    /// `found`, or what stood in its way: `rejected`, `missed`, `left out`, `failed`, `unavailable`.
+    pub status: Arc<str>,
+    /// Why.
+    pub reason: Arc<str>,
+}
+
+impl Row {
+    /// A figure in px.
+    pub fn px(measure: &str, place: &str, value: f64) -> Self {
+        if value.is_finite() {
+            let found = Self { measure: measure.into(), place: place.into(), unit: "px".into(), status: "found".into(), ..Self::default() };
+            Self { value: Some(value), ..found }
+        } else {
+            Self::without(measure, place, "failed", "the camera does not picture what is needed")
+        }
+    }
+
+    /// A figure without a unit.
+    pub fn plain(measure: &str, place: &str, value: f64) -> Self {
+        Self { unit: "".into(), ..Self::px(measure, place, value) }
+    }
+
+    /// No figure, and why.
+    pub fn without(measure: &str, place: &str, status: &str, reason: &str) -> Self {
+        Self { measure: measure.into(), place: place.into(), status: status.into(), reason: reason.into(), ..Self::default() }
+    }
+
+    /// The same with what is predicted for it, where that is a number.
+    #[must_use]
+    pub fn beside(self, sigma: f64) -> Self {
+        Self { sigma: Some(sigma).filter(|sigma| sigma.is_finite()), ..self }
+    }
+
+    /// The same with a count.
+    #[must_use]
+    pub fn of(self, count: usize) -> Self {
+        Self { count: Some(count), ..self }
+    }
+
+    /// The same for an operator and a model.
+    #[must_use]
+    pub fn by(self, method: &Arc<str>, model: &Arc<str>) -> Self {
+        Self { method: method.clone(), model: model.clone(), ..self }
+    }
+}
+
+/// Writes rows.
+///
+/// # Errors
+/// What the output refuses.
+pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> Result<(), csv::Error> {
+    let mut csv = csv::Writer::from_writer(output);
+    csv.write_record(COLUMNS)?;
+    let seed = run.seed.to_string();
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    for row in rows {
+        let (value, sigma) = (number(row.value), number(row.sigma));
+        let count = row.count.map_or(String::new(), |count| count.to_string());
+        let cells: [&str; 13] = [
+            &run.scenario,
+            &row.method,
+            &row.model,
+            &row.measure,
+            &row.place,
+            &value,
+            &sigma,
+            &count,
+            &row.unit,
+            &row.status,
+            &row.reason,
+            &seed,
+            &run.revision,
+        ];
+        csv.write_record(cells)?;
+    }
+    Ok(csv.flush()?)
+}
+
+/// Reads what [`write_rows`] wrote, and the seed.
+///
+/// # Errors
+/// A file of another form.
+pub fn read_rows(input: impl Read) -> Result<(u64, Vec<Row>), RecordError> {
+    let mut csv = csv::Reader::from_reader(input);
+    let wrong = |line: u64, problem: String| RecordError::Row { line, problem };
+    if csv.headers()?.iter().ne(COLUMNS) {
+        return Err(wrong(1, format!("expected the columns {}", COLUMNS.join(","))));
+    }
+    let (mut seed, mut rows) = (0, Vec::new());
+    for record in csv.records() {
+        let record = record?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let text = |column: usize| record.get(column).unwrap_or_default();
+        let bad = |column: usize| wrong(line, format!("column `{}` holds `{}`", COLUMNS[column], text(column)));
+        let number = |column: usize| match text(column) {
+            "" => Ok(None),
+            text => text.parse().map(Some).map_err(|_| bad(column)),
+        };
+        let count = match text(7) {
+            "" => None,
+            text => Some(text.parse().map_err(|_| bad(7))?),
+        };
+        seed = text(11).parse().map_err(|_| bad(11))?;
+        let [method, model, measure, place] = [1, 2, 3, 4].map(|column| text(column).into());
+        let [unit, status, reason] = [8, 9, 10].map(|column| text(column).into());
+        rows.push(Row { method, model, measure, place, value: number(5)?, sigma: number(6)?, count, unit, status, reason });
+    }
+    Ok((seed, rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let rows = vec![
+            Row::px("holdout", "a, b.jpg", 0.1 + 0.2).beside(1.0 / 3.0).of(54).by(&"m".into(), &"opencv5".into()),
+            Row::without("split", "1", "failed", "no, \"not\" determined"),
+            Row::px("straight", "v", f64::NAN),
+        ];
+        assert!(rows[2].value.is_none(), "never NaN");
+        let run = RunInfo { scenario: "f/s".into(), seed: 7, revision: "r".into(), detector: None };
+        let mut bytes = Vec::new();
+        write_rows(&mut bytes, &run, &rows).unwrap();
+        assert_eq!(read_rows(&bytes[..]).unwrap(), (7, rows));
+        assert!(read_rows(&b"a,b\n"[..]).is_err());
+    }
+}

@@ -1,0 +1,93 @@
+//! `judge`: photographs of a board whose camera is known, and what a user may get wrong.
+
+use std::path::Path;
+
+use crate::project::{root, run, stderr, stdout};
+
+/// The rendered chessboard, and the names of its images.
+fn board(folder: &Path) -> Vec<String> {
+    let root = root();
+    let output = run(folder, &["--root", root.to_str().unwrap(), "render", "testfields/chessboard", "-o", "board", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let mut images: Vec<String> = std::fs::read_dir(folder.join("board"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.ends_with(".png"))
+        .map(|name| format!("board/{name}"))
+        .collect();
+    images.sort();
+    images
+}
+
+fn judge(folder: &Path, images: &[String], more: &[&str]) -> std::process::Output {
+    let mut arguments = vec!["judge", "-q", "--chessboard", "9x6:25"];
+    arguments.extend(images.iter().map(String::as_str));
+    arguments.extend(more);
+    run(folder, &arguments)
+}
+
+#[test]
+fn the_page_names_operator_and_model_and_is_the_same_on_any_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let images = board(folder.path());
+    assert!(images.len() >= 6, "{images:?}");
+    let more = ["-m", "pixel", "-m", "parametric_corner", "--model", "opencv4:fx,fy,cx,cy", "--model", "opencv4", "--splits", "3"];
+    let page = |name: &str, threads: &str| {
+        let with: Vec<&str> = more.into_iter().chain(["--report", name, "--threads", threads]).collect();
+        let output = judge(folder.path(), &images, &with);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(stdout(&output).contains("trust `parametric_corner:window=15` with the model `opencv4`"), "{}", stdout(&output));
+        let files = crate::project::files(&folder.path().join(name));
+        files.into_iter().map(|(path, bytes)| (path.file_name().unwrap().to_owned(), bytes)).collect::<Vec<_>>()
+    };
+    let one = page("one", "1");
+    let text = std::fs::read_to_string(folder.path().join("one/README.md")).unwrap();
+    for picture in ["holdout.png", "halves.png", "views.png", "principal-point.png"] {
+        assert!(text.contains(&format!("({picture})")), "{text}");
+        assert!(image::open(folder.path().join("one").join(picture)).is_ok(), "{picture}");
+    }
+    assert!(one == page("two", "2"), "the same bytes");
+    // A folder of the user's own is never replaced.
+    std::fs::create_dir(folder.path().join("mine")).unwrap();
+    std::fs::write(folder.path().join("mine/letter.txt"), "dear").unwrap();
+    let output = judge(folder.path(), &images, &["--report", "mine"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--report mine: holds files that calibench did not write"), "{}", stderr(&output));
+}
+
+#[test]
+fn mistakes_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let images = board(folder.path());
+    let refused = |images: &[String], more: &[&str], why: &str| {
+        let output = judge(folder.path(), images, more);
+        assert_eq!(output.status.code(), Some(2), "{why}");
+        assert!(stderr(&output).contains(why), "{}", stderr(&output));
+    };
+    refused(&images[..1], &[], "judging takes at least 6 photographs that show the board");
+    refused(&images[..5], &[], "found 5");
+    refused(&images, &["--model", "opncv5"], "did you mean `opencv5`?");
+    refused(&images, &["--model", "opencv4:fx,k9"], "opencv4 has no parameter k9");
+    refused(&images, &["-m", "forstnr"], "did you mean `forstner`?");
+    refused(&[images.clone(), images[..1].to_vec()].concat(), &[], "given twice");
+    let noise = calibench_model::Image::from_fn(640, 480, |x, y| ((x * 7919 + y * 104_729) % 251) as f32 / 250.0);
+    let blank: Vec<String> = (0..6).map(|i| format!("blank{i}.png")).collect();
+    blank.iter().for_each(|name| calibench_exchange::write_png(&folder.path().join(name), &noise, false).unwrap());
+    refused(&blank, &["-m", "pixel"], "found 0");
+}
+
+#[test]
+fn a_scenario_says_what_is_wrong_with_its_judgement() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = root();
+    let text = std::fs::read_to_string(root.join("scenarios/photographs/opencv-left.toml")).unwrap();
+    let refused = |wrong: String, why: &str| {
+        std::fs::write(folder.path().join("wrong.toml"), wrong).unwrap();
+        let output = run(folder.path(), &["--root", root.to_str().unwrap(), "show", "wrong.toml"]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(why), "{}", stderr(&output));
+    };
+    refused(text.replace("\"opencv8\"", "\"opencv9\""), "no camera model is called opencv9");
+    refused(text.replace("side = 25\n", ""), "[judgement] has no `side`");
+    refused(text.replace("left_intrinsics.yml", "../left_intrinsics.yml"), "is no plain file name");
+}
