@@ -4,7 +4,7 @@ use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, StudentsT};
 
 /// The p-values of one comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PValues {
+pub(crate) struct PValues {
     /// Of a change in either direction.
     pub two_sided: f64,
     /// Of growth.
@@ -28,7 +28,7 @@ impl PValues {
 ///
 /// Under the null hypothesis a difference of two like runs is symmetric about zero, whatever the errors themselves are like;
 /// heavy tails then make the test conservative, not prone to false alarms.
-pub(super) fn paired_t(differences: &[f64]) -> PValues {
+pub(crate) fn paired_t(differences: &[f64]) -> PValues {
     let n = differences.len() as f64;
     if n < 2.0 {
         return PValues::NONE;
