@@ -51,7 +51,7 @@ pub struct Verdict {
     pub second: Option<usize>,
 }
 
-/// The verdict of each row of a page. All comparisons of the page share [`LEVEL`] (Holm): one-sided paired t-tests of the losses by trial.
+/// The verdict of each row of a page. All comparisons of the page share [`LEVEL`] (Holm): one-sided paired t-tests of the losses by trial and of their logarithms.
 pub fn decide(rows: &[Vec<Candidate>]) -> Vec<Verdict> {
     let ranked: Vec<Vec<usize>> = rows.iter().map(|row| rank(row)).collect();
     let pairs = || ranked.iter().enumerate().flat_map(|(row, order)| order.iter().skip(1).map(move |other| (row, order[0], *other)));
@@ -75,9 +75,13 @@ fn rank(row: &[Candidate]) -> Vec<usize> {
     order
 }
 
+/// The p-value of `other` being no worse: the smaller one of two t-tests, doubled. Of the differences of the losses, which are the RMSE's own; and of
+/// their logarithms, because one wild point in one trial widens the scatter of the differences so far that they say nothing.
 fn growth(best: &Candidate, other: &Candidate) -> f64 {
-    let differences: Vec<f64> = other.losses.iter().zip(&best.losses).map(|(other, best)| other - best).collect();
-    paired_t(&differences).growth
+    let pairs = || other.losses.iter().zip(&best.losses);
+    let differences: Vec<f64> = pairs().map(|(other, best)| other - best).collect();
+    let ratios: Vec<f64> = pairs().filter(|(other, best)| **other > 0.0 && **best > 0.0).map(|(other, best)| (other / best).ln()).collect();
+    (2.0 * paired_t(&differences).growth.min(paired_t(&ratios).growth)).min(1.0)
 }
 
 #[cfg(test)]
@@ -114,6 +118,14 @@ mod tests {
         assert_eq!(decide(&[row])[0].best, Some(1));
         assert_eq!(decide(&[vec![candidate("lossy", 1e-4, 3, 11)]])[0], Verdict::default());
         assert_eq!(decide(&[vec![]])[0], Verdict::default());
+    }
+
+    #[test]
+    fn one_wild_trial_does_not_hide_that_all_others_are_worse() {
+        let mut wild = candidate("wild", 2e-3, 3, 1);
+        wild.losses[4] = 0.5;
+        let verdict = &decide(&[vec![candidate("a", 1e-3, 5, 0), wild]])[0];
+        assert_eq!((verdict.best, verdict.second), (Some(0), Some(1)));
     }
 
     #[test]

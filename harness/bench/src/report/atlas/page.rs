@@ -74,7 +74,7 @@ fn rules(rows: usize, machine: &str) -> String {
     let machine = if machine.is_empty() { "not measured: `calibench speed` does".to_owned() } else { machine.to_owned() };
     format!(
         "**How it was decided.** *Take* is the method with the least RMSE among those that lose (more than 1 px off) or reject at most {} % of the points; in the RMSE each such point counts as 1 px off. \
-         *As good* are those that a one-sided paired t-test on the trials' mean squared errors does not tell from it: all comparisons of the {rows} rows of this page share a chance of {} that any is told apart wrongly (Holm). \
+         *As good* are those that one-sided paired t-tests on the trials' mean squared errors and on their logarithms (the smaller p-value doubled) do not tell from it: all comparisons of the {rows} rows of this page share a chance of {} that any is told apart wrongly (Holm). \
          The test knows as many values as there are trials. *The next costs* names the first that is told apart, and its RMSE as a multiple. *OpenCV costs* is the same for `cornerSubPix` at its best setting here and, after the comma, at the usual 11 x 11. \
          *RMSE / bound* is over the points that were kept and can be below 1 where the method's window is larger than the bound's or where it is told more than the bound assumes. \
          Points per second on one thread: {machine}.\n\n",
@@ -94,7 +94,7 @@ fn cells(row: &Row, verdict: &Verdict) -> Vec<String> {
         plain(best.rmse()),
         best.ratio.map_or_else(|| "none".into(), |ratio| format!("{ratio:.2}")),
         format!("{:.2}", 100.0 * best.failures()),
-        best.speed.map_or_else(|| "?".into(), short),
+        best.speed.map_or_else(|| "not measured".into(), short),
         ties.join(", "),
         next,
         opencv(row, best),

@@ -78,6 +78,11 @@ fn row(part: &Part, speeds: &Speeds, title: String, cells: &[usize]) -> Row {
     Row { title, candidates: candidates(part, speeds, cells) }
 }
 
+/// The scenario whose image stands for those of `scenario`: `atlas/corners` for `atlas/corners-pose`.
+fn family(scenario: &str) -> &str {
+    scenario.split('-').next().unwrap_or(scenario)
+}
+
 /// All methods that measured, over `cells`.
 pub fn candidates(part: &Part, speeds: &Speeds, cells: &[usize]) -> Vec<Candidate> {
     let available = part.sweep.methods.iter().enumerate().filter(|(_, method)| method.unavailable.is_none());
@@ -91,7 +96,7 @@ pub fn candidates(part: &Part, speeds: &Speeds, cells: &[usize]) -> Vec<Candidat
             failed: scores.iter().map(|score| score.points() - score.measured).sum(),
             points: scores.iter().map(|score| score.points()).sum(),
             ratio: (count > 0.0).then(|| (sum / count).sqrt()),
-            speed: speeds.of(&part.sweep.scenario.name, &info.name).map(|speed| speed.points_per_second),
+            speed: speeds.of(family(&part.sweep.scenario.name), &info.name).map(|speed| speed.points_per_second),
         }
     };
     available.map(of).collect()
