@@ -1,5 +1,6 @@
 //! Tests that cross crates.
 
+mod atlas;
 mod calibrate;
 mod cameras;
 mod cameras_of_tools;

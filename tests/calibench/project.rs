@@ -9,7 +9,7 @@ pub fn root() -> PathBuf {
 }
 
 /// Families of scenarios whose run takes long: only tests of their own copy them.
-const LARGE: [&str; 3] = ["operators", "testfields", "sweeps"];
+const LARGE: [&str; 4] = ["operators", "testfields", "sweeps", "atlas"];
 
 /// A temporary project with the real scenarios and references, but for the large ones, and no records or reports.
 pub fn copy() -> tempfile::TempDir {

@@ -13,5 +13,6 @@ pub mod results;
 pub mod run;
 pub mod scenario;
 pub mod score;
+pub mod speeds;
 pub mod store;
 mod truth;

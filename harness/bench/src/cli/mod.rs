@@ -22,6 +22,7 @@ mod report;
 mod resect;
 mod run;
 mod show;
+mod speed;
 mod target;
 
 use std::io::{self, IsTerminal};
@@ -83,6 +84,8 @@ enum Command {
     Check(check::Check),
     /// Accept today's accuracy as the baseline: lists what gets worse, and asks
     Bless(check::Bless),
+    /// Measure points per second of methods, on one thread, for reports to read
+    Speed(speed::SpeedCommand),
     /// Measure points in photographs
     Measure(measure::Measure),
     /// Find a chessboard's corners in photographs: approximate positions for `measure`
@@ -154,6 +157,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Plot(plot) => plot.run(&context),
         Command::Check(check) => check.run(&context),
         Command::Bless(bless) => bless.run(&context),
+        Command::Speed(speed) => speed.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
         Command::Calibrate(calibrate) => calibrate.run(&context),

@@ -42,8 +42,13 @@ pub struct Changes {
 impl Changes {
     /// The methods that are asked for; none if the scenario's own are meant.
     pub fn methods(&self, context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
+        Self::of_methods(&self.methods, context)
+    }
+
+    /// The methods of these names, each once.
+    pub fn of_methods(names: &[String], context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
         let mut configured: Vec<Configured> = Vec::new();
-        for text in &self.methods {
+        for text in names {
             let method = context.method(text)?;
             if configured.iter().any(|earlier| earlier.label == method.label) {
                 return Err(Failure::input(format!("-m {text}: `{}` is asked for twice", method.label)));

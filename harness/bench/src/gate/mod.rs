@@ -23,6 +23,7 @@ pub use ceilings::{Ceiling, CeilingError, CeilingMetric, Ceilings};
 pub use finding::{Finding, Verdict};
 pub use holm::holm;
 pub use render::render;
+pub(crate) use statistics::paired_t;
 pub use table::{Coordinates, DECIMALS, Entry, MethodTable, Place, Table};
 pub use worse::worse_than;
 

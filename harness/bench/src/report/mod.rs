@@ -1,5 +1,6 @@
 //! Reports: Markdown and PNG, a pure function of records and published tables.
 
+pub mod atlas;
 mod canvas;
 pub mod conventions;
 pub(crate) mod field;
@@ -61,6 +62,9 @@ pub enum ReportError {
     /// Its conversions.
     #[error(transparent)]
     Convert(#[from] calibench_model::convert::ConvertError),
+    /// Its measured speeds.
+    #[error(transparent)]
+    Speeds(#[from] crate::speeds::SpeedsError),
     /// Its files.
     #[error("{0}")]
     Output(#[from] io::Error),
@@ -81,6 +85,9 @@ pub enum Written {
 /// # Errors
 /// Records or tables that cannot be read; the older report is then as it was.
 pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Registry) -> Result<Written, ReportError> {
+    if family == atlas::FAMILY {
+        return atlas::write(places, scenarios, registry);
+    }
     let of = |name: &String| {
         Ok::<_, LoadError>(match sweep::load(&places.records, name, registry)? {
             Some(sweep) => Either::Sweep(Box::new(sweep)),

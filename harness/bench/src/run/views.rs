@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use calibench_exchange::write_png;
 use calibench_model::camera::CameraModel;
-use calibench_model::{PixelPoint, Start};
+use calibench_model::{Image, PixelPoint, Start};
 use calibench_synth::random::{Key, Purpose, stream};
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::Exposure;
@@ -96,7 +96,7 @@ impl<'a> Prepared<'a> {
     }
 
     /// The image of a view before the sensor, without noise and without row jitter.
-    pub fn irradiance(&self, view: &PreparedView<'_>) -> calibench_model::Image {
+    pub fn irradiance(&self, view: &PreparedView<'_>) -> Image {
         self.renderer.render(&view.picture, &[])
     }
 
@@ -146,6 +146,19 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
         }
     }
     Ok(Trial { number, points: by_method.into_iter().flatten().collect(), missed_views: Vec::new() })
+}
+
+/// The image of the first view in the first trial, and where measuring starts in it.
+///
+/// # Errors
+/// A view that cannot be pictured, or an image that the sensor cannot write.
+pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<(Image, Vec<Start>), RunError> {
+    let key = Key { seed, scenario, trial: 0, view: "", target: "" };
+    let stations = subject.stations_of(key)?;
+    let prepared = Prepared::of(subject, &stations)?;
+    let Some(view) = prepared.views.first() else { return Err(RunError::NothingToRender) };
+    let starts = seen(&prepared, view, Key { view: &view.station.name, ..key }).into_iter().map(|point| point.start).collect();
+    Ok((prepared.image(view, key)?.image, starts))
 }
 
 /// A target that is wholly in the image.

@@ -16,8 +16,9 @@ const MARGIN: f64 = 0.05;
 impl Places {
     /// To scale where all values are numbers, else at equal distances.
     pub fn of(axis: &Axis) -> Self {
-        let labels = axis.values.iter().map(|value| value.text.clone()).collect();
-        let numbers: Option<Vec<f64>> = axis.values.iter().map(|value| value.number).collect();
+        let labels = axis.values.iter().map(|value| super::units::label(axis, value)).collect();
+        let numbers: Option<Vec<f64>> =
+            axis.values.iter().map(|value| value.number.map(|number| super::units::position(axis, number))).collect();
         let last = (axis.values.len() - 1).max(1) as f64;
         let numbers = numbers.unwrap_or_else(|| (0..axis.values.len()).map(|index| index as f64).collect());
         let positions: Vec<f64> = if axis.log { numbers.iter().map(|value| value.ln()).collect() } else { numbers };

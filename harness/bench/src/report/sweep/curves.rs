@@ -80,7 +80,7 @@ pub fn curves(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
 }
 
 fn axis_title(loaded: &LoadedSweep, layout: &Layout) -> String {
-    loaded.sweep.axes[layout.x].path.clone()
+    super::units::titled(&loaded.sweep.axes[layout.x])
 }
 
 fn panel_curves(loaded: &LoadedSweep, layout: &Layout, places: &Places, at: &At) -> Vec<Curve> {

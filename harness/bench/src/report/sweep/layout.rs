@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::load::LoadedSweep;
 use super::metric::{Estimate, Metric};
+use super::units;
 use crate::scenario::problem::nearest;
 
 /// Something that varies in a sweep.
@@ -114,7 +115,7 @@ impl Layout {
         used.extend(facet);
         for (index, dimension) in used.iter().enumerate() {
             if used[..index].contains(dimension) {
-                return Err(LayoutError::Twice(title(loaded, *dimension)));
+                return Err(LayoutError::Twice(key(loaded, *dimension)));
             }
         }
         let all = (0..axes.len()).map(Dimension::Axis).chain([Dimension::Method]);
@@ -124,7 +125,7 @@ impl Layout {
             ([], facet) => facet,
             ([only], None) => Some(*only),
             (several, _) => {
-                let names: Vec<String> = several.iter().map(|dimension| format!("`{}`", title(loaded, *dimension))).collect();
+                let names: Vec<String> = several.iter().map(|dimension| format!("`{}`", key(loaded, *dimension))).collect();
                 let example = several.iter().find_map(|dimension| match dimension {
                     Dimension::Axis(axis) => Some(format!("{}={}", axes[*axis].name, axes[*axis].values[0].text)),
                     Dimension::Method => None,
@@ -172,7 +173,7 @@ impl Layout {
     pub fn held(&self, loaded: &LoadedSweep) -> String {
         let shown = |axis: usize| axis == self.x || self.by == Dimension::Axis(axis) || self.facet == Some(Dimension::Axis(axis));
         let axes = loaded.sweep.axes.iter().enumerate().filter(|(index, axis)| !shown(*index) && axis.values.len() > 1);
-        axes.map(|(index, axis)| format!(", {} = {}", axis.name, axis.values[self.held[index]].text)).collect()
+        axes.map(|(index, axis)| format!("; {} = {}", units::titled(axis), units::label(axis, &axis.values[self.held[index]]))).collect()
     }
 }
 
@@ -199,11 +200,19 @@ impl At {
     }
 }
 
-/// What a dimension is called.
-pub fn title(loaded: &LoadedSweep, dimension: Dimension) -> String {
+/// The key of a dimension, as the user names it.
+fn key(loaded: &LoadedSweep, dimension: Dimension) -> String {
     match dimension {
         Dimension::Method => "method".into(),
         Dimension::Axis(axis) => loaded.sweep.axes[axis].name.clone(),
+    }
+}
+
+/// What a dimension is called in a picture.
+pub fn title(loaded: &LoadedSweep, dimension: Dimension) -> String {
+    match dimension {
+        Dimension::Method => "method".into(),
+        Dimension::Axis(axis) => units::titled(&loaded.sweep.axes[axis]),
     }
 }
 
@@ -211,7 +220,7 @@ pub fn title(loaded: &LoadedSweep, dimension: Dimension) -> String {
 pub fn value(loaded: &LoadedSweep, dimension: Dimension, place: usize) -> String {
     match dimension {
         Dimension::Method => loaded.methods[place].name.clone(),
-        Dimension::Axis(axis) => loaded.sweep.axes[axis].values[place].text.clone(),
+        Dimension::Axis(axis) => units::label(&loaded.sweep.axes[axis], &loaded.sweep.axes[axis].values[place]),
     }
 }
 

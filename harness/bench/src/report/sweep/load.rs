@@ -9,6 +9,7 @@ use calibench_measure::Registry;
 use crate::records::read_records;
 use crate::report::LoadError;
 use crate::report::load::groups;
+use crate::results::Trial;
 use crate::scenario::{self, Scenario, Sweep};
 use crate::score::{Score, Scores};
 use crate::store::{RECORDS, SCENARIO, cell_folder};
@@ -49,6 +50,17 @@ pub struct LoadedCell {
 /// # Errors
 /// Records that are not whole or not of this version.
 pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Option<LoadedSweep>, LoadError> {
+    load_with(records, name, registry, &mut |_, _, _| ())
+}
+
+/// Is shown every trial: the cell, the trial, and the names of the methods that its points index.
+pub type Watch<'a> = dyn FnMut(usize, &Trial, &[String]) + 'a;
+
+/// As [`load`]; `watch` is shown every trial.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(records: &Path, name: &str, registry: &Registry, watch: &mut Watch<'_>) -> Result<Option<LoadedSweep>, LoadError> {
     let folder = records.join(name);
     let text_path = folder.join(SCENARIO);
     let Ok(text) = std::fs::read_to_string(&text_path) else { return Ok(None) };
@@ -56,7 +68,7 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Option<Lo
     let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
     let mut loaded = LoadedSweep { scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0 };
     for index in 0..loaded.sweep.cells() {
-        loaded.add(&cell_folder(&folder, index).join(RECORDS))?;
+        loaded.add(&cell_folder(&folder, index).join(RECORDS), watch)?;
     }
     loaded.order();
     Ok(Some(loaded))
@@ -73,10 +85,13 @@ impl LoadedSweep {
         self.cells.get(cell)?.scores.get(method).filter(|score| score.points() > 0)
     }
 
-    fn add(&mut self, path: &Path) -> Result<(), LoadError> {
+    fn add(&mut self, path: &Path, watch: &mut Watch<'_>) -> Result<(), LoadError> {
         let file = File::open(path).map_err(|source| LoadError::File { path: path.to_owned(), source })?;
         let mut scores = Scores { groups: groups(&self.scenario), ..Scores::default() };
+        let cell = self.cells.len();
         let head = read_records(BufReader::new(file), |trial, methods| {
+            let names: Vec<String> = methods.iter().map(|info| self.sweep.method(&info.label)).collect();
+            watch(cell, &trial, &names);
             scores.add(&trial, |method| methods.get(method).is_some_and(|info| &*info.label != "pixel"));
         });
         let head = head.map_err(|source| LoadError::Records { path: path.to_owned(), source })?;

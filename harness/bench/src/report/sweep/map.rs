@@ -30,7 +30,7 @@ pub fn map(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
     let scale = Scale::of(all.iter().copied());
     let inside = (columns.len() as u32 * CELL.0, rows.len() as u32 * CELL.1);
     let (width, height) = (LEFT + inside.0 + RIGHT, TOP + inside.1 + BOTTOM);
-    let across = (1700 / width).clamp(1, panels.len().max(1) as u32);
+    let across = (1710 / width).clamp(1, panels.len().max(1) as u32);
     let down = (panels.len() as u32).div_ceil(across);
     let mut canvas = Canvas::new(across * width, down * height + 3 * LINE);
     for (index, (title, _)) in panels.iter().enumerate() {
@@ -52,7 +52,7 @@ pub fn map(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
                 let middle = bottom - (j as u32 * CELL.1 + CELL.1 / 2) as i32;
                 write(area, &super::layout::value(loaded, layout.by, row), (x as i32 - 8, middle), HPos::Right);
             }
-            write(area, &loaded.sweep.axes[layout.x].path, ((x + inside.0 / 2) as i32, bottom + 38), HPos::Center);
+            write(area, &super::units::titled(&loaded.sweep.axes[layout.x]), ((x + inside.0 / 2) as i32, bottom + 38), HPos::Center);
             write(area, &super::layout::title(loaded, layout.by), (x as i32 - 92, y as i32 - 14), HPos::Left);
             write(area, title, (right, y as i32 - 14), HPos::Right);
         });

@@ -21,6 +21,8 @@ pub enum Metric {
     Lost,
     /// Share of points that the operator rejected, %
     Rejected,
+    /// Share of points lost or rejected, %
+    Failed,
 }
 
 /// A figure with its 95 % interval, where there is one.
@@ -45,6 +47,7 @@ impl Metric {
             Self::Predicted => "RMSE / predicted",
             Self::Lost => "lost, %",
             Self::Rejected => "rejected, %",
+            Self::Failed => "lost or rejected, %",
         }
     }
 
@@ -58,6 +61,7 @@ impl Metric {
             Self::Predicted => ("predicted", ""),
             Self::Lost => ("lost", "%"),
             Self::Rejected => ("rejected", "%"),
+            Self::Failed => ("failed", "%"),
         }
     }
 
@@ -76,6 +80,7 @@ impl Metric {
             Self::Predicted => ratio(&score.to_predicted),
             Self::Lost => share(score.lost, score.points()),
             Self::Rejected => share(score.rejected.values().sum(), score.points()),
+            Self::Failed => share(score.points() - score.measured, score.points()),
         }
     }
 }

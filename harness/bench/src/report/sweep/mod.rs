@@ -8,10 +8,11 @@ mod map;
 mod metric;
 mod numbers;
 mod section;
+mod units;
 
 pub use curves::curves;
 pub use layout::{Choice, Dimension, Layout, LayoutError};
-pub use load::{LoadedSweep, load};
+pub use load::{LoadedMethod, LoadedSweep, load, load_with};
 pub use map::map;
 pub use metric::{Estimate, Metric};
 pub use numbers::write_numbers;

@@ -61,7 +61,8 @@ fn table(loaded: &LoadedSweep) -> String {
     let trials = loaded.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
     format!(
         "{}\nRMSE `sqrt(mean(dx^2 + dy^2))` in px, \u{b1} its standard error from the scatter between the {trials} trials of a cell (seed {}), over points measured \
-         within 1 px of the truth; in brackets the share of points that were lost or rejected. `calibench plot {}` draws other figures.\n\n",
+         within 1 px of the truth; in brackets the share of points that were lost or rejected. `calibench plot {}` draws other figures. \
+         The gate does not compare sweeps.\n\n",
         rows.render(),
         loaded.seed,
         loaded.scenario.name

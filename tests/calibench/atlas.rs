@@ -1,0 +1,65 @@
+//! The atlas: the settings that it evaluates are those that the search gives, and its report is a pure function of records.
+
+use std::path::Path;
+
+use calibench_bench::report::atlas::{Part, best, unmeasured};
+use calibench_measure::Registry;
+
+use crate::project::{copy_with, files, run, stderr};
+
+fn part(project: &Path, name: &str) -> Part {
+    Part::load(&project.join("records"), name, &Registry::builtin()).expect("records").expect("a sweep")
+}
+
+#[test]
+fn the_atlas_measures_the_settings_that_the_search_finds() {
+    let project = copy_with(&["atlas"]);
+    for family in ["corners", "discs", "wedges"] {
+        let (search, evaluation) = (format!("atlas/search-{family}"), format!("atlas/{family}"));
+        let ran = run(project.path(), &["run", "-q", &search]);
+        assert!(ran.status.success(), "{}", stderr(&ran));
+        // One trial is enough to know which methods it has.
+        assert!(run(project.path(), &["run", "-q", &evaluation, "--trials", "1"]).status.success());
+        let (search, evaluation) = (part(project.path(), &search), part(project.path(), &evaluation));
+        assert_ne!(search.sweep.seed, evaluation.sweep.seed, "the search has other seeds");
+        assert_eq!(unmeasured(&search, &evaluation), Vec::<String>::new());
+        assert!(best(&search).iter().all(|(_, found)| found.len() > 1), "{family}: each operator has a best setting");
+    }
+}
+
+#[test]
+fn records_and_report_are_the_same_bytes_on_one_thread_and_two() {
+    let report = |threads: &str| {
+        let project = copy_with(&["atlas"]);
+        let atlas = project.path().join("scenarios/atlas");
+        for entry in std::fs::read_dir(&atlas).expect("scenarios").map(|entry| entry.expect("a file")) {
+            if entry.file_name() != "corners-window.toml" && entry.file_name() != "wedges.toml" {
+                std::fs::remove_file(entry.path()).expect("removed");
+            }
+        }
+        for scenario in ["atlas/corners-window", "atlas/wedges"] {
+            let ran = run(project.path(), &["run", "-q", "--threads", threads, scenario, "--trials", "2"]);
+            assert!(ran.status.success(), "{}", stderr(&ran));
+        }
+        let told = run(project.path(), &["report", "-q", "--threads", threads, "atlas"]);
+        assert!(told.status.success(), "{}", stderr(&told));
+        let mut all = files(&project.path().join("reports"));
+        all.extend(files(&project.path().join("records")));
+        all
+    };
+    let (one, two) = (report("1"), report("2"));
+    assert!(one.iter().any(|(path, _)| path.ends_with("which-operator.md")));
+    assert!(one == two, "one thread and two give other files");
+}
+
+#[test]
+fn plot_reads_a_folder_of_records_and_short_keys() {
+    let project = copy_with(&["atlas"]);
+    assert!(run(project.path(), &["run", "-q", "atlas/corners-phase", "--trials", "1"]).status.success());
+    let arguments =
+        ["plot", "records/atlas/corners-phase", "--x", "x0", "--y", "rmse", "--by", "method", "--at", "blur=0.7", "-o", "phase.png"];
+    let plotted = run(project.path(), &arguments);
+    assert!(plotted.status.success(), "{}", stderr(&plotted));
+    let numbers = std::fs::read_to_string(project.path().join("phase.csv")).expect("the numbers beside the picture");
+    assert!(numbers.starts_with("camera.x0,optics.blur,method,metric,"), "{numbers}");
+}
