@@ -5,6 +5,7 @@ pub mod cli;
 pub mod data;
 pub mod gate;
 mod imaging;
+pub mod network;
 pub mod published;
 pub mod records;
 pub mod report;

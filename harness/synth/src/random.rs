@@ -37,6 +37,12 @@ pub enum Purpose {
     Texture = 36,
     /// Where a station is put.
     Station = 37,
+    /// The error of an image point that is common to all methods.
+    CommonError = 60,
+    /// The error of a control point's coordinates, where every trial has a survey of its own.
+    Control = 61,
+    /// The error of an image coordinate that is drawn and not measured.
+    DrawnPoint = 62,
 }
 
 /// Which stream.

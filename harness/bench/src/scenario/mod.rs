@@ -1,5 +1,6 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
+pub mod calibration;
 pub mod camera;
 pub mod catalogue;
 mod check;
@@ -29,6 +30,7 @@ use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
 pub use crate::imaging::Imaging;
+pub use calibration::Calibration;
 pub use check::{parse, parse_cell};
 pub use problem::{Problem, Problems};
 pub use stations::StationPlan;
@@ -123,6 +125,8 @@ pub struct ViewsSubject {
     pub imaging: Imaging,
     /// Who points at the targets.
     pub hand: Hand,
+    /// What is done with the measured points of every trial, if more than scoring them.
+    pub calibration: Option<Calibration>,
 }
 
 impl ViewsSubject {
@@ -164,7 +168,10 @@ impl Scenario {
                 let still = scene.phase == Phase::Fixed && matches!(scene.starts, Starts::Given(_));
                 still && scene.grey_noise == 0.0 && !scene.imaging.is_random()
             }
-            Subject::Views(views) => views.hand.sigma == 0.0 && views.redraw.is_none() && !views.imaging.is_random(),
+            Subject::Views(views) => {
+                let still = views.calibration.as_ref().is_none_or(|calibration| !calibration.is_random());
+                still && views.hand.sigma == 0.0 && views.redraw.is_none() && !views.imaging.is_random()
+            }
             Subject::Photographs(_) => true,
         }
     }

@@ -114,7 +114,7 @@ impl<'i> ViewTables<'i> {
         let stations = drawn.map_err(|error| problems.push(plan_of_stations.problem(&error))).ok()?;
         let redraw = Some(plan_of_stations).filter(|plan| plan.each_trial);
         let hand = Hand { sigma: pointing.sigma.0, whole_pixels: pointing.whole_pixels };
-        Some(ViewsSubject { field, unit: plan.unit, camera, camera_file, stations, redraw, imaging: imaging?, hand })
+        Some(ViewsSubject { field, unit: plan.unit, camera, camera_file, stations, redraw, imaging: imaging?, hand, calibration: None })
     }
 }
 
