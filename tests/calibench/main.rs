@@ -11,6 +11,7 @@ mod galo;
 mod gate;
 mod killed;
 mod measure;
+mod networks;
 mod opencv_gate;
 mod photographs;
 mod project;

@@ -59,7 +59,12 @@ fn write_records(folder: &Path, name: &str, plan: &Plan<'_>, revision: &str, ste
 }
 
 /// What writes the adjustments of `plan`, if it makes any.
-fn calibrations(folder: &Path, name: &str, plan: &Plan<'_>, revision: &str) -> Result<Option<CalibrationWriter<BufWriter<File>>>, RunError> {
+fn calibrations(
+    folder: &Path,
+    name: &str,
+    plan: &Plan<'_>,
+    revision: &str,
+) -> Result<Option<CalibrationWriter<BufWriter<File>>>, RunError> {
     let Subject::Views(views) = &plan.scenario.subject else { return Ok(None) };
     let Some(calibration) = &views.calibration else { return Ok(None) };
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: None };

@@ -10,8 +10,8 @@ pub mod records;
 
 use std::sync::Arc;
 
-use calibench_model::{Pose, Testfield};
 use calibench_model::camera::Camera;
+use calibench_model::{Pose, Testfield};
 use calibench_synth::random::Key;
 use calibench_synth::stations::Station;
 

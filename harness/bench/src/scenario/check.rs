@@ -18,7 +18,7 @@ use super::sensor::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, Position, SceneWire, TargetWire};
-use super::{PhotographsSubject, calibration, Pixels, Scenario, SceneSubject, Starts, Subject, figure};
+use super::{PhotographsSubject, Pixels, Scenario, SceneSubject, Starts, Subject, calibration, figure};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
@@ -27,8 +27,21 @@ const MOST_PIXELS: usize = 400_000_000;
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 13] =
-    ["sweep", "method", "calibration", "scene", "figure", "photographs", "camera", "testfield", "stations", "station", "optics", "sensor", "pointing"];
+pub const TOP_TABLES: [&str; 13] = [
+    "sweep",
+    "method",
+    "calibration",
+    "scene",
+    "figure",
+    "photographs",
+    "camera",
+    "testfield",
+    "stations",
+    "station",
+    "optics",
+    "sensor",
+    "pointing",
+];
 /// The keys of `[scene]` that are tables of their own.
 pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 

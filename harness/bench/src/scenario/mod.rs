@@ -176,6 +176,17 @@ impl Scenario {
         }
     }
 
+    /// Do its points go through an adjustment?
+    pub fn is_adjusted(&self) -> bool {
+        matches!(&self.subject, Subject::Views(views) if views.calibration.is_some())
+    }
+
+    /// The pixel pitch of the adjusted camera, um.
+    pub fn pitch_um(&self) -> Option<f64> {
+        let Subject::Views(views) = &self.subject else { return None };
+        views.calibration.as_ref().map(|calibration| calibration.start.pitch_um)
+    }
+
     /// The part of the name before the first `/`: the folder, and the report.
     pub fn family(&self) -> &str {
         self.name.split('/').next().unwrap_or(&self.name)

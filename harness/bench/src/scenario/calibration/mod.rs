@@ -149,7 +149,8 @@ fn drawn_sigmas(
     let labels = || methods.iter().map(|method| method.label.as_str());
     for label in written.get_ref().keys() {
         if label == POINTED || !labels().any(|known| known == label) {
-            let message = format!("`drawn` has `{label}`: expected labels of the scenario's methods, `{POINTED}` apart, whose hand is [pointing]'s");
+            let message =
+                format!("`drawn` has `{label}`: expected labels of the scenario's methods, `{POINTED}` apart, whose hand is [pointing]'s");
             problems.push(Problem::new(written.span(), message).nearest(label, labels()));
         }
     }
@@ -182,7 +183,8 @@ fn read_check(section: Section<'_>, views: &ViewsSubject, problems: &mut Vec<Pro
         problems.push(Problem::new(wire.views.span(), "`views` of [calibration.check]: expected at least two stations"));
     }
     if wire.control.get_ref().len() < LEAST_CONTROL {
-        let message = format!("`control` of [calibration.check]: expected at least {LEAST_CONTROL} targets, found {}", wire.control.get_ref().len());
+        let message =
+            format!("`control` of [calibration.check]: expected at least {LEAST_CONTROL} targets, found {}", wire.control.get_ref().len());
         problems.push(Problem::new(wire.control.span(), message));
     }
     if let (Some(&both), Some(written)) = (points.iter().find(|point| control.contains(point)), &wire.points) {
