@@ -12,7 +12,10 @@ pub fn section(table: &Table, found: Option<&Summaries>, pitch_um: f64) -> Strin
     match found {
         Some(found) => text.push_str(&comparison(table, found, pitch_um)),
         None => {
-            text.push_str(&format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario));
+            text.push_str(&format!(
+                "There are no adjustments of `{}`: run it with `calibench run {}`.\n\n",
+                table.scenario, table.scenario
+            ));
         }
     }
     if !table.findings.is_empty() {
