@@ -29,7 +29,21 @@ pub fn copy_with(families: &[&str]) -> tempfile::TempDir {
         let of_family = baselines.filter(|file| file.file_name().to_string_lossy().starts_with(&format!("{family}--")));
         of_family.for_each(|file| std::fs::remove_file(file.path()).expect("a baseline"));
     }
+    if !families.contains(&NETWORKS) {
+        remove_networks(folder.path());
+    }
     folder
+}
+
+/// The scenarios of `galo-2011` that adjust every trial: hundreds of trials each.
+pub const NETWORKS: &str = "galo-2011/network";
+
+fn remove_networks(project: &Path) {
+    for (folder, start) in [("scenarios/galo-2011", "network"), ("reference/baselines", "galo-2011--network")] {
+        let files = std::fs::read_dir(project.join(folder)).expect("a folder").map(|entry| entry.expect("a file"));
+        let of_networks = files.filter(|file| file.file_name().to_string_lossy().starts_with(start));
+        of_networks.for_each(|file| std::fs::remove_file(file.path()).expect("a file"));
+    }
 }
 
 fn copy_folder(from: &Path, to: &Path) {

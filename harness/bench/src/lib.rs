@@ -6,6 +6,7 @@ pub mod data;
 pub mod gate;
 mod imaging;
 pub mod judgement;
+pub mod network;
 pub mod published;
 pub mod records;
 pub mod report;

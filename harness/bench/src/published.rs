@@ -77,6 +77,12 @@ pub struct Cell {
     /// What is wrong in print, if anything is: what it must have been.
     #[serde(default)]
     pub misprint: Option<String>,
+    /// The method, where it is not the table's: for figures of adjustments.
+    #[serde(default)]
+    pub method: Option<String>,
+    /// The parameter, for figures of adjustments.
+    #[serde(default)]
+    pub of: Option<String>,
     /// Why the two cannot be compared, if so.
     #[serde(default)]
     pub not_comparable: Option<String>,
@@ -110,12 +116,39 @@ pub enum Metric {
     RmseXy,
     /// None of ours: what is printed stands alone.
     Unscored,
+    /// Of an adjustment: a parameter of the interior orientation.
+    IopValue,
+    /// Of an adjustment: its reported standard deviation.
+    IopSigma,
+    /// The same, in pixels.
+    IopSigmaPx,
+    /// Its reported standard deviation over that of the reference method.
+    SigmaRatio,
+    /// The mean of these over all parameters.
+    MeanSigmaRatio,
+    /// Planimetric RMSE of check points over their mean distance.
+    RelativeXy,
+    /// Altimetric RMSE of check points over their mean distance.
+    RelativeZ,
+    /// Planimetric RMSE over that of the reference method.
+    RelativeXyRatio,
+    /// Altimetric RMSE over that of the reference method.
+    RelativeZRatio,
 }
 
 impl Metric {
     /// Is it a figure of one target?
     pub fn is_of_one_target(self) -> bool {
         matches!(self, Self::X | Self::Y | Self::Dx | Self::Dy | Self::Distance)
+    }
+
+    /// Is it a figure of adjustments?
+    pub fn is_of_adjustment(self) -> bool {
+        use Metric::{IopSigma, IopSigmaPx, IopValue, MeanSigmaRatio, RelativeXy, RelativeXyRatio, RelativeZ, RelativeZRatio, SigmaRatio};
+        matches!(
+            self,
+            IopValue | IopSigma | IopSigmaPx | SigmaRatio | MeanSigmaRatio | RelativeXy | RelativeZ | RelativeXyRatio | RelativeZRatio
+        )
     }
 
     /// By how many units of the last digit ours may differ: a coordinate is rounded once; what is computed from rounded figures, once more.
@@ -178,6 +211,25 @@ impl Cell {
             }
             _ => Verdict::Differs,
         }
+    }
+}
+
+impl Cell {
+    /// Compares a printed figure of a single run with the mean of many: it reproduces within `range` of `mean`, widened by half a unit of its last digit.
+    pub fn verdict_within(&self, mean: f64, range: f64) -> Verdict {
+        match (&self.not_comparable, Printed::parse(&self.printed)) {
+            (Some(why), _) => Verdict::NotComparable(why.clone()),
+            (None, None) => Verdict::NotComparable("the printed figure cannot be read".into()),
+            (None, Some(printed)) if (mean - printed.value).abs() <= range + 0.5 * printed.unit => Verdict::Reproduces,
+            _ => Verdict::Differs,
+        }
+    }
+}
+
+impl Table {
+    /// Are its figures those of adjustments?
+    pub fn is_of_adjustments(&self) -> bool {
+        self.cells.iter().any(|cell| cell.metric.is_of_adjustment())
     }
 }
 
@@ -279,6 +331,8 @@ mod tests {
             plus: 0.0,
             at: BTreeMap::new(),
             misprint: None,
+            method: None,
+            of: None,
             not_comparable: why.map(str::to_owned),
         };
         assert_eq!(cell("22.520", None).verdict(Some(22.5205)), Verdict::Reproduces);

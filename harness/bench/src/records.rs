@@ -285,8 +285,9 @@ mod tests {
                     point(2, "a", measured(7.0, None)),
                 ],
                 missed_views: vec![("w".into(), "no board, sorry".into())],
+                ..Trial::default()
             },
-            Trial { number: 3, points: vec![point(2, "a", measured(-1.0, Some((0.5, 0.25))))], missed_views: Vec::new() },
+            Trial { number: 3, points: vec![point(2, "a", measured(-1.0, Some((0.5, 0.25))))], ..Trial::default() },
         ];
         (vec![info("absent", Some("not built")), info("m:w=1,k=2", None), info("n", None)], trials)
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::network::Calibrated;
 use calibench_model::{Measurement, PixelPoint, Rejection};
 
 /// A point more than this far from the truth, px, is lost: something else was measured.
@@ -100,4 +101,6 @@ pub struct Trial {
     pub points: Vec<PointResult>,
     /// Views without approximate positions, and why.
     pub missed_views: Vec<(Arc<str>, String)>,
+    /// Adjustments of what was measured, by method and then by set of parameters, where the scenario asks for them.
+    pub calibrations: Vec<Calibrated>,
 }

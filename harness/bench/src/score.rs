@@ -266,7 +266,7 @@ mod tests {
             point(2, "a", Some((9.0, 0.0))),
         ];
         // Method 2 only points: what it loses is still common to the operators.
-        scores.add(&Trial { number: 0, points, missed_views: Vec::new() }, |method| method < 2);
+        scores.add(&Trial { number: 0, points, ..Trial::default() }, |method| method < 2);
         let first = &scores.methods[0];
         assert_eq!((first.measured, first.lost, first.rejected["border"], first.points()), (1, 1, 1, 3));
         assert!((first.kept.rmse().unwrap() - 0.5).abs() < 1e-15);
@@ -284,7 +284,7 @@ mod tests {
         let groups = [("a", "disc"), ("b", "disc")].map(|(target, group)| (target.into(), group.into())).into();
         let mut scores = Scores { groups, ..Scores::new(1) };
         let points = vec![point(0, "a", Some((0.3, 0.0))), point(0, "b", Some((0.1, 0.0))), point(0, "c", None)];
-        scores.add(&Trial { number: 0, points, missed_views: Vec::new() }, |_| true);
+        scores.add(&Trial { number: 0, points, ..Trial::default() }, |_| true);
         let found: Vec<(&str, u64, u64)> = scores.methods[0].targets.iter().map(|t| (&*t.target, t.whole.dx.count(), t.failed)).collect();
         assert_eq!(found, [("disc", 2, 0), ("c", 0, 1)]);
     }

@@ -8,6 +8,7 @@ use calibench_exchange::FolderWriter;
 use calibench_measure::{BoardDetector, Configured, Registry};
 
 use crate::judgement::write_judgement;
+use crate::network::records::{CALIBRATIONS, CalibrationWriter};
 use crate::records::{RecordWriter, RunInfo};
 use crate::run::{Plan, RunError};
 use crate::scenario::camera::KEPT;
@@ -47,11 +48,31 @@ fn write_records(folder: &Path, name: &str, plan: &Plan<'_>, revision: &str, ste
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
     let file = BufWriter::new(File::create(folder.join(RECORDS))?);
     let mut records = RecordWriter::new(file, info.clone(), plan.method_infos()).map_err(std::io::Error::other)?;
+    let mut calibrations = calibrations(folder, name, plan, revision)?;
     plan.run(step, &mut |trial| {
+        if let Some(writer) = &mut calibrations {
+            writer.trial(trial.number, &trial.calibrations).map_err(std::io::Error::other)?;
+        }
         records.trial(&trial).map_err(std::io::Error::other)?;
         write_judgement(folder, plan, &info, &trial)
     })?;
+    calibrations.map_or(Ok(()), CalibrationWriter::finish).map_err(std::io::Error::other)?;
     Ok(records.finish().map_err(std::io::Error::other)?)
+}
+
+/// What writes the adjustments of `plan`, if it makes any.
+fn calibrations(
+    folder: &Path,
+    name: &str,
+    plan: &Plan<'_>,
+    revision: &str,
+) -> Result<Option<CalibrationWriter<BufWriter<File>>>, RunError> {
+    let Subject::Views(views) = &plan.scenario.subject else { return Ok(None) };
+    let Some(calibration) = &views.calibration else { return Ok(None) };
+    let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: None };
+    let file = BufWriter::new(File::create(folder.join(CALIBRATIONS))?);
+    let writer = CalibrationWriter::new(file, info, plan.method_infos(), calibration).map_err(std::io::Error::other)?;
+    Ok(Some(writer))
 }
 
 /// How a swept scenario is run: what of its cells differs from the file, and with what they are measured.

@@ -18,5 +18,5 @@ pub use folder::FolderWriter;
 pub use photo::{PhotoError, read_photo, write_png};
 pub use points::{LostRow, PointFile, PointFileError, PointRow, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
-pub use stations::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, ObservedStation, StationRow, read_observed_stations, read_stations, station_numbers};
+pub use stations::{ObservedStation, POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_observed_stations, read_stations, station_numbers};
 pub use table::write_table;

@@ -39,6 +39,12 @@ pub enum Purpose {
     Station = 37,
     /// Which photographs make the first half, and which are drawn again, when a calibration is judged.
     Split = 48,
+    /// The error of an image point that is common to all methods.
+    CommonError = 60,
+    /// The error of a control point's coordinates, where every trial has a survey of its own.
+    Control = 61,
+    /// The error of an image coordinate that is drawn and not measured.
+    DrawnPoint = 62,
 }
 
 /// Which stream.

@@ -3,6 +3,7 @@
 //! A deterministic scenario is compared coordinate by coordinate. A Monte Carlo scenario is compared by paired differences of the
 //! same trials, under one error budget for all tests of all scenarios of a check. Ceilings, written by hand, stand beside both.
 
+mod adjusted;
 mod baseline;
 mod ceilings;
 mod exact;

@@ -146,12 +146,26 @@ impl Table {
     /// # Panics
     /// When a point names a method that is not in the list given to [`Table::new`]: another run's trial.
     pub fn add(&mut self, trial: &Trial) {
+        if !trial.calibrations.is_empty() {
+            return self.add_adjusted(trial);
+        }
         for point in &trial.points {
             let entry = entry(&point.outcome, self.coordinates);
             let PointResult { view, target, .. } = point;
             let place = Place { trial: trial.number, view: view.clone(), target: target.clone() };
             let method = self.methods.get_mut(&self.labels[point.method]).expect("every label has its points");
             method.points.insert(place, entry);
+        }
+    }
+
+    /// Adds what became of the adjustments of a trial, in place of its points: the camera over the frame (px, 0), and the check points (RMSE_XY, RMSE_Z in mm).
+    fn add_adjusted(&mut self, trial: &Trial) {
+        for adjusted in trial.calibrations.iter().filter(|adjusted| adjusted.set == 0) {
+            let method = self.methods.get_mut(&self.labels[adjusted.method]).expect("every label has its points");
+            for (target, entry) in super::adjusted::entries(adjusted) {
+                let place = Place { trial: trial.number, view: super::adjusted::VIEW.into(), target: target.into() };
+                method.points.insert(place, entry);
+            }
         }
     }
 
@@ -198,7 +212,7 @@ fn entry(outcome: &Outcome, coordinates: Coordinates) -> Entry {
 }
 
 /// The value that the file's decimals hold, without a negative zero.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     let text = format!("{value:.DECIMALS$}");
     text.parse::<f64>().unwrap_or(f64::NAN) + 0.0
 }

@@ -26,7 +26,7 @@ pub(super) fn rejected(method: usize, target: &str) -> PointResult {
 pub(super) fn table(coordinates: Coordinates, methods: &[MethodInfo], trials: &[Vec<PointResult>]) -> Table {
     let mut table = Table::new("f/s", 7, coordinates, methods);
     for (number, points) in trials.iter().enumerate() {
-        table.add(&Trial { number: number as u64, points: points.clone(), missed_views: Vec::new() });
+        table.add(&Trial { number: number as u64, points: points.clone(), ..Trial::default() });
     }
     table
 }

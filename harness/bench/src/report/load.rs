@@ -9,6 +9,7 @@ use calibench_measure::Registry;
 use calibench_model::Image;
 use thiserror::Error;
 
+use super::network::Summaries;
 use crate::records::{RecordError, RecordHead, read_records};
 use crate::results::Trial;
 use crate::run::kept_image;
@@ -26,6 +27,8 @@ pub struct Loaded {
     pub scores: Scores,
     /// The first trial, point by point.
     pub first: Trial,
+    /// Its adjustments, if it makes any.
+    pub calibrations: Option<Summaries>,
     /// Where the images of the first trial are.
     pub folder: PathBuf,
 }
@@ -81,7 +84,8 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
     });
     let head = head.map_err(|source| LoadError::Records { path, source })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
-    Ok(Loaded { scenario, head, scores, first: first.unwrap_or_default(), folder })
+    let calibrations = super::network::load(&folder)?;
+    Ok(Loaded { calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
 }
 
 /// More targets than this are scored by kind.

@@ -8,6 +8,7 @@ mod figures;
 pub mod judgement;
 mod load;
 pub(crate) mod markdown;
+mod network;
 mod photographs;
 mod published_section;
 mod published_sweep;
@@ -104,6 +105,13 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
     let mut page = Page::new(family);
     let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
     for (_, table) in &tables {
+        if table.is_of_adjustments() {
+            let main = by_name(&table.scenario).ok();
+            let pitch = main.and_then(|loaded| loaded.scenario.pitch_um()).unwrap_or(f64::NAN);
+            page.text.push_str(&network::published(table, main.and_then(|loaded| loaded.calibrations.as_ref()), pitch));
+            page.illustrated.push(table.scenario.clone());
+            continue;
+        }
         if let Some(swept) = all.iter().filter_map(Either::sweep).find(|swept| swept.scenario.name == table.scenario) {
             page.text.push_str(&published_sweep::section(table, swept));
             continue;
@@ -119,7 +127,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
     for one in &all {
         match one {
             Either::Plain(loaded) => page.scenario(loaded),
-            Either::Sweep(loaded) => page.sweep(loaded),
+            Either::Sweep(loaded) => page.sweep(loaded, &printed_factors(&tables))?,
         }
     }
     let writer = FolderWriter::new(&places.reports)?;
@@ -183,8 +191,9 @@ fn deviations(loaded: &Loaded) -> String {
         return String::new();
     }
     let mut found = Vec::new();
-    if loaded.scores.trials != scenario.trials {
-        found.push(format!("{} trials in place of {}", loaded.scores.trials, scenario.trials));
+    let trials = loaded.calibrations.as_ref().map_or(loaded.scores.trials, |found| found.trials);
+    if trials != scenario.trials {
+        found.push(format!("{trials} trials in place of {}", scenario.trials));
     }
     if head.run.seed != scenario.seed {
         found.push(format!("seed {} in place of {}", head.run.seed, scenario.seed));
@@ -197,7 +206,19 @@ fn deviations(loaded: &Loaded) -> String {
     if found.is_empty() { String::new() } else { format!("**Not the scenario as its file says: {}.**\n\n", found.join(", ")) }
 }
 
+/// The paper's mean reduction factors, to be drawn beside a sweep of adjustments.
+fn printed_factors(tables: &[(String, published::Table)]) -> Vec<(String, f64)> {
+    let cells = tables.iter().flat_map(|(_, table)| &table.cells).filter(|cell| cell.metric == published::Metric::MeanSigmaRatio);
+    let factor = |cell: &published::Cell| {
+        let printed = published::Printed::parse(&cell.printed)?;
+        Some((format!("printed, {}: {}", cell.column, cell.printed), printed.value))
+    };
+    cells.filter_map(factor).collect()
+}
+
 struct Page {
+    /// Scenarios that a published table of adjustments stands on: they are shown in pictures.
+    illustrated: Vec<String>,
     text: String,
     /// Are there tables of scores?
     scored: bool,
@@ -210,7 +231,7 @@ impl Page {
             "# {family}\n\nMade by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. \
              Some of the methods compared here are our own, `forstner` and `harris_paraboloid` among them: each gets the same images, the same starts and the same score.\n\n"
         );
-        Self { text, scored: false, pictures: Vec::new() }
+        Self { illustrated: Vec::new(), text, scored: false, pictures: Vec::new() }
     }
 
     /// The heading of a scenario; the stem of its pictures' names.
@@ -231,16 +252,29 @@ impl Page {
         scenario.name.split_once('/').map_or(scenario.name.as_str(), |(_, rest)| rest).replace('/', "-")
     }
 
-    fn sweep(&mut self, loaded: &sweep::LoadedSweep) {
-        let stem = self.head(&loaded.scenario, &sweep::deviations(loaded));
+    fn sweep(&mut self, loaded: &sweep::LoadedSweep, printed: &[(String, f64)]) -> Result<(), LoadError> {
+        // The points of adjusted scenarios are those of the first trial: how many there were is in their tables.
+        let deviations = if loaded.scenario.is_adjusted() { String::new() } else { sweep::deviations(loaded) };
+        let stem = self.head(&loaded.scenario, &deviations);
+        if let Some((text, pictures)) = network::sweep(loaded, &stem, printed)? {
+            self.text.push_str(&text);
+            self.pictures.extend(pictures);
+            return Ok(());
+        }
         let (text, picture) = sweep::section(loaded, &stem);
         self.text.push_str(&text);
         self.pictures.extend(picture.map(|picture| (format!("{stem}.png"), picture)));
+        Ok(())
     }
 
     fn scenario(&mut self, loaded: &Loaded) {
         let scenario = &loaded.scenario;
         let stem = self.head(scenario, &deviations(loaded));
+        if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&scenario.name)) {
+            self.text.push_str(&text);
+            self.pictures.extend(pictures);
+            return;
+        }
         match &scenario.subject {
             Subject::Photographs(_) => {
                 let (text, pictures) = photographs::section(loaded);

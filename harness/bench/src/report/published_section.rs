@@ -43,6 +43,8 @@ fn figure(loaded: &Loaded, method: usize, metric: Metric, target: Option<&str>, 
         Metric::MeanDistance => mean(|e| e.0.hypot(e.1)),
         Metric::Unscored => None,
         Metric::RmseXy => mean(|e| e.0 * e.0 + e.1 * e.1).map(f64::sqrt),
+        // Their tables have sections of their own.
+        _ => None,
     }
 }
 

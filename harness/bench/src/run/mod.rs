@@ -150,7 +150,9 @@ impl<'a> Plan<'a> {
                 self.trials(step, sink, &|number| scene::run_trial(self, &prepared, number))
             }
             Subject::Views(subject) => {
-                let bounds = if self.bounds { views::bounds(self, subject)? } else { None };
+                // Drawn coordinates are those of no image.
+                let drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
+                let bounds = if self.bounds && !drawn { views::bounds(self, subject)? } else { None };
                 // Stations that are drawn anew have their bounds in each trial.
                 let fixed = bounds.as_ref().filter(|_| subject.redraw.is_none());
                 let prepared = views::Prepared::with_bounds(subject, fixed)?;

@@ -65,7 +65,7 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
             points.push(PointResult { bound, ..PointResult::scored(view.clone(), target.clone(), method, truth.at, result) });
         }
     }
-    Ok(Trial { number, points, missed_views: Vec::new() })
+    Ok(Trial { number, points, ..Trial::default() })
 }
 
 /// The scene of a trial, where its phase put it.

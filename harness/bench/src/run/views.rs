@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use calibench_exchange::write_png;
 use calibench_model::camera::CameraModel;
-use calibench_model::{Image, PixelPoint, Start};
+use calibench_model::{Image, Measurement, PixelPoint, Start};
 use calibench_synth::random::{Key, Purpose, stream};
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::Exposure;
@@ -14,8 +14,9 @@ use rayon::prelude::*;
 
 use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
+use crate::network::{self, Job};
 use crate::results::{PointResult, Trial};
-use crate::scenario::ViewsSubject;
+use crate::scenario::{Calibration, ViewsSubject};
 
 /// What is the same in all trials.
 pub struct Prepared<'a> {
@@ -116,10 +117,51 @@ pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<T
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option<&TargetBounds>, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
     let subject = prepared.subject;
+    if let Some(calibration) = &subject.calibration {
+        return calibrated(plan, prepared, calibration, key);
+    }
     if subject.redraw.is_none() {
         return run_views(plan, prepared, key);
     }
     run_views(plan, &Prepared::with(subject, &subject.stations_of(key)?, bounds)?, key)
+}
+
+/// A trial whose points go through the adjustment. Stations are the same in all of them.
+fn calibrated(plan: &Plan<'_>, prepared: &Prepared<'_>, calibration: &Calibration, key: Key<'_>) -> Result<Trial, RunError> {
+    let subject = prepared.subject;
+    let mut trial = match &calibration.drawn {
+        Some(sigmas) => draw_views(plan, prepared, sigmas, key),
+        None => run_views(plan, prepared, key)?,
+    };
+    let ViewsSubject { camera, field, unit, stations, .. } = subject;
+    let available: Vec<usize> = (0..plan.methods.len()).filter(|&method| plan.methods[method].operator.is_ok()).collect();
+    let job = Job { calibration, field, unit: *unit, camera, stations };
+    trial.calibrations = network::calibrate(&job, &trial.points, &available, key);
+    if key.trial > 0 && !calibration.keep_points {
+        trial.points.clear();
+    }
+    Ok(trial)
+}
+
+/// Coordinates that are drawn from the truth: by the hand, or with the standard deviation that the scenario gives.
+fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Option<f64>)], key: Key<'_>) -> Trial {
+    let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
+    for view in &prepared.views {
+        let key = Key { view: &view.station.name, ..key };
+        for point in seen(prepared, view, key) {
+            let target = &prepared.targets[point.target];
+            for (method, configured) in plan.methods.iter().enumerate().filter(|(_, configured)| configured.operator.is_ok()) {
+                let measured = match sigmas.iter().find(|(label, _)| *label == configured.label) {
+                    Some((label, Some(sigma))) => network::draw(point.truth, *sigma, label, Key { target, ..key }),
+                    Some((_, None)) => Measurement { position: point.start.position, covariance: None },
+                    // A method of the command line, of which the scenario says nothing.
+                    None => continue,
+                };
+                by_method[method].push(PointResult::scored(view.name.clone(), target.clone(), method, point.truth, Ok(measured)));
+            }
+        }
+    }
+    Trial { number: key.trial, points: by_method.into_iter().flatten().collect(), ..Trial::default() }
 }
 
 fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
@@ -145,7 +187,7 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
             by_method[method].extend(points);
         }
     }
-    Ok(Trial { number, points: by_method.into_iter().flatten().collect(), missed_views: Vec::new() })
+    Ok(Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() })
 }
 
 /// The image of the first view in the first trial, and where measuring starts in it.

@@ -17,7 +17,7 @@ use super::sensor::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::{Head, PhotographsWire, PolygonWire, Position, SceneWire, TargetWire};
-use super::{PhotographsSubject, Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, figure, judgement};
+use super::{PhotographsSubject, Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, calibration, figure, judgement};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
@@ -26,9 +26,10 @@ const MOST_PIXELS: usize = 400_000_000;
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 13] = [
+pub const TOP_TABLES: [&str; 14] = [
     "sweep",
     "method",
+    "calibration",
     "scene",
     "figure",
     "photographs",
@@ -139,6 +140,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let judgement = root.take_table("judgement", "[judgement]", problems);
     let views = ViewTables::take(&mut root, problems);
     let imaging = ImagingTables::take(&mut root, problems);
+    let calibration = root.take_table("calibration", "[calibration]", problems);
     let start = root.span.clone();
     if methods_missing && problems.is_empty() {
         problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
@@ -148,6 +150,9 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let seed = head.as_ref().map_or(0, |head| head.seed.0);
     let key = Key { seed, scenario: name, trial: 0, view: "", target: "" };
     let stray = views.span().or_else(|| imaging.span());
+    if let Some(stray) = calibration.as_ref().filter(|_| views.span().is_none()) {
+        problems.push(Problem::new(stray.span.clone(), "[calibration] without [testfield]: expected one with [camera] and stations"));
+    }
     let subject = match (scene, figure, photographs, views.span()) {
         (Some(scene), None, None, None) => read_scene(scene, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
         (None, Some(figure), None, None) => figure::read(figure, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
@@ -159,7 +164,10 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
             problems.push(Problem::new(judgement.map_or(start, |section| section.span), message));
             None
         }
-        (None, None, None, Some(_)) => views.read(imaging, &start, folder, key, problems).map(|views| Subject::Views(Box::new(views))),
+        (None, None, None, Some(_)) => {
+            let views = views.read(imaging, &start, folder, key, problems);
+            views.and_then(|views| calibration::attach(calibration, views, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
+        }
         (None, None, None, None) => {
             let problem = Problem::new(start, "the scenario has nothing to measure");
             problems

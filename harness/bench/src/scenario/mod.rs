@@ -1,5 +1,6 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
+pub mod calibration;
 pub mod camera;
 pub mod catalogue;
 mod check;
@@ -31,6 +32,7 @@ use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
 pub use crate::imaging::Imaging;
+pub use calibration::Calibration;
 pub use check::{parse, parse_cell};
 pub use judgement::JudgementPlan;
 pub use pointing::{Detector, Pointing};
@@ -131,6 +133,8 @@ pub struct ViewsSubject {
     pub hand: Hand,
     /// What finds them in place of a hand.
     pub detector: Option<Detector>,
+    /// What is done with the measured points of every trial, if more than scoring them.
+    pub calibration: Option<Calibration>,
 }
 
 impl ViewsSubject {
@@ -196,9 +200,23 @@ impl Scenario {
                 let still = scene.phase == Phase::Fixed && scene.starts.are_fixed();
                 still && scene.grey_noise == 0.0 && !scene.imaging.is_random()
             }
-            Subject::Views(views) => views.hand.sigma == 0.0 && views.redraw.is_none() && !views.imaging.is_random(),
+            Subject::Views(views) => {
+                let still = views.calibration.as_ref().is_none_or(|calibration| !calibration.is_random());
+                still && views.hand.sigma == 0.0 && views.redraw.is_none() && !views.imaging.is_random()
+            }
             Subject::Photographs(_) => true,
         }
+    }
+
+    /// Do its points go through an adjustment?
+    pub fn is_adjusted(&self) -> bool {
+        matches!(&self.subject, Subject::Views(views) if views.calibration.is_some())
+    }
+
+    /// The pixel pitch of the adjusted camera, um.
+    pub fn pitch_um(&self) -> Option<f64> {
+        let Subject::Views(views) = &self.subject else { return None };
+        views.calibration.as_ref().map(|calibration| calibration.start.pitch_um)
     }
 
     /// The part of the name before the first `/`: the folder, and the report.

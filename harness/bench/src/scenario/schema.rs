@@ -5,6 +5,7 @@ use calibench_measure::parameter::Domain;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
+use super::calibration::wire::{CalibrationWire, CheckWire};
 use super::camera::CameraWire;
 use super::figure::FigureWire;
 use super::judgement::JudgementWire;
@@ -40,6 +41,8 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["station"] = list(&table::<StationWire>());
     root["properties"]["optics"] = table::<OpticsWire>();
     root["properties"]["sensor"] = table::<SensorWire>();
+    root["properties"]["calibration"] = table::<CalibrationWire>();
+    root["properties"]["calibration"]["properties"]["check"] = table::<CheckWire>();
     root["properties"]["pointing"] = pointing();
     let subjects = [vec!["scene"], vec!["figure"], vec!["camera", "testfield", "pointing"], vec!["photographs"]];
     root["oneOf"] = subjects.iter().map(|keys| json!({ "required": keys })).collect();

@@ -117,7 +117,8 @@ impl<'i> ViewTables<'i> {
             Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true }, Some(detector)),
         };
         let (unit, survey_sigma) = (plan.unit, plan.survey_sigma());
-        Some(ViewsSubject { field, survey_sigma, unit, camera, camera_file, stations, redraw, imaging: imaging?, hand, detector })
+        let imaging = imaging?;
+        Some(ViewsSubject { field, survey_sigma, unit, camera, camera_file, stations, redraw, imaging, hand, detector, calibration: None })
     }
 }
 

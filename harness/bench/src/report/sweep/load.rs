@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calibench_measure::Registry;
 
@@ -26,6 +26,8 @@ pub struct LoadedSweep {
     pub cells: Vec<LoadedCell>,
     /// The seed of the run.
     pub seed: u64,
+    /// Where the cells lie.
+    pub folder: PathBuf,
 }
 
 /// A method in all cells.
@@ -66,7 +68,7 @@ pub fn load_with(records: &Path, name: &str, registry: &Registry, watch: &mut Wa
     let Ok(text) = std::fs::read_to_string(&text_path) else { return Ok(None) };
     let mut scenario = scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
     let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
-    let mut loaded = LoadedSweep { scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0 };
+    let mut loaded = LoadedSweep { scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder: folder.clone() };
     for index in 0..loaded.sweep.cells() {
         loaded.add(&cell_folder(&folder, index).join(RECORDS), watch)?;
     }

@@ -1,0 +1,23 @@
+//! Adjustments as the gate compares them: as if they were points, one pair of figures each, trial by trial.
+
+use calibench_model::Rejection;
+
+use super::table::{Entry, rounded};
+use crate::network::{Calibrated, Group};
+
+/// The view under which they stand.
+pub(super) const VIEW: &str = "adjustment";
+
+/// The camera over the frame and, where there is a second step, the check points. An adjustment that failed is a rejected one.
+pub(super) fn entries(adjusted: &Calibrated) -> Vec<(&'static str, Entry)> {
+    let failed = Entry::Rejected(Rejection::NotConverged);
+    let Ok(figures) = &adjusted.outcome else { return vec![("camera", failed), ("check points", failed)] };
+    let find = |group: Group, name: &str| figures.iter().find(|figure| figure.group == group && &*figure.name == name);
+    let mm = |name: &str| find(Group::Check, name).map(|figure| if figure.unit == "m" { 1e3 * figure.value } else { figure.value });
+    let camera = find(Group::Frame, "rms").map_or(failed, |figure| Entry::Measured([rounded(figure.value), 0.0]));
+    let check = match (mm("rmse_xy"), mm("rmse_z")) {
+        (Some(xy), Some(z)) => Some(Entry::Measured([rounded(xy), rounded(z)])),
+        _ => adjusted.check_failed.as_ref().map(|_| failed),
+    };
+    [("camera", Some(camera)), ("check points", check)].into_iter().filter_map(|(name, entry)| Some((name, entry?))).collect()
+}

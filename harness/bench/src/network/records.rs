@@ -1,0 +1,173 @@
+//! The adjustments of a run as one tidy CSV beside its records.
+
+use std::io::{Read, Write};
+
+use csv::StringRecord;
+
+use super::{Calibrated, Figure, Group};
+use crate::records::{RecordError, RunInfo};
+use crate::results::MethodInfo;
+use crate::scenario::Calibration;
+
+/// The columns of the file.
+pub const COLUMNS: [&str; 13] =
+    ["scenario", "trial", "method", "set", "group", "name", "value", "sigma", "error", "unit", "status", "reason", "seed"];
+
+/// The file's name in a scenario's folder.
+pub const CALIBRATIONS: &str = "calibrations.csv";
+
+/// Writes adjustments, trial by trial.
+pub struct CalibrationWriter<W: Write> {
+    csv: csv::Writer<W>,
+    run: RunInfo,
+    methods: Vec<MethodInfo>,
+    sets: Vec<String>,
+}
+
+impl<W: Write> CalibrationWriter<W> {
+    /// Starts a file with its header.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn new(output: W, run: RunInfo, methods: Vec<MethodInfo>, calibration: &Calibration) -> Result<Self, csv::Error> {
+        let mut csv = csv::Writer::from_writer(output);
+        csv.write_record(COLUMNS)?;
+        let sets = calibration.sets.iter().map(|set| set.name.clone()).collect();
+        Ok(Self { csv, run, methods, sets })
+    }
+
+    /// Adds the adjustments of a trial; what failed is a row with its reason.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn trial(&mut self, number: u64, all: &[Calibrated]) -> Result<(), csv::Error> {
+        let trial = number.to_string();
+        for one in all {
+            match &one.outcome {
+                Ok(figures) => figures.iter().try_for_each(|figure| self.figure(&trial, one, figure))?,
+                Err(why) => self.failure(&trial, one, Group::Network, why)?,
+            }
+            if let Some(why) = &one.check_failed {
+                self.failure(&trial, one, Group::Check, why)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn finish(mut self) -> Result<(), csv::Error> {
+        Ok(self.csv.flush()?)
+    }
+
+    fn figure(&mut self, trial: &str, one: &Calibrated, figure: &Figure) -> Result<(), csv::Error> {
+        let numbers = [Some(figure.value), figure.sigma, figure.error].map(|number| number.map_or_else(String::new, digits));
+        let [value, sigma, error] = [&numbers[0], &numbers[1], &numbers[2]];
+        self.row(trial, one, figure.group, &figure.name, [value, sigma, error], figure.unit, ["adjusted", ""])
+    }
+
+    fn failure(&mut self, trial: &str, one: &Calibrated, group: Group, why: &str) -> Result<(), csv::Error> {
+        self.row(trial, one, group, "", ["", "", ""], "", ["failed", why])
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "a row has as many columns")]
+    fn row(
+        &mut self,
+        trial: &str,
+        one: &Calibrated,
+        group: Group,
+        name: &str,
+        numbers: [&str; 3],
+        unit: &str,
+        [status, reason]: [&str; 2],
+    ) -> Result<(), csv::Error> {
+        let (method, set) = (&*self.methods[one.method].label, self.sets[one.set].as_str());
+        let [value, sigma, error] = numbers;
+        let seed = self.run.seed.to_string();
+        self.csv.write_record([
+            &self.run.scenario,
+            trial,
+            method,
+            set,
+            group.name(),
+            name,
+            value,
+            sigma,
+            error,
+            unit,
+            status,
+            reason,
+            &seed,
+        ])
+    }
+}
+
+/// Nine significant digits: well below what any of the figures is worth, and files stay small.
+fn digits(value: f64) -> String {
+    format!("{value:.8e}")
+}
+
+/// A row of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The trial.
+    pub trial: u64,
+    /// The method's label.
+    pub method: String,
+    /// The set's name.
+    pub set: String,
+    /// The group.
+    pub group: Group,
+    /// The name within the group.
+    pub name: String,
+    /// Value, sigma and error, where they are; the reason of a failure otherwise.
+    pub figure: Result<Numbers, String>,
+}
+
+/// The numbers of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbers {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: Option<f64>,
+    /// Value less truth.
+    pub error: Option<f64>,
+}
+
+/// Reads a file row by row.
+///
+/// # Errors
+/// A file that is not one of these, with its line.
+pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<(), RecordError> {
+    let mut reader = csv::Reader::from_reader(input);
+    if reader.headers()?.iter().ne(COLUMNS) {
+        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", COLUMNS.join(",")) });
+    }
+    let mut record = StringRecord::new();
+    while reader.read_record(&mut record)? {
+        sink(row(&record)?);
+    }
+    Ok(())
+}
+
+fn row(record: &StringRecord) -> Result<Row, RecordError> {
+    let wrong = |column: usize| RecordError::Row {
+        line: record.position().map_or(0, csv::Position::line),
+        problem: format!("column `{}` holds `{}`", COLUMNS[column], &record[column]),
+    };
+    let number = |column: usize| match &record[column] {
+        "" => Ok(None),
+        text => text.parse::<f64>().map(Some).map_err(|_| wrong(column)),
+    };
+    let group = Group::ALL.iter().find(|(_, name)| *name == &record[4]).ok_or_else(|| wrong(4))?.0;
+    let figure = match &record[10] {
+        "adjusted" => Ok(Numbers { value: number(6)?.ok_or_else(|| wrong(6))?, sigma: number(7)?, error: number(8)? }),
+        "failed" => Err(record[11].to_owned()),
+        _ => return Err(wrong(10)),
+    };
+    let trial = record[1].parse().map_err(|_| wrong(1))?;
+    Ok(Row { trial, method: record[2].into(), set: record[3].into(), group, name: record[5].into(), figure })
+}

@@ -1,0 +1,108 @@
+//! What of our adjustments stands behind a printed cell: one run, and all of them.
+
+use super::load::{Summaries, Summary};
+use super::stats::Running;
+use crate::network::Group;
+use crate::published::{Cell, Metric};
+
+/// Our figure for a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ours {
+    /// In the first trial.
+    pub one: f64,
+    /// Its mean over the trials.
+    pub mean: f64,
+    /// Half the 95 % interval of the mean.
+    pub half: Option<f64>,
+    /// Standard deviation of a single run.
+    pub scatter: Option<f64>,
+    /// The same of true errors, with half its 95 % interval, where it makes sense.
+    pub truth: Option<(f64, Option<f64>)>,
+}
+
+impl Ours {
+    fn of(one: Option<f64>, all: &Running) -> Option<Self> {
+        Some(Self { one: one?, mean: all.mean()?, half: all.half(), scatter: all.deviation(), truth: None })
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        let by = |value: Option<f64>| value.map(|value| value * factor);
+        Self {
+            one: self.one * factor,
+            mean: self.mean * factor,
+            half: by(self.half),
+            scatter: by(self.scatter),
+            truth: self.truth.map(|(v, h)| (v * factor, by(h))),
+        }
+    }
+}
+
+/// Our figure for `cell`; `default` is the table's method, `pitch_um` that of the camera.
+pub fn ours(found: &Summaries, cell: &Cell, default: &str, pitch_um: f64) -> Option<Ours> {
+    let method = cell.method.as_deref().unwrap_or(default);
+    let of = cell.of.as_deref().unwrap_or("c");
+    let reference = found.methods.first()?;
+    let iop = |name: &str| found.get(method, Group::Iop, name);
+    let check = |name: &str| Some((found.get(method, Group::Check, name)?, found.get(method, Group::Check, "distance")?.value.mean()?));
+    match cell.metric {
+        Metric::IopValue => Ours::of(iop(of)?.first.map(|n| n.value), &iop(of)?.value),
+        Metric::IopSigma => sigma(iop(of)?),
+        Metric::IopSigmaPx => Some(sigma(iop(of)?)?.scaled(1e3 / pitch_um)),
+        Metric::SigmaRatio => {
+            let (own, other) = (iop(of)?, found.get(reference, Group::Iop, of)?);
+            let one = own.first?.sigma? / other.first?.sigma?;
+            Some(Ours { truth: own.errors.ratio(), ..Ours::of(Some(one), &own.sigma_ratio)? })
+        }
+        Metric::MeanSigmaRatio => mean_ratio(found, method, reference),
+        Metric::RelativeXy | Metric::RelativeZ => {
+            let (rmse, distance) = check(name_of(cell.metric))?;
+            let ours = Ours::of(rmse.first.map(|n| n.value), &rmse.value)?;
+            Some(ours.scaled(1.0 / distance))
+        }
+        Metric::RelativeXyRatio | Metric::RelativeZRatio => {
+            let name = name_of(cell.metric);
+            let (own, other) = (found.get(method, Group::Check, name)?, found.get(reference, Group::Check, name)?);
+            let one = own.first?.value / other.first?.value;
+            let against_truth = found.get(method, Group::Check, name.trim_end_matches("_survey"));
+            Some(Ours { truth: against_truth.and_then(|s| s.values.ratio()), ..Ours::of(Some(one), &own.value_ratio)? })
+        }
+        _ => None,
+    }
+}
+
+/// The paper's check coordinates are surveyed ones.
+fn name_of(metric: Metric) -> &'static str {
+    if matches!(metric, Metric::RelativeXy | Metric::RelativeXyRatio) { "rmse_xy_survey" } else { "rmse_z_survey" }
+}
+
+fn sigma(summary: &Summary) -> Option<Ours> {
+    let error = summary.square.mean().map(f64::sqrt);
+    let truth = error.map(|rms| (rms, summary.square.half().map(|half| 0.5 * half / rms)));
+    Some(Ours { truth, ..Ours::of(summary.first?.sigma, &summary.sigma)? })
+}
+
+/// The mean over the scored parameters. They move together from trial to trial, so the scatter is taken as that of one of them; the interval likewise.
+fn mean_ratio(found: &Summaries, method: &str, reference: &str) -> Option<Ours> {
+    let names = found.scored();
+    let all: Vec<Ours> = names
+        .iter()
+        .filter_map(|name| {
+            let (own, other) = (found.get(method, Group::Iop, name)?, found.get(reference, Group::Iop, name)?);
+            let one = own.first?.sigma? / other.first?.sigma?;
+            Some(Ours { truth: own.errors.ratio(), ..Ours::of(Some(one), &own.sigma_ratio)? })
+        })
+        .collect();
+    let count = all.len() as f64;
+    let mean = |of: &dyn Fn(&Ours) -> Option<f64>| Some(all.iter().map(of).sum::<Option<f64>>()? / count);
+    if all.is_empty() {
+        return None;
+    }
+    let truth = mean(&|o| Some(o.truth?.0)).map(|value| (value, mean(&|o| o.truth?.1)));
+    Some(Ours {
+        one: mean(&|o| Some(o.one))?,
+        mean: mean(&|o| Some(o.mean))?,
+        half: mean(&|o| o.half),
+        scatter: mean(&|o| o.scatter),
+        truth,
+    })
+}

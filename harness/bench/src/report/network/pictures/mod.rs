@@ -1,0 +1,8 @@
+//! Pictures of a calibrated scenario.
+
+mod axes;
+pub mod distribution;
+pub mod factors;
+pub mod floor;
+pub mod plan;
+pub mod residuals;
