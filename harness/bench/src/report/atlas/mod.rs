@@ -167,7 +167,7 @@ fn groups(parts: &Parts, speeds: &Speeds) -> Vec<Group> {
     };
     add("atlas/corners", "Chess corners, by image", "Tilt to 50 degrees, any rotation and phase.", &|part| rows::images(part, speeds));
     add("atlas/corners", "Chess corners, by the speed that is needed", "Images of usual blur with 2 % of noise, one thread.", &|part| {
-        rows::needs(part, speeds, &[1.0, 3e4, 1e5, 3e5, 1e6])
+        rows::needs(part, speeds, &[1e3, 3e4, 1e5, 3e5, 1e6])
     });
     add("atlas/corners-pose", "Chess corners, by tilt", "Blur 0.7 px, 2 % of noise.", &|part| {
         rows::along(

@@ -40,34 +40,41 @@ pub fn which(groups: &[Group], machine: &str, evidence: &str) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-/// In each group, who is best in how many rows, and who cannot be told from the best.
+/// In each group, who is best or as good as the best in most rows, and who is best in the others.
 fn short_table(groups: &[Group], verdicts: &[Verdict]) -> String {
-    let mut table = MarkdownTable::new(&["what is measured", "take", "unless"]);
+    let mut table = MarkdownTable::new(&["what is measured", "take", "unless, or by"]);
     let mut next = verdicts.iter();
     for group in groups {
         let rows: Vec<(&Row, &Verdict)> = group.rows.iter().zip(&mut next).collect();
         let mut wins: Vec<(&str, usize)> = Vec::new();
-        for (row, verdict) in &rows {
-            let Some(best) = verdict.best.map(|best| row.candidates[best].name.as_str()) else { continue };
-            match wins.iter_mut().find(|(name, _)| *name == best) {
+        for name in rows.iter().flat_map(|(row, verdict)| sound(row, verdict)) {
+            match wins.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, count)) => *count += 1,
-                None => wins.push((best, 1)),
+                None => wins.push((name, 1)),
             }
         }
         wins.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        let Some((most, count)) = wins.first() else {
+        let Some(&(most, count)) = wins.first() else {
             table.row([group.title.to_owned(), "none: every operator fails too often".into(), String::new()]);
             continue;
         };
-        let other = |(row, verdict): &(&Row, &Verdict)| match verdict.best {
-            Some(best) if row.candidates[best].name == *most => None,
-            Some(best) => Some(format!("{}: `{}`", row.title, row.candidates[best].name)),
+        // Where fewer than two thirds of the rows agree, each speaks for itself.
+        let common = 3 * count >= 2 * rows.len();
+        let other = |(row, verdict): &(&Row, &Verdict)| match sound(row, verdict).next() {
+            Some(_) if common && sound(row, verdict).any(|name| name == most) => None,
+            Some(best) => Some(format!("{}: `{best}`", row.title)),
             None => Some(format!("{}: none is sound", row.title)),
         };
-        let unless: Vec<String> = rows.iter().filter_map(other).collect();
-        table.row([group.title.to_owned(), format!("`{most}` ({count} of {} rows)", rows.len()), unless.join("; ")]);
+        let unless = rows.iter().filter_map(other).collect::<Vec<_>>().join("; ");
+        let take = if common { format!("`{most}` ({count} of {} rows)", rows.len()) } else { "it depends".to_owned() };
+        table.row([group.title.to_owned(), take, unless]);
     }
     format!("{}\n", table.render())
+}
+
+/// The best of a row and those that are as good.
+fn sound<'a>(row: &'a Row, verdict: &'a Verdict) -> impl Iterator<Item = &'a str> {
+    verdict.best.iter().chain(&verdict.ties).map(|&index| row.candidates[index].name.as_str())
 }
 
 fn rules(rows: usize, machine: &str) -> String {
@@ -141,7 +148,7 @@ mod tests {
         let second = vec![candidate("lossy", 0.001, 90)];
         let rows = vec![Row { title: "sharp".into(), candidates: first }, Row { title: "dark".into(), candidates: second }];
         let page = which(&[Group { title: "Corners", about: "About.".into(), rows }], "a machine", "Evidence.\n");
-        assert!(page.contains("| Corners          | `a:window=9` (1 of 2 rows) | dark: none is sound |"), "{page}");
+        assert!(page.contains("| Corners          | it depends | sharp: `a:window=9`; dark: none is sound |"), "{page}");
         assert!(page.contains("`opencv_subpix:window=11`: 3.00 times"), "{page}");
         assert!(page.contains("none; `lossy` fails least, 18.0 %"), "{page}");
         assert!(page.contains("20k") && page.contains("a machine") && page.ends_with("Evidence.\n"));
