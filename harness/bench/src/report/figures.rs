@@ -33,10 +33,12 @@ impl Layer {
         let layer = |label: &str| {
             let name = label.split(':').next().unwrap_or(label);
             let wanted = USUAL.iter().position(|usual| *usual == name).unwrap_or(0);
-            let free = (0..METHOD_MARKS.len()).map(|step| (wanted + step) % METHOD_MARKS.len()).find(|place| !taken.contains(place));
-            let place = free.unwrap_or(wanted);
-            taken.push(place);
-            Self { name: label.to_owned(), mark: METHOD_MARKS[place], colour: COLOURS[place] }
+            let marks = METHOD_MARKS.len();
+            // After one of each, the same marks in other colours.
+            let free = (0..marks * COLOURS.len()).map(|step| ((wanted + step) % marks, step / marks)).find(|look| !taken.contains(look));
+            let (place, round) = free.unwrap_or((wanted, 0));
+            taken.push((place, round));
+            Self { name: label.to_owned(), mark: METHOD_MARKS[place], colour: COLOURS[(place + round * marks) % COLOURS.len()] }
         };
         labels.map(layer).collect()
     }
