@@ -58,9 +58,13 @@ pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> String {
     }
     text.push_str(&findings(table));
     text.push_str("### Every method on the same points\n\n");
-    text.push_str(
-        "Distances from the truth in px, and as fractions of a pixel. One image without noise: the figures have no scatter. `dx` is \
-         positive to the right, `dy` downwards.\n\n",
+    let images = match main.scenario.trials {
+        1 => "One image without noise: the figures have no scatter.".to_owned(),
+        trials => format!("The first of {trials} trials: the scenario's own section has them all."),
+    };
+    let _ = writeln!(
+        text,
+        "Distances from the truth in px, and as fractions of a pixel. {images} `dx` is positive to the right, `dy` downwards.\n"
     );
     for loaded in std::iter::once(main).chain(beside.iter().copied()) {
         let _ = writeln!(text, "**`{}`**\n\n{}", loaded.scenario.name, every_method(table, loaded));

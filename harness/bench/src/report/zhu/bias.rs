@@ -31,9 +31,9 @@ pub(super) fn section(loaded: &LoadedSweep) -> Option<Part> {
          on the pixel grid; lost points are among them. The strength needs gradients of both edges inside its integration window, so its maximum lies inside the area. With `alpha = 0` the \
          strength is the determinant alone, and the bias grows with the sharpness of the corner and, for each angle, with the width of the integration. Across the bisector symmetry leaves \
          nothing.\n\nThe paper's `alpha = 0.04` subtracts a part of the squared trace, which drives the maximum further inwards where the determinant is small beside it: with narrow integration, \
-         where a pixel sees hardly more than one edge, and at blunt corners. Two edges of equal weight that meet at an angle have a determinant of `sin^2(angle) / 4` of the squared trace: 0.0625 at \
+         where a pixel sees hardly more than one edge, and at blunt corners (at 30 degrees it moves it outwards). Two edges of equal weight that meet at an angle have a determinant of `sin^2(angle) / 4` of the squared trace: 0.0625 at \
          150 degrees, and the rounding of the tip by blur and gradient takes it below 0.04 unless the integration is wide beside them (3 px is). The strength is then nowhere positive, and every \
-         point is rejected as `no_corner`; the same at 120 and 135 degrees with an integration of 0.5 px.\n\n{}\n![Mean error along the bisector over the angle](bias-along.png)\n\n",
+         point is rejected as `no_corner`; most points are rejected at 120 and 135 degrees, too, with an integration of 0.5 px.\n\n{}\n![Mean error along the bisector over the angle](bias-along.png)\n\n",
         loaded.scenario.name,
         rows.render()
     );
