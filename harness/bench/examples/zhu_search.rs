@@ -146,7 +146,7 @@ fn kernels(derivative: Derivative) -> (Vec<f64>, Vec<f64>) {
 
 /// Rows by `across`, then columns by `down`, for the middle `side` x `side` px of `grid`.
 fn separable(grid: &Grid, across: &[f64], down: &[f64], side: usize) -> Grid {
-    let (left, top) = ((grid.side - side - across.len() + 1) / 2, (grid.side - side - down.len() + 1) / 2);
+    let (left, top) = ((grid.side - side) / 2 - across.len() / 2, (grid.side - side) / 2 - down.len() / 2);
     let rows = side + down.len() - 1;
     let mut first = vec![0.0; rows * side];
     for (row, line) in first.chunks_exact_mut(side).enumerate() {

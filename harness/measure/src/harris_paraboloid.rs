@@ -24,6 +24,9 @@ pub struct HarrisParaboloid {
     derivation: f64,
 }
 
+/// The strongest pixel and the 3 x 3 strengths around it.
+type Peak = ((i64, i64), [[f64; 3]; 3]);
+
 /// From the 3 x 3 strengths around the strongest pixel to a position.
 enum Refinement {
     /// The maximum of a paraboloid.
@@ -132,7 +135,7 @@ impl HarrisParaboloid {
     }
 
     /// The strongest pixel and the 3 x 3 strengths around it.
-    fn peak(&self, image: &Image, start: &Start) -> Result<((i64, i64), [[f64; 3]; 3]), Rejection> {
+    fn peak(&self, image: &Image, start: &Start) -> Result<Peak, Rejection> {
         let ring = self.half + 1;
         let (x, y) = window_centre(image, start, (ring + self.harris.reach() + self.smoothing()) as i64)?;
         let strengths = self.strengths(image, (x, y), ring)?;
