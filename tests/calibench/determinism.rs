@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use crate::project::{copy, files, program};
 
-/// Records and reports of three trials of every scenario, made on `threads` threads.
+/// Records and reports of every scenario, made on `threads` threads.
 fn outputs(threads: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let project = copy();
-    for arguments in [&["run", "--all", "--trials", "3", "--quiet"][..], &["report", "--quiet"]] {
+    for arguments in [&["run", "--all", "--quiet"][..], &["report", "--quiet"]] {
         let status = program(project.path()).args(arguments).env("RAYON_NUM_THREADS", threads).status().unwrap();
         assert!(status.success(), "{arguments:?}");
     }

@@ -75,8 +75,8 @@ fn corner(angle: f64, phase: (f64, f64)) -> (calibench_model::Image, PixelPoint)
 }
 
 /// Mean error along and across the bisector over phases, px.
-fn bias(angle: f64, sigma: f64) -> (f64, f64) {
-    let configured = Registry::builtin().parse(&format!("harris_paraboloid:window=17,sigma={sigma}")).unwrap();
+fn bias(angle: f64, sigma: f64, alpha: f64) -> (f64, f64) {
+    let configured = Registry::builtin().parse(&format!("harris_paraboloid:window=17,sigma={sigma},alpha={alpha}")).unwrap();
     let operator = HarrisParaboloid::of(&configured.settings as &Settings);
     // Phases that no symmetry of the grid makes ties of.
     let phases = [-0.4, -0.2, 0.0, 0.2, 0.4].into_iter().flat_map(|x| [-0.31, -0.11, 0.09, 0.29].map(move |y| (x + 0.03, y)));
@@ -95,13 +95,34 @@ fn bias(angle: f64, sigma: f64) -> (f64, f64) {
 fn the_bias_runs_along_the_bisector_and_grows_with_sharpness_and_integration() {
     let mut last = f64::INFINITY;
     for angle in [30.0, 60.0, 90.0, 120.0] {
-        let (along, across) = bias(angle, 1.0);
+        let (along, across) = bias(angle, 1.0, 0.04);
         assert!(along > 0.3 && across.abs() < 0.06 * along, "{angle}: {along} {across}");
         assert!(along < last, "{angle}: {along} after {last}");
         last = along;
     }
-    let widths = [0.7, 1.0, 1.5, 2.0].map(|sigma| bias(90.0, sigma).0);
+    let widths = [0.7, 1.0, 1.5, 2.0].map(|sigma| bias(90.0, sigma, 0.04).0);
     assert!(widths.windows(2).all(|pair| pair[0] < pair[1]), "{widths:?}");
+}
+
+#[test]
+fn the_determinant_alone_is_biased_the_more_the_sharper_the_corner_and_the_wider_the_integration() {
+    let angles = [30.0, 60.0, 90.0, 120.0, 150.0];
+    let all = angles.map(|angle| [0.5, 1.0, 1.5, 2.0].map(|sigma| bias(angle, sigma, 0.0).0));
+    assert!(all.iter().all(|by_width| by_width.windows(2).all(|pair| pair[0] < pair[1])), "{all:?}");
+    assert!(all.windows(2).all(|pair| pair[0].iter().zip(&pair[1]).all(|(sharp, blunt)| sharp > blunt)), "{all:?}");
+}
+
+#[test]
+fn the_trace_hides_a_blunt_corner_that_is_narrowly_integrated() {
+    // Of two edges at 150 degrees the determinant is at most sin^2(150) / 4 = 0.0625 of the squared trace, less at a rounded tip.
+    let (image, at) = corner(150.0, (0.1, 0.2));
+    let found = |spec: &str| {
+        let configured = Registry::builtin().parse(&format!("harris_paraboloid:window=15,{spec}")).unwrap();
+        HarrisParaboloid::of(&configured.settings).measure(&image, &Start::at(at))
+    };
+    assert_eq!(found("sigma=1,alpha=0.04").unwrap_err(), Rejection::NoCorner);
+    assert_eq!(found("sigma=1,alpha=0.0626").unwrap_err(), Rejection::NoCorner);
+    assert!(found("sigma=1,alpha=0").is_ok() && found("sigma=4,alpha=0.04").is_ok());
 }
 
 const DETECTED: &str = r#"why = "A corner that is found and a place where nothing is."

@@ -24,6 +24,9 @@ pub struct HarrisParaboloid {
     derivation: f64,
 }
 
+/// The strongest pixel and the 3 x 3 strengths around it.
+type Peak = ((i64, i64), [[f64; 3]; 3]);
+
 /// From the 3 x 3 strengths around the strongest pixel to a position.
 enum Refinement {
     /// The maximum of a paraboloid.
@@ -132,7 +135,7 @@ impl HarrisParaboloid {
     }
 
     /// The strongest pixel and the 3 x 3 strengths around it.
-    fn peak(&self, image: &Image, start: &Start) -> Result<((i64, i64), [[f64; 3]; 3]), Rejection> {
+    fn peak(&self, image: &Image, start: &Start) -> Result<Peak, Rejection> {
         let ring = self.half + 1;
         let (x, y) = window_centre(image, start, (ring + self.harris.reach() + self.smoothing()) as i64)?;
         let strengths = self.strengths(image, (x, y), ring)?;
@@ -220,9 +223,11 @@ mod tests {
 
     #[test]
     fn conforms_at_several_settings() {
-        for spec in ["window=11", "window=5,k=1", "window=7,sigma=2,k=100", "window=31,alpha=0.06", "window=7,derivation=0.7,sigma=0.5"] {
+        for spec in ["window=11", "window=5,k=1", "window=7,sigma=2,k=100", "window=31,alpha=0.06"] {
             conformance::check(&*operator(&format!("harris_paraboloid:{spec}")), 1e-7);
         }
+        // An image is smoothed in single precision: some ten roundings of 6e-8 in every grey value, and a position follows a grey value by up to a few px.
+        conformance::check(&*operator("harris_paraboloid:window=7,derivation=0.7,sigma=0.5"), 2e-6);
     }
 
     #[test]

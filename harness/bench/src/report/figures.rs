@@ -95,12 +95,18 @@ pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], la
     canvas.enlarge(image, (0, 0), size, zoom, (GAP, GAP));
     canvas.frame((GAP, GAP), (width, height));
     canvas.marks(&drawn(layers, marks, |at| place(at, (0, 0), zoom, (GAP, GAP))));
+    let mut taken: Vec<(u32, u32, u32)> = Vec::new();
     for (text, at) in labels {
         let (x, y) = place(*at, (0, 0), zoom, (GAP, GAP));
         // Below right of the mark, or to its left near the right side.
         let room = 9 * text.chars().count() as u32 + 14;
         let left = if x as u32 + room > width { (x as u32).saturating_sub(room + 4) } else { x as u32 + 12 };
-        canvas.label(text, 20, (left, y as u32 + 20));
+        // Above the mark where another label is in the way.
+        let free = |top: u32| !taken.iter().any(|(from, to, other)| left < *to && *from < left + room && top.abs_diff(*other) < 20);
+        let (below, above) = (y as u32 + 20, (y as u32).saturating_sub(20));
+        let top = if free(below) || !free(above) { below } else { above };
+        taken.push((left, left + room, top));
+        canvas.label(text, 20, (left, top));
     }
     legend(&mut canvas, layers, columns, height + GAP + GAP / 2);
     canvas

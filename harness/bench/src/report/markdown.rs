@@ -64,7 +64,11 @@ pub fn signed(value: f64, digits: usize) -> String {
 
 /// The fraction of a pixel that `px` is, as in `1/18.9`.
 pub fn fraction(px: f64) -> String {
-    if px > 0.0 { format!("1/{:.1}", 1.0 / px) } else { "0".to_owned() }
+    match px {
+        0.0 => "exact".to_owned(),
+        px if px < 1e-4 => "under 1/10000".to_owned(),
+        px => format!("1/{:.1}", 1.0 / px),
+    }
 }
 
 #[cfg(test)]
@@ -83,5 +87,6 @@ mod tests {
     fn numbers_have_no_negative_zero() {
         assert_eq!((fixed(-0.0004, 3), signed(-0.0004, 3), signed(-0.5, 1)), ("0.000".into(), "+0.000".into(), "-0.5".into()));
         assert_eq!(fraction(0.0529), "1/18.9");
+        assert_eq!((fraction(0.0), fraction(1.2e-7)), ("exact".to_owned(), "under 1/10000".to_owned()));
     }
 }

@@ -89,11 +89,14 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
         pen: wire.pen.map_or(0.0, |pen| pen.0),
         angle: wire.angle.as_ref().map(|angle| angle.get_ref().0),
     };
-    if let Some(angle) = wire.angle.as_ref().filter(|_| matches!(figure, None | Some(Figure4::EndPoint))) {
+    if let Some(angle) = wire.angle.as_ref().filter(|_| matches!(figure, Drawn::Sheet | Drawn::One(Figure4::EndPoint))) {
         let problem = Problem::new(angle.span(), "`angle` of a figure that has no one corner");
         problems.push(problem.help("expected with `zhu-b` to `zhu-h`"));
     }
-    let scene = figure.map_or_else(|| zhu.sheet(), |figure| zhu.scene(figure));
+    let scene = match figure {
+        Drawn::One(figure) => zhu.scene(figure),
+        Drawn::Sheet => zhu.sheet(),
+    };
     let scene = scene.map_err(|error| problems.push(Problem::new(span.clone(), error.to_string()))).ok()?;
     let pixels = wire.pixels.unwrap_or_default();
     if let Some(span) = imaging.span().filter(|_| pixels == Pixels::Centre) {
@@ -115,8 +118,17 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
     })
 }
 
-/// One of the eight images, or `None` for all of them.
-fn named(name: &Spanned<String>, problems: &mut Vec<Problem>) -> Option<Option<Figure4>> {
+/// What of Fig. 4 is drawn.
+#[derive(Clone, Copy)]
+enum Drawn {
+    /// One of the eight images.
+    One(Figure4),
+    /// All of them on one sheet.
+    Sheet,
+}
+
+/// What a name stands for.
+fn named(name: &Spanned<String>, problems: &mut Vec<Problem>) -> Option<Drawn> {
     let letters = Figure4::ALL.iter().map(|figure| format!("zhu-{}", figure.letter()));
     let names: Vec<String> = letters.chain(["zhu".to_owned()]).collect();
     let found = names.iter().position(|known| known == name.get_ref());
@@ -124,5 +136,5 @@ fn named(name: &Spanned<String>, problems: &mut Vec<Problem>) -> Option<Option<F
         let message = format!("no figure is called `{}`: expected one of {}", name.get_ref(), names.join(", "));
         problems.push(Problem::new(name.span(), message).nearest(name.get_ref(), names.iter().map(String::as_str)));
     }
-    found.map(|index| Figure4::ALL.get(index).copied())
+    found.map(|index| Figure4::ALL.get(index).map_or(Drawn::Sheet, |figure| Drawn::One(*figure)))
 }

@@ -22,7 +22,8 @@ pub(super) fn grown(polygon: &Polygon, pen: f64) -> Polygon {
             (direction(here, behind) - direction(before, here)).sin().atan2((direction(here, behind) - direction(before, here)).cos());
         let at = |angle: f64, far: f64| PixelPoint::new(here.x + far * angle.cos(), here.y + far * angle.sin());
         if change * turn > 0.0 {
-            let steps = (change.abs() / FRAC_PI_8).ceil();
+            // A right angle is four steps, whatever rounding makes of it.
+            let steps = (change.abs() / FRAC_PI_8 - 1e-9).ceil().max(1.0);
             outline.extend((0..=steps as u32).map(|step| at(first + change * f64::from(step) / steps, half)));
         } else {
             outline.push(at(first + 0.5 * change, half / (0.5 * change).cos()));

@@ -142,7 +142,7 @@ impl Zhu {
             check::within("angle", angle, 5.0..=175.0)?;
         }
         let sine = (0.5 * self.degrees(figure).to_radians()).sin();
-        let narrow = if figure != Figure4::EndPoint { sine.min(0.25) } else { 0.25 };
+        let narrow = if figure == Figure4::EndPoint { 0.25 } else { sine.min(0.25) };
         check::within("stroke", self.stroke, 0.01..=narrow * self.arm)?;
         check::within("pen", self.pen, 0.0..=5.0)?;
         check::within("ink", self.ink, 0.0..=1.0)?;

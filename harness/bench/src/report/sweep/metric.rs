@@ -11,6 +11,8 @@ pub enum Metric {
     Rmse,
     /// Length of their mean error, px
     Bias,
+    /// Mean error in x of all points that were measured, lost ones among them, px
+    MeanX,
     /// Their 2D deviation about the mean error, px
     Scatter,
     /// Root mean squared error in units of the Cramér-Rao bound of each point
@@ -42,6 +44,7 @@ impl Metric {
         match self {
             Self::Rmse => "RMSE, px",
             Self::Bias => "bias (length), px",
+            Self::MeanX => "mean error in x, lost points too, px",
             Self::Scatter => "scatter, px",
             Self::Ratio => "RMSE / bound",
             Self::Predicted => "RMSE / predicted",
@@ -56,6 +59,7 @@ impl Metric {
         match self {
             Self::Rmse => ("rmse", "px"),
             Self::Bias => ("bias", "px"),
+            Self::MeanX => ("mean_x", "px"),
             Self::Scatter => ("scatter", "px"),
             Self::Ratio => ("ratio", ""),
             Self::Predicted => ("predicted", ""),
@@ -75,6 +79,7 @@ impl Metric {
         match self {
             Self::Rmse => Some(Estimate { value: score.kept.rmse()?, interval: score.kept.rmse_interval() }),
             Self::Bias => bias(score),
+            Self::MeanX => Some(Estimate { value: score.whole.dx.mean()?, interval: score.whole.dx.interval(LEVEL) }),
             Self::Scatter => scatter(score),
             Self::Ratio => ratio(&score.to_bound),
             Self::Predicted => ratio(&score.to_predicted),

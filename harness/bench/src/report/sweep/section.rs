@@ -30,6 +30,10 @@ pub fn section(loaded: &LoadedSweep, stem: &str) -> (String, Option<Canvas>) {
         let why = loaded.methods.iter().find_map(|method| method.unavailable.clone()).unwrap_or_default();
         return (format!("**unavailable**: {why}.\n\n"), None);
     }
+    if mostly_lost(loaded) {
+        let why = "More than half of all measured points lie more than 1 px from the truth: the RMSE of the others would say little";
+        return (format!("{why}. `calibench plot {} --y mean-x` draws the mean error of all.\n\n", loaded.scenario.name), None);
+    }
     let mut text = table(loaded);
     for method in &loaded.methods {
         if let Some(why) = &method.unavailable {
@@ -46,6 +50,13 @@ pub fn section(loaded: &LoadedSweep, stem: &str) -> (String, Option<Canvas>) {
         text.push_str(&format!("RMSE over `{x}`, bars at 95 %:\n\n![RMSE over {x} by method]({stem}.png)\n\n"));
     }
     (text, picture)
+}
+
+fn mostly_lost(loaded: &LoadedSweep) -> bool {
+    let cells = (0..loaded.cells.len()).flat_map(|cell| (0..loaded.methods.len()).map(move |method| (cell, method)));
+    let counts = cells.filter_map(|(cell, method)| loaded.score(cell, method)).map(|score| (score.measured, score.lost));
+    let (kept, lost) = counts.fold((0, 0), |sum, (kept, lost)| (sum.0 + kept, sum.1 + lost));
+    lost > kept
 }
 
 /// RMSE by cell and method, with its standard error and the share of points that were lost or rejected.

@@ -3,6 +3,7 @@
 use calibench_model::PixelPoint;
 
 use super::{OPERATOR, Part};
+use crate::report::canvas::COLOURS;
 use crate::report::figures::{Layer, MarkAt, Panel, panels};
 use crate::report::load::Loaded;
 use crate::report::scene_figures::targets;
@@ -18,7 +19,10 @@ pub(super) fn section(loaded: &Loaded) -> Option<Part> {
     let pixel = loaded.method("pixel");
     let refined =
         Layer { name: format!("{}: refined", loaded.head.methods[method].label), ..Layer::methods(std::iter::once(OPERATOR)).remove(0) };
-    let layers = [Layer::truth(), Layer { name: "detected pixel".into(), ..Layer::start() }, refined];
+    // In colour: black marks on black areas would show by their rims alone.
+    let truth = Layer { colour: COLOURS[0], ..Layer::truth() };
+    let detected = Layer { name: "detected pixel".into(), colour: COLOURS[5], ..Layer::start() };
+    let layers = [truth, detected, refined];
     let marks = |target: &str, truth: PixelPoint| {
         let mut marks = vec![MarkAt { layer: 0, at: truth }];
         for point in loaded.first.points.iter().filter(|point| *point.target == *target) {

@@ -56,7 +56,8 @@ pub(super) fn section(images: &Loaded, noisy: &LoadedSweep) -> Option<Part> {
         "## Theoretical against actual precision\n\nStandard deviation `sqrt(sigma_x^2 + sigma_y^2)` in px of the refined position at grey-value noise of {sigma} (fraction of full scale), `{}`. Theory is \
          propagated from the noise-free image of `{}`: white noise of the grey values to the covariance of the 3 x 3 strengths (the paper does not say which it takes), then Eq. 14 to 18. *As \
          printed* and *corrected* propagate the six samples of Eq. 11; *nine samples* is the solution that the method delivers, the fourth column the same with equal variances and no \
-         correlation. The actual scatter is about each target's own mean, from the trials of `{}`; its interval is that of the squares. Bias is in neither: it is what Table I shows.\n\n{}\n",
+         correlation. The actual scatter is about each target's own mean, from the trials of `{}`; its interval is that of the squares. Bias is in neither: it is what Table I shows. Theory takes the strongest pixel of the image without noise; where noise makes another pixel the strongest, \
+         the paraboloid is another one, and the scatter is wider than theory.\n\n{}\n",
         configured.label,
         images.scenario.name,
         noisy.scenario.name,

@@ -113,7 +113,7 @@ fn surface(canvas: &mut Canvas, peak: &Peak, left: u32, height: u32) {
         let (upper, _) = right.split_vertically(height as i32);
         let half = HALF as f64;
         // The builder's vertical axis is its second.
-        let chart = ChartBuilder::on(&upper).margin(20).build_cartesian_3d(-half..half, least..1.0, -half..half);
+        let chart = ChartBuilder::on(&upper).margin(20).margin_top(TOP).build_cartesian_3d(-half..half, least..1.0, -half..half);
         let Ok(mut chart) = chart else { return };
         chart.with_projection(|mut projection| {
             (projection.yaw, projection.pitch, projection.scale) = (0.6, 0.45, 0.8);
@@ -126,6 +126,8 @@ fn surface(canvas: &mut Canvas, peak: &Peak, left: u32, height: u32) {
             .x_labels(7)
             .y_labels(5)
             .z_labels(7)
+            .x_formatter(&|x| format!("{x:+.0}"))
+            .z_formatter(&|y| format!("{y:+.0}"))
             .label_style(("sans-serif", 14))
             .draw()
             .ok();
@@ -137,5 +139,8 @@ fn surface(canvas: &mut Canvas, peak: &Peak, left: u32, height: u32) {
             chart.draw_series([PathElement::new([corners[0], corners[1], corners[2], corners[3], corners[0]], BLACK.mix(0.6))]).ok();
         }
     });
-    canvas.text("The same as a surface: x and y in px from the strongest pixel", 17, (left + 30, TOP - 30));
+    canvas.text("The same as a surface; x and y from the strongest pixel", 17, (left + 30, TOP - 30));
+    canvas.text("strength / largest", 16, (left + 30, TOP + 40));
+    canvas.text("x, px", 16, (left + 170, height - 30));
+    canvas.text("y, px", 16, (left + 470, height - 60));
 }
