@@ -9,6 +9,7 @@ mod pictures;
 mod prior;
 mod sets;
 mod sets_page;
+mod stages;
 mod start;
 mod survey;
 mod tables;
