@@ -31,6 +31,8 @@ pub const MODELS: [&str; 15] = [
 
 /// Those of them for lenses that picture angles.
 const WIDE: [&str; 6] = ["opencv-fisheye", "double-sphere", "eucm", "omni", "fov", "prism-fisheye"];
+/// Those with a rational function, which suit wide lenses too.
+const RATIONAL: [&str; 3] = ["opencv8", "opencv12", "opencv14"];
 
 /// What the user asked for, or the model that suits what is known.
 pub(super) fn name(settings: &Settings) -> &str {
@@ -80,17 +82,20 @@ pub(super) fn converted(start: &Camera, settings: &Settings, options: &ConvertOp
     Ok(camera.with_parameters(&values))
 }
 
-/// Is the model made for lenses that picture angles?
+/// Can the model picture lenses that a camera without distortion does not come near?
 pub(super) fn is_wide(settings: &Settings) -> bool {
-    WIDE.contains(&name(settings))
+    // Coefficients that are not solved for are to stay zero.
+    WIDE.contains(&name(settings)) || (RATIONAL.contains(&name(settings)) && settings.solve.is_none())
 }
 
-/// The model, and its unknowns, that is adjusted first where that of `settings` does not converge from a lens without distortion.
-pub(super) fn simpler(settings: &Settings) -> Option<(&'static str, &'static [&'static str])> {
-    match name(settings) {
+/// The model, and its unknowns, that is adjusted first where that of `settings` does not converge from a lens without distortion such as `rough`.
+pub(super) fn simpler(rough: &Camera, settings: &Settings) -> Option<(&'static str, &'static [&'static str])> {
+    let name = name(settings);
+    let angles = matches!(rough, Camera::OpenCvFisheye(_)) || WIDE.contains(&name);
+    match name {
         "opencv-fisheye" => None,
-        "opencv8" | "opencv12" | "opencv14" => Some(("opencv5", &["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"])),
-        _ if is_wide(settings) => Some(("opencv-fisheye", &["fx", "fy", "cx", "cy", "k1", "k2"])),
+        _ if angles => Some(("opencv-fisheye", &["fx", "fy", "cx", "cy", "k1", "k2"])),
+        _ if RATIONAL.contains(&name) => Some(("opencv5", &["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"])),
         _ => None,
     }
 }

@@ -49,8 +49,11 @@ pub(super) fn starts(survey: &Survey, settings: &Settings) -> Result<Starts, Cal
     let observed: Vec<Option<Pose>> =
         survey.images.iter().map(|image| prior::station(&settings.stations, image).map(|row| row.station.pose)).collect();
     let (poses, points) = orient(survey, &rough, known, &observed)?;
-    let starts = Starts { camera: model::camera(&rough, settings)?, origin, poses, points };
-    Ok(stages::by_stages(survey, &rough, &starts, settings).unwrap_or(starts))
+    let starts = Starts { camera: rough, origin, poses, points };
+    match stages::by_stages(survey, &starts, settings) {
+        Some(better) => Ok(better),
+        None => Ok(Starts { camera: model::camera(&rough, settings)?, ..starts }),
+    }
 }
 
 /// What an image sees of the points that are known.
