@@ -13,6 +13,7 @@ mod gate;
 mod judge;
 mod killed;
 mod measure;
+mod models;
 mod networks;
 mod opencv_gate;
 mod operators;

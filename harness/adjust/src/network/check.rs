@@ -9,7 +9,7 @@ use super::{Attitude, Centre, Datum, Network, Precision, Status};
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum NetworkError {
     /// A camera has no parameter of that name.
-    #[error("camera {camera} has no parameter {name}: it has {known}")]
+    #[error("{camera} has no parameter {name}: it has {known}")]
     NoSuchParameter {
         /// Name of the camera.
         camera: String,
@@ -39,7 +39,7 @@ pub enum NetworkError {
         what: &'static str,
     },
     /// A camera has more or fewer statuses than parameters.
-    #[error("camera {camera} has {parameters} parameters and {given} statuses")]
+    #[error("{camera} has {parameters} parameters and {given} statuses")]
     ParameterCount {
         /// Name of the camera.
         camera: String,

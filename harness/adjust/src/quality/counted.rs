@@ -51,7 +51,7 @@ fn cameras(network: &Network, layout: &Layout) -> Option<Defect> {
     layout.sights.iter().for_each(|sight| coordinates[layout.camera_of[sight.image]] += 2);
     let lacking = |(i, interior): (usize, &crate::network::Interior)| {
         let free = interior.parameters.iter().filter(|status| **status == Status::Free).count();
-        let missing = format!("{free} free parameters of camera {} and {} image coordinates", interior.name, coordinates[i]);
+        let missing = format!("{free} free parameters of {} and {} image coordinates", interior.name, coordinates[i]);
         (coordinates[i] < free).then_some(Defect::Count { missing })
     };
     network.cameras.iter().enumerate().find_map(lacking)

@@ -9,6 +9,7 @@ mod pictures;
 mod prior;
 mod sets;
 mod sets_page;
+mod stages;
 mod start;
 mod survey;
 mod tables;
@@ -57,6 +58,9 @@ pub struct Settings {
 
 /// The a-priori standard deviation of an image coordinate where none is given, px.
 pub const USUAL_SIGMA: f64 = 0.1;
+
+/// Iterations at most: parameters that do nearly the same, as xi and k1 of an omnidirectional camera, approach their minimum slowly.
+const ITERATIONS: usize = 1000;
 
 impl Settings {
     /// The usual ones for images of a size.
@@ -141,7 +145,7 @@ impl Prepared {
     /// # Errors
     /// What the network does not determine, by name; what else [`adjust`] refuses.
     pub fn adjust(&self) -> Result<Calibration<'_>, CalibrationError> {
-        let options = Options { huber: self.settings.huber, ..Options::default() };
+        let options = Options { huber: self.settings.huber, most_iterations: ITERATIONS, ..Options::default() };
         let test = Test { variance: self.settings.tested(), ..Test::default() };
         let (solution, found) = if self.settings.snoop {
             snoop(&self.network, &options, Snooping { test, ..Snooping::default() })?

@@ -29,6 +29,11 @@ pub const MODELS: [&str; 15] = [
     "prism-fisheye",
 ];
 
+/// Those of them for lenses that picture angles.
+const WIDE: [&str; 6] = ["opencv-fisheye", "double-sphere", "eucm", "omni", "fov", "prism-fisheye"];
+/// Those with a rational function, which suit wide lenses too.
+const RATIONAL: [&str; 3] = ["opencv8", "opencv12", "opencv14"];
+
 /// What the user asked for, or the model that suits what is known.
 pub(super) fn name(settings: &Settings) -> &str {
     let usual = if settings.pitch_um.is_some() { "photogrammetric" } else { "opencv5" };
@@ -64,13 +69,35 @@ fn unknown(name: &str) -> CalibrationError {
 
 /// The model that the user asked for, as near to `start` as it comes.
 pub(super) fn camera(start: &Camera, settings: &Settings) -> Result<Camera, CalibrationError> {
-    let target = target(name(settings), settings)?;
     // Of a start the misfit does not matter.
-    let camera = convert(start, target, &ConvertOptions { accept: true, ..ConvertOptions::default() })?.camera;
-    let camera = if settings.start.is_some() { camera } else { regular(camera) };
+    let camera = converted(start, settings, &ConvertOptions { accept: true, ..ConvertOptions::default() })?;
+    Ok(if settings.start.is_some() { camera } else { regular(camera) })
+}
+
+/// `start` in the model that the user asked for.
+pub(super) fn converted(start: &Camera, settings: &Settings, options: &ConvertOptions) -> Result<Camera, CalibrationError> {
+    let camera = convert(start, target(name(settings), settings)?, options)?.camera;
     // A zero without a sign.
     let values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value + 0.0).collect();
     Ok(camera.with_parameters(&values))
+}
+
+/// Can the model picture lenses that a camera without distortion does not come near?
+pub(super) fn is_wide(settings: &Settings) -> bool {
+    // Coefficients that are not solved for are to stay zero.
+    WIDE.contains(&name(settings)) || (RATIONAL.contains(&name(settings)) && settings.solve.is_none())
+}
+
+/// The model, and its unknowns, that is adjusted first where that of `settings` does not converge from a lens without distortion such as `rough`.
+pub(super) fn simpler(rough: &Camera, settings: &Settings) -> Option<(&'static str, &'static [&'static str])> {
+    let name = name(settings);
+    let angles = matches!(rough, Camera::OpenCvFisheye(_)) || WIDE.contains(&name);
+    match name {
+        "opencv-fisheye" => None,
+        _ if angles => Some(("opencv-fisheye", &["fx", "fy", "cx", "cy", "k1", "k2"])),
+        _ if RATIONAL.contains(&name) => Some(("opencv5", &["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"])),
+        _ => None,
+    }
 }
 
 /// Models of spheres hold a pinhole camera where some of their parameters have no effect; there no adjustment can start. The lens half-way to the other

@@ -5,21 +5,24 @@ use calibench_adjust::approximate::{
     resect,
 };
 use calibench_model::Pose;
-use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye};
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
-use super::{CalibrationError, Settings, Survey, model, prior};
+use super::{CalibrationError, Settings, Survey, model, prior, stages};
 
 /// Height of control, as a share of its extent, below which it is a plane for start values.
 const FLAT: f64 = 1e-4;
 /// Focal lengths that are tried for control with depth, in longer sides.
 const FOCAL: [f64; 4] = [0.6, 1.2, 2.4, 4.8];
+/// Focal lengths that are tried for lenses that picture angles, in longer sides: 180 degrees along it take 0.32.
+const FOCAL_WIDE: [f64; 4] = [0.22, 0.32, 0.45, 0.65];
 /// Rounds of resection and intersection for images that see too little control.
 const ROUNDS: usize = 3;
 /// Rays that meet at less are parallel, rad.
 const PARALLEL: f64 = 1e-3;
 
 /// Start values of everything.
+#[derive(Clone, Debug)]
 pub(super) struct Starts {
     pub(super) camera: Camera,
     /// Where the camera comes from, in words.
@@ -38,13 +41,19 @@ pub(super) fn starts(survey: &Survey, settings: &Settings) -> Result<Starts, Cal
     let views: Vec<Vec<Control>> = (0..survey.images.len()).map(|image| control_of(survey, &known, image)).collect();
     let (rough, origin) = match settings.start {
         Some(camera) => (camera, "the camera file given".to_owned()),
-        None if is_flat(&known) => from_plane(&views, settings.size)?,
-        None => from_depth(&views, settings.size)?,
+        None => {
+            let usual = if is_flat(&known) { from_plane(&views, settings.size)? } else { from_depth(&views, settings.size)? };
+            if model::is_wide(settings) { widest(&views, settings.size, usual)? } else { usual }
+        }
     };
     let observed: Vec<Option<Pose>> =
         survey.images.iter().map(|image| prior::station(&settings.stations, image).map(|row| row.station.pose)).collect();
     let (poses, points) = orient(survey, &rough, known, &observed)?;
-    Ok(Starts { camera: model::camera(&rough, settings)?, origin, poses, points })
+    let starts = Starts { camera: rough, origin, poses, points };
+    match stages::by_stages(survey, &starts, settings) {
+        Some(better) => Ok(better),
+        None => Ok(Starts { camera: model::camera(&rough, settings)?, ..starts }),
+    }
 }
 
 /// What an image sees of the points that are known.
@@ -100,19 +109,31 @@ fn from_depth(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String
     if let Some(median) = linear.get(linear.len() / 2) {
         focal.push((*median, "the direct linear transformation (median of the images)"));
     }
-    let misfit = |camera: &Camera| {
-        let sigma = |view: &Vec<Control>| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
-        let mut sigmas: Vec<f64> = views.iter().filter(|view| view.len() >= 4).map(sigma).collect();
-        sigmas.sort_by(f64::total_cmp);
-        sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::INFINITY)
-    };
     let tried = focal.into_iter().map(|(focal, origin)| {
         let camera = pinhole(size, focal, centre);
-        (misfit(&camera), camera, origin)
+        (misfit(&camera, views), camera, origin)
     });
     let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
     let (camera, origin) = best.map_or_else(|| (pinhole(size, side, centre), "a guess"), |(_, camera, origin)| (camera, origin));
     Ok((camera, origin.to_owned()))
+}
+
+/// The median over the images of the standard deviation of an image coordinate after a resection, px.
+fn misfit(camera: &Camera, views: &[Vec<Control>]) -> f64 {
+    let sigma = |view: &Vec<Control>| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
+    let mut sigmas: Vec<f64> = views.iter().filter(|view| view.len() >= 4).map(sigma).collect();
+    sigmas.sort_by(f64::total_cmp);
+    sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::INFINITY)
+}
+
+/// `usual`, or a lens that pictures angles if one suits the images better.
+fn widest(views: &[Vec<Control>], size: ImageSize, usual: (Camera, String)) -> Result<(Camera, String), CalibrationError> {
+    let side = f64::from(size.width.max(size.height));
+    let [cx, cy] = middle(size)?;
+    let equidistant = |f: f64| OpenCvFisheye { size, fx: f * side, fy: f * side, cx, cy, skew: 0.0, k: [0.0; 4] }.into();
+    let tried = FOCAL_WIDE.map(equidistant).into_iter().map(|camera| (misfit(&camera, views), camera));
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(misfits, _)| *misfits < misfit(&usual.0, views));
+    Ok(best.map_or(usual, |(_, camera)| (camera, "the best of some equidistant lenses".to_owned())))
 }
 
 /// The pose of an image: before a plane, or else by resection, against gross errors if it does not work without.

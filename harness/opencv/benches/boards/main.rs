@@ -1,7 +1,9 @@
 //! Seconds to calibrate from views of a board, beside OpenCV in process, on the same corners. `cargo bench --workspace --bench boards`.
 //!
-//! One thread, best of some interleaved rounds. OpenCV stops when the parameters change by less than 1e-12 of their norm, we when a step gains nothing;
-//! that both reach one optimum is checked. mrcal, where a machine has it, gets the same start values as our first column.
+//! One thread, best of some interleaved rounds. OpenCV runs twice: with its default criteria (30 iterations at most, DBL_EPSILON), and until the
+//! parameters change by less than 1e-12 of their norm (100 iterations at most). We stop when a step gains nothing. That we reach one optimum is checked
+//! against a third, untimed run of 100 iterations; what its defaults lack is printed. mrcal, where a machine has it, gets the same start values as our first column.
+//! Ceres is not run: it has no ready-made cost function for this camera and pose that its Python package can minimise over.
 
 mod peers;
 #[path = "../../../adjust/tests/adjustment/scenes.rs"]
@@ -19,8 +21,17 @@ use calibench_model::camera::{CameraModel, ImageSize};
 use theirs::{Board, Theirs, calibrate};
 
 /// Relative differences of RMS and of parameters above which the optima are not one.
-const SAME_RMS: f64 = 1e-8;
-const SAME: f64 = 1e-4;
+const SAME_RMS: f64 = 1e-9;
+// 1e-6 does not hold for 17 views: where the sums of squares agree to 15 digits, a weakly determined coefficient still differs by 1.1e-6 of itself.
+const SAME: f64 = 1e-5;
+/// The same for mrcal, which lets nobody set when it stops.
+const SAME_RMS_MRCAL: f64 = 1e-8;
+const SAME_MRCAL: f64 = 1e-4;
+/// OpenCV's criteria: iterations at most, and relative change of the parameters at which it stops.
+const DEFAULT: (i32, f64) = (30, f64::EPSILON);
+const TIGHT: (i32, f64) = (100, 1e-12);
+/// Of the run that says where its optimum is.
+const END: (i32, f64) = (100, f64::EPSILON);
 
 fn main() -> Result<(), Box<dyn Error>> {
     if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
@@ -29,8 +40,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     opencv::core::set_num_threads(1)?;
     println!("Boards of 54 corners, five coefficients, one thread; OpenCV {}", calibench_opencv::version());
     println!(
-        "{:>6} {:>14} {:>14} {:>14} {:>14} {:>8} {:>12} {:>12} {:>8}",
-        "views", "given start s", "corners s", "covariance s", "OpenCV s", "ratio", "RMS differ", "parameters", "sigmas"
+        "{:>6} {:>13} {:>11} {:>12} {:>11} {:>7} {:>11} {:>7} {:>10} {:>10} {:>8} {:>18}",
+        "views",
+        "given start s",
+        "corners s",
+        "covariance s",
+        "default s",
+        "ratio",
+        "1e-12 s",
+        "ratio",
+        "RMS",
+        "parameters",
+        "sigmas",
+        "default's differ"
     );
     let mut required = Vec::new();
     for (views, rounds) in [(17, 20), (100, 10), (1000, 3)] {
@@ -58,10 +80,9 @@ fn race(views: usize, rounds: usize) -> Result<Vec<Required>, Box<dyn Error>> {
     let network = problem(views);
     let (board, control) = (board(&network, views), control(&network, views));
     let size = network.cameras[0].camera.size();
-    let mut best = [f64::INFINITY; 4];
+    let mut best = [f64::INFINITY; 5];
     let mut keep = |place: usize, clock: Instant| best[place] = best[place].min(clock.elapsed().as_secs_f64());
-    let (mut theirs, mut differ) = (None, [0.0_f64; 2]);
-    let mut spread = 0.0;
+    let (mut default_differs, mut spread) = ([f64::INFINITY; 2], 0.0);
     for _ in 0..rounds {
         let clock = Instant::now();
         black_box(adjust(black_box(&network), &Options::default())?);
@@ -74,22 +95,31 @@ fn race(views: usize, rounds: usize) -> Result<Vec<Required>, Box<dyn Error>> {
         let covariances = black_box(solution.covariances(Variance::Estimated)?);
         keep(2, clock);
         let clock = Instant::now();
-        let found = calibrate(&board, 100, 1e-12)?;
+        let usual = calibrate(&board, DEFAULT.0, DEFAULT.1)?;
         keep(3, clock);
-        differ = differences(&solution, &found, views);
+        let clock = Instant::now();
+        let found = calibrate(&board, TIGHT.0, TIGHT.1)?;
+        keep(4, clock);
+        default_differs = differences(&solution, &usual, views);
         spread = found.sigmas[0] / covariances.interior[(0, 0)].sqrt();
-        theirs = Some(found);
     }
-    if theirs.is_none() || differ[0] > SAME_RMS || differ[1] > SAME {
+    let ours = adjust(&network, &Options::default())?;
+    let differ = differences(&ours, &calibrate(&board, END.0, END.1)?, views);
+    if differ[0] > SAME_RMS || differ[1] > SAME {
         return Err(
             format!("{views} views: the optima differ by {:.1e} in the RMS and {:.1e} in the parameters", differ[0], differ[1]).into()
         );
     }
-    let [given, corners, covariance, opencv] = best;
-    let ratio = opencv / corners;
+    let [given, corners, covariance, usual, tight] = best;
+    let ratio = usual / corners;
     println!(
-        "{views:>6} {given:>14.5} {corners:>14.5} {covariance:>14.5} {opencv:>14.4} {ratio:>8.1} {:>12.1e} {:>12.1e} {spread:>8.4}",
-        differ[0], differ[1]
+        "{views:>6} {given:>13.5} {corners:>11.5} {covariance:>12.5} {usual:>11.4} {ratio:>7.1} {tight:>11.4} {:>7.1} {:>10.1e} {:>10.1e} \
+         {spread:>8.4} {:>8.1e} {:>9.1e}",
+        tight / corners,
+        differ[0],
+        differ[1],
+        default_differs[0],
+        default_differs[1]
     );
     let mrcal = peers::mrcal(&network, rounds)?;
     if let Some(found) = &mrcal {
@@ -99,7 +129,7 @@ fn race(views: usize, rounds: usize) -> Result<Vec<Required>, Box<dyn Error>> {
     let row = |what: &str, least: f64, reached: Option<f64>| Required { what: format!("{views} views: {what}"), least, reached };
     Ok(vec![
         row("given start values / mrcal, times faster", 10.0, mrcal.as_ref().map(|found| found.seconds / given)),
-        row("from corners alone / OpenCV's calibrateCamera, times faster", 10.0, Some(ratio)),
+        row("from corners alone / calibrateCamera by default, times faster", 10.0, Some(ratio)),
         row("solution / covariance of all blocks", 1.0, Some(given / covariance)),
     ])
 }
@@ -111,7 +141,7 @@ fn check(network: &Network, found: &peers::Mrcal, views: usize) -> Result<(), Bo
     let pairs = ours.cameras()[0].parameters().into_iter().zip(&found.parameters);
     let most = pairs.map(|(p, other)| (other / p.value - 1.0).abs()).fold(0.0, f64::max);
     let differs = (found.rms / rms - 1.0).abs();
-    if found.parameters.len() != 9 || differs > SAME_RMS || most > SAME {
+    if found.parameters.len() != 9 || differs > SAME_RMS_MRCAL || most > SAME_MRCAL {
         return Err(format!("{views} views: mrcal's optimum differs by {differs:.1e} in the RMS and {most:.1e} in the parameters").into());
     }
     println!("{views:>6} mrcal differs by {differs:.1e} in the RMS, {most:.1e} in the parameters");

@@ -3,7 +3,7 @@
 use std::io;
 
 use calibench_adjust::approximate::{ModelPoint, RelativeOrientation};
-use calibench_exchange::station_numbers;
+use calibench_exchange::{station_numbers, write_table};
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
 use nalgebra::{Matrix3, Point3};
@@ -113,10 +113,7 @@ impl<'a> Model<'a> {
 
     /// Writes a row for every target given; residuals are nearest coplanar less measured, px, and the parallax is their length.
     pub(super) fn write_points(&self, file: impl io::Write) -> io::Result<()> {
-        let mut writer = csv::Writer::from_writer(file);
-        writer.write_record(POINT_COLUMNS)?;
-        self.rows.iter().try_for_each(|row| writer.write_record(self.cells(row)))?;
-        writer.flush()
+        write_table(file, &POINT_COLUMNS, self.rows.iter().map(|row| self.cells(row)))
     }
 
     fn cells(&self, row: &Row<'_>) -> Vec<String> {
@@ -144,19 +141,18 @@ impl<'a> Model<'a> {
 
     /// Writes the poses: the left image's is the origin.
     pub(super) fn write_poses(&self, file: impl io::Write, [left, right]: [&str; 2]) -> io::Result<()> {
-        let mut writer = csv::Writer::from_writer(file);
-        writer.write_record(POSE_COLUMNS)?;
         let origin = Pose { rotation: Matrix3::identity(), centre: Point3::origin() };
         let points = self.found.residuals.len() - self.found.rejected.len();
-        for (name, pose, sigmas) in [(left, origin, [0.0; 6]), (right, self.pose(&self.found.pose), self.sigmas())] {
+        let row = |(name, pose, sigmas): (&str, Pose, [f64; 6])| {
             let [sx, sy, sz, turns @ ..] = sigmas;
             let numbers = station_numbers(&pose).into_iter().chain([sx, sy, sz]).chain(turns.map(f64::to_degrees));
             let mut row = vec![name.to_owned()];
             // Zeros without a sign.
             row.extend(numbers.map(|number| (number + 0.0).to_string()));
             row.extend([points.to_string(), self.found.sigma0.to_string(), self.found.redundancy.to_string()]);
-            writer.write_record(&row)?;
-        }
-        writer.flush()
+            row
+        };
+        let poses = [(left, origin, [0.0; 6]), (right, self.pose(&self.found.pose), self.sigmas())];
+        write_table(file, &POSE_COLUMNS, poses.map(row))
     }
 }
