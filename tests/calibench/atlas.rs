@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use calibench_bench::report::atlas::{Part, best, unmeasured};
-use calibench_measure::Registry;
 
 use crate::project::{copy_with, files, run, stderr};
 
 fn part(project: &Path, name: &str) -> Part {
-    Part::load(&project.join("records"), name, &Registry::builtin()).expect("records").expect("a sweep")
+    Part::load(&project.join("records"), name, &calibench_opencv::registry()).expect("records").expect("a sweep")
 }
 
 #[test]
