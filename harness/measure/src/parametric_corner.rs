@@ -1,17 +1,18 @@
 //! `parametric_corner`: a chess corner's grey values, fitted.
 
+mod area;
 mod model;
+mod single;
 mod start;
 mod window;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use nalgebra::SVector;
 
-use crate::marquardt::{covariance, minimise};
+use crate::marquardt::{Problem, Solution, covariance, minimise};
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
-use model::Fidelity;
 use window::Window;
 
 /// Blur at the start, px^2: between sharp and soft.
@@ -23,6 +24,12 @@ const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
 const ROUGHLY: f64 = 0.3;
 const NEARLY: f64 = 0.03;
 const LAYINGS: usize = 6;
+/// Corrections for the pixel's area, at most.
+const CORRECTIONS: usize = 12;
+/// The last correction moves the unknowns by less than so many standard deviations, or the position by less than so many px: the next would move them by a
+/// tenth of that at most.
+const SETTLED: f64 = 0.2;
+const STANDS: f64 = 1e-7;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
@@ -116,13 +123,11 @@ impl ParametricCorner {
             }
             window.centre_on((centre[0], centre[1]));
             (x[0], x[1]) = (at[0] - centre[0] as f64, at[1] - centre[1] as f64);
-            window.fidelity = Fidelity::Rough;
             x = minimise(&mut window, x, ROUGHLY).ok_or(Rejection::NotConverged)?.x;
-            window.fidelity = Fidelity::Full;
             let off = |x: &SVector<f64, P>| x[0].abs().max(x[1].abs());
             let mut normal = None;
             if off(&x) <= follow {
-                let found = minimise(&mut window, x, NEARLY).ok_or(Rejection::NotConverged)?;
+                let found = refined(&mut window, x).ok_or(Rejection::NotConverged)?;
                 (x, normal) = (found.x, Some(found.normal));
             }
             if off(&x) > half as f64 {
@@ -136,6 +141,25 @@ impl ParametricCorner {
         }
         Err(Rejection::NotConverged)
     }
+}
+
+/// The fit of the whole model, from a fit of the quick one on.
+fn refined<const P: usize, const GRADIENT: bool, const CURVED: bool>(
+    window: &mut Window<'_, P, GRADIENT, CURVED>,
+    mut x: SVector<f64, P>,
+) -> Option<Solution<P>> {
+    let redundancy = window.redundancy();
+    for _ in 0..CORRECTIONS {
+        window.correct(&x)?;
+        let found = minimise(window, x, NEARLY)?;
+        let moved = found.x - x;
+        x = found.x;
+        let square = moved.dot(&(found.normal.n * moved));
+        if square <= SETTLED * SETTLED * found.normal.omega / redundancy || moved[0].hypot(moved[1]) < STANDS {
+            return Some(found);
+        }
+    }
+    None
 }
 
 impl Operator for ParametricCorner {
