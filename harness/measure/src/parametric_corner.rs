@@ -20,15 +20,15 @@ const VARIANCE: f64 = 0.5;
 /// The window is laid anew when the corner is further than this beyond its middle pixel, px: more each time, so that it comes to rest also where
 /// either of two windows finds the corner in the other's middle.
 const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
-/// Each iteration ends with a step shorter than so many standard deviations.
-const ROUGHLY: f64 = 0.3;
+/// Each iteration ends with a step shorter than so many standard deviations. The first need not end near: the correction that follows moves it anyway.
+const ROUGHLY: f64 = 3.0;
 const NEARLY: f64 = 0.03;
 const LAYINGS: usize = 6;
 /// Corrections for the pixel's area, at most.
 const CORRECTIONS: usize = 12;
 /// The last correction moves the unknowns by less than so many standard deviations, or the position by less than so many px: the next would move them by a
 /// tenth of that at most.
-const SETTLED: f64 = 0.2;
+const SETTLED: f64 = 0.3;
 const STANDS: f64 = 1e-7;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
@@ -39,7 +39,8 @@ const STANDS: f64 = 1e-7;
 /// For white noise of equal variance this is the maximum-likelihood estimate.
 ///
 /// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
-/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Covariance (px^2):
+/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these are less like those
+/// opposite than unlike, there is no crossing. Covariance (px^2):
 /// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
 /// Source: edge model fitted by least squares as in Mallon & Whelan 2007 and Ha et al. 2017 for chessboards; the pixel's integral as a mixture of
@@ -180,6 +181,10 @@ impl Operator for ParametricCorner {
             return Err(Rejection::Border);
         }
         finite(image, (at[0], at[1]), half)?;
+        // Without a search the start may be too far off for that.
+        if self.search > 0 && !start::is_like_its_opposite(image, position, half) {
+            return Err(Rejection::NoCorner);
+        }
         let guess = start::directions(image, position, half).ok_or(Rejection::NoCorner)?;
         match (self.gradient, self.curvature) {
             (false, false) => self.fit::<7, false, false>(image, &guess),

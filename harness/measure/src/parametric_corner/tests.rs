@@ -159,3 +159,15 @@ fn what_is_no_chess_corner_is_rejected() {
         assert!(operator.measure(&image, &start).is_err(), "an edge at {angle} rad");
     }
 }
+
+#[test]
+fn the_corner_of_one_area_is_rejected_before_it_is_fitted() {
+    let operator = operator("window=15");
+    for angle in [0.0_f64, 0.4, 0.8, 1.9, 3.0, 4.4] {
+        let edge = |x: f64, y: f64, a: f64| 0.5 + 0.5 * ((x * a.cos() + y * a.sin()) * 1.2).tanh();
+        let quarter = |x: f64, y: f64| edge(x, y, angle) * edge(x, y, angle + std::f64::consts::FRAC_PI_2);
+        let image = Image::from_fn(SIDE, SIDE, |x, y| (0.2 + 0.6 * quarter(x as f64 - 15.2, y as f64 - 14.9)) as f32);
+        let found = operator.measure(&image, &Start::at(PixelPoint::new(15.0, 15.0)));
+        assert_eq!(found.err(), Some(Rejection::NoCorner), "{angle} rad");
+    }
+}
