@@ -25,11 +25,13 @@ const ROUGHLY: f64 = 3.0;
 const NEARLY: f64 = 0.03;
 const LAYINGS: usize = 6;
 /// Corrections for the pixel's area, at most.
-const CORRECTIONS: usize = 12;
+const CORRECTIONS: usize = 20;
 /// The last correction moves the unknowns by less than so many standard deviations, or the position by less than so many px: the next would move them by a
 /// tenth of that at most.
 const SETTLED: f64 = 0.3;
 const STANDS: f64 = 1e-7;
+/// After so many corrections it is enough that the position settles: without any blur its variance does so slowly.
+const FEW: usize = 3;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
@@ -150,13 +152,15 @@ fn refined<const P: usize, const GRADIENT: bool, const CURVED: bool>(
     mut x: SVector<f64, P>,
 ) -> Option<Solution<P>> {
     let redundancy = window.redundancy();
-    for _ in 0..CORRECTIONS {
+    for correction in 0..CORRECTIONS {
         window.correct(&x)?;
         let found = minimise(window, x, NEARLY)?;
         let moved = found.x - x;
         x = found.x;
         let square = moved.dot(&(found.normal.n * moved));
-        if square <= SETTLED * SETTLED * found.normal.omega / redundancy || moved[0].hypot(moved[1]) < STANDS {
+        let short = SETTLED * SETTLED * found.normal.omega / redundancy;
+        let rests = || correction >= FEW && found.normal.position_rests(&moved, short);
+        if square <= short || moved[0].hypot(moved[1]) < STANDS || rests() {
             return Some(found);
         }
     }

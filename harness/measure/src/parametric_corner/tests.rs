@@ -1,4 +1,5 @@
 use super::model::{Fidelity, Model, Shape};
+use super::single::WIDE;
 use super::*;
 use crate::exact::{self, Chess};
 use crate::lanes::LANES;
@@ -169,5 +170,22 @@ fn the_corner_of_one_area_is_rejected_before_it_is_fitted() {
         let image = Image::from_fn(SIDE, SIDE, |x, y| (0.2 + 0.6 * quarter(x as f64 - 15.2, y as f64 - 14.9)) as f32);
         let found = operator.measure(&image, &Start::at(PixelPoint::new(15.0, 15.0)));
         assert_eq!(found.err(), Some(Rejection::NoCorner), "{angle} rad");
+    }
+}
+
+#[test]
+fn single_precision_gives_the_same_grey_values() {
+    for (blur, fidelity) in [(0.3, Fidelity::Full), (0.5, Fidelity::Full), (1.2, Fidelity::Full), (0.7, Fidelity::Rough)] {
+        let model = Model::new(&shape_of(&Chess { curvature: [0.03, -0.02], ..chess(0.8, 0.7, blur, [0.1, 0.2]) }), fidelity).unwrap();
+        for (x, y) in (-70..70).map(|i| (f64::from(i) * 0.07, f64::from(i * 37 % 61 - 30) * 0.1)) {
+            let (there, seen) = (([x; LANES], [y; LANES]), model.seen(&[x as f32; WIDE], &[y as f32; WIDE]));
+            let off =
+                |single: f32, double: f64| assert!((f64::from(single) - double).abs() < 2e-6, "{blur}, ({x}, {y}): {single} {double}");
+            off(model.corner_value::<true>(&seen)[3], model.corner::<true>(&there.0, &there.1).value[3]);
+            off(model.corner_value::<false>(&seen)[15], model.corner::<false>(&there.0, &there.1).value[0]);
+            for which in [0, 1] {
+                off(model.edge_value::<true>(which, &seen)[0], model.edge::<true>(which, &[1.0; LANES], &there.0, &there.1).value[0]);
+            }
+        }
     }
 }

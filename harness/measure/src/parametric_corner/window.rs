@@ -14,8 +14,8 @@ use crate::marquardt::{Normal, Problem, Sums};
 
 /// The widest window, px.
 pub(super) const WIDEST: usize = 41;
-/// How often the normal equations of one corner are set up at most. Where the model fits, three to thirteen times were needed.
-const EVALUATIONS: usize = 40;
+/// How often the normal equations of one corner are set up at most. Where the model fits, three to thirteen times were needed; without any blur, more.
+const EVALUATIONS: usize = 60;
 
 /// One window of an image, as the least-squares problem of `P` unknowns: the [`BASE`], a grey gradient if `GRADIENT`, a curvature an edge if `CURVED`.
 pub(super) struct Window<'a, const P: usize, const GRADIENT: bool, const CURVED: bool> {
@@ -169,7 +169,11 @@ fn add<const P: usize, const GRADIENT: bool, const CURVED: bool>(
     chunks.add(&lists.corner, sums, |x, y, _| model.corner::<CURVED>(x, y));
     chunks.add(&lists.edges[0], sums, |x, y, side| model.edge::<CURVED>(0, side, x, y));
     chunks.add(&lists.edges[1], sums, |x, y, side| model.edge::<CURVED>(1, side, x, y));
-    chunks.add(&lists.areas, sums, |_, _, side| Field { value: *side, ..Field::default() });
+    if GRADIENT {
+        chunks.add(&lists.areas, sums, |_, _, side| Field { value: *side, ..Field::default() });
+    } else {
+        chunks.add_areas(&lists.areas, sums);
+    }
 }
 
 #[inline(always)]
@@ -199,6 +203,22 @@ struct Chunks<'a, const P: usize, const GRADIENT: bool> {
 }
 
 impl<const P: usize, const GRADIENT: bool> Chunks<'_, P, GRADIENT> {
+    /// Pixels that tell of the two grey values only.
+    #[inline(always)]
+    fn add_areas(&self, list: &List, sums: &mut Sums<P>) {
+        let [mean, half] = [5, 6].map(|i| self.unknowns[i]);
+        for first in (0..list.count).step_by(LANES) {
+            let (mut one, mut side, mut r) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                let [_, _, grey, sign] = list.entries[first + i];
+                one[i] = if first + i < list.count { 1.0 } else { 0.0 };
+                side[i] = one[i] * sign;
+                r[i] = one[i] * (grey - (mean + half * sign));
+            }
+            sums.add_pair([5, 6], &one, &side, &r);
+        }
+    }
+
     #[inline(always)]
     fn add(&self, list: &List, sums: &mut Sums<P>, field: impl Fn(&Lanes, &Lanes, &Lanes) -> Field) {
         let [cx, cy, mean, half] = [0, 1, 5, 6].map(|i| self.unknowns[i]);
