@@ -111,6 +111,9 @@ pub fn linear() -> Method {
     }
 }
 
+/// A pixel, and the 3 x 3 strengths around it.
+type Peak = ((i64, i64), [[f64; 3]; 3]);
+
 impl HarrisParaboloid {
     fn new(settings: &Settings, refinement: Refinement) -> Self {
         let [alpha, sigma, derivation] = ["alpha", "sigma", "derivation"].map(|key| settings.get(key));
@@ -132,7 +135,7 @@ impl HarrisParaboloid {
     }
 
     /// The strongest pixel and the 3 x 3 strengths around it.
-    fn peak(&self, image: &Image, start: &Start) -> Result<((i64, i64), [[f64; 3]; 3]), Rejection> {
+    fn peak(&self, image: &Image, start: &Start) -> Result<Peak, Rejection> {
         let ring = self.half + 1;
         let (x, y) = window_centre(image, start, (ring + self.harris.reach() + self.smoothing()) as i64)?;
         let strengths = self.strengths(image, (x, y), ring)?;

@@ -26,6 +26,7 @@ impl Model {
 
     /// Distances from edge `which` in units of the blur, for the Gaussian of the pixel that lies at `offset`.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
     fn scaled<const CURVED: bool>(&self, which: usize, seen: &Seen, offset: [f64; 2]) -> Wide {
         let edge = &self.edges[which];
         let inverse = self.inverse as f32;
