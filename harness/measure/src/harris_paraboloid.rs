@@ -114,6 +114,9 @@ pub fn linear() -> Method {
     }
 }
 
+/// A pixel, and the 3 x 3 strengths around it.
+type Peak = ((i64, i64), [[f64; 3]; 3]);
+
 impl HarrisParaboloid {
     fn new(settings: &Settings, refinement: Refinement) -> Self {
         let [alpha, sigma, derivation] = ["alpha", "sigma", "derivation"].map(|key| settings.get(key));

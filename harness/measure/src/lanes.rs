@@ -14,7 +14,7 @@ pub(crate) const DENSITY: f64 = 0.398_942_280_401_432_7;
 /// Chebyshev fit of `(1 + 2 z) exp(z^2) erfc(z)` for z from 0 to 6, as a polynomial in `(z - 3.4) / (z + 3.4)`.
 ///
 /// The form is that of Shepherd & Laframboise 1981; the coefficients are fitted anew, to an error of erfc of 6e-10.
-const ERFCX: [f64; 10] = [
+pub(crate) const ERFCX: [f64; 10] = [
     1.244_375_846_053_946_7,
     -0.139_610_989_764_242,
     -0.016_960_689_947_235_83,
@@ -26,7 +26,7 @@ const ERFCX: [f64; 10] = [
     -0.003_423_261_916_757_26,
     -0.001_923_122_359_961_13,
 ];
-const KNEE: f64 = 3.4;
+pub(crate) const KNEE: f64 = 3.4;
 
 /// Taylor's coefficients of the exponential: enough for 3e-10 within half of log 2.
 const EXP: [f64; 9] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0, 1.0 / 40320.0];

@@ -84,7 +84,8 @@ const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "epsilon",
         about: "step of the position at which iteration ends, px",
-        domain: Domain::Real { min: 1e-9, max: 0.1 },
+        // Below it are the steps that single precision's rounding makes.
+        domain: Domain::Real { min: 1e-6, max: 0.1 },
         default: 1e-3,
         always_shown: false,
     },

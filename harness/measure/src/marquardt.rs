@@ -123,7 +123,7 @@ impl<const P: usize> Scaled<P> {
 
 impl<const P: usize> Normal<P> {
     /// Is the step of the position short against its standard deviation? `square` is that of the fraction, times the variance of unit weight.
-    fn position_rests(&self, step: &SVector<f64, P>, square: f64) -> bool {
+    pub(crate) fn position_rests(&self, step: &SVector<f64, P>, square: f64) -> bool {
         self.cofactors().is_some_and(|q| step[0].powi(2) + step[1].powi(2) <= square * (q[(0, 0)] + q[(1, 1)]))
     }
 
@@ -156,6 +156,17 @@ impl<const P: usize> Sums<P> {
             }
             add_products(&mut self.b[row], &j[row], r);
         }
+        add_products(&mut self.omega, r, r);
+    }
+
+    /// As [`Self::add`], for rows whose derivatives are all zero but those by the unknowns `i` < `j`.
+    #[inline(always)]
+    pub(crate) fn add_pair(&mut self, [i, j]: [usize; 2], by_i: &Lanes, by_j: &Lanes, r: &Lanes) {
+        add_products(&mut self.n[i][i], by_i, by_i);
+        add_products(&mut self.n[i][j], by_i, by_j);
+        add_products(&mut self.n[j][j], by_j, by_j);
+        add_products(&mut self.b[i], by_i, r);
+        add_products(&mut self.b[j], by_j, r);
         add_products(&mut self.omega, r, r);
     }
 

@@ -1,17 +1,18 @@
 //! `parametric_corner`: a chess corner's grey values, fitted.
 
+mod area;
 mod model;
+mod single;
 mod start;
 mod window;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use nalgebra::SVector;
 
-use crate::marquardt::{covariance, minimise};
+use crate::marquardt::{Problem, Solution, covariance, minimise};
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
-use model::Fidelity;
 use window::Window;
 
 /// Blur at the start, px^2: between sharp and soft.
@@ -19,10 +20,18 @@ const VARIANCE: f64 = 0.5;
 /// The window is laid anew when the corner is further than this beyond its middle pixel, px: more each time, so that it comes to rest also where
 /// either of two windows finds the corner in the other's middle.
 const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
-/// Each iteration ends with a step shorter than so many standard deviations.
-const ROUGHLY: f64 = 0.3;
+/// Each iteration ends with a step shorter than so many standard deviations. The first need not end near: the correction that follows moves it anyway.
+const ROUGHLY: f64 = 3.0;
 const NEARLY: f64 = 0.03;
 const LAYINGS: usize = 6;
+/// Corrections for the pixel's area, at most.
+const CORRECTIONS: usize = 20;
+/// The last correction moves the unknowns by less than so many standard deviations, or the position by less than so many px: the next would move them by a
+/// tenth of that at most.
+const SETTLED: f64 = 0.3;
+const STANDS: f64 = 1e-7;
+/// After so many corrections it is enough that the position settles: without any blur its variance does so slowly.
+const FEW: usize = 3;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
@@ -32,7 +41,8 @@ const LAYINGS: usize = 6;
 /// For white noise of equal variance this is the maximum-likelihood estimate.
 ///
 /// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
-/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Covariance (px^2):
+/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these are less like those
+/// opposite than unlike, there is no crossing. Covariance (px^2):
 /// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
 /// Source: edge model fitted by least squares as in Mallon & Whelan 2007 and Ha et al. 2017 for chessboards; the pixel's integral as a mixture of
@@ -116,13 +126,11 @@ impl ParametricCorner {
             }
             window.centre_on((centre[0], centre[1]));
             (x[0], x[1]) = (at[0] - centre[0] as f64, at[1] - centre[1] as f64);
-            window.fidelity = Fidelity::Rough;
             x = minimise(&mut window, x, ROUGHLY).ok_or(Rejection::NotConverged)?.x;
-            window.fidelity = Fidelity::Full;
             let off = |x: &SVector<f64, P>| x[0].abs().max(x[1].abs());
             let mut normal = None;
             if off(&x) <= follow {
-                let found = minimise(&mut window, x, NEARLY).ok_or(Rejection::NotConverged)?;
+                let found = refined(&mut window, x).ok_or(Rejection::NotConverged)?;
                 (x, normal) = (found.x, Some(found.normal));
             }
             if off(&x) > half as f64 {
@@ -136,6 +144,27 @@ impl ParametricCorner {
         }
         Err(Rejection::NotConverged)
     }
+}
+
+/// The fit of the whole model, from a fit of the quick one on.
+fn refined<const P: usize, const GRADIENT: bool, const CURVED: bool>(
+    window: &mut Window<'_, P, GRADIENT, CURVED>,
+    mut x: SVector<f64, P>,
+) -> Option<Solution<P>> {
+    let redundancy = window.redundancy();
+    for correction in 0..CORRECTIONS {
+        window.correct(&x)?;
+        let found = minimise(window, x, NEARLY)?;
+        let moved = found.x - x;
+        x = found.x;
+        let square = moved.dot(&(found.normal.n * moved));
+        let short = SETTLED * SETTLED * found.normal.omega / redundancy;
+        let rests = || correction >= FEW && found.normal.position_rests(&moved, short);
+        if square <= short || moved[0].hypot(moved[1]) < STANDS || rests() {
+            return Some(found);
+        }
+    }
+    None
 }
 
 impl Operator for ParametricCorner {
@@ -156,6 +185,10 @@ impl Operator for ParametricCorner {
             return Err(Rejection::Border);
         }
         finite(image, (at[0], at[1]), half)?;
+        // Without a search the start may be too far off for that.
+        if self.search > 0 && !start::is_like_its_opposite(image, position, half) {
+            return Err(Rejection::NoCorner);
+        }
         let guess = start::directions(image, position, half).ok_or(Rejection::NoCorner)?;
         match (self.gradient, self.curvature) {
             (false, false) => self.fit::<7, false, false>(image, &guess),

@@ -209,6 +209,7 @@ struct Sums {
 }
 
 /// The planes, row by row.
+#[expect(clippy::needless_pass_by_value, reason = "it holds what is written to")]
 #[inline(always)]
 fn sweep<const MOVED: bool, const BLURRED: bool>(window: Window<'_>, bank: &Bank, sigma: f32) {
     let area = window.pixels * window.stride;
@@ -253,6 +254,7 @@ fn put(to: &mut [f32], lanes: &[f32; LANES], factors: &[f32; LANES]) {
 
 /// Adds the integrals over the nodes `first..end` of one panel at the pixels from (`row`, `column`) on.
 #[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
 fn add<const B: usize, const MOVED: bool, const BLURRED: bool>(
     sums: &mut Sums,
     bank: &Bank,

@@ -143,6 +143,7 @@ fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn products(planes: &Planes, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
     let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
+    #[expect(clippy::needless_range_loop, reason = "planes go by the same number")]
     for i in 0..unknowns {
         let plane = planes.plane(i);
         // Four at a time: one sum alone would wait for each of its additions.

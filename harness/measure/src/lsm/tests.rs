@@ -104,6 +104,22 @@ fn noise_free_targets_are_found_where_they_are() {
     }
 }
 
+#[test]
+fn the_shortest_last_step_is_reached() {
+    let mut noise = Noise(61);
+    for (kind, sigma, variant) in
+        SHAPES.into_iter().flat_map(|k| [0.4, 0.7, 1.2].into_iter().flat_map(move |s| (0..6).map(move |v| (k, s, v))))
+    {
+        let picture = picture(kind, 9.0, sigma, variant);
+        let clean = picture.image(SIDE);
+        for image in [noise.on(&clean, 0.006), noise.on(&clean, 0.03), clean] {
+            let spec = format!("lsm:window=19,sigma={sigma},epsilon=1e-6");
+            let found = operator(&spec).measure(&image, &start(&picture, 0.6, -0.7));
+            assert!(found.is_ok(), "{kind}, blur {sigma}, variant {variant}: {found:?}");
+        }
+    }
+}
+
 /// Derivatives of the grey values by position, shape, levels and blur, by differences of the closed form.
 fn jacobian(picture: &Picture, side: usize, window: usize, blur: bool) -> Vec<Vec<f64>> {
     let h = 1e-4;

@@ -147,3 +147,27 @@ fn no_point_is_lost() {
     println!("{lost} of {trials} lost");
     assert!(trials >= 4000 && lost == 0, "{lost} of {trials}");
 }
+
+/// Next to no blur, which the model does not quite follow: the iteration may fail to settle on a few in a thousand, but never settles elsewhere.
+#[test]
+fn the_sharpest_corners_are_found() {
+    let operator = operator("window=15");
+    let mut rng = ChaCha8Rng::seed_from_u64(57);
+    let mut lost = [0; 3];
+    for (blur, lost) in [0.05, 0.1, 0.2].into_iter().zip(&mut lost) {
+        for trial in 0..100 {
+            let phase = [rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5)];
+            let corner = chess(rng.random_range(0.0..0.9), rng.random_range(0.0..std::f64::consts::PI), blur, phase);
+            let (grey, truth) = (corner.render(SIDE), PixelPoint::new(corner.position[0], corner.position[1]));
+            for noise in [0.002, 0.01, 0.03] {
+                let image = exact::image(&noisy(&grey, noise * 2.0 * corner.half, &mut rng), SIDE);
+                match operator.measure(&image, &near(corner.position, 1.0, &mut rng)) {
+                    Ok(found) => assert!(found.position.distance(truth) < 0.1, "blur {blur}, trial {trial}: {found:?} for {truth:?}"),
+                    Err(_) => *lost += 1,
+                }
+            }
+        }
+    }
+    println!("lost of 300: {lost:?}");
+    assert!(lost.iter().sum::<usize>() <= 4, "{lost:?}");
+}

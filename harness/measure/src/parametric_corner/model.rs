@@ -80,34 +80,34 @@ const LEGENDRE: [&[(f64, f64)]; 3] = [
 
 /// One Gaussian of the pixel: offset from its centre (px) and weight.
 #[derive(Clone, Copy, Debug, Default)]
-struct Node {
-    x: f64,
-    y: f64,
-    weight: f64,
+pub(super) struct Node {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) weight: f64,
 }
 
 /// A straight or curved edge: the cosine and sine of its normal's direction, its curvature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    nx: f64,
-    ny: f64,
-    curvature: f64,
+    pub(super) nx: f64,
+    pub(super) ny: f64,
+    pub(super) curvature: f64,
 }
 
 /// All that a chunk of pixels needs to know of a shape.
 pub(super) struct Model {
     pub(super) edges: [Edge; 2],
-    nodes: [Node; 16],
-    count: usize,
+    pub(super) nodes: [Node; 16],
+    pub(super) count: usize,
     /// Variance of the blurred Gaussians of the pixel, px^2, and 1 / its root.
-    variance: f64,
-    inverse: f64,
+    pub(super) variance: f64,
+    pub(super) inverse: f64,
     /// Cosine and sine of the angle between the normals.
     rho: f64,
     sine: f64,
     /// `(2 / pi) integral of exp(-a (u^2 + v^2) + b u v)`: a, b and weight at each node.
-    integral: [(f64, f64, f64); 8],
-    terms: usize,
+    pub(super) integral: [(f64, f64, f64); 8],
+    pub(super) terms: usize,
     /// Distance from an edge, px, from which on it is not seen.
     pub(super) reach: f64,
 }

@@ -1,4 +1,5 @@
 use super::model::{Fidelity, Model, Shape};
+use super::single::WIDE;
 use super::*;
 use crate::exact::{self, Chess};
 use crate::lanes::LANES;
@@ -157,5 +158,34 @@ fn what_is_no_chess_corner_is_rejected() {
         let (sin, cos) = angle.sin_cos();
         let image = Image::from_fn(SIDE, SIDE, |x, y| ((((x as f64 - 15.2) * cos + (y as f64 - 14.9) * sin) * 0.7).tanh()) as f32);
         assert!(operator.measure(&image, &start).is_err(), "an edge at {angle} rad");
+    }
+}
+
+#[test]
+fn the_corner_of_one_area_is_rejected_before_it_is_fitted() {
+    let operator = operator("window=15");
+    for angle in [0.0_f64, 0.4, 0.8, 1.9, 3.0, 4.4] {
+        let edge = |x: f64, y: f64, a: f64| 0.5 + 0.5 * ((x * a.cos() + y * a.sin()) * 1.2).tanh();
+        let quarter = |x: f64, y: f64| edge(x, y, angle) * edge(x, y, angle + std::f64::consts::FRAC_PI_2);
+        let image = Image::from_fn(SIDE, SIDE, |x, y| (0.2 + 0.6 * quarter(x as f64 - 15.2, y as f64 - 14.9)) as f32);
+        let found = operator.measure(&image, &Start::at(PixelPoint::new(15.0, 15.0)));
+        assert_eq!(found.err(), Some(Rejection::NoCorner), "{angle} rad");
+    }
+}
+
+#[test]
+fn single_precision_gives_the_same_grey_values() {
+    for (blur, fidelity) in [(0.3, Fidelity::Full), (0.5, Fidelity::Full), (1.2, Fidelity::Full), (0.7, Fidelity::Rough)] {
+        let model = Model::new(&shape_of(&Chess { curvature: [0.03, -0.02], ..chess(0.8, 0.7, blur, [0.1, 0.2]) }), fidelity).unwrap();
+        for (x, y) in (-70..70).map(|i| (f64::from(i) * 0.07, f64::from(i * 37 % 61 - 30) * 0.1)) {
+            let (there, seen) = (([x; LANES], [y; LANES]), model.seen(&[x as f32; WIDE], &[y as f32; WIDE]));
+            let off =
+                |single: f32, double: f64| assert!((f64::from(single) - double).abs() < 2e-6, "{blur}, ({x}, {y}): {single} {double}");
+            off(model.corner_value::<true>(&seen)[3], model.corner::<true>(&there.0, &there.1).value[3]);
+            off(model.corner_value::<false>(&seen)[15], model.corner::<false>(&there.0, &there.1).value[0]);
+            for which in [0, 1] {
+                off(model.edge_value::<true>(which, &seen)[0], model.edge::<true>(which, &[1.0; LANES], &there.0, &there.1).value[0]);
+            }
+        }
     }
 }

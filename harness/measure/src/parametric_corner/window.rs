@@ -1,15 +1,21 @@
 //! The normal equations of a chess corner over one window.
+//!
+//! They are those of a model that takes the pixel's area for one Gaussian. What that leaves out is worked out once in a while and taken from the grey
+//! values: see [`Window::correct`].
 
 use calibench_model::Image;
 use multiversion::multiversion;
 use nalgebra::SVector;
 
 use super::model::{BASE, Fidelity, Field, Model, Shape};
+use super::single::WIDE;
 use crate::lanes::{LANES, Lanes};
 use crate::marquardt::{Normal, Problem, Sums};
 
 /// The widest window, px.
 pub(super) const WIDEST: usize = 41;
+/// How often the normal equations of one corner are set up at most. Where the model fits, three to thirteen times were needed; without any blur, more.
+const EVALUATIONS: usize = 60;
 
 /// One window of an image, as the least-squares problem of `P` unknowns: the [`BASE`], a grey gradient if `GRADIENT`, a curvature an edge if `CURVED`.
 pub(super) struct Window<'a, const P: usize, const GRADIENT: bool, const CURVED: bool> {
@@ -18,9 +24,11 @@ pub(super) struct Window<'a, const P: usize, const GRADIENT: bool, const CURVED:
     left: usize,
     top: usize,
     side: usize,
+    /// The window's grey values, corrected.
+    grey: Vec<f64>,
     pixels: Lists,
-    /// How well the model is worked out.
-    pub(super) fidelity: Fidelity,
+    /// How often the normal equations may still be set up.
+    pub(super) patience: usize,
 }
 
 /// Pixels, by what can be seen in them.
@@ -53,13 +61,34 @@ impl<'a, const P: usize, const GRADIENT: bool, const CURVED: bool> Window<'a, P,
     pub(super) fn new(image: &'a Image, side: usize) -> Self {
         let list = || List::new(side);
         let pixels = Lists { corner: list(), edges: [list(), list()], areas: list() };
-        Self { image, left: 0, top: 0, side, pixels, fidelity: Fidelity::Full }
+        Self { image, left: 0, top: 0, side, grey: vec![0.0; side * side], pixels, patience: EVALUATIONS }
     }
 
     /// Lays the window around a pixel from which `side / 2` px are in the image.
     pub(super) fn centre_on(&mut self, (x, y): (i64, i64)) {
         let half = self.side as i64 / 2;
         (self.left, self.top) = ((x - half) as usize, (y - half) as usize);
+        self.read();
+    }
+
+    fn read(&mut self) {
+        let (image, left, side) = (self.image, self.left, self.side);
+        for (row, grey) in self.grey.chunks_exact_mut(side).enumerate() {
+            let from = &image.row(self.top + row)[left..left + side];
+            grey.iter_mut().zip(from).for_each(|(grey, from)| *grey = f64::from(*from));
+        }
+    }
+
+    /// Takes from the grey values what the model leaves out of the pixel's area, as it is at `x`. `None` where the model has no meaning.
+    ///
+    /// It is at most a few hundredths of the contrast and hardly changes with the unknowns: a fit, a correction anew, and so on come to the same
+    /// place as a fit of the whole model.
+    pub(super) fn correct(&mut self, x: &SVector<f64, P>) -> Option<()> {
+        let shape = shape::<P, GRADIENT, CURVED>(x);
+        let (rough, full) = (Model::new(&shape, Fidelity::Rough)?, Model::new(&shape, Fidelity::Full)?);
+        self.read();
+        correct::<CURVED>(&rough, &full, (&mut self.grey, self.side), x.as_slice(), &mut self.pixels);
+        Some(())
     }
 }
 
@@ -71,14 +100,14 @@ pub(super) fn shape<const P: usize, const GRADIENT: bool, const CURVED: bool>(x:
 
 impl<const P: usize, const GRADIENT: bool, const CURVED: bool> Problem<P> for Window<'_, P, GRADIENT, CURVED> {
     fn normal(&mut self, x: &SVector<f64, P>) -> Option<Normal<P>> {
+        self.patience = self.patience.checked_sub(1)?;
         let shape = shape::<P, GRADIENT, CURVED>(x);
         let limit = self.side as f64;
         if !(x.iter().all(|value| value.is_finite()) && shape.position.iter().all(|p| p.abs() < limit) && shape.variance < limit * limit) {
             return None;
         }
-        let model = Model::new(&shape, self.fidelity)?;
-        let view =
-            View { grey: &self.image.grey()[self.top * self.image.width() + self.left..], stride: self.image.width(), side: self.side };
+        let model = Model::new(&shape, Fidelity::Rough)?;
+        let view = View { grey: &self.grey, side: self.side };
         let mut sums = Sums::<P>::new();
         add::<P, GRADIENT, CURVED>(&model, view, x.as_slice(), &mut self.pixels, &mut sums);
         Some(sums.normal())
@@ -93,14 +122,40 @@ impl<const P: usize, const GRADIENT: bool, const CURVED: bool> Problem<P> for Wi
     }
 }
 
-/// Grey values from the window's first on.
+/// Grey values of a window.
 #[derive(Clone, Copy)]
 struct View<'a> {
-    grey: &'a [f32],
-    stride: usize,
+    grey: &'a [f64],
     side: usize,
 }
 
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn correct<const CURVED: bool>(rough: &Model, full: &Model, (grey, side): (&mut [f64], usize), unknowns: &[f64], lists: &mut Lists) {
+    let centre = [unknowns[0], unknowns[1]];
+    sort(rough, View { grey, side }, centre, lists);
+    let Lists { corner, edges, .. } = lists;
+    let lists = [(&*corner, None), (&edges[0], Some(0)), (&edges[1], Some(1))];
+    let half = (side / 2) as f64;
+    for (list, only) in lists {
+        for chunk in list.entries[..list.count].chunks(WIDE) {
+            let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
+            for (i, [px, py, ..]) in chunk.iter().enumerate() {
+                (x[i], y[i]) = ((px - centre[0]) as f32, (py - centre[1]) as f32);
+            }
+            let (there, here) = (full.seen(&x, &y), rough.seen(&x, &y));
+            let [there, here] = match only {
+                None => [full.corner_value::<CURVED>(&there), rough.corner_value::<CURVED>(&here)],
+                Some(edge) => [full.edge_value::<CURVED>(edge, &there), rough.edge_value::<CURVED>(edge, &here)],
+            };
+            for (i, [x, y, _, sign]) in chunk.iter().enumerate() {
+                let index = (y + half) as usize * side + (x + half) as usize;
+                grey[index] -= unknowns[6] * sign * f64::from(there[i] - here[i]);
+            }
+        }
+    }
+}
+
+// In this order: with the wider lanes of double precision it takes three times as long.
 #[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
 fn add<const P: usize, const GRADIENT: bool, const CURVED: bool>(
     model: &Model,
@@ -114,7 +169,11 @@ fn add<const P: usize, const GRADIENT: bool, const CURVED: bool>(
     chunks.add(&lists.corner, sums, |x, y, _| model.corner::<CURVED>(x, y));
     chunks.add(&lists.edges[0], sums, |x, y, side| model.edge::<CURVED>(0, side, x, y));
     chunks.add(&lists.edges[1], sums, |x, y, side| model.edge::<CURVED>(1, side, x, y));
-    chunks.add(&lists.areas, sums, |_, _, side| Field { value: *side, ..Field::default() });
+    if GRADIENT {
+        chunks.add(&lists.areas, sums, |_, _, side| Field { value: *side, ..Field::default() });
+    } else {
+        chunks.add_areas(&lists.areas, sums);
+    }
 }
 
 #[inline(always)]
@@ -123,13 +182,13 @@ fn sort(model: &Model, view: View<'_>, [cx, cy]: [f64; 2], lists: &mut Lists) {
     (corner.count, first.count, second.count, areas.count) = (0, 0, 0, 0);
     let half = (view.side / 2) as f64;
     for row in 0..view.side {
-        let grey = &view.grey[row * view.stride..row * view.stride + view.side];
+        let grey = &view.grey[row * view.side..(row + 1) * view.side];
         let y = row as f64 - half;
         for (column, grey) in grey.iter().enumerate() {
             let x = column as f64 - half;
             let [u, v] = [model.edges[0].distance(x - cx, y - cy), model.edges[1].distance(x - cx, y - cy)];
             let (by_first, by_second) = (u.abs() < model.reach, v.abs() < model.reach);
-            let entry = |side: f64| [x, y, f64::from(*grey), 1_f64.copysign(side)];
+            let entry = |side: f64| [x, y, *grey, 1_f64.copysign(side)];
             corner.push_if(by_first && by_second, entry(1.0));
             first.push_if(by_first && !by_second, entry(v));
             second.push_if(!by_first && by_second, entry(u));
@@ -144,6 +203,22 @@ struct Chunks<'a, const P: usize, const GRADIENT: bool> {
 }
 
 impl<const P: usize, const GRADIENT: bool> Chunks<'_, P, GRADIENT> {
+    /// Pixels that tell of the two grey values only.
+    #[inline(always)]
+    fn add_areas(&self, list: &List, sums: &mut Sums<P>) {
+        let [mean, half] = [5, 6].map(|i| self.unknowns[i]);
+        for first in (0..list.count).step_by(LANES) {
+            let (mut one, mut side, mut r) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                let [_, _, grey, sign] = list.entries[first + i];
+                one[i] = if first + i < list.count { 1.0 } else { 0.0 };
+                side[i] = one[i] * sign;
+                r[i] = one[i] * (grey - (mean + half * sign));
+            }
+            sums.add_pair([5, 6], &one, &side, &r);
+        }
+    }
+
     #[inline(always)]
     fn add(&self, list: &List, sums: &mut Sums<P>, field: impl Fn(&Lanes, &Lanes, &Lanes) -> Field) {
         let [cx, cy, mean, half] = [0, 1, 5, 6].map(|i| self.unknowns[i]);
