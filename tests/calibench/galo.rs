@@ -87,7 +87,9 @@ fn a_square_on_its_corner_does_not_give_9_and_10() {
 #[test]
 fn the_report_reproduces_what_is_comparable() {
     let project = crate::project::copy();
-    for arguments in [&["run", "galo-2011/corners", "galo-2011/corners-drawn", "galo-2011/distinct-points", "-q"][..], &["report", "galo-2011", "-q"]] {
+    for arguments in
+        [&["run", "galo-2011/corners", "galo-2011/corners-drawn", "galo-2011/distinct-points", "-q"][..], &["report", "galo-2011", "-q"]]
+    {
         let output = crate::project::run(project.path(), arguments);
         assert!(output.status.success(), "{}", crate::project::stderr(&output));
     }

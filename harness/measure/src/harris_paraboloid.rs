@@ -24,9 +24,6 @@ pub struct HarrisParaboloid {
     derivation: f64,
 }
 
-/// The strongest pixel and the 3 x 3 strengths around it.
-type Peak = ((i64, i64), [[f64; 3]; 3]);
-
 /// From the 3 x 3 strengths around the strongest pixel to a position.
 enum Refinement {
     /// The maximum of a paraboloid.
