@@ -41,9 +41,8 @@ fn figure(loaded: &Loaded, method: usize, metric: Metric, target: Option<&str>, 
         Metric::RmseX => mean(|e| e.0 * e.0).map(f64::sqrt),
         Metric::RmseY => mean(|e| e.1 * e.1).map(f64::sqrt),
         Metric::MeanDistance => mean(|e| e.0.hypot(e.1)),
-        Metric::Unscored => None,
         Metric::RmseXy => mean(|e| e.0 * e.0 + e.1 * e.1).map(f64::sqrt),
-        // Their tables have sections of their own.
+        // None of ours, or in tables that have sections of their own.
         _ => None,
     }
 }

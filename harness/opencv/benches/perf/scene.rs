@@ -1,10 +1,11 @@
 //! What is measured: 12 megapixels with a corner in every cell, and frames for the detector.
 
-use calibench_measure::harris::smooth;
 use calibench_model::{Image, PixelPoint, Polygon, Scene, Start};
 use calibench_synth::noise::{add_grey_noise, quantise};
+use calibench_synth::optics::Optics;
 use calibench_synth::pointing::Hand;
 use calibench_synth::random::{Key, Purpose, stream};
+use calibench_synth::raster::{Picture, Renderer};
 use rayon::prelude::*;
 
 /// Columns and rows of the image, px.
@@ -50,9 +51,11 @@ pub(crate) fn corners() -> (Image, Vec<PixelPoint>) {
     (image, corners)
 }
 
-/// A crossing of two turned, tilted edges in each cell, its dark areas opposite each other, smoothed by `blur` px; without noise. And where they are.
+/// A crossing of two turned, tilted edges in each cell, its dark areas opposite each other, through a lens of `blur` px; without noise. And where they are.
 pub(crate) fn crossings(blur: f64) -> (Image, Vec<PixelPoint>) {
     let (mut image, mut places) = (Image::new(WIDTH, HEIGHT, vec![0.0; WIDTH * HEIGHT]), Vec::new());
+    let optics = Optics { blur, ..Optics::default() };
+    let renderer = Renderer::new(&optics, CELL.0, CELL.1).expect("a blur that can be rendered");
     let columns = WIDTH / CELL.0;
     for index in 0..columns * (HEIGHT / CELL.1) {
         let (i, left, top) = (index as f64, index % columns * CELL.0, index / columns * CELL.1);
@@ -70,14 +73,14 @@ pub(crate) fn crossings(blur: f64) -> (Image, Vec<PixelPoint>) {
         };
         let scene =
             Scene { width: CELL.0, height: CELL.1, background: 0.8, polygons: vec![quarter(1.0), quarter(-1.0)], targets: Vec::new() };
-        let tile = calibench_synth::render(&scene);
+        let tile = renderer.render(&Picture::from(&scene), &[]);
         for y in 0..CELL.1 {
             let start = (top + y) * WIDTH + left;
             image.grey_mut()[start..start + CELL.0].copy_from_slice(tile.row(y));
         }
         places.push(PixelPoint::new(centre.x + left as f64, centre.y + top as f64));
     }
-    (smooth(&image, blur), places)
+    (image, places)
 }
 
 /// Noise of two grey levels, 8 bit.

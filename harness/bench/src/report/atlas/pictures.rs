@@ -4,6 +4,7 @@ use crate::report::canvas::Canvas;
 use crate::report::sweep::{Choice, Layout, LoadedSweep, Metric, curves, map};
 
 /// A picture that is to be drawn of a sweep.
+#[derive(Clone, Copy)]
 struct Wanted {
     /// Its name after the scenario's.
     stem: &'static str,
