@@ -12,7 +12,7 @@ fn board(folder: &Path) -> Vec<String> {
     let mut images: Vec<String> = std::fs::read_dir(folder.join("board"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name.ends_with(".png"))
+        .filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "png"))
         .map(|name| format!("board/{name}"))
         .collect();
     images.sort();

@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     fn candidate(name: &str, rmse: f64, failed: u64) -> Candidate {
-        let losses = (0..12).map(|trial| rmse * rmse * (1.0 + 0.1 * (trial % 3) as f64)).collect();
+        let losses = (0..12).map(|trial| rmse * rmse * (1.0 + 0.1 * f64::from(trial % 3))).collect();
         Candidate { name: name.into(), losses, failed, points: 500, ratio: Some(rmse / 0.01), speed: Some(2e4) }
     }
 
