@@ -1,9 +1,9 @@
 //! From the tables of a file to a checked scenario. All mistakes that can be told apart are reported together.
 
 use std::ops::Range;
-use std::path::{Component, Path};
+use std::path::Path;
 
-use calibench_measure::{Board, Registry};
+use calibench_measure::Registry;
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
 use calibench_synth::overlap::{crosses_itself, overlap};
 use calibench_synth::random::Key;
@@ -16,8 +16,8 @@ use super::section::Section;
 use super::sensor::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
-use super::wire::{Head, PhotographsWire, PolygonWire, Position, SceneWire, TargetWire};
-use super::{PhotographsSubject, Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, calibration, figure, judgement};
+use super::wire::{Head, PolygonWire, Position, SceneWire, TargetWire};
+use super::{Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, calibration, figure, photographs};
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;
@@ -137,7 +137,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let scene = root.take_table("scene", "[scene]", problems);
     let figure = root.take_table("figure", "[figure]", problems);
     let photographs = root.take_table("photographs", "[photographs]", problems);
-    let judgement = root.take_table("judgement", "[judgement]", problems);
+    let judged = root.take_table("judgement", "[judgement]", problems);
     let views = ViewTables::take(&mut root, problems);
     let imaging = ImagingTables::take(&mut root, problems);
     let calibration = root.take_table("calibration", "[calibration]", problems);
@@ -157,11 +157,11 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         (Some(scene), None, None, None) => read_scene(scene, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
         (None, Some(figure), None, None) => figure::read(figure, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
         (None, None, Some(photographs), None) if stray.is_none() => {
-            read_photographs(photographs, judgement, problems).map(Subject::Photographs)
+            photographs::read(photographs, judged, problems).map(Subject::Photographs)
         }
-        (_, _, None, _) if judgement.is_some() => {
+        (_, _, None, _) if judged.is_some() => {
             let message = "[judgement] without [photographs]: it judges calibrations of which no truth is known";
-            problems.push(Problem::new(judgement.map_or(start, |section| section.span), message));
+            problems.push(Problem::new(judged.map_or(start, |section| section.span), message));
             None
         }
         (None, None, None, Some(_)) => {
@@ -220,31 +220,6 @@ fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> Str
         problems.push(Problem::new(value.span(), format!("`{key}` is empty: expected a sentence")));
     }
     value.into_inner()
-}
-
-fn read_photographs(section: Section<'_>, judged: Option<Section<'_>>, problems: &mut Vec<Problem>) -> Option<PhotographsSubject> {
-    let wire: PhotographsWire = section.read(&[], problems)?;
-    let files_span = wire.files.span();
-    let files = wire.files.into_inner();
-    if files.is_empty() {
-        problems.push(Problem::new(files_span, "`files` is empty: expected at least one photograph"));
-        return None;
-    }
-    let plain =
-        |file: &String| matches!(Path::new(file).components().collect::<Vec<_>>()[..], [Component::Normal(name)] if name == file.as_str());
-    if let Some(file) = files.iter().find(|file| !plain(file)) {
-        problems.push(Problem::new(files_span.clone(), format!("`{file}` is no plain file name")).help("name the folder in `folder`"));
-    }
-    if let Some(twice) = files.iter().enumerate().find(|(i, file)| files[..*i].contains(file)) {
-        problems.push(Problem::new(files_span, format!("photograph `{}` is listed twice; expected each once", twice.1)));
-    }
-    let board = wire.board.get_ref().parse::<Board>();
-    let board = board.map_err(|error| problems.push(Problem::new(wire.board.span(), error.to_string()))).ok()?;
-    let judgement = judged.map(|section| judgement::read(section, files.len(), problems));
-    if judgement.as_ref().is_some_and(Option::is_none) {
-        return None;
-    }
-    Some(PhotographsSubject { folder: wire.folder.into_inner(), files, board, judgement: judgement.flatten() })
 }
 
 fn read_scene(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut Vec<Problem>) -> Option<SceneSubject> {

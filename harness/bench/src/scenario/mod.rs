@@ -8,6 +8,7 @@ mod figure;
 mod judgement;
 mod methods;
 mod optics;
+mod photographs;
 pub mod pointing;
 pub mod problem;
 pub mod schema;
