@@ -162,15 +162,12 @@ pub struct RecordHead {
 /// # Errors
 /// A file that was not written by [`RecordWriter`].
 pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, RecordError> {
-    let mut csv = csv::Reader::from_reader(input);
-    if csv.headers()?.iter().ne(COLUMNS) {
-        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", COLUMNS.join(",")) });
-    }
+    let mut csv = open(input, &COLUMNS)?;
     let mut head = RecordHead { run: RunInfo::default(), methods: Vec::new() };
     let mut trial: Option<Trial> = None;
     for record in csv.records() {
         let record = record?;
-        let row = Row(&record);
+        let row = Row { record: &record, columns: &COLUMNS };
         if head.run.scenario.is_empty() {
             head.run = RunInfo { scenario: row.text(0).into(), seed: row.parse(11)?, revision: row.text(12).into(), detector: None };
         }
@@ -247,19 +244,42 @@ fn add(trial: &mut Trial, row: &Row<'_>, method: usize) -> Result<(), RecordErro
     Ok(())
 }
 
-struct Row<'a>(&'a StringRecord);
+/// A reader of a file of records whose header has been checked.
+pub(crate) fn open<R: Read>(input: R, columns: &[&str]) -> Result<csv::Reader<R>, RecordError> {
+    let mut csv = csv::Reader::from_reader(input);
+    if csv.headers()?.iter().ne(columns.iter().copied()) {
+        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", columns.join(",")) });
+    }
+    Ok(csv)
+}
+
+/// A row of a file of records.
+pub(crate) struct Row<'a> {
+    pub(crate) record: &'a StringRecord,
+    pub(crate) columns: &'a [&'a str],
+}
 
 impl Row<'_> {
-    fn text(&self, column: usize) -> &str {
-        self.0.get(column).unwrap_or_default()
+    pub(crate) fn text(&self, column: usize) -> &str {
+        self.record.get(column).unwrap_or_default()
     }
 
-    fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, RecordError> {
-        self.text(column).parse().map_err(|_| self.wrong(&format!("column `{}` holds `{}`", COLUMNS[column], self.text(column))))
+    pub(crate) fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, RecordError> {
+        self.text(column).parse().map_err(|_| self.bad(column))
+    }
+
+    /// A cell that may be empty.
+    pub(crate) fn optional<T: std::str::FromStr>(&self, column: usize) -> Result<Option<T>, RecordError> {
+        if self.text(column).is_empty() { Ok(None) } else { self.parse(column).map(Some) }
+    }
+
+    /// A cell that holds what it should not.
+    pub(crate) fn bad(&self, column: usize) -> RecordError {
+        self.wrong(&format!("column `{}` holds `{}`", self.columns[column], self.text(column)))
     }
 
     fn wrong(&self, problem: &str) -> RecordError {
-        RecordError::Row { line: self.0.position().map_or(0, csv::Position::line), problem: problem.to_owned() }
+        RecordError::Row { line: self.record.position().map_or(0, csv::Position::line), problem: problem.to_owned() }
     }
 }
 

@@ -138,18 +138,10 @@ impl HarrisParaboloid {
     fn peak(&self, image: &Image, start: &Start) -> Result<Peak, Rejection> {
         let ring = self.half + 1;
         let (x, y) = window_centre(image, start, (ring + self.harris.reach() + self.smoothing()) as i64)?;
-        let strengths = self.strengths(image, (x, y), ring)?;
+        let strengths = self.strengths_around(image, (x, y), ring)?;
         let (column, row) = strongest(&strengths, start.position, (x, y))?;
         let whole = |index: usize, centre: i64| centre + index as i64 - ring as i64;
         Ok(((whole(column, x), whole(row, y)), strengths.around(column, row)))
-    }
-
-    /// The strengths of the pixels within `half` px of `pixel`.
-    ///
-    /// # Errors
-    /// [`Rejection::Border`], [`Rejection::NotFinite`].
-    pub fn strengths_around(&self, image: &Image, pixel: (i64, i64), half: usize) -> Result<Strengths, Rejection> {
-        self.strengths(image, pixel, half)
     }
 
     /// How far from a pixel grey values have a part in the strengths of its 3 x 3 surroundings, px.
@@ -157,8 +149,11 @@ impl HarrisParaboloid {
         1 + self.harris.reach() + self.smoothing()
     }
 
-    /// The strengths within `ring` px of pixel (`x`, `y`).
-    fn strengths(&self, image: &Image, (x, y): (i64, i64), ring: usize) -> Result<Strengths, Rejection> {
+    /// The strengths of the pixels within `ring` px of a pixel.
+    ///
+    /// # Errors
+    /// [`Rejection::Border`], [`Rejection::NotFinite`].
+    pub fn strengths_around(&self, image: &Image, (x, y): (i64, i64), ring: usize) -> Result<Strengths, Rejection> {
         if self.derivation == 0.0 {
             return self.harris.strengths(image, x, y, ring);
         }

@@ -161,7 +161,7 @@ impl Judge {
 
     fn write(&self, folder: &Path, rows: &[Row], summary: &Summary) -> std::io::Result<()> {
         let info = RunInfo { scenario: "judge".into(), seed: self.seed, revision: env!("CARGO_PKG_VERSION").into(), detector: None };
-        write_rows(BufWriter::new(File::create(folder.join(JUDGEMENT))?), &info, rows).map_err(std::io::Error::other)?;
+        write_rows(BufWriter::new(File::create(folder.join(JUDGEMENT))?), &info, rows)?;
         let (text, pictures) = section(summary);
         for (name, picture) in &pictures {
             picture.write(&folder.join(name))?;

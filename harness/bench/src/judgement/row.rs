@@ -1,9 +1,11 @@
 //! The records of a judgement: one tidy CSV beside the records of the corners.
 
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-use crate::records::{RecordError, RunInfo};
+use calibench_exchange::write_table;
+
+use crate::records::{RecordError, Row as Cells, RunInfo, open};
 
 /// The file's name in a scenario's folder.
 pub const JUDGEMENT: &str = "judgement.csv";
@@ -81,32 +83,17 @@ impl Row {
 ///
 /// # Errors
 /// What the output refuses.
-pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> Result<(), csv::Error> {
-    let mut csv = csv::Writer::from_writer(output);
-    csv.write_record(COLUMNS)?;
+pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> io::Result<()> {
     let seed = run.seed.to_string();
     let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-    for row in rows {
-        let (value, sigma) = (number(row.value), number(row.sigma));
+    let cells = |row: &Row| -> [String; 13] {
         let count = row.count.map_or(String::new(), |count| count.to_string());
-        let cells: [&str; 13] = [
-            &run.scenario,
-            &row.method,
-            &row.model,
-            &row.measure,
-            &row.place,
-            &value,
-            &sigma,
-            &count,
-            &row.unit,
-            &row.status,
-            &row.reason,
-            &seed,
-            &run.revision,
-        ];
-        csv.write_record(cells)?;
-    }
-    Ok(csv.flush()?)
+        let [method, model, measure, place] = [&row.method, &row.model, &row.measure, &row.place].map(ToString::to_string);
+        let [unit, status, reason] = [&row.unit, &row.status, &row.reason].map(ToString::to_string);
+        let (value, sigma) = (number(row.value), number(row.sigma));
+        [run.scenario.clone(), method, model, measure, place, value, sigma, count, unit, status, reason, seed.clone(), run.revision.clone()]
+    };
+    write_table(output, &COLUMNS, rows.iter().map(cells))
 }
 
 /// Reads what [`write_rows`] wrote, and the seed.
@@ -114,29 +101,15 @@ pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> Result<(),
 /// # Errors
 /// A file of another form.
 pub fn read_rows(input: impl Read) -> Result<(u64, Vec<Row>), RecordError> {
-    let mut csv = csv::Reader::from_reader(input);
-    let wrong = |line: u64, problem: String| RecordError::Row { line, problem };
-    if csv.headers()?.iter().ne(COLUMNS) {
-        return Err(wrong(1, format!("expected the columns {}", COLUMNS.join(","))));
-    }
     let (mut seed, mut rows) = (0, Vec::new());
-    for record in csv.records() {
+    for record in open(input, &COLUMNS)?.records() {
         let record = record?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let text = |column: usize| record.get(column).unwrap_or_default();
-        let bad = |column: usize| wrong(line, format!("column `{}` holds `{}`", COLUMNS[column], text(column)));
-        let number = |column: usize| match text(column) {
-            "" => Ok(None),
-            text => text.parse().map(Some).map_err(|_| bad(column)),
-        };
-        let count = match text(7) {
-            "" => None,
-            text => Some(text.parse().map_err(|_| bad(7))?),
-        };
-        seed = text(11).parse().map_err(|_| bad(11))?;
-        let [method, model, measure, place] = [1, 2, 3, 4].map(|column| text(column).into());
-        let [unit, status, reason] = [8, 9, 10].map(|column| text(column).into());
-        rows.push(Row { method, model, measure, place, value: number(5)?, sigma: number(6)?, count, unit, status, reason });
+        let cells = Cells { record: &record, columns: &COLUMNS };
+        seed = cells.parse(11)?;
+        let [method, model, measure, place] = [1, 2, 3, 4].map(|column| cells.text(column).into());
+        let [unit, status, reason] = [8, 9, 10].map(|column| cells.text(column).into());
+        let (value, sigma, count) = (cells.optional(5)?, cells.optional(6)?, cells.optional(7)?);
+        rows.push(Row { method, model, measure, place, value, sigma, count, unit, status, reason });
     }
     Ok((seed, rows))
 }

@@ -23,7 +23,7 @@ pub fn write_judgement(folder: &Path, plan: &Plan<'_>, run: &RunInfo, trial: &Tr
     let Subject::Photographs(PhotographsSubject { judgement: Some(wanted), .. }) = &plan.scenario.subject else { return Ok(()) };
     let rows = rows(folder, plan, wanted, trial).unwrap_or_else(|why| vec![Row::without("", "", "unavailable", &why)]);
     let file = BufWriter::new(File::create(folder.join(JUDGEMENT))?);
-    Ok(write_rows(file, run, &rows).map_err(std::io::Error::other)?)
+    Ok(write_rows(file, run, &rows)?)
 }
 
 fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -> Result<Vec<Row>, String> {

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use csv::StringRecord;
 
 use super::{Calibrated, Figure, Group};
-use crate::records::{RecordError, RunInfo};
+use crate::records::{RecordError, Row as Cells, RunInfo, open};
 use crate::results::MethodInfo;
 use crate::scenario::Calibration;
 
@@ -142,10 +142,7 @@ pub struct Numbers {
 /// # Errors
 /// A file that is not one of these, with its line.
 pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<(), RecordError> {
-    let mut reader = csv::Reader::from_reader(input);
-    if reader.headers()?.iter().ne(COLUMNS) {
-        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", COLUMNS.join(",")) });
-    }
+    let mut reader = open(input, &COLUMNS)?;
     let mut record = StringRecord::new();
     while reader.read_record(&mut record)? {
         sink(row(&record)?);
@@ -154,20 +151,13 @@ pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<(), RecordErr
 }
 
 fn row(record: &StringRecord) -> Result<Row, RecordError> {
-    let wrong = |column: usize| RecordError::Row {
-        line: record.position().map_or(0, csv::Position::line),
-        problem: format!("column `{}` holds `{}`", COLUMNS[column], &record[column]),
+    let cells = Cells { record, columns: &COLUMNS };
+    let text = |column: usize| cells.text(column).to_owned();
+    let group = Group::ALL.iter().find(|(_, name)| *name == cells.text(4)).ok_or_else(|| cells.bad(4))?.0;
+    let figure = match cells.text(10) {
+        "adjusted" => Ok(Numbers { value: cells.parse(6)?, sigma: cells.optional(7)?, error: cells.optional(8)? }),
+        "failed" => Err(text(11)),
+        _ => return Err(cells.bad(10)),
     };
-    let number = |column: usize| match &record[column] {
-        "" => Ok(None),
-        text => text.parse::<f64>().map(Some).map_err(|_| wrong(column)),
-    };
-    let group = Group::ALL.iter().find(|(_, name)| *name == &record[4]).ok_or_else(|| wrong(4))?.0;
-    let figure = match &record[10] {
-        "adjusted" => Ok(Numbers { value: number(6)?.ok_or_else(|| wrong(6))?, sigma: number(7)?, error: number(8)? }),
-        "failed" => Err(record[11].to_owned()),
-        _ => return Err(wrong(10)),
-    };
-    let trial = record[1].parse().map_err(|_| wrong(1))?;
-    Ok(Row { trial, method: record[2].into(), set: record[3].into(), group, name: record[5].into(), figure })
+    Ok(Row { trial: cells.parse(1)?, method: text(2), set: text(3), group, name: text(5), figure })
 }

@@ -15,6 +15,7 @@ mod published_sweep;
 mod scene_figures;
 mod scores_section;
 pub mod sweep;
+pub(crate) mod ticks;
 mod zhu;
 
 use std::fs;

@@ -1,5 +1,7 @@
 //! Round levels of a logarithmic scale, and where a grid of values crosses them.
 
+use crate::report::ticks::decades;
+
 /// Most levels of a map.
 const MOST: usize = 7;
 
@@ -26,21 +28,11 @@ impl Scale {
 
     /// Round values within the scale: 1, 2, 5 of each decade, or 1 and 3, or 1 alone where these were too many.
     pub(super) fn levels(&self) -> Vec<f64> {
-        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let of = |steps: &[f64]| -> Vec<f64> {
-            let all = decades.clone().flat_map(|decade| steps.iter().map(move |step| round(step * 10_f64.powi(decade))));
-            all.filter(|level| (self.low..=self.high).contains(level)).collect()
-        };
         let choices: [&[f64]; 4] = [&[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0], &[1.0, 2.0, 5.0], &[1.0, 3.0], &[1.0]];
-        let found: Vec<Vec<f64>> = choices.iter().map(|steps| of(steps)).collect();
+        let found: Vec<Vec<f64>> = choices.iter().map(|factors| decades(self.low, self.high, factors)).collect();
         let few = |levels: &&Vec<f64>| levels.len() <= MOST;
         found.iter().find(few).or(found.last()).cloned().unwrap_or_default()
     }
-}
-
-/// Without the rounding of powers of ten.
-fn round(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 /// The pieces of the line on which a grid of values, `columns` x `rows` row by row, has the value `level`: two ends each, in columns and rows of the grid.

@@ -6,6 +6,7 @@ use plotters::style::text_anchor::HPos;
 use super::labels::{Box2, place};
 use crate::report::canvas::{COLOURS, Canvas, Mark};
 use crate::report::field::{Area, write};
+use crate::report::ticks;
 
 /// A method with its speed and error.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,9 +51,7 @@ impl Decades {
     }
 
     fn ticks(&self) -> Vec<f64> {
-        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let all = decades.flat_map(|power| [1.0, 2.0, 5.0].map(|step| step * 10_f64.powi(power)));
-        all.filter(|value| (self.low..=self.high).contains(value)).collect()
+        ticks::decades(self.low, self.high, &[1.0, 2.0, 5.0])
     }
 }
 

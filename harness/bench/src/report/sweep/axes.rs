@@ -1,5 +1,6 @@
 //! Axes: from values to parts of a side, with ticks.
 
+use crate::report::ticks;
 use crate::scenario::sweep::Axis;
 
 /// Where the values of a swept key lie along a side, as parts of it, and how the ticks are labelled.
@@ -84,16 +85,8 @@ impl Scale {
 
     /// Round values with their labels, from 3 to about 9.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        let values = if self.log { self.factors() } else { self.steps() };
+        let values = if self.log { self.factors() } else { ticks::linear(self.low, self.high) };
         values.into_iter().map(|value| (value, format!("{}", (value * 1e9).round() / 1e9))).collect()
-    }
-
-    fn steps(&self) -> Vec<f64> {
-        let raw = (self.high - self.low) / 5.0;
-        let decade = 10_f64.powf(raw.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|f| f * decade).find(|step| *step >= raw).unwrap_or(raw);
-        let (first, last) = ((self.low / step).ceil() as i64, (self.high / step).floor() as i64);
-        (first..=last).map(|index| index as f64 * step).collect()
     }
 
     fn factors(&self) -> Vec<f64> {
@@ -105,9 +98,7 @@ impl Scale {
         } else {
             &[1.0, 2.0, 5.0]
         };
-        let (first, last) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
-        let all = (first..=last).flat_map(|power| within.iter().map(move |factor| factor * 10_f64.powi(power)));
-        all.filter(|value| (self.low..=self.high).contains(value)).collect()
+        ticks::decades(self.low, self.high, within)
     }
 }
 

@@ -4,6 +4,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::report::field::{Area, write};
+use crate::report::ticks;
 
 /// Where a box lies in the picture and what it shows.
 #[derive(Clone, Copy)]
@@ -30,7 +31,7 @@ impl Axes {
     /// The frame, grid lines and numbers at the left, and the title of the scale.
     pub(super) fn vertical(&self, area: &Area<'_>, title: &str) {
         let [left, top, width, height] = self.at;
-        let values = ticks(self.y);
+        let values = ticks::linear(self.y[0], self.y[1]);
         for &value in &values {
             let (_, y) = self.place(self.x[0], value);
             area.draw(&PathElement::new([(left, y), (left + width, y)], GRID)).ok();
@@ -43,7 +44,7 @@ impl Axes {
     /// Numbers below, and the title of the scale.
     pub(super) fn horizontal(&self, area: &Area<'_>, title: &str) {
         let [left, top, width, height] = self.at;
-        let values = ticks(self.x);
+        let values = ticks::linear(self.x[0], self.x[1]);
         for &value in &values {
             let (x, _) = self.place(value, self.y[0]);
             area.draw(&PathElement::new([(x, top + height), (x, top + height + 5)], BLACK)).ok();
@@ -57,16 +58,6 @@ impl Axes {
         let (_, y) = self.place(self.x[0], value);
         area.draw(&PathElement::new([(self.at[0], y), (self.at[0] + self.at[2], y)], ShapeStyle::from(&colour).stroke_width(2))).ok();
     }
-}
-
-/// Round numbers within a range, about five.
-pub(super) fn ticks([low, high]: [f64; 2]) -> Vec<f64> {
-    let wanted = (high - low) / 5.0;
-    let decade = 10_f64.powf(wanted.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|s| s * decade).find(|s| *s >= wanted).unwrap_or(wanted);
-    let first = (low / step).ceil() as i64;
-    let last = (high / step + 1e-9).floor() as i64;
-    (first..=last).map(|k| k as f64 * step).collect()
 }
 
 /// A tick's number with the decimals that the step between `ticks` needs.

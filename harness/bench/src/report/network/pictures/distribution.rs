@@ -29,7 +29,7 @@ pub fn distribution(loaded: &Loaded, views: &ViewsSubject) -> Option<Canvas> {
         axes.horizontal(area, "x, px");
         let flipped = Axes { y: [height - 0.5, -0.5], ..axes };
         area.draw(&Rectangle::new([(70, 80), (830, 80 + shown)], BLACK)).ok();
-        let values = super::axes::ticks([0.0, height]);
+        let values = crate::report::ticks::linear(0.0, height);
         for &value in &values {
             let (x, y) = flipped.place(-0.5, value);
             crate::report::field::write(area, &super::axes::number(value, &values), (x - 8, y), plotters::style::text_anchor::HPos::Right);
