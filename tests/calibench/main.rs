@@ -23,5 +23,6 @@ mod priors;
 mod project;
 mod render;
 mod schema;
+mod several;
 mod sweeps;
 mod zhu;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_bench::calibration::{DatumChoice, Settings, prepare};
+use calibench_bench::calibration::{DatumChoice, Optics, Settings, prepare};
 use calibench_bench::network::{Calibrated, Figure, Group, ImagePoint, Job, calibrate, observe};
 use calibench_bench::results::Trial;
 use calibench_bench::run::Plan;
@@ -76,18 +76,17 @@ fn a_user_who_calibrates_the_same_coordinates_finds_the_same_camera() {
         .collect();
     for calibrated in &trial.calibrations {
         let points: Vec<PointRow> = observed.points.iter().filter(|point| point.method == calibrated.method).map(row).collect();
-        let settings = Settings {
+        let optics = Optics {
             pitch_um: Some(4.70),
             model: Some("photogrammetric".into()),
             solve: Some(calibration.sets[calibrated.set].parameters.clone()),
-            datum: DatumChoice::Control,
-            sigma_px: Some(calibration.sigma_px),
             start: Some(calibration.start.into()),
-            ..Settings::new(views.camera.size())
+            ..Optics::new(views.camera.size())
         };
+        let settings = Settings { datum: DatumChoice::Control, sigma_px: Some(calibration.sigma_px), ..Settings::new(vec![optics]) };
         let prepared = prepare(&points, &control, &settings).unwrap();
         let theirs = prepared.adjust().unwrap();
-        for parameter in theirs.camera().parameters() {
+        for parameter in theirs.camera(0).parameters() {
             if !calibration.sets[calibrated.set].parameters.iter().any(|name| name == parameter.name) {
                 continue;
             }

@@ -4,7 +4,7 @@ mod theirs;
 
 use std::path::Path;
 
-use calibench_bench::calibration::{Settings, prepare};
+use calibench_bench::calibration::{Optics, Settings, prepare};
 use calibench_exchange::{ControlRow, PointRow, read_photo};
 use calibench_measure::{Board, BoardDetector};
 use calibench_model::camera::{CameraModel, ImageSize};
@@ -37,7 +37,8 @@ fn same_optimum(views: &[Vec<PixelPoint>]) {
     let rows: Vec<PointRow> =
         views.iter().enumerate().flat_map(|(i, view)| view.iter().enumerate().map(move |(k, at)| row(i, k, *at))).collect();
     let control = control();
-    let settings = Settings { model: Some("opencv5".into()), sigma_px: Some(1.0), ..Settings::new(SIZE) };
+    let optics = Optics { model: Some("opencv5".into()), ..Optics::new(SIZE) };
+    let settings = Settings { sigma_px: Some(1.0), ..Settings::new(vec![optics]) };
     let prepared = prepare(&rows, &control, &settings).unwrap();
     let ours = prepared.adjust().unwrap();
     let plane: Vec<[f64; 2]> = control.iter().map(|row| [row.position[0], row.position[1]]).collect();
@@ -49,7 +50,7 @@ fn same_optimum(views: &[Vec<PixelPoint>]) {
     let theirs = theirs::calibrate(&board, 1000, 1e-16).unwrap();
     assert!((theirs.rms / ours.rms_px() - 1.0).abs() < 1e-9, "{} {}", theirs.rms, ours.rms_px());
     let (names, covariance) = ours.covariances.of_camera(0);
-    let parameters = ours.camera().parameters();
+    let parameters = ours.camera(0).parameters();
     assert_eq!(names, parameters.iter().map(|p| p.name).collect::<Vec<_>>());
     // OpenCV up to 4.6 divides the sum of squares by the number of points less unknowns, not by that of coordinates.
     let (points, unknowns) = (rows.len() as f64, ours.solution.counts().unknowns as f64);

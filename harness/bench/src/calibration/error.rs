@@ -40,6 +40,22 @@ pub enum CalibrationError {
         /// Whose units they are.
         what: String,
     },
+    /// An image that no camera claims.
+    #[error("`{image}` belongs to no camera: there are {cameras}; give one of them a pattern that names it")]
+    WhoseImage {
+        /// The image.
+        image: String,
+        /// The cameras with their patterns.
+        cameras: String,
+    },
+    /// A camera without images.
+    #[error("camera `{camera}` has no image: expected a pattern that names some of them (`*` is any text); the first is `{first}`")]
+    NoImage {
+        /// Its name.
+        camera: String,
+        /// The first image.
+        first: String,
+    },
     /// A datum's target that is no measured control point.
     #[error("the datum names {target}, which is no measured control point")]
     DatumTarget {

@@ -4,6 +4,7 @@ mod datum;
 mod error;
 mod model;
 mod network;
+mod optics;
 mod page;
 mod pictures;
 mod prior;
@@ -16,11 +17,12 @@ mod tables;
 
 use calibench_adjust::{Covariances, Found, Network, Options, Reliability, Snooping, Solution, Test, Variance, adjust, snoop};
 use calibench_exchange::{ControlRow, LostRow, ObservedStation, PointRow};
-use calibench_model::camera::{Camera, ImageSize};
+use calibench_model::camera::Camera;
 
 pub use datum::{DatumChoice, NoDatum};
 pub use error::CalibrationError;
 pub use model::{MODELS, parameters};
+pub use optics::Optics;
 pub use page::{summary, write_report};
 pub use prior::{NoPrior, Prior};
 pub use sets::{Compared, ComparedSet, compare_sets};
@@ -30,14 +32,8 @@ pub use survey::{LeftOut, Sight, Survey};
 /// How to calibrate.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Size of the images.
-    pub size: ImageSize,
-    /// Pixel pitch, um, for models in mm.
-    pub pitch_um: Option<f64>,
-    /// The camera model, one of [`MODELS`]; `None` for photogrammetric with a pitch and OpenCV's five coefficients without.
-    pub model: Option<String>,
-    /// The parameters to be solved for; `None` for those that the model usually needs.
-    pub solve: Option<Vec<String>>,
+    /// The cameras: at least one.
+    pub cameras: Vec<Optics>,
     /// What fixes the frame of the object.
     pub datum: DatumChoice,
     /// Bound of Huber's weights, in standard deviations.
@@ -48,12 +44,8 @@ pub struct Settings {
     pub sigma_px: Option<f64>,
     /// Weigh image points by their own covariances, where they have them?
     pub covariances: bool,
-    /// Parameters that were observed; they are unknowns, solved for or not.
-    pub priors: Vec<Prior>,
     /// Poses that were observed, or parts of them.
     pub stations: Vec<ObservedStation>,
-    /// An interior orientation to start from; parameters that are not solved for keep its values.
-    pub start: Option<Camera>,
 }
 
 /// The a-priori standard deviation of an image coordinate where none is given, px.
@@ -63,22 +55,9 @@ pub const USUAL_SIGMA: f64 = 0.1;
 const ITERATIONS: usize = 1000;
 
 impl Settings {
-    /// The usual ones for images of a size.
-    pub fn new(size: ImageSize) -> Self {
-        Self {
-            size,
-            pitch_um: None,
-            model: None,
-            solve: None,
-            datum: DatumChoice::Control,
-            huber: None,
-            snoop: false,
-            sigma_px: None,
-            covariances: false,
-            priors: Vec::new(),
-            stations: Vec::new(),
-            start: None,
-        }
+    /// The usual ones for some cameras, at least one.
+    pub fn new(cameras: Vec<Optics>) -> Self {
+        Self { cameras, datum: DatumChoice::Control, huber: None, snoop: false, sigma_px: None, covariances: false, stations: Vec::new() }
     }
 
     /// The a-priori standard deviation of an image coordinate, px.
@@ -99,8 +78,8 @@ pub struct Prepared {
     pub settings: Settings,
     /// Who measured what.
     pub survey: Survey,
-    /// Where the interior orientation started.
-    pub origin: String,
+    /// Where the interior orientation of each camera started.
+    pub origins: Vec<String>,
     /// What is adjusted.
     pub network: Network,
     /// The sight behind each observation of the network.
@@ -134,9 +113,10 @@ pub struct Calibration<'n> {
 /// No point in common, an unknown model or parameter, too few control points in an image, a datum of unknown targets.
 pub fn prepare(points: &[PointRow], control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
     let survey = Survey::new(points, control)?;
-    let starts = start::starts(&survey, settings)?;
-    let (network, sights, left_out) = network::network(&survey, &starts, settings)?;
-    Ok(Prepared { settings: settings.clone(), survey, origin: starts.origin, network, sights, left_out, unmeasured: Vec::new() })
+    let owners = optics::owners(&settings.cameras, &survey.images)?;
+    let starts = start::starts(&survey, &owners, settings)?;
+    let (network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
+    Ok(Prepared { settings: settings.clone(), survey, origins: starts.origins, network, sights, left_out, unmeasured: Vec::new() })
 }
 
 impl Prepared {
@@ -169,9 +149,29 @@ impl Calibration<'_> {
         Ok(())
     }
 
-    /// The interior orientation.
-    pub fn camera(&self) -> &Camera {
-        &self.solution.cameras()[0]
+    /// The interior orientation of a camera.
+    pub fn camera(&self, index: usize) -> &Camera {
+        &self.solution.cameras()[index]
+    }
+
+    /// How many cameras there are.
+    pub fn cameras(&self) -> usize {
+        self.solution.cameras().len()
+    }
+
+    /// The name of a camera.
+    pub fn name_of(&self, camera: usize) -> &str {
+        &self.prepared.settings.cameras[camera].name
+    }
+
+    /// A parameter's name; with its camera's if there are several.
+    pub fn parameter_name(&self, &(camera, name): &(usize, &'static str)) -> String {
+        if self.cameras() > 1 { format!("{}.{name}", self.name_of(camera)) } else { name.to_owned() }
+    }
+
+    /// The camera of an image.
+    pub fn owner(&self, image: usize) -> usize {
+        self.prepared.network.images[image].camera
     }
 
     /// Root mean square of the residuals in use, px: `sqrt(mean(vx^2 + vy^2))`.

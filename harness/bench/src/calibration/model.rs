@@ -4,7 +4,7 @@ use calibench_adjust::approximate::interior_from_size;
 use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, TangentialOrder};
 use calibench_model::convert::{ConvertOptions, Target, convert};
 
-use super::{CalibrationError, Settings};
+use super::{CalibrationError, Optics};
 use crate::scenario::problem::nearest;
 
 /// Where spherical models start.
@@ -35,14 +35,14 @@ const WIDE: [&str; 6] = ["opencv-fisheye", "double-sphere", "eucm", "omni", "fov
 const RATIONAL: [&str; 3] = ["opencv8", "opencv12", "opencv14"];
 
 /// What the user asked for, or the model that suits what is known.
-pub(super) fn name(settings: &Settings) -> &str {
-    let usual = if settings.pitch_um.is_some() { "photogrammetric" } else { "opencv5" };
-    settings.model.as_deref().unwrap_or(usual)
+pub(super) fn name(optics: &Optics) -> &str {
+    let usual = if optics.pitch_um.is_some() { "photogrammetric" } else { "opencv5" };
+    optics.model.as_deref().unwrap_or(usual)
 }
 
-fn target(name: &str, settings: &Settings) -> Result<Target, CalibrationError> {
-    let pitch = || settings.pitch_um.ok_or_else(|| CalibrationError::NoPitch { what: format!("{name} is") });
-    let width_mm = |pitch_um: f64| f64::from(settings.size.width) * pitch_um * 1e-3;
+fn target(name: &str, optics: &Optics) -> Result<Target, CalibrationError> {
+    let pitch = || optics.pitch_um.ok_or_else(|| CalibrationError::NoPitch { what: format!("{name} is") });
+    let width_mm = |pitch_um: f64| f64::from(optics.size.width) * pitch_um * 1e-3;
     Ok(match name {
         "photogrammetric" => Target::photogrammetric(pitch()?),
         // The grid's outer points lie at four tenths of the width.
@@ -68,29 +68,29 @@ fn unknown(name: &str) -> CalibrationError {
 }
 
 /// The model that the user asked for, as near to `start` as it comes.
-pub(super) fn camera(start: &Camera, settings: &Settings) -> Result<Camera, CalibrationError> {
+pub(super) fn camera(start: &Camera, optics: &Optics) -> Result<Camera, CalibrationError> {
     // Of a start the misfit does not matter.
-    let camera = converted(start, settings, &ConvertOptions { accept: true, ..ConvertOptions::default() })?;
-    Ok(if settings.start.is_some() { camera } else { regular(camera) })
+    let camera = converted(start, optics, &ConvertOptions { accept: true, ..ConvertOptions::default() })?;
+    Ok(if optics.start.is_some() { camera } else { regular(camera) })
 }
 
 /// `start` in the model that the user asked for.
-pub(super) fn converted(start: &Camera, settings: &Settings, options: &ConvertOptions) -> Result<Camera, CalibrationError> {
-    let camera = convert(start, target(name(settings), settings)?, options)?.camera;
+pub(super) fn converted(start: &Camera, optics: &Optics, options: &ConvertOptions) -> Result<Camera, CalibrationError> {
+    let camera = convert(start, target(name(optics), optics)?, options)?.camera;
     // A zero without a sign.
     let values: Vec<f64> = camera.parameters().iter().map(|parameter| parameter.value + 0.0).collect();
     Ok(camera.with_parameters(&values))
 }
 
 /// Can the model picture lenses that a camera without distortion does not come near?
-pub(super) fn is_wide(settings: &Settings) -> bool {
+pub(super) fn is_wide(optics: &Optics) -> bool {
     // Coefficients that are not solved for are to stay zero.
-    WIDE.contains(&name(settings)) || (RATIONAL.contains(&name(settings)) && settings.solve.is_none())
+    WIDE.contains(&name(optics)) || (RATIONAL.contains(&name(optics)) && optics.solve.is_none())
 }
 
-/// The model, and its unknowns, that is adjusted first where that of `settings` does not converge from a lens without distortion such as `rough`.
-pub(super) fn simpler(rough: &Camera, settings: &Settings) -> Option<(&'static str, &'static [&'static str])> {
-    let name = name(settings);
+/// The model, and its unknowns, that is adjusted first where that of `optics` does not converge from a lens without distortion such as `rough`.
+pub(super) fn simpler(rough: &Camera, optics: &Optics) -> Option<(&'static str, &'static [&'static str])> {
+    let name = name(optics);
     let angles = matches!(rough, Camera::OpenCvFisheye(_)) || WIDE.contains(&name);
     match name {
         "opencv-fisheye" => None,
@@ -111,26 +111,26 @@ fn regular(camera: Camera) -> Camera {
 }
 
 /// Is the model known, and what it needs given? Asked before start values are looked for.
-pub(super) fn check(settings: &Settings) -> Result<(), CalibrationError> {
-    if settings.model.is_none() && settings.pitch_um.is_none() && settings.solve.iter().flatten().any(|name| name == "c") {
+pub(super) fn check(optics: &Optics) -> Result<(), CalibrationError> {
+    if optics.model.is_none() && optics.pitch_um.is_none() && optics.solve.iter().flatten().any(|name| name == "c") {
         return Err(CalibrationError::NoPitch { what: "c, x0 and y0 are".into() });
     }
-    target(name(settings), settings).map(|_| ())
+    target(name(optics), optics).map(|_| ())
 }
 
-/// The names of all parameters of the model of `settings`.
+/// The names of all parameters of the model of `optics`.
 ///
 /// # Errors
 /// As of an unknown model, or one in mm without a pitch.
-pub fn parameters(settings: &Settings) -> Result<Vec<&'static str>, CalibrationError> {
-    check(settings)?;
-    let camera = camera(&interior_from_size(settings.size)?, settings)?;
+pub fn parameters(optics: &Optics) -> Result<Vec<&'static str>, CalibrationError> {
+    check(optics)?;
+    let camera = camera(&interior_from_size(optics.size)?, optics)?;
     Ok(camera.parameters().iter().map(|parameter| parameter.name).collect())
 }
 
 /// The parameters to be solved for.
-pub(super) fn unknowns(camera: &Camera, settings: &Settings) -> Vec<String> {
-    if let Some(names) = &settings.solve {
+pub(super) fn unknowns(camera: &Camera, optics: &Optics) -> Vec<String> {
+    if let Some(names) = &optics.solve {
         return names.clone();
     }
     let rarely: &[&str] = match camera {

@@ -1,27 +1,25 @@
 //! The network of a survey.
 
 use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Precision};
+use calibench_model::camera::Camera;
 
 use super::start::Starts;
 use super::survey::Target;
-use super::{CalibrationError, DatumChoice, LeftOut, Settings, Survey, model, prior};
-
-/// The name of the camera in messages.
-const CAMERA: &str = "the camera";
+use super::{CalibrationError, DatumChoice, LeftOut, Optics, Settings, Survey, model, prior};
 
 /// The network, the sight behind each of its observations, and the sights that take no part.
 pub(super) fn network(
     survey: &Survey,
+    owners: &[usize],
     starts: &Starts,
     settings: &Settings,
 ) -> Result<(Network, Vec<usize>, Vec<LeftOut>), CalibrationError> {
-    let names = model::unknowns(&starts.camera, settings);
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let interior = prior::observed(Interior::fixed(CAMERA, starts.camera).free(&names)?, &settings.priors)?;
-    let image = |(name, pose): (&String, &calibench_model::Pose)| {
-        prior::exterior(Exterior::free(name.clone(), 0, *pose), prior::station(&settings.stations, name))
+    let cameras = settings.cameras.iter().zip(&starts.cameras).map(|(optics, camera)| interior(optics, camera));
+    let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
+    let image = |((name, &camera), pose): ((&String, &usize), &calibench_model::Pose)| {
+        prior::exterior(Exterior::free(name.clone(), camera, *pose), prior::station(&settings.stations, name))
     };
-    let images = survey.images.iter().zip(&starts.poses).map(image).collect();
+    let images = survey.images.iter().zip(owners).zip(&starts.poses).map(image).collect();
     let (mut points, mut place) = (Vec::new(), vec![None; survey.targets.len()]);
     for (index, (target, position)) in survey.targets.iter().zip(&starts.points).enumerate() {
         if let Ok(position) = position {
@@ -46,7 +44,13 @@ pub(super) fn network(
     }
     let control = |name: &str| survey.targets.iter().position(|t| t.name == name && t.control.is_some()).and_then(|i| place[i]);
     let datum = settings.datum.datum(control)?;
-    Ok((Network { cameras: vec![interior], images, points, observations, datum }, sights, left_out))
+    Ok((Network { cameras, images, points, observations, datum }, sights, left_out))
+}
+
+fn interior(optics: &Optics, camera: &Camera) -> Result<Interior, CalibrationError> {
+    let names = model::unknowns(camera, optics);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    prior::observed(Interior::fixed(optics.name.clone(), *camera).free(&names)?, &optics.priors)
 }
 
 fn point(target: &Target, position: nalgebra::Point3<f64>, datum: &DatumChoice) -> ObjectPoint {

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::io;
 use std::path::Path;
 
-use calibench_adjust::Use;
+use calibench_adjust::{Significance, Use};
 use calibench_exchange::atomic::write_atomically;
 use calibench_model::camera::CameraModel;
 
@@ -28,8 +28,10 @@ const MOST: usize = 200;
 pub fn write_report(calibration: &Calibration<'_>, folder: &Path) -> io::Result<()> {
     tables::write(calibration, folder)?;
     let mut text = format!("# Calibration\n\n{}\n", facts(calibration));
-    text.push_str("## Interior orientation\n\n");
-    text.push_str(&parameters(calibration).render());
+    for camera in 0..calibration.cameras() {
+        let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, of(calibration, camera));
+        text.push_str(&parameters(calibration, camera).render());
+    }
     text.push_str(&format!("\nStandard deviations {}.\n", scaled(calibration)));
     text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{warning}**\n")).collect::<String>());
     if let Some(compared) = &calibration.compared {
@@ -50,13 +52,25 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &Path) -> io::Result<
 /// What a user reads first: the parameters with their standard deviations and what is wrong with them.
 pub fn summary(calibration: &Calibration<'_>) -> String {
     let mut text = facts(calibration).replace("- ", "");
-    text.push('\n');
-    text.push_str(&parameters(calibration).render());
+    for camera in 0..calibration.cameras() {
+        let name = of(calibration, camera);
+        let _ = write!(
+            text,
+            "\n{}{}",
+            if name.is_empty() { String::new() } else { format!("interior orientation{name}\n") },
+            parameters(calibration, camera).render()
+        );
+    }
     text.push_str(&warnings(calibration).iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n{}", sets_page::section(compared));
     }
     text
+}
+
+/// Whose something is, where there are several cameras.
+fn of(calibration: &Calibration<'_>, camera: usize) -> String {
+    if calibration.cameras() > 1 { format!(" of {}", calibration.name_of(camera)) } else { String::new() }
 }
 
 fn scaled(calibration: &Calibration<'_>) -> &'static str {
@@ -73,8 +87,14 @@ fn facts(calibration: &Calibration<'_>) -> String {
     let settings = &prepared.settings;
     let counts = solution.counts();
     let control = prepared.survey.targets.iter().filter(|target| target.control.is_some()).count();
-    let mut lines = vec![
-        format!("camera model: {}", calibration.camera().convention().name),
+    let owned = |camera: usize| (0..solution.poses().len()).filter(|&image| calibration.owner(image) == camera).count();
+    let models = (0..calibration.cameras()).map(|camera| {
+        let (name, model) = (of(calibration, camera), calibration.camera(camera).convention().name);
+        let images = if name.is_empty() { String::new() } else { format!(", {} images", owned(camera)) };
+        format!("camera model{name}: {model}{images}")
+    });
+    let mut lines: Vec<String> = models.collect();
+    lines.extend([
         format!(
             "{} images, {} image points, {control} of {} targets are control points",
             solution.poses().len(),
@@ -82,7 +102,9 @@ fn facts(calibration: &Calibration<'_>) -> String {
             prepared.network.points.len()
         ),
         format!("datum: {}", settings.datum.words()),
-        format!("start: {}", prepared.origin),
+    ]);
+    lines.extend(prepared.origins.iter().enumerate().map(|(camera, origin)| format!("start{}: {origin}", of(calibration, camera))));
+    lines.extend([
         format!(
             "{} observations, {} constraints, {} unknowns, redundancy {}",
             counts.observations() - counts.constraints,
@@ -91,7 +113,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
             counts.redundancy()
         ),
         format!("residuals {} px RMS", plain(calibration.rms_px())),
-    ];
+    ]);
     lines.extend(observed(calibration));
     if let Some(sigma0) = solution.sigma0() {
         let sigma = settings.sigma();
@@ -108,7 +130,11 @@ fn facts(calibration: &Calibration<'_>) -> String {
 /// What was observed beside image points and control.
 fn observed(calibration: &Calibration<'_>) -> Option<String> {
     let settings = &calibration.prepared.settings;
-    let parameters = settings.priors.iter().map(|prior| format!("{} = {} \u{b1} {}", prior.parameter, prior.value, prior.sigma));
+    let prior = |(camera, prior): (usize, &super::Prior)| {
+        format!("{}{} = {} \u{b1} {}", prior.parameter, of(calibration, camera), prior.value, prior.sigma)
+    };
+    let parameters = settings.cameras.iter().enumerate().flat_map(|(camera, optics)| optics.priors.iter().map(move |one| (camera, one)));
+    let parameters = parameters.map(prior);
     let (centres, rotations) = settings
         .stations
         .iter()
@@ -119,17 +145,17 @@ fn observed(calibration: &Calibration<'_>) -> Option<String> {
     (!all.is_empty()).then(|| format!("observed as well: {}", all.join(", ")))
 }
 
-fn parameters(calibration: &Calibration<'_>) -> MarkdownTable {
-    let (names, covariance) = calibration.covariances.of_camera(0);
+fn parameters(calibration: &Calibration<'_>, camera: usize) -> MarkdownTable {
+    let (names, covariance) = calibration.covariances.of_camera(camera);
     let tests = calibration.solution.significance().unwrap_or_default();
     let mut table = MarkdownTable::new(&["parameter", "value", "sigma", "unit", "t", "p"]);
-    for parameter in calibration.camera().parameters() {
+    for parameter in calibration.camera(camera).parameters() {
         let solved = names.iter().position(|name| *name == parameter.name);
         let (value, sigma) = match solved {
             Some(i) => rounded(parameter.value, covariance[(i, i)].sqrt()),
             None => (parameter.value.to_string(), "fixed".into()),
         };
-        let test = tests.iter().find(|test| test.parameter == parameter.name);
+        let test = tests.iter().find(|test| test.camera == camera && test.parameter == parameter.name);
         let test = test.map_or_else(|| [String::new(), String::new()], |test| [format!("{:.1}", test.t), format!("{:.3}", test.p)]);
         let [t, p] = test;
         table.row([parameter.name.to_owned(), value, sigma, parameter.unit.to_owned(), t, p]);
@@ -153,16 +179,19 @@ fn rounded(value: f64, sigma: f64) -> (String, String) {
 
 /// What a user must know.
 fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
-    let names: Vec<&str> = calibration.covariances.parameters.iter().map(|(_, name)| *name).collect();
+    let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
     let correlated = calibration.covariances.correlated(CORRELATED);
     let mut warnings: Vec<String> = correlated
         .iter()
         .map(|found| format!("{} and {} are hardly told apart: correlation {:.3}", names[found.pair[0]], names[found.pair[1]], found.rho))
         .collect();
     let tests = calibration.solution.significance().unwrap_or_default();
-    let observed = |name: &str| calibration.prepared.settings.priors.iter().any(|prior| prior.parameter == name);
-    for test in tests.iter().filter(|test| !observed(test.parameter) && test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
-        warnings.push(format!("{} is not told from zero (t {:.1}); a set without it may do", test.parameter, test.t));
+    let observed = |test: &Significance| {
+        calibration.prepared.settings.cameras[test.camera].priors.iter().any(|prior| prior.parameter == test.parameter)
+    };
+    for test in tests.iter().filter(|test| !observed(test) && test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
+        let name = calibration.parameter_name(&(test.camera, test.parameter));
+        warnings.push(format!("{name} is not told from zero (t {:.1}); a set without it may do", test.t));
     }
     warnings.extend(weights(calibration));
     let rejected = calibration.found.iter().filter(|found| found.left_out).count();
@@ -199,7 +228,11 @@ fn weights(calibration: &Calibration<'_>) -> Option<String> {
 }
 
 fn images(calibration: &Calibration<'_>) -> String {
-    let mut table = MarkdownTable::new(&["image", "points", "RMS px", "X0", "Y0", "Z0", "omega", "phi", "kappa"]);
+    let several = calibration.cameras() > 1;
+    let columns = ["image", "camera", "points", "RMS px", "X0", "Y0", "Z0", "omega", "phi", "kappa"];
+    let shown = |index: usize| several || index != 1;
+    let columns: Vec<&str> = columns.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, name)| name).collect();
+    let mut table = MarkdownTable::new(&columns);
     let rms = calibration.solution.rms_by_image();
     let names = &calibration.prepared.survey.images;
     for (index, name) in names.iter().enumerate().take(MOST) {
@@ -211,8 +244,9 @@ fn images(calibration: &Calibration<'_>) -> String {
             format!("{value} \u{b1} {sigma}")
         });
         let angles = numbers[3..].iter().map(|angle| format!("{angle:.4}\u{b0}"));
-        let row = [name.clone(), points.to_string(), rms[index].map_or(String::new(), plain)];
-        table.row(row.into_iter().chain(centre).chain(angles));
+        let camera = several.then(|| calibration.name_of(calibration.owner(index)).to_owned());
+        let row = [points.to_string(), rms[index].map_or(String::new(), plain)];
+        table.row([name.clone()].into_iter().chain(camera).chain(row).chain(centre).chain(angles));
     }
     let more = if names.len() > MOST { format!("\nThe first {MOST} of {} images.\n", names.len()) } else { String::new() };
     format!("\n## Images\n\n{}{more}", table.render())

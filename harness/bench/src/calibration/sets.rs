@@ -1,6 +1,7 @@
 //! Several sets of parameters for the same observations: which of them the network supports.
 
 use calibench_adjust::{Comparison, Interior, Network, Options, Significance, Solution, Status, adjust, compare};
+use calibench_model::camera::Camera;
 use calibench_model::convert::{DifferenceOptions, difference};
 
 use super::{Calibration, CalibrationError};
@@ -32,9 +33,9 @@ pub struct SetResult {
     pub counts: (usize, usize),
     /// Akaike's criterion, corrected for few observations: the smaller is the better, its differences count.
     pub aicc: f64,
-    /// Each parameter against zero.
-    pub tests: Vec<Significance>,
-    /// How far its camera lies from that of the calibration, after the best rotation: RMS and most over the frame, px; `None` where they cannot be compared.
+    /// Each parameter against zero, with its name (and its camera's, if there are several).
+    pub tests: Vec<(String, Significance)>,
+    /// How far its cameras lie from those of the calibration, after the best rotation: RMS and most over the frame, px; `None` where they cannot be compared.
     pub change_px: Option<[f64; 2]>,
 }
 
@@ -58,16 +59,20 @@ pub fn compare_sets(calibration: &Calibration<'_>, sets: &[Vec<String>]) -> Resu
     Ok(Compared { sets: (0..sets.len()).map(set).collect() })
 }
 
-/// The same network with other parameters solved for.
+/// The same network with other parameters solved for, of every camera.
 fn with(network: &Network, names: &[String]) -> Result<Network, CalibrationError> {
-    let interior = &network.cameras[0];
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let cameras = network.cameras.iter().map(|interior| solving(interior, &names)).collect::<Result<_, _>>()?;
+    Ok(Network { cameras, ..network.clone() })
+}
+
+fn solving(interior: &Interior, names: &[&str]) -> Result<Interior, CalibrationError> {
     let fixed = |status: &Status| if *status == Status::Free { Status::Fixed } else { *status };
     let observed = Interior { parameters: interior.parameters.iter().map(fixed).collect(), ..interior.clone() };
     let known = observed.parameters.clone();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let mut free = observed.free(&names)?;
+    let mut free = observed.free(names)?;
     free.parameters.iter_mut().zip(known).filter(|(_, known)| known.is_unknown()).for_each(|(status, known)| *status = known);
-    Ok(Network { cameras: vec![free], ..network.clone() })
+    Ok(free)
 }
 
 fn result(solution: &Solution<'_>, calibration: &Calibration<'_>) -> Result<SetResult, String> {
@@ -77,14 +82,23 @@ fn result(solution: &Solution<'_>, calibration: &Calibration<'_>) -> Result<SetR
     // The variance factor is an unknown of the distribution too.
     let k = u + 1.0;
     let correction = if n > k + 1.0 { 2.0 * k * (k + 1.0) / (n - k - 1.0) } else { f64::INFINITY };
-    let change = difference(calibration.camera(), &solution.cameras()[0], &DifferenceOptions::default());
+    let tests = solution.significance().map_err(|error| error.to_string())?;
     Ok(SetResult {
         sigma0_px: sigma0 * calibration.prepared.settings.sigma(),
         counts: (counts.observations(), counts.unknowns),
         aicc: n * (solution.cost().max(f64::MIN_POSITIVE) / n).ln() + 2.0 * k + correction,
-        tests: solution.significance().map_err(|error| error.to_string())?,
-        change_px: change.ok().map(|change| [change.spread.rms_px, change.spread.max_px]),
+        tests: tests.into_iter().map(|test| (calibration.parameter_name(&(test.camera, test.parameter)), test)).collect(),
+        change_px: change(calibration.solution.cameras(), solution.cameras()),
     })
+}
+
+/// RMS over all cameras, and the most of any.
+fn change(before: &[Camera], after: &[Camera]) -> Option<[f64; 2]> {
+    let of =
+        |(before, after): (&Camera, &Camera)| difference(before, after, &DifferenceOptions::default()).ok().map(|change| change.spread);
+    let spreads = before.iter().zip(after).map(of).collect::<Option<Vec<_>>>()?;
+    let squares: f64 = spreads.iter().map(|spread| spread.rms_px * spread.rms_px).sum();
+    Some([(squares / spreads.len() as f64).sqrt(), spreads.iter().map(|spread| spread.max_px).fold(0.0, f64::max)])
 }
 
 /// The largest set that is a part of another, and the test of the rest.

@@ -56,8 +56,8 @@ fn probability(p: f64) -> String {
 }
 
 fn tests(result: &SetResult) -> String {
-    let additional = result.tests.iter().filter(|test| !BASIC.contains(&test.parameter));
-    let said = additional.map(|test| format!("{} {:.1}{}", test.parameter, test.t, if test.p > DOUBTFUL { " (!)" } else { "" }));
+    let additional = result.tests.iter().filter(|(_, test)| !BASIC.contains(&test.parameter));
+    let said = additional.map(|(name, test)| format!("{name} {:.1}{}", test.t, if test.p > DOUBTFUL { " (!)" } else { "" }));
     said.collect::<Vec<_>>().join(", ")
 }
 
@@ -103,8 +103,8 @@ fn csv_rows(index: usize, set: &ComparedSet) -> Vec<Vec<String>> {
         .against
         .map_or_else(|| vec![String::new(); 3], |(other, test)| vec![(other + 1).to_string(), test.f.to_string(), test.p.to_string()]);
     let change = result.change_px.map_or_else(|| vec![String::new(); 2], |change| change.map(|px| px.to_string()).to_vec());
-    let of = |test: &calibench_adjust::Significance| {
-        let mut row = vec![number.clone(), test.parameter.to_owned()];
+    let of = |(name, test): &(String, calibench_adjust::Significance)| {
+        let mut row = vec![number.clone(), name.clone()];
         row.extend([test.value, test.sigma, test.t, test.p].map(|value| value.to_string()));
         row.extend([observed.to_string(), unknown.to_string(), (observed as i64 - unknown as i64).to_string()]);
         row.extend([result.sigma0_px, result.aicc].map(|value| value.to_string()));

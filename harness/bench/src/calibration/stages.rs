@@ -5,7 +5,7 @@ use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::convert::{ConvertOptions, Region};
 
 use super::start::Starts;
-use super::{Settings, Survey, model, network};
+use super::{Optics, Settings, Sight, Survey, model, network};
 
 /// Iterations of a simpler model at most: its minimum need not be exact.
 const ITERATIONS: usize = 30;
@@ -13,38 +13,45 @@ const ITERATIONS: usize = 30;
 const CIRCLES: [f64; 4] = [1.0, 0.95, 0.9, 0.8];
 
 /// `starts` with the camera of `settings`, by way of a simpler model adjusted from their own; `None` where that is not needed or does not work.
-pub(super) fn by_stages(survey: &Survey, starts: &Starts, settings: &Settings) -> Option<Starts> {
-    // What is not solved for keeps what a rough start says of it.
-    if settings.start.is_some() || settings.solve.is_some() {
+pub(super) fn by_stages(survey: &Survey, owners: &[usize], starts: &Starts, settings: &Settings) -> Option<Starts> {
+    let simpler: Vec<Option<Optics>> = settings.cameras.iter().zip(&starts.cameras).map(|(optics, rough)| simpler(optics, rough)).collect();
+    if simpler.iter().all(Option::is_none) {
         return None;
     }
-    let (simple, unknowns) = model::simpler(&starts.camera, settings)?;
-    let first = Settings {
-        model: Some(simple.to_owned()),
-        solve: Some(unknowns.iter().map(|&name| name.to_owned()).collect()),
-        priors: Vec::new(),
-        ..settings.clone()
-    };
-    let started = Starts { camera: model::camera(&starts.camera, &first).ok()?, ..starts.clone() };
-    let (network, ..) = network::network(survey, &started, &first).ok()?;
+    let staged = simpler.iter().zip(&settings.cameras).map(|(simpler, optics)| simpler.as_ref().unwrap_or(optics).clone());
+    let first = Settings { cameras: staged.collect(), ..settings.clone() };
+    let cameras = first.cameras.iter().zip(&starts.cameras).map(|(optics, rough)| model::camera(rough, optics));
+    let started = Starts { cameras: cameras.collect::<Result<_, _>>().ok()?, ..starts.clone() };
+    let (network, ..) = network::network(survey, owners, &started, &first).ok()?;
     let options = Options { huber: settings.huber, most_iterations: ITERATIONS, ..Options::default() };
     let solution = adjust(&network, &options).ok()?;
-    Some(Starts {
-        camera: converted(survey, &solution.cameras()[0], settings)?,
-        origin: format!("{}, then an adjustment with {simple}, converted", starts.origin),
-        poses: solution.poses().to_vec(),
-        points: points(starts, &solution),
-    })
+    let (mut cameras, mut origins) = (solution.cameras().to_vec(), starts.origins.clone());
+    for (index, simple) in simpler.iter().enumerate().filter_map(|(index, simple)| Some((index, simple.as_ref()?))) {
+        let own = survey.sights.iter().filter(|sight| owners[sight.image] == index);
+        cameras[index] = converted(own, &cameras[index], &settings.cameras[index])?;
+        origins[index] = format!("{}, then an adjustment with {}, converted", origins[index], model::name(simple));
+    }
+    Some(Starts { cameras, origins, poses: solution.poses().to_vec(), points: points(starts, &solution) })
 }
 
-/// The camera of `settings` that is nearest to `simple` in the circle about its axis that holds all image points, since a fit need not suit what was not
+/// The camera with a simpler model, if it needs one: what is not solved for keeps what a rough start says of it.
+fn simpler(optics: &Optics, rough: &Camera) -> Option<Optics> {
+    if optics.start.is_some() || optics.solve.is_some() {
+        return None;
+    }
+    let (simple, unknowns) = model::simpler(rough, optics)?;
+    let solve = unknowns.iter().map(|&name| name.to_owned()).collect();
+    Some(Optics { model: Some(simple.to_owned()), solve: Some(solve), priors: Vec::new(), ..optics.clone() })
+}
+
+/// The camera of `optics` that is nearest to `simple` in the circle about its axis that holds all its image points, since a fit need not suit what was not
 /// seen; in a smaller one if the model pictures no more.
-fn converted(survey: &Survey, simple: &Camera, settings: &Settings) -> Option<Camera> {
+fn converted<'s>(sights: impl Iterator<Item = &'s Sight>, simple: &Camera, optics: &Optics) -> Option<Camera> {
     let axis = simple.project(Ray { x: 0.0, y: 0.0, z: -1.0 }).ok()?;
-    let farthest = survey.sights.iter().map(|sight| sight.position.distance(axis)).fold(1.0, f64::max);
+    let farthest = sights.map(|sight| sight.position.distance(axis)).fold(1.0, f64::max);
     CIRCLES.iter().find_map(|share| {
         let region = Region::Radius { px: share * farthest };
-        model::converted(simple, settings, &ConvertOptions { accept: true, region, ..ConvertOptions::default() }).ok()
+        model::converted(simple, optics, &ConvertOptions { accept: true, region, ..ConvertOptions::default() }).ok()
     })
 }
 

@@ -8,7 +8,7 @@ use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye};
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
-use super::{CalibrationError, Settings, Survey, model, prior, stages};
+use super::{CalibrationError, Optics, Settings, Survey, model, prior, stages};
 
 /// Height of control, as a share of its extent, below which it is a plane for start values.
 const FLAT: f64 = 1e-4;
@@ -24,9 +24,11 @@ const PARALLEL: f64 = 1e-3;
 /// Start values of everything.
 #[derive(Clone, Debug)]
 pub(super) struct Starts {
-    pub(super) camera: Camera,
-    /// Where the camera comes from, in words.
-    pub(super) origin: String,
+    /// Of each camera.
+    pub(super) cameras: Vec<Camera>,
+    /// Where each camera comes from, in words.
+    pub(super) origins: Vec<String>,
+    /// Of each image.
     pub(super) poses: Vec<Pose>,
     /// Of each target, or why there is none.
     pub(super) points: Vec<Result<Point3<f64>, String>>,
@@ -34,26 +36,39 @@ pub(super) struct Starts {
 
 /// Start values of a survey: from planes by Zhang's closed form, from control with depth by the direct linear transformation or the best of some usual
 /// focal lengths; then resections and intersections in turn.
-pub(super) fn starts(survey: &Survey, settings: &Settings) -> Result<Starts, CalibrationError> {
-    model::check(settings)?;
+pub(super) fn starts(survey: &Survey, owners: &[usize], settings: &Settings) -> Result<Starts, CalibrationError> {
+    settings.cameras.iter().try_for_each(model::check)?;
     prior::check(&settings.stations, &survey.images)?;
     let known: Vec<Option<Point3<f64>>> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
     let views: Vec<Vec<Control>> = (0..survey.images.len()).map(|image| control_of(survey, &known, image)).collect();
-    let (rough, origin) = match settings.start {
-        Some(camera) => (camera, "the camera file given".to_owned()),
-        None => {
-            let usual = if is_flat(&known) { from_plane(&views, settings.size)? } else { from_depth(&views, settings.size)? };
-            if model::is_wide(settings) { widest(&views, settings.size, usual)? } else { usual }
-        }
+    let rough = |(index, optics): (usize, &Optics)| {
+        let own: Vec<&[Control]> =
+            views.iter().zip(owners).filter(|(_, owner)| **owner == index).map(|(view, _)| view.as_slice()).collect();
+        rough(optics, &own, is_flat(&known))
     };
+    let rough = settings.cameras.iter().enumerate().map(rough).collect::<Result<Vec<_>, _>>()?;
+    let (rough, origins): (Vec<Camera>, Vec<String>) = rough.into_iter().unzip();
     let observed: Vec<Option<Pose>> =
         survey.images.iter().map(|image| prior::station(&settings.stations, image).map(|row| row.station.pose)).collect();
-    let (poses, points) = orient(survey, &rough, known, &observed)?;
-    let starts = Starts { camera: rough, origin, poses, points };
-    match stages::by_stages(survey, &starts, settings) {
+    let of_image: Vec<Camera> = owners.iter().map(|&owner| rough[owner]).collect();
+    let (poses, points) = orient(survey, &of_image, known, &observed)?;
+    let starts = Starts { cameras: rough, origins, poses, points };
+    match stages::by_stages(survey, owners, &starts, settings) {
         Some(better) => Ok(better),
-        None => Ok(Starts { camera: model::camera(&rough, settings)?, ..starts }),
+        None => {
+            let cameras = starts.cameras.iter().zip(&settings.cameras).map(|(rough, optics)| model::camera(rough, optics));
+            Ok(Starts { cameras: cameras.collect::<Result<_, _>>()?, ..starts })
+        }
     }
+}
+
+/// A camera to find poses with, and where it comes from.
+fn rough(optics: &Optics, views: &[&[Control]], flat: bool) -> Result<(Camera, String), CalibrationError> {
+    if let Some(camera) = optics.start {
+        return Ok((camera, "the camera file given".to_owned()));
+    }
+    let usual = if flat { from_plane(views, optics.size)? } else { from_depth(views, optics.size)? };
+    if model::is_wide(optics) { widest(views, optics.size, usual) } else { Ok(usual) }
 }
 
 /// What an image sees of the points that are known.
@@ -81,8 +96,8 @@ fn middle(size: ImageSize) -> Result<[f64; 2], CalibrationError> {
     Ok([named("cx"), named("cy")])
 }
 
-fn from_plane(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String), CalibrationError> {
-    let usable: Vec<&[Control]> = views.iter().filter(|view| view.len() >= 4).map(Vec::as_slice).collect();
+fn from_plane(views: &[&[Control]], size: ImageSize) -> Result<(Camera, String), CalibrationError> {
+    let usable: Vec<&[Control]> = views.iter().copied().filter(|view| view.len() >= 4).collect();
     let Ok(found) = interior_from_planes(&usable, size) else {
         // The adjustment says what of it cannot be determined.
         return Ok((interior_from_size(size)?, "the size of the images alone: no view of the plane shows the principal distance".into()));
@@ -98,7 +113,7 @@ fn from_plane(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String
     Ok((pinhole(size, (value("fx") * value("fy")).sqrt(), [value("cx"), value("cy")]), origin))
 }
 
-fn from_depth(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String), CalibrationError> {
+fn from_depth(views: &[&[Control]], size: ImageSize) -> Result<(Camera, String), CalibrationError> {
     let side = f64::from(size.width.max(size.height));
     let centre = middle(size)?;
     let mut focal: Vec<(f64, &str)> = FOCAL.iter().map(|f| (f * side, "the best of some usual focal lengths")).collect();
@@ -119,15 +134,15 @@ fn from_depth(views: &[Vec<Control>], size: ImageSize) -> Result<(Camera, String
 }
 
 /// The median over the images of the standard deviation of an image coordinate after a resection, px.
-fn misfit(camera: &Camera, views: &[Vec<Control>]) -> f64 {
-    let sigma = |view: &Vec<Control>| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
+fn misfit(camera: &Camera, views: &[&[Control]]) -> f64 {
+    let sigma = |view: &&[Control]| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
     let mut sigmas: Vec<f64> = views.iter().filter(|view| view.len() >= 4).map(sigma).collect();
     sigmas.sort_by(f64::total_cmp);
     sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
 /// `usual`, or a lens that pictures angles if one suits the images better.
-fn widest(views: &[Vec<Control>], size: ImageSize, usual: (Camera, String)) -> Result<(Camera, String), CalibrationError> {
+fn widest(views: &[&[Control]], size: ImageSize, usual: (Camera, String)) -> Result<(Camera, String), CalibrationError> {
     let side = f64::from(size.width.max(size.height));
     let [cx, cy] = middle(size)?;
     let equidistant = |f: f64| OpenCvFisheye { size, fx: f * side, fy: f * side, cx, cy, skew: 0.0, k: [0.0; 4] }.into();
@@ -157,7 +172,7 @@ type Points = Vec<Result<Point3<f64>, String>>;
 /// Poses from known points, or else as observed, and tie points from oriented images, in turn.
 fn orient(
     survey: &Survey,
-    camera: &Camera,
+    cameras: &[Camera],
     mut known: Vec<Option<Point3<f64>>>,
     observed: &[Option<Pose>],
 ) -> Result<(Vec<Pose>, Points), CalibrationError> {
@@ -165,11 +180,11 @@ fn orient(
     let mut why = vec![String::new(); known.len()];
     for _ in 0..ROUNDS {
         for (image, pose) in poses.iter_mut().enumerate().filter(|(_, pose)| pose.is_err()) {
-            let found = pose_of(camera, &control_of(survey, &known, image));
+            let found = pose_of(&cameras[image], &control_of(survey, &known, image));
             *pose = found.or_else(|why| observed[image].ok_or(why));
         }
         for target in (0..known.len()).filter(|&target| survey.targets[target].control.is_none()) {
-            match tie_point(survey, camera, &poses, target) {
+            match tie_point(survey, cameras, &poses, target) {
                 Ok(point) => known[target] = Some(point),
                 Err(reason) => why[target] = reason,
             }
@@ -184,10 +199,11 @@ fn orient(
     Ok((poses.into_iter().flatten().collect(), points))
 }
 
-fn tie_point(survey: &Survey, camera: &Camera, poses: &[Result<Pose, String>], target: usize) -> Result<Point3<f64>, String> {
+fn tie_point(survey: &Survey, cameras: &[Camera], poses: &[Result<Pose, String>], target: usize) -> Result<Point3<f64>, String> {
     let seen = survey.sights.iter().filter(|sight| sight.target == target);
-    let rays: Vec<Ray<'_>> =
-        seen.filter_map(|sight| Some(Ray { camera, pose: poses[sight.image].as_ref().ok()?, image: sight.position })).collect();
+    let rays: Vec<Ray<'_>> = seen
+        .filter_map(|sight| Some(Ray { camera: &cameras[sight.image], pose: poses[sight.image].as_ref().ok()?, image: sight.position }))
+        .collect();
     if rays.len() < 2 {
         return Err("no control point, and not seen in two oriented images".into());
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::io;
 use std::path::Path;
 
-use calibench_adjust::{Found, PointReliability, Use};
+use calibench_adjust::{Found, PointReliability, Significance, Use};
 use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::{ControlRow, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control, write_table};
 use calibench_model::camera::CameraModel;
@@ -102,12 +102,22 @@ fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
 
 /// All parameters; those that were not solved for have no standard deviation.
 fn parameters(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
-    let (names, covariance) = calibration.covariances.of_camera(0);
     let tests = calibration.solution.significance().unwrap_or_default();
-    let priors = &calibration.prepared.settings.priors;
+    let of_camera = |camera: usize| {
+        let rows = of_camera(calibration, &tests, camera);
+        let name = calibration.name_of(camera);
+        rows.into_iter().map(move |row| [vec![name.to_owned()], row].concat())
+    };
+    let columns = ["camera", "parameter", "unit", "value", "sigma", "t", "p", "status"];
+    table(path, &columns, (0..calibration.cameras()).flat_map(of_camera))
+}
+
+fn of_camera(calibration: &Calibration<'_>, tests: &[Significance], camera: usize) -> Vec<Vec<String>> {
+    let (names, covariance) = calibration.covariances.of_camera(camera);
+    let priors = &calibration.prepared.settings.cameras[camera].priors;
     let row = |parameter: calibench_model::camera::CameraParameter| {
         let sigma = names.iter().position(|name| *name == parameter.name).map(|i| covariance[(i, i)].sqrt());
-        let test = tests.iter().find(|test| test.parameter == parameter.name);
+        let test = tests.iter().find(|test| test.camera == camera && test.parameter == parameter.name);
         let mut row = vec![parameter.name.to_owned(), parameter.unit.to_owned(), parameter.value.to_string()];
         row.extend(texts(sigma.map(|sigma| [sigma])));
         row.extend(texts(test.map(|test| [test.t, test.p])));
@@ -124,21 +134,21 @@ fn parameters(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         );
         row
     };
-    table(path, &["parameter", "unit", "value", "sigma", "t", "p", "status"], calibration.camera().parameters().into_iter().map(row))
+    calibration.camera(camera).parameters().into_iter().map(row).collect()
 }
 
 /// Every pair of solved parameters once.
 fn correlations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
     let rho = calibration.covariances.correlations();
-    let names: Vec<&str> = calibration.covariances.parameters.iter().map(|(_, name)| *name).collect();
+    let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
     let pairs = (0..names.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
-    let rows = pairs.map(|(i, j)| vec![names[i].to_owned(), names[j].to_owned(), rho[(i, j)].to_string()]);
+    let rows = pairs.map(|(i, j)| vec![names[i].clone(), names[j].clone(), rho[(i, j)].to_string()]);
     table(path, &["first", "second", "rho"], rows)
 }
 
 /// Poses as `render` writes them, with standard deviations: of X0 in object units, of a small rotation about the camera's axes in degrees.
 fn stations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
-    let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &["points", "rms_px"]].concat();
+    let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &["points", "rms_px", "camera"]].concat();
     let (poses, rms) = (calibration.solution.poses(), calibration.solution.rms_by_image());
     let observations = &calibration.prepared.network.observations;
     let row = |(index, name): (usize, &String)| {
@@ -150,6 +160,7 @@ fn stations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         row.extend(texts(Some([sigma(3), sigma(4), sigma(5)].map(f64::to_degrees))));
         row.push(observations.iter().filter(|o| o.image == index).count().to_string());
         row.extend(texts(rms[index].map(|rms| [rms])));
+        row.push(calibration.name_of(calibration.owner(index)).to_owned());
         row
     };
     table(path, &columns, calibration.prepared.survey.images.iter().enumerate().map(row))

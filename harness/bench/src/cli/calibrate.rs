@@ -11,12 +11,14 @@ use clap::Args;
 use super::context::Context;
 use super::convert::positive;
 use super::{Failure, print};
-use crate::calibration::{Calibration, DatumChoice, Prior, Settings, prepare, summary, write_report};
+use crate::calibration::{Calibration, DatumChoice, Settings, prepare, summary, write_report};
 
 pub(super) mod board;
 mod camera_file;
+mod cameras;
 
 use board::{Chessboard, Corners};
+use cameras::{Cameras, Photo};
 
 #[derive(Args)]
 pub struct Calibrate {
@@ -35,18 +37,8 @@ pub struct Calibrate {
     /// Control points: CSV with target,X,Y,Z, and optionally sX,sY,sZ
     #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
     control: Option<PathBuf>,
-    /// Size of the images, px
-    #[arg(long, value_name = "WxH", value_parser = super::reading::size, required_unless_present = "photos", conflicts_with = "photos")]
-    size: Option<ImageSize>,
-    /// Pixel pitch, um, for models in mm
-    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true)]
-    pitch: Option<f64>,
-    /// Camera model: photogrammetric, opencv5, metashape and others [default: photogrammetric with --pitch, or else opencv5]
-    #[arg(long, value_name = "MODEL")]
-    model: Option<String>,
-    /// Parameters to solve for, as in c,x0,y0,k1; the others keep their start values [default: what the model usually needs]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    solve: Option<Vec<String>>,
+    #[command(flatten)]
+    cameras: Cameras,
     /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, or minimal:A,B,C,D,E (X and Y of two, Z of three)
     #[arg(long, value_name = "DATUM", default_value = "control")]
     datum: DatumChoice,
@@ -62,19 +54,13 @@ pub struct Calibrate {
     /// Leave out image points that Baarda's test rejects, one after the other
     #[arg(long, conflicts_with = "huber")]
     snoop: bool,
-    /// An observed parameter and its standard deviation, in the parameter's unit, as in k1=-3e-4:1e-5; may be repeated
-    #[arg(long = "prior", value_name = "NAME=VALUE:SIGMA", allow_hyphen_values = true)]
-    priors: Vec<Prior>,
     /// Observed poses: a station file with sX0,sY0,sZ0 (object units) or sx_deg,sy_deg,sz_deg (about the camera's axes) or both
     #[arg(long, value_name = "CSV")]
     poses: Option<PathBuf>,
     /// Sets of parameters to compare, as in "c,x0,y0,k1;c,x0,y0,k1,k2": sigma0, tests, change of the camera
     #[arg(long, value_name = "SETS", value_delimiter = ';')]
     compare: Vec<String>,
-    /// A camera file to start from, and whose values the parameters keep that are not solved for
-    #[arg(long, value_name = "FILE")]
-    start: Option<PathBuf>,
-    /// The camera file [default: none is written]
+    /// The camera file [default: none is written]; of several cameras, where the format holds one, a file for each: NAME-CAMERA.ENDING
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Convention or tool of the camera file, as for `convert` [default: by model and ending]
@@ -88,7 +74,7 @@ pub struct Calibrate {
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let (corners, control) = self.input(context)?;
-        let settings = self.settings(corners.size)?;
+        let settings = self.settings(&corners.photos)?;
         let mut prepared = prepare(&corners.points, &control, &settings)?;
         prepared.unmeasured = corners.lost;
         let mut calibration = prepared.adjust()?;
@@ -100,36 +86,31 @@ impl Calibrate {
     }
 
     fn input(&self, context: &Context<'_>) -> Result<(Corners, Vec<ControlRow>), Failure> {
-        match (&self.points, &self.control, self.size, self.chessboard) {
-            (Some(points), Some(control), Some(size), _) => {
+        match (&self.points, &self.control, self.chessboard) {
+            (Some(points), Some(control), _) => {
                 let PointFile { rows, lost, .. } = measured(points)?;
-                Ok((Corners { points: rows, lost, size }, read_control(control)?))
+                Ok((Corners { points: rows, lost, photos: Vec::new() }, read_control(control)?))
             }
-            (_, _, _, Some(chessboard)) => Ok((chessboard.measure(context, &self.photos, &self.method)?, chessboard.control())),
+            (_, _, Some(chessboard)) => Ok((chessboard.measure(context, &self.photos, &self.method)?, chessboard.control())),
             _ => Err(Failure::input("expected --points, --control and --size, or photographs and --chessboard")),
         }
     }
 
-    fn settings(&self, size: ImageSize) -> Result<Settings, Failure> {
+    fn settings(&self, photos: &[Photo]) -> Result<Settings, Failure> {
         Ok(Settings {
-            pitch_um: self.pitch,
-            model: self.model.clone(),
-            solve: self.solve.clone(),
             datum: self.datum.clone(),
             huber: self.huber,
             snoop: self.snoop,
             sigma_px: self.sigma,
             covariances: self.covariances,
-            priors: self.priors.clone(),
             stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
-            start: self.start.as_deref().map(|path| camera(path, Some(size))).transpose()?,
-            ..Settings::new(size)
+            ..Settings::new(self.cameras.optics(photos)?)
         })
     }
 
     fn deliver(&self, calibration: &Calibration<'_>) -> Result<(), Failure> {
         if let Some(path) = &self.output {
-            camera_file::write(path, calibration, self.to.as_deref(), self.pitch)?;
+            camera_file::write(path, calibration, self.to.as_deref())?;
         }
         let Some(folder) = &self.report else { return Ok(()) };
         let (Some(name), parent) = (folder.file_name().and_then(|name| name.to_str()), folder.parent()) else {

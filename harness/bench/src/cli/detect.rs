@@ -1,6 +1,6 @@
 //! `calibench detect`: a chessboard's corners as approximate positions.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use calibench_exchange::{PointRow, read_photo, write_points};
 use calibench_measure::{Board, BoardDetector};
@@ -9,6 +9,7 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::context::Context;
+use super::photos::{names, once};
 use super::progress::Progress;
 use super::{Failure, deliver};
 
@@ -30,12 +31,14 @@ impl Detect {
         let detector = context.toolbox.detector.as_deref();
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
-        let one = |path: &PathBuf| {
-            let rows = rows(detector, path, self.chessboard);
+        once(&self.photos)?;
+        let one = |(path, name): (&PathBuf, &String)| {
+            let image = read_photo(path)?;
+            let rows = corners_of(detector, &image, name, self.chessboard);
             progress.step();
-            rows
+            Ok(rows)
         };
-        let found = self.photos.par_iter().map(one).collect::<Result<Vec<_>, Failure>>()?;
+        let found = self.photos.par_iter().zip(&names(&self.photos)).map(one).collect::<Result<Vec<_>, Failure>>()?;
         let seen = found.iter().filter(|rows| !rows.is_empty()).count();
         progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
         for (path, rows) in self.photos.iter().zip(&found) {
@@ -50,16 +53,11 @@ impl Detect {
     }
 }
 
-fn rows(detector: &dyn BoardDetector, path: &Path, board: Board) -> Result<Vec<PointRow>, Failure> {
-    Ok(corners_of(detector, &read_photo(path)?, path, board))
-}
-
-/// The corners of a board in the photograph at `path`; none if it is not seen whole.
-pub fn corners_of(detector: &dyn BoardDetector, image: &Image, path: &Path, board: Board) -> Vec<PointRow> {
+/// The corners of a board in the photograph `name`; none if it is not seen whole.
+pub fn corners_of(detector: &dyn BoardDetector, image: &Image, name: &str, board: Board) -> Vec<PointRow> {
     let corners = detector.detect(image, board).unwrap_or_default();
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
     let row = |(index, position): (usize, &PixelPoint)| PointRow {
-        image: name.clone().into_owned(),
+        image: name.to_owned(),
         target: board.target(index),
         start: Start { kind: Some(TargetKind::ChessCorner), affine: Some(affine(&corners, board, index)), ..Start::at(*position) },
     };

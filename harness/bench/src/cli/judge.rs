@@ -1,6 +1,5 @@
 //! `calibench judge`: which operator and which camera model to trust on a folder of photographs.
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -12,10 +11,11 @@ use calibench_model::camera::ImageSize;
 use clap::Args;
 use rayon::prelude::*;
 
-use super::calibrate::board::{Chessboard, same_size};
+use super::calibrate::board::Chessboard;
 use super::context::Context;
 use super::convert::positive;
 use super::output::OutputFolder;
+use super::photos::{names, once, same_size};
 use super::progress::Progress;
 use super::{Failure, print};
 use crate::judgement::{
@@ -89,9 +89,7 @@ impl Judge {
         if self.photos.len() < needed {
             return Err(JudgementError::TooFewViews { found: self.photos.len(), needed }.into());
         }
-        if let Some((_, twice)) = self.photos.iter().enumerate().find(|(i, photo)| self.photos[..*i].contains(photo)) {
-            return Err(Failure::input(format!("{}: given twice; expected each photograph once", twice.display())));
-        }
+        once(&self.photos)?;
         let folder = self.report.as_deref().map(|path| OutputFolder::open(path).map_err(named)).transpose()?;
         let (trial, size) = self.measure(context, &methods)?;
         let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
@@ -138,8 +136,7 @@ impl Judge {
             found
         };
         let found = self.photos.par_iter().zip(&names).map(one).collect::<Result<Vec<_>, Failure>>()?;
-        let sizes: Vec<ImageSize> = found.iter().map(|(_, size)| *size).collect();
-        let size = same_size(&self.photos, &sizes)?;
+        let size = same_size(self.photos.iter().zip(found.iter().map(|(_, size)| *size)))?;
         let mut trial = Trial::default();
         for (view, _) in found {
             trial.points.extend(view.points);
@@ -177,14 +174,6 @@ impl Judge {
         );
         write_atomically(&folder.join("README.md"), |file| file.write_all(text.as_bytes()))
     }
-}
-
-/// File names; those of the same name in several folders with their folders.
-fn names(photos: &[PathBuf]) -> Vec<String> {
-    let short = |path: &PathBuf| path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
-    let mut count: BTreeMap<String, usize> = BTreeMap::new();
-    photos.iter().for_each(|path| *count.entry(short(path)).or_default() += 1);
-    photos.iter().map(|path| if count[&short(path)] > 1 { path.display().to_string() } else { short(path) }).collect()
 }
 
 fn info(method: &Configured) -> MethodInfo {

@@ -10,6 +10,7 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::context::Context;
+use super::photos::{ambiguous, names, once};
 use super::progress::Progress;
 use super::{Failure, deliver};
 
@@ -45,7 +46,7 @@ impl Measure {
         if points.is_empty() {
             return Err(Failure::input(format!("{}: no row has a position", self.points.display())));
         }
-        let photos = by_name(&self.photos)?;
+        let photos = by_name(&self.photos, &points)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); points.len()];
         for (index, outcome) in measure(&points, &photos, &methods, &progress)? {
@@ -66,20 +67,17 @@ fn not_given(point: &PointRow) -> Outcome {
     Outcome::Unavailable(format!("photograph {} was not given", point.image))
 }
 
-/// Photographs by file name, which is what point files call them.
-fn by_name(paths: &[PathBuf]) -> Result<BTreeMap<String, &Path>, Failure> {
-    let mut photos: BTreeMap<String, &Path> = BTreeMap::new();
-    for path in paths {
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-        let name = name.ok_or_else(|| Failure::input(format!("{}: is no photograph", path.display())))?;
-        if let Some(other) = photos.insert(name.clone(), path) {
-            let (a, b) = (other.display(), path.display());
-            return Err(Failure::input(format!(
-                "two photographs are called {name}: {a} and {b}; point files tell them apart by file name"
-            )));
-        }
+/// Photographs by the names that point files give them: those of [`names`].
+fn by_name<'p>(paths: &'p [PathBuf], points: &[PointRow]) -> Result<BTreeMap<String, &'p Path>, Failure> {
+    once(paths)?;
+    let unclear = points.iter().find_map(|point| Some((&point.image, ambiguous(paths, &point.image)?)));
+    if let Some((name, [a, b])) = unclear {
+        let (a, b) = (a.display(), b.display());
+        return Err(Failure::input(format!(
+            "two photographs are called {name}: {a} and {b}; points must name them with their folders, as `{b}`"
+        )));
     }
-    Ok(photos)
+    Ok(names(paths).into_iter().zip(paths.iter().map(PathBuf::as_path)).collect())
 }
 
 /// (index of the point, one outcome a method). One photograph a thread is in memory.
@@ -90,7 +88,7 @@ fn measure(
     progress: &Progress,
 ) -> Result<Vec<(usize, Vec<Outcome>)>, Failure> {
     let one = |(name, path): (&String, &&Path)| -> Result<Vec<(usize, Vec<Outcome>)>, Failure> {
-        let wanted: Vec<usize> = (0..points.len()).filter(|&i| points[i].image == *name).collect();
+        let wanted: Vec<usize> = (0..points.len()).filter(|&i| is_called(&points[i].image, name, path)).collect();
         // Read even if no point asks for it: a photograph that cannot be read is a mistake.
         let image = read_photo(path)?;
         let starts: Vec<Start> = wanted.iter().map(|&i| points[i].start).collect();
@@ -104,6 +102,11 @@ fn measure(
         Ok(outcomes)
     };
     Ok(photos.par_iter().map(one).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+/// A point file may give a photograph its folders, though its name alone would do here.
+fn is_called(image: &str, name: &str, path: &Path) -> bool {
+    image == name || Path::new(image) == path
 }
 
 fn summary(outcomes: &[Vec<Outcome>], points: &[PointRow]) -> String {

@@ -13,6 +13,7 @@ mod list;
 mod measure;
 mod orient;
 mod output;
+mod photos;
 mod plot;
 mod print;
 mod progress;

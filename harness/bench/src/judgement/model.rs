@@ -3,7 +3,7 @@
 use calibench_model::camera::ImageSize;
 use thiserror::Error;
 
-use crate::calibration::{CalibrationError, Settings, parameters};
+use crate::calibration::{CalibrationError, Optics, Settings, parameters};
 use crate::scenario::problem::nearest;
 
 /// Pixel pitch of models in mm where none is known, um. No figure in px depends on it.
@@ -53,7 +53,7 @@ impl ModelChoice {
         };
         let choice = Self { label: text.to_owned(), name: name.to_owned(), solve };
         let size = ImageSize { width: 640, height: 480 };
-        let known = parameters(&Settings { solve: None, ..choice.settings(size, None) })?;
+        let known = parameters(&Optics { solve: None, ..choice.optics(size, None) })?;
         match choice.solve.iter().flatten().find(|name| !known.contains(&name.as_str())) {
             None => Ok(choice),
             Some(other) => Err(ModelError::Parameter {
@@ -83,8 +83,12 @@ impl ModelChoice {
 
     /// How it is calibrated.
     pub fn settings(&self, size: ImageSize, pitch_um: Option<f64>) -> Settings {
+        Settings::new(vec![self.optics(size, pitch_um)])
+    }
+
+    fn optics(&self, size: ImageSize, pitch_um: Option<f64>) -> Optics {
         let pitch_um = Some(pitch_um.unwrap_or(NOMINAL_PITCH));
-        Settings { pitch_um, model: Some(self.name.clone()), solve: self.solve.clone(), ..Settings::new(size) }
+        Optics { pitch_um, model: Some(self.name.clone()), solve: self.solve.clone(), ..Optics::new(size) }
     }
 }
 

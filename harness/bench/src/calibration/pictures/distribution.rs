@@ -15,13 +15,14 @@ const CELLS: usize = 12;
 const PALE: f64 = 0.4;
 
 /// The points and their number in each cell of the frame.
-pub(super) fn picture(calibration: &Calibration<'_>) -> Canvas {
-    let size = calibration.camera().size();
+pub(super) fn picture(calibration: &Calibration<'_>, camera: usize) -> Canvas {
+    let size = calibration.camera(camera).size();
     let side = f64::from(size.width.max(size.height)) / CELLS as f64;
     let grid = [size.width, size.height].map(|length| ((f64::from(length) / side).round() as usize).max(1));
     let mut counts = vec![0_u32; grid[0] * grid[1]];
-    let observations = &calibration.prepared.network.observations;
-    for observation in observations {
+    let observations = calibration.prepared.network.observations.iter();
+    let observations: Vec<_> = observations.filter(|observation| calibration.owner(observation.image) == camera).collect();
+    for observation in &observations {
         let at = observation.position.to_corner();
         let cell = |value: f64, length: u32, n: usize| ((value / f64::from(length) * n as f64).max(0.0) as usize).min(n - 1);
         counts[cell(at.y, size.height, grid[1]) * grid[0] + cell(at.x, size.width, grid[0])] += 1;
@@ -34,7 +35,7 @@ pub(super) fn picture(calibration: &Calibration<'_>) -> Canvas {
             let colour = if count == 0 { WHITE } else { shade(PALE * f64::from(count) / f64::from(most)) };
             area.draw(&Rectangle::new(corners, colour.filled())).ok();
         }
-        for observation in observations {
+        for observation in &observations {
             area.draw(&Circle::new(map.place(observation.position), 1, RGBColor(0, 114, 178).filled())).ok();
         }
         for (index, &count) in counts.iter().enumerate() {

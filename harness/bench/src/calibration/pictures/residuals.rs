@@ -22,10 +22,15 @@ const NAME: u32 = 24;
 /// The length that the residual at the 95th percentile is drawn with, in widths of the frame.
 const LENGTH: f64 = 0.06;
 
-/// All images in one frame.
-pub(super) fn together(calibration: &Calibration<'_>) -> Canvas {
-    let residuals = calibration.solution.residuals();
-    let size = calibration.camera().size();
+/// The residuals in the images of a camera.
+fn of_camera(calibration: &Calibration<'_>, camera: usize) -> Vec<Residual> {
+    calibration.solution.residuals().into_iter().filter(|residual| calibration.owner(residual.image) == camera).collect()
+}
+
+/// All images of a camera in one frame.
+pub(super) fn together(calibration: &Calibration<'_>, camera: usize) -> Canvas {
+    let residuals = of_camera(calibration, camera);
+    let size = calibration.camera(camera).size();
     let (map, mut canvas) = Map::alone(size, "Residuals of all images");
     let times = times(&residuals, size, MAP);
     canvas.paint(|area| {
@@ -36,16 +41,16 @@ pub(super) fn together(calibration: &Calibration<'_>) -> Canvas {
     canvas
 }
 
-/// A panel for each image, some panels in each picture, with the names of its first and last image.
-pub(super) fn by_image(calibration: &Calibration<'_>) -> Vec<(String, Canvas)> {
-    let residuals = calibration.solution.residuals();
-    let images: Vec<usize> = (0..calibration.prepared.survey.images.len()).collect();
-    let times = times(&residuals, calibration.camera().size(), PANEL);
+/// A panel for each image of a camera, some panels in each picture, with the names of its first and last image.
+pub(super) fn by_image(calibration: &Calibration<'_>, camera: usize) -> Vec<(String, Canvas)> {
+    let residuals = of_camera(calibration, camera);
+    let images: Vec<usize> = (0..calibration.prepared.survey.images.len()).filter(|&image| calibration.owner(image) == camera).collect();
+    let times = times(&residuals, calibration.camera(camera).size(), PANEL);
     images.chunks(PANELS).map(|images| panels(calibration, &residuals, images, times)).collect()
 }
 
 fn panels(calibration: &Calibration<'_>, residuals: &[Residual], images: &[usize], times: f64) -> (String, Canvas) {
-    let size = calibration.camera().size();
+    let size = calibration.camera(calibration.owner(images[0])).size();
     let names = &calibration.prepared.survey.images;
     let height = Map::new(size, (0, 0), PANEL).extent.1 + NAME + GAP;
     let columns = images.len().min(COLUMNS) as u32;
@@ -88,7 +93,8 @@ fn vector(area: &Area<'_>, map: &Map, calibration: &Calibration<'_>, residual: &
     area.draw(&Circle::new(from, 2, colour.filled())).ok();
     let Some([x, y]) = residual.v else { return };
     // A blunder that is left out may be as long as the frame: its direction is enough.
-    let limit = 0.15 * f64::from(calibration.camera().size().width) / (times * x.hypot(y)).max(f64::MIN_POSITIVE);
+    let limit =
+        0.15 * f64::from(calibration.camera(calibration.owner(residual.image)).size().width) / (times * x.hypot(y)).max(f64::MIN_POSITIVE);
     let times = times * limit.min(1.0);
     arrow(area, from, map.place(PixelPoint::new(at.x + x * times, at.y + y * times)));
 }

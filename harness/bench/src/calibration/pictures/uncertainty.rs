@@ -17,35 +17,36 @@ const PLACES: usize = 48;
 const LABEL: f64 = 24.0;
 
 /// Maps for points far away and near: file, caption, picture. None if the interior orientation is fixed.
-pub(super) fn pictures(calibration: &Calibration<'_>) -> Vec<(&'static str, String, Canvas)> {
-    let near = working_distance(calibration);
+pub(super) fn pictures(calibration: &Calibration<'_>, camera: usize) -> Vec<(&'static str, String, Canvas)> {
+    let near = working_distance(calibration, camera);
     let title = |what: &str| format!("Standard deviation of a projected point, {what}");
     let caption = |what: &str| {
         format!(
             "Standard deviation (2D) of the image of a point {what} that stems from the interior orientation, after what the exterior makes up for."
         )
     };
-    let far = map(calibration, Distance::Far, &title("far away"));
+    let far = map((calibration, camera), Distance::Far, &title("far away"));
     let far = far.map(|canvas| ("uncertainty-far.png", caption("far away"), canvas));
     let distance = plain(near);
-    let near = map(calibration, Distance::Near(near), &title(&format!("at {distance} object units")));
+    let near = map((calibration, camera), Distance::Near(near), &title(&format!("at {distance} object units")));
     let near =
         near.map(|canvas| ("uncertainty-near.png", caption(&format!("at the distance of the object ({distance} object units)")), canvas));
     far.into_iter().chain(near).collect()
 }
 
-/// The median distance of the image points' objects from their cameras, along the axis.
-pub(super) fn working_distance(calibration: &Calibration<'_>) -> f64 {
+/// The median distance of what a camera sees, along its axis.
+fn working_distance(calibration: &Calibration<'_>, camera: usize) -> f64 {
     let (poses, points) = (calibration.solution.poses(), calibration.solution.points());
     let depth = |o: &calibench_adjust::ImageObservation| -poses[o.image].ray(&points[o.point]).z;
-    let mut depths: Vec<f64> = calibration.prepared.network.observations.iter().map(depth).collect();
+    let observations = calibration.prepared.network.observations.iter().filter(|o| calibration.owner(o.image) == camera);
+    let mut depths: Vec<f64> = observations.map(depth).collect();
     depths.sort_by(f64::total_cmp);
     depths.get(depths.len() / 2).copied().unwrap_or(1.0)
 }
 
-fn map(calibration: &Calibration<'_>, distance: Distance, title: &str) -> Option<Canvas> {
-    let camera = calibration.camera();
-    let (names, covariance) = calibration.covariances.of_camera(0);
+fn map((calibration, index): (&Calibration<'_>, usize), distance: Distance, title: &str) -> Option<Canvas> {
+    let camera = calibration.camera(index);
+    let (names, covariance) = calibration.covariances.of_camera(index);
     if names.is_empty() {
         return None;
     }

@@ -12,7 +12,9 @@ use rayon::prelude::*;
 use super::super::Failure;
 use super::super::context::Context;
 use super::super::detect::corners_of;
+use super::super::photos::{names, once};
 use super::super::progress::Progress;
+use super::cameras::Photo;
 
 /// The status of a photograph in which the board was not found.
 const NOT_FOUND: &str = "not_found";
@@ -39,14 +41,14 @@ impl FromStr for Chessboard {
     }
 }
 
-/// Measured points of photographs of one size.
+/// Measured points, and the photographs that they are of.
 pub struct Corners {
     /// Those with a position.
     pub points: Vec<PointRow>,
     /// Those without.
     pub lost: Vec<LostRow>,
-    /// Size of the photographs.
-    pub size: ImageSize,
+    /// The photographs; none where the points were given.
+    pub photos: Vec<Photo>,
 }
 
 impl Chessboard {
@@ -67,13 +69,13 @@ impl Chessboard {
         let method = context.method(method)?;
         let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
         let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
-        let one = |path: &PathBuf| {
-            let found = self.in_photo(path, detector, operator.as_ref(), &method.label);
+        once(photos)?;
+        let one = |(path, name): (&PathBuf, &String)| {
+            let found = self.in_photo((path, name), detector, operator.as_ref(), &method.label);
             progress.step();
             found
         };
-        let found = photos.par_iter().map(one).collect::<Result<Vec<_>, Failure>>()?;
-        let size = same_size(photos, &found.iter().map(|corners| corners.size).collect::<Vec<_>>())?;
+        let found = photos.par_iter().zip(&names(photos)).map(one).collect::<Result<Vec<_>, Failure>>()?;
         let mut seen = 0;
         for (path, Corners { points, lost, .. }) in photos.iter().zip(&found) {
             seen += usize::from(!points.is_empty());
@@ -90,27 +92,34 @@ impl Chessboard {
                  rejected every corner",
             ));
         }
-        let mut all = Corners { points: Vec::new(), lost: Vec::new(), size };
+        let mut all = Corners { points: Vec::new(), lost: Vec::new(), photos: Vec::new() };
         for one in found {
             all.points.extend(one.points);
             all.lost.extend(one.lost);
+            all.photos.extend(one.photos);
         }
         Ok(all)
     }
 
-    fn in_photo(&self, path: &Path, detector: &dyn BoardDetector, operator: &dyn Operator, method: &str) -> Result<Corners, Failure> {
+    fn in_photo(
+        &self,
+        (path, name): (&Path, &str),
+        detector: &dyn BoardDetector,
+        operator: &dyn Operator,
+        method: &str,
+    ) -> Result<Corners, Failure> {
         let image = read_photo(path)?;
-        let rows = corners_of(detector, &image, path, self.board);
+        let rows = corners_of(detector, &image, name, self.board);
         let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();
         let measured = operator.measure_all(&image, &starts);
         let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
-        let mut corners = Corners { points: Vec::new(), lost: Vec::new(), size };
+        let photo = (name.to_owned(), path.to_owned(), size);
+        let mut corners = Corners { points: Vec::new(), lost: Vec::new(), photos: vec![photo] };
         let lost =
             |image: String, target: String, status: &str, reason: String| LostRow { image, target, status: status.to_owned(), reason };
         if rows.is_empty() {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let reason = format!("no board of {} x {} inner corners found", self.board.columns, self.board.rows);
-            corners.lost.push(lost(name, String::new(), NOT_FOUND, reason));
+            corners.lost.push(lost(name.to_owned(), String::new(), NOT_FOUND, reason));
         }
         for (row, result) in rows.into_iter().zip(measured) {
             match result {
@@ -122,21 +131,6 @@ impl Chessboard {
             }
         }
         Ok(corners)
-    }
-}
-
-/// The size that all photographs have.
-pub fn same_size(photos: &[PathBuf], sizes: &[ImageSize]) -> Result<ImageSize, Failure> {
-    let Some(first) = sizes.first() else { return Err(Failure::input("no photograph was given")) };
-    match sizes.iter().position(|size| size != first) {
-        None => Ok(*first),
-        Some(other) => {
-            let (a, b, size) = (photos[0].display(), photos[other].display(), sizes[other]);
-            Err(Failure::input(format!(
-                "{a} has {} x {} px, {b} has {} x {}: photographs of one camera have one size",
-                first.width, first.height, size.width, size.height
-            )))
-        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The calibrated camera as a file of any format.
 
-use std::path::Path;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 use calibench_exchange::camera::fit::{fit_to_format, losses};
 use calibench_exchange::camera::{CameraFormat, FORMATS, NamedCamera, ParameterCovariance, camera_text, write_camera};
@@ -12,19 +13,59 @@ use super::super::convert::{advise, named, size_of, whole};
 use super::super::target::{Given, Way, goal};
 use crate::calibration::Calibration;
 
-/// Writes the camera with its covariance: in the convention asked for, or in the first format that holds it as it is and has the file's ending.
-pub fn write(path: &Path, calibration: &Calibration<'_>, to: Option<&str>, pitch_um: Option<f64>) -> Result<(), Failure> {
-    let (names, covariance) = calibration.covariances.of_camera(0);
+/// Writes the cameras with their covariances: in the convention asked for, or in the first format that holds them as they are and has the file's ending.
+/// Several go into one file if its format holds several, or else into a file each.
+pub fn write(path: &Path, calibration: &Calibration<'_>, to: Option<&str>) -> Result<(), Failure> {
+    let made =
+        (0..calibration.cameras()).map(|camera| made(path, &source(calibration, camera)?, to)).collect::<Result<Vec<_>, Failure>>()?;
+    for (format, result) in &made {
+        let whose = if made.len() > 1 { format!("{}: ", result.name) } else { String::new() };
+        losses(format, result).iter().for_each(|what| eprintln!("warning: {whose}lost: {what}"));
+    }
+    if let Some(format) = common(&made) {
+        let all: Vec<NamedCamera> = made.into_iter().map(|(_, result)| result).collect();
+        return Ok(write_camera(path, format, &all)?);
+    }
+    for (format, result) in made {
+        let own = own(path, &result.name);
+        write_camera(&own, format, &[NamedCamera { name: String::new(), ..result }])?;
+        eprintln!("{}: written", own.display());
+    }
+    Ok(())
+}
+
+/// A camera of the calibration; the only one needs no name.
+fn source(calibration: &Calibration<'_>, camera: usize) -> Result<NamedCamera, Failure> {
+    let (names, covariance) = calibration.covariances.of_camera(camera);
     let n = names.len();
     let values = (0..n * n).map(|k| f64::midpoint(covariance[(k / n, k % n)], covariance[(k % n, k / n)])).collect();
     let covariance = ParameterCovariance::new(names.iter().map(|name| (*name).to_owned()).collect(), values).map_err(Failure::Input)?;
-    let source = NamedCamera { pitch_um, covariance: Some(covariance), ..NamedCamera::new("", *calibration.camera()) };
-    let (format, result) = match to.or_else(|| by_ending(path, &source)) {
-        Some(to) => converted(&source, to, path)?,
-        None => (as_it_is(path, &source)?, source),
-    };
-    losses(format, &result).iter().for_each(|what| eprintln!("warning: lost: {what}"));
-    Ok(write_camera(path, format, &[result])?)
+    let optics = &calibration.prepared.settings.cameras[camera];
+    let name = if calibration.cameras() > 1 { optics.name.as_str() } else { "" };
+    Ok(NamedCamera { pitch_um: optics.pitch_um, covariance: Some(covariance), ..NamedCamera::new(name, *calibration.camera(camera)) })
+}
+
+fn made(path: &Path, source: &NamedCamera, to: Option<&str>) -> Result<(&'static CameraFormat, NamedCamera), Failure> {
+    match to.or_else(|| by_ending(path, source)) {
+        Some(to) => converted(source, to, path),
+        None => Ok((as_it_is(path, source)?, source.clone())),
+    }
+}
+
+/// The format that holds all in one file.
+fn common(made: &[(&'static CameraFormat, NamedCamera)]) -> Option<&'static CameraFormat> {
+    let format = made.first()?.0;
+    let same = made.iter().all(|(other, _)| other.name == format.name);
+    let all: Vec<NamedCamera> = made.iter().map(|(_, result)| result.clone()).collect();
+    (same && (all.len() == 1 || camera_text(format, &all).is_ok())).then_some(format)
+}
+
+/// The file of one of several cameras.
+fn own(path: &Path, camera: &str) -> PathBuf {
+    let text = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let ending = text(path.extension());
+    let dot = if ending.is_empty() { "" } else { "." };
+    path.with_file_name(format!("{}-{camera}{dot}{ending}", text(path.file_stem())))
 }
 
 fn ending(path: &Path) -> Option<String> {
@@ -84,5 +125,5 @@ fn converted(source: &NamedCamera, to: &str, path: &Path) -> Result<(&'static Ca
         eprintln!("{}: converted to {to} by a fit: residuals {}", path.display(), size_of(&conversion.residual));
     }
     let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
-    Ok((goal.format, NamedCamera { pitch_um: source.pitch_um, covariance, ..NamedCamera::new("", conversion.camera) }))
+    Ok((goal.format, NamedCamera { pitch_um: source.pitch_um, covariance, ..NamedCamera::new(source.name.clone(), conversion.camera) }))
 }
