@@ -17,7 +17,7 @@ use crate::calibration::{Optics, Prior};
 pub struct Cameras {
     /// One of several cameras and its images, as in left=left*.png,l?.jpg (* is any text, ? one character); may be repeated. An image belongs to the first that claims it
     #[arg(long = "camera", value_name = "NAME=IMAGES")]
-    cameras: Vec<Claim>,
+    claims: Vec<Claim>,
     /// Size of the images, px. Here and in what follows, CAMERA= before a value says which of several cameras it is for; may be repeated
     #[arg(long, value_name = "[CAMERA=]WxH", value_parser = |text: &str| For::parse(text, reading::size),
           required_unless_present = "photos", conflicts_with = "photos")]
@@ -106,7 +106,7 @@ impl Cameras {
             images: claim.images.clone(),
             ..Optics::new(ImageSize { width: 1, height: 1 })
         };
-        let mut cameras: Vec<Optics> = self.cameras.iter().map(bare).collect();
+        let mut cameras: Vec<Optics> = self.claims.iter().map(bare).collect();
         if cameras.is_empty() {
             cameras.push(Optics::new(ImageSize { width: 1, height: 1 }));
         }
@@ -137,7 +137,7 @@ impl Cameras {
     fn start(&self, name: &str) -> Option<String> {
         // Where there is one camera alone, a file may have = in its name.
         match self.start.first() {
-            Some(For { camera: Some(before), value }) if self.cameras.is_empty() => Some(format!("{before}={value}")),
+            Some(For { camera: Some(before), value }) if self.claims.is_empty() => Some(format!("{before}={value}")),
             _ => of(&self.start, name).cloned(),
         }
     }
@@ -153,14 +153,11 @@ impl Cameras {
 
     /// Cameras that there are, each once.
     fn check(&self) -> Result<(), Failure> {
-        let known: Vec<&str> = self.cameras.iter().map(|claim| claim.name.as_str()).collect();
+        let known: Vec<&str> = self.claims.iter().map(|claim| claim.name.as_str()).collect();
         if let Some(twice) = known.iter().enumerate().find(|(i, name)| known[..*i].contains(name)) {
             return Err(Failure::input(format!("--camera {}: given twice; expected all its patterns in one, with commas", twice.1)));
         }
-        fn given<T>(values: &[For<T>]) -> Vec<Option<&str>> {
-            values.iter().map(|value| value.camera.as_deref()).collect()
-        }
-        let alone = self.cameras.is_empty();
+        let alone = self.claims.is_empty();
         let start = if alone { vec![None; self.start.len()] } else { given(&self.start) };
         for (flag, given) in [
             ("size", given(&self.size)),
@@ -185,6 +182,11 @@ impl Cameras {
 fn no_such(flag: &str, name: &str, known: &[&str]) -> Failure {
     let known = if known.is_empty() { "none is given with --camera".to_owned() } else { format!("there are {}", known.join(", ")) };
     Failure::input(format!("--{flag}: no camera is called `{name}`: {known}"))
+}
+
+/// Whom the values are for.
+fn given<T>(values: &[For<T>]) -> Vec<Option<&str>> {
+    values.iter().map(|value| value.camera.as_deref()).collect()
 }
 
 /// What was given for a camera, or else for all.
