@@ -5,12 +5,13 @@ use std::sync::Arc;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
 
+use super::beside::beside;
 use super::calibrated::{Calibrated, calibrate};
 use super::frame::Frame;
 use super::halves::{Map, apart, halves, vectors};
 use super::holdout::{Squares, Unseen};
 use super::material::Material;
-use super::{HALF, ModelChoice, Options, Row, folds, lines, measure};
+use super::{HALF, Judged, ModelChoice, Options, Row, folds, lines, measure};
 use crate::calibration::Settings;
 
 /// What one cell works on.
@@ -23,17 +24,18 @@ struct Job<'a> {
     views: Vec<usize>,
 }
 
-/// All rows of an operator with a model.
-pub(super) fn cell(material: &Material, common: &[Vec<bool>], operator: usize, model: &ModelChoice, options: &Options) -> Vec<Row> {
+/// All rows of an operator with a model, and the camera.
+pub(super) fn cell(material: &Material, common: &[Vec<bool>], operator: usize, model: &ModelChoice, options: &Options) -> Judged {
     let settings = model.settings(material.size, options.pitch_um);
     let views = material.usable(operator);
     let job = Job { material, common, operator, settings, options, views };
     let label: Arc<str> = model.label.as_str().into();
-    job.rows().into_iter().map(|row| row.by(&material.operators[operator].method, &label)).collect()
+    let (rows, camera) = job.rows();
+    Judged { rows: rows.into_iter().map(|row| row.by(&material.operators[operator].method, &label)).collect(), camera }
 }
 
 impl Job<'_> {
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> (Vec<Row>, Option<Camera>) {
         let few = |view: &usize| !self.views.contains(view);
         let left_out = (0..self.material.views.len()).filter(few);
         let mut rows: Vec<Row> = left_out
@@ -45,7 +47,7 @@ impl Job<'_> {
             Ok(all) => all,
             Err(error) => {
                 rows.push(Row::without(measure::RESIDUALS, "", "failed", &error.to_string()));
-                return rows;
+                return (rows, None);
             }
         };
         rows.push(Row::plain(measure::PARAMETERS, "", all.names.len() as f64));
@@ -56,7 +58,7 @@ impl Job<'_> {
         rows.extend(self.left_out(&all));
         rows.extend(self.splits(&all));
         rows.extend(self.options.published.iter().flat_map(|published| self.published(&all, published)));
-        rows
+        (rows, Some(all.camera))
     }
 
     /// Each fold of the views left out in turn: predictions, straight lines, principal point.
@@ -157,6 +159,10 @@ impl Job<'_> {
                 rows.push(Row::px(measure::PUBLISHED_MOST, "", lengths.iter().copied().fold(0.0, f64::max)));
             }
         }
+        let corners = self.material.positions(self.operator);
+        rows.extend(
+            beside(&all.camera, published, &corners).ok().and_then(|found| Some(Row::px(measure::PUBLISHED_SEEN, "", found.seen?))),
+        );
         for (&view, near) in self.views.iter().filter_map(|view| Some((view, all.pose(*view)?))) {
             let name = &self.material.views[view];
             let unseen = Unseen { material: self.material, operator: self.operator, view, camera: published, near: &near };

@@ -118,6 +118,11 @@ impl Material {
         (0..self.views.len()).filter(enough).collect()
     }
 
+    /// All corners that an operator measured.
+    pub fn positions(&self, operator: usize) -> Vec<PixelPoint> {
+        self.operators[operator].at.iter().flatten().flatten().copied().collect()
+    }
+
     /// How many corners an operator measured.
     pub fn measured(&self, operator: usize) -> usize {
         self.operators[operator].at.iter().flatten().flatten().count()

@@ -24,9 +24,15 @@ pub const MAP: &str = "map";
 pub const PRINCIPAL: [&str; 2] = ["principal_x", "principal_y"];
 /// Standard deviation (2D) of a projected point far away: `centre`, and `corner`, the worst of four.
 pub const UNCERTAINTY: &str = "uncertainty";
+/// By another model: RMS difference of the cameras of all views over the frame; beside it the largest.
+pub const BESIDE: &str = "beside";
+/// The RMS difference where corners were measured.
+pub const BESIDE_SEEN: &str = "beside_seen";
 /// RMS difference from the published camera over the frame; beside it the predicted standard deviation of ours.
 pub const PUBLISHED: &str = "published";
 /// The largest such difference.
 pub const PUBLISHED_MOST: &str = "published_most";
+/// The RMS difference from the published camera where corners were measured.
+pub const PUBLISHED_SEEN: &str = "published_seen";
 /// By view: RMS residual of our corners with the published camera held.
 pub const PUBLISHED_VIEW: &str = "published_view";

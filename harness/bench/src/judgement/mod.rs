@@ -3,6 +3,7 @@
 //! Every operator with every model is calibrated from all views, from all but those left out, and from halves of them. What comes of it are [`Row`]s:
 //! measure, place, value and what is predicted for it. [`Summary`] makes figures and a verdict of them, and nothing else does.
 
+mod beside;
 mod calibrated;
 mod cell;
 mod frame;
@@ -26,12 +27,13 @@ use calibench_model::camera::Camera;
 use rayon::prelude::*;
 use thiserror::Error;
 
+pub use beside::Beside;
 pub use material::{COMPARABLE, Corners, Material};
 pub use model::{ModelChoice, ModelError, NOMINAL_PITCH};
 pub use outlier::{ALPHA as OUTLIER_ALPHA, outliers};
 pub use row::{JUDGEMENT, Row, read_rows, write_rows};
 pub use run::{camera as published_camera, write_judgement};
-pub use summary::{ALPHA, Cell, Estimate, HONEST, Point, Principal, Split, Summary, Trusted, View};
+pub use summary::{ALPHA, Cell, Estimate, HONEST, Point, Principal, Published, Split, Summary, Trusted, View};
 
 /// Views that a half of the photographs needs.
 pub const HALF: usize = 3;
@@ -91,10 +93,24 @@ pub fn judge(material: &Material, options: &Options) -> Result<Vec<Row>, Judgeme
     let available = (0..material.operators.len()).filter(|&operator| material.operators[operator].unavailable.is_none());
     let jobs: Vec<(usize, &ModelChoice)> =
         available.flat_map(|operator| options.models.iter().map(move |model| (operator, model))).collect();
-    let cells: Vec<Vec<Row>> =
-        jobs.into_par_iter().map(|(operator, model)| cell::cell(material, &common, operator, model, options)).collect();
-    rows.extend(cells.into_iter().flatten());
+    let cells: Vec<Judged> = jobs.par_iter().map(|&(operator, model)| cell::cell(material, &common, operator, model, options)).collect();
+    let labels: Vec<Arc<str>> = jobs.iter().map(|(_, model)| model.label.as_str().into()).collect();
+    for (place, cell) in cells.iter().enumerate() {
+        let (operator, model) = (jobs[place].0, &labels[place]);
+        let others = (place + 1..jobs.len()).filter(|&other| jobs[other].0 == operator);
+        let others = others.filter_map(|other| Some((&labels[other], cells[other].camera.as_ref()?)));
+        rows.extend(cell.rows.iter().cloned());
+        let beside = cell.camera.iter().flat_map(|camera| beside::rows(camera, others.clone(), &material.positions(operator)));
+        rows.extend(beside.map(|row| row.by(&material.operators[operator].method, model)));
+    }
     Ok(rows)
+}
+
+/// What came of an operator with a model.
+struct Judged {
+    rows: Vec<Row>,
+    /// The camera of all views, if they determine one.
+    camera: Option<Camera>,
 }
 
 /// What an operator measured, view by view, and each corner that it rejected.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use calibench_synth::random::{Key, Purpose, stream};
 use rand::RngExt;
 
-use super::{Row, measure, outliers};
+use super::{Beside, Row, measure, outliers};
 pub use principal::{Point, Principal};
 pub use trusted::{ALPHA, HONEST, Trusted};
 
@@ -61,6 +61,15 @@ pub struct View {
     pub p: f64,
 }
 
+/// A camera that somebody published, beside ours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Published {
+    /// How far they are apart.
+    pub beside: Beside,
+    /// The predicted standard deviation of ours, RMS over the frame, px.
+    pub predicted: f64,
+}
+
 /// An operator with a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
@@ -92,8 +101,10 @@ pub struct Cell {
     pub uncertainty: Option<(f64, f64)>,
     /// The principal point.
     pub principal: Option<Principal>,
-    /// RMS difference from the published camera, px, its predicted standard deviation, and the largest.
-    pub published: Option<(f64, f64, f64)>,
+    /// Its camera beside those of models that come after it.
+    pub beside: BTreeMap<Arc<str>, Beside>,
+    /// The published camera beside it.
+    pub published: Option<Published>,
     /// By view: RMS residual with the published camera, px.
     pub published_views: BTreeMap<Arc<str>, f64>,
 }
@@ -178,6 +189,12 @@ impl Summary {
     pub fn cell(&self, method: &str, model: &str) -> Option<&Cell> {
         self.cells.iter().find(|cell| &*cell.method == method && &*cell.model == model)
     }
+
+    /// The cameras of two models of an operator beside each other.
+    pub fn beside(&self, method: &str, [one, other]: [&str; 2]) -> Option<Beside> {
+        let of = |model: &str, other: &str| self.cell(method, model)?.beside.get(other).copied();
+        of(one, other).or_else(|| of(other, one))
+    }
 }
 
 impl Cell {
@@ -224,12 +241,18 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
         map: of(measure::MAP).filter_map(|row| place(row)).collect(),
         uncertainty: value(measure::UNCERTAINTY, "centre").zip(value(measure::UNCERTAINTY, "corner")),
         principal: Principal::new(rows),
-        published: of(measure::PUBLISHED)
-            .find_map(|row| Some((row.value?, row.sigma?)))
-            .zip(value(measure::PUBLISHED_MOST, ""))
-            .map(|((rms, predicted), most)| (rms, predicted, most)),
+        beside: of(measure::BESIDE).filter_map(|row| Some((row.place.clone(), beside(rows, row)?))).collect(),
+        published: of(measure::PUBLISHED).find_map(|row| {
+            let (most, seen) = (value(measure::PUBLISHED_MOST, "")?, value(measure::PUBLISHED_SEEN, ""));
+            Some(Published { beside: Beside { frame: row.value?, most, seen }, predicted: row.sigma? })
+        }),
         published_views: by_view(measure::PUBLISHED_VIEW).into_iter().map(|(view, (rms, _))| (view, rms)).collect(),
     }
+}
+
+fn beside(rows: &[&Row], frame: &Row) -> Option<Beside> {
+    let seen = rows.iter().find(|row| &*row.measure == measure::BESIDE_SEEN && row.place == frame.place);
+    Some(Beside { frame: frame.value?, most: frame.sigma?, seen: seen.and_then(|row| row.value) })
 }
 
 /// Place, value and what is predicted of a row of the map.

@@ -1,6 +1,6 @@
 //! The verdict in words, every one of them derived from the records.
 
-use crate::judgement::{ALPHA, Cell, Estimate, HONEST, OUTLIER_ALPHA, Summary, Trusted};
+use crate::judgement::{ALPHA, Beside, Cell, Estimate, HONEST, OUTLIER_ALPHA, Published, Summary, Trusted};
 use crate::report::markdown::fixed;
 use crate::report::plain;
 
@@ -41,6 +41,7 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     }
     lines.push(models);
     lines.extend(how_far(trusted));
+    lines.extend(beyond(summary, trusted));
     lines.push(outlying(cell));
     lines.extend(published(trusted));
     lines.push(
@@ -121,6 +122,26 @@ fn how_far(trusted: &Trusted<'_>) -> Option<String> {
     Some(text)
 }
 
+/// What models that cannot be told apart say where no corner was.
+fn beyond(summary: &Summary, trusted: &Trusted<'_>) -> Option<String> {
+    let (cell, farthest) = (trusted.cell, trusted.farthest);
+    let alike = trusted.equal_models().chain([farthest]).filter(|other| other.model != cell.model);
+    let found: Vec<(&Cell, Beside)> =
+        alike.filter_map(|other| Some((other, summary.beside(&cell.method, [&cell.model, &other.model])?))).collect();
+    let (worst, apart) = found.iter().max_by(|a, b| a.1.frame.total_cmp(&b.1.frame))?;
+    let seen = found.iter().filter_map(|(_, apart)| apart.seen).reduce(f64::max)?;
+    Some(format!(
+        "**Beyond the corners** nobody checked: the models that cannot be told apart agree with `{}` to {} px RMS or better where corners were measured, but over \
+         the whole frame only to {} px RMS, and {} px at most (`{}`). What was photographed decides there, and not the model: see to boards in every corner of \
+         the frame.",
+        cell.model,
+        plain(seen),
+        plain(apart.frame),
+        plain(apart.most),
+        worst.model
+    ))
+}
+
 fn outlying(cell: &Cell) -> String {
     let named: Vec<String> =
         cell.outlying().iter().map(|view| format!("`{}` ({} px, {})", view.name, plain(view.residual.0), chance(view.p))).collect();
@@ -139,14 +160,15 @@ fn outlying(cell: &Cell) -> String {
 }
 
 fn published(trusted: &Trusted<'_>) -> Option<String> {
-    let (rms, predicted, most) = trusted.cell.published?;
+    let Published { beside: Beside { frame, most, seen }, predicted } = trusted.cell.published?;
     let factor = trusted.inflation();
-    let told = if rms <= 2.0 * factor * predicted { "within twice" } else { "more than twice" };
+    let told = if frame <= 2.0 * factor * predicted { "within twice" } else { "more than twice" };
     let enlarged = if factor > 1.0 { format!(", enlarged {} px", plain(factor * predicted)) } else { String::new() };
+    let seen = seen.map_or_else(String::new, |seen| format!(" Where corners were measured it differs by {} px RMS.", plain(seen)));
     Some(format!(
         "**The published calibration** differs by {} px RMS over the frame after the best rotation, {} px at most: {told} the standard deviation of ours \
-         ({} px RMS over the frame{enlarged}).",
-        plain(rms),
+         ({} px RMS over the frame{enlarged}).{seen}",
+        plain(frame),
         plain(most),
         plain(predicted)
     ))
