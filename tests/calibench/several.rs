@@ -87,6 +87,7 @@ fn cameras_that_share_fixed_control_alone_are_those_of_separate_calibrations() {
             assert!((a - b).abs() <= bound * b.abs().max(1e-3), "{file}: {found:?} {other:?}");
         }
     }
+    each_image_has_its_camera(folder.path());
     let report = folder.path().join("report");
     let page = std::fs::read_to_string(report.join("README.md")).unwrap();
     for name in ["left", "right"] {
@@ -103,6 +104,34 @@ fn cameras_that_share_fixed_control_alone_are_those_of_separate_calibrations() {
     let across = rows.iter().filter(|row| row["first"].starts_with("left.") && row["second"].starts_with("right."));
     assert!(across.clone().count() == 4 * 9 && across.clone().all(|row| number(row, "rho").abs() < 1e-9));
     assert!(table(&report.join("stations.csv")).iter().all(|row| row["image"].starts_with(&row["camera"][..1])));
+}
+
+/// Resection and intersection with both cameras give back poses and, from them, control.
+fn each_image_has_its_camera(folder: &Path) {
+    let cameras = ["--camera", "l-*=pair-left.toml", "--camera", "r-*=pair-right.toml", "--points", "both.csv", "-q"];
+    let resect = [&["resect", "--control", "control.csv", "-o", "poses.csv"], &cameras[..]].concat();
+    let output = run(folder, &resect);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for (row, adjusted) in table(&folder.join("poses.csv")).iter().zip(table(&folder.join("report/stations.csv"))) {
+        // The cameras come from an adjustment that weighs the same points alike; each pose is at its minimum.
+        assert_eq!(row["image"], adjusted["image"]);
+        for column in ["X0", "Y0", "Z0"] {
+            assert!((number(row, column) - number(&adjusted, column)).abs() < 1e-6, "{column}: {row:?} {adjusted:?}");
+        }
+    }
+    let intersect = [&["intersect", "--stations", "poses.csv", "-o", "found.csv"], &cameras[..]].concat();
+    let output = run(folder, &intersect);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let control = table(&folder.join("control.csv"));
+    for row in table(&folder.join("found.csv")) {
+        let known = control.iter().find(|known| known["target"] == row["target"]).unwrap();
+        for (column, sigma) in [("X", "sX"), ("Y", "sY"), ("Z", "sZ")] {
+            assert!((number(&row, column) - number(known, column)).abs() < 6.0 * number(&row, sigma).hypot(2e-4), "{column}: {row:?}");
+        }
+    }
+    let output = run(folder, &[&["intersect", "--stations", "poses.csv", "--camera", "l-*=pair-left.toml"], &cameras[4..]].concat());
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("none is for image `r-"), "{}", stderr(&output));
 }
 
 #[test]

@@ -7,25 +7,22 @@ use calibench_exchange::{StationRow, read_stations, write_table};
 use calibench_model::Pose;
 use clap::Args;
 
-use super::calibrate::{camera, read_measured};
+use super::calibrate::read_measured;
+use super::camera_files::CameraFiles;
 use super::context::Context;
 use super::{Failure, deliver};
 use crate::calibration::Survey;
 
 #[derive(Args)]
 pub struct Intersect {
-    /// A camera file of any known format
-    #[arg(long, value_name = "FILE")]
-    camera: PathBuf,
+    #[command(flatten)]
+    cameras: CameraFiles,
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
     #[arg(long, value_name = "CSV")]
     points: PathBuf,
     /// Exterior orientations: CSV with image,X0,Y0,Z0,omega_deg,phi_deg,kappa_deg, as `render`, `resect` and `calibrate --report` write it
     #[arg(long, value_name = "CSV")]
     stations: PathBuf,
-    /// Size of the images, for camera files that do not state it
-    #[arg(long, value_name = "WxH", value_parser = super::reading::size)]
-    size: Option<calibench_model::camera::ImageSize>,
     /// Rays that meet at a smaller angle are parallel, degrees
     #[arg(long, value_name = "DEG", default_value_t = 0.1, value_parser = super::convert::positive, allow_negative_numbers = true)]
     least_angle: f64,
@@ -42,9 +39,9 @@ const COLUMNS: [&str; 13] =
 
 impl Intersect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let camera = camera(&self.camera, self.size)?;
         let points = read_measured(&self.points)?;
         let survey = Survey::without_control(&points);
+        let cameras = self.cameras.of(&survey.images)?;
         let poses = poses(&survey, &read_stations(&self.stations)?)?;
         let against = self.tolerance.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
         let mut by_target: Vec<Vec<usize>> = vec![Vec::new(); survey.targets.len()];
@@ -54,7 +51,7 @@ impl Intersect {
             let oriented: Vec<usize> = seen.iter().copied().filter(|&i| poses[survey.sights[i].image].is_some()).collect();
             let sight = |&i: &usize| {
                 let sight = &survey.sights[i];
-                poses[sight.image].as_ref().map(|pose| Sight { camera: &camera, pose, image: sight.position })
+                poses[sight.image].as_ref().map(|pose| Sight { camera: &cameras[sight.image], pose, image: sight.position })
             };
             let sights: Vec<Sight<'_>> = oriented.iter().filter_map(sight).collect();
             match intersect(&sights, self.least_angle.to_radians(), against.as_ref()) {

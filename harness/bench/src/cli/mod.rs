@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod camera;
+mod camera_files;
 mod check;
 mod context;
 mod convert;

@@ -6,25 +6,22 @@ use calibench_adjust::approximate::{Resection, Search, Tolerance, resect};
 use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_control, station_numbers, write_table};
 use clap::Args;
 
-use super::calibrate::{camera, read_measured};
+use super::calibrate::read_measured;
+use super::camera_files::CameraFiles;
 use super::context::Context;
 use super::{Failure, deliver};
 use crate::calibration::{Survey, control_of};
 
 #[derive(Args)]
 pub struct Resect {
-    /// A camera file of any known format
-    #[arg(long, value_name = "FILE")]
-    camera: PathBuf,
+    #[command(flatten)]
+    cameras: CameraFiles,
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
     #[arg(long, value_name = "CSV")]
     points: PathBuf,
     /// Control points: CSV with target,X,Y,Z
     #[arg(long, value_name = "CSV")]
     control: PathBuf,
-    /// Size of the images, for camera files that do not state it
-    #[arg(long, value_name = "WxH", value_parser = super::reading::size)]
-    size: Option<calibench_model::camera::ImageSize>,
     /// Search for gross errors: residuals longer than this are left out, px
     #[arg(long, value_name = "PX", value_parser = super::convert::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
@@ -37,8 +34,8 @@ const FURTHER_COLUMNS: [&str; 6] = ["points", "sigma0_px", "redundancy", "reject
 
 impl Resect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let camera = camera(&self.camera, self.size)?;
         let survey = Survey::new(&read_measured(&self.points)?, &read_control(&self.control)?)?;
+        let cameras = self.cameras.of(&survey.images)?;
         let known: Vec<_> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
         let against = self.tolerance.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
         let (mut rows, mut failed) = (Vec::new(), Vec::new());
@@ -49,7 +46,7 @@ impl Resect {
                 let names: Vec<&str> = seen.map(|sight| survey.targets[sight.target].name.as_str()).collect();
                 found.rejected.iter().map(|&i| names[i]).collect::<Vec<_>>().join(" ")
             };
-            match resect(&camera, &control, against.as_ref()) {
+            match resect(&cameras[index], &control, against.as_ref()) {
                 Ok(found) => rows.push(row(image, control.len(), &found, rejected(&found))),
                 Err(error) => failed.push(format!("image {image}: {error}")),
             }
