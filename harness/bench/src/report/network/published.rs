@@ -2,9 +2,11 @@
 
 use super::figure::{Ours, ours};
 use super::load::Summaries;
-use super::stats::TWO_SIDED_95;
 use crate::published::{Cell, Printed, Table, Verdict};
 use crate::report::markdown::MarkdownTable;
+
+/// Within so many standard deviations of their mean lie 95 % of single runs, if these are normal.
+const SINGLE: f64 = 1.959_964;
 
 /// The section of a table whose figures are adjustments'; `pitch_um` is that of the camera.
 pub fn section(table: &Table, found: Option<&Summaries>, pitch_um: f64) -> String {
@@ -58,7 +60,7 @@ fn verdict(cell: &Cell, ours: Option<&Ours>) -> (usize, String) {
     let (Some(printed), Some(ours)) = (Printed::parse(&cell.printed), ours) else {
         return (2, cell.not_comparable.clone().unwrap_or_else(|| "no record of ours".to_owned()));
     };
-    let scatter = TWO_SIDED_95 * ours.scatter.unwrap_or(0.0);
+    let scatter = SINGLE * ours.scatter.unwrap_or(0.0);
     match cell.verdict_within(ours.mean, scatter) {
         Verdict::Reproduces => (0, String::new()),
         Verdict::Differs => (1, format!("ours is {:.2} times as large in the mean", ours.mean / printed.value)),
@@ -75,7 +77,7 @@ fn cells(cell: &Cell, ours: &Ours) -> Vec<String> {
     let range = ours.scatter.map_or_else(
         || "none".to_owned(),
         |scatter| {
-            let (low, high) = (ours.mean - TWO_SIDED_95 * scatter, ours.mean + TWO_SIDED_95 * scatter);
+            let (low, high) = (ours.mean - SINGLE * scatter, ours.mean + SINGLE * scatter);
             format!("{} to {}", text(low), text(high))
         },
     );

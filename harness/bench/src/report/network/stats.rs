@@ -1,5 +1,7 @@
 //! Sums over trials, paired with those of a reference method.
 
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
 /// Mean and scatter of a row of numbers, whatever their count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Running {
@@ -11,8 +13,10 @@ pub struct Running {
     squares: f64,
 }
 
-/// The normal distribution's 97.5 % quantile.
-pub const TWO_SIDED_95: f64 = 1.959_964;
+/// The 97.5 % quantile of Student's distribution for a scatter that comes from `count` numbers; `None` of fewer than two.
+pub fn two_sided_95(count: u64) -> Option<f64> {
+    Some(StudentsT::new(0.0, 1.0, count.checked_sub(1)? as f64).ok()?.inverse_cdf(0.975))
+}
 
 impl Running {
     /// Adds a number (Welford 1962).
@@ -30,7 +34,7 @@ impl Running {
 
     /// Half the 95 % interval of the mean.
     pub fn half(&self) -> Option<f64> {
-        Some(TWO_SIDED_95 * self.deviation()? / (self.count as f64).sqrt())
+        Some(two_sided_95(self.count)? * self.deviation()? / (self.count as f64).sqrt())
     }
 
     /// The mean, unless there is no number.
@@ -70,7 +74,7 @@ impl Paired {
                 let n = self.own.count as f64;
                 let covariance = self.product / (n - 1.0);
                 let relative = (da / a).powi(2) + (db / b).powi(2) - 2.0 * covariance / (a * b);
-                Some(TWO_SIDED_95 * 0.5 * ratio * (relative.max(0.0) / n).sqrt())
+                two_sided_95(self.own.count).map(|t| t * 0.5 * ratio * (relative.max(0.0) / n).sqrt())
             }
             _ => None,
         };
@@ -88,6 +92,8 @@ mod tests {
         let mut running = Running::default();
         row.iter().for_each(|&value| running.add(value));
         let mean = row.iter().sum::<f64>() / 5.0;
+        // The table of Student's distribution has 2.776 for four degrees of freedom.
+        assert!((running.half().unwrap() / running.deviation().unwrap() * 5.0_f64.sqrt() - 2.776).abs() < 1e-3);
         let variance = row.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 4.0;
         assert!((running.mean - mean).abs() < 1e-15 && (running.deviation().unwrap() - variance.sqrt()).abs() < 1e-15);
     }
