@@ -1,19 +1,23 @@
 //! `parametric_corner`: a chess corner's grey values, fitted.
 
 mod area;
+mod levels;
+mod lists;
 mod model;
-mod single;
+mod real;
 mod start;
+mod sums;
 mod window;
 
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Gradient, Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
 use nalgebra::SVector;
 
 use crate::marquardt::{Problem, Solution, covariance, minimise};
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
-use window::Window;
+use levels::{ADDED, BOTH, EVEN, LIGHT};
+use window::{Setting, Window};
 
 /// Blur at the start, px^2: between sharp and soft.
 const VARIANCE: f64 = 0.5;
@@ -29,7 +33,7 @@ const CORRECTIONS: usize = 20;
 /// The last correction moves the unknowns by less than so many standard deviations, or the position by less than so many px: the next would move them by a
 /// tenth of that at most.
 const SETTLED: f64 = 0.3;
-const STANDS: f64 = 1e-7;
+const STANDS: f64 = 3e-7;
 /// After so many corrections it is enough that the position settles: without any blur its variance does so slowly.
 const FEW: usize = 3;
 
@@ -50,8 +54,9 @@ const FEW: usize = 3;
 pub struct ParametricCorner {
     window: usize,
     search: usize,
-    gradient: bool,
+    gradient: u8,
     curvature: bool,
+    photosite: f64,
 }
 
 const PARAMETERS: &[Parameter] = &[
@@ -71,8 +76,9 @@ const PARAMETERS: &[Parameter] = &[
     },
     Parameter {
         name: "gradient",
-        about: "1: a linear change of the grey value over the window is estimated, 0: it is not",
-        domain: Domain::Whole { min: 0, max: 1 },
+        about: "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of the dark and of the \
+                light grey value, each its own",
+        domain: Domain::Whole { min: 0, max: 3 },
         default: 0.0,
         always_shown: false,
     },
@@ -81,6 +87,13 @@ const PARAMETERS: &[Parameter] = &[
         about: "1: a curvature of each edge is estimated, 0: edges are straight",
         domain: Domain::Whole { min: 0, max: 1 },
         default: 0.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "photosite",
+        about: "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel",
+        domain: Domain::Real { min: 0.1, max: 1.0 },
+        default: 1.0,
         always_shown: false,
     },
 ];
@@ -103,20 +116,22 @@ impl ParametricCorner {
         Self {
             window: settings.whole("window"),
             search: settings.whole("search"),
-            gradient: settings.whole("gradient") == 1,
+            gradient: settings.whole("gradient") as u8,
             curvature: settings.whole("curvature") == 1,
+            photosite: settings.get("photosite"),
         }
     }
 
-    fn fit<const P: usize, const GRADIENT: bool, const CURVED: bool>(
+    fn fit<const P: usize, const GRADIENT: u8, const CURVED: bool>(
         &self,
         image: &Image,
         guess: &start::Guess,
     ) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
-        let mut window = Window::<P, GRADIENT, CURVED>::new(image, self.window);
+        let setting = Setting { side: self.window, photosite: self.photosite, mean: guess.mean, half: guess.half };
+        let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
         let mut x = SVector::<f64, P>::zeros();
-        x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, guess.mean, guess.half]);
+        x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, 0.0, 1.0]);
         let mut at = guess.position;
         for beyond in BEYOND {
             let follow = 0.5 + beyond;
@@ -147,7 +162,7 @@ impl ParametricCorner {
 }
 
 /// The fit of the whole model, from a fit of the quick one on.
-fn refined<const P: usize, const GRADIENT: bool, const CURVED: bool>(
+fn refined<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     window: &mut Window<'_, P, GRADIENT, CURVED>,
     mut x: SVector<f64, P>,
 ) -> Option<Solution<P>> {
@@ -191,15 +206,25 @@ impl Operator for ParametricCorner {
         }
         let guess = start::directions(image, position, half).ok_or(Rejection::NoCorner)?;
         match (self.gradient, self.curvature) {
-            (false, false) => self.fit::<7, false, false>(image, &guess),
-            (true, false) => self.fit::<9, true, false>(image, &guess),
-            (false, true) => self.fit::<9, false, true>(image, &guess),
-            (true, true) => self.fit::<11, true, true>(image, &guess),
+            (EVEN, false) => self.fit::<7, EVEN, false>(image, &guess),
+            (ADDED, false) => self.fit::<9, ADDED, false>(image, &guess),
+            (LIGHT, false) => self.fit::<9, LIGHT, false>(image, &guess),
+            (_, false) => self.fit::<11, BOTH, false>(image, &guess),
+            (EVEN, true) => self.fit::<9, EVEN, true>(image, &guess),
+            (ADDED, true) => self.fit::<11, ADDED, true>(image, &guess),
+            (LIGHT, true) => self.fit::<11, LIGHT, true>(image, &guess),
+            (_, true) => self.fit::<13, BOTH, true>(image, &guess),
         }
     }
 
-    fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: self.gradient }
+    fn unknowns(&self) -> Unknowns {
+        let gradient = match self.gradient {
+            EVEN => Gradient::None,
+            ADDED => Gradient::Added,
+            LIGHT => Gradient::Light,
+            _ => Gradient::Both,
+        };
+        Unknowns { shape: true, levels: true, blur: true, gradient }
     }
 }
 
@@ -210,5 +235,7 @@ fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection>
 
 #[cfg(test)]
 mod efficiency;
+#[cfg(test)]
+mod gradients;
 #[cfg(test)]
 mod tests;
