@@ -39,18 +39,23 @@ const FEW: usize = 3;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
-/// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the pixel's area (fill factor 1).
-/// Unknowns are the position, the directions of both edges, the blur, and the two grey values; on demand a linear change of grey value
+/// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the photosite's area (a square, as wide as the
+/// pixel unless `photosite` says otherwise). Unknowns are the position, the directions of both edges, the blur, and the two grey values; on demand a linear change
 /// over the window, and the curvature of each edge (a lens bends the edges of large windows; to second order, for radii far beyond the window).
 /// For white noise of equal variance this is the maximum-likelihood estimate.
+///
+/// What changes linearly: `gradient` 1, something that is added to the grey values, as stray light (two unknowns); 2, the light, which multiplies them (two; grey
+/// values must be zero without light: take a black level away first); 3, the dark and the light grey value each for itself, which covers the two before and a black
+/// level, and widens the bound most (four).
 ///
 /// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
 /// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these are less like those
 /// opposite than unlike, there is no crossing. Covariance (px^2):
 /// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
-/// Source: edge model fitted by least squares as in Mallon & Whelan 2007 and Ha et al. 2017 for chessboards; the pixel's integral as a mixture of
-/// Gaussians, and the crossing's expectation as a bivariate normal orthant (Drezner & Wesolowsky 1990), are our own choice.
+/// Source: two blurred edges with unknown gain and offset fitted by least squares as in Wöhler 2013 (3D Computer Vision, Eq. 1.89 to 1.92) and Yang et al. 2018;
+/// the photosite's integral as a mixture of Gaussians, and the crossing's expectation as a bivariate normal integral (over the correlation, with Gauss-Legendre
+/// nodes, as in Drezner & Wesolowsky 1990), are our own choice.
 pub struct ParametricCorner {
     window: usize,
     search: usize,
@@ -103,7 +108,7 @@ pub fn method() -> Method {
     Method {
         name: "parametric_corner",
         about: "least-squares fit of a chess corner's grey values: position, two edges, blur, two grey values",
-        source: "calibench; cf. Mallon & Whelan 2007, Ha et al. 2017",
+        source: "calibench; cf. Wöhler 2013, Eq. 1.89 to 1.92, Yang et al. 2018",
         version: "1".into(),
         parameters: PARAMETERS,
         build: Build::With(|settings| Box::new(ParametricCorner::new(settings))),

@@ -79,14 +79,9 @@ fn speed() {
 /// Not with a gradient of the light: as it multiplies, what is added to all grey values changes the model.
 #[test]
 fn conforms() {
-    for spec in [
-        "window=15",
-        "window=11",
-        "window=21,gradient=1",
-        "window=15,curvature=1,gradient=1",
-        "window=15,search=0",
-        "window=15,gradient=3",
-    ] {
+    for spec in
+        ["window=15", "window=11", "window=21,gradient=1", "window=15,curvature=1,gradient=1", "window=15,search=0", "window=15,gradient=3"]
+    {
         crate::conformance::check_on(&*operator(spec), crate::conformance::chess_corner, 1e-5);
     }
 }
