@@ -235,6 +235,7 @@ impl<T: Real> Model<T> {
 
     /// Only edge `which` is near; `side` is the sign of the distance from the other.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
     pub(super) fn edge<const N: usize, const CURVED: bool>(&self, which: usize, side: &[T; N], x: &[T; N], y: &[T; N]) -> Field<T, N> {
         let mut sum = Field::constant([T::of(0.0); N]);
         for node in &self.nodes[..self.count] {
