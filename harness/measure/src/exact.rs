@@ -16,7 +16,12 @@ pub(crate) struct Chess {
     pub(crate) blur: f64,
     pub(crate) mean: f64,
     pub(crate) half: f64,
+    /// What is added, a px.
     pub(crate) gradient: [f64; 2],
+    /// By what share the light grows, a px.
+    pub(crate) light: [f64; 2],
+    /// Side of the photosites, px.
+    pub(crate) photosite: f64,
 }
 
 /// An ellipse: the points `position + A (cos t, sin t)`, with A symmetric, `shape` = axx, axy, ayy.
@@ -37,11 +42,11 @@ fn bell(x: f64) -> f64 {
     (-0.5 * x * x).exp() / (2.0 * PI).sqrt()
 }
 
-/// The mean over a pixel at distance z of a blurred unit step, and its derivative by z.
-fn profile(z: f64, blur: f64) -> (f64, f64) {
-    let (high, low) = ((z + 0.5) / blur, (z - 0.5) / blur);
+/// The mean over a photosite of this `width` at distance z of a blurred unit step, and its derivative by z.
+fn profile(z: f64, blur: f64, width: f64) -> (f64, f64) {
+    let (high, low) = ((z + 0.5 * width) / blur, (z - 0.5 * width) / blur);
     let area = |x: f64| x * phi(x) + bell(x);
-    (blur * (area(high) - area(low)), phi(high) - phi(low))
+    (blur * (area(high) - area(low)) / width, (phi(high) - phi(low)) / width)
 }
 
 /// Nodes and weights of Gauss and Legendre on [-1, 1].
@@ -78,17 +83,17 @@ impl Chess {
                 if x < low + 0.5 * far && y > low && y < high {
                     let (u, v) = (self.sides(low, y - 1e-6), self.sides(low, y + 1e-6));
                     sum.chunks_mut(side).enumerate().for_each(|(row, line)| {
-                        let passed = (v - u) * profile(row as f64 - y, self.blur).0;
+                        let passed = (v - u) * profile(row as f64 - y, self.blur, self.photosite).0;
                         line.iter_mut().for_each(|value| *value += passed);
                     });
                 }
                 self.along(which, direction, (low, high), &rule, side, &mut sum);
             }
         }
-        let plane = |i: usize| {
-            self.gradient[0] * ((i % side) as f64 - self.position[0]) + self.gradient[1] * ((i / side) as f64 - self.position[1])
-        };
-        sum.iter().enumerate().map(|(i, f)| self.mean + self.half * f + plane(i)).collect()
+        let plane =
+            |i: usize, [gx, gy]: [f64; 2]| gx * ((i % side) as f64 - self.position[0]) + gy * ((i / side) as f64 - self.position[1]);
+        let grey = |(i, f): (usize, &f64)| (self.mean + self.half * f) * (1.0 + plane(i, self.light)) + plane(i, self.gradient);
+        sum.iter().enumerate().map(grey).collect()
     }
 
     fn signed(&self, which: usize, x: f64, y: f64) -> f64 {
@@ -139,9 +144,9 @@ impl Chess {
                 let (x, y) = self.point(which, t);
                 let other = self.signed(1 - which, x, y).signum();
                 let jump = 2.0 * other * (nx - self.curvature[which] * t * ny) * weight * 0.5 * length / panels;
-                let across: Vec<f64> = (0..side).map(|column| profile(column as f64 - x, self.blur).0).collect();
+                let across: Vec<f64> = (0..side).map(|column| profile(column as f64 - x, self.blur, self.photosite).0).collect();
                 for row in 0..side {
-                    let down = profile(row as f64 - y, self.blur).1;
+                    let down = profile(row as f64 - y, self.blur, self.photosite).1;
                     if down > 1e-14 {
                         let line = &mut sum[row * side..(row + 1) * side];
                         line.iter_mut().zip(&across).for_each(|(value, across)| *value += jump * down * across);
@@ -190,10 +195,19 @@ pub(crate) fn image(grey: &[f64], side: usize) -> Image {
 
 #[test]
 fn an_upright_chess_corner_is_the_product_of_two_profiles() {
-    let corner =
-        Chess { position: [9.3, 8.8], normals: [0.0, 0.5 * PI], curvature: [0.0; 2], blur: 0.4, mean: 0.5, half: 0.5, gradient: [0.0; 2] };
+    let corner = Chess {
+        position: [9.3, 8.8],
+        normals: [0.0, 0.5 * PI],
+        curvature: [0.0; 2],
+        blur: 0.4,
+        mean: 0.5,
+        half: 0.5,
+        gradient: [0.0; 2],
+        light: [0.0; 2],
+        photosite: 1.0,
+    };
     let grey = corner.render(19);
-    let step = |z: f64| 2.0 * profile(z, 0.4).0 - 1.0;
+    let step = |z: f64| 2.0 * profile(z, 0.4, 1.0).0 - 1.0;
     for (i, grey) in grey.iter().enumerate() {
         let expected = 0.5 + 0.5 * step((i % 19) as f64 - 9.3) * step((i / 19) as f64 - 8.8);
         assert!((grey - expected).abs() < 1e-9, "{i}: {grey} {expected}");

@@ -190,7 +190,7 @@ impl Operator for Lsm {
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, blur: self.limits.blur, gradient: false }
+        calibench_model::Unknowns { shape: true, levels: true, blur: self.limits.blur, ..Default::default() }
     }
 }
 

@@ -24,6 +24,10 @@ pub(crate) trait Problem<const P: usize> {
     fn lowest(&self, unknown: usize) -> f64;
     /// Observations minus unknowns.
     fn redundancy(&self) -> f64;
+    /// The largest `r^T r` that differs from `omega` by rounding only.
+    fn same(&self, omega: f64) -> f64 {
+        omega * (1.0 + 1e-9)
+    }
 }
 
 /// A solution.
@@ -64,7 +68,7 @@ pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVe
                 damping = (damping * 0.1).max(1e-9);
             }
             // The residuals differ by rounding only: there is nothing left to gain.
-            Some(same) if damping <= DAMPING && same.omega <= normal.omega * (1.0 + 1e-9) => return Some(Solution { x, normal }),
+            Some(same) if damping <= DAMPING && same.omega <= problem.same(normal.omega) => return Some(Solution { x, normal }),
             _ if damping > 1e8 => return None,
             _ => damping = (damping * 10.0).max(DAMPING),
         }
@@ -156,17 +160,6 @@ impl<const P: usize> Sums<P> {
             }
             add_products(&mut self.b[row], &j[row], r);
         }
-        add_products(&mut self.omega, r, r);
-    }
-
-    /// As [`Self::add`], for rows whose derivatives are all zero but those by the unknowns `i` < `j`.
-    #[inline(always)]
-    pub(crate) fn add_pair(&mut self, [i, j]: [usize; 2], by_i: &Lanes, by_j: &Lanes, r: &Lanes) {
-        add_products(&mut self.n[i][i], by_i, by_i);
-        add_products(&mut self.n[i][j], by_i, by_j);
-        add_products(&mut self.n[j][j], by_j, by_j);
-        add_products(&mut self.b[i], by_i, r);
-        add_products(&mut self.b[j], by_j, r);
         add_products(&mut self.omega, r, r);
     }
 

@@ -83,7 +83,7 @@ impl Operator for ParametricCircle {
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: false }
+        calibench_model::Unknowns { shape: true, levels: true, blur: true, ..Default::default() }
     }
 }
 

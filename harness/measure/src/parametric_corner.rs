@@ -1,19 +1,23 @@
 //! `parametric_corner`: a chess corner's grey values, fitted.
 
 mod area;
+mod levels;
+mod lists;
 mod model;
-mod single;
+mod real;
 mod start;
+mod sums;
 mod window;
 
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Gradient, Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
 use nalgebra::SVector;
 
 use crate::marquardt::{Problem, Solution, covariance, minimise};
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
-use window::Window;
+use levels::{ADDED, BOTH, EVEN, LIGHT};
+use window::{Setting, Window};
 
 /// Blur at the start, px^2: between sharp and soft.
 const VARIANCE: f64 = 0.5;
@@ -29,29 +33,35 @@ const CORRECTIONS: usize = 20;
 /// The last correction moves the unknowns by less than so many standard deviations, or the position by less than so many px: the next would move them by a
 /// tenth of that at most.
 const SETTLED: f64 = 0.3;
-const STANDS: f64 = 1e-7;
+const STANDS: f64 = 3e-7;
 /// After so many corrections it is enough that the position settles: without any blur its variance does so slowly.
 const FEW: usize = 3;
 
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
-/// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the pixel's area (fill factor 1).
-/// Unknowns are the position, the directions of both edges, the blur, and the two grey values; on demand a linear change of grey value
+/// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the photosite's area (a square, as wide as the
+/// pixel unless `photosite` says otherwise). Unknowns are the position, the directions of both edges, the blur, and the two grey values; on demand a linear change
 /// over the window, and the curvature of each edge (a lens bends the edges of large windows; to second order, for radii far beyond the window).
 /// For white noise of equal variance this is the maximum-likelihood estimate.
+///
+/// What changes linearly: `gradient` 1, something that is added to the grey values, as stray light (two unknowns); 2, the light, which multiplies them (two; grey
+/// values must be zero without light: take a black level away first); 3, the dark and the light grey value each for itself, which covers the two before and a black
+/// level, and widens the bound most (four).
 ///
 /// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
 /// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these are less like those
 /// opposite than unlike, there is no crossing. Covariance (px^2):
 /// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
-/// Source: edge model fitted by least squares as in Mallon & Whelan 2007 and Ha et al. 2017 for chessboards; the pixel's integral as a mixture of
-/// Gaussians, and the crossing's expectation as a bivariate normal orthant (Drezner & Wesolowsky 1990), are our own choice.
+/// Source: two blurred edges with unknown gain and offset fitted by least squares as in Wöhler 2013 (3D Computer Vision, Eq. 1.89 to 1.92) and Yang et al. 2018;
+/// the photosite's integral as a mixture of Gaussians, and the crossing's expectation as a bivariate normal integral (over the correlation, with Gauss-Legendre
+/// nodes, as in Drezner & Wesolowsky 1990), are our own choice.
 pub struct ParametricCorner {
     window: usize,
     search: usize,
-    gradient: bool,
+    gradient: u8,
     curvature: bool,
+    photosite: f64,
 }
 
 const PARAMETERS: &[Parameter] = &[
@@ -71,8 +81,9 @@ const PARAMETERS: &[Parameter] = &[
     },
     Parameter {
         name: "gradient",
-        about: "1: a linear change of the grey value over the window is estimated, 0: it is not",
-        domain: Domain::Whole { min: 0, max: 1 },
+        about: "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of the dark and of the \
+                light grey value, each its own",
+        domain: Domain::Whole { min: 0, max: 3 },
         default: 0.0,
         always_shown: false,
     },
@@ -83,6 +94,13 @@ const PARAMETERS: &[Parameter] = &[
         default: 0.0,
         always_shown: false,
     },
+    Parameter {
+        name: "photosite",
+        about: "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel",
+        domain: Domain::Real { min: 0.1, max: 1.0 },
+        default: 1.0,
+        always_shown: false,
+    },
 ];
 
 /// The method's entry.
@@ -90,7 +108,7 @@ pub fn method() -> Method {
     Method {
         name: "parametric_corner",
         about: "least-squares fit of a chess corner's grey values: position, two edges, blur, two grey values",
-        source: "calibench; cf. Mallon & Whelan 2007, Ha et al. 2017",
+        source: "calibench; cf. Wöhler 2013, Eq. 1.89 to 1.92, Yang et al. 2018",
         version: "1".into(),
         parameters: PARAMETERS,
         build: Build::With(|settings| Box::new(ParametricCorner::new(settings))),
@@ -103,20 +121,22 @@ impl ParametricCorner {
         Self {
             window: settings.whole("window"),
             search: settings.whole("search"),
-            gradient: settings.whole("gradient") == 1,
+            gradient: settings.whole("gradient") as u8,
             curvature: settings.whole("curvature") == 1,
+            photosite: settings.get("photosite"),
         }
     }
 
-    fn fit<const P: usize, const GRADIENT: bool, const CURVED: bool>(
+    fn fit<const P: usize, const GRADIENT: u8, const CURVED: bool>(
         &self,
         image: &Image,
         guess: &start::Guess,
     ) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
-        let mut window = Window::<P, GRADIENT, CURVED>::new(image, self.window);
+        let setting = Setting { side: self.window, photosite: self.photosite, mean: guess.mean, half: guess.half };
+        let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
         let mut x = SVector::<f64, P>::zeros();
-        x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, guess.mean, guess.half]);
+        x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, 0.0, 1.0]);
         let mut at = guess.position;
         for beyond in BEYOND {
             let follow = 0.5 + beyond;
@@ -147,7 +167,7 @@ impl ParametricCorner {
 }
 
 /// The fit of the whole model, from a fit of the quick one on.
-fn refined<const P: usize, const GRADIENT: bool, const CURVED: bool>(
+fn refined<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     window: &mut Window<'_, P, GRADIENT, CURVED>,
     mut x: SVector<f64, P>,
 ) -> Option<Solution<P>> {
@@ -191,15 +211,25 @@ impl Operator for ParametricCorner {
         }
         let guess = start::directions(image, position, half).ok_or(Rejection::NoCorner)?;
         match (self.gradient, self.curvature) {
-            (false, false) => self.fit::<7, false, false>(image, &guess),
-            (true, false) => self.fit::<9, true, false>(image, &guess),
-            (false, true) => self.fit::<9, false, true>(image, &guess),
-            (true, true) => self.fit::<11, true, true>(image, &guess),
+            (EVEN, false) => self.fit::<7, EVEN, false>(image, &guess),
+            (ADDED, false) => self.fit::<9, ADDED, false>(image, &guess),
+            (LIGHT, false) => self.fit::<9, LIGHT, false>(image, &guess),
+            (_, false) => self.fit::<11, BOTH, false>(image, &guess),
+            (EVEN, true) => self.fit::<9, EVEN, true>(image, &guess),
+            (ADDED, true) => self.fit::<11, ADDED, true>(image, &guess),
+            (LIGHT, true) => self.fit::<11, LIGHT, true>(image, &guess),
+            (_, true) => self.fit::<13, BOTH, true>(image, &guess),
         }
     }
 
-    fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: self.gradient }
+    fn unknowns(&self) -> Unknowns {
+        let gradient = match self.gradient {
+            EVEN => Gradient::None,
+            ADDED => Gradient::Added,
+            LIGHT => Gradient::Light,
+            _ => Gradient::Both,
+        };
+        Unknowns { shape: true, levels: true, blur: true, gradient }
     }
 }
 
@@ -210,5 +240,7 @@ fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection>
 
 #[cfg(test)]
 mod efficiency;
+#[cfg(test)]
+mod gradients;
 #[cfg(test)]
 mod tests;

@@ -35,7 +35,6 @@ pub struct Measurement {
 
 /// What an operator estimates beside the position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(clippy::struct_excessive_bools, reason = "any of them can be there without the others")]
 pub struct Unknowns {
     /// The other four parameters of an affine map: directions and sizes.
     pub shape: bool,
@@ -43,8 +42,22 @@ pub struct Unknowns {
     pub levels: bool,
     /// The standard deviation of the blur.
     pub blur: bool,
-    /// A linear change of the grey values over the window.
-    pub gradient: bool,
+    /// A linear change over the window.
+    pub gradient: Gradient,
+}
+
+/// What is estimated to change linearly over a window, beside the pattern itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Gradient {
+    /// Nothing.
+    #[default]
+    None,
+    /// A grey value that is added: two unknowns.
+    Added,
+    /// The light, which multiplies the grey values: two unknowns.
+    Light,
+    /// Both, or the dark and the light grey value each for itself, which is the same: four unknowns.
+    Both,
 }
 
 /// Why a point was not measured. A missed point is data.

@@ -4,7 +4,7 @@
 //! has a smaller covariance than `(J^T S^-1 J)^-1`. What an operator has to estimate beside the position (directions and sizes, grey levels, sharpness)
 //! widens the bound of the position.
 
-use calibench_model::{Covariance, PixelPoint, Unknowns};
+use calibench_model::{Covariance, Gradient, PixelPoint, Unknowns};
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
@@ -85,8 +85,8 @@ pub struct Window<'a> {
     side: usize,
 }
 
-/// The grey values' derivatives by everything that somebody may have to estimate, in groups: position, shape, blur, levels, gradient.
-type Columns = [Vec<Vec<f64>>; 5];
+/// The grey values' derivatives by everything that somebody may have to estimate, in groups: position, shape, blur, levels, a gradient that is added and one that multiplies.
+type Columns = [Vec<Vec<f64>>; 6];
 
 impl Window<'_> {
     /// The bounds of the position, px^2, beside each of `sets`. `mean` is what the sensor makes of light and `variance` the variance of that grey value,
@@ -122,7 +122,7 @@ impl Window<'_> {
         };
         let (x0, y0) = (self.at.x, self.at.y);
         let shift = [moved(&|[x, y], h| [x + h, y], STEP)?, moved(&|[x, y], h| [x, y + h], STEP)?];
-        let mut columns: Columns = [shift.into(), Vec::new(), Vec::new(), Vec::new(), Vec::new()];
+        let mut columns: Columns = [shift.into(), Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new()];
         if wanted(|set| set.shape) {
             let step = STEP / self.bounds.half.max(1) as f64;
             let [across, along] = [moved(&|[x, y], h| [x + h * (x - x0), y], step)?, moved(&|[x, y], h| [x + h * (y - y0), y], step)?];
@@ -134,8 +134,10 @@ impl Window<'_> {
         }
         columns[3] = vec![vec![1.0; grey.len()], grey.to_vec()];
         let middle = self.bounds.half as f64;
-        let ramp = |of: fn(usize, usize) -> usize| (0..grey.len()).map(|i| of(i, self.side) as f64 - middle).collect();
+        let ramp = |of: fn(usize, usize) -> usize| (0..grey.len()).map(|i| of(i, self.side) as f64 - middle).collect::<Vec<f64>>();
         columns[4] = vec![ramp(|i, side| i % side), ramp(|i, side| i / side)];
+        // As operators take it: grey values are zero without light. A black level would be one more plane.
+        columns[5] = columns[4].iter().map(|ramp| ramp.iter().zip(grey).map(|(d, grey)| d * grey).collect()).collect();
         Some(columns)
     }
 
@@ -151,8 +153,10 @@ fn slope(high: &[f64], low: &[f64], step: f64, mean: &impl Fn(f64) -> Option<f64
 }
 
 /// The places of a set's unknowns among all columns.
-fn chosen(groups: [usize; 5], set: Unknowns) -> Vec<usize> {
-    let members = [true, set.shape, set.blur, set.levels, set.gradient];
+fn chosen(groups: [usize; 6], set: Unknowns) -> Vec<usize> {
+    let added = matches!(set.gradient, Gradient::Added | Gradient::Both);
+    let light = matches!(set.gradient, Gradient::Light | Gradient::Both);
+    let members = [true, set.shape, set.blur, set.levels, added, light];
     let mut first = 0;
     let mut chosen = Vec::new();
     for (count, member) in groups.into_iter().zip(members) {
@@ -249,14 +253,54 @@ mod tests {
         assert!(found.sxy.abs() < 0.02 * found.sxx);
     }
 
+    /// The bound by differences of products of one-dimensional profiles, with all unknowns but the shape, for grey values of 0.1 and 0.9.
+    #[test]
+    fn gradients_take_what_they_take_of_closed_forms() {
+        let phi = |s: f64| 0.5 * libm::erfc(-s * std::f64::consts::FRAC_1_SQRT_2);
+        // Unknowns: x, y, blur, mean, half, an added slope (2), the light's slope (2).
+        let grey = |u: &[f64], column: usize, row: usize| {
+            let once = |d: f64| d * phi(d / u[2]) + u[2] * (-0.5 * (d / u[2]).powi(2)).exp() / (2.0 * std::f64::consts::PI).sqrt();
+            let profile = |d: f64| 2.0 * (once(d + 0.5) - once(d - 0.5)) - 1.0;
+            let (dx, dy) = (column as f64 - u[0], row as f64 - u[1]);
+            let even = u[3] - u[4] * profile(dx) * profile(dy);
+            even * (1.0 + u[7] * dx + u[8] * dy) + u[5] * dx + u[6] * dy
+        };
+        let at = [7.2, 6.9, 0.8, 0.5, 0.4, 0.0, 0.0, 0.0, 0.0];
+        let column = |unknown: usize| -> Vec<f64> {
+            let moved = |h: f64| {
+                let mut u = at;
+                u[unknown] += h;
+                u
+            };
+            let (high, low) = (moved(1e-4), moved(-1e-4));
+            (0..225).map(|i| (grey(&high, i % 15, i / 15) - grey(&low, i % 15, i / 15)) / 2e-4).collect()
+        };
+        let columns: Vec<Vec<f64>> = (0..9).map(column).collect();
+        for (gradient, slopes) in
+            [(Gradient::None, vec![]), (Gradient::Added, vec![5, 6]), (Gradient::Light, vec![7, 8]), (Gradient::Both, vec![5, 6, 7, 8])]
+        {
+            let unknowns: Vec<usize> = (0..5).chain(slopes).collect();
+            let product = |i: usize, j: usize| columns[unknowns[i]].iter().zip(&columns[unknowns[j]]).map(|(a, b)| a * b).sum::<f64>();
+            let inverse = DMatrix::from_fn(unknowns.len(), unknowns.len(), product).try_inverse().unwrap();
+            let expected = (inverse[(0, 0)] + inverse[(1, 1)]) * SIGMA * SIGMA;
+            let found = bound(&chess(), 0.8, 15, Unknowns { levels: true, blur: true, gradient, shape: false }).unwrap();
+            let ratio = (found.sxx + found.syy) / expected;
+            assert!((ratio - 1.0).abs() < 2e-3, "{gradient:?}: {ratio}");
+        }
+    }
+
     #[test]
     fn unknowns_widen_the_bound_and_never_narrow_it() {
         let trace = |unknowns| bound(&chess(), 0.7, 15, unknowns).map(|c| c.sxx + c.syy).unwrap();
         let alone = trace(Unknowns::default());
         let shape = trace(Unknowns { shape: true, ..Unknowns::default() });
-        let all = Unknowns { shape: true, levels: true, blur: true, gradient: true };
+        let all = Unknowns { shape: true, levels: true, blur: true, gradient: Gradient::Both };
         assert!(alone <= shape && shape <= trace(all), "{alone} {shape} {}", trace(all));
-        let even = trace(Unknowns { gradient: false, ..all });
+        let even = trace(Unknowns { gradient: Gradient::None, ..all });
+        for gradient in [Gradient::Added, Gradient::Light] {
+            let part = trace(Unknowns { gradient, ..all });
+            assert!(even <= part && part <= trace(all), "{even} {part} {gradient:?}");
+        }
         assert!(even < 1.15 * alone, "nearly point-symmetric in its window, so little is lost: {even} {alone}");
         // A triangle is not: up to sqrt 2 wider.
         let triangle = scene(&[&[(20.2, 12.9), (26.26, 23.4), (14.14, 23.4)]]);
@@ -274,7 +318,7 @@ mod tests {
         let vertices: Vec<_> = (0..512).map(vertex).collect();
         let disc = scene(&[&vertices]);
         let trace = |unknowns| bound(&disc, 0.7, 21, unknowns).map(|c| c.sxx + c.syy).unwrap();
-        let ratio = trace(Unknowns { shape: true, levels: true, blur: true, gradient: false }) / trace(Unknowns::default());
+        let ratio = trace(Unknowns { shape: true, levels: true, blur: true, gradient: Gradient::None }) / trace(Unknowns::default());
         assert!((1.0..1.02).contains(&ratio), "{ratio}");
     }
 

@@ -1,7 +1,7 @@
-//! What the pixel's area does to a grey value beyond widening the blur by its variance.
+//! What the photosite's area does to a grey value beyond widening the blur by its variance.
 
 use super::model::Model;
-use super::single::{WIDE, Wide, exp_minus, step};
+use super::real::{Real, WIDE, Wide, step};
 
 /// A chunk of pixels, seen from the two edges, px: the distance from the tangents at the corner, and the way along them.
 pub(super) struct Seen {
@@ -9,38 +9,36 @@ pub(super) struct Seen {
     along: [Wide; 2],
 }
 
-impl Model {
+impl Model<f32> {
     /// `x` and `y` are taken from the corner, px.
     #[inline(always)]
     pub(super) fn seen(&self, x: &Wide, y: &Wide) -> Seen {
         let mut seen = Seen { straight: [[0.0; WIDE]; 2], along: [[0.0; WIDE]; 2] };
         for (which, edge) in self.edges.iter().enumerate() {
-            let (nx, ny) = (edge.nx as f32, edge.ny as f32);
             for i in 0..WIDE {
-                seen.straight[which][i] = nx * x[i] + ny * y[i];
-                seen.along[which][i] = nx * y[i] - ny * x[i];
+                seen.straight[which][i] = edge.nx * x[i] + edge.ny * y[i];
+                seen.along[which][i] = edge.nx * y[i] - edge.ny * x[i];
             }
         }
         seen
     }
 
-    /// Distances from edge `which` in units of the blur, for the Gaussian of the pixel that lies at `offset`.
+    /// Distances from edge `which` in units of the blur, for the Gaussian of the photosite that lies at `offset`.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
-    fn scaled<const CURVED: bool>(&self, which: usize, seen: &Seen, offset: [f64; 2]) -> Wide {
+    fn scaled<const CURVED: bool>(&self, which: usize, seen: &Seen, offset: [f32; 2]) -> Wide {
         let edge = &self.edges[which];
-        let inverse = self.inverse as f32;
-        let straight = (edge.nx * offset[0] + edge.ny * offset[1]) as f32;
-        let along = (edge.nx * offset[1] - edge.ny * offset[0]) as f32;
-        let (bend, variance) = (0.5 * edge.curvature as f32, self.variance as f32);
+        let straight = edge.nx * offset[0] + edge.ny * offset[1];
+        let along = edge.nx * offset[1] - edge.ny * offset[0];
+        let bend = 0.5 * edge.curvature;
         let mut scaled = [0.0; WIDE];
         for i in 0..WIDE {
             let mut distance = seen.straight[which][i] + straight;
             if CURVED {
                 let along = seen.along[which][i] + along;
-                distance += bend * (along * along + variance);
+                distance += bend * (along * along + self.variance);
             }
-            scaled[i] = distance * inverse;
+            scaled[i] = distance * self.inverse;
         }
         scaled
     }
@@ -51,7 +49,7 @@ impl Model {
         let mut sum = [0.0; WIDE];
         for node in &self.nodes[..self.count] {
             let [a, b] = [0, 1].map(|which| self.scaled::<CURVED>(which, seen, [node.x, node.y]));
-            let (edge_a, edge_b) = (step(&a), step(&b));
+            let ((edge_a, _), (edge_b, _)) = (step(&a), step(&b));
             let (mut squares, mut product, mut value) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
             for i in 0..WIDE {
                 squares[i] = a[i] * a[i] + b[i] * b[i];
@@ -59,18 +57,17 @@ impl Model {
                 value[i] = edge_a[i] * edge_b[i];
             }
             for (square, mixed, weight) in &self.integral[..self.terms] {
-                let (square, mixed, weight) = (*square as f32, *mixed as f32, *weight as f32);
                 let mut exponent = [0.0; WIDE];
                 for i in 0..WIDE {
                     exponent[i] = square * squares[i] - mixed * product[i];
                 }
-                let term = exp_minus(&exponent);
+                let term = f32::exp_minus(&exponent);
                 for i in 0..WIDE {
                     value[i] += weight * term[i];
                 }
             }
             for i in 0..WIDE {
-                sum[i] += node.weight as f32 * value[i];
+                sum[i] += node.weight * value[i];
             }
         }
         sum
@@ -81,9 +78,9 @@ impl Model {
     pub(super) fn edge_value<const CURVED: bool>(&self, which: usize, seen: &Seen) -> Wide {
         let mut sum = [0.0; WIDE];
         for node in &self.nodes[..self.count] {
-            let edge = step(&self.scaled::<CURVED>(which, seen, [node.x, node.y]));
+            let (edge, _) = step(&self.scaled::<CURVED>(which, seen, [node.x, node.y]));
             for i in 0..WIDE {
-                sum[i] += node.weight as f32 * edge[i];
+                sum[i] += node.weight * edge[i];
             }
         }
         sum

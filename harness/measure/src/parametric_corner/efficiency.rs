@@ -6,16 +6,16 @@ use rand_chacha::ChaCha8Rng;
 use super::tests::{SIDE, chess, operator};
 use crate::exact::{self, Chess, Pool, bound, noisy};
 use crate::operator::Operator;
-use calibench_model::{PixelPoint, Start};
+use calibench_model::{Gradient, PixelPoint, Start};
 
-const BLURS: [f64; 5] = [0.3, 0.5, 0.8, 1.3, 2.0];
-const TILTS: [f64; 3] = [0.0, 30.0, 60.0];
+pub(super) const BLURS: [f64; 5] = [0.3, 0.5, 0.8, 1.3, 2.0];
+pub(super) const TILTS: [f64; 3] = [0.0, 30.0, 60.0];
 /// Fractions of the contrast.
-const NOISES: [f64; 3] = [0.005, 0.02, 0.1];
+pub(super) const NOISES: [f64; 3] = [0.005, 0.02, 0.1];
 
 /// The trace of the bound for noise of unit variance in the window of 15 px around the corner's pixel. Nuisances: directions, blur, grey values,
-/// and, if `gradient`, its two components.
-fn bound_of(corner: &Chess, gradient: bool) -> f64 {
+/// and the components of the gradient.
+pub(super) fn bound_of(corner: &Chess, gradient: Gradient) -> f64 {
     let shift = corner.position.map(|p| p.round() - 7.0);
     let x = [
         corner.position[0] - shift[0],
@@ -27,15 +27,20 @@ fn bound_of(corner: &Chess, gradient: bool) -> f64 {
         corner.half,
     ];
     let there = |x: &[f64]| Chess { position: [x[0], x[1]], normals: [x[2], x[3]], blur: x[4], mean: x[5], half: x[6], ..*corner };
-    if gradient {
-        let all: [f64; 9] = std::array::from_fn(|i| x.get(i).copied().unwrap_or_else(|| corner.gradient[i - 7]));
-        bound(all, |x| Chess { gradient: [x[7], x[8]], ..there(x) }.render(15))
-    } else {
-        bound(x, |x| there(x).render(15))
+    let [added, light] = [corner.gradient, corner.light];
+    let nine = |slope: [f64; 2]| -> [f64; 9] { std::array::from_fn(|i| x.get(i).copied().unwrap_or_else(|| slope[i - 7])) };
+    match gradient {
+        Gradient::None => bound(x, |x| there(x).render(15)),
+        Gradient::Added => bound(nine(added), |x| Chess { gradient: [x[7], x[8]], ..there(x) }.render(15)),
+        Gradient::Light => bound(nine(light), |x| Chess { light: [x[7], x[8]], ..there(x) }.render(15)),
+        Gradient::Both => {
+            let all: [f64; 11] = std::array::from_fn(|i| if i < 9 { nine(added)[i] } else { light[i - 9] });
+            bound(all, |x| Chess { gradient: [x[7], x[8]], light: [x[9], x[10]], ..there(x) }.render(15))
+        }
     }
 }
 
-fn near(position: [f64; 2], radius: f64, rng: &mut ChaCha8Rng) -> Start {
+pub(super) fn near(position: [f64; 2], radius: f64, rng: &mut ChaCha8Rng) -> Start {
     loop {
         let (x, y) = (rng.random_range(-radius..radius), rng.random_range(-radius..radius));
         if x * x + y * y <= radius * radius {
@@ -56,7 +61,7 @@ fn errors_are_those_of_the_bound() {
             for _ in 0..4 {
                 let phase = [rng.random_range(-0.5..0.5), rng.random_range(-0.5..0.5)];
                 let corner = chess(tilt.to_radians(), rng.random_range(0.0..std::f64::consts::PI), blur, phase);
-                let (grey, trace) = (corner.render(SIDE), bound_of(&corner, false));
+                let (grey, trace) = (corner.render(SIDE), bound_of(&corner, Gradient::None));
                 for (cell, noise) in cells.iter_mut().zip(NOISES) {
                     let sigma = 2.0 * corner.half * noise;
                     for _ in 0..60 {
@@ -98,7 +103,7 @@ fn a_gradient_costs_no_more_than_its_unknowns() {
             let (sin, cos) = rng.random_range(0.0..std::f64::consts::TAU).sin_cos();
             let slope = 0.002 * 2.0 * plain.half;
             let corner = Chess { gradient: [slope * cos, slope * sin], ..plain };
-            let (grey, trace) = (corner.render(SIDE), bound_of(&corner, true));
+            let (grey, trace) = (corner.render(SIDE), bound_of(&corner, Gradient::Added));
             for noise in NOISES {
                 let sigma = 2.0 * corner.half * noise;
                 for _ in 0..70 {

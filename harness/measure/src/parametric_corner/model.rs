@@ -1,6 +1,7 @@
-//! The grey value of a blurred chess corner, averaged over a pixel, with its derivatives.
+//! The grey value of a blurred chess corner, averaged over a photosite, with its derivatives.
 
-use crate::lanes::{DENSITY, LANES, Lanes, exp_minus, step};
+use super::real::{Real, step};
+use crate::lanes::DENSITY;
 
 /// Unknowns, in this order: position x, y (px), directions of the two edges' normals (rad), variance of the blur (px^2), mean of the two
 /// grey values, half their difference.
@@ -17,36 +18,39 @@ pub(super) struct Shape {
     pub(super) variance: f64,
     /// Curvatures of the edges, 1/px, positive towards the normal.
     pub(super) curvature: [f64; 2],
+    /// Side of the square that is sensitive to light in each pixel, px: not unknown.
+    pub(super) photosite: f64,
 }
 
-/// A pixel's area as a mixture of Gaussians: `offsets` along each axis with `weights`, each of this `variance`, px^2.
+/// The area of a photosite as wide as the pixel as a mixture of Gaussians: `offsets` along each axis with `weights`, each of this `variance`, px^2. A narrower
+/// one is the same on a smaller scale.
 ///
 /// Up to which order the mixture's cumulants are the unit square's grows with the Gaussians of an axis. Of the contrast, an edge blurred by a Gaussian of
 /// standard deviation s is off by 8e-6 with two at s = 0.71, 7e-6 with three at 0.4, 4e-6 with four at 0.3 and 5e-3 at 0.1, all px;
 /// without any blur the grey values are 4e-2 off, but the model does not become singular.
-struct Pixel {
+struct Square {
     offsets: &'static [f64],
     weights: &'static [f64],
     variance: f64,
 }
 
 /// One Gaussian of the square's variance: quick, and near enough to begin with.
-const ONE: Pixel = Pixel { offsets: &[0.0], weights: &[1.0], variance: 1.0 / 12.0 };
-const TWO: Pixel =
-    Pixel { offsets: &[-0.254_066_374_077_307_4, 0.254_066_374_077_307_4], weights: &[0.5, 0.5], variance: 0.018_783_610_896_543_05 };
-const THREE: Pixel = Pixel {
+const ONE: Square = Square { offsets: &[0.0], weights: &[1.0], variance: 1.0 / 12.0 };
+const TWO: Square =
+    Square { offsets: &[-0.254_066_374_077_307_4, 0.254_066_374_077_307_4], weights: &[0.5, 0.5], variance: 0.018_783_610_896_543_05 };
+const THREE: Square = Square {
     offsets: &[-0.345_831_998_689_224, 0.0, 0.345_831_998_689_224],
     weights: &[0.318_902_974_746_591_3, 0.362_194_050_506_817_4, 0.318_902_974_746_591_3],
     variance: 0.007_051_887_868_281_641,
 };
-const FOUR: Pixel = Pixel {
+const FOUR: Square = Square {
     offsets: &[-0.393_654_415_751_417_5, -0.142_049_084_498_668_68, 0.142_049_084_498_668_68, 0.393_654_415_751_417_5],
     weights: &[0.222_131_926_791_124_26, 0.277_868_073_208_875_7, 0.277_868_073_208_875_7, 0.222_131_926_791_124_26],
     variance: 0.003_274_906_849_960_283_4,
 };
 
-impl Pixel {
-    /// As many Gaussians as the blur needs.
+impl Square {
+    /// As many Gaussians as the blur, of this variance in units of the square's side, needs.
     fn for_blur(variance: f64, fidelity: Fidelity) -> &'static Self {
         match variance {
             _ if fidelity == Fidelity::Rough => &ONE,
@@ -57,7 +61,7 @@ impl Pixel {
     }
 }
 
-/// How well the pixel's area is integrated.
+/// How well the photosite's area is integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fidelity {
     /// Within a hundredth of the contrast.
@@ -78,127 +82,152 @@ const LEGENDRE: [&[(f64, f64)]; 3] = [
     ],
 ];
 
-/// One Gaussian of the pixel: offset from its centre (px) and weight.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Node {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) weight: f64,
+/// One Gaussian of the photosite: offset from its centre (px) and weight.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node<T> {
+    pub(super) x: T,
+    pub(super) y: T,
+    pub(super) weight: T,
 }
 
 /// A straight or curved edge: the cosine and sine of its normal's direction, its curvature.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
-    pub(super) nx: f64,
-    pub(super) ny: f64,
-    pub(super) curvature: f64,
+pub(super) struct Edge<T> {
+    pub(super) nx: T,
+    pub(super) ny: T,
+    pub(super) curvature: T,
 }
 
 /// All that a chunk of pixels needs to know of a shape.
-pub(super) struct Model {
-    pub(super) edges: [Edge; 2],
-    pub(super) nodes: [Node; 16],
+pub(super) struct Model<T> {
+    pub(super) edges: [Edge<T>; 2],
+    pub(super) nodes: [Node<T>; 16],
     pub(super) count: usize,
-    /// Variance of the blurred Gaussians of the pixel, px^2, and 1 / its root.
-    pub(super) variance: f64,
-    pub(super) inverse: f64,
-    /// Cosine and sine of the angle between the normals.
-    rho: f64,
-    sine: f64,
+    /// Variance of the blurred Gaussians of the photosite, px^2, and 1 / its root.
+    pub(super) variance: T,
+    pub(super) inverse: T,
+    /// Cosine of the angle between the normals, and 1 / its sine.
+    rho: T,
+    cosecant: T,
     /// `(2 / pi) integral of exp(-a (u^2 + v^2) + b u v)`: a, b and weight at each node.
-    pub(super) integral: [(f64, f64, f64); 8],
+    pub(super) integral: [(T, T, T); 8],
     pub(super) terms: usize,
     /// Distance from an edge, px, from which on it is not seen.
-    pub(super) reach: f64,
+    pub(super) reach: T,
 }
 
-/// A grey value in units of half the contrast, and its derivatives by the [`Shape`].
-#[derive(Clone, Copy, Default)]
-pub(super) struct Field {
-    pub(super) value: Lanes,
-    pub(super) position: [Lanes; 2],
-    pub(super) normals: [Lanes; 2],
-    pub(super) variance: Lanes,
-    pub(super) curvature: [Lanes; 2],
+/// A grey value in units of half the contrast, and its derivatives by the [`Shape`], of `N` pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Field<T, const N: usize> {
+    pub(super) value: [T; N],
+    pub(super) position: [[T; N]; 2],
+    pub(super) normals: [[T; N]; 2],
+    pub(super) variance: [T; N],
+    pub(super) curvature: [[T; N]; 2],
 }
 
-impl Model {
+impl<T: Real, const N: usize> Field<T, N> {
+    /// Of pixels from which no edge is seen.
+    #[inline(always)]
+    pub(super) fn constant(value: [T; N]) -> Self {
+        let zero = [T::of(0.0); N];
+        Self { value, position: [zero; 2], normals: [zero; 2], variance: zero, curvature: [zero; 2] }
+    }
+}
+
+impl<T: Real> Model<T> {
     /// `None` for edges that are parallel to 3 degrees.
     pub(super) fn new(shape: &Shape, fidelity: Fidelity) -> Option<Self> {
         let (sine, rho) = (shape.normals[1] - shape.normals[0]).sin_cos();
         if sine.is_nan() || sine < 0.05 {
             return None;
         }
-        let pixel = Pixel::for_blur(shape.variance, fidelity);
-        let (mut nodes, mut count) = ([Node::default(); 16], 0);
-        for (y, wy) in pixel.offsets.iter().zip(pixel.weights) {
-            for (x, wx) in pixel.offsets.iter().zip(pixel.weights) {
-                nodes[count] = Node { x: *x, y: *y, weight: wx * wy };
+        let (width, area) = (shape.photosite, shape.photosite * shape.photosite);
+        let square = Square::for_blur(shape.variance / area, fidelity);
+        let zero = T::of(0.0);
+        let (mut nodes, mut count) = ([Node { x: zero, y: zero, weight: zero }; 16], 0);
+        for (y, wy) in square.offsets.iter().zip(square.weights) {
+            for (x, wx) in square.offsets.iter().zip(square.weights) {
+                nodes[count] = Node { x: T::of(x * width), y: T::of(y * width), weight: T::of(wx * wy) };
                 count += 1;
             }
         }
         let edge = |i: usize| {
             let (ny, nx) = shape.normals[i].sin_cos();
-            Edge { nx, ny, curvature: shape.curvature[i] }
+            Edge { nx: T::of(nx), ny: T::of(ny), curvature: T::of(shape.curvature[i]) }
         };
         let (integral, terms) = correlation(rho.asin());
-        let variance = shape.variance + pixel.variance;
+        let variance = shape.variance + square.variance * area;
         let blur = variance.sqrt();
-        // Half a pixel's diagonal, and five standard deviations: 3e-7 of the contrast.
-        let reach = std::f64::consts::FRAC_1_SQRT_2 + 5.0 * blur;
-        Some(Self { edges: [edge(0), edge(1)], nodes, count, variance, inverse: 1.0 / blur, rho, sine, integral, terms, reach })
+        // The outermost Gaussian, and five standard deviations: 6e-7 of half the contrast.
+        let outermost = square.offsets.iter().fold(0.0, |most: f64, x| most.max(x * width));
+        let reach = std::f64::consts::SQRT_2 * outermost + 5.0 * blur;
+        Some(Self {
+            edges: [edge(0), edge(1)],
+            nodes,
+            count,
+            variance: T::of(variance),
+            inverse: T::of(1.0 / blur),
+            rho: T::of(rho),
+            cosecant: T::of(1.0 / sine),
+            integral: integral.map(|(square, product, weight)| (T::of(square), T::of(product), T::of(weight))),
+            terms,
+            reach: T::of(reach),
+        })
     }
 
     /// Both edges are near.
     #[inline(always)]
-    pub(super) fn corner<const CURVED: bool>(&self, x: &Lanes, y: &Lanes) -> Field {
-        let mut sum = Field::default();
+    pub(super) fn corner<const N: usize, const CURVED: bool>(&self, x: &[T; N], y: &[T; N]) -> Field<T, N> {
+        let mut sum = Field::constant([T::of(0.0); N]);
         for node in &self.nodes[..self.count] {
-            self.add_corner::<CURVED>(node, x, y, &mut sum);
+            self.add_corner::<N, CURVED>(node, x, y, &mut sum);
         }
         sum
     }
 
     #[inline(always)]
-    fn add_corner<const CURVED: bool>(&self, node: &Node, x: &Lanes, y: &Lanes, sum: &mut Field) {
-        let p = self.edges[0].place::<CURVED>(node, self.variance, x, y);
-        let q = self.edges[1].place::<CURVED>(node, self.variance, x, y);
-        let (mut a, mut b, mut along_a, mut along_b) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for i in 0..LANES {
+    fn add_corner<const N: usize, const CURVED: bool>(&self, node: &Node<T>, x: &[T; N], y: &[T; N], sum: &mut Field<T, N>) {
+        let zero = [T::of(0.0); N];
+        let p = self.edges[0].place::<N, CURVED>(node, self.variance, x, y);
+        let q = self.edges[1].place::<N, CURVED>(node, self.variance, x, y);
+        let (mut a, mut b, mut along_a, mut along_b) = (zero, zero, zero, zero);
+        for i in 0..N {
             a[i] = p.distance[i] * self.inverse;
             b[i] = q.distance[i] * self.inverse;
-            along_a[i] = (b[i] - self.rho * a[i]) / self.sine;
-            along_b[i] = (a[i] - self.rho * b[i]) / self.sine;
+            along_a[i] = (b[i] - self.rho * a[i]) * self.cosecant;
+            along_b[i] = (a[i] - self.rho * b[i]) * self.cosecant;
         }
         let ((edge_a, bell_a), (edge_b, bell_b)) = (step(&a), step(&b));
         let ((far_a, fade_a), (far_b, _)) = (step(&along_a), step(&along_b));
         let bulge = self.bulge(&a, &b);
-        let (mut by_p, mut by_q, mut by_angle) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let slope = 2.0 * DENSITY * self.inverse * node.weight;
-        for i in 0..LANES {
+        let (mut by_p, mut by_q, mut by_angle) = (zero, zero, zero);
+        let slope = T::of(2.0 * DENSITY) * self.inverse * node.weight;
+        let turn = T::of(std::f64::consts::FRAC_2_PI) * node.weight;
+        for i in 0..N {
             sum.value[i] += node.weight * (edge_a[i] * edge_b[i] + bulge[i]);
             by_p[i] = slope * bell_a[i] * far_a[i];
             by_q[i] = slope * bell_b[i] * far_b[i];
-            by_angle[i] = node.weight * std::f64::consts::FRAC_2_PI * bell_a[i] * fade_a[i];
+            by_angle[i] = turn * bell_a[i] * fade_a[i];
             sum.normals[0][i] += by_angle[i];
             sum.normals[1][i] -= by_angle[i];
         }
-        self.add_edge::<CURVED>(0, &p, &by_p, sum);
-        self.add_edge::<CURVED>(1, &q, &by_q, sum);
+        self.add_edge::<N, CURVED>(0, &p, &by_p, sum);
+        self.add_edge::<N, CURVED>(1, &q, &by_q, sum);
     }
 
     /// `E[sign u sign v] - E[sign u] E[sign v]` for two unit normal variables about (a, b) with correlation rho.
     #[inline(always)]
-    fn bulge(&self, a: &Lanes, b: &Lanes) -> Lanes {
-        let mut sum = [0.0; LANES];
+    fn bulge<const N: usize>(&self, a: &[T; N], b: &[T; N]) -> [T; N] {
+        let mut sum = [T::of(0.0); N];
         for (square, product, weight) in &self.integral[..self.terms] {
-            let mut exponent = [0.0; LANES];
-            for i in 0..LANES {
-                exponent[i] = square * (a[i] * a[i] + b[i] * b[i]) - product * (a[i] * b[i]);
+            let mut exponent = [T::of(0.0); N];
+            for i in 0..N {
+                exponent[i] = *square * (a[i] * a[i] + b[i] * b[i]) - *product * (a[i] * b[i]);
             }
-            let term = exp_minus(&exponent);
-            for i in 0..LANES {
-                sum[i] += weight * term[i];
+            let term = T::exp_minus(&exponent);
+            for i in 0..N {
+                sum[i] += *weight * term[i];
             }
         }
         sum
@@ -206,18 +235,23 @@ impl Model {
 
     /// Only edge `which` is near; `side` is the sign of the distance from the other.
     #[inline(always)]
-    pub(super) fn edge<const CURVED: bool>(&self, which: usize, side: &Lanes, x: &Lanes, y: &Lanes) -> Field {
-        let mut sum = Field::default();
+    #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
+    pub(super) fn edge<const N: usize, const CURVED: bool>(&self, which: usize, side: &[T; N], x: &[T; N], y: &[T; N]) -> Field<T, N> {
+        let mut sum = Field::constant([T::of(0.0); N]);
         for node in &self.nodes[..self.count] {
-            let p = self.edges[which].place::<CURVED>(node, self.variance, x, y);
-            let a = p.distance.map(|distance| distance * self.inverse);
-            let (edge, bell) = step(&a);
-            let mut by = [0.0; LANES];
-            for i in 0..LANES {
-                sum.value[i] += node.weight * side[i] * edge[i];
-                by[i] = 2.0 * DENSITY * self.inverse * node.weight * side[i] * bell[i];
+            let p = self.edges[which].place::<N, CURVED>(node, self.variance, x, y);
+            let mut a = [T::of(0.0); N];
+            for i in 0..N {
+                a[i] = p.distance[i] * self.inverse;
             }
-            self.add_edge::<CURVED>(which, &p, &by, &mut sum);
+            let (edge, bell) = step(&a);
+            let slope = T::of(2.0 * DENSITY) * self.inverse * node.weight;
+            let mut by = [T::of(0.0); N];
+            for i in 0..N {
+                sum.value[i] += node.weight * side[i] * edge[i];
+                by[i] = slope * side[i] * bell[i];
+            }
+            self.add_edge::<N, CURVED>(which, &p, &by, &mut sum);
         }
         sum
     }
@@ -225,47 +259,53 @@ impl Model {
     #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
     /// Adds the derivatives of which `by` is that by the distance from edge `which`.
     #[inline(always)]
-    fn add_edge<const CURVED: bool>(&self, which: usize, p: &Place, by: &Lanes, sum: &mut Field) {
+    fn add_edge<const N: usize, const CURVED: bool>(&self, which: usize, p: &Place<T, N>, by: &[T; N], sum: &mut Field<T, N>) {
         let Edge { nx, ny, curvature } = self.edges[which];
-        for i in 0..LANES {
-            let (bend, lean) = if CURVED { (curvature * p.along[i], curvature * p.along[i] * p.straight[i]) } else { (0.0, 0.0) };
+        let half = T::of(0.5);
+        let by_variance = half * self.inverse * self.inverse;
+        for i in 0..N {
+            let (along, straight) = (p.along[i], p.straight[i]);
+            let (bend, lean) = if CURVED { (curvature * along, curvature * along * straight) } else { (T::of(0.0), T::of(0.0)) };
             sum.position[0][i] -= by[i] * (nx - bend * ny);
             sum.position[1][i] -= by[i] * (ny + bend * nx);
-            sum.normals[which][i] += by[i] * (p.along[i] - lean);
-            sum.variance[i] -= 0.5 * self.inverse * self.inverse * by[i] * p.distance[i];
+            sum.normals[which][i] += by[i] * (along - lean);
+            sum.variance[i] -= by_variance * by[i] * p.distance[i];
             if CURVED {
-                sum.variance[i] += 0.5 * curvature * by[i];
-                sum.curvature[which][i] += 0.5 * by[i] * (p.along[i] * p.along[i] + self.variance);
+                sum.variance[i] += half * curvature * by[i];
+                sum.curvature[which][i] += half * by[i] * (along * along + self.variance);
             }
         }
     }
 }
 
 /// Where points lie with regard to an edge, px: the distance from it, that from its tangent at the corner, and the way along it.
-struct Place {
-    distance: Lanes,
-    straight: Lanes,
-    along: Lanes,
+struct Place<T, const N: usize> {
+    distance: [T; N],
+    straight: [T; N],
+    along: [T; N],
 }
 
-impl Edge {
+impl<T: Real> Edge<T> {
     /// The distance of (`x`, `y`), taken from the corner, px. That from a curve is right to the second order of its curvature.
     #[inline(always)]
-    pub(super) fn distance(&self, x: f64, y: f64) -> f64 {
+    pub(super) fn distance(&self, x: T, y: T) -> T {
         let along = self.nx * y - self.ny * x;
-        self.nx * x + self.ny * y + 0.5 * self.curvature * along * along
+        self.nx * x + self.ny * y + T::of(0.5) * self.curvature * along * along
     }
 
     /// `variance` is the blur's, px^2: it moves a curved edge to its hollow side, by the mean of what it averages.
     #[inline(always)]
-    fn place<const CURVED: bool>(&self, node: &Node, variance: f64, x: &Lanes, y: &Lanes) -> Place {
-        let mut place = Place { distance: [0.0; LANES], straight: [0.0; LANES], along: [0.0; LANES] };
-        for i in 0..LANES {
+    fn place<const N: usize, const CURVED: bool>(&self, node: &Node<T>, variance: T, x: &[T; N], y: &[T; N]) -> Place<T, N> {
+        let zero = [T::of(0.0); N];
+        let mut place = Place { distance: zero, straight: zero, along: zero };
+        for i in 0..N {
             let (x, y) = (x[i] + node.x, y[i] + node.y);
             place.straight[i] = self.nx * x + self.ny * y;
             place.along[i] = self.nx * y - self.ny * x;
-            let sag = if CURVED { 0.5 * self.curvature * (place.along[i] * place.along[i] + variance) } else { 0.0 };
-            place.distance[i] = place.straight[i] + sag;
+            place.distance[i] = place.straight[i];
+            if CURVED {
+                place.distance[i] += T::of(0.5) * self.curvature * (place.along[i] * place.along[i] + variance);
+            }
         }
         place
     }

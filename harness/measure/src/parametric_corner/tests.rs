@@ -1,5 +1,5 @@
 use super::model::{Fidelity, Model, Shape};
-use super::single::WIDE;
+use super::real::WIDE;
 use super::*;
 use crate::exact::{self, Chess};
 use crate::lanes::LANES;
@@ -20,6 +20,8 @@ pub(super) fn chess(tilt: f64, turn: f64, blur: f64, phase: [f64; 2]) -> Chess {
         mean: 0.5,
         half: 0.3,
         gradient: [0.0; 2],
+        light: [0.0; 2],
+        photosite: 1.0,
     }
 }
 
@@ -74,9 +76,12 @@ fn speed() {
     }
 }
 
+/// Not with a gradient of the light: as it multiplies, what is added to all grey values changes the model.
 #[test]
 fn conforms() {
-    for spec in ["window=15", "window=11", "window=21,gradient=1", "window=15,curvature=1,gradient=1", "window=15,search=0"] {
+    for spec in
+        ["window=15", "window=11", "window=21,gradient=1", "window=15,curvature=1,gradient=1", "window=15,search=0", "window=15,gradient=3"]
+    {
         crate::conformance::check_on(&*operator(spec), crate::conformance::chess_corner, 1e-5);
     }
 }
@@ -86,17 +91,23 @@ fn grey_values_are_exact() {
     // Blur, and how far off the mixture of Gaussians may be, in units of half the contrast.
     for (blur, expected) in [(0.3, 3e-5), (0.4, 2e-5), (0.6, 1e-5), (0.72, 3e-5), (1.0, 5e-6), (2.0, 2e-6)] {
         let corner = Chess { mean: 0.0, half: 1.0, ..chess(0.9, 0.3, blur, [0.3, -0.2]) };
-        let model = Model::new(&shape_of(&corner), Fidelity::Full).unwrap();
+        let model = Model::<f64>::new(&shape_of(&corner), Fidelity::Full).unwrap();
         for (i, exact) in corner.render(SIDE).into_iter().enumerate() {
             let (x, y) = ((i % SIDE) as f64 - corner.position[0], (i / SIDE) as f64 - corner.position[1]);
-            let value = model.corner::<false>(&[x; LANES], &[y; LANES]).value[0];
+            let value = model.corner::<LANES, false>(&[x; LANES], &[y; LANES]).value[0];
             assert!((value - exact).abs() < expected, "blur {blur}, ({x}, {y}): {:e}", value - exact);
         }
     }
 }
 
 fn shape_of(corner: &Chess) -> Shape {
-    Shape { position: corner.position, normals: corner.normals, variance: corner.blur * corner.blur, curvature: corner.curvature }
+    Shape {
+        position: corner.position,
+        normals: corner.normals,
+        variance: corner.blur * corner.blur,
+        curvature: corner.curvature,
+        photosite: 1.0,
+    }
 }
 
 #[test]
@@ -104,9 +115,9 @@ fn derivatives_are_those_of_differences() {
     for (blur, fidelity) in [(0.3, Fidelity::Full), (0.5, Fidelity::Full), (1.2, Fidelity::Full), (0.7, Fidelity::Rough)] {
         let corner = Chess { curvature: [0.03, -0.02], ..chess(0.8, 0.7, blur, [0.1, 0.2]) };
         let field = |shape: &Shape, (x, y): (f64, f64), only: Option<usize>| {
-            let model = Model::new(shape, fidelity).unwrap();
+            let model = Model::<f64>::new(shape, fidelity).unwrap();
             let (x, y) = ([x - shape.position[0]; LANES], [y - shape.position[1]; LANES]);
-            only.map_or_else(|| model.corner::<true>(&x, &y), |which| model.edge::<true>(which, &[-1.0; LANES], &x, &y))
+            only.map_or_else(|| model.corner::<LANES, true>(&x, &y), |which| model.edge::<LANES, true>(which, &[-1.0; LANES], &x, &y))
         };
         for (at, only) in
             [((14.2, 15.9), None), ((15.6, 15.1), None), ((16.9, 13.4), None), ((15.5, 14.8), Some(0)), ((14.9, 15.8), Some(1))]
@@ -176,15 +187,29 @@ fn the_corner_of_one_area_is_rejected_before_it_is_fitted() {
 #[test]
 fn single_precision_gives_the_same_grey_values() {
     for (blur, fidelity) in [(0.3, Fidelity::Full), (0.5, Fidelity::Full), (1.2, Fidelity::Full), (0.7, Fidelity::Rough)] {
-        let model = Model::new(&shape_of(&Chess { curvature: [0.03, -0.02], ..chess(0.8, 0.7, blur, [0.1, 0.2]) }), fidelity).unwrap();
+        let shape = shape_of(&Chess { curvature: [0.03, -0.02], ..chess(0.8, 0.7, blur, [0.1, 0.2]) });
+        let (model, double) = (Model::<f32>::new(&shape, fidelity).unwrap(), Model::<f64>::new(&shape, fidelity).unwrap());
         for (x, y) in (-70..70).map(|i| (f64::from(i) * 0.07, f64::from(i * 37 % 61 - 30) * 0.1)) {
             let (there, seen) = (([x; LANES], [y; LANES]), model.seen(&[x as f32; WIDE], &[y as f32; WIDE]));
             let off =
                 |single: f32, double: f64| assert!((f64::from(single) - double).abs() < 2e-6, "{blur}, ({x}, {y}): {single} {double}");
-            off(model.corner_value::<true>(&seen)[3], model.corner::<true>(&there.0, &there.1).value[3]);
-            off(model.corner_value::<false>(&seen)[15], model.corner::<false>(&there.0, &there.1).value[0]);
+            let full = double.corner::<LANES, true>(&there.0, &there.1);
+            off(model.corner_value::<true>(&seen)[3], full.value[3]);
+            off(model.corner_value::<false>(&seen)[15], double.corner::<LANES, false>(&there.0, &there.1).value[0]);
+            let single = model.corner::<WIDE, true>(&[x as f32; WIDE], &[y as f32; WIDE]);
+            off(single.value[3], full.value[3]);
+            // Those by direction and curvature grow with the distance and its square.
+            let far = 1.0 + x * x + y * y;
+            let near = |single: f32, double: f64| assert!((f64::from(single) - double).abs() < 1e-5 * far, "{single} {double}");
+            for i in [0, 1] {
+                near(single.position[i][0], full.position[i][0]);
+                near(single.normals[i][0], full.normals[i][0]);
+                near(single.curvature[i][0], full.curvature[i][0]);
+            }
+            near(single.variance[0], full.variance[0]);
             for which in [0, 1] {
-                off(model.edge_value::<true>(which, &seen)[0], model.edge::<true>(which, &[1.0; LANES], &there.0, &there.1).value[0]);
+                let edge = double.edge::<LANES, true>(which, &[1.0; LANES], &there.0, &there.1);
+                off(model.edge_value::<true>(which, &seen)[0], edge.value[0]);
             }
         }
     }

@@ -1,115 +1,111 @@
 //! The normal equations of a chess corner over one window.
 //!
-//! They are those of a model that takes the pixel's area for one Gaussian. What that leaves out is worked out once in a while and taken from the grey
+//! They are those of a model that takes the photosite's area for one Gaussian. What that leaves out is worked out once in a while and taken from the grey
 //! values: see [`Window::correct`].
 
 use calibench_model::Image;
 use multiversion::multiversion;
 use nalgebra::SVector;
 
+use super::levels::{ADDED, BOTH, EVEN, LIGHT, Levels};
+use super::lists::{AREAS, CORNER, EDGES, List, Lists};
 use super::model::{BASE, Fidelity, Field, Model, Shape};
-use super::single::WIDE;
-use crate::lanes::{LANES, Lanes};
-use crate::marquardt::{Normal, Problem, Sums};
+use super::real::{WIDE, Wide};
+use super::sums::Sums;
+use crate::marquardt::{Normal, Problem};
 
 /// The widest window, px.
 pub(super) const WIDEST: usize = 41;
 /// How often the normal equations of one corner are set up at most. Where the model fits, three to thirteen times were needed; without any blur, more.
 const EVALUATIONS: usize = 60;
+/// What single precision leaves of a residual, in units of half the contrast.
+const PRECISION: f64 = 2e-7;
 
-/// One window of an image, as the least-squares problem of `P` unknowns: the [`BASE`], a grey gradient if `GRADIENT`, a curvature an edge if `CURVED`.
-pub(super) struct Window<'a, const P: usize, const GRADIENT: bool, const CURVED: bool> {
+/// What is the same for every fit of an image: side of the window and of the photosites, px; and grey values that are about the mean of the two and half their
+/// difference.
+#[derive(Clone, Copy)]
+pub(super) struct Setting {
+    pub(super) side: usize,
+    pub(super) photosite: f64,
+    pub(super) mean: f64,
+    pub(super) half: f64,
+}
+
+/// One window of an image, as the least-squares problem of `P` unknowns: the [`BASE`], those of the `GRADIENT`, a curvature an edge if `CURVED`.
+///
+/// Its unit of grey values is the setting's `half`, its zero the setting's `mean`: so single precision is enough.
+pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> {
     image: &'a Image,
+    setting: Setting,
     /// First pixel.
     left: usize,
     top: usize,
-    side: usize,
     /// The window's grey values, corrected.
-    grey: Vec<f64>,
+    grey: Vec<f32>,
     pixels: Lists,
     /// How often the normal equations may still be set up.
     pub(super) patience: usize,
 }
 
-/// Pixels, by what can be seen in them.
-struct Lists {
-    corner: List,
-    edges: [List; 2],
-    areas: List,
-}
-
-/// Coordinates from the window's centre, grey value, sign of the other edge's side (of both, in an area).
-struct List {
-    entries: Vec<[f64; 4]>,
-    count: usize,
-}
-
-impl List {
-    /// With room for every pixel of the window, and for a last chunk that is not full.
-    fn new(side: usize) -> Self {
-        Self { entries: vec![[0.0; 4]; side * side + LANES], count: 0 }
-    }
-
-    #[inline(always)]
-    fn push_if(&mut self, condition: bool, entry: [f64; 4]) {
-        self.entries[self.count] = entry;
-        self.count += usize::from(condition);
-    }
-}
-
-impl<'a, const P: usize, const GRADIENT: bool, const CURVED: bool> Window<'a, P, GRADIENT, CURVED> {
-    pub(super) fn new(image: &'a Image, side: usize) -> Self {
-        let list = || List::new(side);
-        let pixels = Lists { corner: list(), edges: [list(), list()], areas: list() };
-        Self { image, left: 0, top: 0, side, grey: vec![0.0; side * side], pixels, patience: EVALUATIONS }
+impl<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'a, P, GRADIENT, CURVED> {
+    pub(super) fn new(image: &'a Image, setting: Setting) -> Self {
+        let side = setting.side;
+        Self { image, setting, left: 0, top: 0, grey: vec![0.0; side * side], pixels: Lists::new(side), patience: EVALUATIONS }
     }
 
     /// Lays the window around a pixel from which `side / 2` px are in the image.
     pub(super) fn centre_on(&mut self, (x, y): (i64, i64)) {
-        let half = self.side as i64 / 2;
+        let half = self.setting.side as i64 / 2;
         (self.left, self.top) = ((x - half) as usize, (y - half) as usize);
         self.read();
     }
 
     fn read(&mut self) {
-        let (image, left, side) = (self.image, self.left, self.side);
+        let Setting { side, mean, half, .. } = self.setting;
         for (row, grey) in self.grey.chunks_exact_mut(side).enumerate() {
-            let from = &image.row(self.top + row)[left..left + side];
-            grey.iter_mut().zip(from).for_each(|(grey, from)| *grey = f64::from(*from));
+            let from = &self.image.row(self.top + row)[self.left..self.left + side];
+            grey.iter_mut().zip(from).for_each(|(grey, from)| *grey = ((f64::from(*from) - mean) / half) as f32);
         }
     }
 
-    /// Takes from the grey values what the model leaves out of the pixel's area, as it is at `x`. `None` where the model has no meaning.
+    /// Takes from the grey values what the model leaves out of the photosite's area, as it is at `x`. `None` where the model has no meaning.
     ///
     /// It is at most a few hundredths of the contrast and hardly changes with the unknowns: a fit, a correction anew, and so on come to the same
     /// place as a fit of the whole model.
     pub(super) fn correct(&mut self, x: &SVector<f64, P>) -> Option<()> {
-        let shape = shape::<P, GRADIENT, CURVED>(x);
-        let (rough, full) = (Model::new(&shape, Fidelity::Rough)?, Model::new(&shape, Fidelity::Full)?);
+        let shape = self.shape(x);
+        let models = [Model::new(&shape, Fidelity::Rough)?, Model::new(&shape, Fidelity::Full)?];
         self.read();
-        correct::<CURVED>(&rough, &full, (&mut self.grey, self.side), x.as_slice(), &mut self.pixels);
+        let levels = self.levels(x);
+        let centre = shape.position.map(|p| p as f32);
+        correct::<GRADIENT, CURVED>(&models, &levels, centre, (&mut self.grey, self.setting.side), &mut self.pixels);
         Some(())
+    }
+
+    /// The shape among the unknowns.
+    pub(super) fn shape(&self, x: &SVector<f64, P>) -> Shape {
+        let curvature = if CURVED { [x[P - 2], x[P - 1]] } else { [0.0; 2] };
+        let photosite = self.setting.photosite;
+        Shape { position: [x[0], x[1]], normals: [x[2], x[3]], variance: x[4], curvature, photosite }
+    }
+
+    fn levels(&self, x: &SVector<f64, P>) -> Levels {
+        Levels::of::<GRADIENT>(x.as_slice(), -self.setting.mean / self.setting.half)
     }
 }
 
-/// The shape among the unknowns.
-pub(super) fn shape<const P: usize, const GRADIENT: bool, const CURVED: bool>(x: &SVector<f64, P>) -> Shape {
-    let curvature = if CURVED { [x[P - 2], x[P - 1]] } else { [0.0; 2] };
-    Shape { position: [x[0], x[1]], normals: [x[2], x[3]], variance: x[4], curvature }
-}
-
-impl<const P: usize, const GRADIENT: bool, const CURVED: bool> Problem<P> for Window<'_, P, GRADIENT, CURVED> {
+impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Problem<P> for Window<'_, P, GRADIENT, CURVED> {
     fn normal(&mut self, x: &SVector<f64, P>) -> Option<Normal<P>> {
         self.patience = self.patience.checked_sub(1)?;
-        let shape = shape::<P, GRADIENT, CURVED>(x);
-        let limit = self.side as f64;
+        let shape = self.shape(x);
+        let limit = self.setting.side as f64;
         if !(x.iter().all(|value| value.is_finite()) && shape.position.iter().all(|p| p.abs() < limit) && shape.variance < limit * limit) {
             return None;
         }
         let model = Model::new(&shape, Fidelity::Rough)?;
-        let view = View { grey: &self.grey, side: self.side };
-        let mut sums = Sums::<P>::new();
-        add::<P, GRADIENT, CURVED>(&model, view, x.as_slice(), &mut self.pixels, &mut sums);
+        let (levels, mut sums) = (self.levels(x), Sums::<P>::new());
+        let centre = shape.position.map(|p| p as f32);
+        add::<P, GRADIENT, CURVED>(&model, &levels, centre, (&self.grey, self.setting.side), &mut self.pixels, &mut sums);
         Some(sums.normal())
     }
 
@@ -118,123 +114,98 @@ impl<const P: usize, const GRADIENT: bool, const CURVED: bool> Problem<P> for Wi
     }
 
     fn redundancy(&self) -> f64 {
-        (self.side * self.side - P) as f64
+        (self.setting.side * self.setting.side - P) as f64
+    }
+
+    fn same(&self, omega: f64) -> f64 {
+        let pixels = (self.setting.side * self.setting.side) as f64;
+        omega + 4.0 * PRECISION * omega.sqrt() + pixels * PRECISION * PRECISION
     }
 }
 
-/// Grey values of a window.
-#[derive(Clone, Copy)]
-struct View<'a> {
-    grey: &'a [f64],
-    side: usize,
-}
-
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn correct<const CURVED: bool>(rough: &Model, full: &Model, (grey, side): (&mut [f64], usize), unknowns: &[f64], lists: &mut Lists) {
-    let centre = [unknowns[0], unknowns[1]];
-    sort(rough, View { grey, side }, centre, lists);
-    let Lists { corner, edges, .. } = lists;
-    let lists = [(&*corner, None), (&edges[0], Some(0)), (&edges[1], Some(1))];
-    let half = (side / 2) as f64;
-    for (list, only) in lists {
-        for chunk in list.entries[..list.count].chunks(WIDE) {
-            let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
-            for (i, [px, py, ..]) in chunk.iter().enumerate() {
-                (x[i], y[i]) = ((px - centre[0]) as f32, (py - centre[1]) as f32);
-            }
+fn correct<const GRADIENT: u8, const CURVED: bool>(
+    [rough, full]: &[Model<f32>; 2],
+    levels: &Levels,
+    [cx, cy]: [f32; 2],
+    (grey, side): (&mut [f32], usize),
+    lists: &mut Lists,
+) {
+    lists.sort(rough, (grey, side), [cx, cy]);
+    let half = (side / 2) as f32;
+    for (kind, only) in [(CORNER, None), (EDGES[0], Some(0)), (EDGES[1], Some(1))] {
+        for (chunk, count) in lists.list(kind).chunks() {
+            let (x, y) = (chunk.x.map(|x| x - cx), chunk.y.map(|y| y - cy));
             let (there, here) = (full.seen(&x, &y), rough.seen(&x, &y));
             let [there, here] = match only {
                 None => [full.corner_value::<CURVED>(&there), rough.corner_value::<CURVED>(&here)],
                 Some(edge) => [full.edge_value::<CURVED>(edge, &there), rough.edge_value::<CURVED>(edge, &here)],
             };
-            for (i, [x, y, _, sign]) in chunk.iter().enumerate() {
-                let index = (y + half) as usize * side + (x + half) as usize;
-                grey[index] -= unknowns[6] * sign * f64::from(there[i] - here[i]);
+            for i in 0..count {
+                let index = (chunk.y[i] + half) as usize * side + (chunk.x[i] + half) as usize;
+                grey[index] -= levels.at::<GRADIENT>(x[i], y[i]).half * chunk.side[i] * (there[i] - here[i]);
             }
         }
     }
 }
 
-// In this order: with the wider lanes of double precision it takes three times as long.
+// In this order: where scatters exist the compiler makes use of them for the sums, which takes twice as long.
 #[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-fn add<const P: usize, const GRADIENT: bool, const CURVED: bool>(
-    model: &Model,
-    view: View<'_>,
-    unknowns: &[f64],
+fn add<const P: usize, const GRADIENT: u8, const CURVED: bool>(
+    model: &Model<f32>,
+    levels: &Levels,
+    centre: [f32; 2],
+    window: (&[f32], usize),
     lists: &mut Lists,
     sums: &mut Sums<P>,
 ) {
-    sort(model, view, [unknowns[0], unknowns[1]], lists);
-    let chunks = Chunks::<P, GRADIENT> { unknowns };
-    chunks.add(&lists.corner, sums, |x, y, _| model.corner::<CURVED>(x, y));
-    chunks.add(&lists.edges[0], sums, |x, y, side| model.edge::<CURVED>(0, side, x, y));
-    chunks.add(&lists.edges[1], sums, |x, y, side| model.edge::<CURVED>(1, side, x, y));
-    if GRADIENT {
-        chunks.add(&lists.areas, sums, |_, _, side| Field { value: *side, ..Field::default() });
+    lists.sort(model, window, centre);
+    let rows = Rows::<P, GRADIENT> { levels, centre };
+    rows.add(lists.list(CORNER), sums, |x, y, _| model.corner::<WIDE, CURVED>(x, y));
+    rows.add(lists.list(EDGES[0]), sums, |x, y, side| model.edge::<WIDE, CURVED>(0, side, x, y));
+    rows.add(lists.list(EDGES[1]), sums, |x, y, side| model.edge::<WIDE, CURVED>(1, side, x, y));
+    if GRADIENT == EVEN {
+        rows.add_areas(lists.list(AREAS), sums);
     } else {
-        chunks.add_areas(&lists.areas, sums);
+        rows.add(lists.list(AREAS), sums, |_, _, side| Field::constant(*side));
     }
 }
 
-#[inline(always)]
-fn sort(model: &Model, view: View<'_>, [cx, cy]: [f64; 2], lists: &mut Lists) {
-    let Lists { corner, edges: [first, second], areas } = lists;
-    (corner.count, first.count, second.count, areas.count) = (0, 0, 0, 0);
-    let half = (view.side / 2) as f64;
-    for row in 0..view.side {
-        let grey = &view.grey[row * view.side..(row + 1) * view.side];
-        let y = row as f64 - half;
-        for (column, grey) in grey.iter().enumerate() {
-            let x = column as f64 - half;
-            let [u, v] = [model.edges[0].distance(x - cx, y - cy), model.edges[1].distance(x - cx, y - cy)];
-            let (by_first, by_second) = (u.abs() < model.reach, v.abs() < model.reach);
-            let entry = |side: f64| [x, y, *grey, 1_f64.copysign(side)];
-            corner.push_if(by_first && by_second, entry(1.0));
-            first.push_if(by_first && !by_second, entry(v));
-            second.push_if(!by_first && by_second, entry(u));
-            areas.push_if(!by_first && !by_second, entry(1_f64.copysign(u) * v));
-        }
-    }
+/// The observation equations of pixels.
+struct Rows<'a, const P: usize, const GRADIENT: u8> {
+    levels: &'a Levels,
+    centre: [f32; 2],
 }
 
-/// The grey values of all unknowns, chunk by chunk.
-struct Chunks<'a, const P: usize, const GRADIENT: bool> {
-    unknowns: &'a [f64],
-}
-
-impl<const P: usize, const GRADIENT: bool> Chunks<'_, P, GRADIENT> {
+impl<const P: usize, const GRADIENT: u8> Rows<'_, P, GRADIENT> {
     /// Pixels that tell of the two grey values only.
     #[inline(always)]
     fn add_areas(&self, list: &List, sums: &mut Sums<P>) {
-        let [mean, half] = [5, 6].map(|i| self.unknowns[i]);
-        for first in (0..list.count).step_by(LANES) {
-            let (mut one, mut side, mut r) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            for i in 0..LANES {
-                let [_, _, grey, sign] = list.entries[first + i];
-                one[i] = if first + i < list.count { 1.0 } else { 0.0 };
-                side[i] = one[i] * sign;
-                r[i] = one[i] * (grey - (mean + half * sign));
+        for (chunk, count) in list.chunks() {
+            let (mut one, mut side, mut r) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
+            for i in 0..WIDE {
+                one[i] = if i < count { 1.0 } else { 0.0 };
+                side[i] = one[i] * chunk.side[i];
+                r[i] = one[i] * (chunk.grey[i] - (self.levels.mean + self.levels.half * chunk.side[i]));
             }
             sums.add_pair([5, 6], &one, &side, &r);
         }
     }
 
     #[inline(always)]
-    fn add(&self, list: &List, sums: &mut Sums<P>, field: impl Fn(&Lanes, &Lanes, &Lanes) -> Field) {
-        let [cx, cy, mean, half] = [0, 1, 5, 6].map(|i| self.unknowns[i]);
-        let mut first = 0;
-        while first < list.count {
-            let (mut x, mut y, mut grey, mut side, mut weight) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            for i in 0..LANES {
-                let [px, py, value, sign] = list.entries[first + i];
-                (x[i], y[i], grey[i], side[i]) = (px - cx, py - cy, value, sign);
-                // Beyond the list's end lies what an earlier, longer list has left.
-                weight[i] = if first + i < list.count { 1.0 } else { 0.0 };
+    fn add(&self, list: &List, sums: &mut Sums<P>, field: impl Fn(&Wide, &Wide, &Wide) -> Field<f32, WIDE>) {
+        let levels = self.levels;
+        for (chunk, count) in list.chunks() {
+            let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
+            for i in 0..WIDE {
+                (x[i], y[i]) = (chunk.x[i] - self.centre[0], chunk.y[i] - self.centre[1]);
             }
-            let field = field(&x, &y, &side);
-            let (mut j, mut r) = ([[0.0; LANES]; P], [0.0; LANES]);
-            for i in 0..LANES {
-                let scale = weight[i] * half;
+            let field = field(&x, &y, &chunk.side);
+            let (mut j, mut r) = ([[0.0; WIDE]; P], [0.0; WIDE]);
+            for i in 0..WIDE {
+                let weight = if i < count { 1.0 } else { 0.0 };
+                let (value, level) = (field.value[i], levels.at::<GRADIENT>(x[i], y[i]));
+                let scale = weight * level.half;
                 for axis in 0..2 {
                     j[axis][i] = scale * field.position[axis][i];
                     j[2 + axis][i] = scale * field.normals[axis][i];
@@ -242,21 +213,21 @@ impl<const P: usize, const GRADIENT: bool> Chunks<'_, P, GRADIENT> {
                     j[P - 2 + axis][i] = scale * field.curvature[axis][i];
                 }
                 j[4][i] = scale * field.variance[i];
-                j[5][i] = weight[i];
-                j[6][i] = weight[i] * field.value[i];
-                let mut model = mean + half * field.value[i];
-                if GRADIENT {
-                    let slope = [self.unknowns[BASE], self.unknowns[BASE + 1]];
-                    j[BASE][i] = weight[i] * x[i];
-                    j[BASE + 1][i] = weight[i] * y[i];
-                    j[0][i] -= weight[i] * slope[0];
-                    j[1][i] -= weight[i] * slope[1];
-                    model += slope[0] * x[i] + slope[1] * y[i];
+                j[5][i] = weight * level.gain;
+                j[6][i] = weight * level.gain * value;
+                for (axis, d) in [x[i], y[i]].into_iter().enumerate() {
+                    if matches!(GRADIENT, ADDED | LIGHT | BOTH) {
+                        let [first, second] = levels.by_slopes::<GRADIENT>(d, value);
+                        j[axis][i] += weight * levels.by_position::<GRADIENT>(axis, value);
+                        j[BASE + axis][i] = weight * first;
+                        if GRADIENT == BOTH {
+                            j[BASE + 2 + axis][i] = weight * second;
+                        }
+                    }
                 }
-                r[i] = weight[i] * (grey[i] - model);
+                r[i] = weight * (chunk.grey[i] - (level.mean + level.half * value));
             }
             sums.add(&j, &r);
-            first += LANES;
         }
     }
 }

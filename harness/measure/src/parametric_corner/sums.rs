@@ -1,0 +1,70 @@
+//! The normal equations of chunks of pixels in single precision.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::real::{WIDE, Wide};
+use crate::marquardt::Normal;
+
+/// The upper triangle, the right-hand side and the squares of the residuals, in lanes.
+pub(super) struct Sums<const P: usize> {
+    n: [[Wide; P]; P],
+    b: [Wide; P],
+    omega: Wide,
+}
+
+impl<const P: usize> Sums<P> {
+    pub(super) fn new() -> Self {
+        Self { n: [[[0.0; WIDE]; P]; P], b: [[0.0; WIDE]; P], omega: [0.0; WIDE] }
+    }
+
+    /// Adds the rows of one chunk: `j` the derivatives, `r` the residuals.
+    #[inline(always)]
+    pub(super) fn add(&mut self, j: &[Wide; P], r: &Wide) {
+        for row in 0..P {
+            for column in row..P {
+                add_products(&mut self.n[row][column], &j[row], &j[column]);
+            }
+            add_products(&mut self.b[row], &j[row], r);
+        }
+        add_products(&mut self.omega, r, r);
+    }
+
+    /// As [`Self::add`], for rows whose derivatives are all zero but those by the unknowns `i` < `j`.
+    #[inline(always)]
+    pub(super) fn add_pair(&mut self, [i, j]: [usize; 2], by_i: &Wide, by_j: &Wide, r: &Wide) {
+        add_products(&mut self.n[i][i], by_i, by_i);
+        add_products(&mut self.n[i][j], by_i, by_j);
+        add_products(&mut self.n[j][j], by_j, by_j);
+        add_products(&mut self.b[i], by_i, r);
+        add_products(&mut self.b[j], by_j, r);
+        add_products(&mut self.omega, r, r);
+    }
+
+    pub(super) fn normal(&self) -> Normal<P> {
+        Normal {
+            n: SMatrix::from_fn(|i, j| sum(&self.n[i.min(j)][i.max(j)])),
+            b: SVector::from_fn(|i, _| sum(&self.b[i])),
+            omega: sum(&self.omega),
+        }
+    }
+}
+
+/// In pairs, so that additions do not wait for each other.
+fn sum(lanes: &Wide) -> f64 {
+    let mut sums = lanes.map(f64::from);
+    let mut width = WIDE;
+    while width > 1 {
+        width /= 2;
+        for i in 0..width {
+            sums[i] += sums[i + width];
+        }
+    }
+    sums[0]
+}
+
+#[inline(always)]
+fn add_products(sum: &mut Wide, a: &Wide, b: &Wide) {
+    for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
+        *sum += a * b;
+    }
+}
