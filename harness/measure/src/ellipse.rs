@@ -1,7 +1,6 @@
 //! The ellipse that a disc is pictured as, and where to look for it.
 
 use calibench_model::{Affine, Image, PixelPoint, Rejection, Start};
-use nalgebra::Vector2;
 
 /// The points `position + A (cos t, sin t)` with A symmetric and positive definite: no orientation, and so none that a circle leaves undetermined.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,13 +32,6 @@ impl Ellipse {
         let [a, b, c] = self.shape;
         let (mean, half) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
         [mean + half, mean - half]
-    }
-
-    /// The offset of the point `t` from the centre and its derivative by t, px.
-    pub(crate) fn point(&self, t: f64) -> (Vector2<f64>, Vector2<f64>) {
-        let [a, b, c] = self.shape;
-        let (sin, cos) = t.sin_cos();
-        (Vector2::new(a * cos + b * sin, b * cos + c * sin), Vector2::new(b * cos - a * sin, c * cos - b * sin))
     }
 
     /// Half the height and the width, px, whichever is more.
