@@ -49,6 +49,12 @@ struct Profile {
 }
 
 impl Planes {
+    /// Eight values of one plane from an index on.
+    #[inline(always)]
+    pub(crate) fn lanes(&self, plane: usize, at: usize) -> Lanes {
+        eight(&self.values[plane], at)
+    }
+
     pub(crate) fn new(side: usize) -> Self {
         let stride = side + LANES;
         Self { side, stride, values: Default::default(), columns: Profile::new(stride), rows: Profile::new(stride) }
@@ -66,7 +72,7 @@ impl Planes {
     }
 }
 
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn fill(to: &mut Planes, ellipse: &Ellipse, variance: f64) {
     let blur = variance.sqrt();
     let nodes = ((std::f64::consts::TAU * ellipse.semi_axes()[0] / (STEP * blur)).ceil() as usize).max(FEWEST);
@@ -117,6 +123,14 @@ fn add(to: &mut Planes, ellipse: &Ellipse, blur: f64, [sin, cos]: [f64; 2], dt: 
     }
     let from = (to.rows.first + to.rows.seen) * to.stride + first;
     add_line(&mut covered[from..][..seen], value, (1.0 - above) * dx);
+}
+
+/// Eight values from an index on.
+#[inline(always)]
+pub(crate) fn eight(values: &[f64], at: usize) -> Lanes {
+    let mut lanes = [0.0; LANES];
+    lanes.copy_from_slice(&values[at..at + LANES]);
+    lanes
 }
 
 #[inline(always)]

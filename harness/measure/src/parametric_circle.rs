@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use crate::contour::{self, Planes};
 use crate::ellipse::{Ellipse, Guess, seek};
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::LANES;
 use crate::marquardt::{Normal, Problem, Sums, covariance, minimise};
 use crate::operator::Operator;
 use crate::parameter::{Domain, Parameter};
@@ -140,13 +140,12 @@ fn products(grey: &[f64], planes: &Planes, ground: f64, contrast: f64) -> Sums<U
     let mut sums = Sums::new();
     for (row, grey) in grey.chunks_exact(planes.side).enumerate() {
         for (chunk, grey) in grey.chunks(LANES).enumerate() {
-            let lanes = |plane: usize| -> Lanes {
-                std::array::from_fn(|i| planes.values[plane][row * planes.stride + chunk * LANES..][..LANES][i])
-            };
-            let covered = lanes(contour::COVERED);
+            let at = row * planes.stride + chunk * LANES;
+            let covered = planes.lanes(contour::COVERED, at);
             let (mut j, mut r) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
             for (j, plane) in j.iter_mut().zip([x, y, a, b, c, contour::VARIANCE]) {
-                *j = lanes(plane).map(|by| contrast * by);
+                *j = planes.lanes(plane, at);
+                j.iter_mut().for_each(|by| *by *= contrast);
             }
             (j[6], j[7]) = ([1.0; LANES], covered);
             for (i, grey) in grey.iter().enumerate() {

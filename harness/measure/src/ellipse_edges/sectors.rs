@@ -5,9 +5,9 @@ use multiversion::multiversion;
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::conic::UNKNOWNS;
-use crate::contour::{self, Planes};
+use crate::contour::{self, Planes, eight};
 use crate::ellipse::Ellipse;
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::LANES;
 
 /// Pixels nearer to the outline than this are taken, px.
 const BAND: f64 = 4.0;
@@ -132,7 +132,7 @@ pub(super) struct Common {
     pub(super) omega: f64,
 }
 
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn part(window: &mut Window, ellipse: &Ellipse) {
     let Window { side, taken, sector, sums, planes, .. } = window;
     let [a, b, c] = ellipse.shape;
@@ -170,19 +170,18 @@ fn octants(x: f64, y: f64) -> f64 {
     if y < 0.0 { 8.0 - half } else { half }
 }
 
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn add_up(window: &mut Window, disc: &Disc) -> Common {
     let Window { side, grey, taken, sector, sums, planes, .. } = window;
     let mut all = [[0.0; LANES]; 10];
     for row in 0..*side {
         for from in (0..*side).step_by(LANES) {
             let at = row * planes.stride + from;
-            let lanes = |values: &[f64]| -> Lanes { std::array::from_fn(|i| values[at..][..LANES][i]) };
-            let plane = |which: usize| lanes(&planes.values[which]);
-            let (covered, taken) = (plane(contour::COVERED), lanes(taken));
-            let [by_x, by_y] = contour::CENTRE.map(plane);
-            let (by_variance, grey) = (plane(contour::VARIANCE), lanes(grey));
-            let by_shape = contour::SHAPE.map(plane);
+            let (covered, by_variance) = (planes.lanes(contour::COVERED, at), planes.lanes(contour::VARIANCE, at));
+            let (by_x, by_y) = (planes.lanes(contour::CENTRE[0], at), planes.lanes(contour::CENTRE[1], at));
+            let (taken, grey) = (eight(taken, at), eight(grey, at));
+            let [a, b, c] = contour::SHAPE;
+            let by_shape = [planes.lanes(a, at), planes.lanes(b, at), planes.lanes(c, at)];
             let mut terms = [[0.0; LANES]; RESIDUAL + 1];
             let mut steep = 0.0;
             for i in 0..LANES {
