@@ -16,7 +16,7 @@ use sectors::Window;
 
 /// Blur at the start, px^2.
 const VARIANCE: f64 = 0.5;
-/// The iteration ends with a step of so many standard deviations: the first time, with the outline parted around the start, and the last.
+/// The search ends with a step of the position of so many standard deviations: the first one, with the outline parted around the start, and the last.
 const ROUGHLY: f64 = 1.0;
 const NEARLY: f64 = 1e-2;
 
@@ -25,13 +25,14 @@ const NEARLY: f64 = 1e-2;
 /// The picture of the last ellipse, blurred by a Gaussian and averaged over the pixel's area (fill factor 1), is compared with the grey values themselves: nothing is
 /// interpolated, and the outline's curvature is in the picture. What is left in the pixels of a sector, up to 4 px from the outline, is explained by a shift of the edge across
 /// itself; the blur and both grey values are estimated from all pixels together with the shifts. A point's weight is the inverse of its variance.
-/// The ellipse is the one of least weighted orthogonal distances, and all is repeated until it stands. The start is the
+/// The ellipse is the one that comes nearest to the points across the edge, in the weighted least-squares sense: on sharp edges these are orthogonal distances, on soft ones
+/// the outline moves as it is seen through the blur. All is repeated until it stands. The start is the
 /// area nearest to the given position that stands out from its ground. The result is the centre of the *ellipse*, as with `parametric_circle`.
 ///
 /// The covariance (px^2) is that of the edge points, with what they have in common through blur and grey values, propagated to the ellipse; the variance of
 /// the grey values is that of the residuals.
 ///
-/// Source: our own; distances of first order as in Sampson 1982, exact on the ellipse itself.
+/// Source: our own.
 pub struct EllipseEdges;
 
 /// The method's entry.
@@ -48,7 +49,7 @@ pub fn method() -> Method {
 
 impl Operator for EllipseEdges {
     /// # Errors
-    /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when nothing stands out near the start or its edge is no ellipse,
+    /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when nothing stands out near the start,
     /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let Guess { ellipse, inside, outside } = seek(image, start)?;

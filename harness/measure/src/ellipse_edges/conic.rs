@@ -8,9 +8,9 @@ use crate::marquardt::Normal;
 /// Centre, three of the shape, variance of the blur, grey value outside, contrast.
 pub(super) const UNKNOWNS: usize = 8;
 
-/// The normal equations of the ellipse of least weighted squared orthogonal distances from edge points, together with what the points have in common.
+/// The normal equations of the ellipse of least weighted squared distances from edge points across the edge, together with what the points have in common.
 ///
-/// The points are given by their offsets along the normals of an ellipse near the one sought: near it these are the orthogonal distances.
+/// The points are given by their offsets along the normals of an ellipse near the one sought.
 pub(super) fn normal(points: &[EdgePoint], common: &Common) -> Normal<UNKNOWNS> {
     let (mut n, mut b) = (SMatrix::<f64, UNKNOWNS, UNKNOWNS>::zeros(), SVector::<f64, UNKNOWNS>::zeros());
     n.fixed_view_mut::<3, 3>(5, 5).copy_from(&common.n);
