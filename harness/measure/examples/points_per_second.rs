@@ -1,6 +1,6 @@
 //! Points per second of every operator, one thread: `cargo run --release -p calibench-measure --example points_per_second [name]`.
 //!
-//! Corners for those that look for corners, squares of 8 px for those that look for targets; noise of 1 %, starts about a pixel off. The best of several rounds.
+//! Corners for those that look for corners, squares of 8 px for those that look for targets, ellipses of 14 x 11 px for those that fit one; noise of 1 %, starts about a pixel off. The best of several rounds.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -29,7 +29,7 @@ fn erf(x: f64) -> f64 {
     (1.0 - series * (-x * x).exp()).copysign(x)
 }
 
-fn scene(profile: impl Fn(f64) -> f64) -> Image {
+fn scene(covered: impl Fn(f64, f64) -> f64) -> Image {
     let mut seed = 1_u64;
     Image::from_fn(CELL * COLUMNS, CELL * ROWS, |x, y| {
         let (turn, cx, cy) = cell(y / CELL * COLUMNS + x / CELL);
@@ -43,7 +43,7 @@ fn scene(profile: impl Fn(f64) -> f64) -> Image {
             .sum::<f64>()
             * 0.01
             * 1.414;
-        (0.8 - 0.6 * profile(dx * cos + dy * sin) * profile(dy * cos - dx * sin) + noise) as f32
+        (0.8 - 0.6 * covered(dx * cos + dy * sin, dy * cos - dx * sin) + noise) as f32
     })
 }
 
@@ -83,8 +83,10 @@ fn main() {
     whole_images();
     let wanted: Vec<String> = std::env::args().skip(1).collect();
     let edge = |t: f64| 0.5 + 0.5 * erf(t / BLUR / 2_f64.sqrt());
-    let corners = scene(edge);
-    let squares = scene(|t| edge(t + 4.0) - edge(t - 4.0));
+    let corners = scene(|u, v| edge(u) * edge(v));
+    let side = |t: f64| edge(t + 4.0) - edge(t - 4.0);
+    let squares = scene(|u, v| side(u) * side(v));
+    let discs = scene(|u, v| edge(7.0 - u.hypot(1.3 * v)));
     let truth: Vec<PixelPoint> = (0..COLUMNS * ROWS)
         .map(|i| {
             let (_, cx, cy) = cell(i);
@@ -107,8 +109,11 @@ fn main() {
     for text in if wanted.is_empty() { listed } else { wanted } {
         let configured = registry.parse(&text).unwrap_or_else(|error| panic!("{error}"));
         let Ok(operator) = configured.operator else { continue };
-        let targets = text.starts_with("lsm") || text.starts_with("centroid");
-        let image = if targets { &squares } else { &corners };
+        let image = match text.as_str() {
+            of_discs if of_discs.contains("circle") || of_discs.contains("ellipse") => &discs,
+            of_targets if of_targets.starts_with("lsm") || of_targets.starts_with("centroid") => &squares,
+            _ => &corners,
+        };
         let found = operator.measure_all(image, &starts);
         let mut errors: Vec<f64> = found.iter().zip(&truth).filter_map(|(f, t)| Some(f.as_ref().ok()?.position.distance(*t))).collect();
         errors.sort_by(f64::total_cmp);

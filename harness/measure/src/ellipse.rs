@@ -1,7 +1,6 @@
 //! The ellipse that a disc is pictured as, and where to look for it.
 
 use calibench_model::{Affine, Image, PixelPoint, Rejection, Start};
-use nalgebra::Vector2;
 
 /// The points `position + A (cos t, sin t)` with A symmetric and positive definite: no orientation, and so none that a circle leaves undetermined.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,13 +32,6 @@ impl Ellipse {
         let [a, b, c] = self.shape;
         let (mean, half) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
         [mean + half, mean - half]
-    }
-
-    /// The offset of the point `t` from the centre and its derivative by t, px.
-    pub(crate) fn point(&self, t: f64) -> (Vector2<f64>, Vector2<f64>) {
-        let [a, b, c] = self.shape;
-        let (sin, cos) = t.sin_cos();
-        (Vector2::new(a * cos + b * sin, b * cos + c * sin), Vector2::new(b * cos - a * sin, c * cos - b * sin))
     }
 
     /// Half the height and the width, px, whichever is more.
@@ -99,35 +91,72 @@ impl Patch {
         let side = (2 * half - 1) as usize;
         let first = [centre.0 - half + 1, centre.1 - half + 1];
         let rows: Vec<&[f32]> = image.rows_around(centre.0, centre.1, half).map(Iterator::collect).unwrap_or_default();
-        let row = |y: usize, x: usize| f64::from(rows[y][x]) + 2.0 * f64::from(rows[y][x + 1]) + f64::from(rows[y][x + 2]);
-        let grey = (0..side * side).map(|i| (i % side, i / side)).map(|(x, y)| (row(y, x) + 2.0 * row(y + 1, x) + row(y + 2, x)) / 16.0);
-        Self { first, side, grey: grey.collect() }
+        let along =
+            |row: &&[f32]| -> Vec<f64> { row.windows(3).map(|g| f64::from(g[0]) + 2.0 * f64::from(g[1]) + f64::from(g[2])).collect() };
+        let lines: Vec<Vec<f64>> = rows.iter().map(along).collect();
+        let mut grey = Vec::with_capacity(side * side);
+        for lines in lines.windows(3) {
+            grey.extend((0..side).map(|x| (lines[0][x] + 2.0 * lines[1][x] + lines[2][x]) / 16.0));
+        }
+        Self { first, side, grey }
     }
 
     fn disc(&self, start: PixelPoint) -> Option<Guess> {
         let threshold = otsu(&self.grey)?;
-        let edge = |i: usize| [i % self.side, i / self.side].iter().any(|c| *c == 0 || c + 1 == self.side);
-        let border = (0..self.grey.len()).filter(|i| edge(*i));
-        let (light, all) = border.fold((0, 0), |(light, all), i| (light + usize::from(self.grey[i] > threshold), all + 1));
-        let is_target = |i: usize| (self.grey[i] > threshold) != (2 * light > all);
-        let position = |i: usize| [(i % self.side) as f64 + self.first[0] as f64, (i / self.side) as f64 + self.first[1] as f64];
-        let distance = |i: usize| (position(i)[0] - start.x).hypot(position(i)[1] - start.y);
-        let nearest = (0..self.grey.len()).filter(|i| is_target(*i)).min_by(|a, b| distance(*a).total_cmp(&distance(*b)))?;
-        let pixels = self.connected(nearest, is_target);
-        if pixels.len() < FEWEST || pixels.iter().any(|i| edge(*i)) {
+        let (light, border) = self.light_border(threshold);
+        let dark_ground = 2 * light <= border;
+        let is_target = |i: usize| (self.grey[i] > threshold) == dark_ground;
+        let pixels = self.connected(self.nearest(start, is_target)?, is_target);
+        let last = self.side - 1;
+        let mut sums = [0.0; 5];
+        for i in &pixels {
+            let (x, y) = (i % self.side, i / self.side);
+            if x == 0 || y == 0 || x == last || y == last {
+                return None;
+            }
+            // From the window's middle: whole numbers, without rounding.
+            let (x, y) = (x as f64 - (last / 2) as f64, y as f64 - (last / 2) as f64);
+            sums = [sums[0] + x, sums[1] + y, sums[2] + x * x, sums[3] + x * y, sums[4] + y * y];
+        }
+        if pixels.len() < FEWEST {
             return None;
         }
-        let count = pixels.len() as f64;
-        let mean = |f: &dyn Fn([f64; 2]) -> f64| pixels.iter().map(|i| f(position(*i))).sum::<f64>() / count;
-        let centre = [mean(&|p| p[0]), mean(&|p| p[1])];
-        let moment = |a: usize, b: usize| mean(&|p| (p[a] - centre[a]) * (p[b] - centre[b])) + if a == b { 1.0 / 12.0 } else { 0.0 };
-        let ellipse = Ellipse::from_moments(centre, [moment(0, 0), moment(0, 1), moment(1, 1)]);
-        let level = |target: bool| {
-            let (sum, n) =
-                (0..self.grey.len()).filter(|i| is_target(*i) == target).fold((0.0, 0.0), |(s, n), i| (s + self.grey[i], n + 1.0));
-            sum / n
-        };
-        Some(Guess { ellipse, inside: level(true), outside: level(false) })
+        let [x, y, xx, xy, yy] = sums.map(|sum| sum / pixels.len() as f64);
+        let moments = [xx - x * x + 1.0 / 12.0, xy - x * y, yy - y * y + 1.0 / 12.0];
+        let centre = [0, 1].map(|axis| [x, y][axis] + (self.first[axis] + (last / 2) as i64) as f64);
+        let (mut above, mut below) = ((0.0, 0.0), (0.0, 0.0));
+        for grey in &self.grey {
+            let class = if *grey > threshold { &mut above } else { &mut below };
+            *class = (class.0 + grey, class.1 + 1.0);
+        }
+        let [above, below] = [above, below].map(|(sum, count)| sum / count);
+        let (inside, outside) = if dark_ground { (above, below) } else { (below, above) };
+        Some(Guess { ellipse: Ellipse::from_moments(centre, moments), inside, outside })
+    }
+
+    /// How many pixels of the border are above the threshold, and of how many.
+    fn light_border(&self, threshold: f64) -> (usize, usize) {
+        let (side, last) = (self.side, self.side - 1);
+        let ends = self.grey[side..last * side].chunks_exact(side).flat_map(|row| [row[0], row[last]]);
+        let border = self.grey[..side].iter().chain(&self.grey[last * side..]).copied().chain(ends);
+        (border.filter(|grey| *grey > threshold).count(), 4 * last)
+    }
+
+    /// The pixel of the target that is nearest to the start, the first of several.
+    fn nearest(&self, start: PixelPoint, is_target: impl Fn(usize) -> bool) -> Option<usize> {
+        let (x, y) = (start.x - self.first[0] as f64, start.y - self.first[1] as f64);
+        let (mut best, mut nearest) = (f64::INFINITY, None);
+        for row in 0..self.side {
+            let dy = row as f64 - y;
+            for column in 0..self.side {
+                let dx = column as f64 - x;
+                let square = dx * dx + dy * dy;
+                if square < best && is_target(row * self.side + column) {
+                    (best, nearest) = (square, Some(row * self.side + column));
+                }
+            }
+        }
+        nearest
     }
 
     /// The pixels connected with `seed` by their four neighbours.

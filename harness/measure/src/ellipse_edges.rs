@@ -1,38 +1,47 @@
 //! `ellipse_edges`: an ellipse through points of a disc's edge.
 
-pub mod conic;
-mod profile;
+mod conic;
+mod search;
+mod sectors;
 
-use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use nalgebra::SVector;
 
-use crate::ellipse::{Ellipse, Guess, seek};
+use crate::ellipse::{Guess, seek};
+use crate::marquardt::covariance;
 use crate::operator::Operator;
 use crate::registry::{Build, Method};
-use profile::{common, profiles};
+use search::search;
+use sectors::Window;
 
-/// So often the profiles are laid anew around the ellipse; the last time its centre must not move by more than this, px.
-const LAYINGS: usize = 4;
-const STILL: f64 = 0.1;
-const VAGUE: f64 = 1.0;
+/// Blur at the start, px^2.
+const VARIANCE: f64 = 0.5;
+/// The search ends with a step of the position of so many standard deviations: the first one, with the outline parted around the start, and the last.
+const ROUGHLY: f64 = 1.0;
+const NEARLY: f64 = 1e-2;
 
-/// Ellipse through edge points: profiles across the outline, four a pixel, the edge in each to a fraction of a pixel, the ellipse through these points.
+/// Ellipse through edge points: the outline is parted into sectors of about a px, each sector's pixels say where the edge is there, the ellipse goes through these points.
 ///
-/// Grey values are interpolated bilinearly from 4 px inside (less in small discs) to 4 px outside. An edge blurred by a Gaussian is fitted to the mean of all profiles, and
-/// then shifted along each. The first ellipse is the direct one of least algebraic distance, the last that of least orthogonal distances. The start is the
+/// The picture of the last ellipse, blurred by a Gaussian and averaged over the pixel's area (fill factor 1), is compared with the grey values themselves: nothing is
+/// interpolated, and the outline's curvature is in the picture. What is left in the pixels of a sector, up to 4 px from the outline, is explained by a shift of the edge across
+/// itself; the blur and both grey values are estimated from all pixels together with the shifts. A point's weight is the inverse of its variance.
+/// The ellipse is the one that comes nearest to the points across the edge, in the weighted least-squares sense: on sharp edges these are orthogonal distances, on soft ones
+/// the outline moves as it is seen through the blur. All is repeated until it stands. The start is the
 /// area nearest to the given position that stands out from its ground. The result is the centre of the *ellipse*, as with `parametric_circle`.
-/// The covariance (px^2) is that of the distances, of which one a pixel is taken as independent:
-/// on sharp edges (blur 0.3 px) with little noise (0.5 % of the contrast) the interpolation leaves an error of some thousandths of a pixel that it does not show.
 ///
-/// Source: Fitzgibbon, Pilu & Fisher 1999 (direct fit); the profiles are our own.
+/// The covariance (px^2) is that of the edge points, with what they have in common through blur and grey values, propagated to the ellipse; the variance of
+/// the grey values is that of the residuals.
+///
+/// Source: our own.
 pub struct EllipseEdges;
 
 /// The method's entry.
 pub fn method() -> Method {
     Method {
         name: "ellipse_edges",
-        about: "ellipse through the points where profiles across a disc's outline meet its edge",
-        source: "calibench; Fitzgibbon, Pilu & Fisher 1999",
-        version: "1".into(),
+        about: "ellipse through the points where the edge of a disc is in each sector of its outline",
+        source: "calibench",
+        version: "2".into(),
         parameters: &[],
         build: Build::With(|_| Box::new(EllipseEdges)),
     }
@@ -40,22 +49,22 @@ pub fn method() -> Method {
 
 impl Operator for EllipseEdges {
     /// # Errors
-    /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when nothing stands out near the start or its edge is no ellipse,
-    /// [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
+    /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when nothing stands out near the start,
+    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
-        let Guess { mut ellipse, .. } = seek(image, start)?;
-        for laying in 0.. {
-            let profiles = profiles(image, &ellipse).ok_or(Rejection::Border)?;
-            let edge = common(&profiles).ok_or(Rejection::NoCorner)?;
-            let points: Vec<_> = profiles.iter().filter_map(|profile| profile.crossing(&edge)).collect();
-            let rough = if laying == 0 { conic::direct(&points).ok_or(Rejection::NoCorner)? } else { ellipse };
-            let fit = conic::orthogonal(&points, rough).ok_or(Rejection::NotConverged)?;
-            if laying + 1 == LAYINGS {
-                return if distance(&fit.ellipse, &ellipse) <= STILL { measurement(&fit) } else { Err(Rejection::NotConverged) };
-            }
-            ellipse = fit.ellipse;
+        let Guess { ellipse, inside, outside } = seek(image, start)?;
+        let mut window = Window::new(image, &ellipse)?;
+        let ([left, top], last) = (window.first, window.side as f64 - 1.0);
+        let ([x, y], [a, b, c]) = (ellipse.position, ellipse.shape);
+        let start = SVector::from([x - left, y - top, a, b, c, VARIANCE, outside, inside - outside]);
+        let rough = search(&mut window, start, ROUGHLY).ok_or(Rejection::NotConverged)?;
+        let found = search(&mut window, rough.x, NEARLY).ok_or(Rejection::NotConverged)?;
+        let (x, y) = (found.x[0], found.x[1]);
+        if !(0.0..=last).contains(&x) || !(0.0..=last).contains(&y) {
+            return Err(Rejection::LeftWindow);
         }
-        Err(Rejection::NotConverged)
+        let covariance = covariance(&found.normal, window.redundancy()).ok_or(Rejection::ErrorEllipse)?;
+        Ok(Measurement { position: PixelPoint::new(x + left, y + top), covariance: Some(covariance) })
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
@@ -63,39 +72,5 @@ impl Operator for EllipseEdges {
     }
 }
 
-fn distance(a: &Ellipse, b: &Ellipse) -> f64 {
-    (a.position[0] - b.position[0]).hypot(a.position[1] - b.position[1])
-}
-
-fn measurement(fit: &conic::Fit) -> Result<Measurement, Rejection> {
-    // Of the profiles only one a pixel is independent of the others.
-    let q = fit.cofactors * (fit.variance * profile::DENSELY);
-    let covariance = Covariance { sxx: q[(0, 0)], sxy: q[(0, 1)], syy: q[(1, 1)] };
-    // Written so that NaN is rejected, too.
-    if covariance.sxx + covariance.syy <= VAGUE * VAGUE {
-        let [x, y] = fit.ellipse.position;
-        Ok(Measurement { position: PixelPoint::new(x, y), covariance: Some(covariance) })
-    } else {
-        Err(Rejection::ErrorEllipse)
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use crate::parametric_circle::tests::{operator, pools};
-
-    #[test]
-    fn errors_are_within_a_third_of_the_bound() {
-        let [bound, own] = pools("ellipse_edges", 54);
-        let (_, interval) = bound.ratio();
-        assert!(bound.trials() >= 2500 && interval[0] <= 1.35 && interval[1] >= 1.0, "{interval:?}");
-        // Sharp edges at little noise are where interpolation, not noise, says how far off the points are.
-        let (ratio, _) = own.ratio();
-        assert!((0.8..1.6).contains(&ratio), "{ratio}");
-    }
-
-    #[test]
-    fn conforms() {
-        crate::conformance::check_on(&*operator("ellipse_edges"), crate::conformance::disc, 1e-4);
-    }
-}
+mod tests;

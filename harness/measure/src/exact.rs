@@ -273,8 +273,13 @@ impl Pool {
 
     /// The root of the mean, and its 99 % interval.
     pub(crate) fn ratio(&self) -> (f64, [f64; 2]) {
+        self.within(2.576)
+    }
+
+    /// The root of the mean, and its interval of so many standard errors of the mean.
+    pub(crate) fn within(&self, errors: f64) -> (f64, [f64; 2]) {
         let mean = self.sum / self.n;
         let error = ((self.squares / self.n - mean * mean).max(0.0) / self.n).sqrt();
-        (mean.sqrt(), [(mean - 2.576 * error).max(0.0).sqrt(), (mean + 2.576 * error).sqrt()])
+        (mean.sqrt(), [(mean - errors * error).max(0.0).sqrt(), (mean + errors * error).sqrt()])
     }
 }

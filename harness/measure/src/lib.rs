@@ -11,6 +11,7 @@ pub mod centroid;
 pub mod chess_corners;
 mod cholesky;
 pub mod conformance;
+mod contour;
 pub mod ellipse;
 pub mod ellipse_edges;
 #[cfg(test)]

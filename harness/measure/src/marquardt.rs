@@ -39,7 +39,7 @@ pub(crate) struct Solution<const P: usize> {
 }
 
 /// The iteration also ends with one that moves the position by less than this, px.
-const STILL: f64 = 1e-9;
+pub(crate) const STILL: f64 = 1e-9;
 const EVALUATIONS: usize = 60;
 /// From so many evaluations on it is enough that the position stands, for where a target hardly tells its size from its blur and contrast.
 const PATIENCE: usize = 10;
@@ -103,7 +103,7 @@ fn bounded<const P: usize>(problem: &impl Problem<P>, x: &SVector<f64, P>) -> SV
 }
 
 /// Cholesky, after the unknowns are scaled alike; `None` for a matrix that is singular to rounding.
-fn decompose<const P: usize>(n: &SMatrix<f64, P, P>) -> Option<Scaled<P>> {
+pub(crate) fn decompose<const P: usize>(n: &SMatrix<f64, P, P>) -> Option<Scaled<P>> {
     let scale: SVector<f64, P> = SVector::from_fn(|i, _| 1.0 / n[(i, i)].sqrt());
     if !scale.iter().all(|s| s.is_finite()) {
         return None;
@@ -114,13 +114,13 @@ fn decompose<const P: usize>(n: &SMatrix<f64, P, P>) -> Option<Scaled<P>> {
     (smallest > 1e-7).then_some(Scaled { factor, scale })
 }
 
-struct Scaled<const P: usize> {
+pub(crate) struct Scaled<const P: usize> {
     factor: Cholesky<f64, Const<P>>,
     scale: SVector<f64, P>,
 }
 
 impl<const P: usize> Scaled<P> {
-    fn solve(&self, b: &SVector<f64, P>) -> SVector<f64, P> {
+    pub(crate) fn solve(&self, b: &SVector<f64, P>) -> SVector<f64, P> {
         self.factor.solve(&b.component_mul(&self.scale)).component_mul(&self.scale)
     }
 }

@@ -1,17 +1,16 @@
 //! `parametric_circle`: a disc's grey values, fitted.
 
-mod contour;
-
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use multiversion::multiversion;
 use nalgebra::SVector;
 
+use crate::contour::{self, Planes};
 use crate::ellipse::{Ellipse, Guess, seek};
 use crate::lanes::LANES;
 use crate::marquardt::{Normal, Problem, Sums, covariance, minimise};
 use crate::operator::Operator;
 use crate::parameter::{Domain, Parameter};
 use crate::registry::{Build, Method};
-use contour::Planes;
 
 /// Centre, three of the shape, variance of the blur, grey value outside, contrast.
 const UNKNOWNS: usize = 8;
@@ -121,23 +120,7 @@ impl Problem<UNKNOWNS> for Disc {
             return None;
         }
         self.planes.fill(&ellipse, x[5]);
-        let (ground, contrast) = (x[6], x[7]);
-        let mut sums = Sums::<UNKNOWNS>::new();
-        for (chunk, grey) in self.grey.chunks(LANES).enumerate() {
-            let (mut j, mut r) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
-            for (i, grey) in grey.iter().enumerate() {
-                let pixel = chunk * LANES + i;
-                let covered = self.planes.values[0][pixel];
-                for (unknown, plane) in self.planes.values[1..].iter().enumerate() {
-                    j[unknown][i] = contrast * plane[pixel];
-                }
-                j[6][i] = 1.0;
-                j[7][i] = covered;
-                r[i] = grey - ground - contrast * covered;
-            }
-            sums.add(&j, &r);
-        }
-        Some(sums.normal())
+        Some(products(&self.grey, &self.planes, x[6], x[7]).normal())
     }
 
     fn lowest(&self, unknown: usize) -> f64 {
@@ -147,6 +130,33 @@ impl Problem<UNKNOWNS> for Disc {
     fn redundancy(&self) -> f64 {
         (self.grey.len() - UNKNOWNS) as f64
     }
+}
+
+/// The normal equations' sums over all pixels.
+#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+fn products(grey: &[f64], planes: &Planes, ground: f64, contrast: f64) -> Sums<UNKNOWNS> {
+    let [x, y] = contour::CENTRE;
+    let [a, b, c] = contour::SHAPE;
+    let mut sums = Sums::new();
+    for (row, grey) in grey.chunks_exact(planes.side).enumerate() {
+        for (chunk, grey) in grey.chunks(LANES).enumerate() {
+            let at = row * planes.stride + chunk * LANES;
+            let covered = planes.lanes(contour::COVERED, at);
+            let (mut j, mut r) = ([[0.0; LANES]; UNKNOWNS], [0.0; LANES]);
+            for (j, plane) in j.iter_mut().zip([x, y, a, b, c, contour::VARIANCE]) {
+                *j = planes.lanes(plane, at);
+                j.iter_mut().for_each(|by| *by *= contrast);
+            }
+            (j[6], j[7]) = ([1.0; LANES], covered);
+            for (i, grey) in grey.iter().enumerate() {
+                r[i] = grey - ground - contrast * covered[i];
+            }
+            // What lies past the window's side counts for nothing.
+            j.iter_mut().for_each(|j| j[grey.len()..].fill(0.0));
+            sums.add(&j, &r);
+        }
+    }
+    sums
 }
 
 #[cfg(test)]

@@ -101,22 +101,25 @@ fn coverage_is_exact_and_derivatives_are_those_of_differences() {
     let at = |x: [f64; 6]| {
         let mut planes = Planes::new(SIDE);
         planes.fill(&Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] }, x[5]);
-        planes.values
+        let window = |plane: &Vec<f64>| plane.chunks(planes.stride).take(SIDE).flat_map(|row| row[..SIDE].to_vec()).collect::<Vec<_>>();
+        planes.values.each_ref().map(window)
     };
     let ([x, y], [a, b, c]) = (disc.position, disc.shape);
     let x = [x, y, a, b, c, disc.blur * disc.blur];
     let planes = at(x);
-    for (covered, exact) in planes[0].iter().zip(disc.render(SIDE)) {
+    for (covered, exact) in planes[contour::COVERED].iter().zip(disc.render(SIDE)) {
         assert!((covered - exact).abs() < 1e-6, "{covered} {exact}");
     }
-    for unknown in 0..6 {
+    let [cx, cy] = contour::CENTRE;
+    let [axx, axy, ayy] = contour::SHAPE;
+    for (unknown, plane) in [cx, cy, axx, axy, ayy, contour::VARIANCE].into_iter().enumerate() {
         let shifted = |h: f64| {
             let mut x = x;
             x[unknown] += h;
-            at(x).into_iter().next().unwrap()
+            at(x)[contour::COVERED].clone()
         };
         let (high, low) = (shifted(1e-3), shifted(-1e-3));
-        for (i, analytic) in planes[1 + unknown].iter().enumerate() {
+        for (i, analytic) in planes[plane].iter().enumerate() {
             let difference = (high[i] - low[i]) / 2e-3;
             assert!((difference - analytic).abs() < 2e-5, "{unknown} at {i}: {difference} {analytic}");
         }
