@@ -1,12 +1,15 @@
 //! `lsm`: least-squares matching with an artificial mask.
 
+mod area;
+mod bank;
 mod border;
+mod curves;
 mod fit;
 mod mask;
-mod middle;
 mod planes;
 mod profile;
 mod start;
+mod sweep;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind};
 
@@ -132,21 +135,19 @@ impl Lsm {
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let first = window_centre(image, start, half)?;
-        admit(image, first, half)?;
+        let range = work.observe(image, first, half)?;
         let mask = self.mask(start).ok_or(Rejection::NoCorner)?;
-        let blob = if start.affine.is_some() { None } else { start::blob(mask, image, first, half, start.position) };
-        let middle = match &blob {
-            Some(blob) => Some(blob.centre()),
-            None if start.affine.is_some() => start::middle(mask, image, first, half, start.position),
-            None => None,
-        };
-        let position = middle.unwrap_or(start.position);
+        let corner = |(x, y): (i64, i64)| ((x - half) as f64, (y - half) as f64);
+        let (left, top) = corner(first);
+        let area = start::area(mask, work.planes.grey(), range, [start.position.x - left, start.position.y - top]);
+        let position = area.map_or(start.position, |area| PixelPoint::new(left + area.centre[0], top + area.centre[1]));
         // The target may be whole in the first window and the second still reach past the image.
-        let (x, y) = window_centre(image, &Start::at(position), half).unwrap_or(first);
-        admit(image, (x, y), half)?;
-        work.planes.observe(image.rows_around(x, y, half).ok_or(Rejection::Border)?);
-        let (left, top) = ((x - half) as f64, (y - half) as f64);
-        let shapes = start::shapes(mask, start.affine, self.size, blob.as_ref(), self.window as f64);
+        let centre = window_centre(image, &Start::at(position), half).unwrap_or(first);
+        if centre != first {
+            work.observe(image, centre, half)?;
+        }
+        let (left, top) = corner(centre);
+        let shapes = start::shapes(mask, start.affine, self.size, area.as_ref(), self.window as f64);
         let at = [position.x - left, position.y - top];
         let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
         let fitted = work.fit(mask, begin, self.limits)?;
@@ -158,21 +159,6 @@ impl Lsm {
         }
         let [dx, dy] = fitted.parameters.pose.at;
         Ok(Measurement { position: PixelPoint::new(left + dx, top + dy), covariance: Some(fitted.covariance) })
-    }
-}
-
-/// Checks that the window's grey values are numbers and not all the same.
-fn admit(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
-    let (mut low, mut high, mut finite) = (f32::INFINITY, f32::NEG_INFINITY, true);
-    for row in image.rows_around(x, y, half).ok_or(Rejection::Border)? {
-        for &grey in row {
-            (low, high, finite) = (low.min(grey), high.max(grey), finite & grey.is_finite());
-        }
-    }
-    match finite {
-        false => Err(Rejection::NotFinite),
-        true if low < high => Ok(()),
-        true => Err(Rejection::NoCorner),
     }
 }
 

@@ -3,8 +3,10 @@
 use calibench_model::Affine;
 use multiversion::multiversion;
 
-use super::border::{self, Bank};
-use super::mask::Mask;
+use super::area::Grey;
+use super::bank::Bank;
+use super::border;
+use super::mask::{Mask, Rule};
 use super::profile::{LANES, Profile};
 
 /// Unknowns of the model, in this order: x, y, axx, axy, ayx, ayy, grey value of the ground, contrast, blur.
@@ -63,7 +65,9 @@ impl Planes {
     /// For a window of `pixels` px on a side.
     pub(super) fn new(pixels: usize) -> Self {
         let stride = pixels.next_multiple_of(LANES);
-        let values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
+        let mut values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
+        let ones = values[GROUND * pixels * stride..].chunks_exact_mut(stride).take(pixels);
+        ones.for_each(|row| row[..pixels].fill(1.0));
         Self { pixels, stride, values, grey: vec![0.0; pixels * stride], bank: Bank::new(pixels, stride) }
     }
 
@@ -74,12 +78,14 @@ impl Planes {
 
     /// Takes the window's grey values.
     pub(super) fn observe<'a>(&mut self, rows: impl Iterator<Item = &'a [f32]>) {
-        let area = self.area();
-        let ones = &mut self.values[GROUND * area..(GROUND + 1) * area];
-        for ((row, line), one) in rows.zip(self.grey.chunks_exact_mut(self.stride)).zip(ones.chunks_exact_mut(self.stride)) {
+        for (row, line) in rows.zip(self.grey.chunks_exact_mut(self.stride)) {
             line[..row.len()].copy_from_slice(row);
-            one[..row.len()].fill(1.0);
         }
+    }
+
+    /// The window's grey values.
+    pub(super) fn grey(&self) -> Grey<'_> {
+        Grey { side: self.pixels, stride: self.stride, values: &self.grey, inside: &self.plane(GROUND)[..self.stride] }
     }
 
     fn area(&self) -> usize {
@@ -92,9 +98,9 @@ impl Planes {
     }
 
     /// Coverage for a mask, and of its derivatives those that are asked for: the others keep what they were.
-    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, derivatives: Derivatives) {
+    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, wanted: (Derivatives, Rule)) {
         let window = Window { pixels: self.pixels, stride: self.stride, values: &mut self.values };
-        border::draw(window, &mut self.bank, mask, pose, profile, derivatives);
+        border::draw(window, &mut self.bank, mask, pose, profile, wanted);
     }
 
     /// Ground and contrast that fit the coverages best; `None` if these do not differ.
