@@ -30,8 +30,9 @@ const LARGEST: f64 = 1.0;
 ///
 /// The blur belongs to the image and does not follow the affine map. Coverage and derivatives are line integrals along the mask's border, exact to
 /// 1e-6. A disc is left out the turn of its own plane, the edges of a corner their length. What is pictured comes from the start, or from `shape`;
-/// the affine start from the start, or from `size` and the image, or from the image alone: the moments of the pixels beyond Otsu's
-/// threshold, turned to where the residuals are smallest. If these pixels are all in the window, it moves onto their centroid.
+/// the affine start from the start, or from `size` and the image, or from the image alone: the moments of the pixels beyond a
+/// threshold, turned to where the residuals are smallest. If these pixels are all in the window, it moves onto their
+/// grey-weighted centroid.
 ///
 /// The position is that of the mask's reference point; a triangle's is its centroid. Covariance: `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///

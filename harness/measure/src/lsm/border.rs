@@ -18,7 +18,14 @@ use super::profile::Profile;
 use super::sweep::sweep;
 
 /// Coverage and derivatives of a mask, written to their planes.
-pub(super) fn draw(window: Window<'_>, bank: &mut Bank, mask: &Mask, pose: &Pose, profile: &Profile, (derivatives, rule): (Derivatives, Rule)) {
+pub(super) fn draw(
+    window: Window<'_>,
+    bank: &mut Bank,
+    mask: &Mask,
+    pose: &Pose,
+    profile: &Profile,
+    (derivatives, rule): (Derivatives, Rule),
+) {
     match derivatives {
         Derivatives::None => integrate::<1, 1, false, false>(window, bank, mask, pose, profile, rule),
         Derivatives::Pose => integrate::<3, 6, true, false>(window, bank, mask, pose, profile, rule),

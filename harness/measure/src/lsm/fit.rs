@@ -10,10 +10,9 @@ use crate::cholesky::{self, Factor};
 
 /// The blur that is sought, px.
 const BLURS: (f64, f64) = (0.15, 5.0);
-/// Affine terms may still move the edge of the mask by this many times the last step of the position.
-const SHAPE: f64 = 10.0;
-/// And the blur so many times: the grey values are less linear in it.
-const BLURRED: f64 = 3.0;
+/// Affine terms may still move the edge of the mask, and the blur may change, by this many times the last step of the position. What is left after it
+/// goes with its square.
+const SHAPE: f64 = 3.0;
 /// Damping from which a step tells nothing of convergence, and at which there is no way down.
 const DAMPED: (f64, f64) = (1e-3, 1e6);
 
@@ -80,6 +79,7 @@ impl Work {
         self.planes.draw(mask, &parameters.pose, &self.profile, wanted);
     }
 
+    #[inline(always)]
     fn system(&self, mask: &Mask, at: &Parameters, blur: bool) -> Result<System, Rejection> {
         let count = unknowns(blur);
         System::new(mask.kind, at, &self.planes.products(count), &self.planes.right(count), blur).ok_or(Rejection::NoCorner)
@@ -144,7 +144,7 @@ impl Step {
         let shape = self.0[2..6].iter().map(|d| d * d).sum::<f64>() * 2.0 * mask.moment;
         let position = self.0[0] * self.0[0] + self.0[1] * self.0[1];
         let bound = SHAPE * epsilon;
-        position <= epsilon * epsilon && shape <= bound * bound && self.0[BLUR].abs() <= BLURRED * epsilon
+        position <= epsilon * epsilon && shape <= bound * bound && self.0[BLUR].abs() <= bound
     }
 }
 
@@ -174,10 +174,12 @@ struct System {
 
 impl System {
     /// `None` if it is singular.
+    #[inline(always)]
     fn new(kind: TargetKind, at: &Parameters, products: &[[f64; UNKNOWNS]; UNKNOWNS], right: &[f64; UNKNOWNS], blur: bool) -> Option<Self> {
         let columns = Columns::new(kind, &at.pose.affine, blur);
         // The planes are derivatives of the coverage: the grey value's are the contrast times these, but for the levels' own.
-        let scale: [f64; UNKNOWNS] = std::array::from_fn(|i| if i == GROUND || i == COVERAGE { 1.0 } else { at.contrast });
+        let mut scale = [at.contrast; UNKNOWNS];
+        (scale[GROUND], scale[COVERAGE]) = (1.0, 1.0);
         let (mut normal, mut of_residuals) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
         for (i, column) in columns.iter().enumerate() {
             let mut row = [0.0; UNKNOWNS];

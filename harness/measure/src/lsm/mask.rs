@@ -155,7 +155,7 @@ fn extent(curve: &Curve, affine: &Affine) -> f64 {
     match *curve {
         Curve::Line { from, to } => {
             let [x, y] = map(affine, [to[0] - from[0], to[1] - from[1]]);
-            x.hypot(y)
+            (x * x + y * y).sqrt()
         }
         Curve::Arc { radius, sweep, .. } => {
             let a = affine;

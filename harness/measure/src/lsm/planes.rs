@@ -79,7 +79,7 @@ impl Planes {
     /// Takes the window's grey values.
     pub(super) fn observe<'a>(&mut self, rows: impl Iterator<Item = &'a [f32]>) {
         for (row, line) in rows.zip(self.grey.chunks_exact_mut(self.stride)) {
-            line[..row.len()].copy_from_slice(row);
+            copy(line, row);
         }
     }
 
@@ -137,6 +137,15 @@ impl Planes {
     }
 }
 
+/// Copies a row by pieces of a length that the compiler knows, the last of which may overlap: otherwise each row is a call.
+fn copy(to: &mut [f32], row: &[f32]) {
+    const PIECE: usize = 8;
+    let Some(last) = row.len().checked_sub(PIECE) else { return to[..row.len()].copy_from_slice(row) };
+    for start in (0..last).step_by(PIECE).chain([last]) {
+        to[start..start + PIECE].copy_from_slice(&row[start..start + PIECE]);
+    }
+}
+
 /// Residuals, and the sum of their squares.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, contrast]: [f32; 2]) -> f64 {
@@ -154,7 +163,8 @@ fn products(planes: &Planes, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
         let plane = planes.plane(i);
         // Four at a time: one sum alone would wait for each of its additions.
         for first in (0..=i).step_by(4) {
-            let sums = dots(plane, std::array::from_fn::<_, 4, _>(|j| planes.plane((first + j).min(i))));
+            let other = |j: usize| planes.plane((first + j).min(i));
+            let sums = dots(plane, [other(0), other(1), other(2), other(3)]);
             for (j, sum) in (first..=i).zip(sums) {
                 (products[i][j], products[j][i]) = (sum, sum);
             }
@@ -168,7 +178,7 @@ fn right(planes: &Planes, unknowns: usize) -> [f64; UNKNOWNS] {
     let mut right = [0.0; UNKNOWNS];
     let residual = planes.plane(RESIDUAL);
     for first in (0..unknowns).step_by(3) {
-        let sums = dots(residual, std::array::from_fn::<_, 3, _>(|i| planes.plane(first + i)));
+        let sums = dots(residual, [planes.plane(first), planes.plane(first + 1), planes.plane(first + 2)]);
         right[first..first + 3].copy_from_slice(&sums);
     }
     right
@@ -183,7 +193,6 @@ fn dot(a: &[f32], b: &[f32]) -> f64 {
 #[inline(always)]
 fn dots<const N: usize>(a: &[f32], others: [&[f32]; N]) -> [f64; N] {
     let mut sums = [[0.0_f32; LANES]; N];
-    let others = others.map(|other| &other[..a.len()]);
     for start in (0..a.len()).step_by(LANES) {
         let lanes = |values: &[f32]| -> [f32; LANES] { values[start..start + LANES].try_into().expect("whole lanes") };
         let here = lanes(a);
@@ -194,12 +203,14 @@ fn dots<const N: usize>(a: &[f32], others: [&[f32]; N]) -> [f64; N] {
             }
         }
     }
-    sums.map(|sums| {
+    let mut totals = [0.0; N];
+    for n in 0..N {
         let mut halves = [0.0; LANES / 2];
         for (i, half) in halves.iter_mut().enumerate() {
-            *half = f64::from(sums[i]) + f64::from(sums[i + LANES / 2]);
+            *half = f64::from(sums[n][i]) + f64::from(sums[n][i + LANES / 2]);
         }
         let [a, b, c, d, e, f, g, h] = halves;
-        ((a + e) + (c + g)) + ((b + f) + (d + h))
-    })
+        totals[n] = ((a + e) + (c + g)) + ((b + f) + (d + h));
+    }
+    totals
 }

@@ -46,7 +46,12 @@ fn conforms() {
 fn drawn(picture: &Picture, pixels: usize) -> Planes {
     let mut planes = Planes::new(pixels);
     let mask = Mask::new(picture.kind).unwrap();
-    planes.draw(&mask, &Pose { at: picture.at, affine: picture.affine }, &Profile::new(picture.sigma), (Derivatives::PoseAndBlur, Rule::Exact));
+    planes.draw(
+        &mask,
+        &Pose { at: picture.at, affine: picture.affine },
+        &Profile::new(picture.sigma),
+        (Derivatives::PoseAndBlur, Rule::Exact),
+    );
     planes
 }
 
