@@ -10,8 +10,8 @@ use crate::cholesky::{self, Factor};
 
 /// The blur that is sought, px.
 const BLURS: (f64, f64) = (0.15, 5.0);
-/// Affine terms may still move the edge of the mask, and the blur may change, by this many times the last step of the position. What is left after it
-/// goes with its square.
+/// Affine terms may still move the edge of the mask by this many times the last step of the position; where the blur is sought, edge and blur only by as
+/// much as the position: what is left goes with the square of the whole step.
 const SHAPE: f64 = 3.0;
 /// Damping from which a step tells nothing of convergence, and at which there is no way down.
 const DAMPED: (f64, f64) = (1e-3, 1e6);
@@ -143,7 +143,7 @@ impl Step {
         // The shape's terms count with the mask's radius of gyration.
         let shape = self.0[2..6].iter().map(|d| d * d).sum::<f64>() * 2.0 * mask.moment;
         let position = self.0[0] * self.0[0] + self.0[1] * self.0[1];
-        let bound = SHAPE * epsilon;
+        let bound = if self.0[BLUR] == 0.0 { SHAPE * epsilon } else { epsilon };
         position <= epsilon * epsilon && shape <= bound * bound && self.0[BLUR].abs() <= bound
     }
 }
