@@ -144,14 +144,14 @@ fn threshold(grey: Grey<'_>, (low, high): (f32, f32)) -> Option<f32> {
 #[inline(always)]
 fn light(grey: Grey<'_>, threshold: f32) -> Words {
     let mut light = [0; WIDEST];
-    for row in 0..grey.side {
+    for (row, bits) in light[..grey.side].iter_mut().enumerate() {
         for column in (0..grey.stride).step_by(LANES) {
             let (values, inside) = (lanes(grey.values, row * grey.stride + column), lanes(grey.inside, column));
             let mut word = 0_u32;
             for lane in 0..LANES {
                 word |= u32::from(inside[lane] > 0.0 && values[lane] > threshold) << lane;
             }
-            light[row] |= u64::from(word) << column;
+            *bits |= u64::from(word) << column;
         }
     }
     light
