@@ -1,12 +1,15 @@
 //! `lsm`: least-squares matching with an artificial mask.
 
+mod area;
+mod bank;
 mod border;
+mod curves;
 mod fit;
 mod mask;
-mod middle;
 mod planes;
 mod profile;
 mod start;
+mod sweep;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind};
 
@@ -27,8 +30,9 @@ const LARGEST: f64 = 1.0;
 ///
 /// The blur belongs to the image and does not follow the affine map. Coverage and derivatives are line integrals along the mask's border, exact to
 /// 1e-6. A disc is left out the turn of its own plane, the edges of a corner their length. What is pictured comes from the start, or from `shape`;
-/// the affine start from the start, or from `size` and the image, or from the image alone: the moments of the pixels beyond Otsu's
-/// threshold, turned to where the residuals are smallest. If these pixels are all in the window, it moves onto their centroid.
+/// the affine start from the start, or from `size` and the image, or from the image alone: the moments of the pixels beyond a
+/// threshold, turned to where the residuals are smallest. If these pixels are all in the window, it moves onto their
+/// grey-weighted centroid.
 ///
 /// The position is that of the mask's reference point; a triangle's is its centroid. Covariance: `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
@@ -132,21 +136,19 @@ impl Lsm {
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let first = window_centre(image, start, half)?;
-        admit(image, first, half)?;
+        let range = work.observe(image, first, half)?;
         let mask = self.mask(start).ok_or(Rejection::NoCorner)?;
-        let blob = if start.affine.is_some() { None } else { start::blob(mask, image, first, half, start.position) };
-        let middle = match &blob {
-            Some(blob) => Some(blob.centre()),
-            None if start.affine.is_some() => start::middle(mask, image, first, half, start.position),
-            None => None,
-        };
-        let position = middle.unwrap_or(start.position);
+        let corner = |(x, y): (i64, i64)| ((x - half) as f64, (y - half) as f64);
+        let (left, top) = corner(first);
+        let area = start::area(mask, work.planes.grey(), range, [start.position.x - left, start.position.y - top]);
+        let position = area.map_or(start.position, |area| PixelPoint::new(left + area.centre[0], top + area.centre[1]));
         // The target may be whole in the first window and the second still reach past the image.
-        let (x, y) = window_centre(image, &Start::at(position), half).unwrap_or(first);
-        admit(image, (x, y), half)?;
-        work.planes.observe(image.rows_around(x, y, half).ok_or(Rejection::Border)?);
-        let (left, top) = ((x - half) as f64, (y - half) as f64);
-        let shapes = start::shapes(mask, start.affine, self.size, blob.as_ref(), self.window as f64);
+        let centre = window_centre(image, &Start::at(position), half).unwrap_or(first);
+        if centre != first {
+            work.observe(image, centre, half)?;
+        }
+        let (left, top) = corner(centre);
+        let shapes = start::shapes(mask, start.affine, self.size, area.as_ref(), self.window as f64);
         let at = [position.x - left, position.y - top];
         let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
         let fitted = work.fit(mask, begin, self.limits)?;
@@ -158,21 +160,6 @@ impl Lsm {
         }
         let [dx, dy] = fitted.parameters.pose.at;
         Ok(Measurement { position: PixelPoint::new(left + dx, top + dy), covariance: Some(fitted.covariance) })
-    }
-}
-
-/// Checks that the window's grey values are numbers and not all the same.
-fn admit(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
-    let (mut low, mut high, mut finite) = (f32::INFINITY, f32::NEG_INFINITY, true);
-    for row in image.rows_around(x, y, half).ok_or(Rejection::Border)? {
-        for &grey in row {
-            (low, high, finite) = (low.min(grey), high.max(grey), finite & grey.is_finite());
-        }
-    }
-    match finite {
-        false => Err(Rejection::NotFinite),
-        true if low < high => Ok(()),
-        true => Err(Rejection::NoCorner),
     }
 }
 

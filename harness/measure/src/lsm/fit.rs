@@ -1,16 +1,18 @@
 //! Gauss-Newton for mask and grey values.
 
-use calibench_model::{Affine, Covariance, Rejection, TargetKind};
+use calibench_model::{Affine, Covariance, Image, Rejection, TargetKind};
 
-use super::mask::Mask;
+use super::area;
+use super::mask::{Mask, Rule};
 use super::planes::{BLUR, COVERAGE, Derivatives, GROUND, Planes, Pose, UNKNOWNS};
 use super::profile::Profile;
 use crate::cholesky::{self, Factor};
 
 /// The blur that is sought, px.
 const BLURS: (f64, f64) = (0.15, 5.0);
-/// Affine terms may still move the edge of the mask by this many times the last step of the position.
-const SHAPE: f64 = 10.0;
+/// Affine terms may still move the edge of the mask by this many times the last step of the position; where the blur is sought, edge and blur only by as
+/// much as the position: what is left goes with the square of the whole step.
+const SHAPE: f64 = 3.0;
 /// Damping from which a step tells nothing of convergence, and at which there is no way down.
 const DAMPED: (f64, f64) = (1e-3, 1e6);
 
@@ -56,26 +58,31 @@ pub(super) struct Work {
 }
 
 impl Work {
+    /// Takes the window around a pixel; returns its lowest and highest grey value.
+    ///
+    /// # Errors
+    /// [`Rejection::Border`]; those of [`area::range`].
+    pub(super) fn observe(&mut self, image: &Image, (x, y): (i64, i64), half: i64) -> Result<(f32, f32), Rejection> {
+        self.planes.observe(image.rows_around(x, y, half).ok_or(Rejection::Border)?);
+        area::range(self.planes.grey())
+    }
+
     /// Draws the mask and takes the levels that fit best; the sum of squared residuals with them. `None` if the mask has no contrast in the window.
     pub(super) fn levels(&mut self, mask: &Mask, parameters: &mut Parameters) -> Option<f64> {
-        self.draw(mask, parameters, Derivatives::None);
+        self.draw(mask, parameters, (Derivatives::None, Rule::Coarse));
         (parameters.ground, parameters.contrast) = self.planes.levels()?;
         Some(self.planes.compare(parameters.ground, parameters.contrast))
     }
 
-    fn draw(&mut self, mask: &Mask, parameters: &Parameters, derivatives: Derivatives) {
+    fn draw(&mut self, mask: &Mask, parameters: &Parameters, wanted: (Derivatives, Rule)) {
         self.profile.set(parameters.sigma);
-        self.planes.draw(mask, &parameters.pose, &self.profile, derivatives);
+        self.planes.draw(mask, &parameters.pose, &self.profile, wanted);
     }
 
-    fn evaluate(&mut self, mask: &Mask, parameters: &Parameters, derivatives: Derivatives) -> f64 {
-        self.draw(mask, parameters, derivatives);
-        self.planes.compare(parameters.ground, parameters.contrast)
-    }
-
-    fn system(&self, mask: &Mask, at: &Parameters, blur: bool) -> Option<System> {
+    #[inline(always)]
+    fn system(&self, mask: &Mask, at: &Parameters, blur: bool) -> Result<System, Rejection> {
         let count = unknowns(blur);
-        System::new(mask.kind, at, &self.planes.products(count), &self.planes.right(count), blur)
+        System::new(mask.kind, at, &self.planes.products(count), &self.planes.right(count), blur).ok_or(Rejection::NoCorner)
     }
 
     /// The least-squares fit from `start` on (its levels are taken from the image), by Gauss-Newton; where a step leads upwards, it is damped
@@ -86,10 +93,10 @@ impl Work {
     pub(super) fn fit(&mut self, mask: &Mask, start: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
         let all = if limits.blur { Derivatives::PoseAndBlur } else { Derivatives::Pose };
         let mut now = start;
-        self.draw(mask, &now, all);
+        self.draw(mask, &now, (all, Rule::Exact));
         (now.ground, now.contrast) = self.planes.levels().ok_or(Rejection::NoCorner)?;
         let mut omega = self.planes.compare(now.ground, now.contrast);
-        let mut system = self.system(mask, &now, limits.blur).ok_or(Rejection::NoCorner)?;
+        let mut system = self.system(mask, &now, limits.blur)?;
         let mut damping = 0.0;
         for _ in 0..limits.iterations {
             let step = system.step(damping).ok_or(Rejection::NoCorner)?;
@@ -97,12 +104,13 @@ impl Work {
             if damping <= DAMPED.0 && step.is_small(mask, limits.epsilon) {
                 return self.conclude(next, &system, omega);
             }
-            let there = self.evaluate(mask, &next, all);
+            self.draw(mask, &next, (all, Rule::Exact));
+            let there = self.planes.compare(next.ground, next.contrast);
             // Sums of squares in single precision are right to some 1e-7.
             if there.is_finite() && there <= omega * (1.0 + 1e-6) {
                 (now, omega) = (next, there);
                 damping = if damping <= DAMPED.0 { 0.0 } else { damping / 10.0 };
-                system = self.system(mask, &now, limits.blur).ok_or(Rejection::NoCorner)?;
+                system = self.system(mask, &now, limits.blur)?;
             } else {
                 damping = if damping == 0.0 { 1e-2 } else { damping * 10.0 };
                 if damping > DAMPED.1 {
@@ -133,9 +141,10 @@ struct Step([f64; UNKNOWNS]);
 impl Step {
     fn is_small(&self, mask: &Mask, epsilon: f64) -> bool {
         // The shape's terms count with the mask's radius of gyration.
-        let radius = (2.0 * mask.moment).sqrt();
-        let shape = self.0[2..6].iter().map(|d| d * d).sum::<f64>().sqrt() * radius;
-        self.0[0].hypot(self.0[1]) <= epsilon && shape <= SHAPE * epsilon && self.0[BLUR].abs() <= SHAPE * epsilon
+        let shape = self.0[2..6].iter().map(|d| d * d).sum::<f64>() * 2.0 * mask.moment;
+        let position = self.0[0] * self.0[0] + self.0[1] * self.0[1];
+        let bound = if self.0[BLUR] == 0.0 { SHAPE * epsilon } else { epsilon };
+        position <= epsilon * epsilon && shape <= bound * bound && self.0[BLUR].abs() <= bound
     }
 }
 
@@ -165,15 +174,22 @@ struct System {
 
 impl System {
     /// `None` if it is singular.
+    #[inline(always)]
     fn new(kind: TargetKind, at: &Parameters, products: &[[f64; UNKNOWNS]; UNKNOWNS], right: &[f64; UNKNOWNS], blur: bool) -> Option<Self> {
         let columns = Columns::new(kind, &at.pose.affine, blur);
         // The planes are derivatives of the coverage: the grey value's are the contrast times these, but for the levels' own.
-        let scale: [f64; UNKNOWNS] = std::array::from_fn(|i| if i == GROUND || i == COVERAGE { 1.0 } else { at.contrast });
+        let mut scale = [at.contrast; UNKNOWNS];
+        (scale[GROUND], scale[COVERAGE]) = (1.0, 1.0);
         let (mut normal, mut of_residuals) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
         for (i, column) in columns.iter().enumerate() {
-            let row: [f64; UNKNOWNS] = std::array::from_fn(|k| column.terms().map(|(l, factor)| factor * scale[l] * products[l][k]).sum());
+            let mut row = [0.0; UNKNOWNS];
+            for (l, factor) in column.terms() {
+                for k in 0..UNKNOWNS {
+                    row[k] += factor * scale[l] * products[l][k] * scale[k];
+                }
+            }
             for (j, other) in columns.iter().enumerate().take(i + 1) {
-                let sum = other.terms().map(|(k, factor)| row[k] * scale[k] * factor).sum();
+                let sum = other.terms().map(|(k, factor)| row[k] * factor).sum();
                 (normal[i][j], normal[j][i]) = (sum, sum);
             }
             of_residuals[i] = column.terms().map(|(k, factor)| factor * scale[k] * right[k]).sum();

@@ -6,8 +6,25 @@ use calibench_model::{Affine, Curve, TargetKind};
 
 /// Nodes of the longest rule.
 pub(super) const LONGEST: usize = 48;
-/// Distance between the middle nodes of a rule, in standard deviations of the blur: coverages are then right to 2e-6 at a blur of 0.3 px, to 1e-6 from 0.5 px on.
-const SPACING: f64 = 1.4;
+
+/// How many nodes line integrals are added up over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rule {
+    /// As many as for coverages that are right to 2e-6 at a blur of 0.3 px, to 1e-6 from 0.5 px on.
+    Exact,
+    /// Fewer, for coverages that are only compared.
+    Coarse,
+}
+
+impl Rule {
+    /// Distance between the middle nodes, in standard deviations of the blur, and how many nodes there are beside.
+    fn spacing(self) -> (f64, f64) {
+        match self {
+            Self::Exact => (1.4, 3.0),
+            Self::Coarse => (2.0, 2.0),
+        }
+    }
+}
 
 /// Nodes and weights of the Gauss-Legendre rules of 1 to [`LONGEST`] points on [0, 1].
 static RULES: LazyLock<Vec<Vec<(f64, f64)>>> = LazyLock::new(|| (1..=LONGEST).map(gauss_legendre).collect());
@@ -59,12 +76,23 @@ pub(super) struct Panel {
     share: f64,
 }
 
+/// Between which columns and rows points of the border are seen, px.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// First and last column.
+    pub(super) columns: (f64, f64),
+    /// First and last row.
+    pub(super) rows: (f64, f64),
+}
+
 impl Panel {
-    /// The panels of a curve for a blur of `sigma` px, where it runs between two pixel rows: the rest is not seen.
-    pub(super) fn of(curve: &Curve, affine: &Affine, y: f64, sigma: f64, rows: (f64, f64)) -> impl Iterator<Item = Self> {
-        let (t0, t1) = visible(curve, affine, y, rows).unwrap_or((0.0, 0.0));
+    /// The panels of a curve of the mask at `at` for a blur of `sigma` px, where it runs within the bounds.
+    #[inline(always)]
+    pub(super) fn of(curve: &Curve, affine: &Affine, at: [f64; 2], sigma: f64, rule: Rule, bounds: &Bounds) -> impl Iterator<Item = Self> {
+        let (t0, t1) = visible(curve, affine, at, bounds);
         let length = (t1 - t0) * extent(curve, affine);
-        let wanted = std::f64::consts::FRAC_PI_2 * length / (SPACING * sigma) + 3.0;
+        let (spacing, beside) = rule.spacing();
+        let wanted = std::f64::consts::FRAC_PI_2 * length / (spacing * sigma) + beside;
         // Of a shape that the iteration blew up beyond all bounds only so much is looked at: it is rejected anyway.
         let count = if t1 > t0 { (wanted / LONGEST as f64).ceil().clamp(1.0, 16.0) } else { 0.0 };
         let nodes = ((wanted / count.max(1.0)).ceil() as usize).clamp(1, LONGEST);
@@ -73,6 +101,7 @@ impl Panel {
     }
 
     /// Parameters of the curve with their weights.
+    #[inline(always)]
     pub(super) fn nodes(self) -> impl Iterator<Item = (f64, f64)> {
         self.rule.iter().map(move |&(node, weight)| (self.begin + node * self.share, weight * self.share))
     }
@@ -84,19 +113,41 @@ pub(super) fn map(a: &Affine, [u, v]: [f64; 2]) -> [f64; 2] {
     [a.axx * u + a.axy * v, a.ayx * u + a.ayy * v]
 }
 
-/// The part of a curve between two rows, as parameters: of a line, where it is; an arc is taken whole. `None` if nothing is.
-fn visible(curve: &Curve, affine: &Affine, y: f64, (low, high): (f64, f64)) -> Option<(f64, f64)> {
-    let Curve::Line { from, to } = *curve else { return Some((0.0, 1.0)) };
-    let (y0, y1) = (y + map(affine, from)[1], y + map(affine, to)[1]);
-    if y0.max(y1) <= low || y0.min(y1) >= high {
-        return None;
+/// The part of a curve within the bounds, as parameters: of a line, where it is; an arc is taken whole. Empty if nothing is.
+#[inline(always)]
+fn visible(curve: &Curve, affine: &Affine, at: [f64; 2], bounds: &Bounds) -> (f64, f64) {
+    let Curve::Line { from, to } = *curve else { return (0.0, 1.0) };
+    let ([x0, y0], [x1, y1]) = (map(affine, from), map(affine, to));
+    let (a, b) = between(at[1] + y0, at[1] + y1, bounds.rows);
+    let (c, d) = between(at[0] + x0, at[0] + x1, bounds.columns);
+    (a.max(c), b.min(d))
+}
+
+/// The rows from and to which a line runs within the bounds' rows and to the right of all their columns; `None` if it does not.
+#[inline(always)]
+pub(super) fn beyond(curve: &Curve, affine: &Affine, at: [f64; 2], bounds: &Bounds) -> Option<(f64, f64)> {
+    let Curve::Line { from, to } = *curve else { return None };
+    let ([x0, y0], [x1, y1]) = (map(affine, from), map(affine, to));
+    let (c, d) = between(at[0] + x0, at[0] + x1, (bounds.columns.1, f64::INFINITY));
+    let (a, b) = between(at[1] + y0, at[1] + y1, bounds.rows);
+    let (begin, end) = (a.max(c), b.min(d));
+    let row = |t: f64| at[1] + y0 + t * (y1 - y0);
+    (begin < end).then(|| (row(begin), row(end)))
+}
+
+/// Of a way from `from` to `to` the part between `low` and `high`, as fractions; empty if nothing is.
+#[inline(always)]
+fn between(from: f64, to: f64, (low, high): (f64, f64)) -> (f64, f64) {
+    let (first, last) = (from.min(to), from.max(to));
+    if last <= low || first >= high {
+        return (0.0, 0.0);
     }
-    if y0.min(y1) >= low && y0.max(y1) <= high {
-        return Some((0.0, 1.0));
+    if first >= low && last <= high {
+        return (0.0, 1.0);
     }
-    let at = |row: f64| ((row - y0) / (y1 - y0)).clamp(0.0, 1.0);
-    let (a, b) = (at(low), at(high));
-    Some((a.min(b), a.max(b)))
+    let fraction = |value: f64| ((value - from) / (to - from)).clamp(0.0, 1.0);
+    let (a, b) = (fraction(low), fraction(high));
+    (a.min(b), a.max(b))
 }
 
 /// How long a curve is in the image at most, px.
@@ -104,7 +155,7 @@ fn extent(curve: &Curve, affine: &Affine) -> f64 {
     match *curve {
         Curve::Line { from, to } => {
             let [x, y] = map(affine, [to[0] - from[0], to[1] - from[1]]);
-            x.hypot(y)
+            (x * x + y * y).sqrt()
         }
         Curve::Arc { radius, sweep, .. } => {
             let a = affine;

@@ -3,8 +3,10 @@
 use calibench_model::Affine;
 use multiversion::multiversion;
 
-use super::border::{self, Bank};
-use super::mask::Mask;
+use super::area::Grey;
+use super::bank::Bank;
+use super::border;
+use super::mask::{Mask, Rule};
 use super::profile::{LANES, Profile};
 
 /// Unknowns of the model, in this order: x, y, axx, axy, ayx, ayy, grey value of the ground, contrast, blur.
@@ -63,7 +65,9 @@ impl Planes {
     /// For a window of `pixels` px on a side.
     pub(super) fn new(pixels: usize) -> Self {
         let stride = pixels.next_multiple_of(LANES);
-        let values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
+        let mut values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
+        let ones = values[GROUND * pixels * stride..].chunks_exact_mut(stride).take(pixels);
+        ones.for_each(|row| row[..pixels].fill(1.0));
         Self { pixels, stride, values, grey: vec![0.0; pixels * stride], bank: Bank::new(pixels, stride) }
     }
 
@@ -74,12 +78,14 @@ impl Planes {
 
     /// Takes the window's grey values.
     pub(super) fn observe<'a>(&mut self, rows: impl Iterator<Item = &'a [f32]>) {
-        let area = self.area();
-        let ones = &mut self.values[GROUND * area..(GROUND + 1) * area];
-        for ((row, line), one) in rows.zip(self.grey.chunks_exact_mut(self.stride)).zip(ones.chunks_exact_mut(self.stride)) {
-            line[..row.len()].copy_from_slice(row);
-            one[..row.len()].fill(1.0);
+        for (row, line) in rows.zip(self.grey.chunks_exact_mut(self.stride)) {
+            copy(line, row);
         }
+    }
+
+    /// The window's grey values.
+    pub(super) fn grey(&self) -> Grey<'_> {
+        Grey { side: self.pixels, stride: self.stride, values: &self.grey, inside: &self.plane(GROUND)[..self.stride] }
     }
 
     fn area(&self) -> usize {
@@ -92,9 +98,9 @@ impl Planes {
     }
 
     /// Coverage for a mask, and of its derivatives those that are asked for: the others keep what they were.
-    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, derivatives: Derivatives) {
+    pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, wanted: (Derivatives, Rule)) {
         let window = Window { pixels: self.pixels, stride: self.stride, values: &mut self.values };
-        border::draw(window, &mut self.bank, mask, pose, profile, derivatives);
+        border::draw(window, &mut self.bank, mask, pose, profile, wanted);
     }
 
     /// Ground and contrast that fit the coverages best; `None` if these do not differ.
@@ -131,6 +137,15 @@ impl Planes {
     }
 }
 
+/// Copies a row by pieces of a length that the compiler knows, the last of which may overlap: otherwise each row is a call.
+fn copy(to: &mut [f32], row: &[f32]) {
+    const PIECE: usize = 8;
+    let Some(last) = row.len().checked_sub(PIECE) else { return to[..row.len()].copy_from_slice(row) };
+    for start in (0..last).step_by(PIECE).chain([last]) {
+        to[start..start + PIECE].copy_from_slice(&row[start..start + PIECE]);
+    }
+}
+
 /// Residuals, and the sum of their squares.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, contrast]: [f32; 2]) -> f64 {
@@ -148,7 +163,8 @@ fn products(planes: &Planes, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
         let plane = planes.plane(i);
         // Four at a time: one sum alone would wait for each of its additions.
         for first in (0..=i).step_by(4) {
-            let sums = dots(plane, std::array::from_fn::<_, 4, _>(|j| planes.plane((first + j).min(i))));
+            let other = |j: usize| planes.plane((first + j).min(i));
+            let sums = dots(plane, [other(0), other(1), other(2), other(3)]);
             for (j, sum) in (first..=i).zip(sums) {
                 (products[i][j], products[j][i]) = (sum, sum);
             }
@@ -162,7 +178,7 @@ fn right(planes: &Planes, unknowns: usize) -> [f64; UNKNOWNS] {
     let mut right = [0.0; UNKNOWNS];
     let residual = planes.plane(RESIDUAL);
     for first in (0..unknowns).step_by(3) {
-        let sums = dots(residual, std::array::from_fn::<_, 3, _>(|i| planes.plane(first + i)));
+        let sums = dots(residual, [planes.plane(first), planes.plane(first + 1), planes.plane(first + 2)]);
         right[first..first + 3].copy_from_slice(&sums);
     }
     right
@@ -177,7 +193,6 @@ fn dot(a: &[f32], b: &[f32]) -> f64 {
 #[inline(always)]
 fn dots<const N: usize>(a: &[f32], others: [&[f32]; N]) -> [f64; N] {
     let mut sums = [[0.0_f32; LANES]; N];
-    let others = others.map(|other| &other[..a.len()]);
     for start in (0..a.len()).step_by(LANES) {
         let lanes = |values: &[f32]| -> [f32; LANES] { values[start..start + LANES].try_into().expect("whole lanes") };
         let here = lanes(a);
@@ -188,12 +203,14 @@ fn dots<const N: usize>(a: &[f32], others: [&[f32]; N]) -> [f64; N] {
             }
         }
     }
-    sums.map(|sums| {
+    let mut totals = [0.0; N];
+    for n in 0..N {
         let mut halves = [0.0; LANES / 2];
         for (i, half) in halves.iter_mut().enumerate() {
-            *half = f64::from(sums[i]) + f64::from(sums[i + LANES / 2]);
+            *half = f64::from(sums[n][i]) + f64::from(sums[n][i + LANES / 2]);
         }
         let [a, b, c, d, e, f, g, h] = halves;
-        ((a + e) + (c + g)) + ((b + f) + (d + h))
-    })
+        totals[n] = ((a + e) + (c + g)) + ((b + f) + (d + h));
+    }
+    totals
 }

@@ -1,11 +1,19 @@
 //! What a blurred pixel sees of a point and of a half-plane, along one axis.
 
+use multiversion::multiversion;
+
+use crate::lanes::{self, Lanes};
+
 /// Fractions of a px at which the profile is tabulated; between them it is a Taylor series.
 const STEPS: usize = 16;
 /// Pixels that are sampled side by side. Fixed, so that every instruction set gives the same bits.
 pub(super) const LANES: usize = 16;
+/// Adding it leaves a whole number in the lowest bits.
+const ROUND: f64 = 6_755_399_441_055_744.0;
 /// W, k and the first four derivatives of k.
 const DERIVATIVES: usize = 6;
+/// The most pixels that see a point, for a blur of 5 px.
+const WIDEST: usize = 48;
 /// How far the Gaussian reaches, in standard deviations: less than 4e-6 of it is left beyond.
 const REACH: f64 = 4.5;
 
@@ -39,16 +47,7 @@ impl Profile {
         let (stride, width) = (self.stride(), self.width());
         self.table.clear();
         self.table.resize(STEPS * DERIVATIVES * stride, 0.0);
-        for (step, row) in self.table.chunks_exact_mut(DERIVATIVES * stride).enumerate() {
-            let fraction = (step as f64 + 0.5) / STEPS as f64;
-            row[..LANES].fill(1.0);
-            let mut above = Boundary::new(fraction + self.half as f64 + 0.5, sigma);
-            for pixel in 0..width {
-                let below = Boundary::new(fraction + self.half as f64 - pixel as f64 - 0.5, sigma);
-                (0..DERIVATIVES).for_each(|i| row[i * stride + LANES + pixel] = (above.0[i] - below.0[i]) as f32);
-                above = below;
-            }
-        }
+        tabulate(&mut self.table, stride, width, self.half as f64, sigma);
     }
 
     /// From one derivative to the next in the table.
@@ -71,93 +70,149 @@ impl Profile {
         self.half as f64 + 1.0
     }
 
-    /// Samples of as many pixels as the slices have (whole [`LANES`]) for the point `at`; returns from which to which pixel these see it.
-    ///
-    /// Outside the value is zero and the integral one (before the point) or zero (after it). What is not wanted is left as it is.
+    /// The profile around a point.
     #[inline(always)]
-    pub(super) fn sample(&self, at: f64, out: &mut Samples<'_>, wanted: Wanted) -> (usize, usize) {
-        // The whole number below, without a call into a library.
-        let cut = at as i64;
-        let whole = cut - i64::from((cut as f64) > at);
-        let scaled = (at - whole as f64) * STEPS as f64;
-        let step = (scaled as usize).min(STEPS - 1);
-        let d = ((scaled - step as f64 - 0.5) / STEPS as f64) as f32;
-        let [half, third, fourth] = [d * 0.5, d * (1.0 / 3.0), d * 0.25];
-        let (first, width, pixels) = (whole - self.half as i64, self.width() as i64, out.value.len());
+    pub(super) fn around(&self, at: f64) -> Around<'_> {
+        // The fraction that is tabulated next to it, counted from zero; without a conversion, whose limits would have to be checked.
+        let scaled = at * STEPS as f64 - 0.5;
+        let shifted = scaled + ROUND;
+        let place = shifted.to_bits() as i32;
+        let (whole, step) = (place >> STEPS.trailing_zeros(), place as usize % STEPS);
+        let d = ((scaled - (shifted - ROUND)) * (1.0 / STEPS as f64)) as f32;
         let stride = self.stride();
         let row = &self.table[step * DERIVATIVES * stride..(step + 1) * DERIVATIVES * stride];
-        for from in (0..pixels).step_by(LANES) {
-            // Far from the point all lanes come from the table's margins.
-            let place = (LANES as i64 + from as i64 - first).clamp(0, LANES as i64 + width) as usize;
-            let entry = |i: usize| lanes(row, i * stride + place);
-            let [w, k, k1, k2, k3, k4] = [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)];
-            let mut lanes = [0.0; LANES];
-            // Slices of a length that the compiler knows: otherwise each is a call.
-            if wanted.value {
-                for i in 0..LANES {
-                    lanes[i] = k[i] + d * (k1[i] + half * (k2[i] + third * (k3[i] + fourth * k4[i])));
-                }
-                out.value[from..][..LANES].copy_from_slice(&lanes);
-            }
-            if wanted.integral {
-                for i in 0..LANES {
-                    lanes[i] = w[i] + d * (k[i] + half * (k1[i] + third * (k2[i] + fourth * k3[i])));
-                }
-                out.integral[from..][..LANES].copy_from_slice(&lanes);
-            }
-            if wanted.slope {
-                for i in 0..LANES {
-                    lanes[i] = k1[i] + d * (k2[i] + half * (k3[i] + third * k4[i]));
-                }
-                out.slope[from..][..LANES].copy_from_slice(&lanes);
-            }
-        }
-        let seen = |pixel: i64| pixel.clamp(0, pixels as i64) as usize;
-        (seen(first), seen(first + width))
+        Around { row, stride, first: whole - self.half as i32, width: self.width() as i32, d }
     }
 }
 
-/// Which samples are worked out.
+/// The profile around a point, ready to be sampled at pixels.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wanted {
+pub(super) struct Around<'a> {
+    /// The table for the point's fraction of a px.
+    row: &'a [f32],
+    stride: usize,
+    /// The first pixel that sees the point, and how many do.
+    first: i32,
+    width: i32,
+    /// From the tabulated fraction to the point, px.
+    d: f32,
+}
+
+impl<'a> Around<'a> {
+    /// From which to which of a row of `pixels` the point is seen.
+    #[inline(always)]
+    pub(super) fn seen(&self, pixels: usize) -> (usize, usize) {
+        let inside = |pixel: i32| pixel.clamp(0, pixels as i32) as usize;
+        (inside(self.first), inside(self.first + self.width))
+    }
+
+    /// Does it lie so far before the first pixel that none sees anything of what is to its left?
+    #[inline(always)]
+    pub(super) fn is_before(&self) -> bool {
+        self.first + self.width <= 0
+    }
+
+    /// The [`LANES`] pixels from `from` on. Pixels that do not see the point have a value of zero and an integral of one (before the point) or
+    /// zero (after it).
+    #[inline(always)]
+    pub(super) fn block(&self, from: usize) -> Block<'a> {
+        // Far from the point all lanes come from the table's margins.
+        let place = (LANES as i32 + from as i32 - self.first).clamp(0, LANES as i32 + self.width) as usize;
+        let entry = |i: usize| values(self.row, i * self.stride + place);
+        Block { entries: [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)], d: self.d }
+    }
+}
+
+/// The profile at [`LANES`] pixels: W, k and its derivatives at the tabulated fraction, and how far from there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block<'a> {
+    entries: [&'a [f32; LANES]; DERIVATIVES],
+    d: f32,
+}
+
+impl Block<'_> {
     /// `W`.
-    pub(super) integral: bool,
+    #[inline(always)]
+    pub(super) fn integral(&self) -> [f32; LANES] {
+        let [w, k, k1, k2, k3, _] = self.entries;
+        series([w, k, k1, k2, k3], self.d)
+    }
+
     /// `k`.
-    pub(super) value: bool,
+    #[inline(always)]
+    pub(super) fn value(&self) -> [f32; LANES] {
+        let [_, k, k1, k2, k3, k4] = self.entries;
+        series([k, k1, k2, k3, k4], self.d)
+    }
+
     /// `dk/dt`.
-    pub(super) slope: bool,
+    #[inline(always)]
+    pub(super) fn slope(&self) -> [f32; LANES] {
+        let [_, _, k1, k2, k3, k4] = self.entries;
+        let (d, second, third) = (self.d, self.d * self.d * 0.5, self.d * (1.0 / 3.0));
+        let mut sums = [0.0; LANES];
+        for i in 0..LANES {
+            sums[i] = (k1[i] + d * k2[i]) + second * (k3[i] + third * k4[i]);
+        }
+        sums
+    }
 }
 
 /// The `LANES` values from `index` on.
 #[inline(always)]
-fn lanes(values: &[f32], index: usize) -> &[f32; LANES] {
-    values[index..index + LANES].try_into().expect("a slice of that length")
+fn values(row: &[f32], index: usize) -> &[f32; LANES] {
+    row[index..index + LANES].try_into().expect("a slice of that length")
 }
 
-/// Samples along one axis of a window.
-#[derive(Debug)]
-pub(super) struct Samples<'a> {
-    /// `W`.
-    pub(super) integral: &'a mut [f32],
-    /// `k`.
-    pub(super) value: &'a mut [f32],
-    /// `dk/dt`.
-    pub(super) slope: &'a mut [f32],
-}
-
-/// What one border of a pixel gives to `W`, `k` and the derivatives of `k`.
-struct Boundary([f64; DERIVATIVES]);
-
-impl Boundary {
-    fn new(t: f64, sigma: f64) -> Self {
-        let u = t / sigma;
-        let density = (-0.5 * u * u).exp() * 0.398_942_280_401_432_7;
-        let below = 0.5 * libm::erfc(-u * std::f64::consts::FRAC_1_SQRT_2);
-        let s = 1.0 / sigma;
-        let derivatives = [s, -u * s * s, (u * u - 1.0) * s * s * s, (3.0 * u - u * u * u) * s * s * s * s].map(|factor| factor * density);
-        let [k1, k2, k3, k4] = derivatives;
-        Self([sigma * (u * below + density), below, k1, k2, k3, k4])
+/// Taylor's series of the fourth order, in pairs of terms: side by side they take less time than one in the other.
+#[inline(always)]
+fn series([f, f1, f2, f3, f4]: [&[f32; LANES]; 5], d: f32) -> [f32; LANES] {
+    let (third, second, fourth) = (d * (1.0 / 3.0), d * d * 0.5, d * d * d * d * (1.0 / 24.0));
+    let mut sums = [0.0; LANES];
+    for i in 0..LANES {
+        sums[i] = ((f[i] + d * f1[i]) + fourth * f4[i]) + second * (f2[i] + third * f3[i]);
     }
+    sums
+}
+
+/// Fills a table whose rows of derivatives are `stride` apart, for `width` pixels.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn tabulate(table: &mut [f32], stride: usize, width: usize, half: f64, sigma: f64) {
+    // What the pixels' borders give: each pixel is the difference of two.
+    let mut borders = [[0.0; (WIDEST + 1).next_multiple_of(lanes::LANES)]; DERIVATIVES];
+    for (step, row) in table.chunks_exact_mut(DERIVATIVES * stride).enumerate() {
+        let fraction = (step as f64 + 0.5) / STEPS as f64;
+        for first in (0..=width).step_by(lanes::LANES) {
+            let u = std::array::from_fn(|lane| (fraction + half + 0.5 - (first + lane) as f64) / sigma);
+            for (border, values) in borders.iter_mut().zip(boundary(&u, sigma)) {
+                border[first..first + lanes::LANES].copy_from_slice(&values);
+            }
+        }
+        row[..LANES].fill(1.0);
+        for (line, border) in row.chunks_exact_mut(stride).zip(&borders) {
+            for (pixel, to) in line[LANES..LANES + width].iter_mut().enumerate() {
+                *to = (border[pixel] - border[pixel + 1]) as f32;
+            }
+        }
+    }
+}
+
+/// What borders of pixels give to `W`, `k` and the derivatives of `k`, at `u` standard deviations.
+#[inline(always)]
+fn boundary(u: &Lanes, sigma: f64) -> [Lanes; DERIVATIVES] {
+    let (edge, bell) = lanes::step(u);
+    let mut values = [[0.0; lanes::LANES]; DERIVATIVES];
+    let s = 1.0 / sigma;
+    for i in 0..lanes::LANES {
+        let (u, density, below) = (u[i], bell[i] * lanes::DENSITY, 0.5 + 0.5 * edge[i]);
+        values[0][i] = sigma * (u * below + density);
+        values[1][i] = below;
+        values[2][i] = density * s;
+        values[3][i] = -u * density * (s * s);
+        values[4][i] = (u * u - 1.0) * density * (s * s * s);
+        values[5][i] = (3.0 - u * u) * u * density * (s * s * s * s);
+    }
+    values
 }
 
 #[cfg(test)]
@@ -171,8 +226,6 @@ mod tests {
         (0..n).map(|i| gauss((t - 0.5 + (f64::from(i) + 0.5) / f64::from(n)) / sigma)).sum::<f64>() / f64::from(n)
     }
 
-    const ALL: Wanted = Wanted { integral: true, value: true, slope: true };
-
     struct Sampled {
         low: usize,
         high: usize,
@@ -182,8 +235,10 @@ mod tests {
     }
 
     fn samples(profile: &Profile, at: f64) -> Sampled {
-        let [mut integral, mut value, mut slope] = [(); 3].map(|()| vec![0.0; 48]);
-        let (low, high) = profile.sample(at, &mut Samples { integral: &mut integral, value: &mut value, slope: &mut slope }, ALL);
+        let around = profile.around(at);
+        let blocks = [0, 16, 32].map(|from| around.block(from));
+        let (integral, value) = (blocks.map(|b| b.integral()).concat(), blocks.map(|b| b.value()).concat());
+        let (slope, (low, high)) = (blocks.map(|b| b.slope()).concat(), around.seen(48));
         Sampled { low, high, integral, value, slope }
     }
 

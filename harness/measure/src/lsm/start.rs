@@ -1,12 +1,11 @@
 //! Where the fit starts: from what is given, and for the rest from the image.
 
-use calibench_model::{Affine, Image, PixelPoint};
+use calibench_model::Affine;
 
+use super::area::{self, Area, Grey};
 use super::fit::{Parameters, Work};
 use super::mask::Mask;
-use super::middle;
 use super::planes::Pose;
-use crate::blob::{Blob, Polarity, Segmentation};
 
 /// Directions that are tried over one period of the mask's symmetry.
 const TURNS: u32 = 6;
@@ -15,24 +14,14 @@ const TURNS_OF_A_CORNER: u32 = 12;
 /// The fewest pixels whose moments give a shape.
 const FEWEST: usize = 8;
 
-/// The middle of the target's pixels, as [`blob`] has it, where their shape is not wanted: see [`super::middle`].
-pub(super) fn middle(mask: &Mask, image: &Image, centre: (i64, i64), half: i64, start: PixelPoint) -> Option<PixelPoint> {
-    if mask.is_open() { None } else { middle::of(image, centre, half, start, FEWEST) }
-}
-
-/// The target's pixels, if they can be told from the ground and the window holds all of them.
-pub(super) fn blob(mask: &Mask, image: &Image, centre: (i64, i64), half: i64, start: PixelPoint) -> Option<Blob> {
-    if mask.is_open() {
-        return None;
-    }
-    let segmentation = Segmentation { threshold: None, polarity: Polarity::FromWindow, enlarge: 1 };
-    let blob = segmentation.target(image, centre, half, start).ok()?;
-    (!blob.cut && blob.pixels.len() >= FEWEST).then_some(blob)
+/// The target's pixels around `start`, if they can be told from the ground and the window holds all of them.
+pub(super) fn area(mask: &Mask, grey: Grey<'_>, range: (f32, f32), start: [f64; 2]) -> Option<Area> {
+    if mask.is_open() { None } else { area::of(grey, range, start, FEWEST) }
 }
 
 /// The shapes to try, each an affine map: the given one, or else, turned in steps, one of the given size, one with the pixels' moments, or one that
 /// fills half the window.
-pub(super) fn shapes(mask: &Mask, given: Option<Affine>, size: f64, blob: Option<&Blob>, window: f64) -> Vec<Affine> {
+pub(super) fn shapes(mask: &Mask, given: Option<Affine>, size: f64, area: Option<&Area>, window: f64) -> Vec<Affine> {
     if let Some(affine) = given {
         return vec![if mask.is_open() { lengthened(&affine, window) } else { affine }];
     }
@@ -43,8 +32,8 @@ pub(super) fn shapes(mask: &Mask, given: Option<Affine>, size: f64, blob: Option
     } else {
         window / 2.0
     };
-    let root = match blob {
-        Some(blob) if size <= 0.0 => moment_root(blob, mask.moment),
+    let root = match area {
+        Some(area) if size <= 0.0 => moment_root(area, mask.moment),
         _ => None,
     };
     let shape = root.unwrap_or([side, 0.0, side]);
@@ -87,8 +76,8 @@ fn lengthened(a: &Affine, window: f64) -> Affine {
 }
 
 /// The symmetric root of second moments `M`, in units of the mask's: `A A^T moment = M`. `None` if the moments are those of a line.
-fn moment_root(blob: &Blob, moment: f64) -> Option<[f64; 3]> {
-    let [xx, xy, yy] = blob.moments();
+fn moment_root(area: &Area, moment: f64) -> Option<[f64; 3]> {
+    let [xx, xy, yy] = area.moments;
     let determinant = xx * yy - xy * xy;
     if determinant <= 1e-2 * (xx + yy) * (xx + yy) / 4.0 {
         return None;
@@ -106,7 +95,10 @@ fn turned([xx, xy, yy]: [f64; 3], angle: f64) -> Affine {
 
 #[cfg(test)]
 mod tests {
+    use calibench_model::Image;
+
     use super::*;
+    use crate::lsm::planes::Planes;
 
     #[test]
     fn moments_give_the_shape() {
@@ -119,8 +111,10 @@ mod tests {
         };
         let image = Image::from_fn(61, 61, |x, y| if inside(x as f64 - 30.2, y as f64 - 30.4) { 0.1 } else { 0.9 });
         let mask = Mask::new(calibench_model::TargetKind::Disc).unwrap();
-        let blob = blob(&mask, &image, (30, 30), 15, PixelPoint::new(30.0, 30.0)).unwrap();
-        let shapes = shapes(&mask, None, 0.0, Some(&blob), 31.0);
+        let mut planes = Planes::new(31);
+        planes.observe(image.rows_around(30, 30, 15).unwrap());
+        let area = area(&mask, planes.grey(), area::range(planes.grey()).unwrap(), [15.0, 15.0]).unwrap();
+        let shapes = shapes(&mask, None, 0.0, Some(&area), 31.0);
         assert_eq!(shapes.len(), 1);
         let a = shapes[0];
         // A A^T is what an ellipse tells of A.

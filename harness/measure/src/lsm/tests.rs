@@ -1,5 +1,6 @@
 use calibench_model::Affine;
 
+use super::mask::Rule;
 use super::planes::{BLUR, COVERAGE, Derivatives, Pose};
 use super::*;
 use crate::analytic::{Noise, Picture};
@@ -45,7 +46,12 @@ fn conforms() {
 fn drawn(picture: &Picture, pixels: usize) -> Planes {
     let mut planes = Planes::new(pixels);
     let mask = Mask::new(picture.kind).unwrap();
-    planes.draw(&mask, &Pose { at: picture.at, affine: picture.affine }, &Profile::new(picture.sigma), Derivatives::PoseAndBlur);
+    planes.draw(
+        &mask,
+        &Pose { at: picture.at, affine: picture.affine },
+        &Profile::new(picture.sigma),
+        (Derivatives::PoseAndBlur, Rule::Exact),
+    );
     planes
 }
 

@@ -1,0 +1,109 @@
+//! Line integrals for every pixel, row by row, from the samples at a border's nodes.
+
+use super::bank::{Bank, Stretch};
+use super::curves::{self, Expansion, MOVING};
+use super::planes::{BLUR, COVERAGE, Window};
+use super::profile::LANES;
+
+/// A row of `LANES` pixels: coverage, its derivatives by position and shape, and by the blur.
+struct Sums {
+    coverage: [f32; LANES],
+    moving: [[f32; LANES]; MOVING],
+    blur: [f32; LANES],
+}
+
+/// The planes, row by row. A line's node has `LINE` numbers, an arc's `ARC`.
+#[expect(clippy::needless_pass_by_value, reason = "it holds what is written to")]
+#[inline(always)]
+pub(super) fn sweep<const LINE: usize, const ARC: usize, const MOVED: bool, const BLURRED: bool>(
+    window: Window<'_>,
+    bank: &Bank,
+    sigma: f32,
+) {
+    let area = window.pixels * window.stride;
+    for row in 0..window.pixels {
+        for column in (0..window.stride).step_by(LANES) {
+            let mut sums = Sums { coverage: [bank.beyond[row]; LANES], moving: [[0.0; LANES]; MOVING], blur: [0.0; LANES] };
+            for (index, panel) in bank.panels.iter().enumerate() {
+                let place = index * bank.padded + row;
+                let seen = (usize::from(bank.first[place]), usize::from(bank.end[place]));
+                if seen.0 >= seen.1 {
+                    continue;
+                }
+                match &panel.expansion {
+                    Expansion::Line(line) => {
+                        let moments = add::<2, LINE, MOVED, BLURRED>(&mut sums, bank, panel, seen, (row, column));
+                        if MOVED {
+                            line.expand(&moments, &mut sums.moving);
+                        }
+                    }
+                    Expansion::Arc(factors) => {
+                        let moments = add::<5, ARC, MOVED, BLURRED>(&mut sums, bank, panel, seen, (row, column));
+                        if MOVED {
+                            curves::expand(factors, &moments, &mut sums.moving);
+                        }
+                    }
+                }
+            }
+            // Nothing lies behind the window's last column.
+            let mut inside = [0.0; LANES];
+            inside[..LANES.min(window.pixels - column)].fill(1.0);
+            let start = row * window.stride + column;
+            put(&mut window.values[COVERAGE * area + start..], &sums.coverage, &inside);
+            if MOVED {
+                for (plane, lanes) in sums.moving.iter().enumerate() {
+                    put(&mut window.values[plane * area + start..], lanes, &inside);
+                }
+            }
+            if BLURRED {
+                put(&mut window.values[BLUR * area + start..], &sums.blur, &inside.map(|one| one * sigma));
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn put(to: &mut [f32], lanes: &[f32; LANES], factors: &[f32; LANES]) {
+    let to: &mut [f32; LANES] = (&mut to[..LANES]).try_into().expect("a slice of that length");
+    for lane in 0..LANES {
+        to[lane] = lanes[lane] * factors[lane];
+    }
+}
+
+/// Integrals over the nodes `first..end` of a panel at the pixels from (`row`, `column`) on: adds coverage and blur, returns those of `K` times the
+/// curve's functions.
+#[inline(always)]
+fn add<const B: usize, const NUMBERS: usize, const MOVED: bool, const BLURRED: bool>(
+    sums: &mut Sums,
+    bank: &Bank,
+    panel: &Stretch,
+    (first, end): (usize, usize),
+    (row, column): (usize, usize),
+) -> [[f32; LANES]; B] {
+    let mut moments = [[0.0; LANES]; B];
+    let (mut coverage, mut blur) = (sums.coverage, sums.blur);
+    let blocks = bank.padded / LANES;
+    let across = bank.across[panel.across..].as_chunks::<NUMBERS>().0;
+    for node in first..end {
+        let (numbers, down) = (&across[node * blocks + column / LANES], (panel.nodes + node) * bank.padded + row);
+        let k = bank.values[down];
+        coverage = plus(&coverage, k, &numbers[0]);
+        if MOVED {
+            for function in 0..B {
+                moments[function] = plus(&moments[function], k, &numbers[1 + function]);
+            }
+        }
+        if BLURRED {
+            blur = plus(&blur, k, &numbers[NUMBERS - 2]);
+            blur = plus(&blur, -bank.slopes[down], &numbers[NUMBERS - 1]);
+        }
+    }
+    (sums.coverage, sums.blur) = (coverage, blur);
+    moments
+}
+
+/// A whole new array: sums that are changed in place get torn into pieces of several lengths.
+#[inline(always)]
+fn plus(sum: &[f32; LANES], factor: f32, lanes: &[f32; LANES]) -> [f32; LANES] {
+    std::array::from_fn(|lane| sum[lane] + factor * lanes[lane])
+}
