@@ -46,7 +46,7 @@ lint:
     RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
     sh -n bootstrap
 
-# Points per second of every operator, of cameras, and seconds of adjustments, beside their peers
+# Points per second of every operator, of cameras, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
     cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards
 

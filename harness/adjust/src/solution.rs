@@ -76,15 +76,15 @@ pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: St
         return Err(AdjustError::Undetermined(Box::new(defect)));
     }
     let engine = Engine::new(network, layout, options.huber.map_or(Loss::Squares, Loss::Huber));
-    let end = engine.descend(start, options.most_iterations)?;
-    let solved = determined(&engine, &end)?;
+    let mut end = engine.descend(start, options.most_iterations)?;
+    let solved = determined(&engine, &mut end)?;
     let solution = Solution { engine, end, solved, datum: network.datum.clone() };
     if network.datum == Datum::Inner { solution.in_datum(&Datum::Inner) } else { Ok(solution) }
 }
 
 /// The normal equations at the end, solved.
-fn determined(engine: &Engine, end: &End) -> Result<Solved, AdjustError> {
-    let solved = engine.decompose(&end.normals, 0.0);
+fn determined(engine: &Engine, end: &mut End) -> Result<Solved, AdjustError> {
+    let solved = end.solved.take().or_else(|| engine.decompose(&end.normals, 0.0));
     let suspect = solved.as_ref().is_none_or(|solved| solved.factor.smallest_pivot < SUSPECT);
     if suspect || !end.converged {
         let redundancy = engine.layout.counts.redundancy().max(1);

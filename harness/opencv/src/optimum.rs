@@ -63,6 +63,13 @@ fn same_optimum(views: &[Vec<PixelPoint>]) {
         let ratio = theirs.sigmas[i] / covariance[(i, i)].sqrt();
         assert!((ratio / expected - 1.0).abs() < 1e-5, "{}: {ratio}, expected {expected}", parameter.name);
     }
+    for (view, (pose, [a, b, c, x, y, z])) in ours.solution.poses().iter().zip(&theirs.poses).enumerate() {
+        // X0 = -R^T t; R and t mean the same axes x right, y down, z forward.
+        let centre =
+            -nalgebra::Rotation3::new(nalgebra::Vector3::new(*a, *b, *c)).inverse_transform_vector(&nalgebra::Vector3::new(*x, *y, *z));
+        let off = (centre - pose.centre.coords).norm() / centre.norm();
+        assert!(off < 1e-6, "view {view}: {off}");
+    }
 }
 
 #[test]

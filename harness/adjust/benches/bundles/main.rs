@@ -1,15 +1,23 @@
-//! Seconds of adjustments, one thread. `cargo bench -p calibench-adjust --bench bundles`.
+//! Seconds of adjustments, one thread, beside Ceres Solver where a machine has it. `cargo bench --workspace --bench bundles`.
+//!
+//! Ceres gets the same observations and start values, and its optimum must be ours: `peers/ceres.rs`. Words after `--` choose problems by name.
 
+#[path = "../peers/ceres.rs"]
+mod ceres;
 #[path = "../../tests/adjustment/scenes.rs"]
 mod scenes;
 
+use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-use calibench_adjust::{AdjustError, Network, Options, Variance, adjust};
+use calibench_adjust::{Network, Options, Solution, Variance, adjust};
 use calibench_model::camera::CameraModel;
 
-fn main() -> Result<(), AdjustError> {
+/// Differences above which the optima are not one: of the RMS (relative), of the parameters (in standard deviations), of these themselves (relative).
+const SAME: [f64; 3] = [1e-9, 1e-3, 1e-5];
+
+fn main() -> Result<(), Box<dyn Error>> {
     if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
         return Ok(());
     }
@@ -20,17 +28,68 @@ fn main() -> Result<(), AdjustError> {
     for views in [17, 100, 1000, 5000] {
         race(&format!("board of 54 corners, {views} views"), || board(views), if views > 500 { 5 } else { 50 })?;
     }
-    race("36 images x 256 points, OpenCV's camera", || ring(scenes::opencv(), &scenes::FIVE), 9)?;
-    race("200 images x 5000 points, OpenCV's camera", || flight(scenes::opencv(), &scenes::FIVE), 3)?;
+    let (peer, mut required) = (ceres::Peer::compile(), Vec::new());
+    beside(&peer, "36 images x 256 points, OpenCV's camera", || ring(scenes::opencv(), &scenes::FIVE), (9, 5.0), &mut required)?;
+    beside(&peer, "200 images x 5000 points, OpenCV's camera", || flight(scenes::opencv(), &scenes::FIVE), (3, 2.0), &mut required)?;
     let names = ["c", "x0", "y0", "k1", "k2", "p1", "p2"];
     race("36 images x 256 points, photogrammetric", || ring(scenes::photogrammetric(), &names), 9)?;
-    race("200 images x 5000 points, photogrammetric", || flight(scenes::photogrammetric(), &names), 3)
+    race("200 images x 5000 points, photogrammetric", || flight(scenes::photogrammetric(), &names), 3)?;
+    if let Err(why) = peer {
+        println!("{why}");
+    }
+    required.iter().for_each(|line| println!("{line}"));
+    Ok(())
 }
 
-/// The best of some rounds.
-fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<(), AdjustError> {
+/// [`race`] beside Ceres, which it must beat so many times.
+fn beside(
+    peer: &Result<ceres::Peer, String>,
+    what: &str,
+    network: impl FnOnce() -> Network,
+    (rounds, least): (usize, f64),
+    required: &mut Vec<String>,
+) -> Result<(), Box<dyn Error>> {
+    let mut kept = None;
+    let Some([ours, covariance]) = race(what, || kept.insert(network()).clone(), rounds)? else { return Ok(()) };
+    let (Ok(peer), Some(network)) = (peer, kept) else { return Ok(()) };
+    let solution = adjust(&network, &Options::default())?;
+    let found = peer.solve(&network, ceres::Trust::Default, rounds, 1)?;
+    same("its default", &found, &solution)?;
+    let bold = peer.solve(&network, ceres::Trust::Bold, rounds, 0)?;
+    same("1e8", &bold, &solution)?;
+    let theirs = found.covariance.unwrap_or(f64::NAN);
+    let mut row = |of: &str, least: f64, reached: f64| {
+        if required.is_empty() {
+            required.push(format!("\n{:<72} {:>9} {:>9}", "", "required", "reached"));
+        }
+        required.push(format!("{:<72} {least:>9.1} {reached:>9.1}", format!("{what}: {of}")));
+    };
+    row("solution / Ceres by default", least, found.seconds / ours);
+    row("solution / Ceres, first trust region 1e8", least, bold.seconds / ours);
+    row("covariance / Ceres' of interior and poses", least, theirs / covariance);
+    Ok(())
+}
+
+/// The optimum of Ceres is ours.
+fn same(radius: &str, found: &ceres::Found, ours: &Solution) -> Result<(), Box<dyn Error>> {
+    let covariance = found.covariance.map_or_else(String::new, |seconds| format!("{seconds:.5}"));
+    let what = format!("  Ceres, {}, trust region {radius}", found.solver);
+    println!("{what:<61} {:>6} {:>10.5} {covariance:>12}", found.steps, found.seconds);
+    let differs = found.differs(ours)?;
+    let sigmas = if found.covariance.is_some() { differs.sigmas } else { 0.0 };
+    println!(
+        "    differs by {:.1e} in the RMS, {:.1e} sigma in the parameters, {sigmas:.1e} in the sigmas",
+        differs.root, differs.parameters
+    );
+    let differs = [differs.root, differs.parameters, sigmas];
+    // Not a number is no agreement either.
+    if differs.iter().zip(SAME).all(|(differs, most)| *differs <= most) { Ok(()) } else { Err("the optima are not one".into()) }
+}
+
+/// Solution and covariance, the best of some rounds; `None` if the problem is not asked for.
+fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<Option<[f64; 2]>, Box<dyn Error>> {
     if std::env::args().skip(1).any(|argument| !argument.starts_with('-') && !what.contains(&argument)) {
-        return Ok(());
+        return Ok(None);
     }
     let network = &network();
     let options = Options::default();
@@ -49,7 +108,7 @@ fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<
     let (counts, sigma0) = (solution.counts(), solution.sigma0().unwrap_or(f64::NAN));
     let (observed, unknowns, steps) = (counts.observations(), counts.unknowns, solution.iterations());
     println!("{what:<44} {observed:>8} {unknowns:>8} {steps:>6} {:>10.5} {:>12.5} {sigma0:>10.5}", best[0], best[1]);
-    Ok(())
+    Ok(Some(best))
 }
 
 fn board(views: usize) -> Network {

@@ -65,6 +65,21 @@ pub(crate) fn linearise(
     Ok(())
 }
 
+/// Residuals alone, at a `state` so near that all else is the same to its last digits.
+///
+/// # Errors
+/// [`Lost`], if a measured point is not pictured.
+pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scratch: &mut Scratch, into: &mut Normals) -> Result<(), Lost> {
+    let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
+    for (image, range) in layout.of_image.iter().enumerate() {
+        let (optics, sights) = (&optics[network.images[image].camera], &layout.sights[range.clone()]);
+        let found = scratch.0.picture(optics, &state.poses[image], sights, &state.points);
+        found.map_err(|Lost(i)| Lost(range.start + i))?;
+        scratch.0.subtract(sights, &mut into.residuals[range.clone()]);
+    }
+    Ok(())
+}
+
 /// White derivatives of every sight: by the unknown parameters of its camera, then six by its pose, then three by its point; zero where nothing may change.
 ///
 /// # Errors
@@ -126,8 +141,10 @@ impl Normals {
             self.pose_right[image][i] = view.product(last, i) * keep(i);
         }
         let coupling = &mut self.pose_camera[image];
-        coupling.clear();
-        coupling.extend((0..POSE * width).map(|k| view.product(POSE + k % width, k / width) * keep(k / width)));
+        coupling.resize(POSE * width, 0.0);
+        for i in 0..POSE {
+            (0..width).for_each(|k| coupling[i * width + k] = view.product(POSE + k, i) * keep(i));
+        }
         let (block, right) = (&mut self.camera[camera], &mut self.camera_right[layout.cameras[camera].offset..]);
         for i in 0..width {
             for j in 0..=i {

@@ -10,7 +10,7 @@ mod view;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use blocks::{Normals, Scratch, linearise, rows};
+pub(crate) use blocks::{Normals, Scratch, linearise, residuals, rows};
 pub(crate) use robust::Loss;
 pub(crate) use view::Lost;
 

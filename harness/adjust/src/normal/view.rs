@@ -1,10 +1,10 @@
 //! The observation equations of one image.
 
-use calibench_model::Pose;
+use calibench_model::{PixelPoint, Pose};
 use multiversion::multiversion;
 use nalgebra::Matrix3;
 
-use super::gram::{BLOCK, LANES, gram};
+use super::gram::{BLOCK, LANES, Tile, gram};
 use super::optics::{Optics, POSE, Pictured};
 use super::robust::Loss;
 use crate::network::Sight;
@@ -24,6 +24,7 @@ pub(super) struct View {
     places: Vec<usize>,
     /// `R^T R`, row by row, lower triangle.
     products: Vec<f64>,
+    tiles: Vec<Tile>,
     pub(super) columns: usize,
     pub(super) cost: f64,
 }
@@ -53,43 +54,41 @@ impl View {
         points: &[nalgebra::Point3<f64>],
         residuals: &mut [Residual],
     ) -> Result<(), Lost> {
-        self.points.clear();
-        self.points.extend(sights.iter().map(|sight| <[f64; 3]>::from(points[sight.point].coords)));
-        setting.optics.picture(setting.pose, &self.points, &mut self.pictured);
-        if let Some(i) = self.pictured.pixels.iter().position(|pixel| !pixel.is_finite()) {
-            return Err(Lost(i));
-        }
+        self.picture(setting.optics, setting.pose, sights, points)?;
         self.places.clear();
         self.places.extend((0..POSE).chain(setting.free.iter().map(|i| POSE + i)));
         self.columns = (POSE + setting.free.len() + 1).next_multiple_of(2);
-        self.rows.clear();
         self.rows.resize(sights.len().div_ceil(LANES) * self.columns * BLOCK, 0.0);
         self.cost = 0.0;
         let pixels = self.pictured.pixels.chunks(LANES);
         let blocks = self.rows.chunks_exact_mut(self.columns * BLOCK).zip(self.pictured.blocks());
         for ((((rows, from), pixels), sights), residuals) in blocks.zip(pixels).zip(sights.chunks(LANES)).zip(residuals.chunks_mut(LANES)) {
-            let mut white = [[0.0; LANES]; 3];
-            for (lane, ((sight, pixel), residual)) in sights.iter().zip(pixels).zip(residuals).enumerate() {
-                residual.px = [pixel.x - sight.at[0], pixel.y - sight.at[1]];
-                let [a, b, c] = sight.whiten;
-                let v = [a * residual.px[0], b * residual.px[0] + c * residual.px[1]];
-                let (cost, weight) = setting.loss.of(v[0] * v[0] + v[1] * v[1]);
-                residual.weight = weight;
-                self.cost += cost;
-                let root = weight.sqrt();
-                (white[0][lane], white[1][lane], white[2][lane]) = (a * root, b * root, c * root);
-                let last = (POSE + setting.free.len()) * BLOCK + lane;
-                (rows[last], rows[last + LANES]) = (-v[0] * root, -v[1] * root);
-            }
-            whiten(&white, &self.places, from, rows);
+            let misclosed = misclosures(setting.loss, sights, pixels, residuals);
+            self.cost += misclosed.cost;
+            whiten(&misclosed, &self.places, from, rows);
         }
         Ok(())
+    }
+
+    /// Pixels and derivatives.
+    pub(super) fn picture(&mut self, optics: &Optics, pose: &Pose, sights: &[Sight], points: &[nalgebra::Point3<f64>]) -> Result<(), Lost> {
+        self.points.clear();
+        self.points.extend(sights.iter().map(|sight| <[f64; 3]>::from(points[sight.point].coords)));
+        optics.picture(pose, &self.points, &mut self.pictured);
+        self.pictured.pixels.iter().position(|pixel| !pixel.is_finite()).map_or(Ok(()), |i| Err(Lost(i)))
+    }
+
+    /// Residuals of what was pictured last; their weights stay.
+    pub(super) fn subtract(&self, sights: &[Sight], residuals: &mut [Residual]) {
+        for ((residual, sight), pixel) in residuals.iter_mut().zip(sights).zip(&self.pictured.pixels) {
+            residual.px = [pixel.x - sight.at[0], pixel.y - sight.at[1]];
+        }
     }
 
     /// Sums the products of the columns.
     pub(super) fn sum(&mut self) {
         self.products.resize(self.columns * self.columns, 0.0);
-        gram(&self.rows, self.columns, &mut self.products);
+        gram(&self.rows, self.columns, &mut self.tiles, &mut self.products);
     }
 
     /// The product of two columns.
@@ -117,15 +116,51 @@ impl View {
     }
 }
 
-/// Copies the columns `places` of a block, made white.
+/// Of a block of sights: what makes their rows white, `(a x, b x + c y)`, and white misclosures; zero in lanes without a sight.
+struct Misclosed {
+    white: [[f64; LANES]; 3],
+    misclosures: [[f64; LANES]; 2],
+    cost: f64,
+}
+
+#[inline]
+fn misclosures(loss: Loss, sights: &[Sight], pixels: &[PixelPoint], residuals: &mut [Residual]) -> Misclosed {
+    let (mut white, mut misclosures, mut cost) = ([[0.0; LANES]; 3], [[0.0; LANES]; 2], 0.0);
+    for (lane, ((sight, pixel), residual)) in sights.iter().zip(pixels).zip(residuals).enumerate().take(LANES) {
+        let px = [pixel.x - sight.at[0], pixel.y - sight.at[1]];
+        let [a, b, c] = sight.whiten;
+        let v = [a * px[0], b * px[0] + c * px[1]];
+        let square = v[0] * v[0] + v[1] * v[1];
+        let (mut weight, mut root) = (1.0, 1.0);
+        if loss == Loss::Squares {
+            cost += square;
+        } else {
+            let (robust, found) = loss.of(square);
+            cost += robust;
+            (weight, root) = (found, found.sqrt());
+        }
+        *residual = Residual { px, weight };
+        (white[0][lane], white[1][lane], white[2][lane]) = (a * root, b * root, c * root);
+        (misclosures[0][lane], misclosures[1][lane]) = (-v[0] * root, -v[1] * root);
+    }
+    Misclosed { white, misclosures, cost }
+}
+
+/// Copies the columns `places` of a block, made white, then misclosures and, where the number of columns wants one, zeros.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn whiten([a, b, c]: &[[f64; LANES]; 3], places: &[usize], from: &[f64], into: &mut [f64]) {
+fn whiten(misclosed: &Misclosed, places: &[usize], from: &[f64], into: &mut [f64]) {
     let ((from, _), (into, _)) = (from.as_chunks::<BLOCK>(), into.as_chunks_mut::<BLOCK>());
-    for (into, place) in into.iter_mut().zip(places) {
+    let [a, b, c] = &misclosed.white;
+    let (columns, last) = into.split_at_mut(places.len());
+    for (into, place) in columns.iter_mut().zip(places) {
         let from = &from[*place];
         for lane in 0..LANES {
             into[lane] = a[lane] * from[lane];
             into[LANES + lane] = b[lane] * from[lane] + c[lane] * from[LANES + lane];
         }
+    }
+    last.fill([0.0; BLOCK]);
+    if let Some(last) = last.first_mut() {
+        last.copy_from_slice(misclosed.misclosures.as_flattened());
     }
 }

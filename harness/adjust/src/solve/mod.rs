@@ -11,7 +11,7 @@ mod small;
 
 use crate::AdjustError;
 use crate::network::{Layout, Network};
-use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise};
+use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise, residuals};
 use crate::state::State;
 use factor::{Factor, Structure};
 pub(crate) use inverse::{Inverse, Member};
@@ -26,6 +26,8 @@ const LEAST: f64 = 1e-9;
 const MOST: f64 = 1e12;
 /// Share of the sum of squares that a step must promise for another to follow: it moves the unknowns by 1e-7 of their standard deviations.
 const WORTH: f64 = 1e-14;
+/// Share of the sum of squares that is beyond its digits: a step that promises no more changes neither it nor the normal equations, only the unknowns.
+const NOTHING: f64 = 1e-16;
 /// Share that is so little that the sums themselves may not tell it.
 const LITTLE: f64 = 1e-10;
 /// How far rounding of object coordinates may exceed that of pixels, squared.
@@ -62,6 +64,8 @@ pub(crate) struct End {
     /// What the last step still promised.
     pub(crate) gain: f64,
     pub(crate) converged: bool,
+    /// The normal equations, solved, where the iteration needed that already.
+    pub(crate) solved: Option<Solved>,
 }
 
 impl<'n> Engine<'n> {
@@ -146,15 +150,15 @@ impl<'n> Engine<'n> {
         Step::zero(self.layout.width, self.layout.pose_free.len(), self.layout.point_free.len())
     }
 
-    /// The step with `damping`, and what it promises; `None` if there is none.
-    fn step(&self, normals: &Normals, damping: f64, schur: &mut Schur, step: &mut Step) -> Option<f64> {
+    /// The step with `damping`, what it promises and the decomposition behind it; `None` if there is none.
+    fn step(&self, normals: &Normals, damping: f64, schur: &mut Schur, step: &mut Step) -> Option<(f64, Factor)> {
         let mut reduced = self.blank.clone();
         schur.eliminate(&self.plan, &self.layout, normals, damping, &mut reduced).ok()?;
         let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;
         let mut kept = schur.reduced.clone();
         factor.solve(&mut kept);
         schur.back(&self.plan, &self.layout, &kept, step);
-        step.is_finite().then(|| normals.along(step))
+        step.is_finite().then(|| (normals.along(step), factor))
     }
 
     /// The minimum from `start`.
@@ -168,9 +172,16 @@ impl<'n> Engine<'n> {
         let mut schur = Schur::default();
         for iterations in 1..=most_iterations {
             let mut accepted = false;
-            if let Some(promised) = self.step(&normals, damping, &mut schur, &mut step) {
+            if let Some((promised, factor)) = self.step(&normals, damping, &mut schur, &mut step) {
                 let before = std::mem::replace(&mut gain, promised);
                 let cost = normals.cost;
+                if damping == 0.0 && gain <= NOTHING * cost {
+                    let moved = state.moved(&self.layout, &step);
+                    if residuals(self.network, &self.layout, &moved, &mut scratch, &mut normals).is_ok() {
+                        let solved = Some(Solved { schur, factor });
+                        return Ok(End { state: moved, normals, iterations, gain, converged: true, solved });
+                    }
+                }
                 let moved = state.moved(&self.layout, &step);
                 let pictured = self.linearise(&moved, &mut scratch, &mut trial).is_ok();
                 accepted = pictured && trial.cost <= cost * (1.0 + ROUNDING) + NOISE * self.floor;
@@ -181,7 +192,7 @@ impl<'n> Engine<'n> {
                 // Nothing to gain, or so little that rounding alone decides: it no longer falls.
                 let stands = (gain <= LITTLE * cost || gain <= NOISE * self.floor) && gain > 0.25 * before;
                 if gain <= WORTH * cost + self.floor || (accepted && stands) {
-                    return Ok(End { state, normals, iterations, gain, converged: true });
+                    return Ok(End { state, normals, iterations, gain, converged: true, solved: None });
                 }
             }
             damping = match (accepted, damping) {
@@ -190,10 +201,10 @@ impl<'n> Engine<'n> {
                 (false, damping) => (damping * 10.0).max(FIRST),
             };
             if damping > MOST {
-                return Ok(End { state, normals, iterations, gain, converged: false });
+                return Ok(End { state, normals, iterations, gain, converged: false, solved: None });
             }
         }
-        Ok(End { state, normals, iterations: most_iterations, gain, converged: false })
+        Ok(End { state, normals, iterations: most_iterations, gain, converged: false, solved: None })
     }
 
     fn not_pictured(&self, state: &State, Lost(sight): Lost) -> AdjustError {

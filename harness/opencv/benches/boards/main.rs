@@ -1,11 +1,16 @@
-//! Seconds to calibrate from views of a board, beside OpenCV in process, on the same corners. `cargo bench --workspace --bench boards`.
+//! Seconds to calibrate from views of a board, beside OpenCV in process, mrcal and Ceres Solver, on the same corners.
 //!
-//! One thread, best of some interleaved rounds. OpenCV runs twice: with its default criteria (30 iterations at most, DBL_EPSILON), and until the
-//! parameters change by less than 1e-12 of their norm (100 iterations at most). We stop when a step gains nothing. That we reach one optimum is checked
-//! against a third, untimed run of 100 iterations; what its defaults lack is printed. mrcal, where a machine has it, gets the same start values as our first column.
-//! Ceres is not run: it has no ready-made cost function for this camera and pose that its Python package can minimise over.
+//! `cargo bench --workspace --bench boards`, followed by `-- VIEWS...` for some of 17, 100 and 1000 alone. One thread, best of some rounds. OpenCV runs
+//! with its default criteria (30 iterations at most, DBL_EPSILON), and until the parameters change by less than 1e-12 of their norm (100 iterations at
+//! most). Debian's OpenCV 4.6 solves all unknowns as one dense system: 1000 views take it more than five minutes, so that it gets them, once and by
+//! default, only where `-- opencv` asks for it. We stop when a step gains nothing. mrcal and Ceres, where a machine has them, get the start values of our
+//! first row. That all reach one optimum is checked: `optima.rs`.
 
+#[path = "../../../adjust/benches/peers/ceres.rs"]
+mod ceres;
+mod optima;
 mod peers;
+mod problem;
 #[path = "../../../adjust/tests/adjustment/scenes.rs"]
 mod scenes;
 #[path = "../../src/optimum/theirs.rs"]
@@ -15,59 +20,17 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::Instant;
 
-use calibench_adjust::approximate::{Control, interior_from_planes, planar_starts};
-use calibench_adjust::{Network, Options, Solution, Variance, adjust};
-use calibench_model::camera::{CameraModel, ImageSize};
-use theirs::{Board, Theirs, calibrate};
+use calibench_adjust::{Network, Options, Variance, adjust};
+use calibench_model::camera::CameraModel;
+use theirs::calibrate;
 
-/// Relative differences of RMS and of parameters above which the optima are not one.
-const SAME_RMS: f64 = 1e-9;
-// 1e-6 does not hold for 17 views: where the sums of squares agree to 15 digits, a weakly determined coefficient still differs by 1.1e-6 of itself.
-const SAME: f64 = 1e-5;
-/// The same for mrcal, which lets nobody set when it stops.
-const SAME_RMS_MRCAL: f64 = 1e-8;
-const SAME_MRCAL: f64 = 1e-4;
 /// OpenCV's criteria: iterations at most, and relative change of the parameters at which it stops.
 const DEFAULT: (i32, f64) = (30, f64::EPSILON);
 const TIGHT: (i32, f64) = (100, 1e-12);
 /// Of the run that says where its optimum is.
 const END: (i32, f64) = (100, f64::EPSILON);
-
-fn main() -> Result<(), Box<dyn Error>> {
-    if std::env::args().any(|argument| argument == "--list" || argument == "--test") {
-        return Ok(());
-    }
-    opencv::core::set_num_threads(1)?;
-    println!("Boards of 54 corners, five coefficients, one thread; OpenCV {}", calibench_opencv::version());
-    println!(
-        "{:>6} {:>13} {:>11} {:>12} {:>11} {:>7} {:>11} {:>7} {:>10} {:>10} {:>8} {:>18}",
-        "views",
-        "given start s",
-        "corners s",
-        "covariance s",
-        "default s",
-        "ratio",
-        "1e-12 s",
-        "ratio",
-        "RMS",
-        "parameters",
-        "sigmas",
-        "default's differ"
-    );
-    let mut required = Vec::new();
-    for (views, rounds) in [(17, 20), (100, 10), (1000, 3)] {
-        required.extend(race(views, rounds)?);
-    }
-    println!("\n{:<72} {:>9} {:>9}", "", "required", "reached");
-    for Required { what, least, reached } in required {
-        let reached = reached.map_or_else(|| "not run".to_owned(), |reached| format!("{reached:.1}"));
-        println!("{what:<72} {least:>9.1} {reached:>9}");
-    }
-    println!(
-        "mrcal: apt-get install python3-mrcal. Ceres is not run: pyceres has no manifold for the pose block of pycolmap's cost functions."
-    );
-    Ok(())
-}
+/// Views up to which OpenCV runs without being asked for.
+const MANY: usize = 100;
 
 /// A ratio asked for, and that reached; `None` where the peer is not on this machine.
 struct Required {
@@ -76,131 +39,137 @@ struct Required {
     reached: Option<f64>,
 }
 
-fn race(views: usize, rounds: usize) -> Result<Vec<Required>, Box<dyn Error>> {
-    let network = problem(views);
-    let (board, control) = (board(&network, views), control(&network, views));
-    let size = network.cameras[0].camera.size();
-    let mut best = [f64::INFINITY; 5];
-    let mut keep = |place: usize, clock: Instant| best[place] = best[place].min(clock.elapsed().as_secs_f64());
-    let (mut default_differs, mut spread) = ([f64::INFINITY; 2], 0.0);
-    for _ in 0..rounds {
-        let clock = Instant::now();
-        black_box(adjust(black_box(&network), &Options::default())?);
-        keep(0, clock);
-        let clock = Instant::now();
-        let started = from_corners(&network, &control, size)?;
-        let solution = adjust(&started, &Options::default())?;
-        keep(1, clock);
-        let clock = Instant::now();
-        let covariances = black_box(solution.covariances(Variance::Estimated)?);
-        keep(2, clock);
-        let clock = Instant::now();
-        let usual = calibrate(&board, DEFAULT.0, DEFAULT.1)?;
-        keep(3, clock);
-        let clock = Instant::now();
-        let found = calibrate(&board, TIGHT.0, TIGHT.1)?;
-        keep(4, clock);
-        default_differs = differences(&solution, &usual, views);
-        spread = found.sigmas[0] / covariances.interior[(0, 0)].sqrt();
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().any(|argument| argument == "--list" || argument == "--test") {
+        return Ok(());
     }
-    let ours = adjust(&network, &Options::default())?;
-    let differ = differences(&ours, &calibrate(&board, END.0, END.1)?, views);
-    if differ[0] > SAME_RMS || differ[1] > SAME {
-        return Err(
-            format!("{views} views: the optima differ by {:.1e} in the RMS and {:.1e} in the parameters", differ[0], differ[1]).into()
-        );
+    opencv::core::set_num_threads(1)?;
+    println!("Boards of 54 corners, five coefficients, one thread; OpenCV {}", calibench_opencv::version());
+    let (peer, mut required) = (ceres::Peer::compile(), Vec::new());
+    let patient = arguments.iter().any(|argument| argument == "opencv");
+    let wanted: Vec<usize> = arguments.iter().filter_map(|argument| argument.parse().ok()).collect();
+    for (views, rounds) in [(17, 40), (100, 20), (1000, 5)] {
+        if wanted.is_empty() || wanted.contains(&views) {
+            required.extend(race(views, rounds, peer.as_ref().ok(), patient)?);
+        }
     }
-    let [given, corners, covariance, usual, tight] = best;
-    let ratio = usual / corners;
-    println!(
-        "{views:>6} {given:>13.5} {corners:>11.5} {covariance:>12.5} {usual:>11.4} {ratio:>7.1} {tight:>11.4} {:>7.1} {:>10.1e} {:>10.1e} \
-         {spread:>8.4} {:>8.1e} {:>9.1e}",
-        tight / corners,
-        differ[0],
-        differ[1],
-        default_differs[0],
-        default_differs[1]
-    );
-    let mrcal = peers::mrcal(&network, rounds)?;
-    if let Some(found) = &mrcal {
-        check(&network, found, views)?;
-        println!("{views:>6} mrcal {:.5} s from the start values given, the same optimum", found.seconds);
+    println!("\n{:<72} {:>9} {:>9}", "", "required", "reached");
+    for Required { what, least, reached } in required {
+        let reached = reached.map_or_else(|| "not run".to_owned(), |reached| format!("{reached:.1}"));
+        println!("{what:<72} {least:>9.1} {reached:>9}");
     }
-    let row = |what: &str, least: f64, reached: Option<f64>| Required { what: format!("{views} views: {what}"), least, reached };
-    Ok(vec![
-        row("given start values / mrcal, times faster", 10.0, mrcal.as_ref().map(|found| found.seconds / given)),
-        row("from corners alone / calibrateCamera by default, times faster", 10.0, Some(ratio)),
-        row("solution / covariance of all blocks", 1.0, Some(given / covariance)),
-    ])
-}
-
-/// mrcal's optimum is ours: RMS and parameters.
-fn check(network: &Network, found: &peers::Mrcal, views: usize) -> Result<(), Box<dyn Error>> {
-    let ours = adjust(network, &Options::default())?;
-    let rms = (ours.cost() / (54 * views) as f64).sqrt() * sigma(&ours);
-    let pairs = ours.cameras()[0].parameters().into_iter().zip(&found.parameters);
-    let most = pairs.map(|(p, other)| (other / p.value - 1.0).abs()).fold(0.0, f64::max);
-    let differs = (found.rms / rms - 1.0).abs();
-    if found.parameters.len() != 9 || differs > SAME_RMS_MRCAL || most > SAME_MRCAL {
-        return Err(format!("{views} views: mrcal's optimum differs by {differs:.1e} in the RMS and {most:.1e} in the parameters").into());
+    if let Err(why) = peer {
+        println!("{why}");
     }
-    println!("{views:>6} mrcal differs by {differs:.1e} in the RMS, {most:.1e} in the parameters");
     Ok(())
 }
 
-/// The board with noisy corners in single precision, which is what OpenCV takes, and a start as good as Zhang's.
-fn problem(views: usize) -> Network {
-    let mut network = scenes::board(scenes::opencv(), views, 1);
-    scenes::free(&mut network, &scenes::FIVE);
-    let mut random = scenes::random(2);
-    scenes::shake_pixels(&mut network, 0.2, &mut random);
-    for observation in &mut network.observations {
-        let at = &mut observation.position;
-        (at.x, at.y) = (f64::from(at.x as f32), f64::from(at.y as f32));
+/// A line of the table.
+fn line(what: &str, seconds: f64, steps: Option<usize>, remark: &str) {
+    let steps = steps.map_or_else(String::new, |steps| format!("{steps} steps"));
+    println!("  {what:<48} {seconds:>10.5} s {steps:>9}  {remark}");
+}
+
+fn race(views: usize, rounds: usize, peer: Option<&ceres::Peer>, patient: bool) -> Result<Vec<Required>, Box<dyn Error>> {
+    println!("\n{views} views");
+    let network = problem::problem(views);
+    let ours = ours(&network, views, rounds)?;
+    let [mrcal, ceres @ ..] = same_start(&network, views, rounds, peer)?;
+    let usual = if views <= MANY {
+        Some(from_corners(&network, views, rounds)?)
+    } else if patient {
+        Some(once(&network, views)?)
+    } else {
+        println!("  OpenCV is not run: more than five minutes (cargo bench --workspace --bench boards -- {views} opencv)");
+        None
+    };
+    let row = |what: &str, least: f64, reached: Option<f64>| Required { what: format!("{views} views: {what}"), least, reached };
+    Ok(vec![
+        row("given start values / mrcal, times faster", 10.0, mrcal.map(|seconds| seconds / ours.given)),
+        row("given start values / Ceres by default, times faster", 10.0, ceres[0].map(|seconds| seconds / ours.given)),
+        row("given start values / Ceres, first trust region 1e8, times faster", 10.0, ceres[1].map(|seconds| seconds / ours.given)),
+        row("from corners alone / calibrateCamera by default, times faster", 10.0, usual.map(|usual| usual / ours.corners)),
+        row("solution / covariance of all blocks", 1.0, Some(ours.given / ours.covariance)),
+    ])
+}
+
+/// Our seconds.
+struct Ours {
+    given: f64,
+    corners: f64,
+    covariance: f64,
+}
+
+fn ours(network: &Network, views: usize, rounds: usize) -> Result<Ours, Box<dyn Error>> {
+    let (control, size) = (problem::control(network, views), network.cameras[0].camera.size());
+    let options = Options::default();
+    let [mut given, mut corners, mut covariance] = [f64::INFINITY; 3];
+    for _ in 0..rounds {
+        let clock = Instant::now();
+        black_box(adjust(black_box(network), &options)?);
+        given = given.min(clock.elapsed().as_secs_f64());
+        let clock = Instant::now();
+        let started = problem::from_corners(network, &control, size)?;
+        let solution = adjust(&started, &options)?;
+        corners = corners.min(clock.elapsed().as_secs_f64());
+        let clock = Instant::now();
+        black_box(solution.covariances(Variance::Estimated)?);
+        covariance = covariance.min(clock.elapsed().as_secs_f64());
     }
-    scenes::shake_poses(&mut network, 5.0, 0.02, &mut random);
-    network
+    line("given start values", given, Some(adjust(network, &options)?.iterations()), "");
+    line("from corners alone", corners, None, "");
+    line("covariance of all blocks", covariance, None, "");
+    Ok(Ours { given, corners, covariance })
 }
 
-fn control(network: &Network, views: usize) -> Vec<Vec<Control>> {
-    let mut control = vec![Vec::new(); views];
-    for o in &network.observations {
-        control[o.image].push(Control { object: network.points[o.point].position, image: o.position });
+/// Seconds of mrcal and of Ceres (by default, and boldly) from the start values given, where they are on this machine; they must reach our optimum.
+fn same_start(network: &Network, views: usize, rounds: usize, peer: Option<&ceres::Peer>) -> Result<[Option<f64>; 3], Box<dyn Error>> {
+    let solution = adjust(network, &Options::default())?;
+    let mrcal = peers::mrcal(network, rounds)?;
+    match &mrcal {
+        Some(found) => line("mrcal, given start values", found.seconds, None, &optima::mrcal(&solution, found)?),
+        None => println!("  mrcal is not run: apt-get install python3-mrcal"),
     }
-    control
-}
-
-fn board(network: &Network, views: usize) -> Board {
-    let size = network.cameras[0].camera.size();
-    let control = control(network, views);
-    let objects = control.iter().map(|view| view.iter().map(|point| [point.object.x, point.object.y]).collect()).collect();
-    let images = control.iter().map(|view| view.iter().map(|point| [point.image.x, point.image.y]).collect()).collect();
-    Board { size: (size.width as i32, size.height as i32), objects, images }
-}
-
-/// The same network with start values from the corners alone.
-fn from_corners(network: &Network, control: &[Vec<Control>], size: ImageSize) -> Result<Network, Box<dyn Error>> {
-    let mut network = network.clone();
-    let views: Vec<&[Control]> = control.iter().map(Vec::as_slice).collect();
-    network.cameras[0].camera = interior_from_planes(&views, size)?.camera;
-    for (image, view) in network.images.iter_mut().zip(&views) {
-        image.pose = planar_starts(&network.cameras[0].camera, view)?[0];
+    let mrcal = mrcal.map(|found| found.seconds);
+    let Some(peer) = peer else { return Ok([mrcal, None, None]) };
+    let covariances = if views > MANY { 1 } else { 3 };
+    let found = peer.solve(network, ceres::Trust::Default, rounds, covariances)?;
+    line(&format!("Ceres, {}, given start values", found.solver), found.seconds, Some(found.steps), &optima::ceres(&solution, &found)?);
+    if let Some(seconds) = found.covariance {
+        line("Ceres, covariance of interior and poses", seconds, None, "");
     }
-    Ok(network)
+    let bold = peer.solve(network, ceres::Trust::Bold, rounds, 0)?;
+    line("Ceres, first trust region 1e8", bold.seconds, Some(bold.steps), &optima::ceres(&solution, &bold)?);
+    Ok([mrcal, Some(found.seconds), Some(bold.seconds)])
 }
 
-/// Relative differences of the RMS and of the parameters, at most.
-fn differences(ours: &Solution, theirs: &Theirs, views: usize) -> [f64; 2] {
-    let rms = (ours.cost() / (54 * views) as f64).sqrt() * sigma(ours);
-    let parameters = ours.cameras()[0].parameters();
-    let relative = parameters.iter().zip(theirs.parameters).map(|(p, other)| (other / p.value - 1.0).abs());
-    [(theirs.rms / rms - 1.0).abs(), relative.fold(0.0, f64::max)]
-}
-
-/// The a-priori standard deviation of all corners.
-fn sigma(solution: &Solution) -> f64 {
-    match solution.network().observations[0].precision {
-        calibench_adjust::Precision::Sigma(sigma) => sigma,
-        calibench_adjust::Precision::Covariance(_) => 1.0,
+/// Seconds of OpenCV from the corners alone, by default.
+fn from_corners(network: &Network, views: usize, rounds: usize) -> Result<f64, Box<dyn Error>> {
+    let (board, solution) = (problem::board(network, views), adjust(network, &Options::default())?);
+    let (mut best, mut found) = ([f64::INFINITY; 2], Vec::new());
+    for _ in 0..rounds.div_ceil(4) {
+        found.clear();
+        for ((steps, change), best) in [DEFAULT, TIGHT].into_iter().zip(&mut best) {
+            let clock = Instant::now();
+            found.push(calibrate(&board, steps, change)?);
+            *best = best.min(clock.elapsed().as_secs_f64());
+        }
     }
+    line("OpenCV by default, from corners alone", best[0], None, &optima::differences(&solution, &found[0])?);
+    line("OpenCV until 1e-12, from corners alone", best[1], None, &optima::differences(&solution, &found[1])?);
+    let end = calibrate(&board, END.0, END.1)?;
+    println!("  OpenCV after {} iterations {}", END.0, optima::opencv(&solution, &end)?);
+    println!("  {}", optima::nearer(network, &solution, &end)?);
+    Ok(best[0])
+}
+
+/// [`from_corners`] by default alone, and once.
+fn once(network: &Network, views: usize) -> Result<f64, Box<dyn Error>> {
+    let (board, solution) = (problem::board(network, views), adjust(network, &Options::default())?);
+    let clock = Instant::now();
+    let found = calibrate(&board, DEFAULT.0, DEFAULT.1)?;
+    let seconds = clock.elapsed().as_secs_f64();
+    line("OpenCV by default, from corners alone, once", seconds, None, &optima::differences(&solution, &found)?);
+    Ok(seconds)
 }

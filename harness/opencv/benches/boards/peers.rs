@@ -8,6 +8,8 @@ use std::{fs, io};
 use calibench_adjust::Network;
 use calibench_model::camera::CameraModel;
 
+use crate::ceres::opencv_pose;
+
 /// Pythons that may have mrcal: the one of the path, and Debian's.
 const PYTHONS: [&str; 2] = ["python3", "/usr/bin/python3"];
 const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/boards/peers.py");
@@ -52,11 +54,7 @@ fn write_problem(network: &Network, folder: &Path) -> io::Result<()> {
     fs::write(folder.join("camera.txt"), format!("{} {} {}\n", size.width, size.height, parameters.join(" ")))?;
     let mut views = String::new();
     for image in &network.images {
-        // Of the axes x right, y up, z backwards, the second and the third turn round.
-        let turn = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, -1.0, -1.0));
-        let rotation = turn * image.pose.rotation;
-        let translation = -(rotation * image.pose.centre.coords);
-        let numbers = rotation.transpose().iter().chain(translation.iter()).map(f64::to_string).collect::<Vec<_>>();
+        let numbers = opencv_pose(&image.pose).map(|number| number.to_string());
         let _ = writeln!(views, "{}", numbers.join(","));
     }
     fs::write(folder.join("views.csv"), views)?;

@@ -12,6 +12,8 @@ pub struct Theirs {
     pub parameters: [f64; 9],
     /// Their standard deviations, as OpenCV reports them.
     pub sigmas: [f64; 9],
+    /// Of each view: rotation vector and translation, x right, y down, z forward.
+    pub poses: Vec<[f64; 6]>,
 }
 
 /// A board seen in several views.
@@ -57,5 +59,13 @@ pub fn calibrate(board: &Board, steps: i32, change: f64) -> opencv::Result<Their
     for (i, sigma) in sigmas.iter_mut().enumerate() {
         *sigma = *interior.at::<f64>(i as i32)?;
     }
-    Ok(Theirs { rms, parameters, sigmas })
+    let mut poses = Vec::with_capacity(r.len());
+    for (r, t) in r.iter().zip(t.iter()) {
+        let mut pose = [0.0; 6];
+        for i in 0..3 {
+            (pose[i], pose[3 + i]) = (*r.at::<f64>(i as i32)?, *t.at::<f64>(i as i32)?);
+        }
+        poses.push(pose);
+    }
+    Ok(Theirs { rms, parameters, sigmas, poses })
 }
