@@ -3,39 +3,63 @@
 /// At or below this fraction of its diagonal element a pivot counts as zero.
 const SINGULAR: f64 = 1e-12;
 
-/// The triangular factor of the first rows and columns of a matrix.
+/// The triangular factor L of the first rows and columns of a matrix. Sums are worked out by columns, so that none waits for itself.
 pub(crate) struct Factor<const N: usize> {
-    lower: [[f64; N]; N],
+    /// L below its diagonal, and its transpose above.
+    both: [[f64; N]; N],
+    /// One over the diagonal.
+    inverse: [f64; N],
     count: usize,
 }
 
 /// Factors the first `count` rows and columns of `matrix`; `None` if these are singular or hold a number that is none.
+#[inline(always)]
 pub(crate) fn factor<const N: usize>(matrix: &[[f64; N]; N], count: usize) -> Option<Factor<N>> {
-    let mut lower = [[0.0; N]; N];
-    for i in 0..count {
-        for j in 0..=i {
-            let sum = matrix[i][j] - (0..j).map(|k| lower[i][k] * lower[j][k]).sum::<f64>();
-            if i != j {
-                lower[i][j] = sum / lower[j][j];
-            } else if sum > SINGULAR * matrix[i][i] && sum.is_finite() && sum > 0.0 {
-                lower[i][i] = sum.sqrt();
-            } else {
-                return None;
+    let (mut both, mut inverse) = (*matrix, [0.0; N]);
+    for k in 0..count {
+        let pivot = both[k][k];
+        if !(pivot > SINGULAR * matrix[k][k] && pivot.is_finite() && pivot > 0.0) {
+            return None;
+        }
+        inverse[k] = 1.0 / pivot.sqrt();
+        let column: [f64; N] = std::array::from_fn(|i| both[k][i] * inverse[k]);
+        for row in k + 1..count {
+            for i in 0..N {
+                both[row][i] -= if i > k { column[row] * column[i] } else { 0.0 };
             }
+            both[row][k] = column[row];
+        }
+        for i in k + 1..N {
+            both[k][i] = column[i];
         }
     }
-    Some(Factor { lower, count })
+    Some(Factor { both, inverse, count })
 }
 
 impl<const N: usize> Factor<N> {
     /// The solution for a right-hand side; zero beyond the factored rows.
+    #[inline(always)]
     pub(crate) fn solve(&self, right: &[f64; N]) -> [f64; N] {
-        let mut x = [0.0; N];
-        for i in 0..self.count {
-            x[i] = (right[i] - (0..i).map(|k| self.lower[i][k] * x[k]).sum::<f64>()) / self.lower[i][i];
-        }
+        let mut x = self.halfway(right);
         for i in (0..self.count).rev() {
-            x[i] = (x[i] - (i + 1..self.count).map(|k| self.lower[k][i] * x[k]).sum::<f64>()) / self.lower[i][i];
+            x[i] *= self.inverse[i];
+            for k in 0..i {
+                x[k] -= self.both[i][k] * x[i];
+            }
+        }
+        x
+    }
+
+    /// `L^-1` times a right-hand side; zero beyond the factored rows. The products of two of them are those with the inverse matrix between.
+    #[inline(always)]
+    pub(crate) fn halfway(&self, right: &[f64; N]) -> [f64; N] {
+        let mut x = [0.0; N];
+        x[..self.count].copy_from_slice(&right[..self.count]);
+        for k in 0..self.count {
+            x[k] *= self.inverse[k];
+            for i in k + 1..self.count {
+                x[i] -= self.both[k][i] * x[k];
+            }
         }
         x
     }

@@ -13,6 +13,9 @@ const BLURS: (f64, f64) = (0.15, 5.0);
 /// Affine terms may still move the edge of the mask by this many times the last step of the position; where the blur is sought, edge and blur only by as
 /// much as the position: what is left goes with the square of the whole step.
 const SHAPE: f64 = 3.0;
+/// By what share a sum of squares may be off: that of a coarse drawing, and that of single precision.
+const COARSE: f64 = 1e-2;
+const EXACT: f64 = 1e-6;
 /// Damping from which a step tells nothing of convergence, and at which there is no way down.
 const DAMPED: (f64, f64) = (1e-3, 1e6);
 
@@ -81,8 +84,8 @@ impl Work {
 
     #[inline(always)]
     fn system(&self, mask: &Mask, at: &Parameters, blur: bool) -> Result<System, Rejection> {
-        let count = unknowns(blur);
-        System::new(mask.kind, at, &self.planes.products(count), &self.planes.right(count), blur).ok_or(Rejection::NoCorner)
+        let (products, right) = self.planes.products(unknowns(blur));
+        System::new(mask.kind, at, &products, &right, blur).ok_or(Rejection::NoCorner)
     }
 
     /// The least-squares fit from `start` on (its levels are taken from the image), by Gauss-Newton; where a step leads upwards, it is damped
@@ -93,22 +96,22 @@ impl Work {
     pub(super) fn fit(&mut self, mask: &Mask, start: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
         let all = if limits.blur { Derivatives::PoseAndBlur } else { Derivatives::Pose };
         let mut now = start;
-        self.draw(mask, &now, (all, Rule::Exact));
+        // The first drawing only leads to the next: no result comes of it.
+        self.draw(mask, &now, (all, Rule::Coarse));
         (now.ground, now.contrast) = self.planes.levels().ok_or(Rejection::NoCorner)?;
         let mut omega = self.planes.compare(now.ground, now.contrast);
         let mut system = self.system(mask, &now, limits.blur)?;
-        let mut damping = 0.0;
+        let (mut damping, mut slack) = (0.0, COARSE);
         for _ in 0..limits.iterations {
             let step = system.step(damping).ok_or(Rejection::NoCorner)?;
             let next = now.moved(&step).ok_or(Rejection::NotConverged)?;
-            if damping <= DAMPED.0 && step.is_small(mask, limits.epsilon) {
+            if slack < COARSE && damping <= DAMPED.0 && step.is_small(mask, limits.epsilon) {
                 return self.conclude(next, &system, omega);
             }
             self.draw(mask, &next, (all, Rule::Exact));
             let there = self.planes.compare(next.ground, next.contrast);
-            // Sums of squares in single precision are right to some 1e-7.
-            if there.is_finite() && there <= omega * (1.0 + 1e-6) {
-                (now, omega) = (next, there);
+            if there.is_finite() && there <= omega * (1.0 + slack) {
+                (now, omega, slack) = (next, there, EXACT);
                 damping = if damping <= DAMPED.0 { 0.0 } else { damping / 10.0 };
                 system = self.system(mask, &now, limits.blur)?;
             } else {
@@ -214,9 +217,10 @@ impl System {
     }
 
     fn covariance(&self, variance: f64) -> Covariance {
-        let column = |i: usize| self.factor.solve(&std::array::from_fn(|k| if k == i { variance } else { 0.0 }));
-        let (x, y) = (column(0), column(1));
-        Covariance { sxx: x[0], sxy: x[1], syy: y[1] }
+        let unit = |i: usize| self.factor.halfway(&std::array::from_fn(|k| if k == i { 1.0 } else { 0.0 }));
+        let (x, y) = (unit(0), unit(1));
+        let product = |a: &[f64; UNKNOWNS], b: &[f64; UNKNOWNS]| variance * a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        Covariance { sxx: product(&x, &x), sxy: product(&x, &y), syy: product(&y, &y) }
     }
 }
 

@@ -120,14 +120,9 @@ impl Planes {
         subtract(&mut residual[..area], [&self.grey, ones, coverage], [ground as f32, contrast as f32])
     }
 
-    /// Sums of products of two planes, before the contrast scales the derivatives: of the first `unknowns`.
-    pub(super) fn products(&self, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
+    /// Sums of products of two planes, before the contrast scales the derivatives, and of each with the residuals: of the first `unknowns`.
+    pub(super) fn products(&self, unknowns: usize) -> ([[f64; UNKNOWNS]; UNKNOWNS], [f64; UNKNOWNS]) {
         products(self, unknowns)
-    }
-
-    /// Sums of products with the residuals.
-    pub(super) fn right(&self, unknowns: usize) -> [f64; UNKNOWNS] {
-        right(self, unknowns)
     }
 
     /// The value of `plane` at a pixel.
@@ -156,32 +151,34 @@ fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, 
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn products(planes: &Planes, unknowns: usize) -> [[f64; UNKNOWNS]; UNKNOWNS] {
-    let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
-    #[expect(clippy::needless_range_loop, reason = "planes go by the same number")]
+fn products(planes: &Planes, unknowns: usize) -> ([[f64; UNKNOWNS]; UNKNOWNS], [f64; UNKNOWNS]) {
+    let (mut products, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
     for i in 0..unknowns {
-        let plane = planes.plane(i);
-        // Four at a time: one sum alone would wait for each of its additions.
-        for first in (0..=i).step_by(4) {
-            let other = |j: usize| planes.plane((first + j).min(i));
-            let sums = dots(plane, [other(0), other(1), other(2), other(3)]);
-            for (j, sum) in (first..=i).zip(sums) {
-                (products[i][j], products[j][i]) = (sum, sum);
+        // The last partner is the residuals.
+        let partner = |j: usize| planes.plane(if j > i { RESIDUAL } else { j });
+        let mut put = |first: usize, sums: &[f64]| {
+            for (j, &sum) in (first..).zip(sums) {
+                if j > i {
+                    right[i] = sum;
+                } else {
+                    (products[i][j], products[j][i]) = (sum, sum);
+                }
             }
+        };
+        let plane = planes.plane(i);
+        let mut first = 0;
+        // Several at a time: one sum alone would wait for each of its additions.
+        while first < i + 2 {
+            match i + 2 - first {
+                1 => put(first, &dots(plane, [partner(first)])),
+                2 => put(first, &dots(plane, [partner(first), partner(first + 1)])),
+                3 => put(first, &dots(plane, [partner(first), partner(first + 1), partner(first + 2)])),
+                _ => put(first, &dots(plane, [partner(first), partner(first + 1), partner(first + 2), partner(first + 3)])),
+            }
+            first += 4;
         }
     }
-    products
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn right(planes: &Planes, unknowns: usize) -> [f64; UNKNOWNS] {
-    let mut right = [0.0; UNKNOWNS];
-    let residual = planes.plane(RESIDUAL);
-    for first in (0..unknowns).step_by(3) {
-        let sums = dots(residual, [planes.plane(first), planes.plane(first + 1), planes.plane(first + 2)]);
-        right[first..first + 3].copy_from_slice(&sums);
-    }
-    right
+    (products, right)
 }
 
 #[inline(always)]

@@ -16,49 +16,64 @@ struct Sums {
 #[expect(clippy::needless_pass_by_value, reason = "it holds what is written to")]
 #[inline(always)]
 pub(super) fn sweep<const LINE: usize, const ARC: usize, const MOVED: bool, const BLURRED: bool>(
-    window: Window<'_>,
+    mut window: Window<'_>,
     bank: &Bank,
     sigma: f32,
 ) {
-    let area = window.pixels * window.stride;
-    for row in 0..window.pixels {
+    // Pairs of rows: each sum alone would wait for its own additions.
+    for row in (0..window.pixels).step_by(2) {
         for column in (0..window.stride).step_by(LANES) {
-            let mut sums = Sums { coverage: [bank.beyond[row]; LANES], moving: [[0.0; LANES]; MOVING], blur: [0.0; LANES] };
+            let none = |row: usize| Sums { coverage: [bank.beyond[row]; LANES], moving: [[0.0; LANES]; MOVING], blur: [0.0; LANES] };
+            let mut sums = [none(row), none(row + 1)];
             for (index, panel) in bank.panels.iter().enumerate() {
                 let place = index * bank.padded + row;
-                let seen = (usize::from(bank.first[place]), usize::from(bank.end[place]));
-                if seen.0 >= seen.1 {
+                let first = bank.first[place].min(bank.first[place + 1]);
+                let end = bank.end[place].max(bank.end[place + 1]);
+                if first >= end {
                     continue;
                 }
+                let seen = (usize::from(first), usize::from(end));
                 match &panel.expansion {
                     Expansion::Line(line) => {
                         let moments = add::<2, LINE, MOVED, BLURRED>(&mut sums, bank, panel, seen, (row, column));
                         if MOVED {
-                            line.expand(&moments, &mut sums.moving);
+                            line.expand(&moments[0], &mut sums[0].moving);
+                            line.expand(&moments[1], &mut sums[1].moving);
                         }
                     }
                     Expansion::Arc(factors) => {
                         let moments = add::<5, ARC, MOVED, BLURRED>(&mut sums, bank, panel, seen, (row, column));
                         if MOVED {
-                            curves::expand(factors, &moments, &mut sums.moving);
+                            curves::expand(factors, &moments[0], &mut sums[0].moving);
+                            curves::expand(factors, &moments[1], &mut sums[1].moving);
                         }
                     }
                 }
             }
-            // Nothing lies behind the window's last column.
-            let mut inside = [0.0; LANES];
-            inside[..LANES.min(window.pixels - column)].fill(1.0);
-            let start = row * window.stride + column;
-            put(&mut window.values[COVERAGE * area + start..], &sums.coverage, &inside);
-            if MOVED {
-                for (plane, lanes) in sums.moving.iter().enumerate() {
-                    put(&mut window.values[plane * area + start..], lanes, &inside);
-                }
-            }
-            if BLURRED {
-                put(&mut window.values[BLUR * area + start..], &sums.blur, &inside.map(|one| one * sigma));
+            store::<MOVED, BLURRED>(&mut window, &sums[0], (row, column), sigma);
+            if row + 1 < window.pixels {
+                store::<MOVED, BLURRED>(&mut window, &sums[1], (row + 1, column), sigma);
             }
         }
+    }
+}
+
+/// Writes the sums of a row to their planes.
+#[inline(always)]
+fn store<const MOVED: bool, const BLURRED: bool>(window: &mut Window<'_>, sums: &Sums, (row, column): (usize, usize), sigma: f32) {
+    let area = window.pixels * window.stride;
+    // Nothing lies behind the window's last column.
+    let mut inside = [0.0; LANES];
+    inside[..LANES.min(window.pixels - column)].fill(1.0);
+    let start = row * window.stride + column;
+    put(&mut window.values[COVERAGE * area + start..], &sums.coverage, &inside);
+    if MOVED {
+        for (plane, lanes) in sums.moving.iter().enumerate() {
+            put(&mut window.values[plane * area + start..], lanes, &inside);
+        }
+    }
+    if BLURRED {
+        put(&mut window.values[BLUR * area + start..], &sums.blur, &inside.map(|one| one * sigma));
     }
 }
 
@@ -70,36 +85,42 @@ fn put(to: &mut [f32], lanes: &[f32; LANES], factors: &[f32; LANES]) {
     }
 }
 
-/// Integrals over the nodes `first..end` of a panel at the pixels from (`row`, `column`) on: adds coverage and blur, returns those of `K` times the
-/// curve's functions.
+/// Integrals over the nodes `first..end` of a panel at the pixels from (`row`, `column`) on and at those of the next row: adds coverage and blur, returns
+/// those of `K` times the curve's functions.
 #[inline(always)]
 fn add<const B: usize, const NUMBERS: usize, const MOVED: bool, const BLURRED: bool>(
-    sums: &mut Sums,
+    sums: &mut [Sums; 2],
     bank: &Bank,
     panel: &Stretch,
     (first, end): (usize, usize),
     (row, column): (usize, usize),
-) -> [[f32; LANES]; B] {
-    let mut moments = [[0.0; LANES]; B];
-    let (mut coverage, mut blur) = (sums.coverage, sums.blur);
+) -> [[[f32; LANES]; B]; 2] {
+    let [mut upper, mut lower] = [[[0.0; LANES]; B]; 2];
+    let [mut coverage, mut below] = [sums[0].coverage, sums[1].coverage];
+    let mut blur = [sums[0].blur, sums[1].blur];
     let blocks = bank.padded / LANES;
     let across = bank.across[panel.across..].as_chunks::<NUMBERS>().0;
     for node in first..end {
         let (numbers, down) = (&across[node * blocks + column / LANES], (panel.nodes + node) * bank.padded + row);
-        let k = bank.values[down];
+        let [k, next] = [bank.values[down], bank.values[down + 1]];
         coverage = plus(&coverage, k, &numbers[0]);
+        below = plus(&below, next, &numbers[0]);
         if MOVED {
             for function in 0..B {
-                moments[function] = plus(&moments[function], k, &numbers[1 + function]);
+                upper[function] = plus(&upper[function], k, &numbers[1 + function]);
+                lower[function] = plus(&lower[function], next, &numbers[1 + function]);
             }
         }
         if BLURRED {
-            blur = plus(&blur, k, &numbers[NUMBERS - 2]);
-            blur = plus(&blur, -bank.slopes[down], &numbers[NUMBERS - 1]);
+            for (lane, (blur, k)) in blur.iter_mut().zip([k, next]).enumerate() {
+                *blur = plus(blur, k, &numbers[NUMBERS - 2]);
+                *blur = plus(blur, -bank.slopes[down + lane], &numbers[NUMBERS - 1]);
+            }
         }
     }
-    (sums.coverage, sums.blur) = (coverage, blur);
-    moments
+    (sums[0].coverage, sums[1].coverage) = (coverage, below);
+    [sums[0].blur, sums[1].blur] = blur;
+    [upper, lower]
 }
 
 /// A whole new array: sums that are changed in place get torn into pieces of several lengths.
