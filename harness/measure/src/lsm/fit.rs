@@ -167,10 +167,12 @@ impl Parameters {
     }
 }
 
+type Square = [[f64; UNKNOWNS]; UNKNOWNS];
+
 /// The normal equations of the parameters that can be told apart.
 struct System {
     columns: Columns,
-    normal: [[f64; UNKNOWNS]; UNKNOWNS],
+    normal: Square,
     right: [f64; UNKNOWNS],
     factor: Factor<UNKNOWNS>,
 }
@@ -178,25 +180,12 @@ struct System {
 impl System {
     /// `None` if it is singular.
     #[inline(always)]
-    fn new(kind: TargetKind, at: &Parameters, products: &[[f64; UNKNOWNS]; UNKNOWNS], right: &[f64; UNKNOWNS], blur: bool) -> Option<Self> {
+    fn new(kind: TargetKind, at: &Parameters, products: &Square, right: &[f64; UNKNOWNS], blur: bool) -> Option<Self> {
         let columns = Columns::new(kind, &at.pose.affine, blur);
         // The planes are derivatives of the coverage: the grey value's are the contrast times these, but for the levels' own.
         let mut scale = [at.contrast; UNKNOWNS];
         (scale[GROUND], scale[COVERAGE]) = (1.0, 1.0);
-        let (mut normal, mut of_residuals) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
-        for (i, column) in columns.iter().enumerate() {
-            let mut row = [0.0; UNKNOWNS];
-            for (l, factor) in column.terms() {
-                for k in 0..UNKNOWNS {
-                    row[k] += factor * scale[l] * products[l][k] * scale[k];
-                }
-            }
-            for (j, other) in columns.iter().enumerate().take(i + 1) {
-                let sum = other.terms().map(|(k, factor)| row[k] * factor).sum();
-                (normal[i][j], normal[j][i]) = (sum, sum);
-            }
-            of_residuals[i] = column.terms().map(|(k, factor)| factor * scale[k] * right[k]).sum();
-        }
+        let (normal, of_residuals) = columns.combine(&scale, products, right);
         let factor = cholesky::factor(&normal, columns.count)?;
         Some(Self { columns, normal, right: of_residuals, factor })
     }
@@ -247,13 +236,16 @@ impl Column {
 struct Columns {
     all: [Column; UNKNOWNS],
     count: usize,
+    /// Each is one of the nine, in their order.
+    single: bool,
 }
 
 impl Columns {
     /// A disc looks the same after a turn of its own plane: of the four affine terms the three are left that change the ellipse, `dA = A S` with
     /// `S` symmetric. Edges without an end have no length: of an open mask each is left its direction.
     fn new(kind: TargetKind, a: &Affine, blur: bool) -> Self {
-        let mut columns = Self { all: [Column::default(); UNKNOWNS], count: 0 };
+        let single = !matches!(kind, TargetKind::Disc | TargetKind::Corner | TargetKind::ChessCorner);
+        let mut columns = Self { all: [Column::default(); UNKNOWNS], count: 0, single };
         let (axx, axy, ayx, ayy) = (2, 3, 4, 5);
         columns.push(&[(0, 1.0)]);
         columns.push(&[(1, 1.0)]);
@@ -275,6 +267,34 @@ impl Columns {
             columns.push(&[(BLUR, 1.0)]);
         }
         columns
+    }
+
+    /// The normal equations of these columns from those of all nine parameters, each of which counts with its `scale`.
+    #[inline(always)]
+    fn combine(&self, scale: &[f64; UNKNOWNS], products: &Square, right: &[f64; UNKNOWNS]) -> (Square, [f64; UNKNOWNS]) {
+        let (mut scaled, mut of_residuals) = (*products, *right);
+        for (i, row) in scaled.iter_mut().enumerate() {
+            row.iter_mut().zip(scale).for_each(|(product, scale_k)| *product *= scale[i] * scale_k);
+            of_residuals[i] *= scale[i];
+        }
+        if self.single {
+            return (scaled, of_residuals);
+        }
+        let (mut normal, mut combined) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
+        for (i, column) in self.iter().enumerate() {
+            let mut row = [0.0; UNKNOWNS];
+            for (l, factor) in column.terms() {
+                for k in 0..UNKNOWNS {
+                    row[k] += factor * scaled[l][k];
+                }
+            }
+            for (j, other) in self.iter().enumerate().take(i + 1) {
+                let sum = other.terms().map(|(k, factor)| row[k] * factor).sum();
+                (normal[i][j], normal[j][i]) = (sum, sum);
+            }
+            combined[i] = column.terms().map(|(k, factor)| factor * of_residuals[k]).sum();
+        }
+        (normal, combined)
     }
 
     fn push(&mut self, terms: &[(usize, f64)]) {

@@ -21,7 +21,7 @@ impl Rule {
     fn spacing(self) -> (f64, f64) {
         match self {
             Self::Exact => (1.4, 3.0),
-            Self::Coarse => (2.0, 2.0),
+            Self::Coarse => (2.4, 1.5),
         }
     }
 }

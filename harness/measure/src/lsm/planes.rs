@@ -20,6 +20,9 @@ pub(super) const BLUR: usize = 8;
 /// Plane of residuals.
 const RESIDUAL: usize = 9;
 
+/// Planes that are multiplied at a time; their number, with that of the blur, is a multiple.
+const TILE: usize = 3;
+
 /// Values of every pixel of a window, one plane after the other: derivatives of the coverage (by x to ayy and the blur), ones, coverage, residuals.
 #[derive(Clone, Debug)]
 pub(super) struct Planes {
@@ -97,6 +100,12 @@ impl Planes {
         &self.values[index * self.area()..(index + 1) * self.area()]
     }
 
+    /// Three planes from one on.
+    #[inline(always)]
+    fn tile(&self, first: usize) -> [&[f32]; TILE] {
+        [self.plane(first), self.plane(first + 1), self.plane(first + 2)]
+    }
+
     /// Coverage for a mask, and of its derivatives those that are asked for: the others keep what they were.
     pub(super) fn draw(&mut self, mask: &Mask, pose: &Pose, profile: &Profile, wanted: (Derivatives, Rule)) {
         let window = Window { pixels: self.pixels, stride: self.stride, values: &mut self.values };
@@ -153,32 +162,38 @@ fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn products(planes: &Planes, unknowns: usize) -> ([[f64; UNKNOWNS]; UNKNOWNS], [f64; UNKNOWNS]) {
     let (mut products, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
-    for i in 0..unknowns {
-        // The last partner is the residuals.
-        let partner = |j: usize| planes.plane(if j > i { RESIDUAL } else { j });
-        let mut put = |first: usize, sums: &[f64]| {
-            for (j, &sum) in (first..).zip(sums) {
-                if j > i {
-                    right[i] = sum;
-                } else {
-                    (products[i][j], products[j][i]) = (sum, sum);
+    // By tiles whose sums stay in registers: one sum alone would wait for each of its additions.
+    for i in (0..unknowns).step_by(TILE) {
+        for j in (0..=i).step_by(TILE) {
+            let (one, other) = (planes.tile(i), planes.tile(j));
+            for (row, sums) in (i..unknowns).zip(tile(one, other)) {
+                for (column, sum) in (j..unknowns).zip(sums) {
+                    (products[row][column], products[column][row]) = (sum, sum);
                 }
             }
-        };
-        let plane = planes.plane(i);
-        let mut first = 0;
-        // Several at a time: one sum alone would wait for each of its additions.
-        while first < i + 2 {
-            match i + 2 - first {
-                1 => put(first, &dots(plane, [partner(first)])),
-                2 => put(first, &dots(plane, [partner(first), partner(first + 1)])),
-                3 => put(first, &dots(plane, [partner(first), partner(first + 1), partner(first + 2)])),
-                _ => put(first, &dots(plane, [partner(first), partner(first + 1), partner(first + 2), partner(first + 3)])),
-            }
-            first += 4;
         }
+        let [sums] = tile([planes.plane(RESIDUAL)], planes.tile(i));
+        right[i..].iter_mut().zip(sums).for_each(|(right, sum)| *right = sum);
     }
     (products, right)
+}
+
+/// Sums of products of each of `one` with each of `other`.
+#[inline(always)]
+fn tile<const N: usize>(one: [&[f32]; N], other: [&[f32]; TILE]) -> [[f64; TILE]; N] {
+    let mut sums = [[[0.0_f32; LANES]; TILE]; N];
+    for start in (0..other[0].len()).step_by(LANES) {
+        let lanes = |values: &[f32]| -> [f32; LANES] { values[start..start + LANES].try_into().expect("whole lanes") };
+        let (one, other) = (one.map(lanes), other.map(lanes));
+        for n in 0..N {
+            for t in 0..TILE {
+                for lane in 0..LANES {
+                    sums[n][t][lane] += one[n][lane] * other[t][lane];
+                }
+            }
+        }
+    }
+    sums.map(|sums| sums.map(|sums| total(&sums)))
 }
 
 #[inline(always)]
@@ -200,14 +215,16 @@ fn dots<const N: usize>(a: &[f32], others: [&[f32]; N]) -> [f64; N] {
             }
         }
     }
-    let mut totals = [0.0; N];
-    for n in 0..N {
-        let mut halves = [0.0; LANES / 2];
-        for (i, half) in halves.iter_mut().enumerate() {
-            *half = f64::from(sums[n][i]) + f64::from(sums[n][i + LANES / 2]);
-        }
-        let [a, b, c, d, e, f, g, h] = halves;
-        totals[n] = ((a + e) + (c + g)) + ((b + f) + (d + h));
+    sums.map(|sums| total(&sums))
+}
+
+/// The lanes added up in double precision.
+#[inline(always)]
+fn total(sums: &[f32; LANES]) -> f64 {
+    let mut halves = [0.0; LANES / 2];
+    for (i, half) in halves.iter_mut().enumerate() {
+        *half = f64::from(sums[i]) + f64::from(sums[i + LANES / 2]);
     }
-    totals
+    let [a, b, c, d, e, f, g, h] = halves;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
