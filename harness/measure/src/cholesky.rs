@@ -29,9 +29,7 @@ pub(crate) fn factor<const N: usize>(matrix: &[[f64; N]; N], count: usize) -> Op
             }
             both[row][k] = column[row];
         }
-        for i in k + 1..N {
-            both[k][i] = column[i];
-        }
+        both[k][k + 1..].copy_from_slice(&column[k + 1..]);
     }
     Some(Factor { both, inverse, count })
 }

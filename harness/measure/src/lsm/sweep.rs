@@ -13,7 +13,6 @@ struct Sums {
 }
 
 /// The planes, row by row. A line's node has `LINE` numbers, an arc's `ARC`.
-#[expect(clippy::needless_pass_by_value, reason = "it holds what is written to")]
 #[inline(always)]
 pub(super) fn sweep<const LINE: usize, const ARC: usize, const MOVED: bool, const BLURRED: bool>(
     mut window: Window<'_>,
