@@ -165,11 +165,18 @@ fn products(planes: &Planes, unknowns: usize) -> ([[f64; UNKNOWNS]; UNKNOWNS], [
     // By tiles whose sums stay in registers: one sum alone would wait for each of its additions.
     for i in (0..unknowns).step_by(TILE) {
         for j in (0..=i).step_by(TILE) {
-            let (one, other) = (planes.tile(i), planes.tile(j));
-            for (row, sums) in (i..unknowns).zip(tile(one, other)) {
+            let other = planes.tile(j);
+            let mut put = |row: usize, sums: [f64; TILE]| {
                 for (column, sum) in (j..unknowns).zip(sums) {
                     (products[row][column], products[column][row]) = (sum, sum);
                 }
+            };
+            if i + 2 == unknowns {
+                let sums = tile([planes.plane(i), planes.plane(i + 1)], other);
+                (i..).zip(sums).for_each(|(row, sums)| put(row, sums));
+            } else {
+                let sums = tile(planes.tile(i), other);
+                (i..).zip(sums).for_each(|(row, sums)| put(row, sums));
             }
         }
         let [sums] = tile([planes.plane(RESIDUAL)], planes.tile(i));
