@@ -15,6 +15,19 @@ const FEWEST: usize = 24;
 /// The blurred square ends here: half its side, and so many standard deviations.
 const REACH: f64 = 6.0;
 
+/// From a disc's outline to the border of the window that pictures it, px.
+pub(crate) const MARGIN: f64 = 5.0;
+/// The variance of the blur is at least this, px^2.
+pub(crate) const SHARPEST: f64 = 0.01;
+/// The smallest semi-axis, px.
+const SMALLEST: f64 = 0.3;
+
+/// Can a window of `side` px picture such an ellipse under a blur of `variance` px^2? Numbers that are none are refused.
+pub(crate) fn is_pictured(ellipse: &Ellipse, variance: f64, side: usize) -> bool {
+    let (side, [large, small]) = (side as f64, ellipse.semi_axes());
+    ellipse.position.iter().all(|c| (-side..2.0 * side).contains(c)) && small >= SMALLEST && large <= side && variance <= side * side
+}
+
 /// How much of each pixel is covered.
 pub(crate) const COVERED: usize = 0;
 /// Its derivatives by the centre's x and y: a vector that points outwards.

@@ -4,7 +4,7 @@ use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use multiversion::multiversion;
 use nalgebra::SVector;
 
-use crate::contour::{self, Planes};
+use crate::contour::{self, MARGIN, Planes, SHARPEST, is_pictured};
 use crate::ellipse::{Ellipse, Guess, seek};
 use crate::lanes::LANES;
 use crate::marquardt::{Normal, Problem, Sums, covariance, minimise};
@@ -14,15 +14,10 @@ use crate::registry::{Build, Method};
 
 /// Centre, three of the shape, variance of the blur, grey value outside, contrast.
 const UNKNOWNS: usize = 8;
-/// Blur at the start and the least, px^2.
+/// Blur at the start, px^2.
 const VARIANCE: f64 = 0.5;
-const SHARPEST: f64 = 0.01;
-/// From the ellipse to the window's border, px.
-const MARGIN: f64 = 5.0;
 /// The iteration ends with a step of so many standard deviations.
 const NEARLY: f64 = 1e-2;
-/// The smallest semi-axis, px.
-const SMALLEST: f64 = 0.3;
 
 /// Parametric circle: the ellipse whose blurred picture agrees best, in the least-squares sense, with the grey values of the window.
 ///
@@ -113,10 +108,7 @@ impl Disc {
 impl Problem<UNKNOWNS> for Disc {
     fn normal(&mut self, x: &SVector<f64, UNKNOWNS>) -> Option<Normal<UNKNOWNS>> {
         let ellipse = Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] };
-        let side = self.planes.side as f64;
-        let [large, small] = ellipse.semi_axes();
-        let inside = x.iter().all(|value| value.is_finite()) && [x[0], x[1]].iter().all(|c| (-side..2.0 * side).contains(c));
-        if !inside || small < SMALLEST || large > side || x[5] > side * side {
+        if !x.iter().all(|value| value.is_finite()) || !is_pictured(&ellipse, x[5], self.planes.side) {
             return None;
         }
         self.planes.fill(&ellipse, x[5]);

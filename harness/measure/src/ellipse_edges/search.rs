@@ -4,14 +4,11 @@ use nalgebra::SVector;
 
 use super::conic::{self, UNKNOWNS};
 use super::sectors::{Disc, Window};
+use crate::contour::{SHARPEST, is_pictured};
 use crate::ellipse::Ellipse;
 use crate::marquardt::{Normal, STILL, Scaled, Solution, decompose};
 
-/// The variance of the blur is at least this, px^2.
-const SHARPEST: f64 = 0.01;
 const BLUR: usize = 5;
-/// The smallest semi-axis, px.
-const SMALLEST: f64 = 0.3;
 /// In one step the blur's variance changes at most by this factor.
 const FACTOR: f64 = 4.0;
 /// What is left to go must be less than this fraction of the square of what it was.
@@ -74,10 +71,7 @@ fn stands(step: &Step, normal: &Normal<UNKNOWNS>, redundancy: f64, short: f64, s
 fn normal(window: &mut Window, x: &Unknowns, part: bool) -> Option<Normal<UNKNOWNS>> {
     let disc =
         Disc { ellipse: Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] }, variance: x[5], ground: x[6], contrast: x[7] };
-    let side = window.side as f64;
-    let [large, small] = disc.ellipse.semi_axes();
-    let inside = x.iter().all(|value| value.is_finite()) && disc.ellipse.position.iter().all(|c| (-side..2.0 * side).contains(c));
-    if !inside || small < SMALLEST || large > side || disc.variance > side * side {
+    if !x.iter().all(|value| value.is_finite()) || !is_pictured(&disc.ellipse, disc.variance, window.side) {
         return None;
     }
     window.picture(&disc);

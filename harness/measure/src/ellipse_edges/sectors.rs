@@ -5,14 +5,12 @@ use multiversion::multiversion;
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::conic::UNKNOWNS;
-use crate::contour::{self, Planes, eight};
+use crate::contour::{self, MARGIN, Planes, eight};
 use crate::ellipse::Ellipse;
 use crate::lanes::LANES;
 
 /// Pixels nearer to the outline than this are taken, px.
 const BAND: f64 = 4.0;
-/// From the ellipse to the window's border, px.
-const MARGIN: f64 = 5.0;
 /// The length of a sector on the outline, px, and the fewest of them.
 const LENGTH: f64 = 1.0;
 const FEWEST: usize = 24;

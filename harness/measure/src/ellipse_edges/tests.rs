@@ -3,7 +3,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::exact::{self, Pool, noisy};
-use crate::parametric_circle::tests::{SIDE, bound_of, disc, operator, pools};
+use crate::parametric_circle::tests::{SIDE, bound_of, disc, operator, pools, worst_without_noise};
 
 /// Phases of the pixel grid in a cell, and trials at each.
 const PHASES: usize = 10;
@@ -92,21 +92,7 @@ fn pooled_errors_are_within_a_third_of_the_bound() {
 
 #[test]
 fn without_noise_there_is_no_error_of_interpolation() {
-    let mut worst = 0.0_f64;
-    for (radius, squeeze) in [(2.5, 1.0), (4.0, 0.6), (8.0, 0.5)] {
-        for blur in [0.3, 0.6, 1.0, 1.5] {
-            for k in 0..4 {
-                let k = f64::from(k);
-                let disc = disc(radius, squeeze, 0.7 * k, blur, [0.3 - 0.2 * k, 0.17 * k]);
-                let image = exact::image(&disc.render(SIDE), SIDE);
-                let start = Start::at(PixelPoint::new(disc.position[0] + 0.6, disc.position[1] - 0.4));
-                let found = operator("ellipse_edges").measure(&image, &start).unwrap().position;
-                let error = (found.x - disc.position[0]).hypot(found.y - disc.position[1]);
-                println!("radius {radius}, blur {blur}: {error:e}");
-                worst = worst.max(error);
-            }
-        }
-    }
+    let worst = worst_without_noise("ellipse_edges", [(2.5, 1.0), (4.0, 0.6), (8.0, 0.5)]);
     assert!(worst < 1e-5, "{worst:e}");
 }
 
