@@ -1,6 +1,7 @@
 //! Tests that cross crates.
 
 mod atlas;
+mod bootstrap;
 mod calibrate;
 mod cameras;
 mod cameras_of_tools;
