@@ -2,8 +2,8 @@
 
 use calibench_measure::{Operator, forstner::Forstner};
 use calibench_model::{PixelPoint, Polygon, Scene, Start};
+use calibench_random::{Key, Purpose, stream};
 use calibench_synth::noise::add_grey_noise;
-use calibench_synth::random::{Key, Purpose, stream};
 use calibench_synth::render;
 
 /// Reported standard deviation in x over the real one, for a right angle of contrast 0.6 with this much noise.

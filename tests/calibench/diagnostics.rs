@@ -1,6 +1,7 @@
 //! Every kind of mistake in a scenario is one clear diagnostic: place, what was expected, what to do.
 
-use calibench_bench::scenario::{Problems, parse};
+use calibench_bench::scenario::parse;
+use calibench_diagnostics::Problems;
 use calibench_measure::Registry;
 
 const GOOD: &str = r#"why = "To see what is wrong."

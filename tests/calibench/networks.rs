@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 
 use calibench_bench::calibration::{DatumChoice, Optics, Settings, prepare};
-use calibench_bench::network::{Calibrated, Figure, Group, ImagePoint, Job, calibrate, observe};
-use calibench_bench::results::Trial;
+use calibench_bench::network::{ImagePoint, Job, calibrate, observe};
 use calibench_bench::run::Plan;
 use calibench_bench::scenario::{Scenario, Subject, ViewsSubject, parse};
 use calibench_exchange::{ControlRow, PointRow};
 use calibench_model::Start;
 use calibench_model::camera::CameraModel;
-use calibench_synth::random::Key;
+use calibench_random::Key;
+use calibench_records::results::Trial;
+use calibench_records::results::{Calibrated, Figure, Group};
 
 use crate::project::{NETWORKS, copy_with, files, program, root};
 

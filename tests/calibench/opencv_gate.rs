@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_bench::gate::{Check, Coordinates, Finding, Table};
-use calibench_bench::results::{Outcome, PointResult, Trial};
 use calibench_bench::run::Plan;
 use calibench_bench::scenario::{Scenario, Subject, parse};
+use calibench_gate::{Check, Coordinates, Finding, Table};
+use calibench_records::results::{Outcome, PointResult, Trial};
 
 const LABEL: &str = "opencv_subpix:window=11";
 const RUNS: u64 = 100;
@@ -23,7 +23,7 @@ fn scenario() -> Scenario {
 fn table(scenario: &Scenario, seed: u64, change: &dyn Fn(PointResult) -> PointResult) -> Table {
     let mut plan = Plan::new(scenario, None, PathBuf::new());
     (plan.seed, plan.trials, plan.bounds) = (seed, TRIALS, false);
-    let mut table = Table::new(scenario.name.as_str(), 0, Coordinates::of(scenario), &plan.method_infos());
+    let mut table = Table::new(scenario.name.as_str(), 0, Coordinates::of(scenario.has_truth()), &plan.method_infos());
     plan.run(&|| (), &mut |trial| {
         let points = trial.points.iter().cloned().map(change).collect();
         table.add(&Trial { points, ..trial });

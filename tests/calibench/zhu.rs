@@ -175,7 +175,7 @@ fn a_target_without_detection_is_a_missed_row_of_every_method() {
     assert_eq!(outcomes.len(), 4);
     for (method, target, outcome) in outcomes {
         if target == "nowhere" {
-            assert_eq!(outcome, calibench_bench::results::Outcome::Rejected(Rejection::NotDetected), "{method}");
+            assert_eq!(outcome, calibench_records::results::Outcome::Rejected(Rejection::NotDetected), "{method}");
         } else {
             assert!(outcome.position().unwrap().distance(PixelPoint::new(20.0, 20.0)) < 2.0, "{method}");
         }

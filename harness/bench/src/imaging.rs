@@ -1,7 +1,7 @@
 //! From outlines in the image to the image that is read.
 
+use calibench_random::Key;
 use calibench_synth::optics::{Optics, OpticsError};
-use calibench_synth::random::Key;
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::{Clipped, Exposure, Frame, SensorError, row_shifts};
 

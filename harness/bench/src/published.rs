@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use calibench_diagnostics::{Problem, Problems};
 use serde::Deserialize;
 use thiserror::Error;
-
-use crate::scenario::{Problem, Problems};
 
 /// A published table: `reference/published/<paper>/table-N.toml`.
 #[derive(Debug, Deserialize)]

@@ -6,18 +6,14 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::FolderWriter;
 use calibench_measure::{BoardDetector, Configured, Registry};
+use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
+use calibench_records::names::{RECORDS, SCENARIO, cell_folder};
+use calibench_records::points::{RecordWriter, RunInfo};
 
 use crate::judgement::write_judgement;
-use crate::network::records::{CALIBRATIONS, CalibrationWriter};
-use crate::records::{RecordWriter, RunInfo};
 use crate::run::{Plan, RunError};
 use crate::scenario::camera::KEPT;
 use crate::scenario::{Scenario, Subject, Sweep, parse_cell};
-
-/// The records' file in a scenario's folder.
-pub const RECORDS: &str = "records.csv";
-/// The scenario as it was run, in the same folder.
-pub const SCENARIO: &str = "scenario.toml";
 
 /// Copies the scenario's camera file to where the scenario as it was run looks for it.
 fn keep_camera(scenario: &Scenario, folder: &Path) -> Result<(), RunError> {
@@ -71,7 +67,8 @@ fn calibrations(
     let Some(calibration) = &views.calibration else { return Ok(None) };
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: None };
     let file = BufWriter::new(File::create(folder.join(CALIBRATIONS))?);
-    let writer = CalibrationWriter::new(file, info, plan.method_infos(), calibration).map_err(std::io::Error::other)?;
+    let sets = calibration.sets.iter().map(|set| set.name.clone()).collect();
+    let writer = CalibrationWriter::new(file, info, plan.method_infos(), sets).map_err(std::io::Error::other)?;
     Ok(Some(writer))
 }
 
@@ -93,11 +90,6 @@ pub struct SweepPlan<'a> {
     pub data: PathBuf,
     /// All methods that there are.
     pub registry: &'a Registry,
-}
-
-/// The folder of a cell's records in that of its scenario.
-pub fn cell_folder(folder: &Path, index: usize) -> PathBuf {
-    folder.join(format!("cell-{:04}", index + 1))
 }
 
 /// Runs the cells of `plan` one after the other and puts their records, each in a folder of its own, in the place of older ones, all at once.

@@ -5,7 +5,7 @@
 use std::time::Instant;
 
 use calibench_model::Image;
-use calibench_synth::random::Key;
+use calibench_random::Key;
 use calibench_synth::sensor::{
     ColourFilter, Demosaic, DemosaicTo, Design, Electrons, FallOff, Gamma, Gradient, Noise, Pattern, Per, Sensor, Vignetting,
 };

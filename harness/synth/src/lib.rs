@@ -2,7 +2,7 @@
 //!
 //! [`testfield`] makes what a camera is pointed at, [`stations`] where it stands, [`view`] brings the one before the other; [`raster`] integrates outlines over each
 //! photosite under the blur of [`optics`], [`sensor`] reads the light out. [`render()`] pictures a flat scene, [`noise`] spoils an image, [`pointing`] makes the
-//! approximate positions that a person would click. Every random number comes from [`random::stream`].
+//! approximate positions that a person would click. Every random number comes from [`calibench_random::stream`].
 
 pub mod bound;
 mod centres;
@@ -10,7 +10,6 @@ pub mod noise;
 pub mod optics;
 pub mod overlap;
 pub mod pointing;
-pub mod random;
 pub mod raster;
 pub mod render;
 pub mod sensor;

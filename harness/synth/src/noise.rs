@@ -29,7 +29,7 @@ pub fn quantise(image: &mut Image, bits: u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Key, Purpose, stream};
+    use calibench_random::{Key, Purpose, stream};
 
     #[test]
     fn noise_has_its_mean_variance_and_no_autocorrelation() {

@@ -28,7 +28,7 @@ impl Hand {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::{Key, Purpose, stream};
+    use calibench_random::{Key, Purpose, stream};
 
     #[test]
     fn rounding_adds_a_twelfth_to_the_variance() {

@@ -1,11 +1,11 @@
 //! Camera models by name, for start values and unknowns.
 
 use calibench_adjust::approximate::interior_from_size;
+use calibench_diagnostics::nearest;
 use calibench_model::camera::{Camera, CameraModel, DoubleSphere, Eucm, TangentialOrder};
 use calibench_model::convert::{ConvertOptions, Target, convert};
 
 use super::{CalibrationError, Optics};
-use crate::scenario::problem::nearest;
 
 /// Where spherical models start.
 const HALF_WAY: f64 = 0.5;

@@ -3,11 +3,11 @@
 use std::str::FromStr;
 
 use calibench_adjust::{Attitude, Centre, Exterior, Interior};
+use calibench_diagnostics::nearest;
 use calibench_exchange::ObservedStation;
 use thiserror::Error;
 
 use super::CalibrationError;
-use crate::scenario::problem::nearest;
 
 /// A parameter of the interior orientation that was observed.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
+use calibench_diagnostics::nearest;
 use calibench_exchange::{ControlRow, PointRow};
 use calibench_model::{Covariance, PixelPoint};
 use nalgebra::Point3;
 
 use super::CalibrationError;
-use crate::scenario::problem::nearest;
 
 /// Who measured what.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,12 +3,14 @@
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use calibench_gate::{
+    Ceilings, Check as Gate, Coordinates, Finding, Table, baseline_path, read_baseline, render, worse_than, write_baseline,
+};
 use clap::Args;
 
 use super::context::Context;
 use super::progress::Progress;
 use super::{Failure, print};
-use crate::gate::{Ceilings, Check as Gate, Coordinates, Finding, Table, baseline_path, read_baseline, render, worse_than, write_baseline};
 use crate::run::Plan;
 use crate::scenario::Scenario;
 
@@ -163,7 +165,7 @@ fn measure(context: &Context<'_>, names: &[String]) -> Result<Vec<Measured>, Fai
             continue;
         }
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
-        let mut table = Table::new(scenario.name.as_str(), plan.seed, Coordinates::of(&scenario), &plan.method_infos());
+        let mut table = Table::new(scenario.name.as_str(), plan.seed, Coordinates::of(scenario.has_truth()), &plan.method_infos());
         plan.run(&|| progress.step(), &mut |trial| {
             table.add(&trial);
             Ok(())

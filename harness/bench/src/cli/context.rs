@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use calibench_diagnostics::nearest;
 use calibench_measure::{Configured, MethodError};
 
 use super::{Failure, Toolbox, scenario_failure};
@@ -10,7 +11,6 @@ use crate::data::data_folder;
 use crate::report::Places;
 use crate::scenario::Scenario;
 use crate::scenario::catalogue::Catalogue;
-use crate::scenario::problem::nearest;
 
 /// What every command gets.
 pub struct Context<'a> {

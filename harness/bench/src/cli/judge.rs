@@ -8,6 +8,9 @@ use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::read_photo;
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::camera::ImageSize;
+use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
+use calibench_records::points::RunInfo;
+use calibench_records::results::{MethodInfo, Trial};
 use clap::Args;
 use rayon::prelude::*;
 
@@ -18,12 +21,8 @@ use super::output::OutputFolder;
 use super::photos::{names, once, same_size};
 use super::progress::Progress;
 use super::{Failure, print};
-use crate::judgement::{
-    HALF, JUDGEMENT, JudgementError, Material, ModelChoice, Options, Row, Summary, judge, published_camera, write_rows,
-};
-use crate::records::RunInfo;
+use crate::judgement::{HALF, JudgementError, Material, ModelChoice, Options, judge, published_camera};
 use crate::report::judgement::{section, verdict};
-use crate::results::{MethodInfo, Trial};
 use crate::run::measured_board;
 
 /// What makes sense on a chessboard's corners.

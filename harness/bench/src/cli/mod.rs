@@ -31,11 +31,11 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use calibench_diagnostics::Problems;
 use calibench_exchange::atomic::write_atomically;
 use calibench_measure::{BoardDetector, Registry};
 use clap::{Parser, Subcommand};
 
-use crate::scenario::Problems;
 use crate::scenario::catalogue::CatalogueError;
 
 /// What a build of calibench can do.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use calibench_adjust::approximate::{ApproximateError, RelativeOrientation, Search, Tolerance, orient_relatively};
+use calibench_diagnostics::nearest;
 use calibench_exchange::PointRow;
 use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
@@ -13,7 +14,6 @@ use super::calibrate::{camera, read_measured};
 use super::context::Context;
 use super::convert::positive;
 use super::{Failure, deliver};
-use crate::scenario::problem::nearest;
 
 mod model;
 mod words;

@@ -72,7 +72,7 @@ impl Plot {
     fn load(&self, context: &Context<'_>) -> Result<LoadedSweep, Failure> {
         let registry = &context.toolbox.registry;
         let folder = Path::new(&self.sweep);
-        if folder.join(crate::store::SCENARIO).is_file() {
+        if folder.join(calibench_records::names::SCENARIO).is_file() {
             let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let found = sweep::load(folder.parent().unwrap_or(Path::new("")), &name, registry)?;
             return found.ok_or_else(|| Failure::input(format!("{}: these records are not of a sweep", folder.display())));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::write_png;
 use calibench_model::camera::Camera;
-use calibench_synth::random::Key;
+use calibench_random::Key;
 use calibench_synth::stations::Station;
 use clap::Args;
 

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use calibench_diagnostics::nearest;
 use clap::Args;
 
 use super::Failure;
 use super::context::Context;
 use crate::report::{self, Written, conventions};
-use crate::scenario::problem::nearest;
 
 #[derive(Args)]
 pub struct Report {

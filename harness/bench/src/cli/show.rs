@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use calibench_exchange::read_photo;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, PixelPoint};
-use calibench_synth::random::Key;
+use calibench_random::Key;
 use calibench_synth::stations::sees;
 use calibench_synth::view::Visibility;
 use clap::Args;

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use calibench_diagnostics::nearest;
 use calibench_exchange::camera::{CameraFormat, FORMATS, NamedCamera, format_named};
 use calibench_model::camera::{AgisoftVersion, CameraModel, TangentialOrder};
 use calibench_model::convert::Target;
 
 use super::Failure;
-use crate::scenario::problem::nearest;
 
 /// The names that `--to` knows besides those of formats with models of their own, with what they mean.
 pub const TARGETS: [(&str, &str); 13] = [

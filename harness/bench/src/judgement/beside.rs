@@ -4,22 +4,11 @@ use std::sync::Arc;
 
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel};
+use calibench_records::judgement::{Beside, Row, measure};
 use nalgebra::DVector;
 
 use super::frame::Frame;
 use super::halves::{COLUMNS, vectors};
-use super::{Row, measure};
-
-/// How far two cameras are apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beside {
-    /// RMS over the frame after the best rotation, px.
-    pub frame: f64,
-    /// The largest difference of these, px.
-    pub most: f64,
-    /// RMS where corners were measured, after the best rotation there, px. `None` where they were nowhere near a place of the comparison.
-    pub seen: Option<f64>,
-}
 
 /// Compares two cameras at the places of a grid; those that lie nearer to one of the `corners` than the grid is wide count as seen.
 ///

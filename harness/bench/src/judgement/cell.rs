@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
+use calibench_records::judgement::{Row, measure};
 
 use super::beside::beside;
 use super::calibrated::{Calibrated, calibrate};
@@ -11,7 +12,7 @@ use super::frame::Frame;
 use super::halves::{Map, apart, halves, vectors};
 use super::holdout::{Squares, Unseen};
 use super::material::Material;
-use super::{HALF, Judged, ModelChoice, Options, Row, folds, lines, measure};
+use super::{HALF, Judged, ModelChoice, Options, folds, lines};
 use crate::calibration::Settings;
 
 /// What one cell works on.

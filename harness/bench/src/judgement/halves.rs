@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
 use calibench_model::convert::{DifferenceOptions, difference};
-use calibench_synth::random::{Key, Purpose, stream};
+use calibench_random::{Key, Purpose, stream};
 use nalgebra::DVector;
 use rand::seq::SliceRandom;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};

@@ -8,12 +8,10 @@ use calibench_exchange::{ControlRow, PointRow};
 use calibench_measure::Board;
 use calibench_model::camera::ImageSize;
 use calibench_model::{PixelPoint, Start};
+use calibench_records::judgement::COMPARABLE;
+use calibench_records::results::{MethodInfo, Outcome, Trial};
 use nalgebra::Point3;
 
-use crate::results::{MethodInfo, Outcome, Trial};
-
-/// An operator that measured a smaller share of the corners does not decide on which corners the others are compared.
-pub const COMPARABLE: f64 = 0.8;
 /// A view with fewer corners of an operator does not take part in its calibration.
 const FEWEST: usize = 12;
 

@@ -11,12 +11,8 @@ mod halves;
 mod holdout;
 mod lines;
 mod material;
-pub mod measure;
 mod model;
-mod outlier;
-mod row;
 mod run;
-mod summary;
 
 #[cfg(test)]
 mod tests;
@@ -24,16 +20,13 @@ mod tests;
 use std::sync::Arc;
 
 use calibench_model::camera::Camera;
+use calibench_records::judgement::{Row, measure};
 use rayon::prelude::*;
 use thiserror::Error;
 
-pub use beside::Beside;
-pub use material::{COMPARABLE, Corners, Material};
+pub use material::{Corners, Material};
 pub use model::{ModelChoice, ModelError, NOMINAL_PITCH};
-pub use outlier::{ALPHA as OUTLIER_ALPHA, outliers};
-pub use row::{JUDGEMENT, Row, read_rows, write_rows};
 pub use run::{camera as published_camera, write_judgement};
-pub use summary::{ALPHA, Cell, Estimate, HONEST, Point, Principal, Published, Split, Summary, Trusted, View};
 
 /// Views that a half of the photographs needs.
 pub const HALF: usize = 3;

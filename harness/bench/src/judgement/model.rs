@@ -1,10 +1,10 @@
 //! The camera models that are compared.
 
+use calibench_diagnostics::nearest;
 use calibench_model::camera::ImageSize;
 use thiserror::Error;
 
 use crate::calibration::{CalibrationError, Optics, Settings, parameters};
-use crate::scenario::problem::nearest;
 
 /// Pixel pitch of models in mm where none is known, um. No figure in px depends on it.
 pub const NOMINAL_PITCH: f64 = 10.0;

@@ -6,11 +6,13 @@ use std::path::Path;
 
 use calibench_exchange::{ReadOptions, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize};
+use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
+use calibench_records::names::kept_image;
+use calibench_records::points::RunInfo;
+use calibench_records::results::Trial;
 
-use super::{JUDGEMENT, Material, Options, Row, judge, measure, write_rows};
-use crate::records::RunInfo;
-use crate::results::Trial;
-use crate::run::{Plan, RunError, kept_image};
+use super::{Material, Options, judge};
+use crate::run::{Plan, RunError};
 use crate::scenario::{JudgementPlan, PhotographsSubject, Subject};
 
 /// Judges what `trial` holds of the photographs of `plan`, if its scenario asks for it, and writes the rows into `folder`, where the images are.

@@ -9,12 +9,13 @@ use std::sync::Arc;
 use calibench_measure::Board;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
 use calibench_model::{PixelPoint, Pose};
+use calibench_random::{Key, Purpose, stream};
+use calibench_records::judgement::{Row, Summary};
 use calibench_synth::pointing::Hand;
-use calibench_synth::random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
 
-use super::{Corners, Material, ModelChoice, Options, Row, Summary, judge};
+use super::{Corners, Material, ModelChoice, Options, judge};
 
 const SIZE: ImageSize = ImageSize { width: 640, height: 480 };
 const BOARD: Board = Board { columns: 9, rows: 6 };

@@ -5,9 +5,10 @@ use calibench_adjust::{Covariances, Exterior, ImageObservation, Interior, Networ
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::convert::{DifferenceOptions, difference};
+use calibench_records::results::{Figure, Group};
 use nalgebra::Point3;
 
-use super::{Figure, Group, Job, Observed, angles};
+use super::{Job, Observed, angles};
 use crate::calibration::pose_of;
 
 /// An adjusted camera with its figures.

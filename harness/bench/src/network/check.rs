@@ -4,10 +4,11 @@ use calibench_adjust::approximate::{Control, Sight, intersect};
 use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, adjust};
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
+use calibench_records::results::{Figure, Group};
 use nalgebra::{Point3, Vector3};
 
 use super::adjustment::control_point;
-use super::{Figure, Group, ImagePoint, Job, Observed};
+use super::{ImagePoint, Job, Observed};
 use crate::calibration::pose_of;
 use crate::scenario::calibration::CheckPlan;
 

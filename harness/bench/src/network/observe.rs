@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 
 use calibench_model::{Measurement, PixelPoint};
+use calibench_random::{Key, Purpose, stream};
+use calibench_records::results::{Outcome, PointResult};
 use calibench_synth::pointing::Hand;
-use calibench_synth::random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 
 use super::Job;
-use crate::results::{Outcome, PointResult};
 
 /// An image point by its place in the lists.
 #[derive(Clone, Copy, Debug, PartialEq)]

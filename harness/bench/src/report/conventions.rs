@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use calibench_diagnostics::{Problem, Problems};
 use calibench_exchange::FolderWriter;
 use calibench_model::camera::{Camera, Fold, ImageSize, Photogrammetric, fold};
 use calibench_model::convert::{
@@ -15,7 +16,6 @@ use super::canvas::Canvas;
 use super::field::{Field, plain};
 use super::markdown::MarkdownTable;
 use super::{PAGE, Places, ReportError};
-use crate::scenario::{Problem, Problems};
 
 /// The family of this report.
 pub const FAMILY: &str = "conventions";

@@ -7,15 +7,16 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::read_photo;
 use calibench_measure::Registry;
 use calibench_model::Image;
+use calibench_records::RecordError;
+use calibench_records::names::kept_image;
+use calibench_records::names::{RECORDS, SCENARIO};
+use calibench_records::points::{RecordHead, read_records};
+use calibench_records::results::Trial;
+use calibench_records::score::{Groups, Scores};
 use thiserror::Error;
 
 use super::network::Summaries;
-use crate::records::{RecordError, RecordHead, read_records};
-use crate::results::Trial;
-use crate::run::kept_image;
 use crate::scenario::{self, Scenario, Subject};
-use crate::score::{Groups, Scores};
-use crate::store::{RECORDS, SCENARIO};
 
 /// All that a report needs of one scenario. Its size does not grow with the number of trials.
 pub struct Loaded {
@@ -57,7 +58,7 @@ pub enum LoadError {
     },
     /// The scenario as it was run no longer passes the checks.
     #[error("{0}\nthese records are of an older scenario format: run the scenario again")]
-    Scenario(#[from] scenario::Problems),
+    Scenario(#[from] calibench_diagnostics::Problems),
 }
 
 /// Reads the records of scenario `name` below the records folder.

@@ -60,7 +60,7 @@ pub enum ReportError {
     Published(#[from] PublishedError),
     /// Its published cameras.
     #[error(transparent)]
-    Cameras(crate::scenario::Problems),
+    Cameras(calibench_diagnostics::Problems),
     /// Its conversions.
     #[error(transparent)]
     Convert(#[from] calibench_model::convert::ConvertError),

@@ -5,13 +5,13 @@ use std::fs::File;
 use std::sync::Arc;
 
 use calibench_model::{Image, PixelPoint};
+use calibench_records::judgement::{JUDGEMENT, Summary, read_rows};
 
 use super::canvas::Canvas;
 use super::figures::{Layer, MarkAt, Panel, panels};
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed};
 use super::scores_section::reasons;
-use crate::judgement::{JUDGEMENT, Summary, read_rows};
 use crate::scenario::Subject;
 
 type PointKey = (Arc<str>, Arc<str>);

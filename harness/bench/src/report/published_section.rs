@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
+use calibench_records::results::{Outcome, PointResult};
+
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed, fraction, signed};
 use crate::published::{Cell, Metric, Printed, Table, Verdict};
-use crate::results::{Outcome, PointResult};
 
 /// The errors (dx, dy) of one method's points in the first trial, px, by target; rejected points are left out.
 fn errors<'a>(loaded: &'a Loaded, method: usize, except: &'a [String]) -> impl Iterator<Item = (f64, f64)> + 'a {

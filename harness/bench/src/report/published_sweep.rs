@@ -1,10 +1,11 @@
 //! A published table whose cells are cells of a sweep.
 
+use calibench_records::score::Score;
+
 use super::markdown::{MarkdownTable, fixed};
 use super::published_section::{findings, like, place, words};
 use super::sweep::LoadedSweep;
 use crate::published::{Cell, Metric, Table};
-use crate::score::Score;
 
 /// The section of a table: printed beside ours, with intervals, and what was found out.
 pub fn section(table: &Table, loaded: &LoadedSweep) -> String {

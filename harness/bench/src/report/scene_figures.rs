@@ -1,11 +1,11 @@
 //! The pictures of a rendered scene's first trial: the image with approximations and results, and a panel a target.
 
 use calibench_model::{Image, PixelPoint};
+use calibench_records::results::{MethodInfo, Outcome};
 
 use super::canvas::Canvas;
 use super::figures::{Layer, MarkAt, Panel, overview, panels};
 use super::load::Loaded;
-use crate::results::{MethodInfo, Outcome};
 
 /// More targets than this are not all labelled.
 const MOST_LABELS: usize = 24;

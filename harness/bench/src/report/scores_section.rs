@@ -1,8 +1,9 @@
 //! The figures of every method on a rendered scene.
 
+use calibench_records::score::{Errors, Pooled, Score, root};
+
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed, signed};
-use crate::score::{Errors, Pooled, Score, root};
 
 /// Fewer common points than this are not worth a figure.
 const FEW: u64 = 10;

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::PhotoError;
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::{Image, Rejection, Start, Unknowns};
+use calibench_records::results::{MethodInfo, Trial};
 use calibench_synth::optics::OpticsError;
 use calibench_synth::sensor::SensorError;
 use calibench_synth::stations::StationError;
@@ -17,7 +18,6 @@ use calibench_synth::view::ViewError;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use crate::results::{MethodInfo, Trial};
 use crate::scenario::{Scenario, Subject};
 
 pub use photographs::measured as measured_board;
@@ -25,11 +25,6 @@ pub use scene::{VIEW, trial_picture, trial_truth};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 const BATCH: u64 = 32;
-
-/// Where the image of view `view` is kept in the folder of a scenario's records: under its full name, so that `a.jpg` and `a.png` do not meet.
-pub fn kept_image(folder: &Path, view: &str) -> PathBuf {
-    folder.join(format!("{view}.png"))
-}
 
 /// How a scenario is run.
 pub struct Plan<'a> {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use calibench_exchange::{read_photo, write_png};
 use calibench_measure::{Board, BoardDetector, Configured};
 use calibench_model::{Image, PixelPoint, Start, TargetKind};
+use calibench_records::results::{Outcome, PointResult, Trial};
 use rayon::prelude::*;
 
 use super::{Plan, RunError};
-use crate::results::{Outcome, PointResult, Trial};
 use crate::scenario::PhotographsSubject;
 
 fn folder(plan: &Plan<'_>, subject: &PhotographsSubject) -> PathBuf {
@@ -53,7 +53,7 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
     let image = read_photo(path)?;
     let view: Arc<str> = file.into();
     if let Some(folder) = plan.images {
-        write_png(&super::kept_image(folder, file), &image, false)?;
+        write_png(&calibench_records::names::kept_image(folder, file), &image, false)?;
     }
     Ok(plan.detector.map_or_else(Trial::default, |detector| measured(&image, &view, (detector, subject.board), plan.methods)))
 }

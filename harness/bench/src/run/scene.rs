@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use calibench_exchange::write_png;
 use calibench_model::{Image, Scene, Start};
+use calibench_random::{Key, Purpose, stream};
+use calibench_records::results::{PointResult, Trial};
 use calibench_synth::draw;
 use calibench_synth::noise::{add_grey_noise, quantise};
-use calibench_synth::random::{Key, Purpose, stream};
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::{Clipped, Exposure};
 use rand::RngExt;
 
 use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
-use crate::results::{PointResult, Trial};
 use crate::scenario::{Phase, Pixels, SceneSubject, Starts};
 
 /// The name of the only view.
@@ -50,7 +50,7 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     let truth = trial_truth(subject, key);
     let image = trial_picture(subject, renderer, &truth, key)?.image;
     if let Some(folder) = plan.images.filter(|_| number == 0) {
-        write_png(&super::kept_image(folder, VIEW), &image, subject.is_deep())?;
+        write_png(&calibench_records::names::kept_image(folder, VIEW), &image, subject.is_deep())?;
     }
     let starts = starts(subject, &image, &truth, key);
     let view: Arc<str> = VIEW.into();

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use calibench_exchange::write_png;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, PixelPoint, Start};
-use calibench_synth::random::{Key, Purpose, stream};
+use calibench_random::{Key, Purpose, stream};
+use calibench_records::results::{PointResult, Trial};
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::Exposure;
 use calibench_synth::stations::Station;
@@ -15,7 +16,6 @@ use rayon::prelude::*;
 use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
 use crate::network::{self, Job};
-use crate::results::{PointResult, Trial};
 use crate::scenario::{Calibration, ViewsSubject};
 
 /// What is the same in all trials.
@@ -170,7 +170,7 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
     for view in &prepared.views {
         let image = prepared.image(view, key)?.image;
         if let Some(folder) = plan.images.filter(|_| number == 0) {
-            write_png(&super::kept_image(folder, &view.station.name), &image, prepared.is_deep())?;
+            write_png(&calibench_records::names::kept_image(folder, &view.station.name), &image, prepared.is_deep())?;
         }
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
         let starts = match &prepared.subject.detector {

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use calibench_diagnostics::Problem;
 use calibench_exchange::camera::{ReadOptions, read_camera_with};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::wire::{ImageSides, bounded};
 

@@ -4,10 +4,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use calibench_diagnostics::{Problems, nearest};
 use calibench_measure::Registry;
 use thiserror::Error;
 
-use super::problem::{Problems, nearest};
 use super::{Scenario, check};
 
 /// The folder of scenario files.

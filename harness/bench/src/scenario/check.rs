@@ -3,21 +3,22 @@
 use std::ops::Range;
 use std::path::Path;
 
+use calibench_diagnostics::{Problem, Problems};
 use calibench_measure::Registry;
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
+use calibench_random::Key;
 use calibench_synth::overlap::{crosses_itself, overlap};
-use calibench_synth::random::Key;
 use toml::Spanned;
 use toml::de::DeTable;
 
 use super::methods::methods;
-use super::problem::{Problem, Problems};
 use super::section::Section;
 use super::sensor::Surroundings;
-use super::sweep::{self, Sweep};
+use super::sweep::Sweep;
 use super::views::{ImagingTables, ViewTables};
 use super::wire::{Head, PolygonWire, Position, SceneWire, TargetWire};
 use super::{Pixels, Pointing, Scenario, SceneSubject, Starts, Subject, calibration, figure, photographs};
+use crate::scenario::sweep;
 
 /// The largest image, px: 400 megapixels take about 8 GB to render.
 const MOST_PIXELS: usize = 400_000_000;

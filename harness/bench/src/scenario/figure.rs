@@ -1,12 +1,12 @@
 //! The `[figure]` table: a drawing of a paper, as a flat scene.
 
+use calibench_diagnostics::Problem;
 use calibench_synth::testfield::{Figure4, Zhu};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
 use super::check::surroundings;
-use super::problem::Problem;
 use super::section::Section;
 use super::views::ImagingTables;
 use super::wire::{Bits, Grey, GreyNoise, Phase, Pixels, bounded};

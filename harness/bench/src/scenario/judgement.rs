@@ -1,10 +1,10 @@
 //! The `[judgement]` table: which camera models photographs are judged with.
 
+use calibench_diagnostics::Problem;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::wire::bounded;
 use crate::judgement::{HALF, ModelChoice, ModelError};

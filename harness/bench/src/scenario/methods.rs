@@ -1,9 +1,9 @@
 //! The `[[method]]` tables: their keys are the method's own parameters.
 
+use calibench_diagnostics::Problem;
 use calibench_measure::{Configured, MethodError, Registry};
 use toml::de::DeValue;
 
-use super::problem::Problem;
 use super::section::Section;
 
 /// All methods of a scenario; mistakes are added to `problems`.

@@ -10,7 +10,6 @@ mod methods;
 mod optics;
 mod photographs;
 pub mod pointing;
-pub mod problem;
 pub mod schema;
 mod section;
 pub mod sensor;
@@ -26,9 +25,9 @@ use std::path::PathBuf;
 use calibench_measure::{Board, Configured};
 use calibench_model::camera::Camera;
 use calibench_model::{PixelPoint, Scene, Testfield};
+use calibench_random::Key;
 use calibench_synth::optics::OpticsError;
 use calibench_synth::pointing::Hand;
-use calibench_synth::random::Key;
 use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
@@ -37,7 +36,6 @@ pub use calibration::Calibration;
 pub use check::{parse, parse_cell};
 pub use judgement::JudgementPlan;
 pub use pointing::{Detector, Pointing};
-pub use problem::{Problem, Problems};
 pub use stations::StationPlan;
 pub use sweep::Sweep;
 pub use testfield::Unit;
@@ -207,6 +205,11 @@ impl Scenario {
             }
             Subject::Photographs(_) => true,
         }
+    }
+
+    /// Is the truth of its points known?
+    pub fn has_truth(&self) -> bool {
+        !matches!(self.subject, Subject::Photographs(_))
     }
 
     /// Do its points go through an adjustment?

@@ -1,10 +1,10 @@
 //! The `[optics]` table: how light is spread before it is sampled.
 
+use calibench_diagnostics::Problem;
 use calibench_synth::optics::{Motion, Optics};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::wire::{Position, bounded};
 

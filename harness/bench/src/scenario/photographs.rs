@@ -2,9 +2,9 @@
 
 use std::path::{Component, Path};
 
+use calibench_diagnostics::Problem;
 use calibench_measure::Board;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::wire::PhotographsWire;
 use super::{PhotographsSubject, judgement};

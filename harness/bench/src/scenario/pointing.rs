@@ -1,12 +1,12 @@
 //! Where measuring starts: somebody points, or a detector finds.
 
+use calibench_diagnostics::Problem;
 use calibench_measure::harris::{Detection, Harris, HarrisDetector, smooth};
 use calibench_model::{Image, PixelPoint, Start};
 use calibench_synth::pointing::Hand;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::wire::{PointingWire, bounded};
 

@@ -2,12 +2,11 @@
 
 use std::ops::Range;
 
+use calibench_diagnostics::{Problem, nearest};
 use schemars::{JsonSchema, schema_for};
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
-
-use super::problem::{Problem, nearest};
 
 /// A table and where it stands.
 pub struct Section<'i> {

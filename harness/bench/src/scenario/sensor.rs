@@ -5,18 +5,18 @@ mod numbers;
 #[cfg(test)]
 mod tests;
 
+use calibench_diagnostics::Problem;
 use calibench_model::PixelPoint;
 use calibench_synth::sensor::Sensor;
-use schemars::JsonSchema;
-use serde::Deserialize;
-
-use super::problem::Problem;
-use super::section::Section;
-use super::wire::{Bits, GreyNoise, Position};
 use numbers::{
     Coefficient, ConverterBits, Current, Decibel, Electron, Exposure, Factor, GammaExponent, Gradient, Jitter, Numbers, Offset, Percent,
     Positive, Quality, QuantumEfficiency, Sensitivity, Time,
 };
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::section::Section;
+use super::wire::{Bits, GreyNoise, Position};
 
 /// What becomes of the light behind the photosites' apertures. Every key is a stage that may be left out.
 #[derive(Debug, Deserialize, JsonSchema)]

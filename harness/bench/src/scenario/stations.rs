@@ -1,13 +1,13 @@
 //! The `[stations]` and `[[station]]` tables: where the cameras of a scenario stand.
 
+use calibench_diagnostics::Problem;
 use calibench_model::camera::Camera;
 use calibench_model::{Pose, Testfield};
-use calibench_synth::random::Key;
+use calibench_random::Key;
 use calibench_synth::stations::{Aim, Arc, BoardViews, RandomViews, Ring, Station, StationError, check_names, check_sight, sees};
 use nalgebra::{Point3, Vector3};
 use toml::de::DeTable;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::testfield::{Spans, take_kind, wire::Degrees};
 use crate::truth;

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
+use calibench_diagnostics::Problem;
 use calibench_model::Testfield;
-use calibench_synth::random::Key;
+use calibench_random::Key;
 use calibench_synth::testfield::{Chessboard, Coded, FieldError, House, Levels, Panels, SheetBend, Wall};
 use toml::de::DeValue;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::wire::Grey;
 

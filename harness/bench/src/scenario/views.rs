@@ -3,13 +3,13 @@
 use std::ops::Range;
 use std::path::Path;
 
+use calibench_diagnostics::Problem;
 use calibench_model::Testfield;
 use calibench_model::camera::{Camera, CameraModel};
+use calibench_random::Key;
 use calibench_synth::optics::Optics;
 use calibench_synth::pointing::Hand;
-use calibench_synth::random::Key;
 
-use super::problem::Problem;
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
 use super::{Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};

@@ -5,8 +5,8 @@ use std::hint::black_box;
 
 use calibench_model::camera::{Camera, ImageSize, Photogrammetric};
 use calibench_model::{Area, Outline, Plate, Pose, Testfield};
+use calibench_random::Key;
 use calibench_synth::optics::Optics;
-use calibench_synth::random::Key;
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::{Design, Electrons, Frame, Noise, Sensor};
 use calibench_synth::view::View;

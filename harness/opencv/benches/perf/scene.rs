@@ -1,10 +1,10 @@
 //! What is measured: 12 megapixels with a corner in every cell, and frames for the detector.
 
 use calibench_model::{Image, PixelPoint, Polygon, Scene, Start};
+use calibench_random::{Key, Purpose, stream};
 use calibench_synth::noise::{add_grey_noise, quantise};
 use calibench_synth::optics::Optics;
 use calibench_synth::pointing::Hand;
-use calibench_synth::random::{Key, Purpose, stream};
 use calibench_synth::raster::{Picture, Renderer};
 use rayon::prelude::*;
 

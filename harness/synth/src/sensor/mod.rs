@@ -40,7 +40,7 @@ pub use jitter::row_shifts;
 pub use jpeg::through_jpeg;
 pub use shading::{FallOff, Gradient, Per, Vignetting};
 
-use crate::random::Key;
+use calibench_random::Key;
 
 /// Rows that a thread takes at a time.
 const BLOCK: usize = 64;

@@ -1,5 +1,6 @@
 //! The stages that need no other row: most of them.
 
+use calibench_random::{Key, Purpose, stream};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -10,7 +11,6 @@ use super::filter::{ColourFilter, scale_colours};
 use super::normal::fill_normal;
 use super::shading::shade;
 use super::{Clipped, Frame, Noise, Sensor};
-use crate::random::{Key, Purpose, stream};
 
 /// The streams of one image: each row has its own part of each.
 struct Streams {

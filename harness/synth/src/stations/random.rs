@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use calibench_model::Pose;
+use calibench_random::{Key, Purpose, stream};
 use rand::{Rng, RngExt};
 
 use super::{Aim, Station, StationError, angle, length, within};
-use crate::random::{Key, Purpose, stream};
 
 /// How many poses are tried for a station.
 const TRIES: usize = 1000;

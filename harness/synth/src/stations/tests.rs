@@ -2,10 +2,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
 use calibench_model::{Pose, Testfield};
+use calibench_random::Key;
 use nalgebra::{Point3, Vector3};
 
 use super::*;
-use crate::random::Key;
 use crate::testfield::{Chessboard, Levels};
 
 const KEY: Key<'_> = Key { seed: 3, scenario: "stations", trial: 0, view: "", target: "" };

@@ -2,11 +2,11 @@
 
 use calibench_model::TargetKind;
 use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield};
+use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 
 use super::{FieldError, Levels, SheetBend, check};
-use crate::random::{Key, Purpose, stream};
 
 /// A chessboard, counted in inner corners, on a sheet in the plane z = 0 that faces +z.
 ///

@@ -2,11 +2,11 @@
 
 use calibench_model::target::BAR;
 use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield};
+use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand::seq::SliceRandom;
 
 use super::{FieldError, Levels, Shape, SheetBend, check};
-use crate::random::{Key, Purpose, stream};
 
 mod cluster;
 

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use calibench_model::testfield::PlatePoint;
+use calibench_random::{Key, Purpose, stream};
 use rand::{Rng, RngExt};
 
 use super::{FieldError, Shape, check};
-use crate::random::{Key, Purpose, stream};
 
 /// Darts thrown for each target before a sheet counts as full.
 const DARTS: usize = 1000;

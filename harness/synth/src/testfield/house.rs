@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 
 use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield};
 use calibench_model::{PixelPoint, TargetKind};
+use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand::{Rng, RngExt};
 
 use super::outline::polygon;
 use super::{FieldError, Shape, check};
 use crate::overlap::contains;
-use crate::random::{Key, Purpose, stream};
 
 /// A house as it is drawn: two walls, a gable, a roof, a chimney, a door and a window before the sky, on a plane sheet of 16 x 12 units of the drawing.
 ///

@@ -1,11 +1,11 @@
 //! The sheets of a wall with relief: panels side by side, each at a depth and a tilt of its own.
 
+use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Rotation3, Unit, Vector3};
 use rand::RngExt;
 
 use super::wall::Sheet;
 use super::{FieldError, Levels, check};
-use crate::random::{Key, Purpose, stream};
 
 /// Panels in rows and columns, around the origin in the plane of x and y, facing +z.
 #[derive(Clone, Copy, Debug, PartialEq)]

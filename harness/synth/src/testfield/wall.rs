@@ -1,12 +1,12 @@
 //! The wall of ground control points: sheets in space with targets, surveyed with some error.
 
 use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield};
+use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::{FieldError, Fill, Levels, Shape, SheetBend, check, placed};
-use crate::random::{Key, Purpose, stream};
 
 /// A sheet of the wall.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! Are halves a fair test of the sigmas?
 
+use calibench_records::judgement::HONEST;
 use rayon::prelude::*;
 use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF};
 
 use super::*;
-use crate::judgement::HONEST;
 
 const TRIALS: u64 = 400;
 

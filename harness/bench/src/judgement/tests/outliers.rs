@@ -1,10 +1,10 @@
 //! Is a spoiled view named, and none in clean data?
 
+use calibench_records::judgement::OUTLIER_ALPHA;
 use rayon::prelude::*;
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 use super::*;
-use crate::judgement::OUTLIER_ALPHA;
 use crate::judgement::calibrated::calibrate;
 
 /// The names of the outlying views of trial `trial`, in which the corners of view `spoiled` are displaced by another hand.
@@ -17,7 +17,7 @@ fn named(scenario: &str, trial: u64, spoiled: Option<(usize, f64)>) -> Vec<usize
     }
     let settings = options(&["opencv4"], 1).models[0].settings(SIZE, None);
     let found = calibrate(&material, 0, &material.usable(0), &settings).unwrap();
-    let p = crate::judgement::outliers(&found.residuals, found.names.len());
+    let p = calibench_records::judgement::outliers(&found.residuals, found.names.len());
     (0..13).filter(|&view| p[view] < OUTLIER_ALPHA).collect()
 }
 

@@ -1,8 +1,10 @@
 //! Which operator and model come out best, and what is said when nothing can.
 
+use calibench_records::judgement::{measure, write_rows};
+use calibench_records::points::RunInfo;
+
 use super::*;
-use crate::judgement::{JudgementError, measure, write_rows};
-use crate::records::RunInfo;
+use crate::judgement::JudgementError;
 
 const POOR: &str = "opencv4:fx,fy,cx,cy";
 
@@ -14,7 +16,7 @@ fn a_model_that_is_too_poor_and_an_operator_that_is_noisier_are_worse() {
     // k3 is zero: the model without it predicts as well and has fewer parameters.
     assert_eq!(&*trusted.cell.model, "opencv4");
     assert_ne!(&*trusted.cell.method, "operator-2");
-    let p = |others: &[(&crate::judgement::Cell, f64)], name: &str| {
+    let p = |others: &[(&calibench_records::judgement::Cell, f64)], name: &str| {
         others.iter().find(|(cell, _)| &*cell.model == name || &*cell.method == name).map(|(_, p)| *p).unwrap()
     };
     assert!(p(&trusted.models, POOR) < 1e-3);

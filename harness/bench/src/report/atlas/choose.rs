@@ -1,6 +1,6 @@
 //! Which method to take: the least error among those that hardly ever fail, and who cannot be told from it.
 
-use crate::gate::{holm, paired_t};
+use calibench_records::statistics::{holm, paired_t};
 
 /// The greatest share of points, lost and rejected together, with which a method is still recommended.
 pub const MOST_FAILURES: f64 = 0.01;

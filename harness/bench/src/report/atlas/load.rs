@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use calibench_measure::Registry;
+use calibench_records::results::{LOST, Outcome, Trial};
 
 use crate::report::LoadError;
 use crate::report::sweep::{LoadedSweep, load_with};
-use crate::results::{LOST, Outcome, Trial};
 
 /// The mean squared error of the points of one trial, px^2, with every lost or rejected point as one of [`LOST`] px; by trial.
 pub type Losses = BTreeMap<u64, f64>;

@@ -1,9 +1,9 @@
 //! Over the frame: how far halves differ, and how far they should.
 
+use calibench_records::judgement::Cell;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use crate::judgement::Cell;
 use crate::report::canvas::Canvas;
 use crate::report::field::{LEFT, TOP, colour_bar, shade, write};
 

@@ -1,9 +1,9 @@
 //! Operator by model: hold-out RMS with its interval.
 
+use calibench_records::judgement::{Cell, Estimate, Summary, Trusted};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use crate::judgement::{Cell, Estimate, Summary, Trusted};
 use crate::report::canvas::Canvas;
 use crate::report::field::{shade, write};
 use crate::report::plain;

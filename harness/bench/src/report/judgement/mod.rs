@@ -7,8 +7,9 @@ mod tables;
 mod verdict;
 mod views;
 
+use calibench_records::judgement::Summary;
+
 use super::canvas::Canvas;
-use crate::judgement::Summary;
 
 pub use verdict::verdict;
 
@@ -49,7 +50,7 @@ pub fn section(summary: &Summary) -> (String, Vec<(String, Canvas)>) {
         "With `{}`: RMS residual of each photograph in the adjustment of all. A photograph is named where its RMS is larger than that of the others by more \
          than their own scatter explains (logarithms, median and median absolute deviation, Holm over all photographs, alpha {}).",
         trusted.cell.model,
-        crate::judgement::OUTLIER_ALPHA
+        calibench_records::judgement::OUTLIER_ALPHA
     );
     show(&mut text, "views.png", "Photograph by photograph", &about, Some(views::picture(summary, &trusted.cell.model)));
     text.push_str(&tables::views(summary, &trusted));

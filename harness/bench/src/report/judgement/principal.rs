@@ -1,9 +1,9 @@
 //! The principal point from halves, from all but one, and from all.
 
+use calibench_records::judgement::Principal;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use crate::judgement::Principal;
 use crate::report::canvas::{COLOURS, Canvas, Mark};
 use crate::report::field::write;
 use crate::report::plain;

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use calibench_records::judgement::{COMPARABLE, Cell, Summary, Trusted};
+
 use super::verdict::listed;
-use crate::judgement::{COMPARABLE, Cell, Summary, Trusted};
 use crate::report::markdown::{MarkdownTable, fixed};
 use crate::report::plain;
 

@@ -1,6 +1,7 @@
 //! The verdict in words, every one of them derived from the records.
 
-use crate::judgement::{ALPHA, Beside, Cell, Estimate, HONEST, OUTLIER_ALPHA, Published, Summary, Trusted};
+use calibench_records::judgement::{ALPHA, Beside, Cell, Estimate, HONEST, OUTLIER_ALPHA, Published, Summary, Trusted};
+
 use crate::report::markdown::fixed;
 use crate::report::plain;
 

@@ -1,9 +1,9 @@
 //! RMS residuals of every photograph, by operator.
 
+use calibench_records::judgement::{Cell, Summary};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use crate::judgement::{Cell, Summary};
 use crate::report::canvas::Canvas;
 use crate::report::field::{Area, write};
 use crate::report::figures::Layer;
@@ -41,7 +41,7 @@ pub fn picture(summary: &Summary, model: &str) -> Canvas {
             let aside = (index as f64 - (cells.len() as f64 - 1.0) / 2.0) * f64::from(step) / (cells.len() as f64 + 2.0);
             let at = (f64::from(x(place)) + aside, f64::from(y(view.residual.0)));
             marks.push((layer.mark, layer.colour, at));
-            if view.p < crate::judgement::OUTLIER_ALPHA {
+            if view.p < calibench_records::judgement::OUTLIER_ALPHA {
                 rings.push((at.0.round() as i32, at.1.round() as i32));
             }
         }

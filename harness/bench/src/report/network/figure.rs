@@ -1,8 +1,9 @@
 //! What of our adjustments stands behind a printed cell: one run, and all of them.
 
+use calibench_records::results::Group;
+use calibench_records::statistics::running::Running;
+
 use super::load::{Summaries, Summary};
-use super::stats::Running;
-use crate::network::Group;
 use crate::published::{Cell, Metric};
 
 /// Our figure for a cell.

@@ -5,9 +5,10 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use super::stats::{Paired, Running};
-use crate::network::Group;
-use crate::network::records::{CALIBRATIONS, Numbers, Row, read};
+use calibench_records::adjustments::{CALIBRATIONS, Numbers, Row, read};
+use calibench_records::results::Group;
+use calibench_records::statistics::running::{Paired, Running};
+
 use crate::report::LoadError;
 
 /// A figure over all trials.

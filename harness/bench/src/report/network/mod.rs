@@ -4,7 +4,6 @@ mod figure;
 mod load;
 mod pictures;
 mod published;
-mod stats;
 mod sweep;
 mod tables;
 

@@ -1,15 +1,16 @@
 //! A sweep of a calibrated scenario: how the reduction factor depends on what is swept.
 
+use calibench_records::names::cell_folder;
+use calibench_records::results::Group;
+
 use super::Pictures;
 use super::load::{Summaries, Summary, load};
 use super::pictures::floor::{Curve, floor};
 use super::tables::with_half;
-use crate::network::Group;
 use crate::report::LoadError;
 use crate::report::markdown::{MarkdownTable, fixed};
 use crate::report::sweep::LoadedSweep;
 use crate::scenario::Subject;
-use crate::store::cell_folder;
 
 /// What the paper prints in its Table 3, to be seen beside the curves.
 type Printed = [(String, f64)];

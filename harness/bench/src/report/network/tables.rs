@@ -1,7 +1,8 @@
 //! Tables of a calibrated scenario: every method, and the sets of parameters.
 
+use calibench_records::results::Group;
+
 use super::load::{Summaries, Summary};
-use crate::network::Group;
 use crate::report::field::plain;
 use crate::report::markdown::{MarkdownTable, fixed};
 

@@ -1,11 +1,11 @@
 //! What of a sweep goes where: along x, into curves or along y, into panels.
 
+use calibench_diagnostics::nearest;
 use thiserror::Error;
 
 use super::load::LoadedSweep;
 use super::metric::{Estimate, Metric};
 use super::units;
-use crate::scenario::problem::nearest;
 
 /// Something that varies in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

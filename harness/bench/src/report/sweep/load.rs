@@ -5,14 +5,14 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use calibench_measure::Registry;
+use calibench_records::names::{RECORDS, SCENARIO, cell_folder};
+use calibench_records::points::read_records;
+use calibench_records::results::Trial;
+use calibench_records::score::{Score, Scores};
 
-use crate::records::read_records;
 use crate::report::LoadError;
 use crate::report::load::groups;
-use crate::results::Trial;
 use crate::scenario::{self, Scenario, Sweep};
-use crate::score::{Score, Scores};
-use crate::store::{RECORDS, SCENARIO, cell_folder};
 
 /// All that reports and plots need of a sweep. Its size does not grow with the number of trials.
 pub struct LoadedSweep {

@@ -1,8 +1,7 @@
 //! The figures of a sweep, each with its 95 % interval.
 
+use calibench_records::score::{Pooled, Score, root};
 use clap::ValueEnum;
-
-use crate::score::{Pooled, Score, root};
 
 /// What is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -147,7 +146,7 @@ const Z: f64 = 1.959_963_984_540_054;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::score::Errors;
+    use calibench_records::score::Errors;
 
     fn score() -> Score {
         let mut kept = Errors::default();

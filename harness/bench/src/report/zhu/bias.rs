@@ -1,9 +1,10 @@
 //! The bias of the strength's maximum over the angle of the corner: along the bisector and across it.
 
+use calibench_records::score::Pooled;
+
 use super::{OPERATOR, Part};
 use crate::report::markdown::{MarkdownTable, fixed, signed};
 use crate::report::sweep::{Choice, Layout, LoadedSweep, Metric, curves};
-use crate::score::Pooled;
 
 pub(super) fn section(loaded: &LoadedSweep) -> Option<Part> {
     let methods: Vec<usize> = (0..loaded.methods.len()).filter(|&method| loaded.methods[method].name.starts_with(OPERATOR)).collect();

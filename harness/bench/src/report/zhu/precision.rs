@@ -5,13 +5,13 @@ use calibench_measure::paraboloid::Weights;
 use calibench_measure::precision::{Form, precision, white};
 use calibench_measure::strength_noise::strength_covariance;
 use calibench_model::{Image, PixelPoint, Start};
+use calibench_records::score::Errors;
 
 use super::{OPERATOR, Part};
 use crate::report::load::Loaded;
 use crate::report::markdown::{MarkdownTable, fixed};
 use crate::report::scene_figures::targets;
 use crate::report::sweep::LoadedSweep;
-use crate::score::Errors;
 
 /// Theory is of first order: the least noise of the sweep is what it is compared with.
 const CELL: usize = 0;

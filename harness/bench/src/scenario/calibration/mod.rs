@@ -1,11 +1,11 @@
 //! The `[calibration]` table: what is done with the measured points of every trial.
 
+use calibench_diagnostics::Problem;
 use calibench_measure::Configured;
 use calibench_model::camera::{Camera, CameraModel, Photogrammetric};
 use toml::Spanned;
 
 use super::ViewsSubject;
-use super::problem::Problem;
 use super::section::Section;
 
 pub mod wire;

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use calibench_diagnostics::Problem;
 use calibench_model::PixelPoint;
 use calibench_synth::sensor::{
     ColourFilter, Demosaic, DemosaicTo, Design, Electrons, FallOff, Gamma, Gradient, Noise, Pattern, Per, Sensor, SensorError, Vignetting,
 };
 
 use super::{DemosaicWire, Filter, Numbers, SensorSetup, SensorWire, Surroundings};
-use crate::scenario::problem::Problem;
 use crate::scenario::section::Section;
 
 /// The ways to describe noise: the first key of each says that it is meant, the others belong to it.

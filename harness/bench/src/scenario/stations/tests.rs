@@ -1,7 +1,7 @@
+use calibench_diagnostics::Problems;
 use calibench_model::camera::{ImageSize, Photogrammetric};
 use calibench_synth::testfield::{Chessboard, Levels};
 
-use super::super::problem::Problems;
 use super::*;
 
 const KEY: Key<'_> = Key { seed: 1, scenario: "test", trial: 0, view: "", target: "" };

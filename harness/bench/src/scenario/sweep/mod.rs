@@ -6,11 +6,10 @@ pub mod wire;
 
 use std::ops::Range;
 
+use calibench_diagnostics::Problem;
 use calibench_measure::Registry;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-use super::problem::Problem;
 
 /// More cells than this are not run at one go.
 pub const MOST_CELLS: usize = 2000;

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
+use calibench_diagnostics::Problem;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::wire::{RangeWire, Scale};
 use super::{Axis, MOST_CELLS, Sweep, Value};
-use crate::scenario::problem::Problem;
 use crate::scenario::section::Section;
 
 /// Takes `[sweep]` out of `root`, the table of `text`; mistakes are added to `problems`. `None` if there is none or it is wrong.

@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
+use calibench_diagnostics::Problem;
 use calibench_measure::Registry;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::Axis;
-use crate::scenario::problem::Problem;
 
 /// Replaces the value of `axis` in `table`, or adds it: a key that the file may not have is found out when its table is read, at its place in
 /// the sweep. Of a list of tables those that the path names by index, `id` or `name` are meant, or all; of methods all with such a parameter.

@@ -1,6 +1,7 @@
-use super::super::problem::Problems;
-use super::*;
+use calibench_diagnostics::Problems;
 use toml::de::DeTable;
+
+use super::*;
 
 const KEY: Key<'_> = Key { seed: 1, scenario: "test", trial: 0, view: "", target: "" };
 

@@ -1,11 +1,11 @@
 //! The wall: `[[testfield.plate]]`, `[[testfield.target]]`, `[testfield.panels]` and `[testfield.fill]`.
 
+use calibench_diagnostics::Problem;
 use calibench_model::TargetKind;
 use calibench_synth::testfield::{Arrangement, Fill, Panels, Shape, Sheet, Turn, Wall, WallTarget};
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
 
-use super::super::problem::Problem;
 use super::super::section::Section;
 use super::wire::{Degrees, FillWire, Fraction, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::{BACKGROUND, Generator, Spans, bend, levels};

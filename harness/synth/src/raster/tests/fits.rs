@@ -3,8 +3,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::shapes::{self, Spot, disc_area, pixel_mean};
+use super::shapes::{Spot, disc_area, pixel_mean};
 use super::*;
+use crate::raster::tests::shapes;
 
 /// Blurs, px.
 const BLURS: [f64; 6] = [0.0, 0.1, 0.3, 0.7, 1.3, 2.0];

@@ -10,9 +10,9 @@ mod shading;
 mod wells;
 
 use calibench_model::Image;
+use calibench_random::Key;
 
 use super::{Design, Electrons, Exposure, Noise, Sensor};
-use crate::random::Key;
 
 pub(super) const KEY: Key<'_> = Key { seed: 20, scenario: "sensor", trial: 0, view: "a", target: "" };
 /// Ten million pixels.

@@ -1,9 +1,9 @@
 //! Reduction factors of all interior and exterior parameters.
 
+use calibench_records::results::Group;
 use plotters::prelude::*;
 
 use super::axes::{Axes, upright, whisker};
-use crate::network::Group;
 use crate::report::canvas::{COLOURS, Canvas, Mark};
 use crate::report::network::load::Summaries;
 

@@ -1,10 +1,10 @@
 //! Residuals of the first trial by image point, and of all trials by the convergence of the image.
 
+use calibench_records::results::Group;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::axes::{Axes, whisker};
-use crate::network::Group;
 use crate::report::canvas::{COLOURS, Canvas, METHOD_MARKS};
 use crate::report::field::write;
 use crate::report::network::load::Summaries;

@@ -1,9 +1,9 @@
 //! Adjustments as the gate compares them: as if they were points, one pair of figures each, trial by trial.
 
 use calibench_model::Rejection;
+use calibench_records::results::{Calibrated, Group};
 
 use super::table::{Entry, rounded};
-use crate::network::{Calibrated, Group};
 
 /// The view under which they stand.
 pub(super) const VIEW: &str = "adjustment";

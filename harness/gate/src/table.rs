@@ -5,9 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use calibench_model::Rejection;
-
-use crate::results::{LOST, MethodInfo, Outcome, PointResult, Trial};
-use crate::scenario::{Scenario, Subject};
+use calibench_records::results::{LOST, MethodInfo, Outcome, PointResult, Trial};
 
 /// Decimals of a coordinate, px: what a baseline file keeps, and what a table is rounded to, so that both compare alike.
 pub const DECIMALS: usize = 9;
@@ -22,12 +20,9 @@ pub enum Coordinates {
 }
 
 impl Coordinates {
-    /// What a scenario yields: errors for a scene, positions for photographs.
-    pub fn of(scenario: &Scenario) -> Self {
-        match scenario.subject {
-            Subject::Scene(_) | Subject::Views(_) => Self::Errors,
-            Subject::Photographs(_) => Self::Positions,
-        }
+    /// What a run yields: errors where the truth is known, positions elsewhere.
+    pub const fn of(truth_is_known: bool) -> Self {
+        if truth_is_known { Self::Errors } else { Self::Positions }
     }
 
     /// The names of the columns.

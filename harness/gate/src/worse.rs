@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use calibench_records::statistics::paired::mean;
+
 use super::ceilings::CeilingMetric;
-use super::statistics::mean;
 use super::table::{Coordinates, MethodTable, Table};
 use super::{TOLERANCE, missing};
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::{info, point, rejected, table};
-use crate::gate::{Ceilings, Coordinates, Table, baseline_path, read_baseline, write_baseline};
+use crate::{Ceilings, Coordinates, Table, baseline_path, read_baseline, write_baseline};
 
 fn example(coordinates: Coordinates) -> Table {
     let first = vec![point(0, "b", [0.1, -1e-12]), point(0, "a", [1.0 / 3.0, 2.5]), rejected(1, "a")];

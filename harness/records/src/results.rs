@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::network::Calibrated;
 use calibench_model::{Measurement, PixelPoint, Rejection};
 
 /// A point more than this far from the truth, px, is lost: something else was measured.
@@ -90,6 +89,80 @@ impl Outcome {
             Self::Rejected(_) => None,
         }
     }
+}
+
+/// What a figure is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Group {
+    /// A parameter of the interior orientation, by name.
+    Iop,
+    /// A parameter of an exterior orientation, as in `6/phi`.
+    Eop,
+    /// The adjustment as a whole: sigma0, redundancy, iterations, image points.
+    Network,
+    /// The camera over the frame: its rms distance from the true one after the best rotation.
+    Frame,
+    /// The second step: errors of check points.
+    Check,
+    /// Root mean square residual of an image, by its name.
+    Residual,
+    /// A residual of the first trial, as in `6/left/3/x`.
+    Point,
+}
+
+impl Group {
+    /// All groups with their names in files.
+    pub const ALL: [(Self, &'static str); 7] = [
+        (Self::Iop, "iop"),
+        (Self::Eop, "eop"),
+        (Self::Network, "network"),
+        (Self::Frame, "frame"),
+        (Self::Check, "check"),
+        (Self::Residual, "residual"),
+        (Self::Point, "point"),
+    ];
+
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, name)| name)
+    }
+}
+
+/// A figure of an adjustment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// What it is about.
+    pub group: Group,
+    /// Its name within the group.
+    pub name: Arc<str>,
+    /// Its value.
+    pub value: f64,
+    /// Its standard deviation as the adjustment gives it, with the estimated variance factor.
+    pub sigma: Option<f64>,
+    /// Value less truth.
+    pub error: Option<f64>,
+    /// The unit of all three.
+    pub unit: &'static str,
+}
+
+impl Figure {
+    /// A figure of which neither standard deviation nor error is known.
+    pub fn plain(group: Group, name: impl Into<Arc<str>>, value: f64, unit: &'static str) -> Self {
+        Self { group, name: name.into(), value, sigma: None, error: None, unit }
+    }
+}
+
+/// What became of one set of parameters with one method's points in one trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibrated {
+    /// The method's place in the list of methods.
+    pub method: usize,
+    /// The set's place in the list of sets.
+    pub set: usize,
+    /// Figures, or why there are none.
+    pub outcome: Result<Vec<Figure>, String>,
+    /// Why the second step has no figures, if so.
+    pub check_failed: Option<String>,
 }
 
 /// One trial: every point of every view, by method and then in the order of the scenario.

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use crate::gate::holm;
+use crate::statistics::holm;
 
 /// The chance that a view is named in photographs that are all alike, over all of their views together.
 pub const ALPHA: f64 = 0.01;

@@ -5,14 +5,13 @@
 
 use std::path::PathBuf;
 
+use calibench_bench::run::Plan;
+use calibench_bench::scenario::{Scenario, Subject, parse};
+use calibench_gate::{Check, Coordinates, Finding, Table, compare};
 use calibench_measure::{Configured, Registry};
+use calibench_records::results::{Outcome, PointResult, Trial};
 
-use crate::gate::{Check, Coordinates, Finding, Table, compare};
-use crate::results::{Outcome, PointResult, Trial};
-use crate::run::Plan;
-use crate::scenario::{Scenario, Subject, parse};
-
-const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/corners/noise.toml"));
+const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/corners/noise.toml"));
 const BASE_SEED: u64 = 20_110_513;
 const RUNS: u64 = 100;
 const TRIALS: u64 = 200;
@@ -55,7 +54,7 @@ fn run(scenario: &Scenario, seed: u64, trials: u64) -> Vec<Trial> {
 /// The table of a run whose points went through `change`; points that it returns as `None` are dropped.
 fn table(scenario: &Scenario, trials: &[Trial], change: impl Fn(u64, PointResult) -> Option<PointResult>) -> Table {
     let infos = Plan::new(scenario, None, PathBuf::new()).method_infos();
-    let mut table = Table::new(scenario.name.as_str(), 0, Coordinates::of(scenario), &infos);
+    let mut table = Table::new(scenario.name.as_str(), 0, Coordinates::of(scenario.has_truth()), &infos);
     for trial in trials {
         let points = trial.points.iter().filter_map(|point| change(trial.number, point.clone())).collect();
         table.add(&Trial { points, ..trial.clone() });

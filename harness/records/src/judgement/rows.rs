@@ -3,9 +3,8 @@
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-use calibench_exchange::write_table;
-
-use crate::records::{RecordError, Row as Cells, RunInfo, open};
+use crate::cells::{Cells, RecordError, open};
+use crate::points::RunInfo;
 
 /// The file's name in a scenario's folder.
 pub const JUDGEMENT: &str = "judgement.csv";
@@ -93,7 +92,10 @@ pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> io::Result
         let (value, sigma) = (number(row.value), number(row.sigma));
         [run.scenario.clone(), method, model, measure, place, value, sigma, count, unit, status, reason, seed.clone(), run.revision.clone()]
     };
-    write_table(output, &COLUMNS, rows.iter().map(cells))
+    let mut writer = csv::Writer::from_writer(output);
+    writer.write_record(COLUMNS)?;
+    rows.iter().try_for_each(|row| writer.write_record(cells(row)))?;
+    writer.flush()
 }
 
 /// Reads what [`write_rows`] wrote, and the seed.

@@ -1,8 +1,9 @@
 //! What is found, and how it reads.
 
+use calibench_records::results::PointResult;
+
 use super::{info, point, rejected, table};
-use crate::gate::{Check, Coordinates, Finding, Table, compare, render, worse_than};
-use crate::results::PointResult;
+use crate::{Check, Coordinates, Finding, Table, compare, render, worse_than};
 
 fn single(points: Vec<PointResult>) -> Table {
     table(Coordinates::Errors, &[info("m", "1"), info("n", "1")], &[points])

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{Cell, Summary};
-use crate::gate::holm;
-use crate::gate::statistics::paired_t;
+use crate::statistics::holm;
+use crate::statistics::paired::paired_t;
 
 /// The chance that any of the operators (or models) that are as good is called worse.
 pub const ALPHA: f64 = 0.05;

@@ -1,5 +1,7 @@
 //! The gate as CI meets it.
 
+mod requirement;
+
 use std::path::Path;
 
 use crate::project::{copy, run, stderr, stdout};

@@ -2,11 +2,11 @@
 
 mod files;
 mod findings;
-mod requirement;
+
+use calibench_model::{PixelPoint, Rejection};
+use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
 
 use super::{Coordinates, Table};
-use crate::results::{MethodInfo, Outcome, PointResult, Trial};
-use calibench_model::{PixelPoint, Rejection};
 
 pub(super) fn info(label: &str, version: &str) -> MethodInfo {
     MethodInfo { label: label.into(), version: version.into(), unavailable: None }

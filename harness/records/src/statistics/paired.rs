@@ -4,7 +4,7 @@ use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, StudentsT};
 
 /// The p-values of one comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PValues {
+pub struct PValues {
     /// Of a change in either direction.
     pub two_sided: f64,
     /// Of growth.
@@ -28,7 +28,8 @@ impl PValues {
 ///
 /// Under the null hypothesis a difference of two like runs is symmetric about zero, whatever the errors themselves are like;
 /// heavy tails then make the test conservative, not prone to false alarms.
-pub(crate) fn paired_t(differences: &[f64]) -> PValues {
+#[expect(clippy::missing_panics_doc, reason = "there is at least one degree of freedom")]
+pub fn paired_t(differences: &[f64]) -> PValues {
     let n = differences.len() as f64;
     if n < 2.0 {
         return PValues::NONE;
@@ -52,7 +53,8 @@ pub(crate) fn paired_t(differences: &[f64]) -> PValues {
 /// The exact sign test on the trials whose count changed: `grew` of them up, `fell` of them down.
 ///
 /// Source: the binomial distribution with probability 1/2; trials without a change say nothing (Dixon & Mood 1946).
-pub(super) fn sign_test(grew: u64, fell: u64) -> PValues {
+#[expect(clippy::missing_panics_doc, reason = "one half is a probability")]
+pub fn sign_test(grew: u64, fell: u64) -> PValues {
     let changed = grew + fell;
     if changed == 0 {
         return PValues::NONE;
@@ -63,7 +65,7 @@ pub(super) fn sign_test(grew: u64, fell: u64) -> PValues {
 }
 
 /// The mean of at least one value.
-pub(super) fn mean(values: &[f64]) -> f64 {
+pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use calibench_records::statistics::paired::{PValues, mean, paired_t, sign_test};
+
 use super::finding::{Finding, Verdict};
-use super::statistics::{PValues, mean, paired_t, sign_test};
 use super::table::{Entry, MethodTable, Place, Table};
 use super::{BOUND, LEAST_PAIRS, TOLERANCE};
 
@@ -122,7 +123,7 @@ impl Collected {
 
 /// The error of a point that was found, lost or not, each coordinate within [`BOUND`].
 ///
-/// Points beyond [`LOST`](crate::results::LOST) are not dropped: a shift takes points over that border, and without them it would
+/// Points beyond [`LOST`](calibench_records::results::LOST) are not dropped: a shift takes points over that border, and without them it would
 /// look smaller than it is, or, where all are lost, not be seen at all. The bound keeps one wild point from hiding the others.
 fn bounded(entry: &Entry) -> Option<[f64; 2]> {
     let within = |value: f64| if value.is_nan() { BOUND } else { value.clamp(-BOUND, BOUND) };

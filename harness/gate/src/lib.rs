@@ -8,11 +8,9 @@ mod baseline;
 mod ceilings;
 mod exact;
 mod finding;
-mod holm;
 mod missing;
 mod paired;
 mod render;
-pub(crate) mod statistics;
 mod table;
 mod worse;
 
@@ -22,11 +20,11 @@ mod tests;
 pub use baseline::{BaselineError, baseline_path, read_baseline, write_baseline};
 pub use ceilings::{Ceiling, CeilingError, CeilingMetric, Ceilings};
 pub use finding::{Finding, Verdict};
-pub use holm::holm;
 pub use render::render;
-pub(crate) use statistics::paired_t;
 pub use table::{Coordinates, DECIMALS, Entry, MethodTable, Place, Table};
 pub use worse::worse_than;
+
+use calibench_records::statistics::holm;
 
 /// The family-wise error rate of a check: the chance that it fails although nothing became worse, over all its tests together.
 ///
@@ -56,7 +54,7 @@ impl Check {
         Self::default()
     }
 
-    /// Compares a run with its baseline. `deterministic` is [`Scenario::is_deterministic`](crate::scenario::Scenario::is_deterministic);
+    /// Compares a run with its baseline. `deterministic` is true of a scenario in which nothing is random;
     /// photographs, whose truth is unknown, are compared exactly in any case.
     pub fn compare(&mut self, baseline: &Table, current: &Table, deterministic: bool) {
         self.findings.extend(missing::completeness(baseline, current));

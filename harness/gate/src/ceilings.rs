@@ -4,13 +4,13 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use calibench_diagnostics::{Problem, Problems};
 use serde::Deserialize;
 use thiserror::Error;
 use toml::Spanned;
 
 use super::finding::{Finding, Verdict};
 use super::table::{Coordinates, Entry, MethodTable, Table};
-use crate::scenario::{Problem, Problems};
 
 /// What a ceiling bounds.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
@@ -94,7 +94,7 @@ impl CeilingMetric {
             (Self::LostShare, _) => share(lost),
             (Self::RmseXy, _) => {
                 let squares: Vec<f64> = method.points.values().filter_map(Entry::kept).map(|[x, y]| x * x + y * y).collect();
-                (!squares.is_empty()).then(|| super::statistics::mean(&squares).sqrt())
+                (!squares.is_empty()).then(|| calibench_records::statistics::paired::mean(&squares).sqrt())
             }
             (Self::MaxError, _) => {
                 let errors = method.points.values().filter_map(Entry::coordinates).map(|[x, y]| x.hypot(y));

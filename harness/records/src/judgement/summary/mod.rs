@@ -6,10 +6,10 @@ mod trusted;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use calibench_synth::random::{Key, Purpose, stream};
+use calibench_random::{Key, Purpose, stream};
 use rand::RngExt;
 
-use super::{Beside, Row, measure, outliers};
+use super::{Row, measure, outliers};
 pub use principal::{Point, Principal};
 pub use trusted::{ALPHA, HONEST, Trusted};
 
@@ -23,6 +23,17 @@ pub struct Estimate {
     pub value: f64,
     /// The interval.
     pub interval: (f64, f64),
+}
+
+/// How far two cameras are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beside {
+    /// RMS over the frame after the best rotation, px.
+    pub frame: f64,
+    /// The largest difference of these, px.
+    pub most: f64,
+    /// RMS where corners were measured, after the best rotation there, px. `None` where they were nowhere near a place of the comparison.
+    pub seen: Option<f64>,
 }
 
 /// What halves of the photographs say.

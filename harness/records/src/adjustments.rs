@@ -4,10 +4,10 @@ use std::io::{Read, Write};
 
 use csv::StringRecord;
 
-use super::{Calibrated, Figure, Group};
-use crate::records::{RecordError, Row as Cells, RunInfo, open};
+use crate::cells::{Cells, RecordError, open};
+use crate::points::RunInfo;
 use crate::results::MethodInfo;
-use crate::scenario::Calibration;
+use crate::results::{Calibrated, Figure, Group};
 
 /// The columns of the file.
 pub const COLUMNS: [&str; 13] =
@@ -25,14 +25,13 @@ pub struct CalibrationWriter<W: Write> {
 }
 
 impl<W: Write> CalibrationWriter<W> {
-    /// Starts a file with its header.
+    /// Starts a file with its header. `sets` are the names of the sets of parameters.
     ///
     /// # Errors
     /// What the output refuses.
-    pub fn new(output: W, run: RunInfo, methods: Vec<MethodInfo>, calibration: &Calibration) -> Result<Self, csv::Error> {
+    pub fn new(output: W, run: RunInfo, methods: Vec<MethodInfo>, sets: Vec<String>) -> Result<Self, csv::Error> {
         let mut csv = csv::Writer::from_writer(output);
         csv.write_record(COLUMNS)?;
-        let sets = calibration.sets.iter().map(|set| set.name.clone()).collect();
         Ok(Self { csv, run, methods, sets })
     }
 

@@ -4,9 +4,8 @@ use std::io::{Read, Write};
 use std::sync::Arc;
 
 use calibench_model::{PixelPoint, Rejection};
-use csv::StringRecord;
-use thiserror::Error;
 
+use crate::cells::{Cells, RecordError, open};
 use crate::results::{MethodInfo, Outcome, PointResult, Trial};
 
 /// The columns of a records file.
@@ -132,22 +131,6 @@ impl<W: Write> RecordWriter<W> {
     }
 }
 
-/// A records file that is none.
-#[derive(Debug, Error)]
-pub enum RecordError {
-    /// Not the CSV that it should be.
-    #[error(transparent)]
-    Csv(#[from] csv::Error),
-    /// A row that means nothing.
-    #[error("line {line}: {problem}; these records were not written by this version, run the scenario again")]
-    Row {
-        /// Counted from 1.
-        line: u64,
-        /// What is wrong.
-        problem: String,
-    },
-}
-
 /// What a records file holds besides its trials.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordHead {
@@ -167,7 +150,7 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
     let mut trial: Option<Trial> = None;
     for record in csv.records() {
         let record = record?;
-        let row = Row { record: &record, columns: &COLUMNS };
+        let row = Cells { record: &record, columns: &COLUMNS };
         if head.run.scenario.is_empty() {
             head.run = RunInfo { scenario: row.text(0).into(), seed: row.parse(11)?, revision: row.text(12).into(), detector: None };
         }
@@ -200,7 +183,7 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
     Ok(head)
 }
 
-fn method_index(methods: &mut Vec<MethodInfo>, row: &Row<'_>) -> Option<usize> {
+fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>) -> Option<usize> {
     let (label, version) = (row.text(4), row.text(5));
     if label.is_empty() {
         return None;
@@ -213,7 +196,7 @@ fn method_index(methods: &mut Vec<MethodInfo>, row: &Row<'_>) -> Option<usize> {
 }
 
 /// Adds a row to a trial; the rows of one point follow each other.
-fn add(trial: &mut Trial, row: &Row<'_>, method: usize) -> Result<(), RecordError> {
+fn add(trial: &mut Trial, row: &Cells<'_>, method: usize) -> Result<(), RecordError> {
     let (view, target) = (row.text(2), row.text(3));
     if row.text(9) == "rejected" {
         let why = Rejection::ALL.into_iter().find(|why| why.name() == row.text(10));
@@ -242,45 +225,6 @@ fn add(trial: &mut Trial, row: &Row<'_>, method: usize) -> Result<(), RecordErro
         _ => return Err(row.wrong("unknown metric")),
     }
     Ok(())
-}
-
-/// A reader of a file of records whose header has been checked.
-pub(crate) fn open<R: Read>(input: R, columns: &[&str]) -> Result<csv::Reader<R>, RecordError> {
-    let mut csv = csv::Reader::from_reader(input);
-    if csv.headers()?.iter().ne(columns.iter().copied()) {
-        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", columns.join(",")) });
-    }
-    Ok(csv)
-}
-
-/// A row of a file of records.
-pub(crate) struct Row<'a> {
-    pub(crate) record: &'a StringRecord,
-    pub(crate) columns: &'a [&'a str],
-}
-
-impl Row<'_> {
-    pub(crate) fn text(&self, column: usize) -> &str {
-        self.record.get(column).unwrap_or_default()
-    }
-
-    pub(crate) fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, RecordError> {
-        self.text(column).parse().map_err(|_| self.bad(column))
-    }
-
-    /// A cell that may be empty.
-    pub(crate) fn optional<T: std::str::FromStr>(&self, column: usize) -> Result<Option<T>, RecordError> {
-        if self.text(column).is_empty() { Ok(None) } else { self.parse(column).map(Some) }
-    }
-
-    /// A cell that holds what it should not.
-    pub(crate) fn bad(&self, column: usize) -> RecordError {
-        self.wrong(&format!("column `{}` holds `{}`", self.columns[column], self.text(column)))
-    }
-
-    fn wrong(&self, problem: &str) -> RecordError {
-        RecordError::Row { line: self.record.position().map_or(0, csv::Position::line), problem: problem.to_owned() }
-    }
 }
 
 #[cfg(test)]

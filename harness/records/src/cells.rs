@@ -1,0 +1,62 @@
+//! Files of records, cell by cell.
+
+use std::io::Read;
+
+use csv::StringRecord;
+use thiserror::Error;
+
+/// A records file that is none.
+#[derive(Debug, Error)]
+pub enum RecordError {
+    /// Not the CSV that it should be.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+    /// A row that means nothing.
+    #[error("line {line}: {problem}; these records were not written by this version, run the scenario again")]
+    Row {
+        /// Counted from 1.
+        line: u64,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+/// A reader of a file of records whose header has been checked.
+pub(crate) fn open<R: Read>(input: R, columns: &[&str]) -> Result<csv::Reader<R>, RecordError> {
+    let mut csv = csv::Reader::from_reader(input);
+    if csv.headers()?.iter().ne(columns.iter().copied()) {
+        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", columns.join(",")) });
+    }
+    Ok(csv)
+}
+
+/// A row of a file of records.
+pub(crate) struct Cells<'a> {
+    pub(crate) record: &'a StringRecord,
+    pub(crate) columns: &'a [&'a str],
+}
+
+impl Cells<'_> {
+    pub(crate) fn text(&self, column: usize) -> &str {
+        self.record.get(column).unwrap_or_default()
+    }
+
+    pub(crate) fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, RecordError> {
+        self.text(column).parse().map_err(|_| self.bad(column))
+    }
+
+    /// A cell that may be empty.
+    pub(crate) fn optional<T: std::str::FromStr>(&self, column: usize) -> Result<Option<T>, RecordError> {
+        if self.text(column).is_empty() { Ok(None) } else { self.parse(column).map(Some) }
+    }
+
+    /// A cell that holds what it should not.
+    pub(crate) fn bad(&self, column: usize) -> RecordError {
+        self.wrong(&format!("column `{}` holds `{}`", self.columns[column], self.text(column)))
+    }
+
+    /// A row that means nothing, and why.
+    pub(crate) fn wrong(&self, problem: &str) -> RecordError {
+        RecordError::Row { line: self.record.position().map_or(0, csv::Position::line), problem: problem.to_owned() }
+    }
+}

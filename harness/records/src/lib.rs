@@ -1,0 +1,12 @@
+//! Records: what a run leaves, and the figures that are made of them. The only language between running and reporting.
+
+pub mod adjustments;
+mod cells;
+pub mod judgement;
+pub mod names;
+pub mod points;
+pub mod results;
+pub mod score;
+pub mod statistics;
+
+pub use cells::RecordError;
