@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_bench::report::atlas::{Part, best, unmeasured};
+use calibench_report::atlas::{Part, best, unmeasured};
 
 use crate::project::{copy_with, files, run, stderr};
 

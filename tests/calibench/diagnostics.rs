@@ -1,8 +1,8 @@
 //! Every kind of mistake in a scenario is one clear diagnostic: place, what was expected, what to do.
 
-use calibench_bench::scenario::parse;
 use calibench_diagnostics::Problems;
 use calibench_measure::Registry;
+use calibench_scenario::parse;
 
 const GOOD: &str = r#"why = "To see what is wrong."
 source = "a test"

@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
-use calibench_bench::calibration::{DatumChoice, Optics, Settings, prepare};
-use calibench_bench::network::{ImagePoint, Job, calibrate, observe};
-use calibench_bench::run::Plan;
-use calibench_bench::scenario::{Scenario, Subject, ViewsSubject, parse};
+use calibench_calibrate::{DatumChoice, Optics, Settings, prepare};
 use calibench_exchange::{ControlRow, PointRow};
 use calibench_model::Start;
 use calibench_model::camera::CameraModel;
 use calibench_random::Key;
 use calibench_records::results::Trial;
 use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_run::Plan;
+use calibench_run::network::{ImagePoint, Job, calibrate, observe};
+use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
 
 use crate::project::{NETWORKS, copy_with, files, program, root};
 

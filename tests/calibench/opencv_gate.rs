@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_bench::run::Plan;
-use calibench_bench::scenario::{Scenario, Subject, parse};
 use calibench_gate::{Check, Coordinates, Finding, Table};
 use calibench_records::results::{Outcome, PointResult, Trial};
+use calibench_run::Plan;
+use calibench_scenario::{Scenario, Subject, parse};
 
 const LABEL: &str = "opencv_subpix:window=11";
 const RUNS: u64 = 100;

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use calibench_bench::run::Plan;
-use calibench_bench::scenario::parse;
 use calibench_records::results::{Outcome, PointResult};
+use calibench_run::Plan;
+use calibench_scenario::parse;
 
 /// A lens so long that pictures are affine: what perspective does to a shape's centre is another matter.
 const HEAD: &str = r#"

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-use calibench_bench::scenario::Subject;
-use calibench_bench::scenario::catalogue::Catalogue;
 use calibench_exchange::camera::read_camera;
+use calibench_scenario::Subject;
+use calibench_scenario::catalogue::Catalogue;
 
 use crate::project::{copy_with, files, program, root, run, stderr};
 

@@ -1,7 +1,7 @@
 //! The schema that editors read is that of the checks, and the scenarios of the project pass both.
 
-use calibench_bench::scenario::catalogue::Catalogue;
-use calibench_bench::scenario::schema::schema;
+use calibench_scenario::catalogue::Catalogue;
+use calibench_scenario::schema::schema;
 
 use crate::project::root;
 

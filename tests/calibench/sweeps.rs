@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use calibench_bench::report::sweep::{Choice, Layout, LayoutError, LoadedSweep, Metric, load, write_numbers};
-use calibench_bench::scenario::{parse, parse_cell};
 use calibench_measure::Registry;
+use calibench_report::sweep::{Choice, Layout, LayoutError, LoadedSweep, Metric, load, write_numbers};
+use calibench_scenario::{parse, parse_cell};
 
 use crate::project::{copy, files, program, run, stderr};
 

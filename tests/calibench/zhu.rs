@@ -1,11 +1,11 @@
 //! Zhu, Wu & Wan 2007: the printed tables, starts from a detector, and the bias of the strength's maximum.
 
-use calibench_bench::run::Plan;
-use calibench_bench::scenario::parse;
 use calibench_measure::Registry;
 use calibench_measure::harris_paraboloid::HarrisParaboloid;
 use calibench_measure::{Operator, Settings};
 use calibench_model::{PixelPoint, Rejection, Start};
+use calibench_run::Plan;
+use calibench_scenario::parse;
 use calibench_synth::optics::Optics;
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::testfield::{Figure4, Zhu};

@@ -28,5 +28,5 @@ pub fn version() -> String {
 
 /// The command line with everything that this build can do.
 pub fn main() -> std::process::ExitCode {
-    calibench_bench::cli::main(&calibench_bench::cli::Toolbox { registry: registry(), detector: Some(Box::new(detector())) })
+    calibench_cli::main(&calibench_cli::Toolbox { registry: registry(), detector: Some(Box::new(detector())) })
 }

@@ -4,7 +4,7 @@ mod theirs;
 
 use std::path::Path;
 
-use calibench_bench::calibration::{Optics, Settings, prepare};
+use calibench_calibrate::{Optics, Settings, prepare};
 use calibench_exchange::{ControlRow, PointRow, read_photo};
 use calibench_measure::{Board, BoardDetector};
 use calibench_model::camera::{CameraModel, ImageSize};

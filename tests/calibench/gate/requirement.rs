@@ -5,11 +5,11 @@
 
 use std::path::PathBuf;
 
-use calibench_bench::run::Plan;
-use calibench_bench::scenario::{Scenario, Subject, parse};
 use calibench_gate::{Check, Coordinates, Finding, Table, compare};
 use calibench_measure::{Configured, Registry};
 use calibench_records::results::{Outcome, PointResult, Trial};
+use calibench_run::Plan;
+use calibench_scenario::{Scenario, Subject, parse};
 
 const TEXT: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/corners/noise.toml"));
 const BASE_SEED: u64 = 20_110_513;

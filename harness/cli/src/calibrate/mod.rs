@@ -1,0 +1,166 @@
+//! `calibench calibrate`: a camera from measured points and control, or from photographs of a chessboard.
+
+use std::path::{Path, PathBuf};
+
+use calibench_calibrate::{Calibration, DatumChoice, Settings, prepare};
+use calibench_exchange::{
+    ControlRow, FolderWriter, PointFile, PointRow, ReadOptions, read_camera_with, read_control, read_observed_stations, read_points,
+};
+use calibench_model::camera::{Camera, ImageSize};
+use calibench_report::calibration::{summary, write_report};
+use clap::Args;
+
+use super::context::Context;
+use super::convert::positive;
+use super::{Failure, print};
+
+pub(super) mod board;
+mod camera_file;
+mod cameras;
+
+use board::{Chessboard, Corners};
+use cameras::{Cameras, Photo};
+
+#[derive(Args)]
+pub struct Calibrate {
+    /// Photographs of a chessboard, in place of --points and --control
+    #[arg(value_name = "PHOTO", requires = "chessboard")]
+    photos: Vec<PathBuf>,
+    /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
+    #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos")]
+    chessboard: Option<Chessboard>,
+    /// The method that measures the chessboard's corners
+    #[arg(short, long, value_name = "METHOD", default_value = "forstner", requires = "photos")]
+    method: String,
+    /// Measured points: CSV with image,target,x,y, as `measure` writes it
+    #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
+    points: Option<PathBuf>,
+    /// Control points: CSV with target,X,Y,Z, and optionally sX,sY,sZ
+    #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
+    control: Option<PathBuf>,
+    #[command(flatten)]
+    cameras: Cameras,
+    /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, or minimal:A,B,C,D,E (X and Y of two, Z of three)
+    #[arg(long, value_name = "DATUM", default_value = "control")]
+    datum: DatumChoice,
+    /// A-priori standard deviation of an image coordinate, px [default: 0.1, and the estimated one in tests]
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
+    sigma: Option<f64>,
+    /// Weigh image points by the covariances of the point file
+    #[arg(long)]
+    covariances: bool,
+    /// Robust weights: bound in standard deviations of an image point, as in 2
+    #[arg(long, value_name = "K", value_parser = positive, allow_negative_numbers = true)]
+    huber: Option<f64>,
+    /// Leave out image points that Baarda's test rejects, one after the other
+    #[arg(long, conflicts_with = "huber")]
+    snoop: bool,
+    /// Observed poses: a station file with sX0,sY0,sZ0 (object units) or sx_deg,sy_deg,sz_deg (about the camera's axes) or both
+    #[arg(long, value_name = "CSV")]
+    poses: Option<PathBuf>,
+    /// Sets of parameters to compare, as in "c,x0,y0,k1;c,x0,y0,k1,k2": sigma0, tests, change of the camera
+    #[arg(long, value_name = "SETS", value_delimiter = ';')]
+    compare: Vec<String>,
+    /// The camera file [default: none is written]; of several cameras, where the format holds one, a file for each: NAME-CAMERA.ENDING
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Convention or tool of the camera file, as for `convert` [default: by model and ending]
+    #[arg(long, value_name = "CONVENTION", requires = "output")]
+    to: Option<String>,
+    /// Folder for a report with pictures and tables; one that is there is replaced as a whole
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+}
+
+impl Calibrate {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let (corners, control) = self.input(context)?;
+        let settings = self.settings(&corners.photos)?;
+        let mut prepared = prepare(&corners.points, &control, &settings)?;
+        prepared.unmeasured = corners.lost;
+        let mut calibration = prepared.adjust()?;
+        if !self.compare.is_empty() {
+            calibration.compare(&sets(&self.compare)?)?;
+        }
+        self.deliver(&calibration)?;
+        print(&summary(&calibration))
+    }
+
+    fn input(&self, context: &Context<'_>) -> Result<(Corners, Vec<ControlRow>), Failure> {
+        match (&self.points, &self.control, self.chessboard) {
+            (Some(points), Some(control), _) => {
+                let PointFile { rows, lost, .. } = measured(points)?;
+                Ok((Corners { points: rows, lost, photos: Vec::new() }, read_control(control)?))
+            }
+            (_, _, Some(chessboard)) => Ok((chessboard.measure(context, &self.photos, &self.method)?, chessboard.control())),
+            _ => Err(Failure::input("expected --points, --control and --size, or photographs and --chessboard")),
+        }
+    }
+
+    fn settings(&self, photos: &[Photo]) -> Result<Settings, Failure> {
+        Ok(Settings {
+            datum: self.datum.clone(),
+            huber: self.huber,
+            snoop: self.snoop,
+            sigma_px: self.sigma,
+            covariances: self.covariances,
+            stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
+            ..Settings::new(self.cameras.optics(photos)?)
+        })
+    }
+
+    fn deliver(&self, calibration: &Calibration<'_>) -> Result<(), Failure> {
+        if let Some(path) = &self.output {
+            camera_file::write(path, calibration, self.to.as_deref())?;
+        }
+        let Some(folder) = &self.report else { return Ok(()) };
+        let (Some(name), parent) = (folder.file_name().and_then(|name| name.to_str()), folder.parent()) else {
+            return Err(Failure::input(format!("--report {}: expected the name of a folder", folder.display())));
+        };
+        let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Ok(FolderWriter::new(parent)?.replace(name, |folder| write_report(calibration, folder))?)
+    }
+}
+
+/// The rows of a point file that have a position, with a word about the others.
+pub fn read_measured(path: &Path) -> Result<Vec<PointRow>, Failure> {
+    Ok(measured(path)?.rows)
+}
+
+fn measured(path: &Path) -> Result<PointFile, Failure> {
+    let file = read_points(path)?;
+    if file.without_position > 0 {
+        eprintln!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.without_position);
+    }
+    if file.rows.is_empty() {
+        return Err(Failure::input(format!("{}: no row has a position", path.display())));
+    }
+    Ok(file)
+}
+
+/// Sets of parameters from their texts; a name that stands twice counts once.
+fn sets(texts: &[String]) -> Result<Vec<Vec<String>>, Failure> {
+    let set = |text: &String| {
+        let mut names: Vec<String> = Vec::new();
+        for name in text.split(',').map(str::trim) {
+            if name.is_empty() {
+                return Err(Failure::input(format!("--compare: `{text}` is no set of parameters: expected names, as in c,x0,y0,k1")));
+            }
+            if !names.iter().any(|known| known == name) {
+                names.push(name.to_owned());
+            }
+        }
+        Ok(names)
+    };
+    texts.iter().map(set).collect()
+}
+
+/// The first camera of a file.
+pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
+    let file = read_camera_with(path, &ReadOptions { size, fisheye: None })?;
+    if file.cameras.len() > 1 {
+        eprintln!("{}: the first of {} cameras", path.display(), file.cameras.len());
+    }
+    let first = file.cameras.first().map(|named| named.camera);
+    first.ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
+}

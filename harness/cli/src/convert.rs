@@ -1,0 +1,270 @@
+//! `calibench convert`: cameras from one convention, or one tool's file, to another.
+
+use std::path::PathBuf;
+
+use calibench_exchange::camera::fit::{FitError, fit_to_format, losses};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, ParameterCovariance, camera_text, write_camera};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
+use calibench_model::convert::{
+    Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Rotation, Spread, Tangential, Vector, Verdict, convert,
+    difference, naive,
+};
+use calibench_report::{Field, plain};
+use clap::Args;
+
+use super::context::Context;
+use super::reading::{Reading, shifted};
+use super::target::{Given, Goal, Way, goal};
+use super::{Failure, print};
+
+#[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
+pub struct Convert {
+    /// A camera file of any known format, found by content
+    file: PathBuf,
+    /// Convention or tool to convert to; `list conventions` lists them
+    #[arg(long, value_name = "CONVENTION")]
+    to: String,
+    /// Model of the tool, where it has several [default: the first that holds the camera exactly, or else the one that fits best]
+    #[arg(long, value_name = "MODEL")]
+    model: Option<String>,
+    /// Convert all cameras of the file: into one file where the format holds several, or else into the folder that -o names
+    #[arg(long, conflicts_with_all = ["naive", "plot"])]
+    all: bool,
+    /// The new camera file [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Pixel pitch, um, for conventions in mm, where the file does not state it
+    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true)]
+    pitch: Option<f64>,
+    /// Spacing of Ebner's grid, mm
+    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true)]
+    base: Option<f64>,
+    /// Fit and hold only within this radius from the image of the axis, px
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
+    radius: Option<f64>,
+    /// Let the fit rotate the camera; the rotation is reported
+    #[arg(long)]
+    rotation: bool,
+    /// Take the result even if its residuals are above 0.5 px
+    #[arg(long)]
+    accept: bool,
+    /// Convert by `k_i = K_i / c^(2i)`, `p = P / c`, as the Canon paper's Table 2 does: wrong beyond first order, and said to be
+    #[arg(long, conflicts_with_all = ["radius", "rotation", "accept"])]
+    naive: bool,
+    /// Draw the residuals over the frame
+    #[arg(long, value_name = "PNG")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+pub fn positive(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0).ok_or_else(|| "expected a positive number".into())
+}
+
+pub fn region(radius: Option<f64>) -> Region {
+    radius.map_or(Region::Frame, |px| Region::Radius { px })
+}
+
+impl Convert {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
+        let mut results = Vec::new();
+        for (index, source) in sources.iter().enumerate() {
+            let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
+            let label = (sources.len() > 1).then_some(place);
+            results.push(self.converted(source, label.as_deref(), context.quiet)?);
+        }
+        let Some((_, goal)) = results.last() else { return Err(Failure::input("the file holds no camera")) };
+        let format = goal.format;
+        let mut cameras: Vec<NamedCamera> = results.into_iter().map(|(camera, _)| camera).collect();
+        if self.reading.starts_at_corner(format) {
+            cameras.iter_mut().for_each(|named| named.camera = shifted(&named.camera, 0.5));
+        }
+        self.reading.warn_of_format(format);
+        let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
+        lost.dedup();
+        lost.iter().for_each(|what| eprintln!("warning: lost: {what}"));
+        self.write(format, &cameras)
+    }
+
+    fn write(&self, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), Failure> {
+        let one_file = cameras.len() == 1 || format.many;
+        match &self.output {
+            Some(path) if one_file && !(self.all && path.is_dir()) => Ok(write_camera(path, format, cameras)?),
+            None if one_file => print(&camera_text(format, cameras)?),
+            None => Err(Failure::input(format!("{} holds one camera a file: name a folder with -o", format.name))),
+            Some(folder) => {
+                std::fs::create_dir_all(folder).map_err(|error| Failure::input(format!("{}: {error}", folder.display())))?;
+                for (index, camera) in cameras.iter().enumerate() {
+                    let name = file_name(&camera.name, index);
+                    write_camera(&folder.join(format!("{name}.{}", format.extension)), format, std::slice::from_ref(camera))?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// A camera in the new convention, and the format of its file.
+    fn converted(&self, source: &NamedCamera, label: Option<&str>, quiet: bool) -> Result<(NamedCamera, Goal), Failure> {
+        let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order: self.reading.order(), output: self.output.as_deref() };
+        let goal = goal(&self.to, &given)?;
+        let pitch_um = self.pitch.or(source.pitch_um);
+        if self.naive {
+            let result = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, quiet)?) };
+            return Ok((result, goal));
+        }
+        let options = ConvertOptions {
+            region: region(self.radius),
+            rotation: self.rotation,
+            accept: self.accept,
+            covariance: source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?,
+            ..ConvertOptions::default()
+        };
+        let (conversion, model) = self.fit(source, &goal, &options)?;
+        if !quiet {
+            let name = label.map_or(String::new(), |label| format!("{label}: "));
+            let model = model.map_or(String::new(), |model| format!("{model}: "));
+            eprint!("{name}{model}{}", summary(&conversion));
+        }
+        if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
+            // An exact conversion takes a fold along; it is no truth beyond it in any convention.
+            let (radius, share) = (plain(fold.radius_px), 100.0 * fold.share);
+            eprintln!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
+        }
+        self.draw(&conversion)?;
+        if goal.format.convention.is_none() && conversion.camera.convention() != source.camera.convention() {
+            self.reading.warn(&conversion.camera);
+        }
+        let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
+        let pose = source.pose.map(|pose| pose.turned_by(in_file_axes(&conversion.rotation)));
+        let result = NamedCamera {
+            pitch_um,
+            covariance,
+            pose,
+            pose_frame: source.pose_frame,
+            ..NamedCamera::new(source.name.clone(), conversion.camera)
+        };
+        Ok((result, goal))
+    }
+
+    /// The conversion, and the name of the tool's model if it has several.
+    fn fit(&self, source: &NamedCamera, goal: &Goal, options: &ConvertOptions) -> Result<(Conversion, Option<&'static str>), Failure> {
+        match goal.way {
+            Way::One(_) if self.model.is_some() => Err(Failure::input(format!("--to {} names the model already: no --model", self.to))),
+            Way::One(target) => Ok((convert(&source.camera, target, options).map_err(|error| advise(&error))?, None)),
+            Way::Best => {
+                let pitch_um = self.pitch.or(source.pitch_um);
+                let found = fit_to_format(goal.format, &source.camera, self.model.as_deref(), pitch_um, options);
+                let (conversion, model) = found.map_err(|error| match &error {
+                    FitError::Refused { why, .. } => Failure::input(format!("{error}{}", flag(why))),
+                    _ => Failure::input(error.to_string()),
+                })?;
+                Ok((conversion, Some(model.name)))
+            }
+        }
+    }
+
+    fn naive(&self, source: &NamedCamera, pitch_um: Option<f64>, quiet: bool) -> Result<Camera, Failure> {
+        if self.to != "photogrammetric" {
+            return Err(Failure::input("--naive converts to photogrammetric only"));
+        }
+        let pitch = pitch_um.ok_or_else(|| Failure::input("--naive needs the pixel pitch: give it with --pitch UM"))?;
+        let camera: Camera = naive(&source.camera, pitch, Tangential::Converted)?.into();
+        let cost = difference(&source.camera, &camera, &DifferenceOptions::default())?;
+        if !quiet {
+            eprintln!("naive: {} from the source after the best rotation", size_of(&cost.spread));
+        }
+        if let Some(path) = &self.plot {
+            field("Naive conversion: from the source to the result", &source.camera, &cost.vectors).write(path)?;
+        }
+        Ok(camera)
+    }
+
+    fn draw(&self, conversion: &Conversion) -> Result<(), Failure> {
+        let Some(path) = &self.plot else { return Ok(()) };
+        let title =
+            if conversion.method == Method::Exact { "Exact conversion: no residuals" } else { "Residuals of the fitted conversion" };
+        Ok(field(title, &conversion.camera, &conversion.residuals).write(path)?)
+    }
+}
+
+/// An error with the flag that helps.
+pub fn advise(error: &ConvertError) -> Failure {
+    Failure::input(format!("{error}{}", flag(error)))
+}
+
+fn flag(error: &ConvertError) -> &'static str {
+    match error {
+        ConvertError::Residual { .. } => " (--accept takes it, --radius PX restricts it, a richer target fits better)",
+        ConvertError::Fold { .. } => " (--radius PX restricts it)",
+        _ => "",
+    }
+}
+
+/// A rotation of rays in the axes of camera files, where y points down and z forward.
+fn in_file_axes(rotation: &Rotation) -> [[f64; 3]; 3] {
+    let columns = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)].map(|(x, y, z)| {
+        let ray = rotation.apply(Ray { x, y, z });
+        [ray.x, -ray.y, -ray.z]
+    });
+    std::array::from_fn(|row| std::array::from_fn(|column| columns[column][row]))
+}
+
+/// A file's name for a camera, without what would leave the folder.
+fn file_name(name: &str, index: usize) -> String {
+    let kept: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
+    let kept = kept.trim_matches('_');
+    if kept.is_empty() { format!("camera-{}", index + 1) } else { format!("{:03}-{kept}", index + 1) }
+}
+
+pub fn size_of(spread: &Spread) -> String {
+    format!("{} px RMS, {} px at most, at ({:.0}, {:.0})", plain(spread.rms_px), plain(spread.max_px), spread.at.x, spread.at.y)
+}
+
+fn summary(conversion: &Conversion) -> String {
+    let region = match conversion.region {
+        Region::Frame => "the whole frame".to_owned(),
+        Region::Radius { px } => format!("{} px around the image of the axis", plain(px)),
+    };
+    if conversion.method == Method::Exact {
+        return "exact: the same camera in other units\n".into();
+    }
+    let word = match conversion.verdict {
+        Verdict::Good => "fitted",
+        Verdict::Warning => "warning: fitted with residuals above 0.01 px",
+        Verdict::Accepted => "warning: fitted with residuals above 0.5 px, accepted",
+    };
+    let angle = conversion.rotation.angle().to_degrees();
+    let rotation = if angle > 0.0 { format!(", rotated by {angle:.6}\u{b0}") } else { String::new() };
+    format!("{word}: residuals {}, over {region}{rotation}\n", size_of(&conversion.residual))
+}
+
+/// The covariance over all parameters of a camera; those that the file held fixed have none.
+pub fn whole(camera: &Camera, covariance: &ParameterCovariance) -> Result<nalgebra::DMatrix<f64>, Failure> {
+    let parameters = camera.parameters();
+    let place = |name: &String| parameters.iter().position(|p| p.name == name);
+    let places: Option<Vec<usize>> = covariance.parameters.iter().map(place).collect();
+    let places = places.ok_or_else(|| Failure::input("the file's covariance names a parameter that its camera does not have"))?;
+    let n = covariance.parameters.len();
+    let mut q = nalgebra::DMatrix::zeros(parameters.len(), parameters.len());
+    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+        q[(places[i], places[j])] = covariance.values[i * n + j];
+    }
+    Ok(q)
+}
+
+/// The same for a file.
+pub fn named(camera: &Camera, q: &nalgebra::DMatrix<f64>) -> Result<ParameterCovariance, Failure> {
+    let names = camera.parameters().iter().map(|p| p.name.to_owned()).collect();
+    let symmetric = |i: usize, j: usize| f64::midpoint(q[(i, j)], q[(j, i)]);
+    let values = (0..q.nrows()).flat_map(|i| (0..q.ncols()).map(move |j| symmetric(i, j))).collect();
+    ParameterCovariance::new(names, values).map_err(Failure::Input)
+}
+
+/// Vectors on a regular grid as a picture.
+pub fn field(title: &str, camera: &Camera, vectors: &[Vector]) -> calibench_report::Canvas {
+    let ImageSize { width, height } = camera.size();
+    Field::of(title, (width, height), vectors.iter().map(|v| (v.at, (v.dx, v.dy)))).picture()
+}

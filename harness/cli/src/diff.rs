@@ -1,0 +1,89 @@
+//! `calibench diff`: how far two cameras differ.
+
+use std::path::{Path, PathBuf};
+
+use calibench_model::camera::CameraModel;
+use calibench_model::convert::{DifferenceOptions, difference};
+use calibench_report::plain;
+use clap::Args;
+
+use super::convert::{advise, field, positive, region, size_of};
+use super::reading::Reading;
+use super::{Failure, print};
+
+#[derive(Args)]
+pub struct Diff {
+    /// A camera file
+    first: PathBuf,
+    /// Another one, for images of the same size
+    second: PathBuf,
+    /// Draw the difference over the frame
+    #[arg(long, value_name = "PNG")]
+    plot: Option<PathBuf>,
+    /// Compare without the best rotation
+    #[arg(long)]
+    no_rotation: bool,
+    /// Compare only within this radius from the image of the axis, px
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
+    radius: Option<f64>,
+    /// Say what the difference is on an object at this distance, in its unit
+    #[arg(long, value_name = "D", value_parser = positive, allow_negative_numbers = true)]
+    distance: Option<f64>,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+impl Diff {
+    pub fn run(&self) -> Result<(), Failure> {
+        let camera = |path: &Path| self.reading.one(path).map(|named| named.camera);
+        let (first, second) = (camera(&self.first)?, camera(&self.second)?);
+        let (a, b) = (first.size(), second.size());
+        if a != b {
+            let sizes = format!("{} x {} px and {} x {} px", a.width, a.height, b.width, b.height);
+            return Err(Failure::input(format!("the images of the two cameras differ in size: {sizes}; expected the same")));
+        }
+        let options = DifferenceOptions {
+            region: region(self.radius),
+            rotation: !self.no_rotation,
+            compensation: true,
+            ..DifferenceOptions::default()
+        };
+        let found = difference(&first, &second, &options).map_err(|error| advise(&error))?;
+        let after = if self.no_rotation {
+            "without a rotation".to_owned()
+        } else {
+            format!("after a rotation of {:.6}\u{b0}", found.rotation.angle().to_degrees())
+        };
+        let mut text = format!("difference  {}, {after}\n", size_of(&found.spread));
+        if let Some(compensated) = &found.compensated {
+            let [dx, dy] = compensated.shift;
+            text.push_str(&format!(
+                "of these    {} remain after the best change of the principal distance ({:+.6} %) and point ({dx:+.3}, {dy:+.3} px)\n",
+                size_of(&compensated.spread),
+                100.0 * compensated.scale
+            ));
+        }
+        if found.not_comparable > 0.0 {
+            text.push_str(&format!(
+                "left out    {:.2} % of the region, which one of the cameras does not picture\n",
+                100.0 * found.not_comparable
+            ));
+        }
+        if let Some(distance) = self.distance {
+            let on = |px| plain(found.on_object(px, distance));
+            text.push_str(&format!(
+                "on object   {} RMS, {} at most, at a distance of {distance}\n",
+                on(found.spread.rms_px),
+                on(found.spread.max_px)
+            ));
+        }
+        print(&text)?;
+        let Some(path) = &self.plot else { return Ok(()) };
+        let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
+        Ok(field(&title, &first, &found.vectors).write(path)?)
+    }
+}
+
+fn stem(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,209 @@
+//! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
+
+mod calibrate;
+mod camera;
+mod camera_files;
+mod check;
+mod context;
+mod convert;
+mod detect;
+mod diff;
+mod intersect;
+mod judge;
+mod list;
+mod measure;
+mod orient;
+mod output;
+mod photos;
+mod plot;
+mod print;
+mod progress;
+mod reading;
+mod render;
+mod report;
+mod resect;
+mod run;
+mod show;
+mod speed;
+mod target;
+
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use calibench_diagnostics::Problems;
+use calibench_exchange::atomic::write_atomically;
+use calibench_measure::{BoardDetector, Registry};
+use calibench_scenario::catalogue::CatalogueError;
+use clap::{Parser, Subcommand};
+
+/// What a build of calibench can do.
+pub struct Toolbox {
+    /// Its methods.
+    pub registry: Registry,
+    /// Its chessboard detector, if it has one.
+    pub detector: Option<Box<dyn BoardDetector>>,
+}
+
+/// Compares camera calibration methods on images whose truth is known exactly, and on photographs.
+#[derive(Parser)]
+#[command(name = "calibench", version, max_term_width = 110)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// The project's folder, which holds scenarios/ and reference/ [default: found from the current folder upwards]
+    #[arg(long, global = true, value_name = "DIR", env = "CALIBENCH_ROOT")]
+    root: Option<PathBuf>,
+    /// Number of threads [default: all cores]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// No progress, only results and errors
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List what there is
+    List {
+        /// What to list
+        what: list::What,
+    },
+    /// Show a scenario as it is resolved, and write a preview of its image
+    Show(show::Show),
+    /// Run scenarios and write their records
+    Run(run::Run),
+    /// Write a scenario's images with the truth about every target, the camera and the poses
+    Render(render::Render),
+    /// Write a scenario's testfield at true scale, as SVG and PDF
+    Print(print::Print),
+    /// Write reports from records alone; runs nothing
+    Report(report::Report),
+    /// Draw the records of a sweep as curves or maps, with the numbers beside them; runs nothing
+    Plot(plot::Plot),
+    /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
+    Check(check::Check),
+    /// Accept today's accuracy as the baseline: lists what gets worse, and asks
+    Bless(check::Bless),
+    /// Measure points per second of methods, on one thread, for reports to read
+    Speed(speed::SpeedCommand),
+    /// Measure points in photographs
+    Measure(measure::Measure),
+    /// Find a chessboard's corners in photographs: approximate positions for `measure`
+    Detect(detect::Detect),
+    /// Calibrate a camera from measured points and control, or from photographs of a chessboard
+    Calibrate(Box<calibrate::Calibrate>),
+    /// Say which operator and which camera model to trust on photographs of a chessboard, and how far; without truth
+    Judge(judge::Judge),
+    /// Orient images from control points; the camera is known
+    Resect(resect::Resect),
+    /// Intersect object points from oriented images; camera and poses are known
+    Intersect(intersect::Intersect),
+    /// Orient two images relatively to each other, and intersect the model that they make; the cameras are known
+    Orient(orient::Orient),
+    /// Convert a camera file to another convention
+    Convert(convert::Convert),
+    /// Show what is in a camera file: parameters, field of view, distortion, fold-over
+    Camera(camera::CameraCommand),
+    /// Say how far two cameras differ, in px over the frame, after the best rotation
+    Diff(diff::Diff),
+    /// Print the JSON Schema of scenario files, for editors
+    Schema,
+}
+
+/// Why a command ends with another exit code than 0.
+enum Failure {
+    /// A gate failed and has said why: exit code 1.
+    Gate,
+    /// Bad input, or output that cannot be written: exit code 2.
+    Input(String),
+}
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl Failure {
+    fn input(message: impl Into<String>) -> Self {
+        Self::Input(message.into())
+    }
+}
+
+/// Runs the command line of this process.
+pub fn main(toolbox: &Toolbox) -> ExitCode {
+    let arguments = Arguments::parse();
+    let threads = usize::from(arguments.threads.unwrap_or(0));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Gate) => ExitCode::from(1),
+        Err(Failure::Input(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
+    let context = context::Context { root: arguments.root, quiet: arguments.quiet, toolbox };
+    match arguments.command {
+        Command::List { what } => list::list(&context, what),
+        Command::Show(show) => show.run(&context),
+        Command::Run(run) => run.run(&context),
+        Command::Print(print) => print.run(&context),
+        Command::Render(render) => render.run(&context),
+        Command::Report(report) => report.run(&context),
+        Command::Plot(plot) => plot.run(&context),
+        Command::Check(check) => check.run(&context),
+        Command::Bless(bless) => bless.run(&context),
+        Command::Speed(speed) => speed.run(&context),
+        Command::Measure(measure) => measure.run(&context),
+        Command::Detect(detect) => detect.run(&context),
+        Command::Calibrate(calibrate) => calibrate.run(&context),
+        Command::Judge(judge) => judge.run(&context),
+        Command::Resect(resect) => resect.run(&context),
+        Command::Intersect(intersect) => intersect.run(&context),
+        Command::Orient(orient) => orient.run(&context),
+        Command::Convert(convert) => convert.run(&context),
+        Command::Camera(camera) => camera.run(),
+        Command::Diff(diff) => diff.run(),
+        Command::Schema => print(&format!("{:#}\n", calibench_scenario::schema::schema(&toolbox.registry))),
+    }
+}
+
+/// Prints to standard output; a reader that went away is no error.
+fn print(text: &str) -> Result<(), Failure> {
+    use std::io::{ErrorKind, Write, stdout};
+    match stdout().write_all(text.as_bytes()).and_then(|()| stdout().flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other?),
+    }
+}
+
+/// Writes a result to `path`, whole or not at all, or to standard output.
+fn deliver(path: Option<&Path>, write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(), Failure> {
+    match path {
+        Some(path) => write_atomically(path, write).map_err(|error| Failure::input(format!("{}: {error}", path.display()))),
+        None => {
+            let mut bytes = Vec::new();
+            write(&mut bytes)?;
+            print(&String::from_utf8_lossy(&bytes))
+        }
+    }
+}
+
+/// A scenario's problems as a picture of the lines that they are about.
+fn scenario_failure(error: CatalogueError) -> Failure {
+    match error {
+        CatalogueError::Problems(problems) => Failure::Input(picture(&problems)),
+        other => other.into(),
+    }
+}
+
+fn picture(problems: &Problems) -> String {
+    let count = problems.problems.len();
+    let noun = if count == 1 { "mistake" } else { "mistakes" };
+    format!("{count} {noun} in {}\n{}", problems.file, problems.picture(io::stderr().is_terminal()))
+}

@@ -1,0 +1,115 @@
+//! `calibench list`.
+
+use std::fmt::Write;
+
+use calibench_exchange::camera::FORMATS;
+use calibench_measure::registry::Build;
+use calibench_model::camera::{Convention, Verification};
+use calibench_report::published;
+use clap::ValueEnum;
+
+use super::context::Context;
+use super::target::TARGETS;
+use super::{Failure, print};
+
+/// What can be listed.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum What {
+    /// Scenarios, with what they are to show
+    Scenarios,
+    /// Methods and their parameters
+    Methods,
+    /// Conventions of cameras and formats of camera files, and what of them is verified
+    Conventions,
+    /// Published tables and the scenarios behind them
+    Tables,
+}
+
+pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
+    print(&match what {
+        What::Scenarios => scenarios(context)?,
+        What::Methods => methods(context),
+        What::Conventions => conventions(),
+        What::Tables => tables(context)?,
+    })
+}
+
+fn scenarios(context: &Context<'_>) -> Result<String, Failure> {
+    let mut text = String::new();
+    for name in context.catalogue()?.names()? {
+        let scenario = context.scenario(&name)?;
+        let why: Vec<&str> = scenario.why.split_whitespace().collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{name}\n    {}", why.join(" "));
+    }
+    Ok(text)
+}
+
+fn methods(context: &Context<'_>) -> String {
+    let mut text = String::new();
+    for method in context.toolbox.registry.methods() {
+        let _ = writeln!(text, "{} (version {})\n    {}\n    source: {}", method.name, method.version, method.about, method.source);
+        for parameter in method.parameters {
+            let _ = writeln!(text, "    {}={}: {}; {}", parameter.name, parameter.default, parameter.about, parameter.domain.describe());
+        }
+        if let Build::Unavailable(why) = method.build {
+            let _ = writeln!(text, "    unavailable: {why}");
+        }
+    }
+    text
+}
+
+fn conventions() -> String {
+    let mut text = String::from("conventions\n");
+    for convention in calibench_model::camera::conventions() {
+        let Convention { name, about, version, direction, pixel_origin, y, order, normalisation, source, verification, .. } = convention;
+        let _ = writeln!(text, "  {name}: {about}");
+        let _ =
+            writeln!(text, "      {direction:?}, y {y:?}, origin {pixel_origin:?}, p1 and p2 in the order of {order:?}, {normalisation}");
+        if !version.is_empty() {
+            let _ = writeln!(text, "      versions: {version}");
+        }
+        let _ = writeln!(text, "      source: {source}");
+        let _ = match verification {
+            Verification::Verified(proof) => writeln!(text, "      verified: {proof}"),
+            Verification::Unverified(open) => writeln!(text, "      unverified: {open}"),
+            Verification::Definition => writeln!(text, "      a definition of its own"),
+        };
+    }
+    text.push_str("\nfile formats\n");
+    for format in FORMATS {
+        let access = if format.is_written() { "read and written" } else { "read" };
+        let _ = writeln!(text, "  {} (.{}): {}, {}; {access}", format.name, format.extension, format.tool, format.versions);
+        let _ = writeln!(text, "      {}", format.verified.map_or("unverified".to_owned(), |proof| format!("verified: {proof}")));
+    }
+    text.push_str("\ntargets of `convert --to`\n");
+    for (name, about) in TARGETS {
+        let _ = writeln!(text, "  {name}: {about}");
+    }
+    for format in FORMATS {
+        let mut models: Vec<&str> = format.models(None).iter().map(|model| model.name).collect();
+        models.dedup();
+        if !models.is_empty() {
+            let _ = writeln!(text, "  {}: {}; --model chooses among {}", format.name, format.tool, models.join(", "));
+        }
+    }
+    text
+}
+
+fn tables(context: &Context<'_>) -> Result<String, Failure> {
+    let places = context.places()?;
+    let mut text = String::new();
+    for paper in published::papers(&places.published) {
+        for (name, table) in published::tables(&places.published, &paper)? {
+            let _ = writeln!(
+                text,
+                "{paper}/{name}\n    {}\n    {} printed cells, behind them {} with {}",
+                table.title,
+                table.cells.len(),
+                table.scenario,
+                table.method
+            );
+        }
+    }
+    Ok(text)
+}

@@ -1,0 +1,77 @@
+//! What is said of an oriented pair.
+
+use calibench_exchange::station_numbers;
+use calibench_report::plain;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+use super::model::Model;
+
+/// Thickness of the model, relative to its largest extent, below which it is called a plane.
+const FLAT: f64 = 0.01;
+/// A median angle between the rays below which the model is weak, degrees.
+const SMALL_ANGLE: f64 = 2.0;
+/// Correlations beyond this are flagged.
+const CORRELATED: f64 = 0.9;
+const ELEMENTS: [&str; 5] =
+    ["rotation about x", "rotation about y", "rotation about z", "base across (first axis)", "base across (second axis)"];
+
+/// The elements with their standard deviations, sigma0 and redundancy.
+pub(super) fn summary(model: &Model<'_>, [left, right]: [&str; 2]) -> String {
+    let (found, sigmas) = (model.found, model.sigmas());
+    let numbers = station_numbers(&model.pose(&found.pose));
+    let value = |name: &str, i: usize| {
+        let sigma = if i < 3 { sigmas[i] } else { sigmas[i].to_degrees() };
+        format!("  {name} {:.6}, sigma {}\n", numbers[i], plain(sigma))
+    };
+    let used = found.residuals.len() - found.rejected.len();
+    let mut text = format!(
+        "orient: {right} in the axes of {left}: {used} of {} common targets, redundancy {}, sigma0 {} px; base {}\n",
+        found.residuals.len(),
+        found.redundancy,
+        plain(found.sigma0),
+        model.base
+    );
+    ["X0", "Y0", "Z0"].iter().enumerate().for_each(|(i, name)| text.push_str(&value(name, i)));
+    text.push_str(&format!("  omega {:.6}, phi {:.6}, kappa {:.6} degrees; ", numbers[3], numbers[4], numbers[5]));
+    let turns = [3, 4, 5].map(|i| plain(sigmas[i].to_degrees()));
+    text.push_str(&format!("sigmas about the right camera's x, y, z: {} degrees\n", turns.join(", ")));
+    text
+}
+
+/// What makes the orientation doubtful.
+pub(super) fn warnings(model: &Model<'_>) -> Vec<String> {
+    let found = model.found;
+    let mut warnings = Vec::new();
+    let flat = thickness(model).filter(|share| *share < FLAT);
+    if let Some(share) = flat {
+        warnings.push(format!("the model is nearly a plane ({} of its extent thick): planes allow two orientations", plain(share)));
+    }
+    if let Some(rival) = &found.rival {
+        let numbers = station_numbers(&model.pose(rival)).map(|number| format!("{number:.5}")).join(", ");
+        let why = if flat.is_some() { "the points lie in a plane" } else { "the points lie on or near a critical surface, or are few" };
+        warnings.push(format!("another orientation fits as well, X0, Y0, Z0, omega, phi, kappa = {numbers}: {why}"));
+    }
+    let mut angles: Vec<f64> = model.points().map(|point| point.angle.to_degrees()).collect();
+    angles.sort_by(f64::total_cmp);
+    if let Some(angle) = angles.get(angles.len() / 2).filter(|angle| **angle < SMALL_ANGLE) {
+        warnings.push(format!("rays meet at {} degrees (median): the base is short for the distance, depths are weak", plain(*angle)));
+    }
+    let rho = |i: usize, j: usize| found.cofactor[(i, j)] / (found.cofactor[(i, i)] * found.cofactor[(j, j)]).sqrt();
+    for (i, j) in (0..5).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|&(i, j)| rho(i, j).abs() > CORRELATED) {
+        warnings.push(format!("{} and {} are hardly told apart: correlation {:.3}", ELEMENTS[j], ELEMENTS[i], rho(i, j)));
+    }
+    let parallel = model.rows.len() - model.points().count() - found.rejected.len();
+    if !found.rejected.is_empty() || parallel > 0 {
+        warnings.push(format!("{} targets were rejected, {parallel} take no part: the point table says why", found.rejected.len()));
+    }
+    warnings
+}
+
+/// The smallest extent of the model's points relative to the largest.
+fn thickness(model: &Model<'_>) -> Option<f64> {
+    let points: Vec<Vector3<f64>> = model.points().map(|point| point.position.coords).collect();
+    let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    let spread: Matrix3<f64> = points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum();
+    let squares = SymmetricEigen::new(spread).eigenvalues;
+    (squares.max() > 0.0).then(|| (squares.min().max(0.0) / squares.max()).sqrt())
+}

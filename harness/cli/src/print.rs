@@ -1,0 +1,56 @@
+//! `calibench print`.
+
+use std::path::PathBuf;
+
+use calibench_exchange::print::{Paper, PrintError, PrintOptions, write_pdf, write_svg};
+use calibench_scenario::Subject;
+use clap::{Args, ValueEnum};
+
+use super::Failure;
+use super::context::Context;
+use super::output::OutputFolder;
+
+/// Writes a scenario's testfield at true scale, as SVG and PDF.
+#[derive(Args)]
+pub struct Print {
+    /// Name of a scenario, or a TOML file
+    scenario: String,
+    /// The folder; one that calibench wrote is replaced as a whole
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Pages as large as each plate, or tiles of this paper with marks to join them
+    #[arg(long, value_enum, default_value_t = Size::Whole)]
+    paper: Size,
+}
+
+/// A size of paper.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Size {
+    /// As large as the plate
+    Whole,
+    /// 210 x 297 mm
+    A4,
+    /// 297 x 420 mm
+    A3,
+}
+
+impl Print {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let scenario = context.scenario(&self.scenario)?;
+        let Subject::Views(subject) = &scenario.subject else {
+            return Err(Failure::input(format!("`{}` has no testfield to print; expected a scenario with [testfield]", scenario.name)));
+        };
+        let paper = match self.paper {
+            Size::Whole => Paper::Whole,
+            Size::A4 => Paper::A4,
+            Size::A3 => Paper::A3,
+        };
+        let stem = scenario.name.replace('/', "-");
+        let options = PrintOptions { name: stem.clone(), mm_per_unit: subject.unit.mm(), paper };
+        OutputFolder::open(&self.output)?.replace::<PrintError>(|folder| {
+            write_svg(folder, &subject.field, &options)?;
+            write_pdf(&folder.join(format!("{stem}.pdf")), &subject.field, &options)
+        })?;
+        super::print(&format!("{}\n", self.output.display()))
+    }
+}

@@ -1,0 +1,122 @@
+//! `calibench render`.
+
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::write_png;
+use calibench_model::camera::Camera;
+use calibench_random::Key;
+use calibench_run::truth;
+use calibench_run::views::Prepared;
+use calibench_run::{RunError, VIEW, trial_picture, trial_truth};
+use calibench_scenario::stations::NOISE_FREE;
+use calibench_scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
+use calibench_synth::stations::Station;
+use clap::Args;
+
+use super::context::Context;
+use super::output::OutputFolder;
+use super::progress::Progress;
+use super::{Failure, print};
+
+/// Writes a scenario's images with the truth about every target, the camera and the poses.
+#[derive(Args)]
+pub struct Render {
+    /// Name of a scenario, or a TOML file
+    scenario: String,
+    /// The folder; one that calibench wrote is replaced as a whole
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Which trial, counted from 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    trial: u64,
+    /// Seed in place of the scenario's
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: Option<u64>,
+    /// Also each image before the sensor: without noise, 16 bit
+    #[arg(long)]
+    noise_free: bool,
+    /// Only this station's image; may be repeated
+    #[arg(long = "station", value_name = "NAME")]
+    stations: Vec<String>,
+}
+
+impl Render {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let scenario = context.scenario(&self.scenario)?;
+        let output = OutputFolder::open(&self.output)?;
+        let key = Key { seed: self.seed.unwrap_or(scenario.seed), scenario: &scenario.name, trial: self.trial, view: "", target: "" };
+        let mut notes = Vec::new();
+        output.replace::<RunError>(|folder| {
+            notes = match &scenario.subject {
+                Subject::Views(subject) => self.views(context, &scenario, subject, key, folder)?,
+                Subject::Scene(subject) => self.scene(subject, key, folder)?,
+                Subject::Photographs(_) => return Err(RunError::NothingToRender),
+            };
+            Ok(())
+        })?;
+        if let Some(sweep) = &scenario.sweep {
+            notes.insert(0, format!("of the sweep's {} cells the first: {}", sweep.cells(), sweep.label(0)));
+        }
+        print(&format!("{}\n{}", self.output.display(), notes.iter().map(|note| format!("  {note}\n")).collect::<String>()))
+    }
+
+    fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &Path) -> Result<Vec<String>, RunError> {
+        if let Some(name) = self.stations.iter().find(|name| *name != VIEW) {
+            return Err(RunError::NoStation { name: name.clone(), known: VIEW.into() });
+        }
+        let key = Key { view: VIEW, ..key };
+        let scene = trial_truth(subject, key);
+        let renderer = subject.renderer()?;
+        let exposure = trial_picture(subject, &renderer, &scene, key)?;
+        write_png(&folder.join(format!("{VIEW}.png")), &exposure.image, subject.is_deep())?;
+        if self.noise_free {
+            let picture = calibench_synth::raster::Picture::from(&scene);
+            write_png(&folder.join(format!("{VIEW}{NOISE_FREE}.png")), &renderer.render(&picture, &[]), true)?;
+        }
+        truth::write_scene(&folder.join(format!("{VIEW}.csv")), &scene)?;
+        Ok(truth::clipping_note(VIEW, exposure.clipped, exposure.image.grey().len()).into_iter().collect())
+    }
+
+    fn views(
+        &self,
+        context: &Context<'_>,
+        scenario: &Scenario,
+        subject: &ViewsSubject,
+        key: Key<'_>,
+        folder: &Path,
+    ) -> Result<Vec<String>, RunError> {
+        let drawn = subject.stations_of(key)?;
+        if let Some(unknown) = self.stations.iter().find(|name| drawn.iter().all(|station| station.name != **name)) {
+            let known: Vec<&str> = drawn.iter().map(|station| station.name.as_str()).collect();
+            return Err(RunError::NoStation { name: unknown.clone(), known: known.join(", ") });
+        }
+        let chosen = |station: &&Station| self.stations.is_empty() || self.stations.contains(&station.name);
+        let stations: Vec<Station> = drawn.iter().filter(chosen).cloned().collect();
+        let prepared = Prepared::of(subject, &stations)?;
+        let progress = Progress::start(&scenario.name, stations.len() as u64, context.quiet);
+        let (mut notes, mut rows) = (Vec::new(), Vec::new());
+        for view in &prepared.views {
+            let name = &view.station.name;
+            let exposure = prepared.image(view, key)?;
+            write_png(&folder.join(format!("{name}.png")), &exposure.image, prepared.is_deep())?;
+            if self.noise_free {
+                write_png(&folder.join(format!("{name}{NOISE_FREE}.png")), &prepared.irradiance(view), true)?;
+            }
+            truth::write_view(&folder.join(format!("{name}.csv")), subject, view)?;
+            notes.extend(truth::clipping_note(name, exposure.clipped, exposure.image.grey().len()));
+            notes.extend(truth::warnings(subject, view));
+            rows.push(truth::StationRow::new(view.station, exposure.clipped));
+            progress.step();
+        }
+        truth::write_stations(&folder.join("stations.csv"), &rows)?;
+        truth::write_control(&folder.join("control.csv"), subject)?;
+        write_camera(&folder.join("camera"), &subject.camera)?;
+        progress.finish(&format!("{} images", stations.len()));
+        Ok(notes)
+    }
+}
+
+/// The camera in its own convention: a file that every command reads.
+fn write_camera(stem: &Path, camera: &Camera) -> Result<(), RunError> {
+    truth::write_camera(stem, camera).map_err(RunError::Output)
+}

@@ -1,0 +1,132 @@
+//! `calibench run`.
+
+use std::time::Instant;
+
+use calibench_exchange::FolderWriter;
+use calibench_measure::Configured;
+use calibench_run::Plan;
+use calibench_run::store;
+use calibench_run::store::SweepPlan;
+use calibench_scenario::{Scenario, Subject, Sweep};
+use clap::Args;
+
+use super::Failure;
+use super::context::Context;
+use super::progress::Progress;
+
+#[derive(Args)]
+pub struct Run {
+    /// Names of scenarios, or TOML files
+    #[arg(required_unless_present = "all", value_name = "SCENARIO")]
+    scenarios: Vec<String>,
+    /// Every scenario that `list scenarios` lists
+    #[arg(long, conflicts_with = "scenarios")]
+    all: bool,
+    #[command(flatten)]
+    changes: Changes,
+}
+
+/// What differs from the scenario's file.
+#[derive(Args)]
+pub struct Changes {
+    /// Methods in place of the scenario's, as in forstner:window=15
+    #[arg(short, long = "method", value_name = "METHOD")]
+    methods: Vec<String>,
+    /// Number of trials in place of the scenario's
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    trials: Option<u64>,
+    /// Seed in place of the scenario's
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: Option<u64>,
+}
+
+impl Changes {
+    /// The methods that are asked for; none if the scenario's own are meant.
+    pub fn methods(&self, context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
+        Self::of_methods(&self.methods, context)
+    }
+
+    /// The methods of these names, each once.
+    pub fn of_methods(names: &[String], context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
+        let mut configured: Vec<Configured> = Vec::new();
+        for text in names {
+            let method = context.method(text)?;
+            if configured.iter().any(|earlier| earlier.label == method.label) {
+                return Err(Failure::input(format!("-m {text}: `{}` is asked for twice", method.label)));
+            }
+            configured.push(method);
+        }
+        Ok(configured)
+    }
+}
+
+impl Run {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let names = if self.all { context.catalogue()?.names()? } else { self.scenarios.clone() };
+        // All are checked before the first is run.
+        let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
+        let methods = self.changes.methods(context)?;
+        let writer = FolderWriter::new(&context.places()?.records)?;
+        let revision = context.revision()?;
+        for scenario in &scenarios {
+            if let Some(sweep) = &scenario.sweep {
+                self.sweep(context, scenario, sweep, &methods, (&writer, &revision))?;
+                continue;
+            }
+            let mut plan = Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?);
+            if !methods.is_empty() {
+                plan.methods = &methods;
+            }
+            plan.seed = self.changes.seed.unwrap_or(scenario.seed);
+            plan.trials = trials(scenario, self.changes.trials)?;
+            let started = Instant::now();
+            let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
+            store::run(&writer, &mut plan, &revision, &|| progress.step())?;
+            progress.finish(&summary(&plan, started.elapsed().as_secs_f64()));
+        }
+        Ok(())
+    }
+
+    fn sweep(
+        &self,
+        context: &Context<'_>,
+        scenario: &Scenario,
+        sweep: &Sweep,
+        methods: &[Configured],
+        (writer, revision): (&FolderWriter, &str),
+    ) -> Result<(), Failure> {
+        if sweep.changes_methods() && !methods.is_empty() {
+            return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
+        }
+        let Changes { seed, trials, .. } = self.changes;
+        let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
+        let plan = SweepPlan { scenario, sweep, methods, seed, trials, detector, data: context.data()?, registry };
+        let (started, cells) = (Instant::now(), sweep.cells());
+        let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
+        store::run_sweep(writer, &plan, revision, &|| progress.step())?;
+        let trials = trials.unwrap_or(scenario.trials);
+        progress.finish(&format!("{cells} cells of {trials} trials in {:.1} s", started.elapsed().as_secs_f64()));
+        Ok(())
+    }
+}
+
+fn trials(scenario: &Scenario, asked: Option<u64>) -> Result<u64, Failure> {
+    match asked {
+        Some(trials) if trials > 1 && scenario.is_deterministic() => Err(Failure::input(format!(
+            "--trials {trials}: nothing is random in `{}`, every trial would be the same; expected 1",
+            scenario.name
+        ))),
+        asked => Ok(asked.unwrap_or(scenario.trials)),
+    }
+}
+
+fn summary(plan: &Plan<'_>, seconds: f64) -> String {
+    if let Some(why) = plan.missing() {
+        return format!("unavailable: {why}");
+    }
+    let missing = plan.method_infos().into_iter().filter_map(|m| m.unavailable.map(|why| format!("; {} unavailable: {why}", m.label)));
+    let (count, steps) = (plan.methods.len(), plan.steps());
+    let unit = if matches!(plan.scenario.subject, Subject::Photographs(_)) { "photograph" } else { "trial" };
+    let plural = |n: u64, noun: &str| if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") };
+    format!("{} of {} in {seconds:.1} s{}", plural(steps, unit), plural(count as u64, "method"), missing.collect::<String>())
+}

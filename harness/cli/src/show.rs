@@ -1,0 +1,164 @@
+//! `calibench show`.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use calibench_exchange::read_photo;
+use calibench_model::camera::CameraModel;
+use calibench_model::{Image, PixelPoint};
+use calibench_random::Key;
+use calibench_report::preview;
+use calibench_run::views::Prepared;
+use calibench_run::{trial_picture, trial_truth};
+use calibench_scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, ViewsSubject};
+use calibench_synth::stations::sees;
+use calibench_synth::view::Visibility;
+use clap::Args;
+
+use super::context::Context;
+use super::{Failure, print};
+
+#[derive(Args)]
+pub struct Show {
+    /// Name of a scenario, or a TOML file
+    scenario: String,
+    /// The preview [default: the scenario's name with .png, in the current folder]
+    #[arg(short, long, value_name = "PNG")]
+    output: Option<PathBuf>,
+}
+
+impl Show {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let scenario = context.scenario(&self.scenario)?;
+        let mut text = card(&scenario);
+        let path = self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scenario.name.replace('/', "-"))));
+        match picture(context, &scenario)? {
+            Ok((image, targets)) => {
+                preview(&image, &targets).write(&path)?;
+                let _ = writeln!(text, "\n# preview: {}", path.display());
+            }
+            Err(why) => {
+                let _ = writeln!(text, "\n# no preview, unavailable: {why}");
+            }
+        }
+        print(&text)
+    }
+}
+
+/// The resolved scenario, defaults and all, as TOML without its polygons.
+fn card(scenario: &Scenario) -> String {
+    let quoted = |text: &str| toml::Value::from(text.split_whitespace().collect::<Vec<_>>().join(" ")).to_string();
+    let mut text = format!("# {}\n", scenario.name);
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "why = {}\nsource = {}", quoted(&scenario.why), quoted(&scenario.source));
+    let _ = writeln!(text, "seed = {}\ntrials = {}", scenario.seed, scenario.trials);
+    if let Some(sweep) = &scenario.sweep {
+        let _ = writeln!(text, "\n[sweep] # {} cells; what follows is the first", sweep.cells());
+        for axis in &sweep.axes {
+            let values: Vec<&str> = axis.values.iter().map(|value| value.text.as_str()).collect();
+            let _ = writeln!(text, "\"{}\" = [{}]", axis.path, values.join(", "));
+        }
+    }
+    match &scenario.subject {
+        Subject::Scene(subject) => scene(&mut text, subject),
+        Subject::Views(subject) => views(&mut text, subject),
+        Subject::Photographs(subject) => {
+            let _ = writeln!(text, "\n[photographs]\nfolder = {}\nfiles = {:?}", quoted(&subject.folder), subject.files);
+            let _ = writeln!(text, "board = \"{}x{}\"", subject.board.columns, subject.board.rows);
+        }
+    }
+    for method in &scenario.methods {
+        let name = method.label.split(':').next().unwrap_or_default();
+        let _ = writeln!(text, "\n[[method]] # {}, version {}\nname = \"{name}\"", method.label, method.version);
+        for (key, value) in method.settings.iter() {
+            let _ = writeln!(text, "{key} = {value}");
+        }
+        if let Err(why) = &method.operator {
+            let _ = writeln!(text, "# unavailable: {why}");
+        }
+    }
+    text
+}
+
+fn scene(text: &mut String, subject: &SceneSubject) {
+    let scene = &subject.scene;
+    let pixels = if subject.pixels == Pixels::Area { "area" } else { "centre" };
+    let phase = if subject.phase == Phase::Fixed { "fixed" } else { "uniform" };
+    let _ = writeln!(text, "\n[scene] # {} polygons, {} targets", scene.polygons.len(), scene.targets.len());
+    let _ = writeln!(text, "width = {}\nheight = {}\nbackground = {}", scene.width, scene.height, scene.background);
+    let _ = writeln!(text, "pixels = \"{pixels}\"\nphase = \"{phase}\"\ngrey_noise = {}", subject.grey_noise);
+    match subject.bits {
+        Some(bits) => writeln!(text, "bits = {bits}"),
+        None => writeln!(text, "# bits: not quantised"),
+    }
+    .unwrap_or_default();
+    if let Starts::Pointed(hand) = &subject.starts {
+        let _ = writeln!(text, "pointing = {{ sigma = {}, whole_pixels = {} }}", hand.sigma, hand.whole_pixels);
+    }
+    if let Starts::Detected(detector) = &subject.starts {
+        let _ = writeln!(text, "pointing = {{ detector = \"harris\", within = {} }}", detector.within);
+    }
+    for (index, target) in scene.targets.iter().enumerate() {
+        let _ = write!(text, "# target {} ({}) at ({}, {})", target.id, target.kind, target.at.x, target.at.y);
+        let _ = match &subject.starts {
+            Starts::Given(starts) => writeln!(text, ", start ({}, {})", starts[index].x, starts[index].y),
+            Starts::Pointed(_) | Starts::Detected(_) => writeln!(text),
+        };
+    }
+}
+
+fn views(text: &mut String, subject: &ViewsSubject) {
+    let (field, size) = (&subject.field, subject.camera.size());
+    let _ = writeln!(text, "\n[camera] # {}, {} x {} px", subject.camera.convention().name, size.width, size.height);
+    for parameter in subject.camera.parameters() {
+        let _ = writeln!(text, "# {} = {} {}", parameter.name, parameter.value, parameter.unit);
+    }
+    let (plates, targets, unit) = (field.plates.len(), field.targets.len(), subject.unit.name());
+    let _ = writeln!(text, "\n[testfield] # {plates} plates, {targets} targets, in {unit}");
+    if let Some([low, high]) = field.extent() {
+        let _ = writeln!(text, "# from ({}, {}, {}) to ({}, {}, {})", low.x, low.y, low.z, high.x, high.y, high.z);
+    }
+    for station in &subject.stations {
+        let (at, angles) = (station.pose.centre, station.pose.angles().map(f64::to_degrees));
+        let seen = sees(&subject.camera, &station.pose, field) * targets as f64;
+        let [omega, phi, kappa] = angles;
+        let _ = writeln!(text, "\n[[station]]\nname = \"{}\" # sees {seen:.0} targets", station.name);
+        let _ = writeln!(text, "at = [{}, {}, {}]\nangles = [{omega}, {phi}, {kappa}]", at.x, at.y, at.z);
+    }
+    if let Some(detector) = &subject.detector {
+        let _ = writeln!(text, "\n[pointing]\ndetector = \"harris\"\nwithin = {}", detector.within);
+        return;
+    }
+    let _ = writeln!(text, "\n[pointing]\nsigma = {}\nwhole_pixels = {}", subject.hand.sigma, subject.hand.whole_pixels);
+}
+
+type Picture = (Image, Vec<(String, PixelPoint)>);
+
+/// The image of the first trial with its targets, or the first photograph with its corners; or why there is none.
+fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture, String>, Failure> {
+    match &scenario.subject {
+        Subject::Scene(subject) => {
+            let key = Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: calibench_run::VIEW, target: "" };
+            let truth = trial_truth(subject, key);
+            let image = trial_picture(subject, &subject.renderer()?, &truth, key)?.image;
+            Ok(Ok((image, truth.targets.into_iter().map(|target| (target.id, target.at)).collect())))
+        }
+        Subject::Views(subject) => {
+            let prepared = Prepared::new(subject)?;
+            let Some(view) = prepared.views.first() else { return Ok(Err("the scenario has no station".into())) };
+            let image = prepared.image(view, Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: "", target: "" })?.image;
+            let seen = subject.field.targets.iter().zip(&view.truth).filter(|(_, truth)| truth.visibility == Visibility::Visible);
+            Ok(Ok((image, seen.filter_map(|(target, truth)| Some((target.id.clone(), truth.at?))).collect())))
+        }
+        Subject::Photographs(subject) => {
+            let path = context.data()?.join(&subject.folder).join(&subject.files[0]);
+            if !path.is_file() {
+                return Ok(Err(format!("`{}` is not in `{}`", subject.files[0], subject.folder)));
+            }
+            let image = read_photo(&path)?;
+            let corners = context.toolbox.detector.as_ref().and_then(|detector| detector.detect(&image, subject.board));
+            let named = |(index, at): (usize, PixelPoint)| (subject.board.target(index), at);
+            Ok(Ok((image, corners.unwrap_or_default().into_iter().enumerate().map(named).collect())))
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! `calibench speed`: points per second of methods, for reports to read.
+
+use std::hint::black_box;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use calibench_exchange::atomic::write_atomically;
+use calibench_measure::{Configured, Operator};
+use calibench_model::{Image, Start};
+use calibench_report::speeds::{SPEEDS, Speed, Speeds};
+use calibench_run::views::first_image;
+use calibench_scenario::{Scenario, Subject};
+use clap::Args;
+
+use super::context::Context;
+use super::progress::Progress;
+use super::run::Changes;
+use super::{Failure, print};
+
+/// The scenarios whose methods and images are taken if none is named.
+const USUAL: [&str; 3] = ["atlas/corners", "atlas/discs", "atlas/wedges"];
+/// How long a method is timed in each round, seconds.
+const SLICE: f64 = 0.02;
+
+#[derive(Args)]
+pub struct SpeedCommand {
+    /// Scenarios whose first image is measured [default: atlas/corners, atlas/discs, atlas/wedges]
+    #[arg(value_name = "SCENARIO")]
+    scenarios: Vec<String>,
+    /// Methods in place of the scenarios' own, as in forstner:window=15; may be repeated
+    #[arg(short, long = "method", value_name = "METHOD")]
+    methods: Vec<String>,
+    /// How many rounds, each with all methods in turn
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u16).range(3..=1000))]
+    rounds: u16,
+    /// Where the figures go [default: reference/speeds.csv of the project]
+    #[arg(short, long, value_name = "CSV")]
+    output: Option<PathBuf>,
+}
+
+impl SpeedCommand {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let names: Vec<&str> = if self.scenarios.is_empty() { USUAL.to_vec() } else { self.scenarios.iter().map(String::as_str).collect() };
+        let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
+        let methods = Changes::of_methods(&self.methods, context)?;
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+        let mut speeds = Speeds { machine: machine(), rows: Vec::new() };
+        for scenario in &scenarios {
+            let Subject::Views(subject) = &scenario.subject else {
+                return Err(Failure::input(format!("`{}` has no [testfield]; expected a scenario with views of one", scenario.name)));
+            };
+            let (image, starts) = first_image(&scenario.name, scenario.seed, subject)?;
+            let methods = if methods.is_empty() { &scenario.methods } else { &methods };
+            let progress = Progress::start(&scenario.name, u64::from(self.rounds), context.quiet);
+            speeds.rows.extend(one.install(|| self.time(scenario, methods, &image, &starts, &|| progress.step())));
+            progress.finish(&format!("{} methods on {} points", methods.len(), starts.len()));
+        }
+        let path = self.output.clone().map_or_else(|| Ok::<_, Failure>(context.root()?.join(SPEEDS)), Ok)?;
+        write_atomically(&path, |file| speeds.write(file)).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        print(&format!("{}\n", path.display()))
+    }
+
+    /// Every method in every round; what the machine does beside it hits all of them.
+    fn time(&self, scenario: &Scenario, methods: &[Configured], image: &Image, starts: &[Start], step: &dyn Fn()) -> Vec<Speed> {
+        let operators: Vec<(&Configured, &dyn Operator)> =
+            methods.iter().filter_map(|method| Some((method, method.operator.as_deref().ok()?))).collect();
+        let mut found: Vec<Vec<f64>> = vec![Vec::new(); operators.len()];
+        for _ in 0..self.rounds {
+            for ((_, operator), rates) in operators.iter().zip(&mut found) {
+                rates.push(rate(*operator, image, starts));
+            }
+            step();
+        }
+        let row = |((method, _), rates): (&(&Configured, &dyn Operator), &mut Vec<f64>)| {
+            rates.sort_by(f64::total_cmp);
+            let at = |part: usize| three_digits(rates[(rates.len() - 1) * part / 4]);
+            Speed {
+                scenario: scenario.name.clone(),
+                method: method.label.clone(),
+                version: method.version.clone(),
+                points_per_second: at(2),
+                low: at(1),
+                high: at(3),
+                points: starts.len(),
+                rounds: rates.len(),
+                image: format!("{}x{}", image.width(), image.height()),
+            }
+        };
+        operators.iter().zip(&mut found).map(row).collect()
+    }
+}
+
+/// Points per second over at least [`SLICE`] seconds.
+fn rate(operator: &dyn Operator, image: &Image, starts: &[Start]) -> f64 {
+    let (started, mut points) = (Instant::now(), 0_usize);
+    loop {
+        black_box(operator.measure_all(black_box(image), black_box(starts)));
+        points += starts.len();
+        let seconds = started.elapsed().as_secs_f64();
+        if seconds >= SLICE {
+            return points as f64 / seconds;
+        }
+    }
+}
+
+/// More digits than three would claim too much.
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// What was measured on, in a line.
+fn machine() -> String {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let lanes = if cfg!(target_arch = "x86_64") { x86() } else { "default instructions" };
+    format!("{} with {threads} hardware threads, {lanes}; measured on one thread", std::env::consts::ARCH)
+}
+
+#[cfg(target_arch = "x86_64")]
+fn x86() -> &'static str {
+    if is_x86_feature_detected!("avx512f") {
+        "AVX-512"
+    } else if is_x86_feature_detected!("avx2") {
+        "AVX2"
+    } else {
+        "SSE2"
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn x86() -> &'static str {
+    ""
+}

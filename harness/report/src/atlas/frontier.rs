@@ -1,0 +1,158 @@
+//! Accuracy against speed: every method as a point, the ones that nobody beats in both joined by a line.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::labels::{Box2, place};
+use crate::canvas::{COLOURS, Canvas, Mark};
+use crate::field::{Area, write};
+use crate::ticks;
+
+/// A method with its speed and error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spot {
+    /// Name and setting.
+    pub name: String,
+    /// Points per second.
+    pub speed: f64,
+    /// RMSE, px.
+    pub rmse: f64,
+}
+
+/// The places of those that no other one beats: none is at least as fast and at least as exact, and better in one of both. From the slowest to the fastest.
+pub fn front(spots: &[Spot]) -> Vec<usize> {
+    let beats = |a: &Spot, b: &Spot| a.speed >= b.speed && a.rmse <= b.rmse && (a.speed > b.speed || a.rmse < b.rmse);
+    let mut front: Vec<usize> = (0..spots.len()).filter(|&index| !spots.iter().any(|other| beats(other, &spots[index]))).collect();
+    front.sort_by(|&a, &b| spots[a].speed.total_cmp(&spots[b].speed));
+    front
+}
+
+const INSIDE: (f64, f64) = (1150.0, 760.0);
+const LEFT: f64 = 90.0;
+const TOP: f64 = 60.0;
+const RIGHT: f64 = 30.0;
+const BOTTOM: f64 = 70.0;
+
+/// A logarithmic scale over whole decades and their 1, 2, 5.
+struct Decades {
+    low: f64,
+    high: f64,
+}
+
+impl Decades {
+    fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
+        let (low, high) = (values.clone().fold(f64::INFINITY, f64::min), values.fold(0.0, f64::max));
+        // Room for labels at both ends.
+        Self { low: low / 2.0, high: high * 2.0 }
+    }
+
+    fn part(&self, value: f64) -> f64 {
+        (value / self.low).ln() / (self.high / self.low).ln()
+    }
+
+    fn ticks(&self) -> Vec<f64> {
+        ticks::decades(self.low, self.high, &[1.0, 2.0, 5.0])
+    }
+}
+
+/// Where points and labels are, px of the picture.
+pub struct Plan {
+    points: Vec<(f64, f64)>,
+    /// The boxes of the labels.
+    pub labels: Vec<Option<Box2>>,
+}
+
+/// Lays the points and their labels out.
+pub fn plan(spots: &[Spot]) -> Plan {
+    let (x, y) = scales(spots);
+    let at = |spot: &Spot| (LEFT + x.part(spot.speed) * INSIDE.0, TOP + (1.0 - y.part(spot.rmse)) * INSIDE.1);
+    let points: Vec<(f64, f64)> = spots.iter().map(at).collect();
+    let sizes: Vec<(f64, f64)> = spots.iter().map(|spot| (spot.name.chars().count() as f64 * 8.6 + 6.0, 20.0)).collect();
+    let area = Box2 { x: LEFT + 4.0, y: TOP + 4.0, width: INSIDE.0 - 8.0, height: INSIDE.1 - 8.0 };
+    let labels = place(&points, &sizes, area);
+    Plan { points, labels }
+}
+
+fn scales(spots: &[Spot]) -> (Decades, Decades) {
+    (Decades::of(spots.iter().map(|spot| spot.speed)), Decades::of(spots.iter().map(|spot| spot.rmse)))
+}
+
+/// The picture; lower and further to the right is better.
+pub fn picture(spots: &[Spot], title: &str) -> Canvas {
+    let mut canvas = Canvas::new((LEFT + INSIDE.0 + RIGHT) as u32, (TOP + INSIDE.1 + BOTTOM) as u32);
+    canvas.text(title, 18, (LEFT as u32, 20));
+    if spots.is_empty() {
+        return canvas;
+    }
+    let (plan, front, (x, y)) = (plan(spots), front(spots), scales(spots));
+    let whole = |(x, y): (f64, f64)| (x.round() as i32, y.round() as i32);
+    canvas.paint(|area: &Area<'_>| {
+        let grey = RGBColor(225, 225, 225);
+        for tick in x.ticks() {
+            let at = LEFT + x.part(tick) * INSIDE.0;
+            area.draw(&PathElement::new([whole((at, TOP)), whole((at, TOP + INSIDE.1))], grey)).ok();
+            write(area, &short(tick), whole((at, TOP + INSIDE.1 + 18.0)), HPos::Center);
+        }
+        for tick in y.ticks() {
+            let at = TOP + (1.0 - y.part(tick)) * INSIDE.1;
+            area.draw(&PathElement::new([whole((LEFT, at)), whole((LEFT + INSIDE.0, at))], grey)).ok();
+            write(area, &format!("{}", (tick * 1e9).round() / 1e9), whole((LEFT - 8.0, at)), HPos::Right);
+        }
+        area.draw(&Rectangle::new([whole((LEFT, TOP)), whole((LEFT + INSIDE.0, TOP + INSIDE.1))], BLACK)).ok();
+        write(area, "points per second, one thread", whole((LEFT + INSIDE.0 / 2.0, TOP + INSIDE.1 + 46.0)), HPos::Center);
+        write(area, "RMSE, px", whole((LEFT, TOP - 14.0)), HPos::Left);
+        let line: Vec<(i32, i32)> = front.iter().map(|&index| whole(plan.points[index])).collect();
+        area.draw(&PathElement::new(line, ShapeStyle::from(&COLOURS[0]).stroke_width(2))).ok();
+        for (point, label) in plan.points.iter().zip(&plan.labels) {
+            let Some(label) = label else { continue };
+            let near = (point.0.clamp(label.x, label.x + label.width), point.1.clamp(label.y, label.y + label.height));
+            area.draw(&PathElement::new([whole(*point), whole(near)], RGBColor(150, 150, 150))).ok();
+        }
+    });
+    let mark = |index: usize| if front.contains(&index) { (Mark::Circle, COLOURS[0]) } else { (Mark::Cross, COLOURS[1]) };
+    let marks: Vec<_> = (0..spots.len()).map(|index| (mark(index).0, mark(index).1, plan.points[index])).collect();
+    canvas.marks(&marks);
+    for (spot, label) in spots.iter().zip(&plan.labels) {
+        if let Some(label) = label {
+            canvas.label(&spot.name, 16, ((label.x + 3.0) as u32, (label.y + label.height / 2.0) as u32));
+        }
+    }
+    canvas
+}
+
+/// 1000 as 1k, 2000000 as 2M.
+pub fn short(value: f64) -> String {
+    let (value, unit) = if value >= 1e6 {
+        (value / 1e6, "M")
+    } else if value >= 1e3 {
+        (value / 1e3, "k")
+    } else {
+        (value, "")
+    };
+    format!("{}{unit}", (value * 100.0).round() / 100.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spot(speed: f64, rmse: f64) -> Spot {
+        Spot { name: format!("method:window={speed}"), speed, rmse }
+    }
+
+    #[test]
+    fn the_front_holds_those_that_nobody_beats() {
+        let spots = [spot(100.0, 0.01), spot(1000.0, 0.02), spot(900.0, 0.03), spot(50.0, 0.01), spot(5000.0, 0.5), spot(1000.0, 0.02)];
+        assert_eq!(front(&spots), [0, 1, 5, 4], "equals stand beside each other, the slower of equal error does not");
+        assert!(front(&[]).is_empty());
+    }
+
+    #[test]
+    fn every_spot_has_a_label_of_its_own() {
+        let spots: Vec<Spot> = (0..24).map(|i| spot(1e4 * 1.02_f64.powi(i * 7 % 5), 0.02 * 1.03_f64.powi(i * 5 % 7))).collect();
+        let labels: Vec<Box2> = plan(&spots).labels.into_iter().map(|label| label.expect("room")).collect();
+        for (i, label) in labels.iter().enumerate() {
+            assert!(labels[..i].iter().all(|other| !label.overlaps(other)));
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The records of the atlas: figures by cell, and losses by trial for paired comparisons.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use calibench_measure::Registry;
+use calibench_records::results::{LOST, Outcome, Trial};
+
+use crate::LoadError;
+use crate::sweep::{LoadedSweep, load_with};
+
+/// The mean squared error of the points of one trial, px^2, with every lost or rejected point as one of [`LOST`] px; by trial.
+pub type Losses = BTreeMap<u64, f64>;
+
+/// One sweep of the atlas.
+pub struct Part {
+    /// Its figures.
+    pub sweep: LoadedSweep,
+    /// By cell and name of the method.
+    losses: BTreeMap<(usize, String), Losses>,
+}
+
+impl Part {
+    /// Reads the records of sweep `name`; `None` if there are none.
+    ///
+    /// # Errors
+    /// Records that are not whole or not of this version.
+    pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Option<Self>, LoadError> {
+        let mut found: BTreeMap<(usize, String), Losses> = BTreeMap::new();
+        let sweep = load_with(records, name, registry, &mut |cell, trial, names| {
+            for (method, loss) in losses(trial) {
+                if let Some(name) = names.get(method) {
+                    found.entry((cell, name.clone())).or_default().insert(trial.number, loss);
+                }
+            }
+        })?;
+        Ok(sweep.map(|sweep| Self { sweep, losses: found }))
+    }
+
+    /// The losses of method `method` over `cells`: for each trial the mean over these cells, each of which has the same points.
+    pub fn losses(&self, cells: &[usize], method: usize) -> Vec<f64> {
+        let name = &self.sweep.methods[method].name;
+        let of = |cell: &usize| self.losses.get(&(*cell, name.clone()));
+        let all: Vec<&Losses> = cells.iter().filter_map(of).collect();
+        let Some(first) = all.first().filter(|_| all.len() == cells.len()) else { return Vec::new() };
+        let sum = |trial: &u64| all.iter().map(|losses| losses.get(trial).copied()).sum::<Option<f64>>();
+        first.keys().filter_map(sum).map(|sum| sum / cells.len() as f64).collect()
+    }
+
+    /// The cells whose values on the axis called `key` pass `test`, for all of `tests`.
+    pub fn cells(&self, tests: &[(&str, &dyn Fn(f64) -> bool)]) -> Vec<usize> {
+        let axes = &self.sweep.sweep.axes;
+        let passes = |cell: &usize| {
+            let values = self.sweep.sweep.values(*cell);
+            tests.iter().all(|(key, test)| {
+                let place = axes.iter().position(|axis| axis.path == *key);
+                place.and_then(|place| values[place].number).is_some_and(test)
+            })
+        };
+        (0..self.sweep.cells.len()).filter(passes).collect()
+    }
+}
+
+/// The loss of each method in a trial.
+fn losses(trial: &Trial) -> BTreeMap<usize, f64> {
+    let mut sums: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    for point in &trial.points {
+        let square = match point.outcome {
+            Outcome::Measured { error: Some((dx, dy)), .. } => (dx * dx + dy * dy).min(LOST * LOST),
+            _ => LOST * LOST,
+        };
+        let sum = sums.entry(point.method).or_default();
+        *sum = (sum.0 + square, sum.1 + 1.0);
+    }
+    sums.into_iter().map(|(method, (sum, count))| (method, sum / count)).collect()
+}

@@ -1,0 +1,8 @@
+//! A calibration as a page with pictures and tables, and as a summary for a terminal.
+
+mod page;
+mod pictures;
+mod sets_page;
+mod tables;
+
+pub use page::{summary, write_report};

@@ -1,0 +1,288 @@
+//! The page about a calibration, and its summary for a terminal.
+
+use std::fmt::Write;
+use std::io;
+use std::path::Path;
+
+use calibench_adjust::{Significance, Use};
+use calibench_calibrate::Calibration;
+use calibench_exchange::atomic::write_atomically;
+use calibench_model::camera::CameraModel;
+
+use super::{pictures, sets_page, tables};
+use crate::markdown::MarkdownTable;
+use crate::plain;
+
+/// Correlations beyond this are flagged.
+pub(super) const CORRELATED: f64 = 0.9;
+/// A parameter that chance would make as large in more than this share of all cases is doubtful.
+pub(super) const DOUBTFUL: f64 = 0.05;
+/// Parameters of which a test against zero means nothing.
+pub(super) const BASIC: [&str; 9] = ["c", "f", "F", "fx", "fy", "x0", "y0", "cx", "cy"];
+/// Images and rejected points that a page names one by one.
+const MOST: usize = 200;
+
+/// Writes the page, its pictures and its tables into `folder`.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_report(calibration: &Calibration<'_>, folder: &Path) -> io::Result<()> {
+    tables::write(calibration, folder)?;
+    let mut text = format!("# Calibration\n\n{}\n", facts(calibration));
+    for camera in 0..calibration.cameras() {
+        let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, of(calibration, camera));
+        text.push_str(&parameters(calibration, camera).render());
+    }
+    text.push_str(&format!("\nStandard deviations {}.\n", scaled(calibration)));
+    text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{warning}**\n")).collect::<String>());
+    if let Some(compared) = &calibration.compared {
+        let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
+    }
+    for picture in pictures::draw(calibration, folder)? {
+        let _ = write!(text, "\n![{0}]({1})\n\n{0}\n", picture.caption, picture.file);
+    }
+    text.push_str(&images(calibration));
+    text.push_str(&rejected(calibration));
+    text.push_str(
+        "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
+         targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points).\n",
+    );
+    write_atomically(&folder.join("README.md"), |file| file.write_all(text.as_bytes()))
+}
+
+/// What a user reads first: the parameters with their standard deviations and what is wrong with them.
+pub fn summary(calibration: &Calibration<'_>) -> String {
+    let mut text = facts(calibration).replace("- ", "");
+    for camera in 0..calibration.cameras() {
+        let name = of(calibration, camera);
+        let _ = write!(
+            text,
+            "\n{}{}",
+            if name.is_empty() { String::new() } else { format!("interior orientation{name}\n") },
+            parameters(calibration, camera).render()
+        );
+    }
+    text.push_str(&warnings(calibration).iter().map(|warning| format!("warning: {warning}\n")).collect::<String>());
+    if let Some(compared) = &calibration.compared {
+        let _ = write!(text, "\n{}", sets_page::section(compared));
+    }
+    text
+}
+
+/// Whose something is, where there are several cameras.
+fn of(calibration: &Calibration<'_>, camera: usize) -> String {
+    if calibration.cameras() > 1 { format!(" of {}", calibration.name_of(camera)) } else { String::new() }
+}
+
+fn scaled(calibration: &Calibration<'_>) -> &'static str {
+    if calibration.solution.counts().redundancy() > 0 {
+        "with the estimated variance factor"
+    } else {
+        "with the a-priori variance factor: there is no redundancy"
+    }
+}
+
+/// The bookkeeping, a line each.
+fn facts(calibration: &Calibration<'_>) -> String {
+    let (prepared, solution) = (calibration.prepared, &calibration.solution);
+    let settings = &prepared.settings;
+    let counts = solution.counts();
+    let control = prepared.survey.targets.iter().filter(|target| target.control.is_some()).count();
+    let owned = |camera: usize| (0..solution.poses().len()).filter(|&image| calibration.owner(image) == camera).count();
+    let models = (0..calibration.cameras()).map(|camera| {
+        let (name, model) = (of(calibration, camera), calibration.camera(camera).convention().name);
+        let images = if name.is_empty() { String::new() } else { format!(", {} images", owned(camera)) };
+        format!("camera model{name}: {model}{images}")
+    });
+    let mut lines: Vec<String> = models.collect();
+    lines.extend([
+        format!(
+            "{} images, {} image points, {control} of {} targets are control points",
+            solution.poses().len(),
+            prepared.network.observations.len(),
+            prepared.network.points.len()
+        ),
+        format!("datum: {}", settings.datum.words()),
+    ]);
+    lines.extend(prepared.origins.iter().enumerate().map(|(camera, origin)| format!("start{}: {origin}", of(calibration, camera))));
+    lines.extend([
+        format!(
+            "{} observations, {} constraints, {} unknowns, redundancy {}",
+            counts.observations() - counts.constraints,
+            counts.constraints,
+            counts.unknowns,
+            counts.redundancy()
+        ),
+        format!("residuals {} px RMS", plain(calibration.rms_px())),
+    ]);
+    lines.extend(observed(calibration));
+    if let Some(sigma0) = solution.sigma0() {
+        let sigma = settings.sigma();
+        let known = if settings.sigma_px.is_some() { "given" } else { "assumed" };
+        lines.push(format!(
+            "sigma0 {} for a standard deviation of {sigma} px ({known}): {} px for an image coordinate",
+            plain(sigma0),
+            plain(sigma0 * sigma)
+        ));
+    }
+    lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+/// What was observed beside image points and control.
+fn observed(calibration: &Calibration<'_>) -> Option<String> {
+    let settings = &calibration.prepared.settings;
+    let prior = |(camera, prior): (usize, &calibench_calibrate::Prior)| {
+        format!("{}{} = {} \u{b1} {}", prior.parameter, of(calibration, camera), prior.value, prior.sigma)
+    };
+    let parameters = settings.cameras.iter().enumerate().flat_map(|(camera, optics)| optics.priors.iter().map(move |one| (camera, one)));
+    let parameters = parameters.map(prior);
+    let (centres, rotations) = settings
+        .stations
+        .iter()
+        .fold((0, 0), |(c, r), row| (c + usize::from(row.centre.is_some()), r + usize::from(row.rotation.is_some())));
+    let counted = [(centres, "projection centres"), (rotations, "rotations")];
+    let poses = counted.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+    let all: Vec<String> = parameters.chain(poses).collect();
+    (!all.is_empty()).then(|| format!("observed as well: {}", all.join(", ")))
+}
+
+fn parameters(calibration: &Calibration<'_>, camera: usize) -> MarkdownTable {
+    let (names, covariance) = calibration.covariances.of_camera(camera);
+    let tests = calibration.solution.significance().unwrap_or_default();
+    let mut table = MarkdownTable::new(&["parameter", "value", "sigma", "unit", "t", "p"]);
+    for parameter in calibration.camera(camera).parameters() {
+        let solved = names.iter().position(|name| *name == parameter.name);
+        let (value, sigma) = match solved {
+            Some(i) => rounded(parameter.value, covariance[(i, i)].sqrt()),
+            None => (parameter.value.to_string(), "fixed".into()),
+        };
+        let test = tests.iter().find(|test| test.camera == camera && test.parameter == parameter.name);
+        let test = test.map_or_else(|| [String::new(), String::new()], |test| [format!("{:.1}", test.t), format!("{:.3}", test.p)]);
+        let [t, p] = test;
+        table.row([parameter.name.to_owned(), value, sigma, parameter.unit.to_owned(), t, p]);
+    }
+    table
+}
+
+/// A value with the digits that its standard deviation leaves, and that with two.
+fn rounded(value: f64, sigma: f64) -> (String, String) {
+    if sigma <= 0.0 || !sigma.is_finite() {
+        return (value.to_string(), sigma.to_string());
+    }
+    let digits = 1 - sigma.log10().floor() as i32;
+    if (0..=8).contains(&digits) {
+        let digits = digits as usize;
+        return (format!("{value:.digits$}"), format!("{sigma:.digits$}"));
+    }
+    let more = if value == 0.0 { 1 } else { (value.abs().log10().floor() - sigma.log10().floor()) as i32 + 1 };
+    (format!("{value:.*e}", more.clamp(0, 16) as usize), format!("{sigma:.1e}"))
+}
+
+/// What a user must know.
+fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
+    let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
+    let correlated = calibration.covariances.correlated(CORRELATED);
+    let mut warnings: Vec<String> = correlated
+        .iter()
+        .map(|found| format!("{} and {} are hardly told apart: correlation {:.3}", names[found.pair[0]], names[found.pair[1]], found.rho))
+        .collect();
+    let tests = calibration.solution.significance().unwrap_or_default();
+    let observed = |test: &Significance| {
+        calibration.prepared.settings.cameras[test.camera].priors.iter().any(|prior| prior.parameter == test.parameter)
+    };
+    for test in tests.iter().filter(|test| !observed(test) && test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
+        let name = calibration.parameter_name(&(test.camera, test.parameter));
+        warnings.push(format!("{name} is not told from zero (t {:.1}); a set without it may do", test.t));
+    }
+    warnings.extend(weights(calibration));
+    let rejected = calibration.found.iter().filter(|found| found.left_out).count();
+    if rejected > 0 {
+        warnings.push(format!("{rejected} image points were rejected and left out"));
+    }
+    let kept = calibration.found.len() - rejected;
+    if kept > 0 {
+        warnings.push(format!("{kept} image points were rejected and kept: the network needs them, or too many were left out"));
+    }
+    let weighted = calibration.solution.residuals().iter().filter(|r| matches!(r.used, Use::Downweighted(_))).count();
+    if weighted > 0 {
+        warnings.push(format!("{weighted} image points have less weight (Huber)"));
+    }
+    let lost = calibration.prepared.unmeasured.len();
+    if lost > 0 {
+        warnings.push(format!("{lost} targets were not measured: the method rejected them, or their board was not found"));
+    }
+    let absent = calibration.prepared.left_out.len();
+    if absent > 0 {
+        warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
+    }
+    warnings
+}
+
+/// Image points and weighted control share one variance factor: an assumed standard deviation must be about right.
+fn weights(calibration: &Calibration<'_>) -> Option<String> {
+    let settings = &calibration.prepared.settings;
+    let weighted = calibration.solution.counts().observed > 0;
+    let sigma0 = calibration.solution.sigma0().filter(|sigma0| *sigma0 > 0.0 && !(0.67..=1.5).contains(sigma0))?;
+    let sigma = settings.sigma();
+    (weighted && settings.sigma_px.is_none())
+        .then(|| format!("control is weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
+}
+
+fn images(calibration: &Calibration<'_>) -> String {
+    let several = calibration.cameras() > 1;
+    let columns = ["image", "camera", "points", "RMS px", "X0", "Y0", "Z0", "omega", "phi", "kappa"];
+    let shown = |index: usize| several || index != 1;
+    let columns: Vec<&str> = columns.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, name)| name).collect();
+    let mut table = MarkdownTable::new(&columns);
+    let rms = calibration.solution.rms_by_image();
+    let names = &calibration.prepared.survey.images;
+    for (index, name) in names.iter().enumerate().take(MOST) {
+        let points = calibration.prepared.network.observations.iter().filter(|o| o.image == index).count();
+        let numbers = calibench_exchange::station_numbers(&calibration.solution.poses()[index]);
+        let [sx, sy, sz] = [0, 1, 2].map(|i| calibration.covariances.poses[index][(i, i)].max(0.0).sqrt());
+        let centre = [(numbers[0], sx), (numbers[1], sy), (numbers[2], sz)].map(|(value, sigma)| {
+            let (value, sigma) = rounded(value, sigma);
+            format!("{value} \u{b1} {sigma}")
+        });
+        let angles = numbers[3..].iter().map(|angle| format!("{angle:.4}\u{b0}"));
+        let camera = several.then(|| calibration.name_of(calibration.owner(index)).to_owned());
+        let row = [points.to_string(), rms[index].map_or(String::new(), plain)];
+        table.row([name.clone()].into_iter().chain(camera).chain(row).chain(centre).chain(angles));
+    }
+    let more = if names.len() > MOST { format!("\nThe first {MOST} of {} images.\n", names.len()) } else { String::new() };
+    format!("\n## Images\n\n{}{more}", table.render())
+}
+
+fn rejected(calibration: &Calibration<'_>) -> String {
+    if calibration.found.is_empty() {
+        return String::new();
+    }
+    let prepared = calibration.prepared;
+    let mut table = MarkdownTable::new(&["image", "target", "normalised residual", "critical", "left out"]);
+    for found in calibration.found.iter().take(MOST) {
+        let sight = &prepared.survey.sights[prepared.sights[found.observation]];
+        let names = [prepared.survey.images[sight.image].clone(), prepared.survey.targets[sight.target].name.clone()];
+        let verdict = if found.left_out { "yes" } else { "no" };
+        table.row(names.into_iter().chain([format!("{:.2}", found.w), format!("{:.2}", found.critical), verdict.to_owned()]));
+    }
+    format!("\n## Rejected image points\n\n{}", table.render())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_has_the_digits_that_its_standard_deviation_leaves() {
+        let text = |value: f64, sigma: f64| {
+            let (value, sigma) = rounded(value, sigma);
+            format!("{value} {sigma}")
+        };
+        assert_eq!(text(532.8163, 0.441), "532.82 0.44");
+        assert_eq!(text(-0.2809, 0.0054), "-0.2809 0.0054");
+        assert_eq!(text(1234.5, 31.0), "1234 31");
+        assert_eq!(text(1.234_567e-9, 2.5e-11), "1.235e-9 2.5e-11");
+        assert_eq!(text(0.0, 2.5e-11), "0.0e0 2.5e-11");
+        assert_eq!(text(3.5, 0.0), "3.5 0");
+    }
+}

@@ -1,0 +1,56 @@
+//! The pictures of a calibration.
+
+mod correlations;
+mod distribution;
+mod frame;
+mod levels;
+mod residuals;
+mod uncertainty;
+
+use std::io;
+use std::path::Path;
+
+use calibench_calibrate::Calibration;
+
+use crate::Canvas;
+
+/// A picture and what it shows.
+pub(super) struct Picture {
+    /// Its file name.
+    pub(super) file: String,
+    /// What it shows, in a sentence.
+    pub(super) caption: String,
+}
+
+/// Draws all pictures into `folder`, camera by camera.
+pub(super) fn draw(calibration: &Calibration<'_>, folder: &Path) -> io::Result<Vec<Picture>> {
+    let mut drawn = Vec::new();
+    for camera in 0..calibration.cameras() {
+        let (prefix, whose) = match calibration.cameras() {
+            1 => (String::new(), String::new()),
+            _ => (format!("{}-", calibration.name_of(camera)), format!("{}: ", calibration.name_of(camera))),
+        };
+        for (file, caption, canvas) in of_camera(calibration, camera) {
+            let file = format!("{prefix}{file}");
+            canvas.write(&folder.join(&file))?;
+            drawn.push(Picture { file, caption: format!("{whose}{caption}") });
+        }
+    }
+    Ok(drawn)
+}
+
+fn of_camera(calibration: &Calibration<'_>, camera: usize) -> Vec<(String, String, Canvas)> {
+    let residuals = residuals::together(calibration, camera);
+    let mut drawn = vec![("residuals.png".into(), "Residuals (adjusted less observed) of all images together.".into(), residuals)];
+    for (index, (names, canvas)) in residuals::by_image(calibration, camera).into_iter().enumerate() {
+        drawn.push((format!("residuals-by-image-{}.png", index + 1), format!("Residuals by image: {names}."), canvas));
+    }
+    let caption = "Where the image points lie in the frame: their number in each cell. Empty cells are extrapolation.";
+    drawn.push(("distribution.png".into(), caption.into(), distribution::picture(calibration, camera)));
+    if let Some(canvas) = correlations::picture(calibration, camera) {
+        let caption = "Correlations of the interior orientation, framed where |rho| exceeds 0.9.";
+        drawn.push(("correlations.png".into(), caption.into(), canvas));
+    }
+    drawn.extend(uncertainty::pictures(calibration, camera).into_iter().map(|(file, caption, canvas)| (file.to_owned(), caption, canvas)));
+    drawn
+}

@@ -1,0 +1,177 @@
+//! Everything as CSV.
+
+use std::collections::HashMap;
+use std::io;
+use std::path::Path;
+
+use calibench_adjust::{Found, PointReliability, Significance, Use};
+use calibench_calibrate::Calibration;
+use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::{ControlRow, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control, write_table};
+use calibench_model::camera::CameraModel;
+
+/// Writes all tables into `folder`.
+pub(super) fn write(calibration: &Calibration<'_>, folder: &Path) -> io::Result<()> {
+    residuals(calibration, &folder.join("residuals.csv"))?;
+    if let Some(compared) = &calibration.compared {
+        super::sets_page::write(compared, &folder.join("sets.csv"))?;
+    }
+    parameters(calibration, &folder.join("parameters.csv"))?;
+    correlations(calibration, &folder.join("correlations.csv"))?;
+    stations(calibration, &folder.join("stations.csv"))?;
+    let rows = object_points(calibration);
+    write_atomically(&folder.join("points.csv"), |file| write_control(file, &rows))
+}
+
+pub(super) fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
+    write_atomically(path, |file| write_table(file, columns, rows))
+}
+
+fn texts<const N: usize>(values: Option<[f64; N]>) -> Vec<String> {
+    values.map_or_else(|| vec![String::new(); N], |values| values.iter().map(f64::to_string).collect())
+}
+
+/// Every row that was given, and every target that a method could not measure, with what became of it. Residuals are adjusted less observed, px.
+fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+    let prepared = calibration.prepared;
+    let survey = &prepared.survey;
+    let mut rows: Vec<Option<Vec<String>>> = vec![None; survey.sights.len()];
+    let start = |index: usize| {
+        let sight = &survey.sights[index];
+        let mut row = vec![survey.images[sight.image].clone(), survey.targets[sight.target].name.clone()];
+        row.extend(texts(Some([sight.position.x, sight.position.y])));
+        row
+    };
+    let checks = calibration.reliability.iter().flat_map(|r| &r.points);
+    let checked: HashMap<usize, &PointReliability> = checks.map(|point| (point.observation, point)).collect();
+    let rejected: HashMap<usize, &Found> = calibration.found.iter().map(|found| (found.observation, found)).collect();
+    for residual in calibration.solution.residuals() {
+        let sight = prepared.sights[residual.observation];
+        let checked = checked.get(&residual.observation);
+        let (used, weight) = match residual.used {
+            Use::Full => ("used", Some(1.0)),
+            Use::Downweighted(weight) => ("downweighted", Some(weight)),
+            Use::LeftOut => ("rejected", Some(0.0)),
+        };
+        let found = rejected.get(&residual.observation);
+        let why = found.map_or(String::new(), |found| {
+            let kept = if found.left_out { "" } else { ", kept: the network needs it" };
+            format!("normalised residual {:.2} beyond {:.2}{kept}", found.w, found.critical)
+        });
+        let mut row = start(sight);
+        row.extend(texts(residual.v));
+        row.extend(texts(checked.map(|p| p.redundancy)));
+        row.extend(texts(checked.map(|p| p.w)));
+        row.extend(texts(checked.map(|p| p.detectable)));
+        row.extend(texts(weight.map(|weight| [weight])));
+        row.extend([used.to_owned(), why]);
+        rows[sight] = Some(row);
+    }
+    for left in &prepared.left_out {
+        let mut row = start(left.sight);
+        row.extend(vec![String::new(); 9]);
+        row.extend(["left_out".to_owned(), left.why.clone()]);
+        rows[left.sight] = Some(row);
+    }
+    let unmeasured = prepared.unmeasured.iter().map(|lost| {
+        let mut row = vec![lost.image.clone(), lost.target.clone()];
+        row.extend(vec![String::new(); 11]);
+        row.extend([lost.status.clone(), lost.reason.clone()]);
+        row
+    });
+    let columns = [
+        "image",
+        "target",
+        "x",
+        "y",
+        "vx",
+        "vy",
+        "redundancy_x",
+        "redundancy_y",
+        "w_x",
+        "w_y",
+        "detectable_x",
+        "detectable_y",
+        "weight",
+        "status",
+        "reason",
+    ];
+    table(path, &columns, rows.into_iter().flatten().chain(unmeasured))
+}
+
+/// All parameters; those that were not solved for have no standard deviation.
+fn parameters(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+    let tests = calibration.solution.significance().unwrap_or_default();
+    let of_camera = |camera: usize| {
+        let rows = of_camera(calibration, &tests, camera);
+        let name = calibration.name_of(camera);
+        rows.into_iter().map(move |row| [vec![name.to_owned()], row].concat())
+    };
+    let columns = ["camera", "parameter", "unit", "value", "sigma", "t", "p", "status"];
+    table(path, &columns, (0..calibration.cameras()).flat_map(of_camera))
+}
+
+fn of_camera(calibration: &Calibration<'_>, tests: &[Significance], camera: usize) -> Vec<Vec<String>> {
+    let (names, covariance) = calibration.covariances.of_camera(camera);
+    let priors = &calibration.prepared.settings.cameras[camera].priors;
+    let row = |parameter: calibench_model::camera::CameraParameter| {
+        let sigma = names.iter().position(|name| *name == parameter.name).map(|i| covariance[(i, i)].sqrt());
+        let test = tests.iter().find(|test| test.camera == camera && test.parameter == parameter.name);
+        let mut row = vec![parameter.name.to_owned(), parameter.unit.to_owned(), parameter.value.to_string()];
+        row.extend(texts(sigma.map(|sigma| [sigma])));
+        row.extend(texts(test.map(|test| [test.t, test.p])));
+        let observed = priors.iter().any(|prior| prior.parameter == parameter.name);
+        row.push(
+            if observed {
+                "observed"
+            } else if sigma.is_some() {
+                "free"
+            } else {
+                "fixed"
+            }
+            .to_owned(),
+        );
+        row
+    };
+    calibration.camera(camera).parameters().into_iter().map(row).collect()
+}
+
+/// Every pair of solved parameters once.
+fn correlations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+    let rho = calibration.covariances.correlations();
+    let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
+    let pairs = (0..names.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let rows = pairs.map(|(i, j)| vec![names[i].clone(), names[j].clone(), rho[(i, j)].to_string()]);
+    table(path, &["first", "second", "rho"], rows)
+}
+
+/// Poses as `render` writes them, with standard deviations: of X0 in object units, of a small rotation about the camera's axes in degrees.
+fn stations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+    let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &["points", "rms_px", "camera"]].concat();
+    let (poses, rms) = (calibration.solution.poses(), calibration.solution.rms_by_image());
+    let observations = &calibration.prepared.network.observations;
+    let row = |(index, name): (usize, &String)| {
+        let covariance = &calibration.covariances.poses[index];
+        let sigma = |i: usize| covariance[(i, i)].max(0.0).sqrt();
+        let mut row = vec![name.clone()];
+        row.extend(texts(Some(station_numbers(&poses[index]))));
+        row.extend(texts(Some([sigma(0), sigma(1), sigma(2)])));
+        row.extend(texts(Some([sigma(3), sigma(4), sigma(5)].map(f64::to_degrees))));
+        row.push(observations.iter().filter(|o| o.image == index).count().to_string());
+        row.extend(texts(rms[index].map(|rms| [rms])));
+        row.push(calibration.name_of(calibration.owner(index)).to_owned());
+        row
+    };
+    table(path, &columns, calibration.prepared.survey.images.iter().enumerate().map(row))
+}
+
+/// Object points as a control file; fixed ones have no standard deviation.
+fn object_points(calibration: &Calibration<'_>) -> Vec<ControlRow> {
+    let row = |(index, point): (usize, &calibench_adjust::ObjectPoint)| {
+        let covariance = &calibration.covariances.points[index];
+        let sigmas: [f64; 3] = std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt());
+        let sigmas = Some(sigmas).filter(|sigmas| sigmas.iter().all(|sigma| *sigma > 0.0));
+        ControlRow { target: point.name.clone(), position: calibration.solution.points()[index].coords.into(), sigmas }
+    };
+    calibration.prepared.network.points.iter().enumerate().map(row).collect()
+}

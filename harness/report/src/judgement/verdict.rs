@@ -1,0 +1,176 @@
+//! The verdict in words, every one of them derived from the records.
+
+use calibench_records::judgement::{ALPHA, Beside, Cell, Estimate, HONEST, OUTLIER_ALPHA, Published, Summary, Trusted};
+
+use crate::markdown::fixed;
+use crate::plain;
+
+/// Which operator and which model, and how far.
+pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
+    let (cell, least) = (trusted.cell, trusted.least);
+    let mut lines = vec![format!(
+        "**Of these photographs trust `{}` with the model `{}`.** It predicts corners of photographs that took no part in the calibration to {}.",
+        cell.method,
+        cell.model,
+        cell.holdout.map_or_else(String::new, |holdout| interval(&holdout))
+    )];
+    lines.push(format!(
+        "**Operators**, with `{}`: {}",
+        least.model,
+        ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout))
+    ));
+    let farthest = trusted.farthest;
+    let mut models = format!(
+        "**Models**, with `{}`, by predicting one side of the board from the other (where a pose cannot make up for what a model lacks): {}",
+        least.method,
+        ranking(&trusted.models, &farthest.model, |cell| (&cell.model, cell.across))
+    );
+    if cell.model != farthest.model {
+        models.push_str(&format!(
+            " `{}` is the simplest of these, with {} parameters in place of {}.",
+            cell.model, cell.parameters, farthest.parameters
+        ));
+    }
+    let failed: Vec<String> = summary
+        .cells
+        .iter()
+        .filter(|other| other.method == least.method && other.holdout.is_none())
+        .map(|other| format!("`{}`", other.model))
+        .collect();
+    if !failed.is_empty() {
+        models.push_str(&format!(" These photographs do not determine {}.", listed(&failed)));
+    }
+    lines.push(models);
+    lines.extend(how_far(trusted));
+    lines.extend(beyond(summary, trusted));
+    lines.push(outlying(cell));
+    lines.extend(published(trusted));
+    lines.push(
+        "**What cannot be seen here**: an error that a camera of the same model can imitate, or that all photographs share with the board (corners displaced \
+         alike, a board that is not flat or not of the size given), predicts itself. The pose of a photograph is resected from the other half of its corners."
+            .into(),
+    );
+    lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+/// A figure with its interval.
+fn interval(estimate: &Estimate) -> String {
+    let (low, high) = estimate.interval;
+    format!("{} px RMS (95 % over views {} to {})", plain(estimate.value), plain(low), plain(high))
+}
+
+fn chance(p: f64) -> String {
+    if p < 0.001 { "p < 0.001".into() } else { format!("p = {p:.3}") }
+}
+
+pub(super) fn listed(names: &[String]) -> String {
+    match names {
+        [] => "none".into(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+fn ranking(others: &[(&Cell, f64)], best: &str, of: impl Fn(&Cell) -> (&str, Option<Estimate>)) -> String {
+    let rms = |cell: &Cell| of(cell).1.map_or_else(String::new, |found| plain(found.value));
+    let name = |cell: &Cell| of(cell).0.to_owned();
+    let alike: Vec<String> =
+        others.iter().filter(|(_, p)| *p > ALPHA).map(|(cell, _)| format!("`{}` ({} px)", name(cell), rms(cell))).collect();
+    let worse: Vec<String> = others
+        .iter()
+        .filter(|(_, p)| *p <= ALPHA)
+        .map(|(cell, p)| format!("`{}` ({} px, {})", name(cell), rms(cell), chance(*p)))
+        .collect();
+    let mut text = format!("`{best}` has the least RMS.");
+    text.push_str(&match alike.len() {
+        0 => " None of the others is as good.".to_owned(),
+        _ => format!(" Not to be told from it: {}.", listed(&alike)),
+    });
+    if !worse.is_empty() {
+        text.push_str(&format!(" Worse: {}.", listed(&worse)));
+    }
+    text
+}
+
+fn how_far(trusted: &Trusted<'_>) -> Option<String> {
+    let cell = trusted.cell;
+    let (centre, corner) = cell.uncertainty?;
+    let mut text = format!(
+        "**How far**: the adjustment predicts the image of a point far away with a standard deviation of {} px in the centre of the frame and {} px in its \
+         worst corner.",
+        plain(centre),
+        plain(corner)
+    );
+    let Some(split) = cell.split else { return Some(text + " There were too few photographs to check it by halves.") };
+    let found = format!(
+        "{} times what the sigmas say over the frame, {} times mode by mode ({} splits, {})",
+        fixed(split.ratio(), 2),
+        fixed(split.modes, 2),
+        split.count,
+        chance(split.p)
+    );
+    let factor = trusted.inflation();
+    text.push_str(&if split.p < HONEST {
+        format!(
+            " Halves of the photographs differ by {found}: **the sigmas are too small**. Enlarged by {}: {} px and {} px.",
+            fixed(factor, 2),
+            plain(factor * centre),
+            plain(factor * corner)
+        )
+    } else {
+        format!(" Halves of the photographs differ by {found}: nothing is to be said against the sigmas.")
+    });
+    Some(text)
+}
+
+/// What models that cannot be told apart say where no corner was.
+fn beyond(summary: &Summary, trusted: &Trusted<'_>) -> Option<String> {
+    let (cell, farthest) = (trusted.cell, trusted.farthest);
+    let alike = trusted.equal_models().chain([farthest]).filter(|other| other.model != cell.model);
+    let found: Vec<(&Cell, Beside)> =
+        alike.filter_map(|other| Some((other, summary.beside(&cell.method, [&cell.model, &other.model])?))).collect();
+    let (worst, apart) = found.iter().max_by(|a, b| a.1.frame.total_cmp(&b.1.frame))?;
+    let seen = found.iter().filter_map(|(_, apart)| apart.seen).reduce(f64::max)?;
+    Some(format!(
+        "**Beyond the corners** nobody checked: the models that cannot be told apart agree with `{}` to {} px RMS or better where corners were measured, but over \
+         the whole frame only to {} px RMS, and {} px at most (`{}`). What was photographed decides there, and not the model: see to boards in every corner of \
+         the frame.",
+        cell.model,
+        plain(seen),
+        plain(apart.frame),
+        plain(apart.most),
+        worst.model
+    ))
+}
+
+fn outlying(cell: &Cell) -> String {
+    let named: Vec<String> =
+        cell.outlying().iter().map(|view| format!("`{}` ({} px, {})", view.name, plain(view.residual.0), chance(view.p))).collect();
+    let mut rms: Vec<f64> = cell.views.iter().map(|view| view.residual.0).collect();
+    rms.sort_by(f64::total_cmp);
+    let middle = rms.get(rms.len() / 2).copied().unwrap_or_default();
+    match named.len() {
+        0 => format!("**Outlying photographs**: none of {} (alpha {OUTLIER_ALPHA}; median RMS {} px).", cell.views.len(), plain(middle)),
+        _ => format!(
+            "**Outlying photographs**: {} of {}, where the median is {} px. Look at them, and calibrate without them.",
+            listed(&named),
+            cell.views.len(),
+            plain(middle)
+        ),
+    }
+}
+
+fn published(trusted: &Trusted<'_>) -> Option<String> {
+    let Published { beside: Beside { frame, most, seen }, predicted } = trusted.cell.published?;
+    let factor = trusted.inflation();
+    let told = if frame <= 2.0 * factor * predicted { "within twice" } else { "more than twice" };
+    let enlarged = if factor > 1.0 { format!(", enlarged {} px", plain(factor * predicted)) } else { String::new() };
+    let seen = seen.map_or_else(String::new, |seen| format!(" Where corners were measured it differs by {} px RMS.", plain(seen)));
+    Some(format!(
+        "**The published calibration** differs by {} px RMS over the frame after the best rotation, {} px at most: {told} the standard deviation of ours \
+         ({} px RMS over the frame{enlarged}).{seen}",
+        plain(frame),
+        plain(most),
+        plain(predicted)
+    ))
+}

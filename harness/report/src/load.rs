@@ -1,0 +1,142 @@
+//! Records, read for a report.
+
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::read_photo;
+use calibench_measure::Registry;
+use calibench_model::Image;
+use calibench_records::RecordError;
+use calibench_records::names::kept_image;
+use calibench_records::names::{RECORDS, SCENARIO};
+use calibench_records::points::{RecordHead, read_records};
+use calibench_records::results::Trial;
+use calibench_records::score::{Groups, Scores};
+use calibench_scenario::{Scenario, Subject};
+use thiserror::Error;
+
+use super::network::Summaries;
+
+/// All that a report needs of one scenario. Its size does not grow with the number of trials.
+pub struct Loaded {
+    /// The scenario as it was run.
+    pub scenario: Scenario,
+    /// Run and methods.
+    pub head: RecordHead,
+    /// The figures of all trials.
+    pub scores: Scores,
+    /// The first trial, point by point.
+    pub first: Trial,
+    /// Its adjustments, if it makes any.
+    pub calibrations: Option<Summaries>,
+    /// Where the images of the first trial are.
+    pub folder: PathBuf,
+}
+
+/// Records that cannot be read.
+#[derive(Debug, Error)]
+pub enum LoadError {
+    /// There are none.
+    #[error("no records of `{0}`: run it first with `calibench run {0}`")]
+    None(String),
+    /// A file that cannot be read.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A file that is not what it should be.
+    #[error("{}: {source}", path.display())]
+    Records {
+        /// Which.
+        path: PathBuf,
+        /// What is wrong.
+        source: RecordError,
+    },
+    /// The scenario as it was run no longer passes the checks.
+    #[error("{0}\nthese records are of an older scenario format: run the scenario again")]
+    Scenario(#[from] calibench_diagnostics::Problems),
+}
+
+/// Reads the records of scenario `name` below the records folder.
+///
+/// # Errors
+/// Records that are absent or not of this version.
+pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, LoadError> {
+    let folder = records.join(name);
+    let path = folder.join(RECORDS);
+    let in_file = |path: PathBuf| move |source| LoadError::File { path, source };
+    let file = match File::open(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(LoadError::None(name.to_owned())),
+        other => other.map_err(in_file(path.clone()))?,
+    };
+    let text_path = folder.join(SCENARIO);
+    let text = std::fs::read_to_string(&text_path).map_err(in_file(text_path.clone()))?;
+    let scenario = calibench_scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
+    let mut scores = Scores { groups: groups(&scenario), ..Scores::default() };
+    let mut first = None;
+    // The methods of a file are named as they come; `pixel` is the one that does not look at the image.
+    let head = read_records(BufReader::new(file), |trial, methods| {
+        scores.add(&trial, |method| methods.get(method).is_some_and(|info| &*info.label != "pixel"));
+        first.get_or_insert(trial);
+    });
+    let head = head.map_err(|source| LoadError::Records { path, source })?;
+    scores.methods.resize_with(head.methods.len(), Default::default);
+    let calibrations = super::network::load(&folder)?;
+    Ok(Loaded { calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
+}
+
+/// More targets than this are scored by kind.
+pub const MOST_TARGETS: usize = 24;
+
+/// The kinds of a testfield's targets, if there are too many to be listed one by one.
+pub(super) fn groups(scenario: &Scenario) -> Groups {
+    match &scenario.subject {
+        Subject::Views(views) if views.field.targets.len() > MOST_TARGETS => {
+            views.field.targets.iter().map(|target| (target.id.as_str().into(), target.kind.name().into())).collect()
+        }
+        _ => Groups::new(),
+    }
+}
+
+/// The names of all scenarios that have records, those of files elsewhere (`local/...`) among them.
+pub fn recorded(records: &Path) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut folders = vec![(records.to_owned(), String::new())];
+    while let Some((folder, name)) = folders.pop() {
+        if folder.join(SCENARIO).is_file() {
+            // The cells of a sweep lie below it.
+            names.push(name.clone());
+            continue;
+        }
+        for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten().filter(|entry| entry.path().is_dir()) {
+            let part = entry.file_name().to_string_lossy().into_owned();
+            if !part.starts_with('.') {
+                let below = if name.is_empty() { part } else { format!("{name}/{part}") };
+                folders.push((entry.path(), below));
+            }
+        }
+    }
+    names
+}
+
+impl Loaded {
+    /// The image of view `view` in the first trial, if it was kept.
+    pub fn image(&self, view: &str) -> Option<Image> {
+        read_photo(&kept_image(&self.folder, view)).ok()
+    }
+
+    /// The place of the method with this label.
+    pub fn method(&self, label: &str) -> Option<usize> {
+        self.head.methods.iter().position(|method| &*method.label == label)
+    }
+
+    /// Why nothing was measured, if so: the reason that all methods share.
+    pub fn unavailable(&self) -> Option<&str> {
+        let first = self.head.methods.first()?.unavailable.as_deref()?;
+        self.head.methods.iter().all(|method| method.unavailable.is_some()).then_some(first)
+    }
+}

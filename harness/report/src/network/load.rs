@@ -1,0 +1,141 @@
+//! The adjustments of a run, read for a report.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use calibench_records::adjustments::{CALIBRATIONS, Numbers, Row, read};
+use calibench_records::results::Group;
+use calibench_records::statistics::running::{Paired, Running};
+
+use crate::LoadError;
+
+/// A figure over all trials.
+#[derive(Clone, Debug, Default)]
+pub struct Summary {
+    /// In the first trial.
+    pub first: Option<Numbers>,
+    /// Values.
+    pub value: Running,
+    /// Reported standard deviations.
+    pub sigma: Running,
+    /// Squared errors against the truth.
+    pub square: Running,
+    /// Reported standard deviation over that of the reference method, trial by trial.
+    pub sigma_ratio: Running,
+    /// Value over that of the reference method, trial by trial.
+    pub value_ratio: Running,
+    /// Errors beside those of the reference method.
+    pub errors: Paired,
+    /// Values beside those of the reference method, for figures that are themselves root mean squares.
+    pub values: Paired,
+}
+
+/// What of a figure is meant: method, set of parameters, group, name.
+pub type FigureKey = (String, String, Group, String);
+
+/// All adjustments of a run. Its size does not grow with the number of trials.
+#[derive(Clone, Debug, Default)]
+pub struct Summaries {
+    /// The methods, in the order of the file; the first is the reference.
+    pub methods: Vec<String>,
+    /// The sets, in the order of the file; the first is scored in full.
+    pub sets: Vec<String>,
+    /// How many trials.
+    pub trials: u64,
+    /// Every figure.
+    pub figures: BTreeMap<FigureKey, Summary>,
+    /// Residuals of the first trial in the order of the file: method, image, point, axis, px.
+    pub residuals: Vec<(String, String, f64)>,
+    /// Adjustments that failed, by method and set, with the first reason.
+    pub failed: BTreeMap<(String, String, Group), (u64, String)>,
+}
+
+/// Reads the adjustments in a scenario's folder; `None` if it has none.
+///
+/// # Errors
+/// A file that is not whole or not of this version.
+pub fn load(folder: &Path) -> Result<Option<Summaries>, LoadError> {
+    let path = folder.join(CALIBRATIONS);
+    let Ok(file) = File::open(&path) else { return Ok(None) };
+    let mut reader = Reader::default();
+    read(BufReader::new(file), |row| reader.add(row)).map_err(|source| LoadError::Records { path, source })?;
+    Ok(Some(reader.found))
+}
+
+#[derive(Default)]
+struct Reader {
+    found: Summaries,
+    trial: Option<u64>,
+    /// The reference method's figures of this trial.
+    reference: HashMap<(String, Group, String), Numbers>,
+}
+
+impl Reader {
+    fn add(&mut self, row: Row) {
+        if self.trial != Some(row.trial) {
+            self.trial = Some(row.trial);
+            self.found.trials += 1;
+            self.reference.clear();
+        }
+        let remember = |list: &mut Vec<String>, name: &str| {
+            if !list.iter().any(|known| known == name) {
+                list.push(name.to_owned());
+            }
+        };
+        remember(&mut self.found.methods, &row.method);
+        remember(&mut self.found.sets, &row.set);
+        match row.figure {
+            Err(why) => self.found.failed.entry((row.method, row.set, row.group)).or_insert((0, why)).0 += 1,
+            Ok(numbers) if row.group == Group::Point => self.found.residuals.push((row.method, row.name, numbers.value)),
+            Ok(numbers) => self.figure((row.method, row.set, row.group, row.name), numbers),
+        }
+    }
+
+    fn figure(&mut self, key: FigureKey, numbers: Numbers) {
+        let place = (key.1.clone(), key.2, key.3.clone());
+        if self.found.methods.first() == Some(&key.0) {
+            self.reference.insert(place.clone(), numbers);
+        }
+        let reference = self.reference.get(&place).copied();
+        let summary = self.found.figures.entry(key).or_default();
+        summary.first.get_or_insert(numbers);
+        summary.value.add(numbers.value);
+        numbers.sigma.into_iter().for_each(|sigma| summary.sigma.add(sigma));
+        numbers.error.into_iter().for_each(|error| summary.square.add(error * error));
+        let Some(reference) = reference else { return };
+        if let (Some(own), Some(other)) = (numbers.sigma, reference.sigma.filter(|sigma| *sigma > 0.0)) {
+            summary.sigma_ratio.add(own / other);
+        }
+        if reference.value != 0.0 {
+            summary.value_ratio.add(numbers.value / reference.value);
+        }
+        summary.values.add(numbers.value, reference.value);
+        if let (Some(own), Some(other)) = (numbers.error, reference.error) {
+            summary.errors.add(own, other);
+        }
+    }
+}
+
+impl Summaries {
+    /// A figure of the first set.
+    pub fn get(&self, method: &str, group: Group, name: &str) -> Option<&Summary> {
+        self.of_set(method, self.sets.first()?, group, name)
+    }
+
+    /// A figure of any set.
+    pub fn of_set(&self, method: &str, set: &str, group: Group, name: &str) -> Option<&Summary> {
+        self.figures.get(&(method.to_owned(), set.to_owned(), group, name.to_owned()))
+    }
+
+    /// The parameters of a set.
+    pub fn parameters(set: &str) -> impl Iterator<Item = &str> {
+        set.split(',')
+    }
+
+    /// The parameters that are scored.
+    pub fn scored(&self) -> Vec<&str> {
+        self.sets.first().map(|set| Self::parameters(set).collect()).unwrap_or_default()
+    }
+}

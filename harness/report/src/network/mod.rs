@@ -1,0 +1,60 @@
+//! Adjustments within a run, in a report: published tables, every method, sets of parameters, the network and its residuals.
+
+mod figure;
+mod load;
+mod pictures;
+mod published;
+mod sweep;
+mod tables;
+
+pub use load::{Summaries, load};
+pub use published::section as published;
+pub use sweep::section as sweep;
+
+use calibench_scenario::Subject;
+
+use super::canvas::Canvas;
+use super::load::Loaded;
+
+/// Pictures with their file names.
+pub type Pictures = Vec<(String, Canvas)>;
+
+/// The text of a calibrated scenario and its pictures, whose names begin with `stem`; `None` for a scenario without adjustments.
+pub fn section(loaded: &Loaded, stem: &str, illustrated: bool) -> Option<(String, Pictures)> {
+    let found = loaded.calibrations.as_ref()?;
+    let Subject::Views(views) = &loaded.scenario.subject else { return None };
+    let calibration = views.calibration.as_ref()?;
+    let mut text = tables::methods(found);
+    if found.sets.len() > 1 {
+        text.push_str(&tables::sets(found));
+    }
+    let mut drawn: Pictures = Vec::new();
+    // Networks that are alike need no picture of their own; what real operators leave behind does.
+    let shown = |name: &str| illustrated || (calibration.drawn.is_none() && name == "convergence");
+    let mut add = |name: &str, caption: &str, canvas: Option<Canvas>| {
+        if let Some(canvas) = canvas.filter(|_| shown(name)) {
+            let file = format!("{stem}-{name}.png");
+            text.push_str(&format!("{caption}\n\n![{caption}]({file})\n\n"));
+            drawn.push((file, canvas));
+        }
+    };
+    add(
+        "plan",
+        "The network from above, and the wall with control and check points (the paper's Fig. 10 and 11)",
+        pictures::plan::plan(views, calibration),
+    );
+    add(
+        "distribution",
+        "The distribution of the image points over the frame (the paper's Fig. 7)",
+        pictures::distribution::distribution(loaded, views),
+    );
+    let best = found.methods.iter().find(|method| *method == "forstner:window=15").or_else(|| found.methods.last());
+    add(
+        "factors",
+        "The reduction factor of all interior and exterior parameters (the paper's Fig. 8)",
+        best.and_then(|m| pictures::factors::factors(found, m)),
+    );
+    add("residuals", "The residuals after the calibration (the paper's Fig. 9)", pictures::residuals::residuals(found));
+    add("convergence", "The residuals by the convergence of the image", pictures::residuals::by_convergence(found, views));
+    Some((text, drawn))
+}

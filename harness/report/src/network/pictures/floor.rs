@@ -1,0 +1,60 @@
+//! The reduction factor over a swept value.
+
+use plotters::prelude::*;
+
+use super::axes::{Axes, whisker};
+use crate::canvas::{COLOURS, Canvas, METHOD_MARKS, Mark};
+
+/// Circles and crosses over what is swept.
+pub struct Curve {
+    /// What it is.
+    pub name: String,
+    /// Value of the swept key, reduction factor, half its 95 % interval.
+    pub points: Vec<(f64, f64, f64)>,
+}
+
+/// Curves of reduction factors over `x`; `printed` is the paper's, for a line.
+pub fn floor(curves: &[Curve], x: &str, printed: &[(String, f64)]) -> Option<Canvas> {
+    let all = || curves.iter().flat_map(|curve| &curve.points);
+    let widest = all().map(|p| p.0).fold(0.0, f64::max);
+    if widest <= 0.0 {
+        return None;
+    }
+    let highest = all().map(|p| p.1 + p.2).fold(1.0, f64::max);
+    let axes = Axes { at: [70, 70, 720, 400], x: [0.0, widest * 1.03], y: [0.0, highest * 1.08] };
+    let mut canvas = Canvas::new(830, 550 + 24 * curves.len() as u32);
+    canvas.text("Reduction factor over the error that all methods share", 20, (70, 22));
+    let grey = RGBColor(120, 120, 120);
+    canvas.paint(|area| {
+        axes.vertical(area, "reduction factor against pixel, mean over c, x0, y0, k1; bars: 95 %");
+        axes.horizontal(area, x);
+        for (i, (name, value)) in printed.iter().enumerate() {
+            axes.level(area, *value, grey);
+            let (left, y) = axes.place(0.01 * widest, *value);
+            // The first above its line, the next below.
+            let aside = if i == 0 { -10 } else { 12 };
+            crate::field::write(area, name, (left + 4, y + aside), plotters::style::text_anchor::HPos::Left);
+        }
+        for (i, curve) in curves.iter().enumerate() {
+            let colour = COLOURS[i % COLOURS.len()];
+            let line: Vec<_> = curve.points.iter().map(|p| axes.place(p.0, p.1)).collect();
+            area.draw(&PathElement::new(line, ShapeStyle::from(&colour).stroke_width(2))).ok();
+            for (x, y, half) in &curve.points {
+                whisker(area, &axes, *x, (y - half, y + half), colour);
+            }
+        }
+    });
+    let mut marks: Vec<(Mark, RGBColor, (f64, f64))> = Vec::new();
+    for (i, curve) in curves.iter().enumerate() {
+        let look = (METHOD_MARKS[i % METHOD_MARKS.len()], COLOURS[i % COLOURS.len()]);
+        marks.extend(curve.points.iter().map(|p| {
+            let (x, y) = axes.place(p.0, p.1);
+            (look.0, look.1, (f64::from(x), f64::from(y)))
+        }));
+        let y = 545 + 24 * i as u32;
+        marks.push((look.0, look.1, (90.0, f64::from(y))));
+        canvas.text(&curve.name, 16, (110, y));
+    }
+    canvas.marks(&marks);
+    Some(canvas)
+}

@@ -1,0 +1,128 @@
+//! Residuals of the first trial by image point, and of all trials by the convergence of the image.
+
+use calibench_records::results::Group;
+use calibench_scenario::ViewsSubject;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::axes::{Axes, whisker};
+use crate::canvas::{COLOURS, Canvas, METHOD_MARKS};
+use crate::field::write;
+use crate::network::load::Summaries;
+
+const WIDTH: i32 = 1100;
+const PANEL: i32 = 150;
+const STEP: i32 = PANEL + 70;
+
+/// A panel for each of the first three methods: residuals in x and y over the image points, image by image.
+pub fn residuals(found: &Summaries) -> Option<Canvas> {
+    let methods: Vec<&String> = found.methods.iter().filter(|m| found.residuals.iter().any(|(method, ..)| method == *m)).take(3).collect();
+    let largest = found.residuals.iter().map(|(.., v)| v.abs()).fold(0.0, f64::max);
+    if methods.is_empty() || largest <= 0.0 {
+        return None;
+    }
+    let mut canvas = Canvas::new((WIDTH + 110) as u32, (80 + STEP * methods.len() as i32 + 10) as u32);
+    canvas.text("Residuals of the first trial, image by image (upright lines)", 20, (70, 20));
+    legend(&mut canvas, 46);
+    for (panel, method) in (0..).zip(methods) {
+        let mine: Vec<(&str, &str, f64)> = found
+            .residuals
+            .iter()
+            .filter(|(m, ..)| m == method)
+            .filter_map(|(_, name, v)| Some((name.split('/').next()?, name.rsplit('/').next()?, *v)))
+            .collect();
+        let count = mine.len() as f64 / 2.0;
+        let axes = Axes { at: [70, 100 + STEP * panel, WIDTH, PANEL], x: [0.0, count], y: [-largest * 1.05, largest * 1.05] };
+        canvas.paint(|area| {
+            axes.vertical(area, &format!("({}) {method}: residual, px", char::from(b'a' + panel as u8)));
+            images(area, &axes, &mine);
+            for (i, (_, axis, v)) in mine.iter().enumerate() {
+                let colour = if *axis == "x" { COLOURS[1] } else { COLOURS[0] };
+                area.draw(&Circle::new(axes.place(i as f64 / 2.0, *v), 2, colour.filled())).ok();
+            }
+        });
+    }
+    Some(canvas)
+}
+
+fn legend(canvas: &mut Canvas, y: i32) {
+    canvas.paint(|area| {
+        for (x, axis, colour) in [(80, "in x", COLOURS[1]), (170, "in y", COLOURS[0])] {
+            area.draw(&Circle::new((x, y), 4, colour.filled())).ok();
+            write(area, axis, (x + 12, y), HPos::Left);
+        }
+    });
+}
+
+/// Upright lines between images, and their names below.
+fn images(area: &crate::field::Area<'_>, axes: &Axes, rows: &[(&str, &str, f64)]) {
+    let mut first = 0;
+    for i in 1..=rows.len() {
+        if i < rows.len() && rows[i].0 == rows[first].0 {
+            continue;
+        }
+        let end = axes.place(i as f64 / 2.0, axes.y[0]);
+        area.draw(&PathElement::new([end, (end.0, axes.at[1])], RGBColor(160, 160, 160))).ok();
+        let middle = axes.place((first + i) as f64 / 4.0, axes.y[0]);
+        write(area, &format!("image {}", rows[first].0), (middle.0, middle.1 + 14), HPos::Center);
+        first = i;
+    }
+}
+
+/// Root mean square residual of each image over the angle between its axis and the wall's normal, mean over the trials with the scatter of single trials.
+pub fn by_convergence(found: &Summaries, views: &ViewsSubject) -> Option<Canvas> {
+    let normal = views.field.plates.first()?.normal();
+    let angles: Vec<f64> = views
+        .stations
+        .iter()
+        .map(|station| (station.pose.rotation.row(2).transpose().dot(&normal)).clamp(-1.0, 1.0).acos().to_degrees())
+        .collect();
+    let widest = angles.iter().copied().fold(10.0, f64::max);
+    let figure = |method: &str, name: &str| found.get(method, Group::Residual, name).map(|s| s.value);
+    let highest = found
+        .methods
+        .iter()
+        .flat_map(|m| views.stations.iter().filter_map(move |s| Some(figure(m, &s.name)?.mean * 1.15)))
+        .fold(0.0, f64::max);
+    if highest <= 0.0 {
+        return None;
+    }
+    let axes = Axes { at: [70, 70, 720, 380], x: [-2.0, widest + 4.0], y: [0.0, highest * 1.25] };
+    let rows = found.methods.len() as u32;
+    let mut canvas = Canvas::new(830, 520 + rows * 24);
+    canvas.text("Residuals by the convergence of the image", 20, (70, 22));
+    let (mut marks, mut keys) = (Vec::new(), Vec::new());
+    for (m, method) in found.methods.iter().enumerate() {
+        let look = (METHOD_MARKS[m % METHOD_MARKS.len()], COLOURS[m % COLOURS.len()]);
+        keys.push((look.0, look.1, method));
+        for (station, angle) in views.stations.iter().zip(&angles) {
+            let Some(value) = figure(method, &station.name) else { continue };
+            let (x, y) = axes.place(*angle, value.mean);
+            marks.push((look.0, look.1, (f64::from(x), f64::from(y))));
+        }
+    }
+    canvas.paint(|area| {
+        axes.vertical(area, "root mean square residual per axis, px; whiskers: 95 % of single trials");
+        axes.horizontal(area, "angle between the image's axis and the wall's normal, degrees");
+        for (m, method) in found.methods.iter().enumerate() {
+            for (station, angle) in views.stations.iter().zip(&angles) {
+                let Some(value) = figure(method, &station.name) else { continue };
+                let scatter = 1.96 * value.deviation().unwrap_or(0.0);
+                whisker(area, &axes, *angle, (value.mean - scatter, value.mean + scatter), COLOURS[m % COLOURS.len()]);
+            }
+        }
+        let mut named: Vec<_> = angles.iter().zip(&views.stations).collect();
+        named.sort_by(|a, b| a.0.total_cmp(b.0));
+        for (place, (angle, station)) in (0..).zip(named) {
+            let (x, y) = axes.place(*angle, axes.y[1]);
+            write(area, &station.name, (x, y + 12 + 16 * (place % 3)), HPos::Center);
+        }
+    });
+    canvas.marks(&marks);
+    for (row, (mark, colour, method)) in (0_u32..).zip(keys) {
+        let y = 525 + row * 24;
+        canvas.marks(&[(mark, colour, (90.0, f64::from(y)))]);
+        canvas.text(method, 16, (110, y));
+    }
+    Some(canvas)
+}

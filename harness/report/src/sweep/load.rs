@@ -1,0 +1,126 @@
+//! The records of a sweep, read cell by cell.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use calibench_measure::Registry;
+use calibench_records::names::{RECORDS, SCENARIO, cell_folder};
+use calibench_records::points::read_records;
+use calibench_records::results::Trial;
+use calibench_records::score::{Score, Scores};
+use calibench_scenario::{Scenario, Sweep};
+
+use crate::LoadError;
+use crate::load::groups;
+
+/// All that reports and plots need of a sweep. Its size does not grow with the number of trials.
+pub struct LoadedSweep {
+    /// The scenario as it was run.
+    pub scenario: Scenario,
+    /// Its sweep.
+    pub sweep: Sweep,
+    /// The methods without their swept parameters, in the order of the records.
+    pub methods: Vec<LoadedMethod>,
+    /// The cells, in their order.
+    pub cells: Vec<LoadedCell>,
+    /// The seed of the run.
+    pub seed: u64,
+    /// Where the cells lie.
+    pub folder: PathBuf,
+}
+
+/// A method in all cells.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoadedMethod {
+    /// Its label without what is swept.
+    pub name: String,
+    /// Why it measured nothing, if so.
+    pub unavailable: Option<String>,
+}
+
+/// The figures of a cell.
+pub struct LoadedCell {
+    /// By method, in the order of [`LoadedSweep::methods`].
+    pub scores: Vec<Score>,
+    /// How many trials.
+    pub trials: u64,
+}
+
+/// Reads the records of sweep `name` below the records folder; `None` if the scenario that was run has no sweep, or there are no records.
+///
+/// # Errors
+/// Records that are not whole or not of this version.
+pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Option<LoadedSweep>, LoadError> {
+    load_with(records, name, registry, &mut |_, _, _| ())
+}
+
+/// Is shown every trial: the cell, the trial, and the names of the methods that its points index.
+pub type Watch<'a> = dyn FnMut(usize, &Trial, &[String]) + 'a;
+
+/// As [`load`]; `watch` is shown every trial.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(records: &Path, name: &str, registry: &Registry, watch: &mut Watch<'_>) -> Result<Option<LoadedSweep>, LoadError> {
+    let folder = records.join(name);
+    let text_path = folder.join(SCENARIO);
+    let Ok(text) = std::fs::read_to_string(&text_path) else { return Ok(None) };
+    let mut scenario = calibench_scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
+    let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
+    let mut loaded = LoadedSweep { scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder: folder.clone() };
+    for index in 0..loaded.sweep.cells() {
+        loaded.add(&cell_folder(&folder, index).join(RECORDS), watch)?;
+    }
+    loaded.order();
+    Ok(Some(loaded))
+}
+
+impl LoadedSweep {
+    /// Did no method measure anything?
+    pub fn is_unavailable(&self) -> bool {
+        self.methods.iter().all(|method| method.unavailable.is_some())
+    }
+
+    /// The figures of method `method` in cell `cell`, if it measured there.
+    pub fn score(&self, cell: usize, method: usize) -> Option<&Score> {
+        self.cells.get(cell)?.scores.get(method).filter(|score| score.points() > 0)
+    }
+
+    fn add(&mut self, path: &Path, watch: &mut Watch<'_>) -> Result<(), LoadError> {
+        let file = File::open(path).map_err(|source| LoadError::File { path: path.to_owned(), source })?;
+        let mut scores = Scores { groups: groups(&self.scenario), ..Scores::default() };
+        let cell = self.cells.len();
+        let head = read_records(BufReader::new(file), |trial, methods| {
+            let names: Vec<String> = methods.iter().map(|info| self.sweep.method(&info.label)).collect();
+            watch(cell, &trial, &names);
+            scores.add(&trial, |method| methods.get(method).is_some_and(|info| &*info.label != "pixel"));
+        });
+        let head = head.map_err(|source| LoadError::Records { path: path.to_owned(), source })?;
+        scores.methods.resize_with(head.methods.len(), Score::default);
+        let mut cell = LoadedCell { scores: vec![Score::default(); self.methods.len()], trials: scores.trials };
+        for (info, score) in head.methods.into_iter().zip(scores.methods) {
+            let name = self.sweep.method(&info.label);
+            let place = self.methods.iter().position(|method| method.name == name).unwrap_or_else(|| {
+                self.methods.push(LoadedMethod { name, unavailable: info.unavailable });
+                cell.scores.push(Score::default());
+                self.methods.len() - 1
+            });
+            cell.scores[place] = score;
+        }
+        self.seed = head.run.seed;
+        self.cells.push(cell);
+        Ok(())
+    }
+
+    /// The methods in the order of the scenario: records name those first that are unavailable.
+    fn order(&mut self) {
+        let known: Vec<String> = self.scenario.methods.iter().map(|method| self.sweep.method(&method.label)).collect();
+        let mut order: Vec<usize> = (0..self.methods.len()).collect();
+        order.sort_by_key(|&index| known.iter().position(|name| *name == self.methods[index].name).unwrap_or(known.len()));
+        self.methods = order.iter().map(|&index| self.methods[index].clone()).collect();
+        for cell in &mut self.cells {
+            cell.scores = order.iter().map(|&index| cell.scores.get(index).cloned().unwrap_or_default()).collect();
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Judging the photographs of a scenario.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+use calibench_exchange::{ReadOptions, read_camera_with};
+use calibench_judge::{Material, Options, judge};
+use calibench_model::camera::{Camera, ImageSize};
+use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
+use calibench_records::names::kept_image;
+use calibench_records::points::RunInfo;
+use calibench_records::results::Trial;
+use calibench_scenario::{JudgementPlan, PhotographsSubject, Subject};
+
+use crate::{Plan, RunError};
+
+/// Judges what `trial` holds of the photographs of `plan`, if its scenario asks for it, and writes the rows into `folder`, where the images are.
+///
+/// What stands in the way is a row.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_judgement(folder: &Path, plan: &Plan<'_>, run: &RunInfo, trial: &Trial) -> Result<(), RunError> {
+    let Subject::Photographs(PhotographsSubject { judgement: Some(wanted), .. }) = &plan.scenario.subject else { return Ok(()) };
+    let rows = rows(folder, plan, wanted, trial).unwrap_or_else(|why| vec![Row::without("", "", "unavailable", &why)]);
+    let file = BufWriter::new(File::create(folder.join(JUDGEMENT))?);
+    Ok(write_rows(file, run, &rows)?)
+}
+
+fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -> Result<Vec<Row>, String> {
+    let Subject::Photographs(subject) = &plan.scenario.subject else { return Err("these are no photographs".into()) };
+    if let Some(why) = plan.missing() {
+        return Err(why);
+    }
+    let sizes = subject.files.iter().map(|file| size(&kept_image(folder, file)).map(|size| (file, size)));
+    let sizes = sizes.collect::<Result<Vec<_>, _>>()?;
+    let Some((_, size)) = sizes.first().copied() else { return Err("there is no photograph".into()) };
+    if let Some((file, other)) = sizes.iter().find(|(_, other)| *other != size) {
+        let [a, b] = [size, *other].map(|size| format!("{} x {} px", size.width, size.height));
+        return Err(format!("{file} has {b}, the first photograph {a}: photographs of one camera have one size"));
+    }
+    let published = wanted.published.as_ref().map(|file| camera(&plan.data.join(&subject.folder).join(file), file, size));
+    let material = Material::new(trial, &plan.method_infos(), subject.board, wanted.side, size);
+    let options = Options {
+        models: wanted.models.clone(),
+        pitch_um: wanted.pitch_um,
+        splits: wanted.splits,
+        seed: plan.seed,
+        name: plan.scenario.name.clone(),
+        published: published.as_ref().and_then(|camera| camera.as_ref().ok().copied()),
+    };
+    let mut rows = judge(&material, &options).map_err(|error| error.to_string())?;
+    if let Some(Err(why)) = published {
+        rows.push(Row::without(measure::PUBLISHED, "", "unavailable", &why));
+    }
+    Ok(rows)
+}
+
+fn size(path: &Path) -> Result<ImageSize, String> {
+    let (width, height) = image::image_dimensions(path).map_err(|error| format!("the size of a photograph cannot be read: {error}"))?;
+    Ok(ImageSize { width, height })
+}
+
+/// The first camera of a file called `name`.
+///
+/// # Errors
+/// In words, without the path.
+pub fn camera(path: &Path, name: &str, size: ImageSize) -> Result<Camera, String> {
+    if !path.is_file() {
+        return Err(format!("{name} is not beside the photographs"));
+    }
+    let read = read_camera_with(path, &ReadOptions { size: Some(size), fisheye: None })
+        .map_err(|_| format!("{name} cannot be read as a camera"))?;
+    let camera = read.cameras.first().map(|named| named.camera).ok_or_else(|| format!("{name} holds no camera"))?;
+    let own = calibench_model::camera::CameraModel::size(&camera);
+    if own == size { Ok(camera) } else { Err(format!("{name} is of images of {} x {} px", own.width, own.height)) }
+}

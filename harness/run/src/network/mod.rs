@@ -1,0 +1,76 @@
+//! Self-calibration within a run: what each method measured in a trial goes through the bundle adjustment and is scored against the truth.
+//!
+//! The adjustment is told what a user would know: image coordinates, surveyed control, a data sheet's principal distance. Poses start from resections.
+
+mod adjustment;
+mod angles;
+mod check;
+mod observe;
+
+use calibench_model::camera::Camera;
+use calibench_model::{Pose, Testfield};
+use calibench_random::Key;
+use calibench_records::results::{Calibrated, PointResult};
+use calibench_scenario::{Calibration, Unit};
+use calibench_synth::stations::Station;
+
+pub use adjustment::{Adjusted, Wanted, adjusted, resections};
+pub use observe::{ImagePoint, Observed, draw, observe};
+
+/// What is true, and what the scenario says of the adjustment.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    /// What to do.
+    pub calibration: &'a Calibration,
+    /// The wall as it is, with its coordinates as surveyed.
+    pub field: &'a Testfield,
+    /// The object unit.
+    pub unit: Unit,
+    /// The true camera.
+    pub camera: &'a Camera,
+    /// The true poses.
+    pub stations: &'a [Station],
+}
+
+/// Adjusts what each of `methods` measured in the trial of `key`: every set of parameters, the first with the second step.
+pub fn calibrate(job: &Job<'_>, points: &[PointResult], methods: &[usize], key: Key<'_>) -> Vec<Calibrated> {
+    let observed = observe(job, points, key);
+    let mut all = Vec::new();
+    for &method in methods {
+        let mut starts = resections(job, &observed, method);
+        for set in 0..job.calibration.sets.len() {
+            let (calibrated, poses) = one(job, &observed, method, set, &starts, key.trial == 0);
+            all.push(calibrated);
+            // The other sets start where the first ended: from nothing but the same observations.
+            if let Some(poses) = poses.filter(|_| set == 0) {
+                starts = Ok(poses);
+            }
+        }
+    }
+    all
+}
+
+type Poses = Result<Vec<Pose>, String>;
+
+fn one(job: &Job<'_>, observed: &Observed, method: usize, set: usize, starts: &Poses, points: bool) -> (Calibrated, Option<Vec<Pose>>) {
+    let parameters: Vec<&str> = job.calibration.sets[set].parameters.iter().map(String::as_str).collect();
+    let what = match (set, points) {
+        (0, true) => Wanted::Points,
+        (0, false) => Wanted::All,
+        _ => Wanted::Interior,
+    };
+    let result = starts.clone().and_then(|starts| adjusted(job, observed, method, &parameters, &starts, what));
+    let (mut poses, mut check_failed) = (None, None);
+    let outcome = result.map(|adjusted| {
+        let mut figures = adjusted.figures;
+        poses = Some(adjusted.poses);
+        if let Some(plan) = job.calibration.check.as_ref().filter(|_| set == 0) {
+            match check::check(job, plan, observed, method, &adjusted.camera) {
+                Ok(found) => figures.extend(found),
+                Err(why) => check_failed = Some(why),
+            }
+        }
+        figures
+    });
+    (Calibrated { method, set, outcome, check_failed }, poses)
+}

@@ -1,0 +1,112 @@
+//! Trials of a rendered scene.
+
+use std::sync::Arc;
+
+use calibench_exchange::write_png;
+use calibench_model::{Image, Scene, Start};
+use calibench_random::{Key, Purpose, stream};
+use calibench_records::results::{PointResult, Trial};
+use calibench_scenario::{Phase, Pixels, SceneSubject, Starts};
+use calibench_synth::draw;
+use calibench_synth::noise::{add_grey_noise, quantise};
+use calibench_synth::raster::{Picture, Renderer};
+use calibench_synth::sensor::{Clipped, Exposure};
+use rand::RngExt;
+
+use super::bounds::{BySet, TargetBounds};
+use super::{Plan, RunError};
+
+/// The name of the only view.
+pub const VIEW: &str = "image";
+
+/// What is the same in all trials.
+pub(super) struct Prepared<'a> {
+    subject: &'a SceneSubject,
+    renderer: Renderer,
+    bounds: Option<TargetBounds>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(super) fn new(plan: &Plan<'_>, subject: &'a SceneSubject) -> Result<Self, RunError> {
+        let (scene, quantised) = (&subject.scene, subject.bits.map_or(0.0, |bits| ((1_u64 << bits) - 1) as f64));
+        let rounding = if quantised > 0.0 { 1.0 / (12.0 * quantised * quantised) } else { 0.0 };
+        let variance = subject.grey_noise * subject.grey_noise + rounding;
+        let size = [scene.width, scene.height];
+        // Drawn pixels are not what a lens makes: the bound is of another image.
+        let bounds = match subject.pixels {
+            Pixels::Area if plan.bounds => {
+                TargetBounds::new(&subject.imaging, variance, size, plan.scenario.bound_window, plan.all_unknowns())?
+            }
+            _ => None,
+        };
+        Ok(Self { subject, renderer: subject.renderer()?, bounds })
+    }
+}
+
+pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
+    let Prepared { subject, renderer, bounds } = prepared;
+    let (subject, bounds) = (*subject, bounds.as_ref());
+    let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };
+    let truth = trial_truth(subject, key);
+    let image = trial_picture(subject, renderer, &truth, key)?.image;
+    if let Some(folder) = plan.images.filter(|_| number == 0) {
+        write_png(&calibench_records::names::kept_image(folder, VIEW), &image, subject.is_deep())?;
+    }
+    let starts = starts(subject, &image, &truth, key);
+    let view: Arc<str> = VIEW.into();
+    let targets: Vec<Arc<str>> = truth.targets.iter().map(|target| target.id.as_str().into()).collect();
+    let picture = Picture::from(&truth);
+    let by_target: Vec<BySet> = truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.at))).collect();
+    let mut points = Vec::new();
+    for (method, results) in plan.measure_found(&image, &starts) {
+        let unknowns = plan.unknowns(method);
+        for (((target, truth), by_set), result) in targets.iter().zip(&truth.targets).zip(&by_target).zip(results) {
+            let bound = by_set.get(&unknowns).copied().flatten();
+            points.push(PointResult { bound, ..PointResult::scored(view.clone(), target.clone(), method, truth.at, result) });
+        }
+    }
+    Ok(Trial { number, points, ..Trial::default() })
+}
+
+/// The scene of a trial, where its phase put it.
+pub fn trial_truth(subject: &SceneSubject, key: Key<'_>) -> Scene {
+    match subject.phase {
+        Phase::Fixed => subject.scene.clone(),
+        Phase::Uniform => {
+            let mut rng = stream(key, Purpose::Phase);
+            let (dx, dy) = (rng.random::<f64>() - 0.5, rng.random::<f64>() - 0.5);
+            subject.scene.shifted(dx, dy)
+        }
+    }
+}
+
+/// The image of a trial, rendered, spoiled, quantised, and what was clipped where a sensor says so. `renderer` is that of the subject.
+///
+/// # Errors
+/// A size that the image's format cannot hold.
+pub fn trial_picture(subject: &SceneSubject, renderer: &Renderer, truth: &Scene, key: Key<'_>) -> Result<Exposure, RunError> {
+    let mut exposure = match subject.pixels {
+        Pixels::Area => subject.imaging.expose(renderer, &Picture::from(truth), key)?,
+        Pixels::Centre => Exposure { image: draw(truth), clipped: Clipped::default() },
+    };
+    add_grey_noise(&mut exposure.image, subject.grey_noise, &mut stream(key, Purpose::GreyNoise));
+    if let Some(bits) = subject.bits {
+        quantise(&mut exposure.image, bits);
+    }
+    Ok(exposure)
+}
+
+fn starts(subject: &SceneSubject, image: &Image, truth: &Scene, key: Key<'_>) -> Vec<Option<Start>> {
+    let positions: Vec<_> = match &subject.starts {
+        Starts::Detected(detector) => return detector.starts(image, truth.targets.iter().map(|target| target.at)),
+        Starts::Given(positions) => positions.clone(),
+        Starts::Pointed(hand) => {
+            let point = |target: &calibench_model::SceneTarget| {
+                hand.point(target.at, &mut stream(Key { target: &target.id, ..key }, Purpose::Pointing))
+            };
+            truth.targets.iter().map(point).collect()
+        }
+    };
+    let with_kind = |(position, target): (_, &calibench_model::SceneTarget)| Some(Start { kind: Some(target.kind), ..Start::at(position) });
+    positions.into_iter().zip(&truth.targets).map(with_kind).collect()
+}

@@ -1,0 +1,176 @@
+//! The truth of rendered images as files.
+
+use std::io;
+use std::path::Path;
+
+use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::camera::{FORMATS, NamedCamera, write_camera as write_file};
+use calibench_exchange::{ControlRow, POSE_COLUMNS, station_numbers, write_table};
+use calibench_model::camera::Camera;
+use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene};
+use calibench_scenario::ViewsSubject;
+use calibench_synth::sensor::Clipped;
+use calibench_synth::stations::Station;
+use calibench_synth::view::{Ellipse, TargetTruth, Visibility};
+
+use crate::views::PreparedView;
+
+const VIEW_COLUMNS: [&str; 20] = [
+    "image",
+    "target",
+    "kind",
+    "x",
+    "y",
+    "visibility",
+    "axx",
+    "axy",
+    "ayx",
+    "ayy",
+    "ellipse_x",
+    "ellipse_y",
+    "semi_major",
+    "semi_minor",
+    "angle_deg",
+    "X",
+    "Y",
+    "Z",
+    "size_px",
+    "warning",
+];
+
+/// A station and what its image clipped.
+pub struct StationRow<'a> {
+    station: &'a Station,
+    clipped: Clipped,
+}
+
+impl<'a> StationRow<'a> {
+    /// Of `station`.
+    pub fn new(station: &'a Station, clipped: Clipped) -> Self {
+        Self { station, clipped }
+    }
+}
+
+fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
+    write_atomically(path, |file| write_table(file, columns, rows))
+}
+
+/// All targets of a flat scene: name, kind, true position (px).
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_scene(path: &Path, scene: &Scene) -> io::Result<()> {
+    let row = |target: &calibench_model::SceneTarget| {
+        vec![crate::VIEW.to_owned(), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
+    };
+    table(path, &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
+}
+
+/// All targets of a testfield in one image, with what is to be known of each.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_view(path: &Path, subject: &ViewsSubject, view: &PreparedView<'_>) -> io::Result<()> {
+    let rows = subject.field.targets.iter().zip(&view.truth).map(|(target, truth)| view_row(subject, view, target, truth));
+    table(path, &VIEW_COLUMNS, rows)
+}
+
+fn view_row(subject: &ViewsSubject, view: &PreparedView<'_>, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
+    let mut row = vec![view.station.name.clone(), target.id.clone(), target.kind.to_string()];
+    let numbers = |row: &mut Vec<String>, values: Option<&[f64]>, count: usize| match values {
+        Some(values) => row.extend(values.iter().map(f64::to_string)),
+        None => row.extend(vec![String::new(); count]),
+    };
+    numbers(&mut row, truth.at.map(|PixelPoint { x, y }| [x, y]).as_ref().map(<[f64; 2]>::as_slice), 2);
+    row.push(truth.visibility.name().to_owned());
+    let affine = truth.affine.map(|Affine { axx, axy, ayx, ayy }| [axx, axy, ayx, ayy]);
+    numbers(&mut row, affine.as_ref().map(<[f64; 4]>::as_slice), 4);
+    let ellipse = truth.ellipse.map(|Ellipse { centre, axes, angle }| [centre.x, centre.y, axes[0], axes[1], angle.to_degrees()]);
+    numbers(&mut row, ellipse.as_ref().map(<[f64; 5]>::as_slice), 5);
+    let at = subject.field.position(target);
+    numbers(&mut row, Some(&[at.x, at.y, at.z]), 3);
+    numbers(&mut row, size_px(truth).map(|size| [size]).as_ref().map(<[f64; 1]>::as_slice), 1);
+    row.push(warning(subject, truth).unwrap_or_default().to_owned());
+    row
+}
+
+/// The side of a square as large as the picture of the square around a target, px.
+fn size_px(truth: &TargetTruth) -> Option<f64> {
+    truth.affine.map(|a| (a.axx * a.ayy - a.axy * a.ayx).abs().sqrt())
+}
+
+/// What makes a target in the image doubtful.
+fn warning(subject: &ViewsSubject, truth: &TargetTruth) -> Option<&'static str> {
+    let size = size_px(truth).filter(|_| matches!(truth.visibility, Visibility::Visible | Visibility::Clipped))?;
+    if size < 1.0 {
+        Some("smaller than a pixel")
+    } else if size < 2.0 * (subject.imaging.optics.reach() - 1.0) / 3.0 {
+        Some("blurred beyond its own size")
+    } else {
+        None
+    }
+}
+
+/// The warnings of a view, each with the number of targets that it concerns.
+pub fn warnings(subject: &ViewsSubject, view: &PreparedView<'_>) -> Vec<String> {
+    let mut counted: Vec<(&str, usize)> = Vec::new();
+    for warning in view.truth.iter().filter_map(|truth| warning(subject, truth)) {
+        match counted.iter_mut().find(|(known, _)| *known == warning) {
+            Some((_, count)) => *count += 1,
+            None => counted.push((warning, 1)),
+        }
+    }
+    counted
+        .into_iter()
+        .map(|(warning, count)| format!("{}: {count} of {} targets: {warning}", view.station.name, view.truth.len()))
+        .collect()
+}
+
+/// How much of an image was clipped, if any.
+pub fn clipping_note(view: &str, clipped: Clipped, pixels: usize) -> Option<String> {
+    let share = |count: u64| 100.0 * count as f64 / pixels as f64;
+    let any = clipped.low + clipped.high > 0;
+    any.then(|| format!("{view}: {:.3} % of the pixels clipped at black, {:.3} % at white", share(clipped.low), share(clipped.high)))
+}
+
+/// Poses, and what was clipped. Angles in degrees.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_stations(path: &Path, rows: &[StationRow<'_>]) -> io::Result<()> {
+    let columns = [&["image"], &POSE_COLUMNS[..], &["clipped_low", "clipped_high"]].concat();
+    let row = |row: &StationRow<'_>| {
+        let mut cells = vec![row.station.name.clone()];
+        cells.extend(station_numbers(&row.station.pose).iter().map(f64::to_string));
+        cells.extend([row.clipped.low, row.clipped.high].iter().map(u64::to_string));
+        cells
+    };
+    table(path, &columns, rows.iter().map(row))
+}
+
+/// The targets as a user knows them: surveyed coordinates, object units, with their standard deviations where the testfield was surveyed with any error.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_control(path: &Path, subject: &ViewsSubject) -> io::Result<()> {
+    let sigmas = subject.survey_sigma.map(|sigma| [sigma; 3]);
+    let row = |target: &ObjectTarget| ControlRow { target: target.id.clone(), position: target.surveyed.coords.into(), sigmas };
+    let rows: Vec<ControlRow> = subject.field.targets.iter().map(row).collect();
+    write_atomically(path, |file| calibench_exchange::write_control(file, &rows))
+}
+
+/// The camera as a file of the first format that holds it as it is; its ending is put to `stem`.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_camera(stem: &Path, camera: &Camera) -> io::Result<()> {
+    let named = [NamedCamera::new("", *camera)];
+    let mut last = None;
+    for format in FORMATS.iter().filter(|format| format.is_written()) {
+        match write_file(&stem.with_extension(format.extension), format, &named) {
+            Ok(()) => return Ok(()),
+            Err(error) => last = Some(error),
+        }
+    }
+    Err(io::Error::other(last.map_or_else(|| "no format of camera files".to_owned(), |error| error.to_string())))
+}

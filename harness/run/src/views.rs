@@ -1,0 +1,225 @@
+//! Trials of a testfield that is seen from several stations.
+
+use std::sync::Arc;
+
+use calibench_exchange::write_png;
+use calibench_model::camera::CameraModel;
+use calibench_model::{Image, Measurement, PixelPoint, Start};
+use calibench_random::{Key, Purpose, stream};
+use calibench_records::results::{PointResult, Trial};
+use calibench_scenario::{Calibration, ViewsSubject};
+use calibench_synth::raster::{Picture, Renderer};
+use calibench_synth::sensor::Exposure;
+use calibench_synth::stations::Station;
+use calibench_synth::view::{TargetTruth, View, Visibility};
+use rayon::prelude::*;
+
+use super::bounds::{BySet, TargetBounds};
+use super::{Plan, RunError};
+use crate::network;
+use crate::network::Job;
+
+/// What is the same in all trials.
+pub struct Prepared<'a> {
+    /// The scenario's subject.
+    pub subject: &'a ViewsSubject,
+    /// The views, in the order of the stations.
+    pub views: Vec<PreparedView<'a>>,
+    renderer: Renderer,
+    targets: Vec<Arc<str>>,
+}
+
+/// A station's outlines and truth.
+pub struct PreparedView<'a> {
+    /// Where the camera stands.
+    pub station: &'a Station,
+    /// The outlines in the image.
+    pub picture: Picture,
+    /// The truth about each target of the field.
+    pub truth: Vec<TargetTruth>,
+    /// The bound of each target that is measured.
+    bounds: Vec<BySet>,
+    name: Arc<str>,
+}
+
+impl<'a> Prepared<'a> {
+    /// Projects the field for the stations of all trials, or of the first.
+    ///
+    /// # Errors
+    /// A view that cannot be pictured, by the name of its station.
+    pub fn new(subject: &'a ViewsSubject) -> Result<Self, RunError> {
+        Self::with(subject, &subject.stations, None)
+    }
+
+    /// As [`Self::new`], for other stations.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of(subject: &'a ViewsSubject, stations: &'a [Station]) -> Result<Self, RunError> {
+        Self::with(subject, stations, None)
+    }
+
+    /// As [`Self::new`], with the bounds of `plan`'s methods.
+    pub(super) fn with_bounds(subject: &'a ViewsSubject, bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
+        Self::with(subject, &subject.stations, bounds)
+    }
+
+    /// Projects the field for `stations`.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    fn with(subject: &'a ViewsSubject, stations: &'a [Station], bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
+        let size = subject.camera.size();
+        let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
+        let margin = subject.imaging.optics.reach();
+        let view = |station: &'a Station| {
+            let view = View { field: &subject.field, camera: &subject.camera, pose: &station.pose };
+            let failed = |source| RunError::View { station: station.name.clone(), source };
+            let seen = view.seen(margin).map_err(failed)?;
+            let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
+            let bound = |truth: &TargetTruth| match (bounds, truth.at) {
+                (Some(bounds), Some(at)) if truth.visibility == Visibility::Visible => bounds.of(&picture, at),
+                _ => BySet::new(),
+            };
+            let bounds = truth.par_iter().map(bound).collect();
+            Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into() })
+        };
+        let views = stations.iter().map(view).collect::<Result<Vec<_>, RunError>>()?;
+        let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
+        Ok(Self { subject, views, renderer, targets })
+    }
+
+    /// The image of a view.
+    ///
+    /// # Errors
+    /// A size that the image's format cannot hold.
+    pub fn image(&self, view: &PreparedView<'_>, key: Key<'_>) -> Result<Exposure, RunError> {
+        Ok(self.subject.imaging.expose(&self.renderer, &view.picture, Key { view: &view.station.name, ..key })?)
+    }
+
+    /// The image of a view before the sensor, without noise and without row jitter.
+    pub fn irradiance(&self, view: &PreparedView<'_>) -> Image {
+        self.renderer.render(&view.picture, &[])
+    }
+
+    /// Is the image to be kept with 16 bits?
+    pub fn is_deep(&self) -> bool {
+        self.subject.imaging.is_deep()
+    }
+}
+
+/// What bounds the methods of `plan` in the images of `subject`.
+pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<TargetBounds>, RunError> {
+    let size = subject.camera.size();
+    let size = [size.width as usize, size.height as usize];
+    Ok(TargetBounds::new(&subject.imaging, 0.0, size, plan.scenario.bound_window, plan.all_unknowns())?)
+}
+
+pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option<&TargetBounds>, number: u64) -> Result<Trial, RunError> {
+    let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
+    let subject = prepared.subject;
+    if let Some(calibration) = &subject.calibration {
+        return calibrated(plan, prepared, calibration, key);
+    }
+    if subject.redraw.is_none() {
+        return run_views(plan, prepared, key);
+    }
+    run_views(plan, &Prepared::with(subject, &subject.stations_of(key)?, bounds)?, key)
+}
+
+/// A trial whose points go through the adjustment. Stations are the same in all of them.
+fn calibrated(plan: &Plan<'_>, prepared: &Prepared<'_>, calibration: &Calibration, key: Key<'_>) -> Result<Trial, RunError> {
+    let subject = prepared.subject;
+    let mut trial = match &calibration.drawn {
+        Some(sigmas) => draw_views(plan, prepared, sigmas, key),
+        None => run_views(plan, prepared, key)?,
+    };
+    let ViewsSubject { camera, field, unit, stations, .. } = subject;
+    let available: Vec<usize> = (0..plan.methods.len()).filter(|&method| plan.methods[method].operator.is_ok()).collect();
+    let job = Job { calibration, field, unit: *unit, camera, stations };
+    trial.calibrations = network::calibrate(&job, &trial.points, &available, key);
+    if key.trial > 0 && !calibration.keep_points {
+        trial.points.clear();
+    }
+    Ok(trial)
+}
+
+/// Coordinates that are drawn from the truth: by the hand, or with the standard deviation that the scenario gives.
+fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Option<f64>)], key: Key<'_>) -> Trial {
+    let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
+    for view in &prepared.views {
+        let key = Key { view: &view.station.name, ..key };
+        for point in seen(prepared, view, key) {
+            let target = &prepared.targets[point.target];
+            for (method, configured) in plan.methods.iter().enumerate().filter(|(_, configured)| configured.operator.is_ok()) {
+                let measured = match sigmas.iter().find(|(label, _)| *label == configured.label) {
+                    Some((label, Some(sigma))) => network::draw(point.truth, *sigma, label, Key { target, ..key }),
+                    Some((_, None)) => Measurement { position: point.start.position, covariance: None },
+                    // A method of the command line, of which the scenario says nothing.
+                    None => continue,
+                };
+                by_method[method].push(PointResult::scored(view.name.clone(), target.clone(), method, point.truth, Ok(measured)));
+            }
+        }
+    }
+    Trial { number: key.trial, points: by_method.into_iter().flatten().collect(), ..Trial::default() }
+}
+
+fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
+    let number = key.trial;
+    let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
+    for view in &prepared.views {
+        let image = prepared.image(view, key)?.image;
+        if let Some(folder) = plan.images.filter(|_| number == 0) {
+            write_png(&calibench_records::names::kept_image(folder, &view.station.name), &image, prepared.is_deep())?;
+        }
+        let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
+        let starts = match &prepared.subject.detector {
+            Some(detector) => detector.starts(&image, seen.iter().map(|point| point.truth)),
+            None => seen.iter().map(|point| Some(point.start)).collect(),
+        };
+        for (method, results) in plan.measure_found(&image, &starts) {
+            let unknowns = plan.unknowns(method);
+            let points = seen.iter().zip(results).map(|(point, result)| {
+                let bound = view.bounds[point.target].get(&unknowns).copied().flatten();
+                let target = prepared.targets[point.target].clone();
+                PointResult { bound, ..PointResult::scored(view.name.clone(), target, method, point.truth, result) }
+            });
+            by_method[method].extend(points);
+        }
+    }
+    Ok(Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() })
+}
+
+/// The image of the first view in the first trial, and where measuring starts in it.
+///
+/// # Errors
+/// A view that cannot be pictured, or an image that the sensor cannot write.
+pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<(Image, Vec<Start>), RunError> {
+    let key = Key { seed, scenario, trial: 0, view: "", target: "" };
+    let stations = subject.stations_of(key)?;
+    let prepared = Prepared::of(subject, &stations)?;
+    let Some(view) = prepared.views.first() else { return Err(RunError::NothingToRender) };
+    let starts = seen(&prepared, view, Key { view: &view.station.name, ..key }).into_iter().map(|point| point.start).collect();
+    Ok((prepared.image(view, key)?.image, starts))
+}
+
+/// A target that is wholly in the image.
+struct SeenTarget {
+    target: usize,
+    truth: PixelPoint,
+    start: Start,
+}
+
+fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<SeenTarget> {
+    let targets = &prepared.subject.field.targets;
+    let whole = view.truth.iter().enumerate().filter(|(_, truth)| truth.visibility == Visibility::Visible);
+    let point = |(index, truth): (usize, &TargetTruth)| {
+        let target = &targets[index];
+        let at = truth.at?;
+        let pointed = prepared.subject.hand.point(at, &mut stream(Key { target: &target.id, ..key }, Purpose::Pointing));
+        let start = Start { kind: Some(target.kind), affine: truth.affine, ..Start::at(pointed) };
+        Some(SeenTarget { target: index, truth: at, start })
+    };
+    whole.filter_map(point).collect()
+}

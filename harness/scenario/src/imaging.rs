@@ -1,0 +1,61 @@
+//! From outlines in the image to the image that is read.
+
+use calibench_random::Key;
+use calibench_synth::optics::{Optics, OpticsError};
+use calibench_synth::raster::{Picture, Renderer};
+use calibench_synth::sensor::{Clipped, Exposure, Frame, SensorError, row_shifts};
+
+use crate::sensor::SensorSetup;
+
+/// Lens and sensor of a scenario.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Imaging {
+    /// How light is spread.
+    pub optics: Optics,
+    /// What becomes of it; `None` leaves it as it is.
+    pub sensor: Option<SensorSetup>,
+}
+
+impl Imaging {
+    /// Renders images of `width` x `height` px.
+    ///
+    /// # Errors
+    /// Optics that are out of range.
+    pub fn renderer(&self, width: usize, height: usize) -> Result<Renderer, OpticsError> {
+        Renderer::new(&self.optics, width, height)
+    }
+
+    /// The image of `picture` under `key`.
+    ///
+    /// # Errors
+    /// An image that its own file format cannot hold.
+    pub fn expose(&self, renderer: &Renderer, picture: &Picture, key: Key<'_>) -> Result<Exposure, SensorError> {
+        let frame = Frame { width: picture.width, height: picture.height };
+        let Some(SensorSetup { sensor, row_jitter }) = &self.sensor else {
+            return Ok(Exposure { image: renderer.render(picture, &[]), clipped: Clipped::default() });
+        };
+        let jitter = if *row_jitter > 0.0 { row_shifts(*row_jitter, frame.height, key) } else { Vec::new() };
+        if !sensor.works_by_rows() {
+            return sensor.expose(renderer.render(picture, &jitter), key);
+        }
+        // Strip by strip, while the rows are at hand.
+        let clipped = std::sync::Mutex::new(Clipped::default());
+        let image = renderer.render_with(picture, &jitter, |first, rows| {
+            let strip = sensor.expose_rows(rows, first, frame, key);
+            if let Ok(mut sum) = clipped.lock() {
+                *sum = *sum + strip;
+            }
+        });
+        Ok(Exposure { image, clipped: clipped.into_inner().unwrap_or_default() })
+    }
+
+    /// Has the image more than 8 bits?
+    pub fn is_deep(&self) -> bool {
+        self.sensor.as_ref().is_none_or(|setup| setup.sensor.bits().is_none_or(|bits| bits > 8))
+    }
+
+    /// Is a sensor's noise, or anything else in it, random?
+    pub fn is_random(&self) -> bool {
+        self.sensor.as_ref().is_some_and(|setup| setup.row_jitter > 0.0 || !setup.sensor.is_deterministic())
+    }
+}
