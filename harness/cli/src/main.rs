@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use calibench_measure::Registry;
-use calibench_measure::external::opencv_subpix;
+use calibench_measure::opencv_subpix;
 use calibench_measure::registry::Build;
 
 use calibench_cli::{Toolbox, main as run};
@@ -11,6 +11,6 @@ use calibench_cli::{Toolbox, main as run};
 const WHY: &str = "this build is without OpenCV";
 
 fn main() -> ExitCode {
-    let absent = opencv_subpix(Build::Unavailable(WHY), "none".into());
+    let absent = opencv_subpix::method(Build::Unavailable(WHY), "none".into());
     run(&Toolbox { registry: Registry::builtin().with(absent), detector: None })
 }

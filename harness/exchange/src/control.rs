@@ -3,8 +3,8 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
+use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
-use crate::sheet::{Form, Row, wrong};
 
 const FORM: Form = Form { what: "control file", key: "target", required: &["X", "Y", "Z"], optional: &["sX", "sY", "sZ"], others: false };
 

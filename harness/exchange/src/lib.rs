@@ -3,12 +3,12 @@
 pub mod atomic;
 pub mod camera;
 pub mod control;
+mod csv_named_rows;
 pub mod folder;
 pub mod photo;
 pub mod points;
 pub mod points_write;
 pub mod print;
-mod sheet;
 pub mod stations;
 pub mod table;
 

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use calibench_model::Pose;
 
+use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
-use crate::sheet::{Form, Row, wrong};
 
 /// The columns of a pose in a station file.
 pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg"];

@@ -101,21 +101,7 @@ pub struct Registry {
 impl Registry {
     /// The methods of this crate.
     pub fn builtin() -> Self {
-        let methods = vec![
-            crate::pixel::method(),
-            crate::forstner::method(),
-            crate::harris_paraboloid::method(),
-            crate::harris_paraboloid::linear(),
-            crate::centroid::method(),
-            crate::centroid::binary(),
-            crate::lsm::method(),
-            crate::saddle::method(),
-            crate::parametric_corner::method(),
-            crate::parametric_circle::method(),
-            crate::ellipse_edges::method(),
-            crate::chess_corners::method(),
-        ];
-        Self { methods }
+        Self { methods: crate::operators::methods() }
     }
 
     /// Adds a method, in place of one of the same name if there is one.

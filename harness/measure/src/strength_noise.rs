@@ -3,7 +3,7 @@
 use calibench_model::{Image, Rejection};
 
 use crate::harris_paraboloid::HarrisParaboloid;
-use crate::precision::SampleCovariance;
+use crate::paraboloid_precision::SampleCovariance;
 
 /// Half the step of the differences, fraction of full scale. The strength is of the fourth order in the grey values: the error is of the order of its square.
 const STEP: f32 = 0.005;
@@ -49,10 +49,10 @@ pub fn strength_covariance(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::Noise;
     use crate::paraboloid::Weights;
-    use crate::precision::{Form, precision};
+    use crate::paraboloid_precision::{Form, precision};
     use crate::registry::Registry;
+    use crate::tests::closed_form_images::Noise;
     use calibench_model::{PixelPoint, Start};
 
     /// A soft corner, its edges a product of two error functions' likenesses.

@@ -33,7 +33,7 @@ pub struct Subpix {
 
 /// The method's entry.
 pub fn method() -> Method {
-    calibench_measure::external::opencv_subpix(Build::With(|settings| Box::new(Subpix::new(settings))), crate::version())
+    calibench_measure::opencv_subpix::method(Build::With(|settings| Box::new(Subpix::new(settings))), crate::version())
 }
 
 impl Subpix {

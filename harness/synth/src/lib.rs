@@ -5,10 +5,10 @@
 //! approximate positions that a person would click. Every random number comes from [`calibench_random::stream`].
 
 pub mod bound;
-mod centres;
 pub mod noise;
 pub mod optics;
 pub mod overlap;
+mod pixel_centres;
 pub mod pointing;
 pub mod raster;
 pub mod render;

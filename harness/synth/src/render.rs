@@ -2,8 +2,8 @@
 
 use calibench_model::{Image, Scene};
 
-use crate::centres::centres;
 use crate::optics::Optics;
+use crate::pixel_centres::covered_centres;
 use crate::raster::{Picture, Renderer};
 
 /// The noise-free image: each grey value is the exact mean of the scene over the pixel's area (fill factor 1, no blur).
@@ -22,7 +22,7 @@ pub fn draw(scene: &Scene) -> Image {
     let mut grey = vec![scene.background; scene.width * scene.height];
     for polygon in &scene.polygons {
         let contrast = polygon.grey - scene.background;
-        for (value, covered) in grey.iter_mut().zip(centres(polygon, scene.width, scene.height)) {
+        for (value, covered) in grey.iter_mut().zip(covered_centres(polygon, scene.width, scene.height)) {
             *value += contrast * covered;
         }
     }

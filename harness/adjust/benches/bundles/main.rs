@@ -4,8 +4,8 @@
 
 #[path = "../peers/ceres.rs"]
 mod ceres;
-#[path = "../../tests/adjustment/scenes.rs"]
-mod scenes;
+#[path = "../../tests/adjustment/networks.rs"]
+mod networks;
 
 use std::error::Error;
 use std::hint::black_box;
@@ -29,11 +29,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         race(&format!("board of 54 corners, {views} views"), || board(views), if views > 500 { 5 } else { 50 })?;
     }
     let (peer, mut required) = (ceres::Peer::compile(), Vec::new());
-    beside(&peer, "36 images x 256 points, OpenCV's camera", || ring(scenes::opencv(), &scenes::FIVE), (9, 5.0), &mut required)?;
-    beside(&peer, "200 images x 5000 points, OpenCV's camera", || flight(scenes::opencv(), &scenes::FIVE), (3, 2.0), &mut required)?;
+    beside(&peer, "36 images x 256 points, OpenCV's camera", || ring(networks::opencv(), &networks::FIVE), (9, 5.0), &mut required)?;
+    beside(&peer, "200 images x 5000 points, OpenCV's camera", || flight(networks::opencv(), &networks::FIVE), (3, 2.0), &mut required)?;
     let names = ["c", "x0", "y0", "k1", "k2", "p1", "p2"];
-    race("36 images x 256 points, photogrammetric", || ring(scenes::photogrammetric(), &names), 9)?;
-    race("200 images x 5000 points, photogrammetric", || flight(scenes::photogrammetric(), &names), 3)?;
+    race("36 images x 256 points, photogrammetric", || ring(networks::photogrammetric(), &names), 9)?;
+    race("200 images x 5000 points, photogrammetric", || flight(networks::photogrammetric(), &names), 3)?;
     if let Err(why) = peer {
         println!("{why}");
     }
@@ -112,36 +112,36 @@ fn race(what: &str, network: impl FnOnce() -> Network, rounds: usize) -> Result<
 }
 
 fn board(views: usize) -> Network {
-    let mut network = scenes::board(scenes::opencv(), views, 1);
-    scenes::free(&mut network, &scenes::FIVE);
-    let mut random = scenes::random(2);
-    scenes::shake_pixels(&mut network, 0.2, &mut random);
+    let mut network = networks::board(networks::opencv(), views, 1);
+    networks::free(&mut network, &networks::FIVE);
+    let mut random = networks::random(2);
+    networks::shake_pixels(&mut network, 0.2, &mut random);
     // As good as Zhang's closed form and a homography.
-    scenes::shake_poses(&mut network, 5.0, 0.02, &mut random);
+    networks::shake_poses(&mut network, 5.0, 0.02, &mut random);
     start(&mut network, 1.03);
     network
 }
 
 fn ring(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
-    let mut network = scenes::ring(camera, 36, 256, 1);
+    let mut network = networks::ring(camera, 36, 256, 1);
     prepared(&mut network, names, 0.05, 0.01, 32);
     network
 }
 
 fn flight(camera: calibench_model::camera::Camera, names: &[&str]) -> Network {
-    let mut network = scenes::flight(camera, 1);
+    let mut network = networks::flight(camera, 1);
     prepared(&mut network, names, 1.0, 0.01, 100);
     network
 }
 
 fn prepared(network: &mut Network, names: &[&str], shift: f64, turn: f64, control: usize) {
-    scenes::free(network, names);
-    scenes::control(network, control, 1e-4 * shift);
-    let mut random = scenes::random(2);
-    scenes::shake_pixels(network, 0.2, &mut random);
-    scenes::shake_poses(network, shift, turn, &mut random);
+    networks::free(network, names);
+    networks::control(network, control, 1e-4 * shift);
+    let mut random = networks::random(2);
+    networks::shake_pixels(network, 0.2, &mut random);
+    networks::shake_poses(network, shift, turn, &mut random);
     for point in &mut network.points {
-        point.position += nalgebra::Vector3::from_fn(|_, _| shift * scenes::normal(&mut random));
+        point.position += nalgebra::Vector3::from_fn(|_, _| shift * networks::normal(&mut random));
     }
     start(network, 1.02);
 }

@@ -37,7 +37,7 @@ mod similarity;
 mod zhang;
 
 #[cfg(test)]
-mod trial;
+mod tests;
 
 pub use consensus::{Search, Tolerance};
 pub use direct_linear::{DirectLinear, direct_linear};

@@ -1,9 +1,9 @@
 //! The frame of the object: similarities, constraints, and the change from one datum to another.
 
-mod held;
+mod held_coordinates;
 mod similarity;
 mod transform;
 
-pub(crate) use held::{hold, undetermined};
+pub(crate) use held_coordinates::{hold, undetermined};
 pub(crate) use similarity::COUNT;
 pub(crate) use transform::{STransformation, transformed};

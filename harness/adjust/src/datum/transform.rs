@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::held::constraints;
+use super::held_coordinates::constraints;
 use super::similarity::{COUNT, Similarity};
 use crate::network::{Datum, Network};
 use crate::normal::Step;

@@ -1,9 +1,9 @@
 //! The normal equations of the whole network, block by block. Sums run in the order of images and points: the same bits every time.
 
-use super::optics::{Optics, POSE};
-use super::prior;
+use super::image_equations::{Lost, Residual, Setting, View};
+use super::observed_unknowns;
+use super::projection::{Optics, POSE};
 use super::robust::Loss;
-use super::view::{Lost, Residual, Setting, View};
 use crate::network::{Layout, Network};
 use crate::state::State;
 
@@ -60,7 +60,7 @@ pub(crate) fn linearise(
         into.add_view(layout, image, camera, view);
         into.add_points(layout, state, image, view);
     }
-    prior::add(network, layout, state, into);
+    observed_unknowns::add(network, layout, state, into);
     into.hold(layout);
     Ok(())
 }

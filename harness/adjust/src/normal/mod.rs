@@ -2,17 +2,17 @@
 
 mod blocks;
 mod gram;
-mod optics;
-mod prior;
+mod image_equations;
+mod observed_unknowns;
+mod projection;
 mod robust;
-mod view;
 
 #[cfg(test)]
 mod tests;
 
 pub(crate) use blocks::{Normals, Scratch, linearise, residuals, rows};
+pub(crate) use image_equations::Lost;
 pub(crate) use robust::Loss;
-pub(crate) use view::Lost;
 
 /// A change of all unknowns.
 #[derive(Clone, Debug, Default)]

@@ -1,10 +1,10 @@
 //! What the result is worth.
 
-mod counted;
 mod covariance;
 mod defect;
+mod defects_by_count;
 mod directions;
-mod frame;
+mod frame_uncertainty;
 mod geometry;
 mod names;
 mod reliability;
@@ -12,11 +12,11 @@ mod residuals;
 mod significance;
 mod snooping;
 
-pub(crate) use counted::counted;
 pub use covariance::{Correlation, Covariances, Variance};
 pub use defect::{Defect, Direction, Reason};
+pub(crate) use defects_by_count::counted;
 pub(crate) use directions::directions;
-pub use frame::{Distance, Uncertainty, frame_uncertainty};
+pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty};
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
 pub use residuals::{Residual, Use};
 pub use significance::{Comparison, Significance, compare};

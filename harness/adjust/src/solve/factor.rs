@@ -6,7 +6,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, MatRef, Side};
 
 use super::reduced::Reduced;
-use super::small::LOST;
+use super::small_cholesky::LOST;
 
 /// Up to this size a plain loop is faster than a library's set-up.
 const SMALL: usize = 48;

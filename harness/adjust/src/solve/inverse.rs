@@ -6,10 +6,10 @@
 use multiversion::multiversion;
 
 use super::Solved;
+use super::elimination_order::Plan;
 use super::kernel::{Run, runs};
-use super::plan::Plan;
 use super::reduced::Reduced;
-use super::small::backward;
+use super::small_cholesky::backward;
 
 /// Blocks of `Q_kk`.
 #[derive(Clone, Debug)]

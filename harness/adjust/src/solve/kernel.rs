@@ -2,7 +2,7 @@
 
 use multiversion::multiversion;
 
-use super::plan::Coupled;
+use super::elimination_order::Coupled;
 use super::reduced::Reduced;
 
 /// Rows of a member's products that stand one after the other in a column of the reduced matrix.

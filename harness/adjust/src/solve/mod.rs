@@ -1,21 +1,21 @@
 //! From start values to the minimum: Gauss-Newton, damped after Levenberg and Marquardt where it does not descend.
 
 mod eigen;
+mod elimination_order;
 mod factor;
 mod inverse;
 mod kernel;
-mod plan;
 mod reduced;
 mod schur;
-mod small;
+mod small_cholesky;
 
 use crate::AdjustError;
 use crate::network::{Layout, Network};
 use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise, residuals};
 use crate::state::State;
+pub(crate) use elimination_order::{Coupled, Eliminated, Plan};
 use factor::{Factor, Structure};
 pub(crate) use inverse::{Inverse, Member};
-pub(crate) use plan::{Coupled, Eliminated, Plan};
 use reduced::Reduced;
 pub(crate) use schur::Schur;
 

@@ -3,10 +3,10 @@
 //! With `N_ee = L L^T` of an eliminated block and `Y = L^-1 N_ek`: the kept unknowns have `S = N_kk - sum Y^T Y` and `b = g_k - sum Y^T L^-1 g_e`; then
 //! `x_e = L^-T (L^-1 g_e - Y x_k)`.
 
+use super::elimination_order::{Eliminated, Plan};
 use super::kernel::{Run, runs, subtract_3, subtract_6};
-use super::plan::{Eliminated, Plan};
 use super::reduced::Reduced;
-use super::small::{backward, cholesky, forward};
+use super::small_cholesky::{backward, cholesky, forward};
 use crate::network::Layout;
 use crate::normal::{Normals, Step};
 

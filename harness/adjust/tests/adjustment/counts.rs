@@ -2,13 +2,13 @@
 
 use calibench_adjust::{Options, adjust};
 
-use crate::scenes;
+use crate::networks;
 
 #[test]
 fn vosselman_and_foerstner_s_block() {
-    let mut network = scenes::vosselman_foerstner();
+    let mut network = networks::vosselman_foerstner();
     assert_eq!(network.observations.len(), 32 * 32, "every circle is seen in every image");
-    scenes::shake_poses(&mut network, 0.02, 0.005, &mut scenes::random(8));
+    networks::shake_poses(&mut network, 0.02, 0.005, &mut networks::random(8));
     let solution = adjust(&network, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let counts = solution.counts();
     assert_eq!((counts.observations(), counts.unknowns, counts.redundancy()), (2055, 384, 1671));

@@ -3,12 +3,12 @@
 use calibench_adjust::{AdjustError, Covariances, Datum, Network, Options, Solution, Variance, adjust};
 use calibench_model::camera::CameraModel;
 
-use crate::scenes;
+use crate::networks;
 
 fn network() -> Network {
-    let mut network = scenes::ring(scenes::photogrammetric(), 8, 30, 6);
-    scenes::free(&mut network, &["c", "x0", "y0", "k1"]);
-    scenes::shake_pixels(&mut network, 0.3, &mut scenes::random(9));
+    let mut network = networks::ring(networks::photogrammetric(), 8, 30, 6);
+    networks::free(&mut network, &["c", "x0", "y0", "k1"]);
+    networks::shake_pixels(&mut network, 0.3, &mut networks::random(9));
     network
 }
 

@@ -2,8 +2,8 @@
 
 mod counts;
 mod datum;
-mod exact;
-mod honest;
+mod networks;
+mod noise_free;
 mod quality;
-mod scenes;
-mod weak;
+mod standard_deviations;
+mod undetermined;

@@ -3,40 +3,40 @@
 use calibench_adjust::{Attitude, Datum, Network, ObjectPoint, Options, Snooping, Solution, Test, Use, Variance, adjust, compare, snoop};
 use calibench_model::camera::{Camera, CameraModel};
 
-use crate::{exact, scenes};
+use crate::{networks, noise_free};
 
 fn bundle() -> Network {
-    let mut network = scenes::ring_from(scenes::photogrammetric(), 4.2, 9, 40, 6);
-    scenes::free(&mut network, &["c", "x0", "y0", "k1", "k2", "p1"]);
-    scenes::control(&mut network, 5, 1e-3);
+    let mut network = networks::ring_from(networks::photogrammetric(), 4.2, 9, 40, 6);
+    networks::free(&mut network, &["c", "x0", "y0", "k1", "k2", "p1"]);
+    networks::control(&mut network, 5, 1e-3);
     network.cameras[0] = network.cameras[0].clone().observed("c", 24.3, 0.002).unwrap();
     network.images[2].attitude = Attitude::Observed { value: network.images[2].pose.rotation, sigma: [1e-3, 2e-3, 1e-3] };
     network.images[4].centre = calibench_adjust::Centre::Observed { value: network.images[4].pose.centre, sigma: [1e-3; 3] };
-    scenes::shake_pixels(&mut network, 1.0, &mut scenes::random(12));
+    networks::shake_pixels(&mut network, 1.0, &mut networks::random(12));
     network
 }
 
 fn board() -> Network {
-    let mut network = scenes::board(scenes::opencv(), 8, 6);
-    scenes::free(&mut network, &scenes::FIVE);
+    let mut network = networks::board(networks::opencv(), 8, 6);
+    networks::free(&mut network, &networks::FIVE);
     for i in [3, 40] {
         network.points[i] = ObjectPoint::observed(format!("{i}"), network.points[i].position, [0.5; 3]);
     }
-    scenes::shake_pixels(&mut network, 1.0, &mut scenes::random(13));
+    networks::shake_pixels(&mut network, 1.0, &mut networks::random(13));
     network
 }
 
 fn minimal() -> Network {
     Network {
         datum: Datum::Minimal { horizontal: [1, 7], vertical: [3, 11, 21] },
-        ..free(&scenes::ring(scenes::photogrammetric(), 7, 30, 2))
+        ..free(&networks::ring(networks::photogrammetric(), 7, 30, 2))
     }
 }
 
 fn free(network: &Network) -> Network {
     let mut network = network.clone();
-    scenes::free(&mut network, &["c", "x0", "y0"]);
-    scenes::shake_pixels(&mut network, 0.5, &mut scenes::random(14));
+    networks::free(&mut network, &["c", "x0", "y0"]);
+    networks::shake_pixels(&mut network, 0.5, &mut networks::random(14));
     network
 }
 
@@ -46,7 +46,7 @@ fn solved(network: &Network) -> Solution<'_> {
 
 #[test]
 fn blocks_are_those_of_the_full_covariance() {
-    for network in [bundle(), board(), minimal(), exact::sparse()] {
+    for network in [bundle(), board(), minimal(), noise_free::sparse()] {
         let solution = solved(&network);
         let blocks = solution.covariances(Variance::Apriori).unwrap();
         let full = solution.full_covariance(Variance::Apriori).unwrap();
@@ -152,14 +152,14 @@ fn tests_tell_parameters_that_are_needed_from_others() {
     let of = |camera: &Camera, change: &dyn Fn(&str, f64) -> f64| {
         camera.with_parameters(&camera.parameters().iter().map(|p| change(p.name, p.value)).collect::<Vec<_>>())
     };
-    let decentred = of(&scenes::photogrammetric(), &|name, value| if name.starts_with('p') { 10.0 * value } else { value });
+    let decentred = of(&networks::photogrammetric(), &|name, value| if name.starts_with('p') { 10.0 * value } else { value });
     let network = |names: &[&str]| {
-        let mut network = scenes::ring_from(decentred, 4.2, 9, 60, 6);
-        scenes::shake_pixels(&mut network, 0.1, &mut scenes::random(15));
+        let mut network = networks::ring_from(decentred, 4.2, 9, 60, 6);
+        networks::shake_pixels(&mut network, 0.1, &mut networks::random(15));
         let start = |name: &str, value: f64| if name.starts_with('p') && !names.contains(&name) { 0.0 } else { value };
         network.cameras[0].camera = of(&decentred, &start);
-        scenes::free(&mut network, names);
-        scenes::control(&mut network, 5, 1e-3);
+        networks::free(&mut network, names);
+        networks::control(&mut network, 5, 1e-3);
         network
     };
     let base = ["c", "x0", "y0", "k1", "k2"];

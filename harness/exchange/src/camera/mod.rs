@@ -1,48 +1,21 @@
 //! Camera files of other tools, and our own: one file a format, found by content.
 //!
-//! A new format is one file with a `static` [`CameraFormat`] and one line in [`registry::FORMATS`].
+//! A new format is one file in [`formats`] with a `static` [`CameraFormat`], and its two lines there.
 
 mod agisoft;
-mod bal;
-mod basalt;
-mod bentley;
 mod brown;
-mod bundler;
-mod caltech;
-mod camodocal;
-mod colmap;
 mod colmap_models;
-mod entry;
 mod error;
 pub mod fit;
-mod kalibr;
-mod kapture;
-mod literal;
-mod metashape_calibration;
-mod metashape_cameras;
-mod micmac;
-mod mrcal;
-mod nerfstudio;
+pub mod formats;
+mod json;
 mod number;
 mod opencv;
-mod opencv_xml;
-mod opencv_yaml;
-mod openmvg;
-mod opensfm;
-mod photogrammetric;
-mod photoscan_cameras;
-mod pix4d_cam;
-mod pix4d_inpho;
-mod pix4d_parameters;
-pub mod pix4d_pmatrix;
+mod opencv_storage;
+mod photogrammetric_toml;
 mod pose;
-mod reality_capture;
-pub mod registry;
-mod ros;
 mod source;
-mod storage;
-mod theia;
-mod wire;
+mod tree;
 mod xml;
 
 use std::path::Path;
@@ -52,8 +25,8 @@ use calibench_model::camera::{Camera, CameraModel, ImageSize};
 use crate::atomic::write_atomically;
 
 pub use error::CameraFileError;
+pub use formats::{CameraFormat, FORMATS, format_named};
 pub use pose::{Pose, PoseFrame};
-pub use registry::{CameraFormat, FORMATS, format_named};
 pub use source::LARGEST_FILE;
 use source::Source;
 

@@ -7,7 +7,8 @@
 use calibench_model::camera::{Camera, ImageSize, OpenCv, OpenCvFisheye};
 
 use super::number::pixels;
-use super::storage::{Entry, Matrix};
+use super::opencv_storage::Matrix;
+use super::tree::Entry;
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 
 const CAMERA_MATRIX: [&str; 4] = ["camera_matrix", "Camera_Matrix", "cameraMatrix", "Camera_matrix"];

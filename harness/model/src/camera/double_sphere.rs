@@ -1,8 +1,8 @@
 //! The double sphere camera: a ray meets two unit spheres, then a plane.
 
 use super::ImageSize;
-use super::axial::{Axial, Focal, axial_camera};
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
+use super::wide_angle::{Axial, Focal, axial_camera};
 
 /// The double sphere camera. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
 ///
@@ -94,8 +94,8 @@ axial_camera!(DoubleSphere, NAMES);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::axial::tests::rises_to_its_end;
     use crate::camera::conformance::{self, Shape};
+    use crate::camera::wide_angle::tests::rises_to_its_end;
     use crate::camera::{CameraModel, Ray};
 
     fn camera() -> DoubleSphere {

@@ -1,7 +1,7 @@
 //! The enhanced unified camera.
 
-use super::axial::{Axial, Focal, axial_camera};
 use super::convention::{Convention, Verification};
+use super::wide_angle::{Axial, Focal, axial_camera};
 use super::{ImageSize, double_sphere};
 
 /// The enhanced unified camera. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
@@ -86,8 +86,8 @@ axial_camera!(Eucm, NAMES);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::axial::tests::rises_to_its_end;
     use crate::camera::conformance::{self, Shape};
+    use crate::camera::wide_angle::tests::rises_to_its_end;
     use crate::camera::{CameraModel, Ray};
 
     fn camera() -> Eucm {

@@ -1,7 +1,7 @@
 //! The field-of-view camera of Devernay and Faugeras.
 
-use super::axial::{Axial, Focal, axial_camera};
 use super::convention::{Convention, Verification};
+use super::wide_angle::{Axial, Focal, axial_camera};
 use super::{ImageSize, double_sphere};
 
 /// The field-of-view camera, also called ATAN. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).

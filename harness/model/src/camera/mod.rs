@@ -4,17 +4,16 @@
 //! own file, and converts to [`Ray`] and [`PixelPoint`] there and nowhere else.
 
 pub mod agisoft;
-mod any;
-mod axial;
 pub mod conformance;
 pub mod convention;
 mod derivatives;
+mod dispatch;
 pub mod double_sphere;
 pub mod ebner;
 pub mod eucm;
 pub mod fold;
 pub mod fov;
-mod measured;
+mod measured_to_ideal;
 pub mod micmac;
 pub mod moniwa;
 mod newton;
@@ -24,20 +23,21 @@ pub mod opencv_fisheye;
 pub mod photogrammetric;
 mod pinhole;
 pub mod pix4d;
-mod plane;
+mod plane_map;
 pub mod prism_fisheye;
 mod ray;
 pub mod splined;
-pub mod tools;
+pub mod tool_conventions;
+mod wide_angle;
 
 use thiserror::Error;
 
 use crate::PixelPoint;
 
 pub use agisoft::{Agisoft, AgisoftVersion};
-pub use any::{Camera, conventions};
 pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 pub use derivatives::{DerivativeBuffer, Derivatives, MOST_PARAMETERS};
+pub use dispatch::{Camera, conventions};
 pub use double_sphere::DoubleSphere;
 pub use ebner::Ebner;
 pub use eucm::Eucm;

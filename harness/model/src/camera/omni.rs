@@ -1,7 +1,7 @@
 //! The unified camera of Mei, which is called omnidirectional: one unit sphere, then Brown's distortion of the plane.
 
-use super::axial::{Axial, Focal, Plane, axial_camera};
 use super::convention::{Convention, TangentialOrder, Verification};
+use super::wide_angle::{Axial, Focal, Plane, axial_camera};
 use super::{ImageSize, double_sphere};
 
 /// Mei's camera. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).
@@ -88,8 +88,8 @@ axial_camera!(Omni, NAMES);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::axial::tests::rises_to_its_end;
     use crate::camera::conformance::{self, Shape};
+    use crate::camera::wide_angle::tests::rises_to_its_end;
     use crate::camera::{CameraModel, OpenCv, Ray};
 
     fn camera() -> Omni {

@@ -1,7 +1,7 @@
 //! OpenCV's fisheye camera: four coefficients of the angle from the axis.
 
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
-use super::plane::first_fold;
+use super::plane_map::first_fold;
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 

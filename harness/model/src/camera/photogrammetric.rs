@@ -1,9 +1,9 @@
 //! The canonical interior orientation: photogrammetric, a correction of measured coordinates.
 
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
-use super::measured::{self, Correction};
+use super::measured_to_ideal::{self, Correction};
 use super::newton::ValueAndDerivatives;
-use super::plane::{PlaneMap, is_one_to_one};
+use super::plane_map::{PlaneMap, is_one_to_one};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
@@ -125,23 +125,23 @@ impl CameraModel for Photogrammetric {
     }
 
     fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
-        measured::project(self, ray)
+        measured_to_ideal::project(self, ray)
     }
 
     fn project_near(&self, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
-        measured::project_near(self, ray, near)
+        measured_to_ideal::project_near(self, ray, near)
     }
 
     fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
-        measured::unproject(self, point)
+        measured_to_ideal::unproject(self, point)
     }
 
     fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
-        measured::derivatives_into(self, ray, into)
+        measured_to_ideal::derivatives_into(self, ray, into)
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
-        measured::fold_towards(self, angle)
+        measured_to_ideal::fold_towards(self, angle)
     }
 }
 

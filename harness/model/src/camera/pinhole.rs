@@ -1,7 +1,7 @@
 //! What the tools' pinhole cameras have in common: ideal tangents, distorted ones, an affinity to pixels.
 
 use super::newton::{ValueAndDerivatives, determinant};
-use super::plane::{PlaneMap, first_fold, invert, is_on_branch};
+use super::plane_map::{PlaneMap, first_fold, invert, is_on_branch};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray};
 use crate::PixelPoint;
 
@@ -151,6 +151,6 @@ impl Brown {
     }
 
     pub(super) fn is_surely_one_to_one(&self, radius: f64) -> bool {
-        self.p[2] == 0.0 && self.p[3] == 0.0 && super::plane::is_one_to_one(radius, &self.k, &self.p[..2], 0.0)
+        self.p[2] == 0.0 && self.p[3] == 0.0 && super::plane_map::is_one_to_one(radius, &self.k, &self.p[..2], 0.0)
     }
 }

@@ -1,7 +1,7 @@
 //! A fisheye with decentring and thin prism: COLMAP's `THIN_PRISM_FISHEYE`.
 
-use super::axial::{Axial, Focal, Plane, axial_camera};
 use super::convention::{Convention, TangentialOrder, Verification};
+use super::wide_angle::{Axial, Focal, Plane, axial_camera};
 use super::{ImageSize, opencv_fisheye};
 
 /// An equidistant fisheye with Brown's and thin prism terms. Direction: **ideal to distorted**; y points down; the centre of the first pixel is (0, 0).

@@ -1,7 +1,7 @@
 //! mrcal's splined stereographic camera, to be read and fitted by another model.
 
 use super::newton::{self, ValueAndDerivatives, determinant};
-use super::plane::{PlaneMap, first_fold, is_on_branch};
+use super::plane_map::{PlaneMap, first_fold, is_on_branch};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
 
@@ -155,7 +155,7 @@ impl CameraModel for Splined {
         if !(goal[0].is_finite() && goal[1].is_finite()) {
             return Err(NoCounterpart::NoSolution);
         }
-        let [ux, uy] = super::plane::invert(self, goal).or_else(|_| newton::solve(goal, goal, |at| self.map(at)))?;
+        let [ux, uy] = super::plane_map::invert(self, goal).or_else(|_| newton::solve(goal, goal, |at| self.map(at)))?;
         // The point of the unit sphere: (u, 1 - |u|^2/4) / (1 + |u|^2/4).
         let quarter = 0.25 * (ux * ux + uy * uy);
         Ok(Ray { x: ux / (1.0 + quarter), y: -uy / (1.0 + quarter), z: -(1.0 - quarter) / (1.0 + quarter) })

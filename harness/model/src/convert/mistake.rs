@@ -92,7 +92,7 @@ impl Mistake {
 fn wrong_pitch(right: &Photogrammetric, pitch_um: f64) -> Result<Photogrammetric, ConvertError> {
     let target = Target::photogrammetric(pitch_um);
     target.check()?;
-    match super::exact::exact(&(*right).into(), &target) {
+    match super::closed_form::exact(&(*right).into(), &target) {
         Some(Camera::Photogrammetric(camera)) => Ok(Photogrammetric { pitch_um: right.pitch_um, ..camera }),
         _ => Err(ConvertError::NotInTable),
     }

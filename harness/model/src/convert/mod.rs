@@ -3,11 +3,10 @@
 //! [`convert`] gives the same camera in another convention: by formula where the models are the same up to units, by a fit over the frame, whose residuals
 //! and region it reports, where they are not. [`naive()`] and [`Mistake`] are the conversions that go wrong, and [`difference()`] says what they cost.
 
-mod axial;
 mod brown;
+mod closed_form;
 mod covariance;
 mod difference;
-mod exact;
 mod fit;
 mod grid;
 mod mistake;
@@ -16,6 +15,7 @@ mod rotation;
 mod target;
 #[cfg(test)]
 mod tests;
+mod wide_angle;
 
 use nalgebra::DMatrix;
 use thiserror::Error;
@@ -190,7 +190,7 @@ pub enum ConvertError {
 /// size, a parameter that the covariance asks for and the fit cannot estimate.
 pub fn convert(source: &Camera, target: Target, options: &ConvertOptions) -> Result<Conversion, ConvertError> {
     target.check()?;
-    if let Some(camera) = exact::exact(source, &target) {
+    if let Some(camera) = closed_form::exact(source, &target) {
         return exactly(source, camera, &target, options);
     }
     let mut starts = target.starts(source)?;
@@ -248,7 +248,8 @@ pub fn without_distortion(source: &Camera) -> Option<Camera> {
 
 fn exactly(source: &Camera, camera: Camera, target: &Target, options: &ConvertOptions) -> Result<Conversion, ConvertError> {
     let propagate = |q: &DMatrix<f64>| {
-        let jacobian = covariance::jacobian_of(|changed| exact::closed_form(changed, target), source).ok_or(ConvertError::NotConverged)?;
+        let jacobian =
+            covariance::jacobian_of(|changed| closed_form::closed_form(changed, target), source).ok_or(ConvertError::NotConverged)?;
         covariance::propagate(&jacobian, q)
     };
     let covariance = options.covariance.as_ref().map(propagate).transpose()?;

@@ -68,7 +68,7 @@ pub(super) fn first_order(source: &Camera, target: &Target) -> Option<Camera> {
             let camera = naive(source, pitch_um, Tangential::Converted).ok()?;
             Some(super::brown::without_left_out(camera.into(), target))
         }
-        _ => super::exact::closed_form(source, target),
+        _ => super::closed_form::closed_form(source, target),
     }
 }
 

@@ -93,7 +93,7 @@ impl Target {
 
     /// Does a formula lead from `camera` to this convention, with nothing left out?
     pub fn is_exact_for(&self, camera: &Camera) -> bool {
-        self.check().is_ok() && super::exact::exact(camera, self).is_some()
+        self.check().is_ok() && super::closed_form::exact(camera, self).is_some()
     }
 
     pub(super) fn check(&self) -> Result<(), ConvertError> {
@@ -192,7 +192,7 @@ impl Target {
 
     /// Cameras that agree with `source` on the axis and beside it: for most models one without distortion.
     pub(super) fn starts(&self, source: &dyn CameraModel) -> Result<Vec<Camera>, ConvertError> {
-        let wide = super::axial::starts(&BrownForm::at_axis(source)?, self);
+        let wide = super::wide_angle::starts(&BrownForm::at_axis(source)?, self);
         if wide.is_empty() { self.plain(source).map(|plain| vec![plain]) } else { Ok(wide) }
     }
 

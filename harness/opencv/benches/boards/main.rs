@@ -8,11 +8,11 @@
 
 #[path = "../../../adjust/benches/peers/ceres.rs"]
 mod ceres;
+#[path = "../../../adjust/tests/adjustment/networks.rs"]
+mod networks;
 mod optima;
 mod peers;
 mod problem;
-#[path = "../../../adjust/tests/adjustment/scenes.rs"]
-mod scenes;
 #[path = "../../src/optimum/theirs.rs"]
 mod theirs;
 

@@ -8,20 +8,20 @@ use calibench_model::Pose;
 use calibench_model::camera::{CameraModel, ImageSize};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use crate::scenes;
+use crate::networks;
 use crate::theirs::{Board, Theirs};
 
 /// The board with noisy corners in single precision, which is what OpenCV takes, and a start as good as Zhang's.
 pub(crate) fn problem(views: usize) -> Network {
-    let mut network = scenes::board(scenes::opencv(), views, 1);
-    scenes::free(&mut network, &scenes::FIVE);
-    let mut random = scenes::random(2);
-    scenes::shake_pixels(&mut network, 0.2, &mut random);
+    let mut network = networks::board(networks::opencv(), views, 1);
+    networks::free(&mut network, &networks::FIVE);
+    let mut random = networks::random(2);
+    networks::shake_pixels(&mut network, 0.2, &mut random);
     for observation in &mut network.observations {
         let at = &mut observation.position;
         (at.x, at.y) = (f64::from(at.x as f32), f64::from(at.y as f32));
     }
-    scenes::shake_poses(&mut network, 5.0, 0.02, &mut random);
+    networks::shake_poses(&mut network, 5.0, 0.02, &mut random);
     network
 }
 

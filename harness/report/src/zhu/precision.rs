@@ -2,7 +2,7 @@
 
 use calibench_measure::harris_paraboloid::HarrisParaboloid;
 use calibench_measure::paraboloid::Weights;
-use calibench_measure::precision::{Form, precision, white};
+use calibench_measure::paraboloid_precision::{Form, precision, white};
 use calibench_measure::strength_noise::strength_covariance;
 use calibench_model::{Image, PixelPoint, Start};
 use calibench_records::score::Errors;

@@ -7,7 +7,7 @@ pub mod aim;
 pub mod board;
 pub mod convergent;
 pub mod random;
-mod sight;
+mod visibility;
 
 use calibench_model::Pose;
 use thiserror::Error;
@@ -16,7 +16,7 @@ pub use aim::Aim;
 pub use board::BoardViews;
 pub use convergent::{Arc, Ring};
 pub use random::RandomViews;
-pub use sight::{check_sight, sees};
+pub use visibility::{check_sight, sees};
 
 /// A camera's place, with a name for records and tables.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,8 +11,8 @@ pub mod house;
 mod outline;
 pub mod panels;
 pub mod pen;
-mod placed;
 pub mod shape;
+mod sheet_layout;
 pub mod wall;
 mod zhu;
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::approximate::least_squares::minimise;
-use crate::approximate::trial::{Chance, lens, pinhole, see};
+use crate::approximate::tests::{Chance, lens, pinhole, see};
 
 fn case(chance: &mut Chance, cameras: [&Camera; 2], sigma: f64) -> (Motion, Pair) {
     let (a, b, point) = (chance.pose(), chance.pose(), chance.point());

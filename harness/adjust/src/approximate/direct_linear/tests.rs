@@ -1,6 +1,6 @@
 use super::*;
 use crate::approximate::consensus::Tolerance;
-use crate::approximate::trial::{Chance, SIZE, apart};
+use crate::approximate::tests::{Chance, SIZE, apart};
 
 /// A camera with everything that the eleven parameters hold.
 fn affine() -> Camera {

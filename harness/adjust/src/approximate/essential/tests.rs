@@ -1,5 +1,5 @@
 use super::*;
-use crate::approximate::trial::Chance;
+use crate::approximate::tests::Chance;
 
 /// Rays of five points in two cameras, and the essential matrix.
 fn case(chance: &mut Chance) -> ([Vector3<f64>; 5], [Vector3<f64>; 5], Matrix3<f64>) {

@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, Matrix3};
 use proptest::prelude::{prop_assert, proptest};
 
 use super::*;
-use crate::approximate::trial::Chance;
+use crate::approximate::tests::Chance;
 
 fn random(chance: &mut Chance) -> Homography {
     let m = Matrix3::from_fn(|i, j| if i == j { 1.0 } else { 0.2 * chance.normal() / if i == 2 { 3.0 } else { 1.0 } });

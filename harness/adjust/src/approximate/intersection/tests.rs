@@ -3,7 +3,7 @@ use nalgebra::{Matrix4, RowVector4};
 use super::*;
 use crate::approximate::consensus::Tolerance;
 use crate::approximate::shape::ascending;
-use crate::approximate::trial::{Chance, lens, pinhole, see};
+use crate::approximate::tests::{Chance, lens, pinhole, see};
 
 fn sights<'a>(chance: &mut Chance, camera: &'a Camera, poses: &'a [Pose], point: &Point3<f64>, sigma: f64) -> Vec<Sight<'a>> {
     poses.iter().map(|pose| Sight { camera, pose, image: chance.noisy(see(camera, pose, point), sigma) }).collect()

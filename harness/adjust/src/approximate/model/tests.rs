@@ -2,7 +2,7 @@ use calibench_model::camera::Camera;
 use nalgebra::DMatrix;
 
 use super::*;
-use crate::approximate::trial::{Chance, lens, pinhole, see};
+use crate::approximate::tests::{Chance, lens, pinhole, see};
 use crate::approximate::{Search, Tolerance, orient_relatively};
 use crate::network::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Status};
 use crate::solution::{Options, adjust};

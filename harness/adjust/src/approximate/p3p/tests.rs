@@ -1,5 +1,5 @@
 use super::*;
-use crate::approximate::trial::{Chance, apart, lens, see};
+use crate::approximate::tests::{Chance, apart, lens, see};
 
 fn rays_of(pose: &Pose, points: &[Point3<f64>; 3]) -> [Vector3<f64>; 3] {
     points.map(|point| pose.camera_from_world(&point))

@@ -1,7 +1,7 @@
 use nalgebra::Point3;
 
 use super::*;
-use crate::approximate::trial::{Chance, apart, board, lens, pinhole};
+use crate::approximate::tests::{Chance, apart, board, lens, pinhole};
 
 fn tilted_board(chance: &mut Chance) -> (Vec<Point3<f64>>, Vector3<f64>) {
     let rotation = nalgebra::Rotation3::new(chance.vector());

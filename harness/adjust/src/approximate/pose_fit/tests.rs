@@ -1,5 +1,5 @@
 use super::*;
-use crate::approximate::trial::{Chance, apart, lens, pinhole, see};
+use crate::approximate::tests::{Chance, apart, lens, pinhole, see};
 
 #[test]
 fn rows_are_differences() {

@@ -2,7 +2,7 @@ use nalgebra::{Rotation3, SVector};
 
 use super::*;
 use crate::approximate::consensus::Tolerance;
-use crate::approximate::trial::{Chance, lens, pinhole, see};
+use crate::approximate::tests::{Chance, lens, pinhole, see};
 
 const SEARCH: Search = Search { seed: 1, tolerance: Tolerance::Pixels(2.0) };
 

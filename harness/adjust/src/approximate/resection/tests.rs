@@ -2,7 +2,7 @@ use calibench_model::PixelPoint;
 use nalgebra::Point3;
 
 use super::*;
-use crate::approximate::trial::{Chance, apart, board, lens, pinhole};
+use crate::approximate::tests::{Chance, apart, board, lens, pinhole};
 
 proptest::proptest! {
     #[test]
@@ -39,7 +39,7 @@ fn the_direct_linear_transformation_agrees() {
         let (pose, points) = (chance.pose(), chance.points(15));
         let control = chance.control(&pinhole(), &pose, &points, 0.0);
         let found = resect(&pinhole(), &control, None).unwrap();
-        let other = crate::approximate::direct_linear(&control, crate::approximate::trial::SIZE, 5.0, None).unwrap();
+        let other = crate::approximate::direct_linear(&control, crate::approximate::tests::SIZE, 5.0, None).unwrap();
         assert!(apart(&found.pose, &other.pose) < 1e-8);
     }
 }

@@ -2,7 +2,7 @@ use nalgebra::{Matrix4, Rotation3, UnitQuaternion, Vector4};
 
 use super::*;
 use crate::approximate::shape::ascending;
-use crate::approximate::trial::Chance;
+use crate::approximate::tests::Chance;
 
 fn moved(chance: &mut Chance, points: &[Point3<f64>]) -> (Similarity, Vec<Point3<f64>>) {
     let rotation = *Rotation3::new(chance.vector() * 2.0).matrix();

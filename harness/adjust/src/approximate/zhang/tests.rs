@@ -3,7 +3,7 @@ use calibench_model::camera::CameraModel;
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::*;
-use crate::approximate::trial::{Chance, SIZE, board, lens, pinhole};
+use crate::approximate::tests::{Chance, SIZE, board, lens, pinhole};
 
 fn values(camera: &Camera) -> Vec<f64> {
     camera.parameters().iter().take(4).map(|p| p.value).collect()

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Pix4d};
 
-use super::super::pix4d_pmatrix::{PMatrix, pmatrix_text, read_offset, read_pmatrices};
+use super::super::formats::pix4d_pmatrix::{PMatrix, pmatrix_text, read_offset, read_pmatrices};
 use super::super::{CameraFile, ReadOptions, camera_text, read_camera, read_camera_with};
 use super::{assert_same, read};
 

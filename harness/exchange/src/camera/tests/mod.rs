@@ -3,10 +3,10 @@
 mod any_model;
 mod files;
 mod malformed;
-mod others;
-mod others_malformed;
-mod pairs;
 mod round_trip;
+mod same_camera;
+mod tool_formats;
+mod tool_formats_malformed;
 
 use calibench_model::camera::{Camera, CameraModel};
 

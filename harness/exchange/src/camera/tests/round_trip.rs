@@ -176,7 +176,7 @@ fn every_written_format_is_round_tripped() {
     let written = super::super::FORMATS.iter().filter(|format| format.is_written()).map(|format| format.name);
     let (own, others): (Vec<_>, Vec<_>) = written.partition(|name| here.contains(name));
     assert_eq!(own, here);
-    assert_eq!(others, super::others::ROUND_TRIPPED);
+    assert_eq!(others, super::tool_formats::ROUND_TRIPPED);
 }
 
 #[test]

@@ -10,7 +10,7 @@ mod undistort;
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
-use super::plane::is_one_to_one;
+use super::plane_map::is_one_to_one;
 use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::PixelPoint;
 

@@ -4,7 +4,7 @@ use super::OpenCv;
 use crate::PixelPoint;
 use crate::camera::newton::determinant;
 use crate::camera::pinhole::Pinhole;
-use crate::camera::plane::first_fold;
+use crate::camera::plane_map::first_fold;
 use crate::camera::{CameraModel, Ray};
 
 /// Directions and places where a fold is looked for, and what is kept clear of it.

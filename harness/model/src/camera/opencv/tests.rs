@@ -45,7 +45,7 @@ fn a_dip_between_samples_is_found() {
     // A polynomial that turns back on a very short way only.
     let (a, width) = (0.3337_f64, 1e-6);
     let f = |s: f64| (s - a) * (s - a) - width * width;
-    let found = crate::camera::plane::first_fold(f, 1.0, 96).unwrap();
+    let found = crate::camera::plane_map::first_fold(f, 1.0, 96).unwrap();
     assert!((found - (a - width)).abs() < 1e-9, "{found}");
 }
 

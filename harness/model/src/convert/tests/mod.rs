@@ -1,9 +1,9 @@
+mod closed_form;
 mod covariance;
 mod differences;
-mod exact;
 mod fitted;
 mod mistakes;
-mod others;
+mod other_tools;
 mod published;
 
 use crate::camera::{Camera, CameraModel, ImageSize, OpenCv, Photogrammetric};

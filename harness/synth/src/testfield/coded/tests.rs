@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use calibench_model::TargetKind;
 
-use super::super::placed;
+use super::super::sheet_layout;
 use super::*;
 
 const KEY: Key<'_> = Key { seed: 1988, scenario: "coded", trial: 0, view: "", target: "" };
@@ -76,7 +76,7 @@ fn targets_are_apart_inside_their_squares_and_the_lines_are_two_millimetres_wide
                 (t.id.as_str(), shape.outlines(t.at, t.size, t.turn))
             })
             .collect();
-        placed::check("field", corners, &outlined).unwrap();
+        sheet_layout::check("field", corners, &outlined).unwrap();
     }
 }
 

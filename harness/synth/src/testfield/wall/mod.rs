@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector3};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::{FieldError, Fill, Levels, Shape, SheetBend, check, placed};
+use super::{FieldError, Fill, Levels, Shape, SheetBend, check, sheet_layout};
 
 /// A sheet of the wall.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,7 +188,7 @@ fn unique<'a>(what: &'static str, ids: impl Iterator<Item = &'a str>) -> Result<
 fn printed(sheet: &Sheet, targets: &[&WallTarget]) -> Result<Vec<Area>, FieldError> {
     let outlined: Vec<(&str, Vec<Outline>)> =
         targets.iter().map(|target| (target.id.as_str(), target.shape.outlines(target.at, target.size, target.turn))).collect();
-    placed::check(&sheet.id, sheet.corners(), &outlined)?;
+    sheet_layout::check(&sheet.id, sheet.corners(), &outlined)?;
     let area = |outline| Area { outline, level: sheet.levels.ink, ground: sheet.levels.paper };
     Ok(outlined.into_iter().flat_map(|(_, outlines)| outlines).map(area).collect())
 }

@@ -1,0 +1,78 @@
+//! COLMAP's cameras.txt.
+
+use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
+
+use super::PLAIN;
+use crate::camera::fit::Keeps;
+use crate::camera::number::{finite, pixels, shortest};
+use crate::camera::source::Source;
+use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
+
+pub(super) static FORMAT: CameraFormat = CameraFormat {
+    name: "colmap",
+    tool: "COLMAP",
+    versions: "cameras.txt of 3.x",
+    extension: "txt",
+    many: true,
+    recognise,
+    read,
+    write: Some(write),
+    convention: Some(&tool_conventions::COLMAP),
+    models: colmap_models::models,
+    keeps: Keeps { name: true, ..PLAIN.keeps },
+    ..PLAIN
+};
+
+/// Lines that hold something, without comments.
+fn lines<'a>(source: &Source<'a>) -> impl Iterator<Item = (usize, &'a str)> + use<'a> {
+    let text = source.text;
+    let numbered = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+    numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+}
+
+fn recognise(source: &Source<'_>) -> Result<(), String> {
+    let first: Vec<&str> = lines(source).next().map_or(Vec::new(), |(_, line)| line.split_whitespace().collect());
+    let is_name = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_uppercase() || b == b'_');
+    let is_number = |text: &&str| text.bytes().all(|b| b.is_ascii_digit());
+    match first[..] {
+        [id, model, width, height, _, ..] if is_name(model) && [id, width, height].iter().all(is_number) => Ok(()),
+        _ => Err("no line `ID MODEL W H ...`".into()),
+    }
+}
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
+    lines(source).map(|(line, text)| camera(text, options).map_err(|error| error.on_line(line))).collect()
+}
+
+fn camera(text: &str, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
+    let mut words = text.split_whitespace();
+    let (Some(id), Some(model), Some(width), Some(height)) = (words.next(), words.next(), words.next(), words.next()) else {
+        return Err(CameraFileError::new("expected CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]"));
+    };
+    let side = |text, name| pixels(text).map_err(|error| error.of(name));
+    let size = options.size_or(Some(ImageSize { width: side(width, "WIDTH")?, height: side(height, "HEIGHT")? }))?;
+    let values = words.map(finite).collect::<Result<Vec<_>, _>>().map_err(|error| error.of("PARAMS[]"))?;
+    let camera = colmap_models::camera(model, size, &values).map_err(|error| error.of(model))?;
+    Ok(NamedCamera::new(id, camera))
+}
+
+fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
+    let mut out = format!(
+        "# Camera list with one line of data per camera:\n#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n# Number of cameras: {}\n",
+        cameras.len()
+    );
+    for (named, id) in cameras.iter().zip(ids(cameras)) {
+        let (model, values) = colmap_models::written(&named.camera, &FORMAT)?;
+        let ImageSize { width, height } = named.camera.size();
+        let values: Vec<String> = values.into_iter().map(shortest).collect();
+        out.push_str(&format!("{id} {model} {width} {height} {}\n", values.join(" ")));
+    }
+    Ok(out)
+}
+
+/// The names where they are numbers that differ, or else 1, 2, ...
+fn ids(cameras: &[NamedCamera]) -> Vec<u32> {
+    let own: Option<Vec<u32>> = cameras.iter().map(|camera| camera.name.parse().ok()).collect();
+    let differ = |ids: &Vec<u32>| ids.iter().enumerate().all(|(i, id)| !ids[..i].contains(id));
+    own.filter(differ).unwrap_or_else(|| (1..).take(cameras.len()).collect())
+}

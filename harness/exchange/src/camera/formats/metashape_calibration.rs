@@ -1,0 +1,40 @@
+//! The calibration XML of Metashape, and the one with `fx`, `fy` of PhotoScan before 1.2 and of Lens.
+
+use calibench_model::camera::{AgisoftVersion, Camera};
+
+use super::PLAIN;
+use crate::camera::source::Source;
+use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, agisoft, xml};
+
+pub(super) static FORMAT: CameraFormat = CameraFormat {
+    name: "metashape",
+    tool: "Agisoft Metashape, PhotoScan, Lens",
+    versions: "calibration XML: Metashape and PhotoScan from 1.2 (f), older PhotoScan and Lens (fx, fy)",
+    extension: "xml",
+    verified: Some("Metashape's own OpenCV export of the same adjustment pictures every ray alike, to 1e-10 of the frame (f; not fx, fy)"),
+    many: false,
+    states_size: true,
+    recognise: |source| xml::root_is(source.xml.as_ref(), "calibration"),
+    read,
+    write: Some(write),
+    ..PLAIN
+};
+
+fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
+    let Some(document) = &source.xml else { return Ok(Vec::new()) };
+    let root = document.root_element();
+    let size = options.size_or(Some(xml::size_of_children(root)?)).map_err(|error| xml::at(root, error))?;
+    let (camera, mut notes) = agisoft::read(root, size)?;
+    if camera.version != AgisoftVersion::Metashape {
+        notes.push("read as PhotoScan's before 1.2; Lens writes the same elements, with the same formulas".into());
+    }
+    Ok(vec![NamedCamera { notes, ..NamedCamera::new("", Camera::Agisoft(camera)) }])
+}
+
+fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
+    let Camera::Agisoft(camera) = cameras[0].camera else { return Err(FORMAT.other_model("a camera of Agisoft's model")) };
+    let (width, height) = (camera.size.width, camera.size.height);
+    let size = format!("  <projection>frame</projection>\n  <width>{width}</width>\n  <height>{height}</height>\n");
+    let inside = agisoft::written(&camera, "  ");
+    Ok(format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<calibration>\n{size}{inside}</calibration>\n"))
+}

@@ -1,0 +1,56 @@
+//! Matrices as OpenCV's FileStorage holds them, in YAML or XML alike.
+
+use super::CameraFileError;
+use super::number::{finite, shortened};
+use super::tree::{Entry, Value};
+
+/// A matrix of numbers.
+#[derive(Debug)]
+pub(super) struct Matrix {
+    pub rows: usize,
+    pub columns: usize,
+    /// Row by row.
+    pub data: Vec<f64>,
+}
+
+impl Entry {
+    /// The matrix: `rows`, `cols`, `dt` and as many numbers in `data`; at most `most`.
+    pub fn matrix(&self, most: usize) -> Result<Matrix, CameraFileError> {
+        let part = |name: &str| self.get(&[name])?.ok_or_else(|| self.wrong(&format!("has no `{name}`; expected rows, cols, dt, data")));
+        let side = |name: &str| {
+            let (_, entry) = part(name)?;
+            let wrong = || entry.wrong("expected a whole number from 1").of(name);
+            entry.text()?.parse::<usize>().ok().filter(|&n| n > 0).ok_or_else(wrong)
+        };
+        let (rows, columns) = (side("rows")?, side("cols")?);
+        let count = rows.checked_mul(columns).filter(|&count| count <= most);
+        let count = count.ok_or_else(|| self.wrong(&format!("is {rows} x {columns}; expected no more than {most} numbers")))?;
+        let (_, kind) = part("dt")?;
+        let single = match kind.text()? {
+            "d" => false,
+            "f" => true,
+            other => return Err(kind.wrong(&format!("expected d or f, found `{}`", shortened(other))).of("dt")),
+        };
+        let (_, data) = part("data")?;
+        let data = data.numbers(count, &format!("{rows} x {columns}"), single).map_err(|error| error.of("data"))?;
+        Ok(Matrix { rows, columns, data })
+    }
+
+    fn numbers(&self, count: usize, shape: &str, single: bool) -> Result<Vec<f64>, CameraFileError> {
+        let one = |line: usize, word: &str| {
+            let number = finite(word).map_err(|error| error.on_line(line))?;
+            // What the file's own tool would hold.
+            Ok(if single { f64::from(number as f32) } else { number })
+        };
+        let wrong = |found: usize| Err(self.wrong(&format!("expected {count} numbers for {shape}, found {found}")));
+        match &self.value {
+            Value::Scalar(text) => match text.split_whitespace().count() {
+                found if found == count => text.split_whitespace().map(|word| one(self.line, word)).collect(),
+                found => wrong(found),
+            },
+            Value::List(list) if list.len() == count => list.iter().map(|entry| one(entry.line, entry.text()?)).collect(),
+            Value::List(list) => wrong(list.len()),
+            Value::Map(_) => Err(self.wrong("expected numbers")),
+        }
+    }
+}

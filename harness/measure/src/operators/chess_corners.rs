@@ -1,0 +1,146 @@
+//! `chess_corners`: the detector of the crate of that name, unchanged.
+
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use chess_corners::{Detector, DetectorConfig, ImageRefiner};
+
+use crate::operator::{Operator, window_centre};
+use crate::parameter::{Domain, Parameter, Settings};
+use crate::registry::{Build, Method};
+
+/// The crate's version, as locked.
+const VERSION: &str = "2.1.0";
+/// How far the detector's ring of samples reaches, and one px more.
+const RING: i64 = 6;
+
+/// The crate `chess-corners` (V. Vorobyev; MIT): corners are detected on the whole image, as 8-bit grey values, with the crate's own presets; a start is given the
+/// nearest detection within `radius` px.
+///
+/// Nothing of it is tuned or changed. It sees 8 bits, whatever the image has. Many starts on one image share one detection.
+///
+/// Source: ChESS: Bennett & Lasenby 2014; Radon: Duda & Frese 2018.
+pub struct ChessCorners {
+    config: DetectorConfig,
+    radius: f64,
+}
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "detector",
+        about: "0: ChESS; 1: Radon",
+        domain: Domain::Whole { min: 0, max: 1 },
+        default: 0.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "refiner",
+        about: "0: the detector's own position; 1: the crate's saddle point",
+        domain: Domain::Whole { min: 0, max: 1 },
+        default: 1.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "radius",
+        about: "how far a detection may be from the start, px",
+        domain: Domain::Real { min: 0.5, max: 30.0 },
+        default: 5.0,
+        always_shown: false,
+    },
+];
+
+/// The method's entry.
+pub fn method() -> Method {
+    Method {
+        name: "chess_corners",
+        about: "the crate chess-corners: detection on the whole image, the nearest detection to the start",
+        source: "crate chess-corners; Bennett & Lasenby 2014; Duda & Frese 2018",
+        version: VERSION.into(),
+        parameters: PARAMETERS,
+        build: Build::With(|settings| Box::new(ChessCorners::new(settings))),
+    }
+}
+
+impl ChessCorners {
+    fn new(settings: &Settings) -> Self {
+        let preset = if settings.get("detector") > 0.0 { DetectorConfig::radon() } else { DetectorConfig::chess() };
+        let refined = settings.get("refiner") > 0.0;
+        let config = if refined { preset.with_refiner(ImageRefiner::saddle_point()) } else { preset.without_refiner() };
+        Self { config: config.without_orientation(), radius: settings.get("radius") }
+    }
+
+    /// All detections, px.
+    fn detect(&self, image: &Image) -> Option<Vec<PixelPoint>> {
+        let mut detector = Detector::new(self.config).ok()?;
+        let found = detector.detect_u8(&image.to_u8(), image.width() as u32, image.height() as u32).ok()?;
+        Some(found.iter().map(|corner| PixelPoint::new(f64::from(corner.x), f64::from(corner.y))).filter(|p| p.is_finite()).collect())
+    }
+
+    fn admit(&self, image: &Image, start: &Start) -> Result<(), Rejection> {
+        let reach = RING + self.radius.ceil() as i64;
+        let (x, y) = window_centre(image, start, reach)?;
+        let mut rows = image.rows_around(x, y, reach).ok_or(Rejection::Border)?;
+        if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
+    }
+}
+
+impl Operator for ChessCorners {
+    /// # Errors
+    /// [`Rejection::Border`] when what the detector looks at within `radius` of the start leaves the image, [`Rejection::NotFinite`],
+    /// [`Rejection::NoCorner`] when nothing is detected there.
+    fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
+        self.measure_all(image, std::slice::from_ref(start)).pop().unwrap_or(Err(Rejection::NoCorner))
+    }
+
+    fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
+        let admitted: Vec<Result<(), Rejection>> = starts.iter().map(|start| self.admit(image, start)).collect();
+        let any = admitted.iter().any(Result::is_ok);
+        let found = if any { self.detect(image).unwrap_or_default() } else { Vec::new() };
+        let nearest = |start: &Start| {
+            let best = found.iter().min_by(|a, b| a.distance(start.position).total_cmp(&b.distance(start.position)));
+            best.filter(|at| at.distance(start.position) <= self.radius).copied()
+        };
+        let measure = |(start, admitted): (&Start, Result<(), Rejection>)| {
+            admitted?;
+            nearest(start).map(|position| Measurement { position, covariance: None }).ok_or(Rejection::NoCorner)
+        };
+        starts.iter().zip(admitted).map(measure).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance;
+    use crate::registry::Registry;
+    use crate::tests::closed_form_images::Picture;
+    use calibench_model::{Affine, TargetKind};
+
+    fn operator(spec: &str) -> Box<dyn Operator> {
+        Registry::builtin().parse(spec).unwrap().operator.unwrap()
+    }
+
+    #[test]
+    fn the_version_is_the_one_that_is_locked() {
+        let lock = include_str!("../../../../Cargo.lock");
+        assert!(lock.contains(&format!("name = \"chess-corners\"\nversion = \"{VERSION}\"")));
+    }
+
+    #[test]
+    fn conforms() {
+        // Eight bits: half the contrast has half the levels.
+        for (spec, tolerance) in [("chess_corners", 0.01), ("chess_corners:refiner=0", 0.03), ("chess_corners:detector=1", 0.01)] {
+            conformance::check_on(&*operator(spec), conformance::chess_corner, tolerance);
+        }
+    }
+
+    #[test]
+    fn a_right_chess_corner_is_found() {
+        let (sin, cos) = 0.3_f64.sin_cos();
+        let affine = Affine { axx: 60.0 * cos, axy: -60.0 * sin, ayx: 60.0 * sin, ayy: 60.0 * cos };
+        let picture = Picture { kind: TargetKind::ChessCorner, at: [30.3, 29.8], affine, sigma: 0.8, ground: 0.8, contrast: -0.6 };
+        let start = Start::at(PixelPoint::new(31.5, 28.0));
+        for (spec, tolerance) in [("chess_corners", 0.02), ("chess_corners:refiner=0", 0.2), ("chess_corners:detector=1", 0.02)] {
+            let found = operator(spec).measure(&picture.image(61), &start).unwrap();
+            assert!(found.position.distance(PixelPoint::new(30.3, 29.8)) < tolerance, "{spec}: {found:?}");
+        }
+    }
+}

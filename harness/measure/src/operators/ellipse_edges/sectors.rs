@@ -1,0 +1,227 @@
+//! Where the outline of a disc is, sector by sector.
+
+use calibench_model::{Image, Rejection};
+use multiversion::multiversion;
+use nalgebra::{Matrix3, SVector, Vector3};
+
+use super::conic::UNKNOWNS;
+use crate::blurred_ellipse::{self, MARGIN, Planes, eight};
+use crate::ellipse::Ellipse;
+use crate::lanes::LANES;
+
+/// Pixels nearer to the outline than this are taken, px.
+const BAND: f64 = 4.0;
+/// The length of a sector on the outline, px, and the fewest of them.
+const LENGTH: f64 = 1.0;
+const FEWEST: usize = 24;
+/// A sector with less than this fraction of the others' weight has no edge point.
+const WEIGHTLESS: f64 = 1e-4;
+
+/// What is pictured: an ellipse of one grey value on ground of another, blurred.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disc {
+    pub(super) ellipse: Ellipse,
+    /// Variance of the blur, px^2.
+    pub(super) variance: f64,
+    pub(super) ground: f64,
+    /// Grey value inside minus that of the ground.
+    pub(super) contrast: f64,
+}
+
+/// A point of the edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EdgePoint {
+    /// How it moves along its normal with the ellipse's position and shape: the first two are the normal.
+    pub(super) moves: SVector<f64, 5>,
+    /// How far outside the outline the edge is, along the normal, px.
+    pub(super) offset: f64,
+    /// The inverse of the variance of the offset, for grey values of unit variance, 1/px^2.
+    pub(super) weight: f64,
+    /// How much of it a unit of what all pixels have in common explains: variance of the blur, ground, contrast.
+    pub(super) common: Vector3<f64>,
+}
+
+/// The pixels around a disc, each told which sector of the outline it belongs to.
+pub(super) struct Window {
+    pub(super) side: usize,
+    /// The window's first pixel.
+    pub(super) first: [f64; 2],
+    /// In rows as the planes' are.
+    grey: Vec<f64>,
+    /// 1 for pixels of the band, 0 for others.
+    taken: Vec<f64>,
+    sector: Vec<u16>,
+    sums: Vec<Sums>,
+    planes: Planes,
+}
+
+/// Sums over the pixels of one sector: squared slope, and slope times derivatives by position, shape, common unknowns, and slope times residual.
+type Sums = [f64; 10];
+const RESIDUAL: usize = 9;
+
+impl Window {
+    /// Around an ellipse.
+    ///
+    /// # Errors
+    /// [`Rejection::Border`], [`Rejection::NotFinite`].
+    pub(super) fn new(image: &Image, ellipse: &Ellipse) -> Result<Self, Rejection> {
+        let half = (ellipse.extent() + MARGIN).ceil() as i64;
+        let [x, y] = ellipse.position.map(|c| c.round() as i64);
+        let rows = image.rows_around(x, y, half).ok_or(Rejection::Border)?;
+        let side = (2 * half + 1) as usize;
+        let planes = Planes::new(side);
+        let mut grey = vec![0.0; side * planes.stride];
+        for (line, row) in grey.chunks_exact_mut(planes.stride).zip(rows) {
+            line.iter_mut().zip(row).for_each(|(grey, from)| *grey = f64::from(*from));
+        }
+        if !grey.iter().all(|grey| grey.is_finite()) {
+            return Err(Rejection::NotFinite);
+        }
+        let first = [x - half, y - half].map(|c| c as f64);
+        let (taken, sector) = (vec![0.0; grey.len()], vec![0; grey.len()]);
+        Ok(Self { side, first, grey, taken, sector, sums: Vec::new(), planes })
+    }
+
+    /// Fills the planes for a disc whose position is taken from the window's first pixel.
+    pub(super) fn picture(&mut self, disc: &Disc) {
+        self.planes.fill(&disc.ellipse, disc.variance);
+    }
+
+    /// Tells every pixel whether it is taken, and its sector: by the direction in which the edge is steepest there.
+    pub(super) fn part(&mut self, ellipse: &Ellipse) {
+        let [large, small] = ellipse.semi_axes();
+        // A multiple of eight: in an image that is turned or reflected the same pixels make a sector.
+        let length = std::f64::consts::PI * (large + small) / LENGTH;
+        let sectors = (8 * (length / 8.0).ceil() as usize).clamp(FEWEST, usize::from(u16::MAX) - 7);
+        self.sums.clear();
+        self.sums.resize(sectors, [0.0; RESIDUAL + 1]);
+        part(self, ellipse);
+    }
+
+    /// How many more pixels are taken than there are unknowns.
+    pub(super) fn redundancy(&self) -> f64 {
+        self.taken.iter().sum::<f64>() - UNKNOWNS as f64
+    }
+
+    /// The points of the edge of the disc that was pictured, and the normal equations of what they have in common.
+    pub(super) fn edge(&mut self, disc: &Disc) -> (Vec<EdgePoint>, Common) {
+        self.sums.iter_mut().for_each(|sums| *sums = [0.0; RESIDUAL + 1]);
+        let common = add_up(self, disc);
+        let heaviest = self.sums.iter().map(|sums| sums[0]).fold(0.0, f64::max);
+        let heavy = self.sums.iter().filter(|sums| sums[0] > WEIGHTLESS * heaviest);
+        (heavy.map(edge_point).collect(), common)
+    }
+}
+
+/// The point to which the pixels of one sector say that the edge is shifted.
+fn edge_point(sums: &Sums) -> EdgePoint {
+    let by: &[f64; 8] = sums[1..RESIDUAL].try_into().expect("as many");
+    // With the normal a unit vector the edge is shifted as far as the disc would be.
+    let gain = by[0].hypot(by[1]);
+    let moves = SVector::from_fn(|i, _| by[i] / gain);
+    EdgePoint { moves, offset: sums[RESIDUAL] / gain, weight: gain * gain / sums[0], common: Vector3::new(by[5], by[6], by[7]) / gain }
+}
+
+/// The normal equations of what all pixels have in common: variance of the blur, ground, contrast.
+pub(super) struct Common {
+    pub(super) n: Matrix3<f64>,
+    pub(super) b: Vector3<f64>,
+    /// The sum of the squared residuals.
+    pub(super) omega: f64,
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn part(window: &mut Window, ellipse: &Ellipse) {
+    let Window { side, taken, sector, sums, planes, .. } = window;
+    let [a, b, c] = ellipse.shape;
+    let determinant = a * c - b * b;
+    let [by_x, by_y] = blurred_ellipse::CENTRE.map(|plane| &planes.values[plane]);
+    let eighth = sums.len() as f64 / 8.0;
+    for row in 0..*side {
+        let v = row as f64 - ellipse.position[1];
+        for from in (0..*side).step_by(LANES) {
+            let at = row * planes.stride + from;
+            for i in 0..LANES {
+                let u = (from + i) as f64 - ellipse.position[0];
+                // In the frame where the ellipse is the unit circle; then its gradient, and the distance of first order.
+                let (p, q) = ((c * u - b * v) / determinant, (a * v - b * u) / determinant);
+                let radius = (p * p + q * q).sqrt();
+                let (s, t) = ((c * p - b * q) / determinant, (a * q - b * p) / determinant);
+                let near = (radius - 1.0).abs() * radius <= BAND * (s * s + t * t).sqrt();
+                taken[at + i] = if near && from + i < *side { 1.0 } else { 0.0 };
+                let (gx, gy) = (by_x[at + i], by_y[at + i]);
+                let turn = octants(a * gx + b * gy, b * gx + c * gy) * eighth;
+                sector[at + i] = (turn as i32 as u16).min(sums.len() as u16 - 1);
+            }
+        }
+    }
+}
+
+/// The direction of (x, y) in eighths of a turn, to 0.005: near enough to part an outline.
+#[inline(always)]
+fn octants(x: f64, y: f64) -> f64 {
+    let (u, v) = (x.abs(), y.abs());
+    let ratio = u.min(v) / u.max(v).max(f64::MIN_POSITIVE);
+    let octant = ratio * (1.3476 - 0.3476 * ratio);
+    let quarter = if v > u { 2.0 - octant } else { octant };
+    let half = if x < 0.0 { 4.0 - quarter } else { quarter };
+    if y < 0.0 { 8.0 - half } else { half }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn add_up(window: &mut Window, disc: &Disc) -> Common {
+    let Window { side, grey, taken, sector, sums, planes, .. } = window;
+    let mut all = [[0.0; LANES]; 10];
+    for row in 0..*side {
+        for from in (0..*side).step_by(LANES) {
+            let at = row * planes.stride + from;
+            let (covered, by_variance) = (planes.lanes(blurred_ellipse::COVERED, at), planes.lanes(blurred_ellipse::VARIANCE, at));
+            let (by_x, by_y) = (planes.lanes(blurred_ellipse::CENTRE[0], at), planes.lanes(blurred_ellipse::CENTRE[1], at));
+            let (taken, grey) = (eight(taken, at), eight(grey, at));
+            let [a, b, c] = blurred_ellipse::SHAPE;
+            let by_shape = [planes.lanes(a, at), planes.lanes(b, at), planes.lanes(c, at)];
+            let mut terms = [[0.0; LANES]; RESIDUAL + 1];
+            let mut steep = 0.0;
+            for i in 0..LANES {
+                let square = taken[i] * (by_x[i] * by_x[i] + by_y[i] * by_y[i]);
+                let (outline, contrast) = (square.sqrt(), disc.contrast);
+                let slope = outline * contrast;
+                let v = contrast * by_variance[i];
+                let r = grey[i] - disc.ground - contrast * covered[i];
+                let (one_v, one_c, one_r) = (taken[i] * v, taken[i] * covered[i], taken[i] * r);
+                steep += square;
+                terms[0][i] = slope * slope;
+                let geometric = slope * contrast;
+                terms[1][i] = geometric * by_x[i];
+                terms[2][i] = geometric * by_y[i];
+                for (term, by) in terms[3..6].iter_mut().zip(&by_shape) {
+                    term[i] = geometric * by[i];
+                }
+                terms[6][i] = slope * v;
+                terms[7][i] = slope;
+                terms[8][i] = slope * covered[i];
+                terms[RESIDUAL][i] = slope * r;
+                all[0][i] += one_v * v;
+                all[1][i] += one_v;
+                all[2][i] += one_v * covered[i];
+                all[3][i] += taken[i];
+                all[4][i] += one_c;
+                all[5][i] += one_c * covered[i];
+                all[6][i] += one_v * r;
+                all[7][i] += one_r;
+                all[8][i] += one_c * r;
+                all[9][i] += one_r * r;
+            }
+            if steep > 0.0 {
+                for (i, sector) in sector[at..][..LANES].iter().enumerate() {
+                    let sums = &mut sums[usize::from(*sector)];
+                    for (sum, term) in sums.iter_mut().zip(&terms) {
+                        *sum += term[i];
+                    }
+                }
+            }
+        }
+    }
+    let [vv, v1, vc, n11, c1, cc, vr, r1, cr, omega] = all.map(|lanes| lanes.iter().sum::<f64>());
+    Common { n: Matrix3::new(vv, v1, vc, v1, n11, c1, vc, c1, cc), b: Vector3::new(vr, r1, cr), omega }
+}

@@ -1,0 +1,33 @@
+//! The operators: one file each. A new one is its file and its two lines here.
+
+use crate::registry::Method;
+
+pub mod centroid;
+pub mod chess_corners;
+pub mod ellipse_edges;
+pub mod forstner;
+pub mod harris_paraboloid;
+pub mod lsm;
+pub mod opencv_subpix;
+pub mod parametric_circle;
+pub mod parametric_corner;
+pub mod pixel;
+pub mod saddle;
+
+/// The methods of this crate, in the order in which they are listed.
+pub(crate) fn methods() -> Vec<Method> {
+    vec![
+        pixel::method(),
+        forstner::method(),
+        harris_paraboloid::method(),
+        harris_paraboloid::linear(),
+        centroid::method(),
+        centroid::binary(),
+        lsm::method(),
+        saddle::method(),
+        parametric_corner::method(),
+        parametric_circle::method(),
+        ellipse_edges::method(),
+        chess_corners::method(),
+    ]
+}

@@ -1,0 +1,242 @@
+//! `parametric_corner`: a chess corner's grey values, fitted.
+
+mod area;
+mod levels;
+mod lists;
+mod model;
+mod real;
+mod start;
+mod sums;
+mod window;
+
+use calibench_model::{Gradient, Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
+use nalgebra::SVector;
+
+use crate::marquardt::{Problem, Solution, covariance, minimise};
+use crate::operator::{Operator, window_centre};
+use crate::parameter::{Domain, Parameter, Settings};
+use crate::registry::{Build, Method};
+use levels::{ADDED, BOTH, EVEN, LIGHT};
+use window::{Setting, Window};
+
+/// Blur at the start, px^2: between sharp and soft.
+const VARIANCE: f64 = 0.5;
+/// The window is laid anew when the corner is further than this beyond its middle pixel, px: more each time, so that it comes to rest also where
+/// either of two windows finds the corner in the other's middle.
+const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+/// Each iteration ends with a step shorter than so many standard deviations. The first need not end near: the correction that follows moves it anyway.
+const ROUGHLY: f64 = 3.0;
+const NEARLY: f64 = 0.03;
+const LAYINGS: usize = 6;
+/// Corrections for the pixel's area, at most.
+const CORRECTIONS: usize = 20;
+/// The last correction moves the unknowns by less than so many standard deviations, or the position by less than so many px: the next would move them by a
+/// tenth of that at most.
+const SETTLED: f64 = 0.3;
+const STANDS: f64 = 3e-7;
+/// After so many corrections it is enough that the position settles: without any blur its variance does so slowly.
+const FEW: usize = 3;
+
+/// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
+///
+/// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the photosite's area (a square, as wide as the
+/// pixel unless `photosite` says otherwise). Unknowns are the position, the directions of both edges, the blur, and the two grey values; on demand a linear change
+/// over the window, and the curvature of each edge (a lens bends the edges of large windows; to second order, for radii far beyond the window).
+/// For white noise of equal variance this is the maximum-likelihood estimate.
+///
+/// What changes linearly: `gradient` 1, something that is added to the grey values, as stray light (two unknowns); 2, the light, which multiplies them (two; grey
+/// values must be zero without light: take a black level away first); 3, the dark and the light grey value each for itself, which covers the two before and a black
+/// level, and widens the bound most (four).
+///
+/// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
+/// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these are less like those
+/// opposite than unlike, there is no crossing. Covariance (px^2):
+/// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
+///
+/// Source: two blurred edges with unknown gain and offset fitted by least squares as in Wöhler 2013 (3D Computer Vision, Eq. 1.89 to 1.92) and Yang et al. 2018;
+/// the photosite's integral as a mixture of Gaussians, and the crossing's expectation as a bivariate normal integral (over the correlation, with Gauss-Legendre
+/// nodes, as in Drezner & Wesolowsky 1990), are our own choice.
+pub struct ParametricCorner {
+    window: usize,
+    search: usize,
+    gradient: u8,
+    curvature: bool,
+    photosite: f64,
+}
+
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "window",
+        about: "side of the window, px",
+        domain: Domain::Odd { min: 7, max: window::WIDEST as u32 },
+        default: 15.0,
+        always_shown: true,
+    },
+    Parameter {
+        name: "search",
+        about: "the corner is sought within so many px of the start, along each axis",
+        domain: Domain::Whole { min: 0, max: 12 },
+        default: 5.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "gradient",
+        about: "a linear change over the window is estimated: 0: none, 1: added to the grey values, 2: of the light, which multiplies them, 3: of the dark and of the \
+                light grey value, each its own",
+        domain: Domain::Whole { min: 0, max: 3 },
+        default: 0.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "curvature",
+        about: "1: a curvature of each edge is estimated, 0: edges are straight",
+        domain: Domain::Whole { min: 0, max: 1 },
+        default: 0.0,
+        always_shown: false,
+    },
+    Parameter {
+        name: "photosite",
+        about: "side of the square that is sensitive to light in each pixel, px; 1: the whole pixel",
+        domain: Domain::Real { min: 0.1, max: 1.0 },
+        default: 1.0,
+        always_shown: false,
+    },
+];
+
+/// The method's entry.
+pub fn method() -> Method {
+    Method {
+        name: "parametric_corner",
+        about: "least-squares fit of a chess corner's grey values: position, two edges, blur, two grey values",
+        source: "calibench; cf. Wöhler 2013, Eq. 1.89 to 1.92, Yang et al. 2018",
+        version: "1".into(),
+        parameters: PARAMETERS,
+        build: Build::With(|settings| Box::new(ParametricCorner::new(settings))),
+    }
+}
+
+impl ParametricCorner {
+    /// The operator with these settings of [`method`]'s parameters.
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            window: settings.whole("window"),
+            search: settings.whole("search"),
+            gradient: settings.whole("gradient") as u8,
+            curvature: settings.whole("curvature") == 1,
+            photosite: settings.get("photosite"),
+        }
+    }
+
+    fn fit<const P: usize, const GRADIENT: u8, const CURVED: bool>(
+        &self,
+        image: &Image,
+        guess: &start::Guess,
+    ) -> Result<Measurement, Rejection> {
+        let half = self.window as i64 / 2;
+        let setting = Setting { side: self.window, photosite: self.photosite, mean: guess.mean, half: guess.half };
+        let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
+        let mut x = SVector::<f64, P>::zeros();
+        x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, 0.0, 1.0]);
+        let mut at = guess.position;
+        for beyond in BEYOND {
+            let follow = 0.5 + beyond;
+            let centre = at.map(|c| c.round() as i64);
+            if !image.holds(centre[0], centre[1], half) {
+                return Err(Rejection::Border);
+            }
+            window.centre_on((centre[0], centre[1]));
+            (x[0], x[1]) = (at[0] - centre[0] as f64, at[1] - centre[1] as f64);
+            x = minimise(&mut window, x, ROUGHLY).ok_or(Rejection::NotConverged)?.x;
+            let off = |x: &SVector<f64, P>| x[0].abs().max(x[1].abs());
+            let mut normal = None;
+            if off(&x) <= follow {
+                let found = refined(&mut window, x).ok_or(Rejection::NotConverged)?;
+                (x, normal) = (found.x, Some(found.normal));
+            }
+            if off(&x) > half as f64 {
+                return Err(Rejection::LeftWindow);
+            }
+            at = [centre[0] as f64 + x[0], centre[1] as f64 + x[1]];
+            if let Some(normal) = normal.filter(|_| off(&x) <= follow) {
+                let covariance = covariance(&normal, (self.window * self.window - P) as f64).ok_or(Rejection::ErrorEllipse)?;
+                return Ok(Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) });
+            }
+        }
+        Err(Rejection::NotConverged)
+    }
+}
+
+/// The fit of the whole model, from a fit of the quick one on.
+fn refined<const P: usize, const GRADIENT: u8, const CURVED: bool>(
+    window: &mut Window<'_, P, GRADIENT, CURVED>,
+    mut x: SVector<f64, P>,
+) -> Option<Solution<P>> {
+    let redundancy = window.redundancy();
+    for correction in 0..CORRECTIONS {
+        window.correct(&x)?;
+        let found = minimise(window, x, NEARLY)?;
+        let moved = found.x - x;
+        x = found.x;
+        let square = moved.dot(&(found.normal.n * moved));
+        let short = SETTLED * SETTLED * found.normal.omega / redundancy;
+        let rests = || correction >= FEW && found.normal.position_rests(&moved, short);
+        if square <= short || moved[0].hypot(moved[1]) < STANDS || rests() {
+            return Some(found);
+        }
+    }
+    None
+}
+
+impl Operator for ParametricCorner {
+    /// # Errors
+    /// [`Rejection::Border`] when the window leaves the image, [`Rejection::NotFinite`], [`Rejection::NoCorner`] when there is no saddle near the start,
+    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
+    fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
+        let half = self.window as i64 / 2;
+        let centre = window_centre(image, start, half)?;
+        finite(image, centre, half)?;
+        let position = if self.search == 0 {
+            [start.position.x, start.position.y]
+        } else {
+            start::saddle(image, centre, self.search, half as usize).ok_or(Rejection::NoCorner)?
+        };
+        let at = position.map(|c| c.round() as i64);
+        if !image.holds(at[0], at[1], half) {
+            return Err(Rejection::Border);
+        }
+        finite(image, (at[0], at[1]), half)?;
+        // Without a search the start may be too far off for that.
+        if self.search > 0 && !start::is_like_its_opposite(image, position, half) {
+            return Err(Rejection::NoCorner);
+        }
+        let guess = start::directions(image, position, half).ok_or(Rejection::NoCorner)?;
+        match (self.gradient, self.curvature) {
+            (EVEN, false) => self.fit::<7, EVEN, false>(image, &guess),
+            (ADDED, false) => self.fit::<9, ADDED, false>(image, &guess),
+            (LIGHT, false) => self.fit::<9, LIGHT, false>(image, &guess),
+            (_, false) => self.fit::<11, BOTH, false>(image, &guess),
+            (EVEN, true) => self.fit::<9, EVEN, true>(image, &guess),
+            (ADDED, true) => self.fit::<11, ADDED, true>(image, &guess),
+            (LIGHT, true) => self.fit::<11, LIGHT, true>(image, &guess),
+            (_, true) => self.fit::<13, BOTH, true>(image, &guess),
+        }
+    }
+
+    fn unknowns(&self) -> Unknowns {
+        let gradient = match self.gradient {
+            EVEN => Gradient::None,
+            ADDED => Gradient::Added,
+            LIGHT => Gradient::Light,
+            _ => Gradient::Both,
+        };
+        Unknowns { shape: true, levels: true, blur: true, gradient }
+    }
+}
+
+fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
+    let mut rows = image.rows_around(x, y, half).ok_or(Rejection::Border)?;
+    if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
+}
+
+#[cfg(test)]
+mod tests;

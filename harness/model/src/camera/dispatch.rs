@@ -1,0 +1,182 @@
+//! All models behind one dispatch.
+
+use super::{
+    Agisoft, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, NoCounterpart,
+    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, Ray, agisoft, double_sphere, ebner, eucm, fov, micmac, moniwa, omni,
+    opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, tool_conventions,
+};
+use crate::PixelPoint;
+
+/// Any camera. A new model is a variant here, a line in each of the two tables below, and its own file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Camera {
+    /// The canonical interior orientation.
+    Photogrammetric(Photogrammetric),
+    /// With Ebner's additional parameters.
+    Ebner(Ebner),
+    /// OpenCV's pinhole camera.
+    OpenCv(OpenCv),
+    /// OpenCV's fisheye camera.
+    OpenCvFisheye(OpenCvFisheye),
+    /// Agisoft's.
+    Agisoft(Agisoft),
+    /// Pix4D's.
+    Pix4d(Pix4d),
+    /// Double sphere.
+    DoubleSphere(DoubleSphere),
+    /// Enhanced unified.
+    Eucm(Eucm),
+    /// Mei's unified camera with distortion.
+    Omni(Omni),
+    /// Field of view.
+    Fov(Fov),
+    /// Fisheye with decentring and thin prism.
+    PrismFisheye(PrismFisheye),
+    /// MicMac's.
+    MicMac(MicMac),
+}
+
+macro_rules! each {
+    ($camera:expr, $model:ident => $work:expr) => {
+        match $camera {
+            Camera::Photogrammetric($model) => $work,
+            Camera::Ebner($model) => $work,
+            Camera::OpenCv($model) => $work,
+            Camera::OpenCvFisheye($model) => $work,
+            Camera::Agisoft($model) => $work,
+            Camera::Pix4d($model) => $work,
+            Camera::DoubleSphere($model) => $work,
+            Camera::Eucm($model) => $work,
+            Camera::Omni($model) => $work,
+            Camera::Fov($model) => $work,
+            Camera::PrismFisheye($model) => $work,
+            Camera::MicMac($model) => $work,
+        }
+    };
+}
+
+/// All conventions, in the order of lists.
+pub const fn conventions() -> &'static [&'static Convention] {
+    &[
+        &photogrammetric::CONVENTION,
+        &moniwa::CONVENTION,
+        &ebner::CONVENTION,
+        &pix4d::CONVENTION,
+        &agisoft::METASHAPE,
+        &agisoft::PHOTOSCAN,
+        &agisoft::LENS,
+        &opencv::CONVENTION,
+        &opencv_fisheye::CONVENTION,
+        &prism_fisheye::CONVENTION,
+        &double_sphere::CONVENTION,
+        &eucm::CONVENTION,
+        &omni::CONVENTION,
+        &fov::CONVENTION,
+        &micmac::CONVENTION,
+        &tool_conventions::COLMAP,
+        &tool_conventions::KAPTURE,
+        &tool_conventions::ROS,
+        &tool_conventions::KALIBR,
+        &tool_conventions::MRCAL,
+        &tool_conventions::OPENSFM,
+        &tool_conventions::NERFSTUDIO,
+        &tool_conventions::BASALT,
+        &tool_conventions::CAMODOCAL,
+        &tool_conventions::OPENMVG,
+        &tool_conventions::THEIA,
+        &tool_conventions::BUNDLER,
+        &tool_conventions::REALITY_CAPTURE,
+        &tool_conventions::BENTLEY,
+        &tool_conventions::PHOTOMODELER,
+        &tool_conventions::CALTECH,
+    ]
+}
+
+impl Camera {
+    /// What its numbers mean.
+    pub const fn convention(&self) -> &'static Convention {
+        match self {
+            Self::Photogrammetric(_) => &photogrammetric::CONVENTION,
+            Self::Ebner(_) => &ebner::CONVENTION,
+            Self::OpenCv(_) => &opencv::CONVENTION,
+            Self::OpenCvFisheye(_) => &opencv_fisheye::CONVENTION,
+            Self::Agisoft(camera) => camera.version.convention(),
+            Self::Pix4d(_) => &pix4d::CONVENTION,
+            Self::DoubleSphere(_) => &double_sphere::CONVENTION,
+            Self::Eucm(_) => &eucm::CONVENTION,
+            Self::Omni(_) => &omni::CONVENTION,
+            Self::Fov(_) => &fov::CONVENTION,
+            Self::PrismFisheye(_) => &prism_fisheye::CONVENTION,
+            Self::MicMac(_) => &micmac::CONVENTION,
+        }
+    }
+}
+
+impl CameraModel for Camera {
+    fn size(&self) -> ImageSize {
+        each!(self, camera => camera.size())
+    }
+
+    fn parameters(&self) -> Vec<CameraParameter> {
+        each!(self, camera => camera.parameters())
+    }
+
+    fn with_parameters(&self, values: &[f64]) -> Self {
+        each!(self, camera => camera.with_parameters(values).into())
+    }
+
+    fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
+        each!(self, camera => camera.project(ray))
+    }
+
+    fn project_near(&self, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
+        each!(self, camera => camera.project_near(ray, near))
+    }
+
+    fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
+        each!(self, camera => camera.unproject(point))
+    }
+
+    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+        each!(self, camera => camera.derivatives_into(ray, into))
+    }
+
+    fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
+        each!(self, camera => camera.fold_towards(angle))
+    }
+}
+
+macro_rules! from {
+    ($($model:ident),*) => {
+        $(impl From<$model> for Camera {
+            fn from(camera: $model) -> Self {
+                Self::$model(camera)
+            }
+        })*
+    };
+}
+
+from!(Photogrammetric, Ebner, OpenCv, OpenCvFisheye, Agisoft, Pix4d, DoubleSphere, Eucm, Omni, Fov, PrismFisheye, MicMac);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::conformance::{self, Shape};
+
+    #[test]
+    fn a_dispatched_camera_conforms() {
+        let mut distortion = [0.0; 14];
+        distortion[0] = 0.1;
+        let size = ImageSize { width: 640, height: 480 };
+        let camera = OpenCv { size, fx: 600.0, fy: 600.0, cx: 320.0, cy: 240.0, distortion, coefficients: 5 };
+        conformance::check(&Camera::from(camera), Shape::Pincushion);
+    }
+
+    #[test]
+    fn names_of_conventions_are_unique() {
+        let mut names: Vec<_> = conventions().iter().map(|convention| convention.name).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), conventions().len());
+    }
+}

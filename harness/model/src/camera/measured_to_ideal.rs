@@ -1,0 +1,90 @@
+//! What the photogrammetric cameras have in common: measured coordinates in mm, corrected to ideal ones.
+
+use super::newton::{self, determinant};
+use super::plane_map::{self, PlaneMap};
+use super::{DerivativeBuffer, NoCounterpart, Photogrammetric, Ray};
+use crate::{Frame, PixelPoint, SensorPoint};
+
+/// Places between the principal point and the farthest corner where a fold is looked for.
+const PLACES: usize = 200;
+
+/// A correction of measured coordinates around an interior orientation.
+pub(super) trait Correction: PlaneMap {
+    /// Principal distance, principal point, pitch and size.
+    fn base(&self) -> &Photogrammetric;
+    /// Adds d(ideal) / d(coefficient) at measured coordinates from the principal point, mm; without those of c, x0, y0.
+    fn by_coefficients(&self, at: [f64; 2], into: &mut DerivativeBuffer);
+}
+
+fn frame(base: &Photogrammetric) -> Result<Frame, NoCounterpart> {
+    Frame::new(base.size.width, base.size.height, base.pitch_um).map_err(|_| NoCounterpart::NoSolution)
+}
+
+fn to_pixel(base: &Photogrammetric, [x, y]: [f64; 2]) -> Result<PixelPoint, NoCounterpart> {
+    Ok(frame(base)?.to_pixel(SensorPoint { x: x + base.x0, y: y + base.y0 }))
+}
+
+/// Measured coordinates from the principal point, mm, of a ray.
+fn measured(camera: &impl Correction, ray: Ray) -> Result<[f64; 2], NoCounterpart> {
+    let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
+    plane_map::invert(camera, [camera.base().c * u, camera.base().c * v])
+}
+
+pub(super) fn project(camera: &impl Correction, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
+    to_pixel(camera.base(), measured(camera, ray)?)
+}
+
+pub(super) fn project_near(camera: &impl Correction, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
+    let base = camera.base();
+    let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
+    let start = frame(base)?.to_sensor(near);
+    // Newton's steps stay where the determinant is positive: on the branch of `near`.
+    match newton::solve([base.c * u, base.c * v], [start.x - base.x0, start.y - base.y0], |at| camera.map(at)) {
+        Ok(found) => to_pixel(base, found),
+        Err(_) => project(camera, ray),
+    }
+}
+
+pub(super) fn unproject(camera: &impl Correction, point: PixelPoint) -> Result<Ray, NoCounterpart> {
+    let base = camera.base();
+    let from_centre = frame(base)?.to_sensor(point);
+    let at = [from_centre.x - base.x0, from_centre.y - base.y0];
+    if !point.is_finite() {
+        return Err(NoCounterpart::NoSolution);
+    }
+    // The correction is explicit; beyond a fold it leads to a ray that belongs to another pixel.
+    if !plane_map::is_on_branch(camera, at) {
+        return Err(NoCounterpart::Fold);
+    }
+    let ([x, y], _) = camera.map(at);
+    Ok(Ray::from_tangent(x / base.c, y / base.c))
+}
+
+pub(super) fn derivatives_into(camera: &impl Correction, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
+    let base = camera.base();
+    let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
+    let at = measured(camera, ray)?;
+    let (_, by) = camera.map(at);
+    let (det, per_mm) = (determinant(by), 1e3 / base.pitch_um);
+    // F(measured, parameters) = c tangent: d(measured) = F_m^-1 (d(c tangent) - F_parameters), then mm upwards to px downwards.
+    let pixel = |g: [f64; 2]| [per_mm * (by[1][1] * g[0] - by[0][1] * g[1]) / det, -per_mm * (by[0][0] * g[1] - by[1][0] * g[0]) / det];
+    into.clear();
+    into.extend([pixel([u, v]), [per_mm, 0.0], [0.0, -per_mm]]);
+    camera.by_coefficients(at, into);
+    into.change_from(3, |[x, y]| pixel([-x, -y]));
+    let (by_u, by_v) = (pixel([base.c, 0.0]), pixel([0.0, base.c]));
+    let tangent = ray.tangent_derivatives();
+    into.by_ray = std::array::from_fn(|row| std::array::from_fn(|axis| by_u[row] * tangent[0][axis] + by_v[row] * tangent[1][axis]));
+    into.point = to_pixel(base, at)?;
+    Ok(())
+}
+
+pub(super) fn fold_towards(camera: &impl Correction, angle: f64) -> Option<PixelPoint> {
+    let base = camera.base();
+    let half = |length: u32, offset: f64| f64::from(length) * base.pitch_um * 5e-4 + offset.abs();
+    let farthest = half(base.size.width, base.x0).hypot(half(base.size.height, base.y0));
+    // Angles are those of the image, y down.
+    let (sin, cos) = angle.sin_cos();
+    let s = plane_map::first_fold(|s| determinant(camera.map([s * cos, -s * sin]).1), farthest, PLACES)?;
+    to_pixel(base, [s * cos, -s * sin]).ok()
+}

@@ -1,0 +1,96 @@
+//! The wide-angle models that are the same in part: pinhole, unified, enhanced unified, double sphere; fisheyes with and without prism.
+
+use super::Target;
+use super::brown::BrownForm;
+use crate::camera::{Camera, DoubleSphere, Eucm, Fov, ImageSize, Omni, OpenCvFisheye, PrismFisheye};
+
+/// The same camera in the target's convention where a formula leads to it; `None` where there is none or the target cannot hold all terms.
+pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
+    match (source, target) {
+        (Camera::DoubleSphere(_), Target::DoubleSphere)
+        | (Camera::Eucm(_), Target::Eucm)
+        | (Camera::Omni(_), Target::Omni { distortion: true })
+        | (Camera::Fov(_), Target::Fov)
+        | (Camera::PrismFisheye(_), Target::PrismFisheye) => Some(*source),
+        (Camera::OpenCvFisheye(from), Target::PrismFisheye) => with_prism(from),
+        (Camera::PrismFisheye(from), Target::OpenCvFisheye) => without_prism(from),
+        _ => from_unified(&unified(source)?, target),
+    }
+}
+
+fn with_prism(from: &OpenCvFisheye) -> Option<Camera> {
+    let OpenCvFisheye { size, fx, fy, cx, cy, skew, k } = *from;
+    (skew == 0.0).then(|| PrismFisheye { size, fx, fy, cx, cy, k, p: [0.0; 2], s: [0.0; 2] }.into())
+}
+
+fn without_prism(from: &PrismFisheye) -> Option<Camera> {
+    let PrismFisheye { size, fx, fy, cx, cy, k, p, s } = *from;
+    (p == [0.0; 2] && s == [0.0; 2]).then(|| OpenCvFisheye { size, fx, fy, cx, cy, skew: 0.0, k }.into())
+}
+
+/// The unified camera that pictures alike, `None` where there is none.
+fn unified(source: &Camera) -> Option<Omni> {
+    // 1 / (alpha d + (1 - alpha) Z) = 1 / (1 - alpha) / (xi d + Z) with xi = alpha / (1 - alpha).
+    let of_alpha = |size: ImageSize, [fx, fy, cx, cy]: [f64; 4], alpha: f64| {
+        let s = 1.0 - alpha;
+        (s > 0.0).then(|| Omni { size, fx: fx / s, fy: fy / s, cx, cy, xi: alpha / s, k: [0.0; 2], p: [0.0; 2] })
+    };
+    match *source {
+        Camera::Omni(camera) => Some(camera),
+        Camera::Eucm(Eucm { size, fx, fy, cx, cy, alpha, beta: 1.0 })
+        | Camera::DoubleSphere(DoubleSphere { size, fx, fy, cx, cy, xi: 0.0, alpha }) => of_alpha(size, [fx, fy, cx, cy], alpha),
+        Camera::DoubleSphere(DoubleSphere { size, fx, fy, cx, cy, xi, alpha: 0.0 }) => {
+            Some(Omni { size, fx, fy, cx, cy, xi, k: [0.0; 2], p: [0.0; 2] })
+        }
+        _ => {
+            let form = BrownForm::of(source).filter(|_| BrownForm::holds(source))?;
+            let plain = form.b == 0.0 && form.k[2..] == [0.0; 2] && form.p[2..] == [0.0; 2];
+            let (k, p) = ([form.k[0], form.k[1]], [form.p[1], form.p[0]]);
+            plain.then_some(Omni { size: form.size, fx: form.a, fy: form.d, cx: form.centre.x, cy: form.centre.y, xi: 0.0, k, p })
+        }
+    }
+}
+
+fn from_unified(from: &Omni, target: &Target) -> Option<Camera> {
+    let Omni { size, fx, fy, cx, cy, xi, k, p } = *from;
+    let straight = k == [0.0; 2] && p == [0.0; 2];
+    let s = 1.0 + xi;
+    match target {
+        Target::Omni { distortion } => (straight || *distortion).then(|| (*from).into()),
+        Target::Eucm if straight && s > 0.0 => Some(Eucm { size, fx: fx / s, fy: fy / s, cx, cy, alpha: xi / s, beta: 1.0 }.into()),
+        Target::DoubleSphere if straight && s > 0.0 => {
+            Some(DoubleSphere { size, fx: fx / s, fy: fy / s, cx, cy, xi: 0.0, alpha: xi / s }.into())
+        }
+        Target::DoubleSphere | Target::Eucm => None,
+        _ if xi == 0.0 => {
+            let centre = crate::PixelPoint::new(cx, cy);
+            let form = BrownForm { size, a: fx, b: 0.0, d: fy, centre, k: [k[0], k[1], 0.0, 0.0], p: [p[1], p[0], 0.0, 0.0] };
+            let camera = form.to_target(target)?;
+            super::closed_form::is_held(&form, target, &camera).then_some(camera)
+        }
+        _ => None,
+    }
+}
+
+/// Cameras of a wide-angle target that agree with `form` on the axis and beside it, from which a fit may start; the last is the pinhole itself.
+pub(super) fn starts(form: &BrownForm, target: &Target) -> Vec<Camera> {
+    let BrownForm { size, a: fx, d: fy, .. } = *form;
+    let (cx, cy) = (form.centre.x, form.centre.y);
+    match target {
+        Target::DoubleSphere => [(-0.2, 0.6), (0.0, 0.5), (0.0, 0.0)]
+            .map(|(xi, alpha)| DoubleSphere { size, fx: fx * (1.0 + xi), fy: fy * (1.0 + xi), cx, cy, xi, alpha }.into())
+            .into(),
+        Target::Eucm => [0.6, 0.5, 0.01].map(|alpha| Eucm { size, fx, fy, cx, cy, alpha, beta: 1.0 }.into()).into(),
+        Target::Omni { .. } => [2.0, 1.0, 0.0]
+            .map(|xi| Omni { size, fx: fx * (1.0 + xi), fy: fy * (1.0 + xi), cx, cy, xi, k: [0.0; 2], p: [0.0; 2] }.into())
+            .into(),
+        Target::Fov => [1.2_f64, 0.8, 0.3]
+            .map(|w| {
+                let slope = 2.0 * (0.5 * w).tan() / w;
+                Fov { size, fx: fx / slope, fy: fy / slope, cx, cy, w }.into()
+            })
+            .into(),
+        Target::PrismFisheye => vec![PrismFisheye { size, fx, fy, cx, cy, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] }.into()],
+        _ => Vec::new(),
+    }
+}
