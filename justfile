@@ -46,6 +46,18 @@ lint:
     RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
     sh -n bootstrap
 
+# Licences and sources of all dependencies, and advisories against them where their database can be reached (`./bootstrap deny` installs cargo-deny)
+deny:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    mkdir -p target
+    cargo deny check licenses bans sources
+    if cargo deny fetch db 2>target/advisories.log; then
+        cargo deny check --disable-fetch advisories
+    else
+        echo "advisories NOT CHECKED: their database cannot be reached (target/advisories.log)"
+    fi
+
 # Points per second of every operator, of cameras, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
     cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards

