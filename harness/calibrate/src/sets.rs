@@ -1,43 +1,10 @@
 //! Several sets of parameters for the same observations: which of them the network supports.
 
-use calibench_adjust::{Comparison, Interior, Network, Options, Significance, Solution, Status, adjust, compare};
+use calibench_adjust::{Comparison, Interior, Network, Options, Solution, Status, adjust, compare};
 use calibench_model::camera::Camera;
 use calibench_model::convert::{DifferenceOptions, difference};
 
-use super::{Calibration, CalibrationError};
-
-/// The adjustments of several sets.
-#[derive(Clone, Debug)]
-pub struct Compared {
-    /// In the order given.
-    pub sets: Vec<ComparedSet>,
-}
-
-/// A set and its adjustment.
-#[derive(Clone, Debug)]
-pub struct ComparedSet {
-    /// The parameters that are solved for.
-    pub names: Vec<String>,
-    /// What came out; or what the network does not determine, in words.
-    pub result: Result<SetResult, String>,
-    /// The largest other set that is a part of this one, and the test of what this one has more. `None` without such a set.
-    pub against: Option<(usize, Comparison)>,
-}
-
-/// What came out of a set.
-#[derive(Clone, Debug)]
-pub struct SetResult {
-    /// The estimated standard deviation of an image coordinate, px (that of unit weight times the a-priori one).
-    pub sigma0_px: f64,
-    /// Observations, unknowns.
-    pub counts: (usize, usize),
-    /// Akaike's criterion, corrected for few observations: the smaller is the better, its differences count.
-    pub aicc: f64,
-    /// Each parameter against zero, with its name (and its camera's, if there are several).
-    pub tests: Vec<(String, Significance)>,
-    /// How far its cameras lie from those of the calibration, after the best rotation: RMS and most over the frame, px; `None` where they cannot be compared.
-    pub change_px: Option<[f64; 2]>,
-}
+use crate::{Calibration, CalibrationError, Compared, ComparedSet, SetResult};
 
 /// Adjusts the observations of `calibration` once more for every set of parameters, from the same start values and without the image points that it
 /// rejected. What is in no set keeps its start value; observed parameters stay observed in every set.
@@ -57,6 +24,17 @@ pub fn compare_sets(calibration: &Calibration<'_>, sets: &[Vec<String>]) -> Resu
         against: against(index, sets, &solutions),
     };
     Ok(Compared { sets: (0..sets.len()).map(set).collect() })
+}
+
+impl Calibration<'_> {
+    /// Adjusts with other sets of parameters as well; report and summary then have a table of them.
+    ///
+    /// # Errors
+    /// As [`compare_sets`].
+    pub fn compare(&mut self, sets: &[Vec<String>]) -> Result<(), CalibrationError> {
+        self.compared = Some(compare_sets(self, sets)?);
+        Ok(())
+    }
 }
 
 /// The same network with other parameters solved for, of every camera.

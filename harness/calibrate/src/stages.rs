@@ -5,15 +5,24 @@ use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::convert::{ConvertOptions, Region};
 
 use super::start::Starts;
-use super::{Optics, Settings, Sight, Survey, model, network};
+use super::{CalibrationError, Optics, Settings, Sight, Survey, model, network};
 
 /// Iterations of a simpler model at most: its minimum need not be exact.
 const ITERATIONS: usize = 30;
 /// Circles over which models are fitted, as shares of the one that holds all image points.
 const CIRCLES: [f64; 4] = [1.0, 0.95, 0.9, 0.8];
 
+/// `starts` with cameras of the models of `settings`.
+pub(super) fn refined(survey: &Survey, owners: &[usize], starts: Starts, settings: &Settings) -> Result<Starts, CalibrationError> {
+    if let Some(better) = by_stages(survey, owners, &starts, settings) {
+        return Ok(better);
+    }
+    let cameras = starts.cameras.iter().zip(&settings.cameras).map(|(rough, optics)| model::camera(rough, optics));
+    Ok(Starts { cameras: cameras.collect::<Result<_, _>>()?, ..starts })
+}
+
 /// `starts` with the camera of `settings`, by way of a simpler model adjusted from their own; `None` where that is not needed or does not work.
-pub(super) fn by_stages(survey: &Survey, owners: &[usize], starts: &Starts, settings: &Settings) -> Option<Starts> {
+fn by_stages(survey: &Survey, owners: &[usize], starts: &Starts, settings: &Settings) -> Option<Starts> {
     let simpler: Vec<Option<Optics>> = settings.cameras.iter().zip(&starts.cameras).map(|(optics, rough)| simpler(optics, rough)).collect();
     if simpler.iter().all(Option::is_none) {
         return None;

@@ -8,7 +8,7 @@ use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye};
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
-use super::{CalibrationError, Optics, Settings, Survey, model, prior, stages};
+use super::{CalibrationError, Optics, Settings, Survey, model, prior};
 
 /// Height of control, as a share of its extent, below which it is a plane for start values.
 const FLAT: f64 = 1e-4;
@@ -34,7 +34,7 @@ pub(super) struct Starts {
     pub(super) points: Vec<Result<Point3<f64>, String>>,
 }
 
-/// Start values of a survey: from planes by Zhang's closed form, from control with depth by the direct linear transformation or the best of some usual
+/// Start values of a survey, with cameras that need not be of the model asked for: from planes by Zhang's closed form, from control with depth by the direct linear transformation or the best of some usual
 /// focal lengths; then resections and intersections in turn.
 pub(super) fn starts(survey: &Survey, owners: &[usize], settings: &Settings) -> Result<Starts, CalibrationError> {
     settings.cameras.iter().try_for_each(model::check)?;
@@ -52,14 +52,7 @@ pub(super) fn starts(survey: &Survey, owners: &[usize], settings: &Settings) -> 
         survey.images.iter().map(|image| prior::station(&settings.stations, image).map(|row| row.station.pose)).collect();
     let of_image: Vec<Camera> = owners.iter().map(|&owner| rough[owner]).collect();
     let (poses, points) = orient(survey, &of_image, known, &observed)?;
-    let starts = Starts { cameras: rough, origins, poses, points };
-    match stages::by_stages(survey, owners, &starts, settings) {
-        Some(better) => Ok(better),
-        None => {
-            let cameras = starts.cameras.iter().zip(&settings.cameras).map(|(rough, optics)| model::camera(rough, optics));
-            Ok(Starts { cameras: cameras.collect::<Result<_, _>>()?, ..starts })
-        }
-    }
+    Ok(Starts { cameras: rough, origins, poses, points })
 }
 
 /// A camera to find poses with, and where it comes from.

@@ -14,7 +14,18 @@ use super::frame::Frame;
 use super::halves::{Map, apart, halves, vectors};
 use super::holdout::{Squares, Unseen};
 use super::material::Material;
-use super::{Judged, Options, folds, lines};
+use super::{Options, lines};
+
+/// Up to so many photographs each is left out in turn; of more, a tenth at a time.
+const EACH: usize = 20;
+
+/// What came of an operator with a model.
+pub(super) struct Judged {
+    /// In the order of measures.
+    pub(super) rows: Vec<Row>,
+    /// The camera of all views, if they determine one.
+    pub(super) camera: Option<Camera>,
+}
 
 /// What one cell works on.
 struct Job<'a> {
@@ -184,4 +195,10 @@ fn principal(found: &Calibrated, place: &str) -> Vec<Row> {
         }
         None => vec![Row::without(measure::PRINCIPAL[0], place, "failed", "the camera does not picture its axis")],
     }
+}
+
+/// The views that are left out together.
+fn folds(views: &[usize]) -> Vec<Vec<usize>> {
+    let count = if views.len() <= EACH { views.len() } else { 10 };
+    (0..count).map(|fold| views.iter().copied().skip(fold).step_by(count).collect()).collect()
 }

@@ -11,6 +11,7 @@ mod halves;
 mod holdout;
 mod lines;
 mod material;
+mod options;
 
 #[cfg(test)]
 mod tests;
@@ -18,32 +19,12 @@ mod tests;
 use std::sync::Arc;
 
 use calibench_calibrate::choice::{HALF, ModelChoice};
-use calibench_model::camera::Camera;
 use calibench_records::judgement::{Row, measure};
 use rayon::prelude::*;
 use thiserror::Error;
 
 pub use material::{Corners, Material};
-
-/// Up to so many photographs each is left out in turn; of more, a tenth at a time.
-const EACH: usize = 20;
-
-/// How to judge.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// The camera models.
-    pub models: Vec<ModelChoice>,
-    /// Pixel pitch, um, for models in mm; [`NOMINAL_PITCH`](calibench_calibrate::choice::NOMINAL_PITCH) if not known.
-    pub pitch_um: Option<f64>,
-    /// How often the photographs are split into halves.
-    pub splits: u64,
-    /// The seed of the splits.
-    pub seed: u64,
-    /// The name under which the splits are drawn: the scenario's.
-    pub name: String,
-    /// A calibration that somebody published of these photographs.
-    pub published: Option<Camera>,
-}
+pub use options::Options;
 
 /// Why nothing can be judged.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -81,7 +62,8 @@ pub fn judge(material: &Material, options: &Options) -> Result<Vec<Row>, Judgeme
     let available = (0..material.operators.len()).filter(|&operator| material.operators[operator].unavailable.is_none());
     let jobs: Vec<(usize, &ModelChoice)> =
         available.flat_map(|operator| options.models.iter().map(move |model| (operator, model))).collect();
-    let cells: Vec<Judged> = jobs.par_iter().map(|&(operator, model)| cell::cell(material, &common, operator, model, options)).collect();
+    let cells: Vec<cell::Judged> =
+        jobs.par_iter().map(|&(operator, model)| cell::cell(material, &common, operator, model, options)).collect();
     let labels: Vec<Arc<str>> = jobs.iter().map(|(_, model)| model.label.as_str().into()).collect();
     for (place, cell) in cells.iter().enumerate() {
         let (operator, model) = (jobs[place].0, &labels[place]);
@@ -92,13 +74,6 @@ pub fn judge(material: &Material, options: &Options) -> Result<Vec<Row>, Judgeme
         rows.extend(beside.map(|row| row.by(&material.operators[operator].method, model)));
     }
     Ok(rows)
-}
-
-/// What came of an operator with a model.
-struct Judged {
-    rows: Vec<Row>,
-    /// The camera of all views, if they determine one.
-    camera: Option<Camera>,
 }
 
 /// What an operator measured, view by view, and each corner that it rejected.
@@ -120,10 +95,4 @@ fn corners(material: &Material, operator: usize, common: &[Vec<bool>]) -> Vec<Ro
     });
     let rows = material.views.iter().enumerate().map(view).chain(missed).chain(rejected);
     rows.map(|row| Row { method: corners.method.clone(), ..row }).collect()
-}
-
-/// The views that are left out together.
-fn folds(views: &[usize]) -> Vec<Vec<usize>> {
-    let count = if views.len() <= EACH { views.len() } else { 10 };
-    (0..count).map(|fold| views.iter().copied().skip(fold).step_by(count).collect()).collect()
 }

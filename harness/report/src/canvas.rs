@@ -12,6 +12,9 @@ use plotters::prelude::*;
 use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// Pictures with their file names.
+pub type Pictures = Vec<(String, Canvas)>;
+
 /// Colours that a colour-blind reader can tell apart (Okabe & Ito 2008), dark enough for white paper, in the order of use.
 pub const COLOURS: [RGBColor; 6] = [
     RGBColor(213, 94, 0),

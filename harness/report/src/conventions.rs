@@ -15,7 +15,8 @@ use serde::Deserialize;
 use super::canvas::Canvas;
 use super::field::{Field, plain};
 use super::markdown::MarkdownTable;
-use super::{PAGE, Places, ReportError};
+use super::{Places, ReportError};
+use crate::places::PAGE;
 
 /// The family of this report.
 pub const FAMILY: &str = "conventions";

@@ -1,6 +1,6 @@
 //! Photographs of a chessboard: the detector gives the starts, every method measures.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use calibench_exchange::{read_photo, write_png};
@@ -12,28 +12,11 @@ use rayon::prelude::*;
 
 use super::{Plan, RunError};
 
-fn folder(plan: &Plan<'_>, subject: &PhotographsSubject) -> PathBuf {
-    // An absolute folder replaces the data folder.
-    plan.data.join(&subject.folder)
-}
-
-/// Why the photographs cannot be measured, if so.
-pub(super) fn missing(plan: &Plan<'_>, subject: &PhotographsSubject) -> Option<String> {
-    if plan.detector.is_none() {
-        return Some("this build has no chessboard detector (it is built without OpenCV)".into());
-    }
-    let folder = folder(plan, subject);
-    let absent: Vec<&str> = subject.files.iter().map(String::as_str).filter(|file| !folder.join(file).is_file()).collect();
-    let first = absent.first()?;
-    // The folder's own path would differ from machine to machine.
-    Some(format!("{} of {} photographs are not in `{}`, {first} for one", absent.len(), subject.files.len(), subject.folder))
-}
-
 pub(super) fn run(plan: &Plan<'_>, subject: &PhotographsSubject, step: &(dyn Fn() + Sync)) -> Result<Trial, RunError> {
     if plan.missing().is_some() {
         return Ok(Trial::default());
     }
-    let folder = folder(plan, subject);
+    let folder = plan.folder_of(subject);
     let one = |file: &String| {
         let view = view(plan, subject, &folder.join(file), file);
         step();

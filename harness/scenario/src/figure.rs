@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::check::surroundings;
+use super::scene::surroundings;
 use super::section::Section;
 use super::views::ImagingTables;
 use super::wire::{Bits, Grey, GreyNoise, Phase, Pixels, bounded};

@@ -9,16 +9,11 @@ use calibench_calibrate::Calibration;
 use calibench_exchange::atomic::write_atomically;
 use calibench_model::camera::CameraModel;
 
+use super::limits::{BASIC, CORRELATED, DOUBTFUL};
 use super::{pictures, sets_page, tables};
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
-/// Correlations beyond this are flagged.
-pub(super) const CORRELATED: f64 = 0.9;
-/// A parameter that chance would make as large in more than this share of all cases is doubtful.
-pub(super) const DOUBTFUL: f64 = 0.05;
-/// Parameters of which a test against zero means nothing.
-pub(super) const BASIC: [&str; 9] = ["c", "f", "F", "fx", "fy", "x0", "y0", "cx", "cy"];
 /// Images and rejected points that a page names one by one.
 const MOST: usize = 200;
 

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use calibench_calibrate::{Compared, ComparedSet, SetResult};
 
-use super::page::{BASIC, DOUBTFUL};
-use super::tables::table;
+use super::csv::table;
+use super::limits::{BASIC, DOUBTFUL};
 use crate::markdown::MarkdownTable;
 use crate::plain;
 

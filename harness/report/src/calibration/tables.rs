@@ -7,8 +7,10 @@ use std::path::Path;
 use calibench_adjust::{Found, PointReliability, Significance, Use};
 use calibench_calibrate::Calibration;
 use calibench_exchange::atomic::write_atomically;
-use calibench_exchange::{ControlRow, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control, write_table};
+use calibench_exchange::{ControlRow, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control};
 use calibench_model::camera::CameraModel;
+
+use super::csv::table;
 
 /// Writes all tables into `folder`.
 pub(super) fn write(calibration: &Calibration<'_>, folder: &Path) -> io::Result<()> {
@@ -21,10 +23,6 @@ pub(super) fn write(calibration: &Calibration<'_>, folder: &Path) -> io::Result<
     stations(calibration, &folder.join("stations.csv"))?;
     let rows = object_points(calibration);
     write_atomically(&folder.join("points.csv"), |file| write_control(file, &rows))
-}
-
-pub(super) fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
-    write_atomically(path, |file| write_table(file, columns, rows))
 }
 
 fn texts<const N: usize>(values: Option<[f64; N]>) -> Vec<String> {

@@ -3,7 +3,7 @@
 use calibench_records::results::Group;
 use calibench_records::statistics::running::Running;
 
-use super::load::{Summaries, Summary};
+use crate::load::adjustments::{Summaries, Summary};
 use crate::published::{Cell, Metric};
 
 /// Our figure for a cell.

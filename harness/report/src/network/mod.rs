@@ -1,23 +1,18 @@
 //! Adjustments within a run, in a report: published tables, every method, sets of parameters, the network and its residuals.
 
 mod figure;
-mod load;
 mod pictures;
 mod published;
 mod sweep;
 mod tables;
 
-pub use load::{Summaries, load};
 pub use published::section as published;
 pub use sweep::section as sweep;
 
 use calibench_scenario::Subject;
 
-use super::canvas::Canvas;
 use super::load::Loaded;
-
-/// Pictures with their file names.
-pub type Pictures = Vec<(String, Canvas)>;
+use crate::canvas::{Canvas, Pictures};
 
 /// The text of a calibrated scenario and its pictures, whose names begin with `stem`; `None` for a scenario without adjustments.
 pub fn section(loaded: &Loaded, stem: &str, illustrated: bool) -> Option<(String, Pictures)> {

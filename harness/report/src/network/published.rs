@@ -1,7 +1,7 @@
 //! Published tables of adjustments beside ours: one run, and the mean of all.
 
 use super::figure::{Ours, ours};
-use super::load::Summaries;
+use crate::load::adjustments::Summaries;
 use crate::markdown::MarkdownTable;
 use crate::published::{Cell, Printed, Table, Verdict};
 

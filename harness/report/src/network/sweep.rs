@@ -4,11 +4,11 @@ use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
 use calibench_scenario::Subject;
 
-use super::Pictures;
-use super::load::{Summaries, Summary, load};
 use super::pictures::floor::{Curve, floor};
 use super::tables::with_half;
 use crate::LoadError;
+use crate::canvas::Pictures;
+use crate::load::adjustments::{Summaries, Summary, load};
 use crate::markdown::{MarkdownTable, fixed};
 use crate::sweep::LoadedSweep;
 

@@ -2,8 +2,8 @@
 
 use calibench_records::results::Group;
 
-use super::load::{Summaries, Summary};
 use crate::field::plain;
+use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::{MarkdownTable, fixed};
 
 /// Every method: reported standard deviations, true errors and their reduction factors.

@@ -5,10 +5,10 @@ use plotters::style::text_anchor::HPos;
 
 use super::axes::{Places, Scale};
 use super::layout::{At, Dimension, Layout, title, value};
-use super::load::LoadedSweep;
 use super::metric::Estimate;
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::field::{Area, write};
+use crate::load::sweep::LoadedSweep;
 
 /// The inside of a panel, px of the picture.
 const PANEL: (u32, u32) = (500, 360);

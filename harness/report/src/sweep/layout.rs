@@ -3,9 +3,9 @@
 use calibench_diagnostics::nearest;
 use thiserror::Error;
 
-use super::load::LoadedSweep;
 use super::metric::{Estimate, Metric};
 use super::units;
+use crate::load::sweep::LoadedSweep;
 
 /// Something that varies in a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

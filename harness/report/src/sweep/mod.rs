@@ -3,16 +3,15 @@
 mod axes;
 mod curves;
 mod layout;
-mod load;
 mod map;
 mod metric;
 mod numbers;
 mod section;
 mod units;
 
+pub use crate::load::sweep::{LoadedMethod, LoadedSweep, load, load_with};
 pub use curves::curves;
 pub use layout::{Choice, Dimension, Layout, LayoutError};
-pub use load::{LoadedMethod, LoadedSweep, load, load_with};
 pub use map::map;
 pub use metric::{Estimate, Metric};
 pub use numbers::write_numbers;

@@ -5,7 +5,7 @@ use std::io::Write;
 use calibench_records::score::Score;
 
 use super::layout::{Dimension, Layout};
-use super::load::LoadedSweep;
+use crate::load::sweep::LoadedSweep;
 
 /// Writes what a plot shows as CSV, one row a point: the value of each swept key, method, figure, its 95 % interval, points and trials.
 ///

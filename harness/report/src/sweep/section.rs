@@ -2,9 +2,9 @@
 
 use super::curves::curves;
 use super::layout::{Choice, Layout};
-use super::load::LoadedSweep;
 use super::metric::Metric;
 use crate::canvas::Canvas;
+use crate::load::sweep::LoadedSweep;
 use crate::markdown::{MarkdownTable, fixed};
 
 /// In what a run was not the scenario of the file.

@@ -2,7 +2,7 @@
 
 use calibench_records::score::Pooled;
 
-use super::{OPERATOR, Part};
+use super::part::{OPERATOR, Part};
 use crate::markdown::{MarkdownTable, fixed, signed};
 use crate::sweep::{Choice, Layout, LoadedSweep, Metric, curves};
 

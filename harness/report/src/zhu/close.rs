@@ -2,7 +2,7 @@
 
 use calibench_model::PixelPoint;
 
-use super::{OPERATOR, Part};
+use super::part::{OPERATOR, Part};
 use crate::canvas::COLOURS;
 use crate::figures::{Layer, MarkAt, Panel, panels};
 use crate::load::Loaded;

@@ -3,6 +3,7 @@
 
 mod bias;
 mod close;
+mod part;
 mod precision;
 mod surface;
 
@@ -12,9 +13,6 @@ use super::sweep::LoadedSweep;
 
 /// The family of the report.
 pub const FAMILY: &str = "zhu-2007";
-
-/// The operator of the paper, whatever its settings.
-const OPERATOR: &str = "harris_paraboloid";
 
 /// Its sections and pictures, as far as the records of the scenarios are there.
 pub fn section(plain: &[&Loaded], swept: &[&LoadedSweep]) -> (String, Vec<(String, Canvas)>) {
@@ -33,6 +31,3 @@ pub fn section(plain: &[&Loaded], swept: &[&LoadedSweep]) -> (String, Vec<(Strin
     }
     (text, pictures)
 }
-
-/// A section and the picture that it shows.
-type Part = (String, Option<(String, Canvas)>);

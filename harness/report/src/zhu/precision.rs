@@ -7,7 +7,7 @@ use calibench_measure::strength_noise::strength_covariance;
 use calibench_model::{Image, PixelPoint, Start};
 use calibench_records::score::Errors;
 
-use super::{OPERATOR, Part};
+use super::part::{OPERATOR, Part};
 use crate::load::Loaded;
 use crate::markdown::{MarkdownTable, fixed};
 use crate::scene_figures::targets;

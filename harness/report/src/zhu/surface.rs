@@ -6,7 +6,7 @@ use calibench_measure::paraboloid::Paraboloid;
 use calibench_model::{PixelPoint, Start};
 use plotters::prelude::*;
 
-use super::{OPERATOR, Part};
+use super::part::{OPERATOR, Part};
 use crate::canvas::{Canvas, Mark};
 use crate::field::shade;
 use crate::figures::Layer;

@@ -5,32 +5,16 @@
 mod adjustment;
 mod angles;
 mod check;
+mod job;
 mod observe;
 
-use calibench_model::camera::Camera;
-use calibench_model::{Pose, Testfield};
+use calibench_model::Pose;
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, PointResult};
-use calibench_scenario::{Calibration, Unit};
-use calibench_synth::stations::Station;
 
 pub use adjustment::{Adjusted, Wanted, adjusted, resections};
+pub use job::Job;
 pub use observe::{ImagePoint, Observed, draw, observe};
-
-/// What is true, and what the scenario says of the adjustment.
-#[derive(Clone, Copy)]
-pub struct Job<'a> {
-    /// What to do.
-    pub calibration: &'a Calibration,
-    /// The wall as it is, with its coordinates as surveyed.
-    pub field: &'a Testfield,
-    /// The object unit.
-    pub unit: Unit,
-    /// The true camera.
-    pub camera: &'a Camera,
-    /// The true poses.
-    pub stations: &'a [Station],
-}
 
 /// Adjusts what each of `methods` measured in the trial of `key`: every set of parameters, the first with the second step.
 pub fn calibrate(job: &Job<'_>, points: &[PointResult], methods: &[usize], key: Key<'_>) -> Vec<Calibrated> {

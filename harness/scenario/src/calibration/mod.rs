@@ -2,10 +2,11 @@
 
 use calibench_diagnostics::Problem;
 use calibench_measure::Configured;
+use calibench_model::Testfield;
 use calibench_model::camera::{Camera, CameraModel, Photogrammetric};
+use calibench_synth::stations::Station;
 use toml::Spanned;
 
-use super::ViewsSubject;
 use super::section::Section;
 
 pub mod wire;
@@ -66,34 +67,31 @@ pub struct CheckPlan {
     pub points: Vec<usize>,
 }
 
-/// Reads the table into `views`; `methods` are those of the scenario.
-pub fn attach(
-    section: Option<Section<'_>>,
-    views: ViewsSubject,
-    methods: &[Configured],
-    problems: &mut Vec<Problem>,
-) -> Option<ViewsSubject> {
-    match section {
-        None => Some(views),
-        Some(section) => {
-            let calibration = read(section, &views, methods, problems)?;
-            Some(ViewsSubject { calibration: Some(calibration), ..views })
-        }
-    }
+/// What the table is about.
+pub struct Seen<'a> {
+    /// The true camera.
+    pub camera: &'a Camera,
+    /// The testfield.
+    pub field: &'a Testfield,
+    /// The stations.
+    pub stations: &'a [Station],
+    /// Are the stations others in each trial?
+    pub redrawn: bool,
 }
 
-fn read(mut section: Section<'_>, views: &ViewsSubject, methods: &[Configured], problems: &mut Vec<Problem>) -> Option<Calibration> {
+/// Reads the table of a scenario of `views`; `methods` are those of the scenario.
+pub fn read(mut section: Section<'_>, views: &Seen<'_>, methods: &[Configured], problems: &mut Vec<Problem>) -> Option<Calibration> {
     let (span, before) = (section.span.clone(), problems.len());
     let check = section.take_table("check", "[calibration.check]", problems);
     let wire: Option<CalibrationWire> = section.read(&["check"], problems);
     let check = check.map(|section| read_check(section, views, problems));
     let wire = wire?;
-    let Camera::Photogrammetric(truth) = views.camera else {
+    let Camera::Photogrammetric(truth) = *views.camera else {
         let problem = Problem::new(span, "[calibration] needs a camera of the photogrammetric model");
         problems.push(problem.help("write its `size`, `pitch` and `c` out, or convert its file"));
         return None;
     };
-    if views.redraw.is_some() {
+    if views.redrawn {
         problems.push(Problem::new(span, "[calibration] with stations that are drawn anew in each trial: expected the same in all"));
     }
     let sets = sets(&wire.sets, &truth, problems);
@@ -168,7 +166,7 @@ fn drawn_sigmas(
 /// The fewest control points of the second step: a resection takes as many.
 const LEAST_CONTROL: usize = 4;
 
-fn read_check(section: Section<'_>, views: &ViewsSubject, problems: &mut Vec<Problem>) -> Option<CheckPlan> {
+fn read_check(section: Section<'_>, views: &Seen<'_>, problems: &mut Vec<Problem>) -> Option<CheckPlan> {
     let before = problems.len();
     let wire: CheckWire = section.read(&[], problems)?;
     let stations: Vec<&str> = views.stations.iter().map(|station| station.name.as_str()).collect();

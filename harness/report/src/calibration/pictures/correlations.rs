@@ -4,7 +4,7 @@ use calibench_calibrate::Calibration;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::super::page::CORRELATED;
+use super::super::limits::CORRELATED;
 use crate::Canvas;
 use crate::field::write;
 

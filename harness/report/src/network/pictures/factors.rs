@@ -5,7 +5,7 @@ use plotters::prelude::*;
 
 use super::axes::{Axes, upright, whisker};
 use crate::canvas::{COLOURS, Canvas, Mark};
-use crate::network::load::Summaries;
+use crate::load::adjustments::Summaries;
 
 const BAR: i32 = 18;
 

@@ -8,7 +8,7 @@ use plotters::style::text_anchor::HPos;
 use super::axes::{Axes, whisker};
 use crate::canvas::{COLOURS, Canvas, METHOD_MARKS};
 use crate::field::write;
-use crate::network::load::Summaries;
+use crate::load::adjustments::Summaries;
 
 const WIDTH: i32 = 1100;
 const PANEL: i32 = 150;

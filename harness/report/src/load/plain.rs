@@ -1,4 +1,4 @@
-//! Records, read for a report.
+//! The records of a scenario without a sweep.
 
 use std::fs::File;
 use std::io::{self, BufReader};
@@ -7,16 +7,15 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::read_photo;
 use calibench_measure::Registry;
 use calibench_model::Image;
-use calibench_records::RecordError;
-use calibench_records::names::kept_image;
-use calibench_records::names::{RECORDS, SCENARIO};
+use calibench_records::names::{RECORDS, SCENARIO, kept_image};
 use calibench_records::points::{RecordHead, read_records};
 use calibench_records::results::Trial;
-use calibench_records::score::{Groups, Scores};
-use calibench_scenario::{Scenario, Subject};
-use thiserror::Error;
+use calibench_records::score::Scores;
+use calibench_scenario::Scenario;
 
-use super::network::Summaries;
+use super::LoadError;
+use super::adjustments::{self, Summaries};
+use super::groups::groups;
 
 /// All that a report needs of one scenario. Its size does not grow with the number of trials.
 pub struct Loaded {
@@ -32,33 +31,6 @@ pub struct Loaded {
     pub calibrations: Option<Summaries>,
     /// Where the images of the first trial are.
     pub folder: PathBuf,
-}
-
-/// Records that cannot be read.
-#[derive(Debug, Error)]
-pub enum LoadError {
-    /// There are none.
-    #[error("no records of `{0}`: run it first with `calibench run {0}`")]
-    None(String),
-    /// A file that cannot be read.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// Which.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A file that is not what it should be.
-    #[error("{}: {source}", path.display())]
-    Records {
-        /// Which.
-        path: PathBuf,
-        /// What is wrong.
-        source: RecordError,
-    },
-    /// The scenario as it was run no longer passes the checks.
-    #[error("{0}\nthese records are of an older scenario format: run the scenario again")]
-    Scenario(#[from] calibench_diagnostics::Problems),
 }
 
 /// Reads the records of scenario `name` below the records folder.
@@ -85,21 +57,8 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
     });
     let head = head.map_err(|source| LoadError::Records { path, source })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
-    let calibrations = super::network::load(&folder)?;
+    let calibrations = adjustments::load(&folder)?;
     Ok(Loaded { calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
-}
-
-/// More targets than this are scored by kind.
-pub const MOST_TARGETS: usize = 24;
-
-/// The kinds of a testfield's targets, if there are too many to be listed one by one.
-pub(super) fn groups(scenario: &Scenario) -> Groups {
-    match &scenario.subject {
-        Subject::Views(views) if views.field.targets.len() > MOST_TARGETS => {
-            views.field.targets.iter().map(|target| (target.id.as_str().into(), target.kind.name().into())).collect()
-        }
-        _ => Groups::new(),
-    }
 }
 
 /// The names of all scenarios that have records, those of files elsewhere (`local/...`) among them.

@@ -12,7 +12,7 @@ use calibench_records::score::{Score, Scores};
 use calibench_scenario::{Scenario, Sweep};
 
 use crate::LoadError;
-use crate::load::groups;
+use crate::load::groups::groups;
 
 /// All that reports and plots need of a sweep. Its size does not grow with the number of trials.
 pub struct LoadedSweep {

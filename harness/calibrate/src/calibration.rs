@@ -1,0 +1,80 @@
+//! The adjustment of a network, and its quality.
+
+use calibench_adjust::{Covariances, Found, Options, Reliability, Snooping, Solution, Test, Variance, adjust, snoop};
+use calibench_model::camera::Camera;
+
+use crate::{CalibrationError, Compared, Prepared};
+
+/// Iterations at most: parameters that do nearly the same, as xi and k1 of an omnidirectional camera, approach their minimum slowly.
+const ITERATIONS: usize = 1000;
+
+/// A calibration and its quality.
+#[derive(Clone, Debug)]
+pub struct Calibration<'n> {
+    /// What was adjusted.
+    pub prepared: &'n Prepared,
+    /// The result.
+    pub solution: Solution<'n>,
+    /// Image points that were rejected, if they were looked for.
+    pub found: Vec<Found>,
+    /// Covariances, with the estimated variance factor where there is redundancy.
+    pub covariances: Covariances,
+    /// Redundancy numbers and tests of the image points; `None` if the test cannot be made for want of redundancy.
+    pub reliability: Option<Reliability>,
+    /// The same observations with other sets of parameters; `None` until [`Calibration::compare`].
+    pub compared: Option<Compared>,
+}
+
+impl Prepared {
+    /// Adjusts.
+    ///
+    /// # Errors
+    /// What the network does not determine, by name; what else [`adjust`] refuses.
+    pub fn adjust(&self) -> Result<Calibration<'_>, CalibrationError> {
+        let options = Options { huber: self.settings.huber, most_iterations: ITERATIONS, ..Options::default() };
+        let test = Test { variance: self.settings.tested(), ..Test::default() };
+        let (solution, found) = if self.settings.snoop {
+            snoop(&self.network, &options, Snooping { test, ..Snooping::default() })?
+        } else {
+            (adjust(&self.network, &options)?, Vec::new())
+        };
+        let checked = solution.counts().redundancy() > 0;
+        let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
+        let reliability = if checked { Some(solution.reliability(test)?) } else { None };
+        Ok(Calibration { prepared: self, solution, found, covariances, reliability, compared: None })
+    }
+}
+
+impl Calibration<'_> {
+    /// The interior orientation of a camera.
+    pub fn camera(&self, index: usize) -> &Camera {
+        &self.solution.cameras()[index]
+    }
+
+    /// How many cameras there are.
+    pub fn cameras(&self) -> usize {
+        self.solution.cameras().len()
+    }
+
+    /// The name of a camera.
+    pub fn name_of(&self, camera: usize) -> &str {
+        &self.prepared.settings.cameras[camera].name
+    }
+
+    /// A parameter's name; with its camera's if there are several.
+    pub fn parameter_name(&self, &(camera, name): &(usize, &'static str)) -> String {
+        if self.cameras() > 1 { format!("{}.{name}", self.name_of(camera)) } else { name.to_owned() }
+    }
+
+    /// The camera of an image.
+    pub fn owner(&self, image: usize) -> usize {
+        self.prepared.network.images[image].camera
+    }
+
+    /// Root mean square of the residuals in use, px: `sqrt(mean(vx^2 + vy^2))`.
+    pub fn rms_px(&self) -> f64 {
+        let used = self.solution.residuals().into_iter().filter(|r| r.used != calibench_adjust::Use::LeftOut).filter_map(|r| r.v);
+        let (sum, count) = used.fold((0.0, 0), |(sum, count), [x, y]| (sum + x * x + y * y, count + 1));
+        (sum / f64::from(count.max(1))).sqrt()
+    }
+}

@@ -1,0 +1,45 @@
+//! How to calibrate.
+
+use calibench_adjust::Variance;
+use calibench_exchange::ObservedStation;
+
+use crate::{DatumChoice, Optics};
+
+/// How to calibrate.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The cameras: at least one.
+    pub cameras: Vec<Optics>,
+    /// What fixes the frame of the object.
+    pub datum: DatumChoice,
+    /// Bound of Huber's weights, in standard deviations.
+    pub huber: Option<f64>,
+    /// Leave out what Baarda's test rejects?
+    pub snoop: bool,
+    /// A-priori standard deviation of an image coordinate, px; `None` for [`USUAL_SIGMA`], about which nothing is known but its order of magnitude.
+    pub sigma_px: Option<f64>,
+    /// Weigh image points by their own covariances, where they have them?
+    pub covariances: bool,
+    /// Poses that were observed, or parts of them.
+    pub stations: Vec<ObservedStation>,
+}
+
+/// The a-priori standard deviation of an image coordinate where none is given, px.
+pub const USUAL_SIGMA: f64 = 0.1;
+
+impl Settings {
+    /// The usual ones for some cameras, at least one.
+    pub fn new(cameras: Vec<Optics>) -> Self {
+        Self { cameras, datum: DatumChoice::Control, huber: None, snoop: false, sigma_px: None, covariances: false, stations: Vec::new() }
+    }
+
+    /// The a-priori standard deviation of an image coordinate, px.
+    pub fn sigma(&self) -> f64 {
+        self.sigma_px.unwrap_or(USUAL_SIGMA)
+    }
+
+    /// Whose variance factor tests and standard deviations take: the a-priori one means something only if the user stated it.
+    pub(crate) fn tested(&self) -> Variance {
+        if self.sigma_px.is_some() { Variance::Apriori } else { Variance::Estimated }
+    }
+}

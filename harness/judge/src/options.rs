@@ -1,0 +1,21 @@
+//! How to judge.
+
+use calibench_calibrate::choice::ModelChoice;
+use calibench_model::camera::Camera;
+
+/// How to judge.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The camera models.
+    pub models: Vec<ModelChoice>,
+    /// Pixel pitch, um, for models in mm; [`NOMINAL_PITCH`](calibench_calibrate::choice::NOMINAL_PITCH) if not known.
+    pub pitch_um: Option<f64>,
+    /// How often the photographs are split into halves.
+    pub splits: u64,
+    /// The seed of the splits.
+    pub seed: u64,
+    /// The name under which the splits are drawn: the scenario's.
+    pub name: String,
+    /// A calibration that somebody published of these photographs.
+    pub published: Option<Camera>,
+}

@@ -1,0 +1,12 @@
+//! Records, read for reports.
+
+pub mod adjustments;
+mod error;
+mod groups;
+mod plain;
+pub mod sweep;
+
+pub use error::LoadError;
+pub use groups::MOST_TARGETS;
+pub use plain::{Loaded, load, recorded};
+pub use sweep::{LoadedMethod, LoadedSweep};

@@ -1,0 +1,124 @@
+//! The page of a report.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use calibench_scenario::{Scenario, Subject};
+
+use crate::places::PAGE;
+use crate::{Canvas, LoadError, Loaded, network, photographs, scene_figures, scores_section, sweep};
+
+/// A page with its pictures, filled section by section.
+pub struct Page {
+    /// Scenarios that a published table of adjustments stands on: they are shown in pictures.
+    pub illustrated: Vec<String>,
+    pub text: String,
+    /// Are there tables of scores?
+    scored: bool,
+    pub pictures: Vec<(String, Canvas)>,
+}
+
+impl Page {
+    pub fn new(family: &str) -> Self {
+        let text = format!(
+            "# {family}\n\nMade by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. \
+             Some of the methods compared here are our own, `forstner` and `harris_paraboloid` among them: each gets the same images, the same starts and the same score.\n\n"
+        );
+        Self { illustrated: Vec::new(), text, scored: false, pictures: Vec::new() }
+    }
+
+    /// The heading of a scenario; the stem of its pictures' names.
+    fn head(&mut self, scenario: &Scenario, deviations: &str) -> String {
+        self.text.push_str(&format!(
+            "## Scenario `{}`\n\n{}\n\nSource: {}.\n\n",
+            scenario.name,
+            scenario.why.trim(),
+            scenario.source.trim_end_matches('.')
+        ));
+        self.text.push_str(deviations);
+        for note in &scenario.notes {
+            self.text.push_str(&format!("- {}\n", note.split_whitespace().collect::<Vec<_>>().join(" ")));
+        }
+        if !scenario.notes.is_empty() {
+            self.text.push('\n');
+        }
+        scenario.name.split_once('/').map_or(scenario.name.as_str(), |(_, rest)| rest).replace('/', "-")
+    }
+
+    pub fn sweep(&mut self, loaded: &sweep::LoadedSweep, printed: &[(String, f64)]) -> Result<(), LoadError> {
+        // The points of adjusted scenarios are those of the first trial: how many there were is in their tables.
+        let deviations = if loaded.scenario.is_adjusted() { String::new() } else { sweep::deviations(loaded) };
+        let stem = self.head(&loaded.scenario, &deviations);
+        if let Some((text, pictures)) = network::sweep(loaded, &stem, printed)? {
+            self.text.push_str(&text);
+            self.pictures.extend(pictures);
+            return Ok(());
+        }
+        let (text, picture) = sweep::section(loaded, &stem);
+        self.text.push_str(&text);
+        self.pictures.extend(picture.map(|picture| (format!("{stem}.png"), picture)));
+        Ok(())
+    }
+
+    pub fn scenario(&mut self, loaded: &Loaded) {
+        let scenario = &loaded.scenario;
+        let stem = self.head(scenario, &deviations(loaded));
+        if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&scenario.name)) {
+            self.text.push_str(&text);
+            self.pictures.extend(pictures);
+            return;
+        }
+        match &scenario.subject {
+            Subject::Photographs(_) => {
+                let (text, pictures) = photographs::section(loaded);
+                self.text.push_str(&text);
+                self.pictures.extend(pictures);
+            }
+            Subject::Scene(_) | Subject::Views(_) => {
+                self.scored = true;
+                self.text.push_str(&scores_section::section(loaded));
+                self.text.push('\n');
+                if let Some((overview, panels)) = scene_figures::figures(loaded) {
+                    self.text.push_str(&format!(
+                        "The image of the first trial with truth, approximate positions and the results of one method, and 11 x 11 px around each target, enlarged 28 times, with all results:\n\n\
+                         ![Image, approximations and truth]({stem}.png)\n\n![Each target with all results]({stem}-targets.png)\n\n"
+                    ));
+                    self.pictures.push((format!("{stem}.png"), overview));
+                    self.pictures.push((format!("{stem}-targets.png"), panels));
+                }
+            }
+        }
+    }
+
+    pub fn write(&self, folder: &Path) -> io::Result<()> {
+        for (name, picture) in &self.pictures {
+            picture.write(&folder.join(name))?;
+        }
+        let legend = if self.scored { format!("\n\n{}", scores_section::legend()) } else { "\n".to_owned() };
+        let text = self.text.trim_end().to_owned() + &legend;
+        fs::write(folder.join(PAGE), text)
+    }
+}
+
+/// In what a run was not the scenario of the file: other trials, seed or methods.
+fn deviations(loaded: &Loaded) -> String {
+    let (scenario, head) = (&loaded.scenario, &loaded.head);
+    if loaded.unavailable().is_some() {
+        return String::new();
+    }
+    let mut found = Vec::new();
+    let trials = loaded.calibrations.as_ref().map_or(loaded.scores.trials, |found| found.trials);
+    if trials != scenario.trials {
+        found.push(format!("{trials} trials in place of {}", scenario.trials));
+    }
+    if head.run.seed != scenario.seed {
+        found.push(format!("seed {} in place of {}", head.run.seed, scenario.seed));
+    }
+    let has = |label: &str| head.methods.iter().any(|method| &*method.label == label);
+    let methods = scenario.methods.iter().filter(|method| !has(&method.label)).count();
+    if methods > 0 || head.methods.len() != scenario.methods.len() {
+        found.push("other methods".to_owned());
+    }
+    if found.is_empty() { String::new() } else { format!("**Not the scenario as its file says: {}.**\n\n", found.join(", ")) }
+}

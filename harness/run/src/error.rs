@@ -1,0 +1,47 @@
+//! Why a run cannot be completed.
+
+use calibench_exchange::PhotoError;
+use calibench_synth::optics::OpticsError;
+use calibench_synth::sensor::SensorError;
+use calibench_synth::stations::StationError;
+use calibench_synth::view::ViewError;
+use thiserror::Error;
+
+/// A run that cannot be completed.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// A photograph that is there and cannot be read, or an image that cannot be written.
+    #[error(transparent)]
+    Photo(#[from] PhotoError),
+    /// Photographs are not rendered.
+    #[error("the scenario is of photographs: there is nothing to render; expected one with [scene] or [testfield]")]
+    NothingToRender,
+    /// A station that the scenario does not have.
+    #[error("no station is called `{name}`; expected one of {known}")]
+    NoStation {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// A view that cannot be pictured.
+    #[error("station `{station}`: {source}")]
+    View {
+        /// From where.
+        station: String,
+        /// Why.
+        source: ViewError,
+    },
+    /// Stations of a trial that see too little.
+    #[error(transparent)]
+    Station(#[from] StationError),
+    /// A lens that cannot be.
+    #[error(transparent)]
+    Optics(#[from] OpticsError),
+    /// An image that the sensor cannot write.
+    #[error(transparent)]
+    Sensor(#[from] SensorError),
+    /// Results that cannot be written.
+    #[error("{0}")]
+    Output(#[from] std::io::Error),
+}

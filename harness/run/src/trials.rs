@@ -1,0 +1,64 @@
+//! All trials of a plan, in their order.
+
+use calibench_records::results::Trial;
+use calibench_scenario::Subject;
+use rayon::prelude::*;
+
+use super::{Plan, RunError, photographs, scene, views};
+
+/// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
+const BATCH: u64 = 32;
+
+impl Plan<'_> {
+    /// How many steps [`Plan::run`] reports.
+    pub fn steps(&self) -> u64 {
+        match &self.scenario.subject {
+            Subject::Scene(_) | Subject::Views(_) => self.trials,
+            Subject::Photographs(photographs) => photographs.files.len() as u64,
+        }
+    }
+
+    /// Runs all trials and hands them to `sink` in their order; `step` is called after each step, on any thread.
+    ///
+    /// # Errors
+    /// Photographs that cannot be read, or what `sink` returns.
+    pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
+        match &self.scenario.subject {
+            Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
+            Subject::Scene(subject) => {
+                let prepared = scene::Prepared::new(self, subject)?;
+                self.trials(step, sink, &|number| scene::run_trial(self, &prepared, number))
+            }
+            Subject::Views(subject) => {
+                // Drawn coordinates are those of no image.
+                let drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
+                let bounds = if self.bounds && !drawn { views::bounds(self, subject)? } else { None };
+                // Stations that are drawn anew have their bounds in each trial.
+                let fixed = bounds.as_ref().filter(|_| subject.redraw.is_none());
+                let prepared = views::Prepared::with_bounds(subject, fixed)?;
+                self.trials(step, sink, &|number| views::run_trial(self, &prepared, bounds.as_ref(), number))
+            }
+        }
+    }
+
+    /// Runs trials in batches and hands them on in their order.
+    fn trials(
+        &self,
+        step: &(dyn Fn() + Sync),
+        sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
+        trial: &(dyn Fn(u64) -> Result<Trial, RunError> + Sync),
+    ) -> Result<(), RunError> {
+        for first in (0..self.trials).step_by(BATCH as usize) {
+            let batch = first..(first + BATCH).min(self.trials);
+            let counted = |number| {
+                let trial = trial(number);
+                step();
+                trial
+            };
+            for trial in batch.into_par_iter().map(counted).collect::<Result<Vec<_>, _>>()? {
+                sink(trial)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,69 @@
+//! A checked scenario.
+
+use calibench_measure::Configured;
+
+use crate::{Phase, Subject, Sweep};
+
+/// A checked scenario.
+pub struct Scenario {
+    /// Its name: its path below the scenario folder without `.toml`.
+    pub name: String,
+    /// What it is to show.
+    pub why: String,
+    /// Where it comes from.
+    pub source: String,
+    /// What is to be known when its figures are read.
+    pub notes: Vec<String>,
+    /// The seed of all its random numbers.
+    pub seed: u64,
+    /// How many trials.
+    pub trials: u64,
+    /// The methods, with distinct labels.
+    pub methods: Vec<Configured>,
+    /// Side of the window to which the Cramér-Rao bound belongs, px.
+    pub bound_window: usize,
+    /// What is measured.
+    pub subject: Subject,
+    /// Its sweep, if it has one; all else is then that of the first cell.
+    pub sweep: Option<Sweep>,
+    /// The text of its file.
+    pub text: String,
+}
+
+impl Scenario {
+    /// Is there nothing random in it? Its figures are then the same in every trial and for every seed.
+    pub fn is_deterministic(&self) -> bool {
+        match &self.subject {
+            Subject::Scene(scene) => {
+                let still = scene.phase == Phase::Fixed && scene.starts.are_fixed();
+                still && scene.grey_noise == 0.0 && !scene.imaging.is_random()
+            }
+            Subject::Views(views) => {
+                let still = views.calibration.as_ref().is_none_or(|calibration| !calibration.is_random());
+                still && views.hand.sigma == 0.0 && views.redraw.is_none() && !views.imaging.is_random()
+            }
+            Subject::Photographs(_) => true,
+        }
+    }
+
+    /// Is the truth of its points known?
+    pub fn has_truth(&self) -> bool {
+        !matches!(self.subject, Subject::Photographs(_))
+    }
+
+    /// Do its points go through an adjustment?
+    pub fn is_adjusted(&self) -> bool {
+        matches!(&self.subject, Subject::Views(views) if views.calibration.is_some())
+    }
+
+    /// The pixel pitch of the adjusted camera, um.
+    pub fn pitch_um(&self) -> Option<f64> {
+        let Subject::Views(views) = &self.subject else { return None };
+        views.calibration.as_ref().map(|calibration| calibration.start.pitch_um)
+    }
+
+    /// The part of the name before the first `/`: the folder, and the report.
+    pub fn family(&self) -> &str {
+        self.name.split('/').next().unwrap_or(&self.name)
+    }
+}

@@ -1,0 +1,139 @@
+//! What a scenario measures.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+use calibench_measure::Board;
+use calibench_model::camera::Camera;
+use calibench_model::{PixelPoint, Scene, Testfield};
+use calibench_random::Key;
+use calibench_synth::optics::OpticsError;
+use calibench_synth::pointing::Hand;
+use calibench_synth::raster::Renderer;
+use calibench_synth::stations::{Station, StationError};
+
+use crate::{Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, StationPlan, Unit};
+
+/// What a scenario measures.
+pub enum Subject {
+    /// A rendered scene, whose truth is known.
+    Scene(Box<SceneSubject>),
+    /// Views of a testfield, whose truth is known.
+    Views(Box<ViewsSubject>),
+    /// Photographs, of which no truth is known.
+    Photographs(PhotographsSubject),
+}
+
+/// A rendered scene and how its images come about.
+pub struct SceneSubject {
+    /// The scene of phase zero.
+    pub scene: Scene,
+    /// Where measuring starts.
+    pub starts: Starts,
+    /// How the scene becomes pixels.
+    pub pixels: Pixels,
+    /// Quantisation.
+    pub bits: Option<u32>,
+    /// Standard deviation of the grey-value noise, fraction of full scale.
+    pub grey_noise: f64,
+    /// Where the scene lies on the pixel grid.
+    pub phase: Phase,
+    /// Lens and sensor.
+    pub imaging: Imaging,
+}
+
+impl SceneSubject {
+    /// What renders its images.
+    ///
+    /// # Errors
+    /// Optics that are out of range.
+    pub fn renderer(&self) -> Result<Renderer, OpticsError> {
+        self.imaging.renderer(self.scene.width, self.scene.height)
+    }
+
+    /// Is the image to be kept with 16 bits?
+    pub fn is_deep(&self) -> bool {
+        if self.imaging.sensor.is_some() { self.imaging.is_deep() } else { self.bits.is_none_or(|bits| bits > 8) }
+    }
+}
+
+/// Views of a testfield by a camera.
+pub struct ViewsSubject {
+    /// What is seen.
+    pub field: Testfield,
+    /// Standard deviation of its surveyed coordinates, object units, if it was surveyed with any error.
+    pub survey_sigma: Option<f64>,
+    /// The object unit.
+    pub unit: Unit,
+    /// With which interior orientation.
+    pub camera: Camera,
+    /// The file that it was read from.
+    pub camera_file: Option<PathBuf>,
+    /// From where, in the order of reports; those of the first trial if they change.
+    pub stations: Vec<Station>,
+    /// What draws other stations in each trial.
+    pub redraw: Option<StationPlan>,
+    /// Lens and sensor.
+    pub imaging: Imaging,
+    /// Who points at the targets, unless a detector does.
+    pub hand: Hand,
+    /// What finds them in place of a hand.
+    pub detector: Option<Detector>,
+    /// What is done with the measured points of every trial, if more than scoring them.
+    pub calibration: Option<Calibration>,
+}
+
+impl ViewsSubject {
+    /// The stations of the trial of `key`.
+    ///
+    /// # Errors
+    /// No poses within the bounds of stations that are drawn anew in each trial.
+    pub fn stations_of(&self, key: Key<'_>) -> Result<Cow<'_, [Station]>, StationError> {
+        match &self.redraw {
+            None => Ok(Cow::Borrowed(&self.stations)),
+            Some(drawing) => drawing.generate(&self.field, &self.camera, key).map(Cow::Owned),
+        }
+    }
+}
+
+/// Approximate positions.
+pub enum Starts {
+    /// One for each target, as the scenario gives them.
+    Given(Vec<PixelPoint>),
+    /// Pointed at anew in each trial.
+    Pointed(Hand),
+    /// Found in each image.
+    Detected(Detector),
+}
+
+impl Starts {
+    /// Are they the same for the same image?
+    pub(crate) fn are_fixed(&self) -> bool {
+        match self {
+            Self::Given(_) | Self::Detected(_) => true,
+            // A hand that does not shake, whether it stops at whole pixels or not.
+            Self::Pointed(hand) => hand.sigma == 0.0,
+        }
+    }
+}
+
+impl From<Pointing> for Starts {
+    fn from(pointing: Pointing) -> Self {
+        match pointing {
+            Pointing::Hand(hand) => Self::Pointed(hand),
+            Pointing::Detector(detector) => Self::Detected(detector),
+        }
+    }
+}
+
+/// Photographs of a chessboard.
+pub struct PhotographsSubject {
+    /// Their folder, as written.
+    pub folder: String,
+    /// Their names.
+    pub files: Vec<String>,
+    /// The board.
+    pub board: Board,
+    /// How calibrations from them are judged, if they are.
+    pub judgement: Option<JudgementPlan>,
+}
