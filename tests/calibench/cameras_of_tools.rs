@@ -112,12 +112,12 @@ fn a_rotated_fit_turns_the_pose_as_well() {
 }
 
 #[test]
-fn the_readme_names_every_format_of_a_tool() {
-    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+fn the_docs_name_every_format_of_a_tool() {
+    let page = std::fs::read_to_string(root().join("docs/cameras-and-conventions.md")).unwrap();
     for format in calibench_exchange::camera::FORMATS {
         assert!(
-            readme.contains(&format!("`{}`", format.name)) || format.models(None).is_empty(),
-            "{} has no row in the README",
+            page.contains(&format!("`{}`", format.name)) || format.models(None).is_empty(),
+            "{} has no row in docs/cameras-and-conventions.md",
             format.name
         );
     }
