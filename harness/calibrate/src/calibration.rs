@@ -1,6 +1,8 @@
 //! The adjustment of a network, and its quality.
 
 use calibench_adjust::{Covariances, Found, Options, Reliability, Snooping, Solution, Test, Variance, adjust, snoop};
+use calibench_exchange::NamedCamera;
+use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
 use crate::{CalibrationError, Compared, Prepared};
@@ -49,6 +51,19 @@ impl Calibration<'_> {
     /// The interior orientation of a camera.
     pub fn camera(&self, index: usize) -> &Camera {
         &self.solution.cameras()[index]
+    }
+
+    /// A camera as files hold it: with its covariance and, if there are several, its name.
+    ///
+    /// # Errors
+    /// A covariance that is not one, in words.
+    pub fn named_camera(&self, index: usize) -> Result<NamedCamera, String> {
+        let (names, covariance) = self.covariances.of_camera(index);
+        let names = names.iter().map(|name| (*name).to_owned()).collect();
+        let covariance = Some(ParameterCovariance::named(names, &covariance)?);
+        let optics = &self.prepared.settings.cameras[index];
+        let name = if self.cameras() > 1 { optics.name.as_str() } else { "" };
+        Ok(NamedCamera { pitch_um: optics.pitch_um, covariance, ..NamedCamera::new(name, *self.camera(index)) })
     }
 
     /// How many cameras there are.

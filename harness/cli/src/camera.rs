@@ -10,7 +10,8 @@ use calibench_report::plain;
 use clap::Args;
 
 use super::reading::Reading;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct CameraCommand {

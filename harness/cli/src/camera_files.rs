@@ -7,8 +7,8 @@ use calibench_model::camera::{Camera, ImageSize};
 use clap::Args;
 use glob::Pattern;
 
-use super::Failure;
-use super::calibrate::camera;
+use crate::failure::Failure;
+use crate::inputs::camera;
 
 #[derive(Args)]
 pub struct CameraFiles {

@@ -12,7 +12,8 @@ use clap::Args;
 
 use super::context::Context;
 use super::progress::Progress;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Check {

@@ -10,7 +10,8 @@ use calibench_scenario::Scenario;
 use calibench_scenario::catalogue::Catalogue;
 use calibench_scenario::data::data_folder;
 
-use super::{Failure, Toolbox, scenario_failure};
+use crate::failure::{Failure, scenario_failure};
+use crate::toolbox::Toolbox;
 
 /// What every command gets.
 pub struct Context<'a> {

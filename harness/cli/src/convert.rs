@@ -2,20 +2,22 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::camera::fit::{FitError, fit_to_format, losses};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, ParameterCovariance, camera_text, write_camera};
-use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
+use calibench_diagnostics::nearest;
+use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
+use calibench_exchange::camera::fit::{FitError, losses};
+use calibench_exchange::camera::target::{Given, Goal, TargetError, goal};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_text, write_camera};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
-    Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Rotation, Spread, Tangential, Vector, Verdict, convert,
-    difference, naive,
+    Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,
 };
 use calibench_report::{Field, plain};
 use clap::Args;
 
 use super::context::Context;
-use super::reading::{Reading, shifted};
-use super::target::{Given, Goal, Way, goal};
-use super::{Failure, print};
+use super::reading::Reading;
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -79,9 +81,7 @@ impl Convert {
         let Some((_, goal)) = results.last() else { return Err(Failure::input("the file holds no camera")) };
         let format = goal.format;
         let mut cameras: Vec<NamedCamera> = results.into_iter().map(|(camera, _)| camera).collect();
-        if self.reading.starts_at_corner(format) {
-            cameras.iter_mut().for_each(|named| named.camera = shifted(&named.camera, 0.5));
-        }
+        self.reading.open_points().written(format, &mut cameras);
         self.reading.warn_of_format(format);
         let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
         lost.dedup();
@@ -108,21 +108,18 @@ impl Convert {
 
     /// A camera in the new convention, and the format of its file.
     fn converted(&self, source: &NamedCamera, label: Option<&str>, quiet: bool) -> Result<(NamedCamera, Goal), Failure> {
-        let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order: self.reading.order(), output: self.output.as_deref() };
-        let goal = goal(&self.to, &given)?;
-        let pitch_um = self.pitch.or(source.pitch_um);
+        let order = self.reading.open_points().order();
+        let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order, output: self.output.as_deref() };
+        let goal = goal(&self.to, &given).map_err(no_target)?;
         if self.naive {
+            let pitch_um = self.pitch.or(source.pitch_um);
             let result = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, quiet)?) };
             return Ok((result, goal));
         }
-        let options = ConvertOptions {
-            region: region(self.radius),
-            rotation: self.rotation,
-            accept: self.accept,
-            covariance: source.covariance.as_ref().map(|covariance| whole(&source.camera, covariance)).transpose()?,
-            ..ConvertOptions::default()
-        };
-        let (conversion, model) = self.fit(source, &goal, &options)?;
+        let options =
+            ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
+        let found = converted(source, &goal, self.model.as_deref(), self.pitch, &options);
+        let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error))?;
         if !quiet {
             let name = label.map_or(String::new(), |label| format!("{label}: "));
             let model = model.map_or(String::new(), |model| format!("{model}: "));
@@ -137,32 +134,15 @@ impl Convert {
         if goal.format.convention.is_none() && conversion.camera.convention() != source.camera.convention() {
             self.reading.warn(&conversion.camera);
         }
-        let covariance = conversion.covariance.as_ref().map(|q| named(&conversion.camera, q)).transpose()?;
-        let pose = source.pose.map(|pose| pose.turned_by(in_file_axes(&conversion.rotation)));
-        let result = NamedCamera {
-            pitch_um,
-            covariance,
-            pose,
-            pose_frame: source.pose_frame,
-            ..NamedCamera::new(source.name.clone(), conversion.camera)
-        };
-        Ok((result, goal))
+        Ok((camera, goal))
     }
 
-    /// The conversion, and the name of the tool's model if it has several.
-    fn fit(&self, source: &NamedCamera, goal: &Goal, options: &ConvertOptions) -> Result<(Conversion, Option<&'static str>), Failure> {
-        match goal.way {
-            Way::One(_) if self.model.is_some() => Err(Failure::input(format!("--to {} names the model already: no --model", self.to))),
-            Way::One(target) => Ok((convert(&source.camera, target, options).map_err(|error| advise(&error))?, None)),
-            Way::Best => {
-                let pitch_um = self.pitch.or(source.pitch_um);
-                let found = fit_to_format(goal.format, &source.camera, self.model.as_deref(), pitch_um, options);
-                let (conversion, model) = found.map_err(|error| match &error {
-                    FitError::Refused { why, .. } => Failure::input(format!("{error}{}", flag(why))),
-                    _ => Failure::input(error.to_string()),
-                })?;
-                Ok((conversion, Some(model.name)))
-            }
+    fn refused(&self, error: &ConversionError) -> Failure {
+        match error {
+            ConversionError::ModelNamed => Failure::input(format!("--to {} names the model already: no --model", self.to)),
+            ConversionError::Convert(error) => advise(error),
+            ConversionError::Fit(FitError::Refused { why, .. }) => Failure::input(format!("{error}{}", flag(why))),
+            _ => Failure::input(error.to_string()),
         }
     }
 
@@ -190,6 +170,20 @@ impl Convert {
     }
 }
 
+/// A target that is none, with the options that help.
+pub fn no_target(error: TargetError) -> Failure {
+    Failure::input(match error {
+        TargetError::NoPitch(name) => {
+            format!("--to {name} is in mm and the file states no pixel pitch: give it with --pitch UM (width of the sensor over columns)")
+        }
+        TargetError::NoBase => "--to ebner needs the spacing of the grid: give it with --base MM".into(),
+        TargetError::Unknown { name, known } => {
+            let near = nearest(&name, known.iter().copied()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            format!("--to {name}: no such target; known are {}{near}", known.join(", "))
+        }
+    })
+}
+
 /// An error with the flag that helps.
 pub fn advise(error: &ConvertError) -> Failure {
     Failure::input(format!("{error}{}", flag(error)))
@@ -201,15 +195,6 @@ fn flag(error: &ConvertError) -> &'static str {
         ConvertError::Fold { .. } => " (--radius PX restricts it)",
         _ => "",
     }
-}
-
-/// A rotation of rays in the axes of camera files, where y points down and z forward.
-fn in_file_axes(rotation: &Rotation) -> [[f64; 3]; 3] {
-    let columns = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)].map(|(x, y, z)| {
-        let ray = rotation.apply(Ray { x, y, z });
-        [ray.x, -ray.y, -ray.z]
-    });
-    std::array::from_fn(|row| std::array::from_fn(|column| columns[column][row]))
 }
 
 /// A file's name for a camera, without what would leave the folder.
@@ -239,28 +224,6 @@ fn summary(conversion: &Conversion) -> String {
     let angle = conversion.rotation.angle().to_degrees();
     let rotation = if angle > 0.0 { format!(", rotated by {angle:.6}\u{b0}") } else { String::new() };
     format!("{word}: residuals {}, over {region}{rotation}\n", size_of(&conversion.residual))
-}
-
-/// The covariance over all parameters of a camera; those that the file held fixed have none.
-pub fn whole(camera: &Camera, covariance: &ParameterCovariance) -> Result<nalgebra::DMatrix<f64>, Failure> {
-    let parameters = camera.parameters();
-    let place = |name: &String| parameters.iter().position(|p| p.name == name);
-    let places: Option<Vec<usize>> = covariance.parameters.iter().map(place).collect();
-    let places = places.ok_or_else(|| Failure::input("the file's covariance names a parameter that its camera does not have"))?;
-    let n = covariance.parameters.len();
-    let mut q = nalgebra::DMatrix::zeros(parameters.len(), parameters.len());
-    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-        q[(places[i], places[j])] = covariance.values[i * n + j];
-    }
-    Ok(q)
-}
-
-/// The same for a file.
-pub fn named(camera: &Camera, q: &nalgebra::DMatrix<f64>) -> Result<ParameterCovariance, Failure> {
-    let names = camera.parameters().iter().map(|p| p.name.to_owned()).collect();
-    let symmetric = |i: usize, j: usize| f64::midpoint(q[(i, j)], q[(j, i)]);
-    let values = (0..q.nrows()).flat_map(|i| (0..q.ncols()).map(move |j| symmetric(i, j))).collect();
-    ParameterCovariance::new(names, values).map_err(Failure::Input)
 }
 
 /// Vectors on a regular grid as a picture.

@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{PointRow, read_photo, write_points};
-use calibench_measure::{Board, BoardDetector};
-use calibench_model::{Affine, Image, PixelPoint, Start, TargetKind};
+use calibench_exchange::write_points;
+use calibench_measure::Board;
+use calibench_photographs::corners::detect_corners;
+use calibench_photographs::names::once;
 use clap::Args;
-use rayon::prelude::*;
 
 use super::context::Context;
-use super::photos::{names, once};
 use super::progress::Progress;
-use super::{Failure, deliver};
+use crate::deliver::deliver;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Detect {
@@ -32,13 +32,7 @@ impl Detect {
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
-        let one = |(path, name): (&PathBuf, &String)| {
-            let image = read_photo(path)?;
-            let rows = corners_of(detector, &image, name, self.chessboard);
-            progress.step();
-            Ok(rows)
-        };
-        let found = self.photos.par_iter().zip(&names(&self.photos)).map(one).collect::<Result<Vec<_>, Failure>>()?;
+        let found = detect_corners(&self.photos, self.chessboard, detector, &|| progress.step())?;
         let seen = found.iter().filter(|rows| !rows.is_empty()).count();
         progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
         for (path, rows) in self.photos.iter().zip(&found) {
@@ -50,48 +44,5 @@ impl Detect {
             return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
         }
         deliver(self.output.as_deref(), |file| write_points(file, found.iter().flatten()))
-    }
-}
-
-/// The corners of a board in the photograph `name`; none if it is not seen whole.
-pub fn corners_of(detector: &dyn BoardDetector, image: &Image, name: &str, board: Board) -> Vec<PointRow> {
-    let corners = detector.detect(image, board).unwrap_or_default();
-    let row = |(index, position): (usize, &PixelPoint)| PointRow {
-        image: name.to_owned(),
-        target: board.target(index),
-        start: Start { kind: Some(TargetKind::ChessCorner), affine: Some(affine(&corners, board, index)), ..Start::at(*position) },
-    };
-    corners.iter().enumerate().map(row).collect()
-}
-
-/// One square along the rows and one along the columns, px, from the neighbouring corners.
-fn affine(corners: &[PixelPoint], board: Board, index: usize) -> Affine {
-    let (column, row) = (index % board.columns, index / board.columns);
-    let at = |column: usize, row: usize| corners[row * board.columns + column];
-    let step = |low: PixelPoint, high: PixelPoint, squares: usize| {
-        let n = squares.max(1) as f64;
-        ((high.x - low.x) / n, (high.y - low.y) / n)
-    };
-    let (west, east) = (column.saturating_sub(1), (column + 1).min(board.columns - 1));
-    let (north, south) = (row.saturating_sub(1), (row + 1).min(board.rows - 1));
-    let (axx, ayx) = step(at(west, row), at(east, row), east - west);
-    let (axy, ayy) = step(at(column, north), at(column, south), south - north);
-    Affine { axx, axy, ayx, ayy }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_affine_start_is_one_square() {
-        let board: Board = "4x3".parse().unwrap();
-        let corners: Vec<PixelPoint> = (0..12)
-            .map(|i| (f64::from(i % 4), f64::from(i / 4)))
-            .map(|(u, v)| PixelPoint::new(20.0 * u - 3.0 * v, 2.0 * u + 18.0 * v))
-            .collect();
-        for index in 0..12 {
-            assert_eq!(affine(&corners, board, index), Affine { axx: 20.0, axy: -3.0, ayx: 2.0, ayy: 18.0 });
-        }
     }
 }

@@ -9,7 +9,8 @@ use clap::Args;
 
 use super::convert::{advise, field, positive, region, size_of};
 use super::reading::Reading;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Diff {

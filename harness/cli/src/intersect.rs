@@ -8,10 +8,11 @@ use calibench_exchange::{StationRow, read_stations, write_table};
 use calibench_model::Pose;
 use clap::Args;
 
-use super::calibrate::read_measured;
 use super::camera_files::CameraFiles;
 use super::context::Context;
-use super::{Failure, deliver};
+use crate::deliver::deliver;
+use crate::failure::Failure;
+use crate::inputs::read_measured;
 
 #[derive(Args)]
 pub struct Intersect {

@@ -7,24 +7,25 @@ use std::path::{Path, PathBuf};
 use calibench_calibrate::choice::{HALF, ModelChoice};
 use calibench_exchange::atomic::write_atomically;
 use calibench_exchange::read_photo;
-use calibench_judge::{JudgementError, Material, Options, judge};
+use calibench_judge::{JudgementError, Material, Options, judge, published_camera};
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::camera::ImageSize;
+use calibench_photographs::names::{names, once};
+use calibench_photographs::{Chessboard, measured_board};
 use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
 use calibench_records::points::RunInfo;
 use calibench_records::results::{MethodInfo, Trial};
 use calibench_report::judgement::{section, verdict};
-use calibench_run::measured_board;
 use clap::Args;
 use rayon::prelude::*;
 
-use super::calibrate::board::Chessboard;
 use super::context::Context;
 use super::convert::positive;
 use super::output::OutputFolder;
-use super::photos::{names, once, same_size};
+use super::photos::one_size;
 use super::progress::Progress;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 /// What makes sense on a chessboard's corners.
 const METHODS: [&str; 9] = [
@@ -94,10 +95,8 @@ impl Judge {
         let (trial, size) = self.measure(context, &methods)?;
         let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
         let material = Material::new(&trial, &infos, self.chessboard.board, self.chessboard.side, size);
-        let published = self
-            .published
-            .as_deref()
-            .map(|path| calibench_run::judgement::camera(path, &path.display().to_string(), size).map_err(Failure::input));
+        let published =
+            self.published.as_deref().map(|path| published_camera(path, &path.display().to_string(), size).map_err(Failure::input));
         let published = published.transpose()?;
         let options = Options { models, pitch_um: self.pitch, splits: self.splits, seed: self.seed, name: "judge".into(), published };
         let rows = judge(&material, &options)?;
@@ -138,7 +137,7 @@ impl Judge {
             found
         };
         let found = self.photos.par_iter().zip(&names).map(one).collect::<Result<Vec<_>, Failure>>()?;
-        let size = same_size(self.photos.iter().zip(found.iter().map(|(_, size)| *size)))?;
+        let size = one_size(self.photos.iter().zip(found.iter().map(|(_, size)| *size)))?;
         let mut trial = Trial::default();
         for (view, _) in found {
             trial.points.extend(view.points);

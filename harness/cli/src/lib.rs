@@ -6,8 +6,11 @@ mod camera_files;
 mod check;
 mod context;
 mod convert;
+mod deliver;
 mod detect;
 mod diff;
+mod failure;
+mod inputs;
 mod intersect;
 mod judge;
 mod list;
@@ -25,25 +28,14 @@ mod resect;
 mod run;
 mod show;
 mod speed;
-mod target;
+mod toolbox;
 
-use std::io::{self, IsTerminal};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use calibench_diagnostics::Problems;
-use calibench_exchange::atomic::write_atomically;
-use calibench_measure::{BoardDetector, Registry};
-use calibench_scenario::catalogue::CatalogueError;
 use clap::{Parser, Subcommand};
-
-/// What a build of calibench can do.
-pub struct Toolbox {
-    /// Its methods.
-    pub registry: Registry,
-    /// Its chessboard detector, if it has one.
-    pub detector: Option<Box<dyn BoardDetector>>,
-}
+use failure::Failure;
+pub use toolbox::Toolbox;
 
 /// Compares camera calibration methods on images whose truth is known exactly, and on photographs.
 #[derive(Parser)]
@@ -111,26 +103,6 @@ enum Command {
     Schema,
 }
 
-/// Why a command ends with another exit code than 0.
-enum Failure {
-    /// A gate failed and has said why: exit code 1.
-    Gate,
-    /// Bad input, or output that cannot be written: exit code 2.
-    Input(String),
-}
-
-impl<E: std::error::Error> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-impl Failure {
-    fn input(message: impl Into<String>) -> Self {
-        Self::Input(message.into())
-    }
-}
-
 /// Runs the command line of this process.
 pub fn main(toolbox: &Toolbox) -> ExitCode {
     let arguments = Arguments::parse();
@@ -169,41 +141,6 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),
-        Command::Schema => print(&format!("{:#}\n", calibench_scenario::schema::schema(&toolbox.registry))),
+        Command::Schema => deliver::print(&format!("{:#}\n", calibench_scenario::schema::schema(&toolbox.registry))),
     }
-}
-
-/// Prints to standard output; a reader that went away is no error.
-fn print(text: &str) -> Result<(), Failure> {
-    use std::io::{ErrorKind, Write, stdout};
-    match stdout().write_all(text.as_bytes()).and_then(|()| stdout().flush()) {
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        other => Ok(other?),
-    }
-}
-
-/// Writes a result to `path`, whole or not at all, or to standard output.
-fn deliver(path: Option<&Path>, write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(), Failure> {
-    match path {
-        Some(path) => write_atomically(path, write).map_err(|error| Failure::input(format!("{}: {error}", path.display()))),
-        None => {
-            let mut bytes = Vec::new();
-            write(&mut bytes)?;
-            print(&String::from_utf8_lossy(&bytes))
-        }
-    }
-}
-
-/// A scenario's problems as a picture of the lines that they are about.
-fn scenario_failure(error: CatalogueError) -> Failure {
-    match error {
-        CatalogueError::Problems(problems) => Failure::Input(picture(&problems)),
-        other => other.into(),
-    }
-}
-
-fn picture(problems: &Problems) -> String {
-    let count = problems.problems.len();
-    let noun = if count == 1 { "mistake" } else { "mistakes" };
-    format!("{count} {noun} in {}\n{}", problems.file, problems.picture(io::stderr().is_terminal()))
 }

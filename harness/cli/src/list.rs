@@ -3,14 +3,15 @@
 use std::fmt::Write;
 
 use calibench_exchange::camera::FORMATS;
+use calibench_exchange::camera::target::TARGETS;
 use calibench_measure::registry::Build;
 use calibench_model::camera::{Convention, Verification};
 use calibench_report::published;
 use clap::ValueEnum;
 
 use super::context::Context;
-use super::target::TARGETS;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 /// What can be listed.
 #[derive(Clone, Copy, ValueEnum)]

@@ -2,11 +2,10 @@
 
 use std::process::ExitCode;
 
+use calibench_cli::{Toolbox, main as run};
 use calibench_measure::Registry;
 use calibench_measure::opencv_subpix;
 use calibench_measure::registry::Build;
-
-use calibench_cli::{Toolbox, main as run};
 
 const WHY: &str = "this build is without OpenCV";
 

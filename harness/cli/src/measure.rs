@@ -1,18 +1,15 @@
 //! `calibench measure`: points in a user's own photographs.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use calibench_exchange::{MeasuredRow, Outcome, PointFile, PointRow, read_photo, read_points, write_measured};
-use calibench_measure::Configured;
-use calibench_model::Start;
+use calibench_exchange::{MeasuredRow, Outcome, PointFile, PointRow, read_points, write_measured};
+use calibench_photographs::points::{by_name, measure_points};
 use clap::Args;
-use rayon::prelude::*;
 
 use super::context::Context;
-use super::photos::{ambiguous, names, once};
 use super::progress::Progress;
-use super::{Failure, deliver};
+use crate::deliver::deliver;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Measure {
@@ -46,12 +43,10 @@ impl Measure {
         if points.is_empty() {
             return Err(Failure::input(format!("{}: no row has a position", self.points.display())));
         }
-        let photos = by_name(&self.photos, &points)?;
+        // What is wrong with the photographs' names is said before any is read.
+        by_name(&self.photos, &points)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
-        let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); points.len()];
-        for (index, outcome) in measure(&points, &photos, &methods, &progress)? {
-            outcomes[index] = outcome;
-        }
+        let outcomes = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
         let rows = (0..methods.len()).flat_map(|m| {
             let label = methods[m].label.as_str();
             let outcome = |i: usize| outcomes[i].get(m).cloned().unwrap_or_else(|| not_given(&points[i]));
@@ -65,48 +60,6 @@ impl Measure {
 
 fn not_given(point: &PointRow) -> Outcome {
     Outcome::Unavailable(format!("photograph {} was not given", point.image))
-}
-
-/// Photographs by the names that point files give them: those of [`names`].
-fn by_name<'p>(paths: &'p [PathBuf], points: &[PointRow]) -> Result<BTreeMap<String, &'p Path>, Failure> {
-    once(paths)?;
-    let unclear = points.iter().find_map(|point| Some((&point.image, ambiguous(paths, &point.image)?)));
-    if let Some((name, [a, b])) = unclear {
-        let (a, b) = (a.display(), b.display());
-        return Err(Failure::input(format!(
-            "two photographs are called {name}: {a} and {b}; points must name them with their folders, as `{b}`"
-        )));
-    }
-    Ok(names(paths).into_iter().zip(paths.iter().map(PathBuf::as_path)).collect())
-}
-
-/// (index of the point, one outcome a method). One photograph a thread is in memory.
-fn measure(
-    points: &[PointRow],
-    photos: &BTreeMap<String, &Path>,
-    methods: &[Configured],
-    progress: &Progress,
-) -> Result<Vec<(usize, Vec<Outcome>)>, Failure> {
-    let one = |(name, path): (&String, &&Path)| -> Result<Vec<(usize, Vec<Outcome>)>, Failure> {
-        let wanted: Vec<usize> = (0..points.len()).filter(|&i| is_called(&points[i].image, name, path)).collect();
-        // Read even if no point asks for it: a photograph that cannot be read is a mistake.
-        let image = read_photo(path)?;
-        let starts: Vec<Start> = wanted.iter().map(|&i| points[i].start).collect();
-        let mut outcomes: Vec<(usize, Vec<Outcome>)> = wanted.into_iter().map(|i| (i, Vec::new())).collect();
-        for operator in methods.iter().filter_map(|method| method.operator.as_ref().ok()) {
-            for ((_, outcome), result) in outcomes.iter_mut().zip(operator.measure_all(&image, &starts)) {
-                outcome.push(result.map_or_else(Outcome::Rejected, Outcome::Measured));
-            }
-        }
-        progress.step();
-        Ok(outcomes)
-    };
-    Ok(photos.par_iter().map(one).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
-}
-
-/// A point file may give a photograph its folders, though its name alone would do here.
-fn is_called(image: &str, name: &str, path: &Path) -> bool {
-    image == name || Path::new(image) == path
 }
 
 fn summary(outcomes: &[Vec<Outcome>], points: &[PointRow]) -> String {

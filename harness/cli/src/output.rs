@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::FolderWriter;
 
-use super::Failure;
+use crate::failure::Failure;
 
 /// The file that tells a folder of ours: no other one is ever replaced.
 const MARK: &str = ".calibench-output";

@@ -8,7 +8,8 @@ use calibench_report::sweep::{Choice, Layout, LoadedSweep, Metric};
 use clap::Args;
 
 use super::context::Context;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Plot {

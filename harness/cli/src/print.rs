@@ -6,9 +6,9 @@ use calibench_exchange::print::{Paper, PrintError, PrintOptions, write_pdf, writ
 use calibench_scenario::Subject;
 use clap::{Args, ValueEnum};
 
-use super::Failure;
 use super::context::Context;
 use super::output::OutputFolder;
+use crate::failure::Failure;
 
 /// Writes a scenario's testfield at true scale, as SVG and PDF.
 #[derive(Args)]
@@ -51,6 +51,6 @@ impl Print {
             write_svg(folder, &subject.field, &options)?;
             write_pdf(&folder.join(format!("{stem}.pdf")), &subject.field, &options)
         })?;
-        super::print(&format!("{}\n", self.output.display()))
+        crate::deliver::print(&format!("{}\n", self.output.display()))
     }
 }

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use calibench_exchange::camera::open_points::{self, OpenPoints};
 use calibench_exchange::camera::{CameraFile, CameraFormat, NamedCamera, ReadOptions, read_camera_with};
-use calibench_model::PixelPoint;
-use calibench_model::camera::{AgisoftVersion, Camera, CameraModel, ImageSize, TangentialOrder, Verification};
+use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
 use clap::{Args, ValueEnum};
 
-use super::Failure;
+use crate::failure::Failure;
 
 /// What a camera file may leave open.
 #[derive(Args)]
@@ -39,7 +39,7 @@ pub enum Order {
 }
 
 /// What the position (0, 0) is.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, ValueEnum)]
 pub enum Origin {
     /// The outer corner of the first pixel
     Corner,
@@ -48,26 +48,17 @@ pub enum Origin {
 }
 
 impl Reading {
-    /// Applies what the user decided of points that a file's convention leaves open.
-    fn decide(&self, camera: &mut Camera) {
-        match camera {
-            Camera::Pix4d(pix4d) => pix4d.order = self.order(),
-            Camera::Agisoft(agisoft) if agisoft.version != AgisoftVersion::Metashape => {
-                if self.order() == TangentialOrder::Brown {
-                    agisoft.p.swap(0, 1);
-                }
-                if self.origin == Some(Origin::Centre) {
-                    let corner = PixelPoint::new(agisoft.cx, agisoft.cy).to_corner();
-                    (agisoft.cx, agisoft.cy) = (corner.x, corner.y);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// Did the user decide that the corner of the first pixel is the origin of a format that leaves it open?
-    pub fn starts_at_corner(&self, format: &CameraFormat) -> bool {
-        format.origin_is_open && self.origin == Some(Origin::Corner)
+    /// What the user decided of what formats leave open.
+    pub fn open_points(&self) -> OpenPoints {
+        let order = self.order.map(|order| match order {
+            Order::Brown => TangentialOrder::Brown,
+            Order::Opencv => TangentialOrder::OpenCv,
+        });
+        let origin = self.origin.map(|origin| match origin {
+            Origin::Corner => open_points::Origin::Corner,
+            Origin::Centre => open_points::Origin::Centre,
+        });
+        OpenPoints { order, origin }
     }
 
     /// Says what of a format's convention is not confirmed by numbers of its tool.
@@ -75,14 +66,6 @@ impl Reading {
         if let Some(Verification::Unverified(open)) = format.convention.map(|convention| convention.verification) {
             let flag = if format.origin_is_open && self.origin.is_none() { "; --origin corner or --origin centre decides" } else { "" };
             eprintln!("unverified: {}: {open}{flag}", format.name);
-        }
-    }
-
-    /// The order that the user decided on, or the one that is assumed.
-    pub fn order(&self) -> TangentialOrder {
-        match self.order {
-            Some(Order::Brown) => TangentialOrder::Brown,
-            _ => TangentialOrder::OpenCv,
         }
     }
 
@@ -134,17 +117,12 @@ impl Reading {
 
     /// The cameras as the user decided open points; says what is unverified, assumed and left out.
     fn decided(&self, path: &Path, file: CameraFile) -> Vec<NamedCamera> {
-        let mut cameras = file.cameras;
-        for named in &mut cameras {
-            self.decide(&mut named.camera);
-            if self.starts_at_corner(file.format) {
-                named.camera = shifted(&named.camera, -0.5);
-            }
-        }
-        self.warn_of_format(file.format);
+        let format = file.format;
+        let cameras = self.open_points().read(file);
+        self.warn_of_format(format);
         let mut said: Vec<String> = Vec::new();
         for named in &cameras {
-            if !said.iter().any(|word| word == named.camera.convention().name) && file.format.convention.is_none() {
+            if !said.iter().any(|word| word == named.camera.convention().name) && format.convention.is_none() {
                 self.warn(&named.camera);
                 said.push(named.camera.convention().name.to_owned());
             }
@@ -157,13 +135,6 @@ impl Reading {
         }
         cameras
     }
-}
-
-/// The camera with its principal point moved along both axes, px.
-pub fn shifted(camera: &Camera, by: f64) -> Camera {
-    let moves = |name: &str| ["cx", "cy", "PPx", "PPy"].contains(&name);
-    let values = camera.parameters().into_iter().map(|p| if moves(p.name) { p.value + by } else { p.value });
-    camera.with_parameters(&values.collect::<Vec<_>>())
 }
 
 pub fn size(text: &str) -> Result<ImageSize, String> {

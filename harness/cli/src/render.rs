@@ -16,7 +16,8 @@ use clap::Args;
 use super::context::Context;
 use super::output::OutputFolder;
 use super::progress::Progress;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 /// Writes a scenario's images with the truth about every target, the camera and the poses.
 #[derive(Args)]

@@ -6,8 +6,8 @@ use calibench_diagnostics::nearest;
 use calibench_report::{Written, conventions};
 use clap::Args;
 
-use super::Failure;
 use super::context::Context;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Report {

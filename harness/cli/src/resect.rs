@@ -7,10 +7,11 @@ use calibench_calibrate::{Survey, control_of};
 use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_control, station_numbers, write_table};
 use clap::Args;
 
-use super::calibrate::read_measured;
 use super::camera_files::CameraFiles;
 use super::context::Context;
-use super::{Failure, deliver};
+use crate::deliver::deliver;
+use crate::failure::Failure;
+use crate::inputs::read_measured;
 
 #[derive(Args)]
 pub struct Resect {

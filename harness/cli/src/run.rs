@@ -10,9 +10,9 @@ use calibench_run::store::SweepPlan;
 use calibench_scenario::{Scenario, Subject, Sweep};
 use clap::Args;
 
-use super::Failure;
 use super::context::Context;
 use super::progress::Progress;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Run {

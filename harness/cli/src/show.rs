@@ -16,7 +16,8 @@ use calibench_synth::view::Visibility;
 use clap::Args;
 
 use super::context::Context;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Show {

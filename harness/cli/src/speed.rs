@@ -15,7 +15,8 @@ use clap::Args;
 use super::context::Context;
 use super::progress::Progress;
 use super::run::Changes;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 /// The scenarios whose methods and images are taken if none is named.
 const USUAL: [&str; 3] = ["atlas/corners", "atlas/discs", "atlas/wedges"];

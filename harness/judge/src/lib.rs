@@ -12,6 +12,7 @@ mod holdout;
 mod lines;
 mod material;
 mod options;
+mod published;
 
 #[cfg(test)]
 mod tests;
@@ -25,6 +26,7 @@ use thiserror::Error;
 
 pub use material::{Corners, Material};
 pub use options::Options;
+pub use published::published_camera;
 
 /// Why nothing can be judged.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]

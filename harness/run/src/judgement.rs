@@ -4,9 +4,8 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use calibench_exchange::{ReadOptions, read_camera_with};
-use calibench_judge::{Material, Options, judge};
-use calibench_model::camera::{Camera, ImageSize};
+use calibench_judge::{Material, Options, judge, published_camera};
+use calibench_model::camera::ImageSize;
 use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
 use calibench_records::names::kept_image;
 use calibench_records::points::RunInfo;
@@ -40,7 +39,7 @@ fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -
         let [a, b] = [size, *other].map(|size| format!("{} x {} px", size.width, size.height));
         return Err(format!("{file} has {b}, the first photograph {a}: photographs of one camera have one size"));
     }
-    let published = wanted.published.as_ref().map(|file| camera(&plan.data.join(&subject.folder).join(file), file, size));
+    let published = wanted.published.as_ref().map(|file| published_camera(&plan.data.join(&subject.folder).join(file), file, size));
     let material = Material::new(trial, &plan.method_infos(), subject.board, wanted.side, size);
     let options = Options {
         models: wanted.models.clone(),
@@ -60,19 +59,4 @@ fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -
 fn size(path: &Path) -> Result<ImageSize, String> {
     let (width, height) = image::image_dimensions(path).map_err(|error| format!("the size of a photograph cannot be read: {error}"))?;
     Ok(ImageSize { width, height })
-}
-
-/// The first camera of a file called `name`.
-///
-/// # Errors
-/// In words, without the path.
-pub fn camera(path: &Path, name: &str, size: ImageSize) -> Result<Camera, String> {
-    if !path.is_file() {
-        return Err(format!("{name} is not beside the photographs"));
-    }
-    let read = read_camera_with(path, &ReadOptions { size: Some(size), fisheye: None })
-        .map_err(|_| format!("{name} cannot be read as a camera"))?;
-    let camera = read.cameras.first().map(|named| named.camera).ok_or_else(|| format!("{name} holds no camera"))?;
-    let own = calibench_model::camera::CameraModel::size(&camera);
-    if own == size { Ok(camera) } else { Err(format!("{name} is of images of {} x {} px", own.width, own.height)) }
 }

@@ -13,6 +13,5 @@ pub mod truth;
 pub mod views;
 
 pub use error::RunError;
-pub use photographs::measured as measured_board;
 pub use plan::Plan;
 pub use scene::{VIEW, trial_picture, trial_truth};

@@ -1,17 +1,17 @@
 //! The cameras of a calibration: which images each took, and what is known and wanted of it.
 
-use std::path::PathBuf;
 use std::str::FromStr;
 
 use calibench_calibrate::{Optics, Prior};
 use calibench_model::camera::ImageSize;
+use calibench_photographs::Photo;
 use clap::Args;
 use glob::Pattern;
 
-use super::super::Failure;
 use super::super::convert::positive;
-use super::super::photos::same_size;
+use super::super::photos::one_size;
 use super::super::reading;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Cameras {
@@ -89,9 +89,6 @@ impl FromStr for Claim {
     }
 }
 
-/// A photograph: the name of its image, where it is, and its size.
-pub type Photo = (String, PathBuf, ImageSize);
-
 impl Cameras {
     /// The pixel pitch of a camera, um.
     pub fn pitch_um(&self, camera: &str) -> Option<f64> {
@@ -122,14 +119,14 @@ impl Cameras {
                         camera.name
                     )));
                 }
-                (false, _) if owners.contains(&Some(index)) => same_size(own)?,
+                (false, _) if owners.contains(&Some(index)) => one_size(own)?,
                 (false, _) => return Err(Failure::input(format!("--camera {}: no photograph is claimed by it", camera.name))),
             };
             camera.pitch_um = self.pitch_um(&camera.name);
             camera.model = of(&self.model, &camera.name).cloned();
             camera.solve = of(&self.solve, &camera.name).cloned();
             camera.priors = self.priors(&camera.name);
-            camera.start = self.start(&camera.name).map(|path| super::camera(path.as_ref(), Some(camera.size))).transpose()?;
+            camera.start = self.start(&camera.name).map(|path| crate::inputs::camera(path.as_ref(), Some(camera.size))).transpose()?;
         }
         Ok(cameras)
     }
@@ -197,6 +194,8 @@ fn of<'v, T>(given: &'v [For<T>], camera: &str) -> Option<&'v T> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
     use clap::Parser;
 
     use super::*;

@@ -3,23 +3,22 @@
 use std::path::{Path, PathBuf};
 
 use calibench_calibrate::{Calibration, DatumChoice, Settings, prepare};
-use calibench_exchange::{
-    ControlRow, FolderWriter, PointFile, PointRow, ReadOptions, read_camera_with, read_control, read_observed_stations, read_points,
-};
-use calibench_model::camera::{Camera, ImageSize};
+use calibench_exchange::{ControlRow, FolderWriter, PointFile, read_control, read_observed_stations};
+use calibench_photographs::{Chessboard, Corners, Photo};
 use calibench_report::calibration::{summary, write_report};
 use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
-use super::{Failure, print};
+use super::inputs;
+use crate::deliver::print;
+use crate::failure::Failure;
 
-pub(super) mod board;
 mod camera_file;
 mod cameras;
+mod photographs;
 
-use board::{Chessboard, Corners};
-use cameras::{Cameras, Photo};
+use cameras::Cameras;
 
 #[derive(Args)]
 pub struct Calibrate {
@@ -89,10 +88,10 @@ impl Calibrate {
     fn input(&self, context: &Context<'_>) -> Result<(Corners, Vec<ControlRow>), Failure> {
         match (&self.points, &self.control, self.chessboard) {
             (Some(points), Some(control), _) => {
-                let PointFile { rows, lost, .. } = measured(points)?;
+                let PointFile { rows, lost, .. } = inputs::measured(points)?;
                 Ok((Corners { points: rows, lost, photos: Vec::new() }, read_control(control)?))
             }
-            (_, _, Some(chessboard)) => Ok((chessboard.measure(context, &self.photos, &self.method)?, chessboard.control())),
+            (_, _, Some(chessboard)) => Ok((photographs::corners(context, chessboard, &self.photos, &self.method)?, chessboard.control())),
             _ => Err(Failure::input("expected --points, --control and --size, or photographs and --chessboard")),
         }
     }
@@ -122,22 +121,6 @@ impl Calibrate {
     }
 }
 
-/// The rows of a point file that have a position, with a word about the others.
-pub fn read_measured(path: &Path) -> Result<Vec<PointRow>, Failure> {
-    Ok(measured(path)?.rows)
-}
-
-fn measured(path: &Path) -> Result<PointFile, Failure> {
-    let file = read_points(path)?;
-    if file.without_position > 0 {
-        eprintln!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.without_position);
-    }
-    if file.rows.is_empty() {
-        return Err(Failure::input(format!("{}: no row has a position", path.display())));
-    }
-    Ok(file)
-}
-
 /// Sets of parameters from their texts; a name that stands twice counts once.
 fn sets(texts: &[String]) -> Result<Vec<Vec<String>>, Failure> {
     let set = |text: &String| {
@@ -153,14 +136,4 @@ fn sets(texts: &[String]) -> Result<Vec<Vec<String>>, Failure> {
         Ok(names)
     };
     texts.iter().map(set).collect()
-}
-
-/// The first camera of a file.
-pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
-    let file = read_camera_with(path, &ReadOptions { size, fisheye: None })?;
-    if file.cameras.len() > 1 {
-        eprintln!("{}: the first of {} cameras", path.display(), file.cameras.len());
-    }
-    let first = file.cameras.first().map(|named| named.camera);
-    first.ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
 }

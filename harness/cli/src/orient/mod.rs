@@ -10,15 +10,18 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
 use clap::Args;
 
-use super::calibrate::{camera, read_measured};
 use super::context::Context;
 use super::convert::positive;
-use super::{Failure, deliver};
+use crate::deliver::deliver;
+use crate::failure::Failure;
+use crate::inputs::{camera, read_measured};
 
 mod model;
+mod seen;
 mod words;
 
 use model::Model;
+use seen::Seen;
 
 #[derive(Args)]
 pub struct Orient {
@@ -58,13 +61,6 @@ pub struct Orient {
     /// Both poses, as a station file with standard deviations
     #[arg(long, value_name = "CSV")]
     poses: Option<PathBuf>,
-}
-
-/// A target of one image or of both.
-pub(super) struct Seen {
-    pub(super) target: String,
-    /// Where, in the left and in the right image.
-    pub(super) at: [Option<PixelPoint>; 2],
 }
 
 impl Orient {
@@ -122,12 +118,5 @@ impl Orient {
             seen[place].at[side] = Some(row.start.position);
         }
         Ok(seen)
-    }
-}
-
-impl Seen {
-    /// Where it is in both images, if it is in both.
-    pub(super) fn pair(&self) -> Option<[PixelPoint; 2]> {
-        Some([self.at[0]?, self.at[1]?])
     }
 }

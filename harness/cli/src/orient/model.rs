@@ -8,7 +8,7 @@ use calibench_model::Pose;
 use calibench_model::camera::Camera;
 use nalgebra::{Matrix3, Point3};
 
-use super::Seen;
+use crate::orient::seen::Seen;
 
 /// An oriented pair with its object points, scaled to the length of the base.
 pub(super) struct Model<'a> {

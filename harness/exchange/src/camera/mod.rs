@@ -5,16 +5,21 @@
 mod agisoft;
 mod brown;
 mod colmap_models;
+pub mod conversion;
+mod covariance;
+pub mod ending;
 mod error;
 pub mod fit;
 pub mod formats;
 mod json;
 mod number;
+pub mod open_points;
 mod opencv;
 mod opencv_storage;
 mod photogrammetric_toml;
 mod pose;
 mod source;
+pub mod target;
 mod tree;
 mod xml;
 
@@ -24,6 +29,7 @@ use calibench_model::camera::{Camera, CameraModel, ImageSize};
 
 use crate::atomic::write_atomically;
 
+pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;
 pub use formats::{CameraFormat, FORMATS, format_named};
 pub use pose::{Pose, PoseFrame};
@@ -62,49 +68,6 @@ impl NamedCamera {
     /// A camera of which nothing else is known.
     pub fn new(name: impl Into<String>, camera: Camera) -> Self {
         Self { name: name.into(), camera, pitch_um: None, pose: None, pose_frame: PoseFrame::World, covariance: None, notes: Vec::new() }
-    }
-}
-
-/// Covariance of a camera's parameters, in their own units. Parameters that are not named were held fixed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ParameterCovariance {
-    /// Names, as in `CameraModel::parameters`.
-    pub parameters: Vec<String>,
-    /// Square and symmetric, row by row, in the order of `parameters`.
-    pub values: Vec<f64>,
-}
-
-impl ParameterCovariance {
-    /// Checked: square, finite, symmetric, no negative variance.
-    ///
-    /// # Errors
-    /// What is wrong, in words.
-    pub fn new(parameters: Vec<String>, mut values: Vec<f64>) -> Result<Self, String> {
-        let n = parameters.len();
-        if values.len() != n * n {
-            return Err(format!("expected {n} x {n} numbers for {n} parameters, found {}", values.len()));
-        }
-        if let Some(twice) = parameters.iter().enumerate().find(|(i, name)| parameters[..*i].contains(name)) {
-            return Err(format!("parameter `{}` stands twice", twice.1));
-        }
-        for row in 0..n {
-            let variance = values[row * n + row];
-            if !(variance >= 0.0 && variance.is_finite()) {
-                return Err(format!("variance of `{}` is {variance}; expected zero or more", parameters[row]));
-            }
-            for column in 0..row {
-                let (low, high) = (values[row * n + column], values[column * n + row]);
-                let bound = (variance * values[column * n + column]).sqrt() * (1.0 + 1e-6);
-                if !((low - high).abs() <= 1e-6 * bound && low.abs() <= bound) {
-                    return Err(format!(
-                        "covariances of `{}` and `{}` are {low} and {high}: not those of anything",
-                        parameters[row], parameters[column]
-                    ));
-                }
-                values[column * n + row] = low;
-            }
-        }
-        Ok(Self { parameters, values })
     }
 }
 

@@ -1,15 +1,14 @@
-//! What `--to` names: a convention, its shape, and the file format that holds it.
+//! What a convention is called: its model, its shape, and the file format that holds it.
 
 use std::path::Path;
 
-use calibench_diagnostics::nearest;
-use calibench_exchange::camera::{CameraFormat, FORMATS, NamedCamera, format_named};
 use calibench_model::camera::{AgisoftVersion, CameraModel, TangentialOrder};
 use calibench_model::convert::Target;
+use thiserror::Error;
 
-use super::Failure;
+use super::{CameraFormat, FORMATS, NamedCamera, format_named};
 
-/// The names that `--to` knows besides those of formats with models of their own, with what they mean.
+/// The names of conventions, besides those of formats with models of their own, with what they mean.
 pub const TARGETS: [(&str, &str); 13] = [
     ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
     ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
@@ -57,17 +56,35 @@ pub struct Given<'a> {
 }
 
 impl Given<'_> {
-    fn pitch(&self, name: &str) -> Result<f64, Failure> {
-        self.pitch_um.or(self.source.pitch_um).ok_or_else(|| {
-            Failure::input(format!(
-                "--to {name} is in mm and the file states no pixel pitch: give it with --pitch UM (width of the sensor over columns)"
-            ))
-        })
+    fn pitch(&self, name: &str) -> Result<f64, TargetError> {
+        self.pitch_um.or(self.source.pitch_um).ok_or_else(|| TargetError::NoPitch(name.to_owned()))
     }
 }
 
+/// A name that is no target, or not with what is given.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum TargetError {
+    /// The convention is in mm.
+    #[error("{0} is in mm and the file states no pixel pitch: expected it (um; width of the sensor over columns)")]
+    NoPitch(String),
+    /// Ebner's parameters belong to a grid.
+    #[error("ebner needs the spacing of its grid, mm")]
+    NoBase,
+    /// There is no such target.
+    #[error("{name}: no such target; known are {}", known.join(", "))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+}
+
 /// The target called `name`.
-pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
+///
+/// # Errors
+/// An unknown name; a pitch or a base that is needed and not given.
+pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
     if let Some(format) = FORMATS.iter().copied().find(|format| format.name == name && !format.models(None).is_empty()) {
         return Ok(Goal { way: Way::Best, format });
     }
@@ -77,7 +94,7 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
     let (target, format) = match name {
         "photogrammetric" => (Target::photogrammetric(given.pitch(name)?), "photogrammetric"),
         "ebner" => {
-            let b_mm = given.base_mm.ok_or_else(|| Failure::input("--to ebner needs the spacing of the grid: give it with --base MM"))?;
+            let b_mm = given.base_mm.ok_or(TargetError::NoBase)?;
             (Target::Ebner { pitch_um: given.pitch(name)?, b_mm }, "photogrammetric")
         }
         "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
@@ -90,7 +107,7 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, Failure> {
             _ => return Err(unknown(name)),
         },
     };
-    let format = format_named(format).ok_or_else(|| Failure::input(format!("no file format is called {format}")))?;
+    let format = format_named(format).ok_or_else(|| unknown(format))?;
     Ok(Goal { way: Way::One(target), format })
 }
 
@@ -99,9 +116,7 @@ fn older(version: AgisoftVersion) -> Target {
     Target::Agisoft { version, radial: 3, tangential: 2, affinity: true }
 }
 
-fn unknown(name: &str) -> Failure {
+fn unknown(name: &str) -> TargetError {
     let formats = FORMATS.iter().filter(|format| !format.models(None).is_empty()).map(|format| format.name);
-    let known: Vec<&str> = TARGETS.iter().map(|(name, _)| *name).chain(formats).collect();
-    let near = nearest(name, known.iter().copied()).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-    Failure::input(format!("--to {name}: no such target; known are {}{near}", known.join(", ")))
+    TargetError::Unknown { name: name.to_owned(), known: TARGETS.iter().map(|(name, _)| *name).chain(formats).collect() }
 }

@@ -1,4 +1,4 @@
-//! A chessboard's corners, found and measured.
+//! A chessboard in photographs: its corners, found and measured, and their object coordinates.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -9,15 +9,15 @@ use calibench_model::Start;
 use calibench_model::camera::ImageSize;
 use rayon::prelude::*;
 
-use super::super::Failure;
-use super::super::context::Context;
-use super::super::detect::corners_of;
-use super::super::photos::{names, once};
-use super::super::progress::Progress;
-use super::cameras::Photo;
+use crate::PhotographsError;
+use crate::corners::corners_of;
+use crate::names::{names, once};
 
 /// The status of a photograph in which the board was not found.
-const NOT_FOUND: &str = "not_found";
+pub const NOT_FOUND: &str = "not_found";
+
+/// A photograph: the name of its image, where it is, and its size.
+pub type Photo = (String, PathBuf, ImageSize);
 
 /// A chessboard and the side of its squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +42,7 @@ impl FromStr for Chessboard {
 }
 
 /// Measured points, and the photographs that they are of.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Corners {
     /// Those with a position.
     pub points: Vec<PointRow>,
@@ -49,6 +50,18 @@ pub struct Corners {
     pub lost: Vec<LostRow>,
     /// The photographs; none where the points were given.
     pub photos: Vec<Photo>,
+}
+
+impl FromIterator<Corners> for Corners {
+    fn from_iter<I: IntoIterator<Item = Corners>>(all: I) -> Self {
+        let mut whole = Self::default();
+        for one in all {
+            whole.points.extend(one.points);
+            whole.lost.extend(one.lost);
+            whole.photos.extend(one.photos);
+        }
+        whole
+    }
 }
 
 impl Chessboard {
@@ -62,43 +75,25 @@ impl Chessboard {
         (0..self.board.corners()).map(corner).collect()
     }
 
-    /// The corners in photographs: approximately by the detector, then by the method. Those that the method rejects, and photographs without the board, are listed among the lost.
-    pub fn measure(&self, context: &Context<'_>, photos: &[PathBuf], method: &str) -> Result<Corners, Failure> {
-        let detector = context.toolbox.detector.as_deref();
-        let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
-        let method = context.method(method)?;
-        let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
-        let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
+    /// The corners in photographs: approximately by the detector, then by the operator called `method`. Those that it rejects, and photographs without the
+    /// board, are listed among the lost. One list a photograph; `step` is called after each, on any thread.
+    ///
+    /// # Errors
+    /// A photograph that cannot be read, or that is given twice.
+    pub fn measure(
+        &self,
+        photos: &[PathBuf],
+        detector: &dyn BoardDetector,
+        (method, operator): (&str, &dyn Operator),
+        step: &(dyn Fn() + Sync),
+    ) -> Result<Vec<Corners>, PhotographsError> {
         once(photos)?;
         let one = |(path, name): (&PathBuf, &String)| {
-            let found = self.in_photo((path, name), detector, operator.as_ref(), &method.label);
-            progress.step();
+            let found = self.in_photo((path, name), detector, operator, method);
+            step();
             found
         };
-        let found = photos.par_iter().zip(&names(photos)).map(one).collect::<Result<Vec<_>, Failure>>()?;
-        let mut seen = 0;
-        for (path, Corners { points, lost, .. }) in photos.iter().zip(&found) {
-            seen += usize::from(!points.is_empty());
-            match (lost.first(), lost.len()) {
-                (Some(LostRow { status, reason, .. }), 1) if status == NOT_FOUND => eprintln!("{}: {reason}", path.display()),
-                (Some(_), count) => eprintln!("{}: {count} corners were rejected by {}", path.display(), method.label),
-                (None, _) => {}
-            }
-        }
-        progress.finish(&format!("the board was found in {seen} of {} photographs, measured by {}", photos.len(), method.label));
-        if seen == 0 {
-            return Err(Failure::input(
-                "no corner was measured: no board was found (expected one whose inner corners are all visible, counted as COLUMNSxROWS), or the method \
-                 rejected every corner",
-            ));
-        }
-        let mut all = Corners { points: Vec::new(), lost: Vec::new(), photos: Vec::new() };
-        for one in found {
-            all.points.extend(one.points);
-            all.lost.extend(one.lost);
-            all.photos.extend(one.photos);
-        }
-        Ok(all)
+        photos.par_iter().zip(&names(photos)).map(one).collect()
     }
 
     fn in_photo(
@@ -107,7 +102,7 @@ impl Chessboard {
         detector: &dyn BoardDetector,
         operator: &dyn Operator,
         method: &str,
-    ) -> Result<Corners, Failure> {
+    ) -> Result<Corners, PhotographsError> {
         let image = read_photo(path)?;
         let rows = corners_of(detector, &image, name, self.board);
         let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();

@@ -1,0 +1,41 @@
+//! Why a command fails.
+
+use std::io::{self, IsTerminal};
+
+use calibench_diagnostics::Problems;
+use calibench_scenario::catalogue::CatalogueError;
+
+/// Why a command ends with another exit code than 0.
+pub enum Failure {
+    /// A gate failed and has said why: exit code 1.
+    Gate,
+    /// Bad input, or output that cannot be written: exit code 2.
+    Input(String),
+}
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl Failure {
+    /// Bad input, in words.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Input(message.into())
+    }
+}
+
+/// A scenario's problems as a picture of the lines that they are about.
+pub fn scenario_failure(error: CatalogueError) -> Failure {
+    match error {
+        CatalogueError::Problems(problems) => Failure::Input(picture(&problems)),
+        other => other.into(),
+    }
+}
+
+fn picture(problems: &Problems) -> String {
+    let count = problems.problems.len();
+    let noun = if count == 1 { "mistake" } else { "mistakes" };
+    format!("{count} {noun} in {}\n{}", problems.file, problems.picture(io::stderr().is_terminal()))
+}

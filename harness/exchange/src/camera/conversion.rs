@@ -1,0 +1,80 @@
+//! A camera of a file in another convention: its model, its covariance and its pose.
+
+use calibench_model::camera::Ray;
+use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Rotation, convert};
+use thiserror::Error;
+
+use super::fit::{FitError, fit_to_format};
+use super::target::{Goal, Way};
+use super::{NamedCamera, ParameterCovariance};
+
+/// A converted camera and how it came about.
+#[derive(Clone, Debug)]
+pub struct Converted {
+    /// The camera with its pitch, its covariance and its pose; the pose is turned as the fit turned the camera.
+    pub camera: NamedCamera,
+    /// The conversion.
+    pub conversion: Conversion,
+    /// The name of the tool's model, if the tool has several.
+    pub model: Option<&'static str>,
+}
+
+/// A camera that cannot be converted.
+#[derive(Debug, Error)]
+pub enum ConversionError {
+    /// A model was asked for where the target names it.
+    #[error("the convention names the model already")]
+    ModelNamed,
+    /// The conversion.
+    #[error(transparent)]
+    Convert(#[from] ConvertError),
+    /// The fit of one of the format's models.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// The covariance of the source or of the result.
+    #[error("{0}")]
+    Covariance(String),
+}
+
+/// Converts `source` to `goal`. `model` is one of the format's, where it has several; `pitch_um` that of the source where the file does not state it.
+/// The covariance of `options` is that of the source's file.
+///
+/// # Errors
+/// A fit that is refused, a model that the format does not have, a covariance that is not the camera's.
+pub fn converted(
+    source: &NamedCamera,
+    goal: &Goal,
+    model: Option<&str>,
+    pitch_um: Option<f64>,
+    options: &ConvertOptions,
+) -> Result<Converted, ConversionError> {
+    let covariance = source.covariance.as_ref().map(|covariance| covariance.whole(&source.camera)).transpose();
+    let options = ConvertOptions { covariance: covariance.map_err(ConversionError::Covariance)?, ..options.clone() };
+    let pitch_um = pitch_um.or(source.pitch_um);
+    let (conversion, model) = match goal.way {
+        Way::One(_) if model.is_some() => return Err(ConversionError::ModelNamed),
+        Way::One(target) => (convert(&source.camera, target, &options)?, None),
+        Way::Best => {
+            let (conversion, model) = fit_to_format(goal.format, &source.camera, model, pitch_um, &options)?;
+            (conversion, Some(model.name))
+        }
+    };
+    let covariance = conversion.covariance.as_ref().map(|q| ParameterCovariance::of(&conversion.camera, q)).transpose();
+    let camera = NamedCamera {
+        pitch_um,
+        covariance: covariance.map_err(ConversionError::Covariance)?,
+        pose: source.pose.map(|pose| pose.turned_by(in_file_axes(&conversion.rotation))),
+        pose_frame: source.pose_frame,
+        ..NamedCamera::new(source.name.clone(), conversion.camera)
+    };
+    Ok(Converted { camera, conversion, model })
+}
+
+/// A rotation of rays in the axes of camera files, where y points down and z forward.
+fn in_file_axes(rotation: &Rotation) -> [[f64; 3]; 3] {
+    let columns = [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)].map(|(x, y, z)| {
+        let ray = rotation.apply(Ray { x, y, z });
+        [ray.x, -ray.y, -ray.z]
+    });
+    std::array::from_fn(|row| std::array::from_fn(|column| columns[column][row]))
+}

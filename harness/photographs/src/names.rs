@@ -1,0 +1,73 @@
+//! What photographs are called, and how large they are.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use calibench_model::camera::ImageSize;
+
+use crate::PhotographsError;
+
+/// File names; those of the same name in several folders with their folders, as they were given.
+pub fn names(photos: &[PathBuf]) -> Vec<String> {
+    let mut count: BTreeMap<String, usize> = BTreeMap::new();
+    photos.iter().for_each(|path| *count.entry(short(path)).or_default() += 1);
+    photos.iter().map(|path| if count[&short(path)] > 1 { path.display().to_string() } else { short(path) }).collect()
+}
+
+fn short(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
+
+/// Two photographs that a name may mean.
+pub fn ambiguous<'p>(photos: &'p [PathBuf], name: &str) -> Option<[&'p Path; 2]> {
+    let mut called = photos.iter().filter(|path| short(path) == name).map(PathBuf::as_path);
+    Some([called.next()?, called.next()?])
+}
+
+/// Each photograph must be given once.
+///
+/// # Errors
+/// [`PhotographsError::Twice`].
+pub fn once(photos: &[PathBuf]) -> Result<(), PhotographsError> {
+    let twice = photos.iter().enumerate().find(|(i, photo)| photos[..*i].contains(photo));
+    twice.map_or(Ok(()), |(_, twice)| Err(PhotographsError::Twice(twice.clone())))
+}
+
+/// The size that all photographs have.
+///
+/// # Errors
+/// [`PhotographsError::None`], [`PhotographsError::Sizes`].
+pub fn same_size<'p>(photos: impl IntoIterator<Item = (&'p PathBuf, ImageSize)>) -> Result<ImageSize, PhotographsError> {
+    let mut photos = photos.into_iter();
+    let Some((first, size)) = photos.next() else { return Err(PhotographsError::None) };
+    match photos.find(|(_, other)| *other != size) {
+        None => Ok(size),
+        Some((path, other)) => Err(PhotographsError::Sizes {
+            first: first.clone(),
+            size: (size.width, size.height),
+            other: path.clone(),
+            found: (other.width, other.height),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn photographs_of_one_name_are_told_apart_by_their_folders() {
+        let photos = ["a/left/1.png", "a/right/1.png", "a/right/2.png"].map(PathBuf::from);
+        assert_eq!(names(&photos), ["a/left/1.png", "a/right/1.png", "2.png"]);
+        assert!(once(&photos).is_ok() && once(&[photos.as_slice(), &photos[..1]].concat()).is_err());
+    }
+
+    #[test]
+    fn photographs_of_one_camera_have_one_size() {
+        let paths = ["a.png", "b.png"].map(PathBuf::from);
+        let size = |width| ImageSize { width, height: 480 };
+        assert_eq!(same_size([(&paths[0], size(640)), (&paths[1], size(640))]).ok(), Some(size(640)));
+        let error = same_size([(&paths[0], size(640)), (&paths[1], size(480))]).unwrap_err();
+        assert!(error.to_string().contains("b.png: 480 x 480 px, but a.png has 640 x 480"), "{error}");
+    }
+}
