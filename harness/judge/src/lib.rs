@@ -3,14 +3,14 @@
 //! Every operator with every model is calibrated from all views, from all but those left out, and from halves of them. What comes of it are [`Row`]s:
 //! measure, place, value and what is predicted for it. [`Summary`](calibench_records::judgement::Summary) makes figures and a verdict of them, and nothing else does.
 
-mod beside;
 mod calibrated;
-mod cell;
+mod camera_difference;
 mod frame;
 mod halves;
 mod holdout;
 mod lines;
 mod material;
+mod operator_and_model;
 mod options;
 mod published;
 
@@ -64,15 +64,15 @@ pub fn judge(material: &Material, options: &Options) -> Result<Vec<Row>, Judgeme
     let available = (0..material.operators.len()).filter(|&operator| material.operators[operator].unavailable.is_none());
     let jobs: Vec<(usize, &ModelChoice)> =
         available.flat_map(|operator| options.models.iter().map(move |model| (operator, model))).collect();
-    let cells: Vec<cell::Judged> =
-        jobs.par_iter().map(|&(operator, model)| cell::cell(material, &common, operator, model, options)).collect();
+    let cells: Vec<operator_and_model::Judged> =
+        jobs.par_iter().map(|&(operator, model)| operator_and_model::rows_of(material, &common, operator, model, options)).collect();
     let labels: Vec<Arc<str>> = jobs.iter().map(|(_, model)| model.label.as_str().into()).collect();
     for (place, cell) in cells.iter().enumerate() {
         let (operator, model) = (jobs[place].0, &labels[place]);
         let others = (place + 1..jobs.len()).filter(|&other| jobs[other].0 == operator);
         let others = others.filter_map(|other| Some((&labels[other], cells[other].camera.as_ref()?)));
         rows.extend(cell.rows.iter().cloned());
-        let beside = cell.camera.iter().flat_map(|camera| beside::rows(camera, others.clone(), &material.positions(operator)));
+        let beside = cell.camera.iter().flat_map(|camera| camera_difference::rows(camera, others.clone(), &material.positions(operator)));
         rows.extend(beside.map(|row| row.by(&material.operators[operator].method, model)));
     }
     Ok(rows)

@@ -3,10 +3,10 @@
 pub mod chessboard;
 pub mod corners;
 mod error;
+mod measured_board;
 pub mod names;
 pub mod points;
-mod trial;
 
 pub use chessboard::{Chessboard, Corners, Photo};
 pub use error::PhotographsError;
-pub use trial::measured_board;
+pub use measured_board::measured_board;

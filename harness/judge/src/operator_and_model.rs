@@ -8,13 +8,13 @@ use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
 use calibench_records::judgement::{Row, measure};
 
-use super::beside::beside;
 use super::calibrated::{Calibrated, calibrate};
 use super::frame::Frame;
 use super::halves::{Map, apart, halves, vectors};
 use super::holdout::{Squares, Unseen};
 use super::material::Material;
 use super::{Options, lines};
+use crate::camera_difference::beside;
 
 /// Up to so many photographs each is left out in turn; of more, a tenth at a time.
 const EACH: usize = 20;
@@ -38,7 +38,7 @@ struct Job<'a> {
 }
 
 /// All rows of an operator with a model, and the camera.
-pub(super) fn cell(material: &Material, common: &[Vec<bool>], operator: usize, model: &ModelChoice, options: &Options) -> Judged {
+pub(super) fn rows_of(material: &Material, common: &[Vec<bool>], operator: usize, model: &ModelChoice, options: &Options) -> Judged {
     let settings = model.settings(material.size, options.pitch_um);
     let views = material.usable(operator);
     let job = Job { material, common, operator, settings, options, views };
