@@ -1,4 +1,4 @@
-//! A search for the drawing and the detector behind Zhu, Wu & Wan 2007, Table I: `cargo run --release -p calibench-run --example zhu_search`.
+//! A search for the drawing and the detector behind Zhu, Wu & Wan 2007, Table I: `cargo run --release --example zhu_search`.
 //!
 //! It shares no code with the operator but the fit of the paraboloid: gradients by explicit kernels, integration by explicit weights, everything in double
 //! precision. As in the scenario, a point starts at the detection nearest to it and the operator takes the strongest pixel around that.
