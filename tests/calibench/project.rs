@@ -79,7 +79,7 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// All files below `folder` with their contents, by path; locks are left out.
+/// All files below `folder` with their contents, by path.
 pub fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -88,7 +88,7 @@ pub fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
                 folders.push(path);
-            } else if !path.ends_with(".calibench-lock") {
+            } else {
                 let content = std::fs::read(&path).expect("a file");
                 found.push((path.strip_prefix(folder).expect("below").to_owned(), content));
             }

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 use super::context::Context;
 use super::convert::positive;
-use super::output::OutputFolder;
+use super::output;
 use super::photos::one_size;
 use super::progress::Progress;
 use crate::deliver::print;
@@ -77,7 +77,7 @@ pub struct Judge {
     /// Seed of the splits
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
-    /// Folder for the page with its pictures and its numbers as CSV; one that calibench wrote is replaced as a whole
+    /// Folder for the page with its pictures and its numbers as CSV; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
 }
@@ -91,7 +91,7 @@ impl Judge {
             return Err(JudgementError::TooFewViews { found: self.photos.len(), needed }.into());
         }
         once(&self.photos)?;
-        let folder = self.report.as_deref().map(|path| OutputFolder::open(path).map_err(named)).transpose()?;
+        let folder = self.report.as_deref().map(|path| output::folder("--report", path)).transpose()?;
         let (trial, size) = self.measure(context, &methods)?;
         let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
         let material = Material::new(&trial, &infos, self.chessboard.board, self.chessboard.side, size);
@@ -182,13 +182,5 @@ fn info(method: &Configured) -> MethodInfo {
         label: method.label.as_str().into(),
         version: method.version.as_str().into(),
         unavailable: method.operator.as_ref().err().map(|why| (*why).to_owned()),
-    }
-}
-
-/// The option is called otherwise here.
-fn named(failure: Failure) -> Failure {
-    match failure {
-        Failure::Input(message) => Failure::Input(message.replacen("-o ", "--report ", 1)),
-        other @ Failure::Gate => other,
     }
 }

@@ -7,7 +7,7 @@ use calibench_scenario::Subject;
 use clap::{Args, ValueEnum};
 
 use super::context::Context;
-use super::output::OutputFolder;
+use super::output;
 use crate::failure::Failure;
 
 /// Writes a scenario's testfield at true scale, as SVG and PDF.
@@ -15,7 +15,7 @@ use crate::failure::Failure;
 pub struct Print {
     /// Name of a scenario, or a TOML file
     scenario: String,
-    /// The folder; one that calibench wrote is replaced as a whole
+    /// The folder; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Pages as large as each plate, or tiles of this paper with marks to join them
@@ -47,7 +47,7 @@ impl Print {
         };
         let stem = scenario.name.replace('/', "-");
         let options = PrintOptions { name: stem.clone(), mm_per_unit: subject.unit.mm(), paper };
-        OutputFolder::open(&self.output)?.replace::<PrintError>(|folder| {
+        output::folder("-o", &self.output)?.replace::<PrintError>(|folder| {
             write_svg(folder, &subject.field, &options)?;
             write_pdf(&folder.join(format!("{stem}.pdf")), &subject.field, &options)
         })?;

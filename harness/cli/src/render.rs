@@ -14,7 +14,7 @@ use calibench_synth::stations::Station;
 use clap::Args;
 
 use super::context::Context;
-use super::output::OutputFolder;
+use super::output;
 use super::progress::Progress;
 use crate::deliver::print;
 use crate::failure::Failure;
@@ -24,7 +24,7 @@ use crate::failure::Failure;
 pub struct Render {
     /// Name of a scenario, or a TOML file
     scenario: String,
-    /// The folder; one that calibench wrote is replaced as a whole
+    /// The folder; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     /// Which trial, counted from 0
@@ -44,7 +44,7 @@ pub struct Render {
 impl Render {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let scenario = context.scenario(&self.scenario)?;
-        let output = OutputFolder::open(&self.output)?;
+        let output = output::folder("-o", &self.output)?;
         let key = Key { seed: self.seed.unwrap_or(scenario.seed), scenario: &scenario.name, trial: self.trial, view: "", target: "" };
         let mut notes = Vec::new();
         output.replace::<RunError>(|folder| {

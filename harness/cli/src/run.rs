@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use calibench_exchange::FolderWriter;
+use calibench_exchange::OutputFolder;
 use calibench_measure::Configured;
 use calibench_run::Plan;
 use calibench_run::store;
@@ -66,11 +66,12 @@ impl Run {
         // All are checked before the first is run.
         let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
         let methods = self.changes.methods(context)?;
-        let writer = FolderWriter::new(&context.places()?.records)?;
+        let records = context.places()?.records;
+        let folders = scenarios.iter().map(|scenario| store::folder(&records, &scenario.name)).collect::<Result<Vec<_>, _>>()?;
         let revision = context.revision()?;
-        for scenario in &scenarios {
+        for (scenario, folder) in scenarios.iter().zip(&folders) {
             if let Some(sweep) = &scenario.sweep {
-                self.sweep(context, scenario, sweep, &methods, (&writer, &revision))?;
+                self.sweep(context, scenario, sweep, &methods, (folder, &revision))?;
                 continue;
             }
             let mut plan = Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?);
@@ -81,7 +82,7 @@ impl Run {
             plan.trials = trials(scenario, self.changes.trials)?;
             let started = Instant::now();
             let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
-            store::run(&writer, &mut plan, &revision, &|| progress.step())?;
+            store::run(folder, &mut plan, &revision, &|| progress.step())?;
             progress.finish(&summary(&plan, started.elapsed().as_secs_f64()));
         }
         Ok(())
@@ -93,7 +94,7 @@ impl Run {
         scenario: &Scenario,
         sweep: &Sweep,
         methods: &[Configured],
-        (writer, revision): (&FolderWriter, &str),
+        (folder, revision): (&OutputFolder, &str),
     ) -> Result<(), Failure> {
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
@@ -103,7 +104,7 @@ impl Run {
         let plan = SweepPlan { scenario, sweep, methods, seed, trials, detector, data: context.data()?, registry };
         let (started, cells) = (Instant::now(), sweep.cells());
         let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
-        store::run_sweep(writer, &plan, revision, &|| progress.step())?;
+        store::run_sweep(folder, &plan, revision, &|| progress.step())?;
         let trials = trials.unwrap_or(scenario.trials);
         progress.finish(&format!("{cells} cells of {trials} trials in {:.1} s", started.elapsed().as_secs_f64()));
         Ok(())

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::{Problem, Problems};
-use calibench_exchange::FolderWriter;
+use calibench_exchange::OutputFolder;
 use calibench_model::camera::{Camera, Fold, ImageSize, Photogrammetric, fold};
 use calibench_model::convert::{
     ConvertError, ConvertOptions, Difference, DifferenceOptions, Mistake, Region, Tangential, Target, Vector, difference, from_naive,
@@ -60,8 +60,7 @@ pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
     for path in files(&places.cameras)? {
         section(&read(&path)?, &mut text, &mut pictures)?;
     }
-    let writer = FolderWriter::new(&places.reports)?;
-    writer.replace(FAMILY, |folder| -> Result<(), ReportError> {
+    OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| -> Result<(), ReportError> {
         for (name, picture) in &pictures {
             picture.write(&folder.join(name))?;
         }

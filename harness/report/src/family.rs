@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::FolderWriter;
+use calibench_exchange::OutputFolder;
 use calibench_measure::Registry;
 
 use crate::page::Page;
@@ -63,8 +63,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
             Either::Sweep(loaded) => page.sweep(loaded, &printed_factors(&tables))?,
         }
     }
-    let writer = FolderWriter::new(&places.reports)?;
-    writer.replace(family, |folder| page.write(folder))?;
+    OutputFolder::open(&places.reports.join(family))?.replace(|folder| page.write(folder))?;
     Ok(Written::New(page_path))
 }
 

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::FolderWriter;
+use calibench_exchange::OutputFolder;
 use calibench_measure::{BoardDetector, Configured, Registry};
 use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
 use calibench_records::names::{RECORDS, SCENARIO, cell_folder};
@@ -25,13 +25,21 @@ fn keep_camera(scenario: &Scenario, folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
+/// The folder of the records of scenario `name` below the records' folder.
+///
+/// # Errors
+/// As [`OutputFolder::open`].
+pub fn folder(records: &Path, name: &str) -> std::io::Result<OutputFolder> {
+    OutputFolder::open(&records.join(name))
+}
+
 /// Runs `plan` and puts its records, its scenario and the first trial's images in the place of older ones, all at once, when it is done.
 ///
 /// # Errors
 /// What the run or the file system refuses; older records are then as they were.
-pub fn run(writer: &FolderWriter, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
+pub fn run(output: &OutputFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
     let name = plan.scenario.name.clone();
-    writer.replace(&name, |folder: &Path| {
+    output.replace(|folder: &Path| {
         let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
         write_records(folder, &name, &plan, revision, step)?;
         std::fs::write(folder.join(SCENARIO), &plan.scenario.text)?;
@@ -99,9 +107,9 @@ pub struct SweepPlan<'a> {
 ///
 /// # Errors
 /// What a run or the file system refuses; older records are then as they were.
-pub fn run_sweep(writer: &FolderWriter, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
+pub fn run_sweep(output: &OutputFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
     let scenario = plan.scenario;
-    writer.replace(&scenario.name, |folder: &Path| {
+    output.replace(|folder: &Path| {
         for index in 0..plan.sweep.cells() {
             let cell = parse_cell(scenario, plan.sweep, index, plan.registry).map_err(std::io::Error::other)?;
             let mut run = Plan::new(&cell, plan.detector, plan.data.clone());

@@ -1,16 +1,16 @@
 //! `calibench calibrate`: a camera from measured points and control, or from photographs of a chessboard.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use calibench_calibrate::{Calibration, DatumChoice, Settings, prepare};
-use calibench_exchange::{ControlRow, FolderWriter, PointFile, read_control, read_observed_stations};
+use calibench_exchange::{ControlRow, OutputFolder, PointFile, read_control, read_observed_stations};
 use calibench_photographs::{Chessboard, Corners, Photo};
 use calibench_report::calibration::{summary, write_report};
 use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
-use super::inputs;
+use super::{inputs, output};
 use crate::deliver::print;
 use crate::failure::Failure;
 
@@ -66,13 +66,14 @@ pub struct Calibrate {
     /// Convention or tool of the camera file, as for `convert` [default: by model and ending]
     #[arg(long, value_name = "CONVENTION", requires = "output")]
     to: Option<String>,
-    /// Folder for a report with pictures and tables; one that is there is replaced as a whole
+    /// Folder for a report with pictures and tables; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
 }
 
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let report = self.report.as_deref().map(|path| output::folder("--report", path)).transpose()?;
         let (corners, control) = self.input(context)?;
         let settings = self.settings(&corners.photos)?;
         let mut prepared = prepare(&corners.points, &control, &settings)?;
@@ -81,7 +82,7 @@ impl Calibrate {
         if !self.compare.is_empty() {
             calibration.compare(&sets(&self.compare)?)?;
         }
-        self.deliver(&calibration)?;
+        self.deliver(&calibration, report.as_ref())?;
         print(&summary(&calibration))
     }
 
@@ -108,16 +109,11 @@ impl Calibrate {
         })
     }
 
-    fn deliver(&self, calibration: &Calibration<'_>) -> Result<(), Failure> {
+    fn deliver(&self, calibration: &Calibration<'_>, report: Option<&OutputFolder>) -> Result<(), Failure> {
         if let Some(path) = &self.output {
             camera_file::write(path, calibration, self.to.as_deref())?;
         }
-        let Some(folder) = &self.report else { return Ok(()) };
-        let (Some(name), parent) = (folder.file_name().and_then(|name| name.to_str()), folder.parent()) else {
-            return Err(Failure::input(format!("--report {}: expected the name of a folder", folder.display())));
-        };
-        let parent = parent.filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Ok(FolderWriter::new(parent)?.replace(name, |folder| write_report(calibration, folder))?)
+        Ok(report.map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, folder)))?)
     }
 }
 

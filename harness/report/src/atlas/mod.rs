@@ -14,7 +14,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use calibench_exchange::FolderWriter;
+use calibench_exchange::OutputFolder;
 use calibench_measure::Registry;
 
 use self::frontier::Spot;
@@ -63,8 +63,7 @@ pub fn write(places: &Places, names: &[String], registry: &Registry) -> Result<W
         section(part, &usual(&parts, &part.sweep.scenario.name, registry), &mut text, &mut files);
     }
     let which = page::which(&groups(&parts, &speeds), &speeds.machine, &evidence(&parts));
-    let writer = FolderWriter::new(&places.reports)?;
-    writer.replace(FAMILY, |folder| {
+    OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| {
         files.iter().try_for_each(|(name, picture): &(String, Canvas)| picture.write(&folder.join(name)))?;
         numbers(&parts, &folder.join(NUMBERS)).map_err(io::Error::other)?;
         fs::write(folder.join(WHICH), &which)?;

@@ -1,0 +1,168 @@
+//! The list of the files that calibench wrote into a folder.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io;
+use std::path::Path;
+
+use super::at;
+
+/// The list's name in its folder.
+pub const MANIFEST: &str = ".calibench-manifest";
+const HEAD: &str = "# calibench wrote these files and replaces no others here: blake3 digest and name";
+
+/// Files below a folder: their names, with `/` between folders, and their digests.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Manifest {
+    files: BTreeMap<String, String>,
+}
+
+/// What an entry of a folder is; links are not followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    File,
+    Folder,
+    Other,
+}
+
+/// An entry below a folder.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// The path below the folder, with `/` between folders; `None` if it is no text.
+    pub name: Option<String>,
+    pub path: std::path::PathBuf,
+    pub kind: Kind,
+}
+
+/// Everything below `folder`, sorted, each folder before what it holds.
+pub(super) fn entries(folder: &Path) -> io::Result<Vec<Entry>> {
+    fn walk(folder: &Path, above: Option<&str>, found: &mut Vec<Entry>) -> io::Result<()> {
+        let read = || fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>();
+        let mut here = read().map_err(|error| at(folder, &error))?;
+        here.sort_by_key(fs::DirEntry::file_name);
+        for entry in here {
+            let name = entry.file_name().to_str().and_then(|name| above.map(|above| format!("{above}{name}")));
+            let kind = entry.file_type()?;
+            let kind = if kind.is_dir() {
+                Kind::Folder
+            } else if kind.is_file() {
+                Kind::File
+            } else {
+                Kind::Other
+            };
+            found.push(Entry { name: name.clone(), path: entry.path(), kind });
+            if kind == Kind::Folder {
+                walk(&entry.path(), name.map(|name| name + "/").as_deref(), found)?;
+            }
+        }
+        Ok(())
+    }
+    let mut found = Vec::new();
+    walk(folder, Some(""), &mut found)?;
+    Ok(found)
+}
+
+/// The digest of a file's content.
+pub(super) fn digest(path: &Path) -> io::Result<String> {
+    let mut hasher = blake3::Hasher::new();
+    File::open(path).and_then(|mut file| io::copy(&mut file, &mut hasher)).map_err(|error| at(path, &error))?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
+impl Manifest {
+    /// That of a folder that calibench has just filled.
+    pub fn of(folder: &Path) -> io::Result<Self> {
+        let mut files = BTreeMap::new();
+        for entry in entries(folder)?.into_iter().filter(|entry| entry.kind == Kind::File) {
+            let name = entry.name.filter(|name| !name.contains(char::is_control));
+            let name = name.ok_or_else(|| io::Error::other(format!("{:?}: no name for a file", entry.path)))?;
+            files.insert(name, digest(&entry.path)?);
+        }
+        Ok(Self { files })
+    }
+
+    /// That of `folder`, if it has one.
+    ///
+    /// # Errors
+    /// One that is not as calibench writes it.
+    pub fn read(folder: &Path) -> io::Result<Option<Self>> {
+        let path = folder.join(MANIFEST);
+        match fs::symlink_metadata(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(at(&path, &error)),
+            Ok(found) if !found.is_file() => return Err(wrong(&path, "is no file")),
+            Ok(_) => {}
+        }
+        let text = fs::read_to_string(&path).map_err(|error| at(&path, &error))?;
+        Self::parse(&text)
+            .map(Some)
+            .map_err(|line| wrong(&path, &format!("line {line}: expected a digest, two spaces and the name of a file")))
+    }
+
+    /// # Errors
+    /// The number of the first line that is wrong.
+    fn parse(text: &str) -> Result<Self, usize> {
+        let mut files = BTreeMap::new();
+        for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.starts_with('#')) {
+            let is_digest = |digest: &str| digest.len() == 64 && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
+            let (digest, name) = line.split_once("  ").filter(|(digest, name)| is_digest(digest) && !name.is_empty()).ok_or(index + 1)?;
+            files.insert(name.to_owned(), digest.to_owned());
+        }
+        Ok(Self { files })
+    }
+
+    fn text(&self) -> String {
+        let lines = self.files.iter().map(|(name, digest)| format!("{digest}  {name}\n"));
+        format!("{HEAD}\n{}", lines.collect::<String>())
+    }
+
+    /// Writes it into `folder`.
+    pub fn write(&self, folder: &Path) -> io::Result<()> {
+        let path = folder.join(MANIFEST);
+        fs::write(&path, self.text()).map_err(|error| at(&path, &error))
+    }
+
+    /// The digest of the file of this name, if it is listed.
+    pub fn digest(&self, name: &str) -> Option<&str> {
+        self.files.get(name).map(String::as_str)
+    }
+
+    /// Lies a listed file below this folder?
+    pub fn has_folder(&self, name: &str) -> bool {
+        let below = format!("{name}/");
+        self.files.range(below.clone()..).next().is_some_and(|(file, _)| file.starts_with(&below))
+    }
+}
+
+fn wrong(path: &Path, why: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, format!("{}: {why}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_read_as_it_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("cell")).unwrap();
+        for name in ["README.md", "cell/two  spaces.csv", "#1.png"] {
+            fs::write(folder.path().join(name), name).unwrap();
+        }
+        let manifest = Manifest::of(folder.path()).unwrap();
+        manifest.write(folder.path()).unwrap();
+        assert_eq!(Manifest::read(folder.path()).unwrap(), Some(manifest.clone()));
+        assert_eq!(manifest.digest("README.md").unwrap(), blake3::hash(b"README.md").to_hex().as_str());
+        assert!(manifest.has_folder("cell") && !manifest.has_folder("cel") && !manifest.has_folder("README.md"));
+    }
+
+    #[test]
+    fn a_broken_one_is_named_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        for text in ["# head\nREADME.md\n", "# head\nabc  README.md\n", &format!("# head\n{}  \n", "0".repeat(64))] {
+            fs::write(folder.path().join(MANIFEST), text).unwrap();
+            let error = Manifest::read(folder.path()).unwrap_err().to_string();
+            assert!(error.contains(MANIFEST) && error.contains("line 2"), "{error}");
+        }
+    }
+}

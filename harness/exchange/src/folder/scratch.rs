@@ -1,0 +1,231 @@
+//! Where a new folder is filled, beside the old one.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::at;
+use super::manifest::{Kind, MANIFEST, Manifest, entries};
+
+const PREFIX: &str = ".calibench-partial-";
+/// Held as long as the process that fills the new folder lives; names what is to be replaced.
+const LOCK: &str = "lock";
+const NEW: &str = "new";
+/// Where the old folder waits between two renames, on file systems that cannot exchange two folders at once.
+const OLD: &str = "old";
+
+/// A folder beside the one to be replaced: `lock` tells that it is in use, `new` is what is filled.
+#[derive(Debug)]
+pub(super) struct Scratch {
+    folder: PathBuf,
+    _lock: File,
+}
+
+impl Scratch {
+    /// Makes one in `parent` for the folder `name` in it, after removing those that killed processes left there.
+    pub fn new(parent: &Path, name: &str) -> io::Result<Self> {
+        clear(parent)?;
+        loop {
+            let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(parent).map_err(|error| at(parent, &error))?.keep();
+            if let Some(lock) = lock(&folder, name).map_err(|error| at(&folder, &error))? {
+                let scratch = Self { folder, _lock: lock };
+                fs::create_dir(scratch.new_folder()).map_err(|error| at(parent, &error))?;
+                return Ok(scratch);
+            }
+        }
+    }
+
+    /// What is filled.
+    pub fn new_folder(&self) -> PathBuf {
+        self.folder.join(NEW)
+    }
+
+    /// Puts the new folder to `place`; of the old one, which is as `old` says, the files that are listed are removed.
+    pub fn put(self, place: &Path, old: Option<&Manifest>) -> io::Result<()> {
+        let new = self.new_folder();
+        match fs::metadata(place) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return fs::rename(&new, place).map_err(|error| at(place, &error)),
+            about => fs::set_permissions(&new, about.and_then(|about| Ok(about.permissions())).map_err(|error| at(place, &error))?)?,
+        }
+        exchange(&new, place, &self.folder.join(OLD)).map_err(|error| at(place, &error))?;
+        remove_listed(&new, old.unwrap_or(&Manifest::default()))?;
+        if new.exists() {
+            // It came after the last look at the old folder.
+            give_back(&new, place)?;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        remove(&self.folder).ok();
+    }
+}
+
+/// The lock of a new scratch folder; `None` if another process took the folder for one that was left, and removed it.
+fn lock(folder: &Path, name: &str) -> io::Result<Option<File>> {
+    let path = folder.join(LOCK);
+    let mut file = match File::create_new(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        other => other?,
+    };
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => return Ok(None),
+        // Where there are no locks, nothing that was left is ever removed.
+        Ok(()) | Err(TryLockError::Error(_)) => {}
+    }
+    if !path.exists() {
+        return Ok(None);
+    }
+    file.write_all(name.as_bytes())?;
+    Ok(Some(file))
+}
+
+/// Removes from `parent` what killed processes left half written, and puts back an old folder that they left aside.
+fn clear(parent: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(parent).map_err(|error| at(parent, &error))? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() && entry.file_name().to_string_lossy().starts_with(PREFIX) {
+            clear_one(parent, &entry.path()).map_err(|error| at(&entry.path(), &error))?;
+        }
+    }
+    Ok(())
+}
+
+fn clear_one(parent: &Path, folder: &Path) -> io::Result<()> {
+    let path = folder.join(LOCK);
+    let Ok(lock) = File::open(&path) else {
+        // One that is about to be locked; its process then makes another. One with files in it stays.
+        fs::remove_dir(folder).ok();
+        return Ok(());
+    };
+    if lock.try_lock().is_err() || !path.exists() {
+        return Ok(());
+    }
+    let name = fs::read_to_string(&path).unwrap_or_default();
+    let old = folder.join(OLD);
+    let is_name = Path::new(&name).components().count() == 1 && Path::new(&name).file_name().is_some();
+    if old.is_dir() && is_name && !parent.join(&name).exists() {
+        fs::rename(&old, parent.join(&name))?;
+    }
+    remove(folder)
+}
+
+/// Removes a scratch folder. What has a manifest is whole, old or new: of that the listed files go, and if there are others all stays.
+fn remove(folder: &Path) -> io::Result<()> {
+    for part in [NEW, OLD].map(|part| folder.join(part)).iter().filter(|part| part.is_dir()) {
+        match Manifest::read(part)? {
+            Some(manifest) => remove_listed(part, &manifest)?,
+            None => fs::remove_dir_all(part)?,
+        }
+        if part.exists() {
+            return Ok(());
+        }
+    }
+    fs::remove_file(folder.join(LOCK))?;
+    fs::remove_dir(folder)
+}
+
+/// Removes the files of `manifest`, the manifest, and the folders that are then empty.
+fn remove_listed(folder: &Path, manifest: &Manifest) -> io::Result<()> {
+    let mut folders = vec![folder.to_owned()];
+    for entry in entries(folder)? {
+        let Some(name) = &entry.name else { continue };
+        match entry.kind {
+            Kind::File if manifest.digest(name).is_some() => fs::remove_file(&entry.path)?,
+            Kind::Folder if manifest.has_folder(name) => folders.push(entry.path),
+            _ => {}
+        }
+    }
+    // Last: whoever finds the rest knows what it is.
+    fs::remove_file(folder.join(MANIFEST)).or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
+    for folder in folders.iter().rev() {
+        fs::remove_dir(folder).ok();
+    }
+    Ok(())
+}
+
+/// Moves what is left in `old` to the same names in `place`, where there are none.
+fn give_back(old: &Path, place: &Path) -> io::Result<()> {
+    for entry in entries(old)? {
+        let Ok(name) = entry.path.strip_prefix(old) else { continue };
+        let there = place.join(name);
+        if fs::symlink_metadata(&there).is_err() && fs::symlink_metadata(&entry.path).is_ok() {
+            fs::rename(&entry.path, &there).map_err(|error| at(&there, &error))?;
+        }
+    }
+    let folders = entries(old)?.into_iter().filter(|entry| entry.kind == Kind::Folder).map(|entry| entry.path);
+    folders.collect::<Vec<_>>().iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
+    fs::remove_dir(old).map_err(|error| at(old, &error))
+}
+
+/// Swaps two folders; `old` is then at `new`.
+fn exchange(new: &Path, old: &Path, aside: &Path) -> io::Result<()> {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::fs::{CWD, RenameFlags, renameat_with};
+        match renameat_with(CWD, new, CWD, old, RenameFlags::EXCHANGE) {
+            // Some file systems cannot exchange.
+            Err(rustix::io::Errno::INVAL | rustix::io::Errno::NOSYS | rustix::io::Errno::NOTSUP) => {}
+            result => return Ok(result?),
+        }
+    }
+    by_renames(new, old, aside)
+}
+
+/// The same by three renames. Killed between them, the old folder is at `aside`, where the next writer finds it.
+fn by_renames(new: &Path, old: &Path, aside: &Path) -> io::Result<()> {
+    fs::rename(old, aside)?;
+    fs::rename(new, old)?;
+    fs::rename(aside, new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_exchange_an_old_folder_is_never_lost() {
+        let parent = tempfile::tempdir().unwrap();
+        let at = |name: &str| parent.path().join(name);
+        let page = |folder: &Path| fs::read_to_string(folder.join("page")).unwrap();
+        let scratch = Scratch::new(parent.path(), "a").unwrap();
+        for (folder, text) in [(at("a"), "old"), (scratch.new_folder(), "new")] {
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join("page"), text).unwrap();
+            Manifest::of(&folder).unwrap().write(&folder).unwrap();
+        }
+        by_renames(&scratch.new_folder(), &at("a"), &scratch.folder.join(OLD)).unwrap();
+        assert_eq!((page(&at("a")), page(&scratch.new_folder())), ("new".into(), "old".into()));
+        // Killed after the first rename: the next one puts the old folder back. Nothing is done as long as the process lives.
+        fs::rename(at("a"), scratch.folder.join(OLD)).unwrap();
+        clear(parent.path()).unwrap();
+        assert!(!at("a").exists());
+        let left = scratch.folder.clone();
+        let Scratch { _lock: lock, .. } = &scratch;
+        lock.unlock().unwrap();
+        clear(parent.path()).unwrap();
+        assert_eq!(page(&at("a")), "new");
+        assert!(!left.exists());
+    }
+
+    #[test]
+    fn what_came_at_the_last_moment_is_given_back() {
+        let parent = tempfile::tempdir().unwrap();
+        let (place, scratch) = (parent.path().join("a"), Scratch::new(parent.path(), "a").unwrap());
+        fs::create_dir_all(place.join("cell")).unwrap();
+        fs::write(place.join("cell/page"), "old").unwrap();
+        let old = Manifest::of(&place).unwrap();
+        old.write(&place).unwrap();
+        for (name, text) in [("note", "mine"), ("cell/note", "mine too")] {
+            fs::write(place.join(name), text).unwrap();
+        }
+        fs::write(scratch.new_folder().join("page"), "new").unwrap();
+        scratch.put(&place, Some(&old)).unwrap();
+        let mut names: Vec<String> = entries(&place).unwrap().into_iter().filter_map(|entry| entry.name).collect();
+        names.sort();
+        assert_eq!(names, ["cell", "cell/note", "note", "page"]);
+        assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1);
+    }
+}
