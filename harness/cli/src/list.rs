@@ -20,8 +20,10 @@ pub enum What {
     Scenarios,
     /// Methods and their parameters
     Methods,
-    /// Conventions of cameras and formats of camera files, and what of them is verified
+    /// Conventions of cameras, and what of them is verified
     Conventions,
+    /// Formats of camera files, what of them is verified, and what `convert --to` can be told
+    Formats,
     /// Published tables and the scenarios behind them
     Tables,
 }
@@ -31,6 +33,7 @@ pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
         What::Scenarios => scenarios(context)?,
         What::Methods => methods(context),
         What::Conventions => conventions(),
+        What::Formats => formats(),
         What::Tables => tables(context)?,
     })
 }
@@ -61,23 +64,27 @@ fn methods(context: &Context<'_>) -> String {
 }
 
 fn conventions() -> String {
-    let mut text = String::from("conventions\n");
+    let mut text = String::new();
     for convention in calibench_model::camera::conventions() {
         let Convention { name, about, version, direction, pixel_origin, y, order, normalisation, source, verification, .. } = convention;
-        let _ = writeln!(text, "  {name}: {about}");
+        let _ = writeln!(text, "{name}: {about}");
         let _ =
-            writeln!(text, "      {direction:?}, y {y:?}, origin {pixel_origin:?}, p1 and p2 in the order of {order:?}, {normalisation}");
+            writeln!(text, "    {direction:?}, y {y:?}, origin {pixel_origin:?}, p1 and p2 in the order of {order:?}, {normalisation}");
         if !version.is_empty() {
-            let _ = writeln!(text, "      versions: {version}");
+            let _ = writeln!(text, "    versions: {version}");
         }
-        let _ = writeln!(text, "      source: {source}");
+        let _ = writeln!(text, "    source: {source}");
         let _ = match verification {
-            Verification::Verified(proof) => writeln!(text, "      verified: {proof}"),
-            Verification::Unverified(open) => writeln!(text, "      unverified: {open}"),
-            Verification::Definition => writeln!(text, "      a definition of its own"),
+            Verification::Verified(proof) => writeln!(text, "    verified: {proof}"),
+            Verification::Unverified(open) => writeln!(text, "    unverified: {open}"),
+            Verification::Definition => writeln!(text, "    a definition of its own"),
         };
     }
-    text.push_str("\nfile formats\n");
+    text
+}
+
+fn formats() -> String {
+    let mut text = String::from("file formats\n");
     for format in FORMATS {
         let access = if format.is_written() { "read and written" } else { "read" };
         let _ = writeln!(text, "  {} (.{}): {}, {}; {access}", format.name, format.extension, format.tool, format.versions);
