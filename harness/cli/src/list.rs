@@ -68,8 +68,7 @@ fn conventions() -> String {
     for convention in calibench_model::camera::conventions() {
         let Convention { name, about, version, direction, pixel_origin, y, order, normalisation, source, verification, .. } = convention;
         let _ = writeln!(text, "{name}: {about}");
-        let _ =
-            writeln!(text, "    {direction:?}, y {y:?}, origin {pixel_origin:?}, p1 and p2 in the order of {order:?}, {normalisation}");
+        let _ = writeln!(text, "    {direction:?}, y {y:?}, origin {pixel_origin:?}, p1 and p2 in the order of {order:?}, {normalisation}");
         if !version.is_empty() {
             let _ = writeln!(text, "    versions: {version}");
         }

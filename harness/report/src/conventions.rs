@@ -14,7 +14,7 @@ use serde::Deserialize;
 
 use super::canvas::Canvas;
 use super::field::{Field, plain};
-use super::markdown::MarkdownTable;
+use super::markdown::{MarkdownTable, contents};
 use super::{Places, ReportError};
 use crate::places::PAGE;
 
@@ -55,11 +55,11 @@ struct Printed {
 /// # Errors
 /// A file of cameras that cannot be read, a camera that cannot be converted.
 pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
-    let mut text = String::from(INTRODUCTION);
-    let mut pictures = Vec::new();
+    let (mut body, mut pictures, mut prices) = (String::new(), Vec::new(), Vec::new());
     for path in files(&places.cameras)? {
-        section(&read(&path)?, &mut text, &mut pictures)?;
+        section(&read(&path)?, &mut body, &mut pictures, &mut prices)?;
     }
+    let text = format!("# {FAMILY}\n\n{}{INTRODUCTION}{}{body}", overview(&prices), contents(&body));
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| -> Result<(), ReportError> {
         for (name, picture) in &pictures {
             picture.write(&folder.join(name))?;
@@ -69,8 +69,37 @@ pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
     Ok(places.reports.join(FAMILY).join(PAGE))
 }
 
-const INTRODUCTION: &str = "# conventions\n\n\
-    Made by `calibench report conventions` from the published cameras. A calibration is worth nothing in the wrong convention: here each common mistake is made alone, \
+/// What each mistake costs on each camera, in a sentence and a table: RMS px over the frame as it is.
+fn overview(prices: &[(String, Priced)]) -> String {
+    let rms = |price: &Price| price.as_ref().ok().map(|(raw, _)| raw.spread.rms_px);
+    let Some((_, first)) = prices.first() else { return String::new() };
+    let names: Vec<&str> = first.rows.iter().map(|(name, _)| name.as_str()).collect();
+    let header: Vec<&str> = std::iter::once("mistake, RMS px").chain(prices.iter().map(|(camera, _)| camera.as_str())).collect();
+    let mut table = MarkdownTable::new(&header);
+    let mut costs: Vec<(&str, f64)> = Vec::new();
+    for (place, name) in names.iter().enumerate() {
+        let row: Vec<Option<f64>> = prices.iter().map(|(_, priced)| priced.rows.get(place).and_then(|(_, price)| rms(price))).collect();
+        if place > 0 {
+            costs.extend(row.iter().flatten().map(|cost| (*name, *cost)));
+        }
+        let cells = row.into_iter().map(|cost| cost.map_or_else(|| "none".to_owned(), plain));
+        table.row(std::iter::once((*name).to_owned()).chain(cells));
+    }
+    costs.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (Some(least), Some(most)) = (costs.first(), costs.last()) else { return String::new() };
+    format!(
+        "Each of {} common mistakes in converting a camera costs between {} px RMS over the frame ({}) and {} px ({}), on {} published cameras.\n\n{}\n",
+        names.len() - 1,
+        plain(least.1),
+        least.0,
+        plain(most.1),
+        most.0,
+        prices.len(),
+        table.render()
+    )
+}
+
+const INTRODUCTION: &str = "Made by `calibench report conventions` from the published cameras. A calibration is worth nothing in the wrong convention: here each common mistake is made alone, \
     on cameras of a published comparison, and priced. `calibench convert` makes none of them.\n\n\
     For each camera the tool's own model (ideal to distorted) is taken as true. The pixels of the frame are led to rays by it, the rays back to pixels by the \
     mistaken camera; the difference is given as it is, and after the best rotation, which no exterior orientation can tell from the camera. RMS and maximum over the frame, \
@@ -91,7 +120,12 @@ fn read(path: &Path) -> Result<Cameras, ReportError> {
     })
 }
 
-fn section(cameras: &Cameras, text: &mut String, pictures: &mut Vec<(String, Canvas)>) -> Result<(), ReportError> {
+fn section(
+    cameras: &Cameras,
+    text: &mut String,
+    pictures: &mut Vec<(String, Canvas)>,
+    prices: &mut Vec<(String, Priced)>,
+) -> Result<(), ReportError> {
     let Cameras { title, source, width, height, pitch_um, distance_m, read_as, .. } = cameras;
     text.push_str(&format!(
         "## {title}\n\n{source}.\n\n{read_as}\n\nImages of {width} x {height} px, pixel pitch {pitch_um} um, object at {distance_m} m.\n\n"
@@ -119,6 +153,7 @@ fn section(cameras: &Cameras, text: &mut String, pictures: &mut Vec<(String, Can
         let picture = Field::of(&format!("{}: {shown}", printed.name), size, vectors.iter().map(|v| (v.at, (v.dx, v.dy)))).picture();
         text.push_str(&format!("\n![{}: {shown}]({name})\n\n", printed.name));
         pictures.push((name, picture));
+        prices.push((printed.name.clone(), priced));
     }
     Ok(())
 }

@@ -1,17 +1,11 @@
-//! The report of a family of scenarios, and the page that lists all reports.
-
-use std::fs;
-use std::io;
-use std::path::Path;
+//! The report of a family of scenarios.
 
 use calibench_exchange::OutputFolder;
 use calibench_measure::Registry;
 
 use crate::page::Page;
 use crate::places::PAGE;
-use crate::{
-    LoadError, Loaded, Places, ReportError, Written, atlas, load, network, published, published_section, published_sweep, sweep, zhu,
-};
+use crate::{LoadError, Loaded, Places, ReportError, Written, atlas, load, published, sweep, zhu};
 
 /// Writes the report of `family` from the records of `scenarios`, in place of the older one. One that could not be measured here at all does
 /// not replace one that was measured elsewhere.
@@ -38,19 +32,19 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
     let mut page = Page::new(family);
     let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
     for (_, table) in &tables {
+        let swept = all.iter().filter_map(Either::sweep).find(|swept| swept.scenario.name == table.scenario);
+        let section = match swept {
+            Some(swept) if !table.is_of_adjustments() => published::swept(table, swept),
+            _ => {
+                let beside = table.beside.iter().map(by_name).collect::<Result<Vec<_>, _>>()?;
+                published::section(table, by_name(&table.scenario)?, &beside)?
+            }
+        };
+        page.text.push_str(&section.text);
+        page.answers.table(&table.title, section.tally);
         if table.is_of_adjustments() {
-            let main = by_name(&table.scenario).ok();
-            let pitch = main.and_then(|loaded| loaded.scenario.pitch_um()).unwrap_or(f64::NAN);
-            page.text.push_str(&network::published(table, main.and_then(|loaded| loaded.calibrations.as_ref()), pitch));
             page.illustrated.push(table.scenario.clone());
-            continue;
         }
-        if let Some(swept) = all.iter().filter_map(Either::sweep).find(|swept| swept.scenario.name == table.scenario) {
-            page.text.push_str(&published_sweep::section(table, swept));
-            continue;
-        }
-        let beside = table.beside.iter().map(by_name).collect::<Result<Vec<_>, _>>()?;
-        page.text.push_str(&published_section::section(table, by_name(&table.scenario)?, &beside));
     }
     if family == zhu::FAMILY {
         let (text, pictures) = zhu::section(&loaded, &all.iter().filter_map(Either::sweep).collect::<Vec<_>>());
@@ -94,26 +88,6 @@ impl Either {
             Self::Sweep(loaded) => loaded.is_unavailable(),
         }
     }
-}
-
-/// Writes the page that lists the reports that are there.
-///
-/// # Errors
-/// What the file system refuses.
-pub fn write_index(reports: &Path) -> io::Result<()> {
-    let mut names: Vec<String> = Vec::new();
-    for entry in fs::read_dir(reports)? {
-        let entry = entry?;
-        if entry.path().join(PAGE).is_file() {
-            names.extend(entry.file_name().into_string());
-        }
-    }
-    names.sort();
-    let lines: String = names.iter().map(|name| format!("- [{name}]({name}/{PAGE})\n")).collect();
-    let text = format!(
-        "# Reports\n\nMade by `calibench report` from the records of `calibench run` and the published tables; nothing here is written by hand.\n\n{lines}"
-    );
-    calibench_exchange::atomic::write_atomically(&reports.join(PAGE), |file| io::Write::write_all(file, text.as_bytes()))
 }
 
 /// The paper's mean reduction factors, to be drawn beside a sweep of adjustments.

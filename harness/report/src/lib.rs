@@ -1,5 +1,6 @@
 //! Reports: Markdown and PNG, a pure function of records and published tables.
 
+mod answer;
 pub mod atlas;
 pub mod calibration;
 mod canvas;
@@ -7,6 +8,7 @@ pub mod conventions;
 mod family;
 pub(crate) mod field;
 mod figures;
+mod index;
 pub mod judgement;
 pub mod load;
 pub(crate) mod markdown;
@@ -15,8 +17,6 @@ mod page;
 mod photographs;
 mod places;
 pub mod published;
-mod published_section;
-mod published_sweep;
 mod scene_figures;
 mod scores_section;
 pub mod speeds;
@@ -25,8 +25,9 @@ pub(crate) mod ticks;
 mod zhu;
 
 pub use canvas::Canvas;
-pub use family::{write, write_index};
+pub use family::write;
 pub use field::{Field, plain};
+pub use index::write_index;
 pub use load::{LoadError, Loaded, load, recorded};
 pub use places::{Places, ReportError, Written};
 pub use scene_figures::preview;

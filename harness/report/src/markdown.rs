@@ -50,6 +50,31 @@ impl MarkdownTable {
     }
 }
 
+/// The anchor of a heading: lower case, blanks as hyphens, no punctuation.
+pub fn anchor(heading: &str) -> String {
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.map(|c| if c == ' ' { '-' } else { c }).flat_map(char::to_lowercase).collect()
+}
+
+/// The list of a text's headings of level 2, with those of level 3 where there are hardly any others; nothing for fewer than three.
+pub fn contents(text: &str) -> String {
+    let of = |mark: &str| text.lines().filter_map(|line| line.strip_prefix(mark).map(|heading| (line, heading))).collect::<Vec<_>>();
+    let mut headings = of("## ");
+    if headings.len() < 3 {
+        headings = text
+            .lines()
+            .filter_map(|line| ["## ", "### "].iter().find_map(|mark| line.strip_prefix(mark)).map(|heading| (line, heading)))
+            .collect();
+    }
+    if headings.len() < 3 {
+        return String::new();
+    }
+    let indent = |line: &str| if line.starts_with("### ") { "  " } else { "" };
+    let lines: String =
+        headings.iter().map(|(line, heading)| format!("{}- [{heading}](#{})\n", indent(line), anchor(heading))).collect();
+    format!("**Contents**\n\n{lines}\n")
+}
+
 /// A number with `digits` decimals and a real minus sign kept as `-`; never `-0.000`.
 pub fn fixed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
@@ -81,6 +106,14 @@ mod tests {
         table.row(["a|b".to_owned(), "0.1".to_owned()]);
         table.row(["c".to_owned(), "-12.5".to_owned()]);
         assert_eq!(table.render(), "| method |    px |\n| ------ | ----: |\n| a\\|b   |   0.1 |\n| c      | -12.5 |\n");
+    }
+
+    #[test]
+    fn headings_have_anchors_and_a_list() {
+        assert_eq!(anchor("Table 1: accuracy of `a/b:window=11`, twice"), "table-1-accuracy-of-abwindow11-twice");
+        assert_eq!(contents("# t\n\n## a\n\n## b\n"), "");
+        assert_eq!(contents("## a\n### x\n## b\n"), "**Contents**\n\n- [a](#a)\n  - [x](#x)\n- [b](#b)\n\n");
+        assert_eq!(contents("## a\n### x\n## b\n## C d\n"), "**Contents**\n\n- [a](#a)\n- [b](#b)\n- [C d](#c-d)\n\n");
     }
 
     #[test]

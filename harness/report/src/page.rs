@@ -6,11 +6,16 @@ use std::path::Path;
 
 use calibench_scenario::{Scenario, Subject};
 
+use crate::answer::{Answers, heading};
+use crate::markdown::contents;
 use crate::places::PAGE;
 use crate::{Canvas, LoadError, Loaded, network, photographs, scene_figures, scores_section, sweep};
 
 /// A page with its pictures, filled section by section.
 pub struct Page {
+    family: String,
+    /// What it says first.
+    pub answers: Answers,
     /// Scenarios that a published table of adjustments stands on: they are shown in pictures.
     pub illustrated: Vec<String>,
     pub text: String,
@@ -21,18 +26,21 @@ pub struct Page {
 
 impl Page {
     pub fn new(family: &str) -> Self {
-        let text = format!(
-            "# {family}\n\nMade by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. \
-             Some of the methods compared here are our own, `forstner` and `harris_paraboloid` among them: each gets the same images, the same starts and the same score.\n\n"
-        );
-        Self { illustrated: Vec::new(), text, scored: false, pictures: Vec::new() }
+        Self {
+            family: family.to_owned(),
+            answers: Answers::default(),
+            illustrated: Vec::new(),
+            text: String::new(),
+            scored: false,
+            pictures: Vec::new(),
+        }
     }
 
     /// The heading of a scenario; the stem of its pictures' names.
     fn head(&mut self, scenario: &Scenario, deviations: &str) -> String {
         self.text.push_str(&format!(
-            "## Scenario `{}`\n\n{}\n\nSource: {}.\n\n",
-            scenario.name,
+            "## {}\n\n{}\n\nSource: {}.\n\n",
+            heading(&scenario.name),
             scenario.why.trim(),
             scenario.source.trim_end_matches('.')
         ));
@@ -55,6 +63,7 @@ impl Page {
             self.pictures.extend(pictures);
             return Ok(());
         }
+        self.answers.sweep(loaded);
         let (text, picture) = sweep::section(loaded, &stem);
         self.text.push_str(&text);
         self.pictures.extend(picture.map(|picture| (format!("{stem}.png"), picture)));
@@ -71,12 +80,14 @@ impl Page {
         }
         match &scenario.subject {
             Subject::Photographs(_) => {
+                photographs::answer(loaded).into_iter().for_each(|answer| self.answers.say(answer));
                 let (text, pictures) = photographs::section(loaded);
                 self.text.push_str(&text);
                 self.pictures.extend(pictures);
             }
             Subject::Scene(_) | Subject::Views(_) => {
                 self.scored = true;
+                self.answers.scenario(loaded);
                 self.text.push_str(&scores_section::section(loaded));
                 self.text.push('\n');
                 if let Some((overview, panels)) = scene_figures::figures(loaded) {
@@ -95,8 +106,16 @@ impl Page {
         for (name, picture) in &self.pictures {
             picture.write(&folder.join(name))?;
         }
-        let legend = if self.scored { format!("\n\n{}", scores_section::legend()) } else { "\n".to_owned() };
-        let text = self.text.trim_end().to_owned() + &legend;
+        let legend = if self.scored { scores_section::legend() } else { String::new() };
+        let body = format!("{}\n\n{legend}", self.text.trim_end());
+        let family = &self.family;
+        let made = format!(
+            "Made by `calibench report {family}` from records and published tables. Pixel centres are whole numbers, x points right, y down. Some of the methods compared here are our own, `forstner` \
+             and `harris_paraboloid` among them: each gets the same images, the same starts and the same score."
+        );
+        let (answer, tables) = (self.answers.paragraph(), self.answers.tables());
+        let answer = if answer.is_empty() { answer } else { format!("{answer}\n\n") };
+        let text = format!("# {family}\n\n{answer}{tables}{}{made}\n\n{}\n", contents(&body), body.trim_end());
         fs::write(folder.join(PAGE), text)
     }
 }

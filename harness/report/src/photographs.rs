@@ -49,6 +49,12 @@ struct Chosen<'a> {
     title: String,
 }
 
+/// The verdict on operator and model in a sentence or two, where there is one.
+pub fn answer(loaded: &Loaded) -> Option<String> {
+    loaded.unavailable().is_none().then_some(())?;
+    judgement_of(loaded)?.ok().and_then(|summary| super::judgement::answer(&summary))
+}
+
 /// The text of the section, and its pictures with their file names.
 pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
     if let Some(why) = loaded.unavailable() {
@@ -101,17 +107,21 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
 
 /// What the photographs say of operators and models, if the scenario asks for it.
 fn judged(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
-    let wanted = matches!(&loaded.scenario.subject, Subject::Photographs(subject) if subject.judgement.is_some());
-    if !wanted {
-        return (String::new(), Vec::new());
-    }
-    let rows = File::open(loaded.folder.join(JUDGEMENT)).map_err(|error| error.to_string());
-    match rows.and_then(|file| read_rows(file).map_err(|error| error.to_string())) {
-        Ok((seed, rows)) => super::judgement::section(&Summary::new(&rows, seed)),
-        Err(why) => {
+    match judgement_of(loaded) {
+        None => (String::new(), Vec::new()),
+        Some(Ok(summary)) => super::judgement::section(&summary),
+        Some(Err(why)) => {
             (format!("**unavailable**: the records of the judgement cannot be read ({why}): run the scenario again.\n\n"), Vec::new())
         }
     }
+}
+
+/// The judgement that the scenario asks for, or why its records cannot be read.
+fn judgement_of(loaded: &Loaded) -> Option<Result<Summary, String>> {
+    let wanted = matches!(&loaded.scenario.subject, Subject::Photographs(subject) if subject.judgement.is_some());
+    let rows = || File::open(loaded.folder.join(JUDGEMENT)).map_err(|error| error.to_string());
+    let read = || rows().and_then(|file| read_rows(file).map_err(|error| error.to_string()));
+    wanted.then(|| read().map(|(seed, rows)| Summary::new(&rows, seed)))
 }
 
 /// The points that `method` measured, the one furthest from the others first.

@@ -13,28 +13,16 @@ pub fn section(loaded: &Loaded) -> String {
     if let Some(why) = loaded.unavailable() {
         return format!("**unavailable**: {why}.\n");
     }
-    let header = [
-        "method",
-        "points",
-        "rejected",
-        "lost",
-        "bias x",
-        "bias y",
-        "scatter",
-        "RMSE",
-        "95 %",
-        "RMSE / bound (99 %)",
-        "own sigma / scatter",
-        "RMSE, lost too",
-        "RMSE, common",
-        "common points",
-    ];
-    let mut rows = MarkdownTable::new(&header);
+    let (mut main, mut more) = (MarkdownTable::new(&MAIN), MarkdownTable::new(&MORE));
     let trials = loaded.scores.trials;
     for (info, score) in loaded.head.methods.iter().zip(&loaded.scores.methods) {
+        let label = format!("`{}`", info.label);
         match &info.unavailable {
-            Some(why) => rows.row([format!("`{}`", info.label), "unavailable".into(), why.clone()]),
-            None => rows.row(cells(&info.label, score)),
+            Some(why) => main.row([label, "unavailable".into(), why.clone()]),
+            None => {
+                main.row(std::iter::once(label.clone()).chain(main_cells(score)));
+                more.row(std::iter::once(label).chain(more_cells(score)));
+            }
         }
     }
     let trials = match trials {
@@ -42,13 +30,21 @@ pub fn section(loaded: &Loaded) -> String {
         _ => format!("{trials} trials"),
     };
     format!(
-        "{}\n{trials}, seed {}, errors in px, bounds of a {window} x {window} px window. [What the columns mean]({LEGEND_ANCHOR}).\n\n{}",
-        rows.render(),
+        "{}\n{trials}, seed {}, errors in px, bounds of a {window} x {window} px window. [What the columns mean]({LEGEND_ANCHOR}).\n\n\
+         <details><summary>Bias, scatter, common points, targets</summary>\n\n{}\n{}\n</details>\n",
+        main.render(),
         loaded.head.run.seed,
+        more.render(),
         by_target(loaded),
         window = loaded.scenario.bound_window
     )
 }
+
+/// What is compared.
+const MAIN: [&str; 8] = ["method", "points", "rejected", "lost", "RMSE", "95 %", "RMSE / bound (99 %)", "RMSE, lost too"];
+
+/// What explains it.
+const MORE: [&str; 7] = ["method", "bias x", "bias y", "scatter", "own sigma / scatter", "RMSE, common", "common points"];
 
 /// The link to [`legend`].
 const LEGEND_ANCHOR: &str = "#what-the-columns-mean";
@@ -101,22 +97,26 @@ fn rmse_with_error(errors: &Errors, digits: usize) -> String {
     }
 }
 
-fn cells(label: &str, score: &Score) -> Vec<String> {
+fn main_cells(score: &Score) -> [String; 7] {
     let interval = score.kept.rmse_interval().map_or(String::new(), |(low, high)| format!("{} to {}", fixed(low, 4), fixed(high, 4)));
-    let common = score.common.square.count();
-    vec![
-        format!("`{label}`"),
+    [
         score.points().to_string(),
         reasons(score),
         share(score.lost, score.points()),
-        with_error(&score.kept.dx, 4),
-        with_error(&score.kept.dy, 4),
-        score.kept.scatter().map_or("none".into(), |value| fixed(value, 4)),
         score.kept.rmse().map_or("none".into(), |value| fixed(value, 4)),
         interval,
         to_bound(score),
-        to_predicted(score),
         rmse_with_error(&score.whole, 4),
+    ]
+}
+
+fn more_cells(score: &Score) -> [String; 6] {
+    let common = score.common.square.count();
+    [
+        with_error(&score.kept.dx, 4),
+        with_error(&score.kept.dy, 4),
+        score.kept.scatter().map_or("none".into(), |value| fixed(value, 4)),
+        to_predicted(score),
         if common < FEW { "too few".into() } else { rmse_with_error(&score.common, 4) },
         common.to_string(),
     ]
@@ -162,12 +162,21 @@ fn by_target(loaded: &Loaded) -> String {
     let available = || loaded.head.methods.iter().zip(&loaded.scores.methods).filter(|(info, _)| info.unavailable.is_none());
     let targets = available().next().map_or(&[][..], |(_, score)| &score.targets);
     let table = |title: &str, cell: &dyn Fn(&Errors, u64) -> String| {
-        let mut header = vec![title.to_owned()];
-        header.extend(available().map(|(info, _)| format!("`{}`", info.label)));
-        let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
-        for (index, target) in targets.iter().enumerate() {
-            let cells = available().map(|(_, score)| score.targets.get(index).map_or(String::new(), |t| cell(&t.whole, t.failed)));
-            rows.row(std::iter::once(target.target.to_string()).chain(cells));
+        let of = |score: &Score, index: usize| score.targets.get(index).map_or(String::new(), |t| cell(&t.whole, t.failed));
+        let labels: Vec<String> = available().map(|(info, _)| format!("`{}`", info.label)).collect();
+        let names: Vec<String> = targets.iter().map(|target| target.target.to_string()).collect();
+        // The longer list goes down the page.
+        let down = labels.len() > names.len();
+        let header: Vec<&str> = std::iter::once(title).chain(if down { &names } else { &labels }.iter().map(String::as_str)).collect();
+        let mut rows = MarkdownTable::new(&header);
+        if down {
+            for (label, (_, score)) in labels.iter().zip(available()) {
+                rows.row(std::iter::once(label.clone()).chain((0..names.len()).map(|index| of(score, index))));
+            }
+        } else {
+            for (index, name) in names.iter().enumerate() {
+                rows.row(std::iter::once(name.clone()).chain(available().map(|(_, score)| of(score, index))));
+            }
         }
         rows.render()
     };

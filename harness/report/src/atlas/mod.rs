@@ -19,7 +19,7 @@ use calibench_measure::Registry;
 
 use self::frontier::Spot;
 use self::page::Group;
-use super::markdown::MarkdownTable;
+use super::markdown::{MarkdownTable, contents};
 use super::sweep::{Metric, deviations};
 use super::{Canvas, LoadError, Places, ReportError, Written};
 use crate::places::PAGE;
@@ -54,7 +54,7 @@ pub fn write(places: &Places, names: &[String], registry: &Registry) -> Result<W
         let part = Part::load(&places.records, name, registry)?.ok_or_else(|| LoadError::None(name.clone()))?;
         parts.insert(name.clone(), part);
     }
-    let mut text = introduction();
+    let mut text = String::new();
     let mut files = Vec::new();
     for (scenario, search, targets) in SEARCHED {
         speed_section(&parts, &speeds, (scenario, search, targets), &mut text, &mut files);
@@ -66,15 +66,16 @@ pub fn write(places: &Places, names: &[String], registry: &Registry) -> Result<W
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| {
         files.iter().try_for_each(|(name, picture): &(String, Canvas)| picture.write(&folder.join(name)))?;
         numbers(&parts, &folder.join(NUMBERS)).map_err(io::Error::other)?;
-        fs::write(folder.join(WHICH), &which)?;
-        fs::write(folder.join(PAGE), text.trim_end().to_owned() + "\n")
+        fs::write(folder.join(WHICH), &which.text)?;
+        let page = format!("# Atlas of operators\n\n{}\n\n{}{}{}\n", which.answer, contents(&text), introduction(), text.trim_end());
+        fs::write(folder.join(PAGE), page)
     })?;
     Ok(Written::New(places.reports.join(FAMILY).join(PAGE)))
 }
 
 fn introduction() -> String {
     format!(
-        "# Atlas of operators\n\n[Which operator, when]({WHICH}) is what follows from it. [{NUMBERS}]({NUMBERS}) holds every figure of every cell; `calibench plot atlas/corners --x blur --y rmse --by method --at \
+        "[Which operator, when]({WHICH}) is what follows from it. [{NUMBERS}]({NUMBERS}) holds every figure of every cell; `calibench plot atlas/corners --x blur --y rmse --by method --at \
          snr_contrast_db=34` draws any of them. Made by `calibench report atlas` from records and `reference/speeds.csv`. Some of the operators are our own; all get the same images, starts and scores. \
          The gate does not compare these sweeps: their cells that matter are scenarios of their own (`operators/*`).\n\n"
     )

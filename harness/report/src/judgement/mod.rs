@@ -13,6 +13,12 @@ use super::canvas::Canvas;
 
 pub use verdict::verdict;
 
+/// The operator and the model to trust, and how far, in a sentence or two; `None` where nothing could be judged.
+pub fn answer(summary: &Summary) -> Option<String> {
+    let trusted = summary.unavailable.is_none().then(|| summary.trusted())??;
+    verdict(summary, &trusted).lines().next().map(|line| line.trim_start_matches("- ").to_owned())
+}
+
 /// The text of the section, and its pictures with their file names.
 pub fn section(summary: &Summary) -> (String, Vec<(String, Canvas)>) {
     let heading = "### Which operator, which model, and how far\n\n";

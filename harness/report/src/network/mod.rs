@@ -1,12 +1,9 @@
 //! Adjustments within a run, in a report: published tables, every method, sets of parameters, the network and its residuals.
 
-mod figure;
 mod pictures;
-mod published;
 mod sweep;
 mod tables;
 
-pub use published::section as published;
 pub use sweep::section as sweep;
 
 use calibench_scenario::Subject;

@@ -1,42 +1,10 @@
-//! What of our adjustments stands behind a printed cell: one run, and all of them.
+//! Our figures of adjustments behind a printed cell.
 
 use calibench_records::results::Group;
-use calibench_records::statistics::running::Running;
 
+use super::figure::Ours;
+use super::{Cell, Metric};
 use crate::load::adjustments::{Summaries, Summary};
-use crate::published::{Cell, Metric};
-
-/// Our figure for a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ours {
-    /// In the first trial.
-    pub one: f64,
-    /// Its mean over the trials.
-    pub mean: f64,
-    /// Half the 95 % interval of the mean.
-    pub half: Option<f64>,
-    /// Standard deviation of a single run.
-    pub scatter: Option<f64>,
-    /// The same of true errors, with half its 95 % interval, where it makes sense.
-    pub truth: Option<(f64, Option<f64>)>,
-}
-
-impl Ours {
-    fn of(one: Option<f64>, all: &Running) -> Option<Self> {
-        Some(Self { one: one?, mean: all.mean()?, half: all.half(), scatter: all.deviation(), truth: None })
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        let by = |value: Option<f64>| value.map(|value| value * factor);
-        Self {
-            one: self.one * factor,
-            mean: self.mean * factor,
-            half: by(self.half),
-            scatter: by(self.scatter),
-            truth: self.truth.map(|(v, h)| (v * factor, by(h))),
-        }
-    }
-}
 
 /// Our figure for `cell`; `default` is the table's method, `pitch_um` that of the camera.
 pub fn ours(found: &Summaries, cell: &Cell, default: &str, pitch_um: f64) -> Option<Ours> {

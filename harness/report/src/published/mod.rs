@@ -1,36 +1,55 @@
 //! What papers printed, and which of our figures stands behind each cell.
 
+mod adjustment;
+mod every_method;
+mod figure;
+mod many;
+mod metric;
+mod notes;
+mod one;
+mod schema;
+mod section;
+mod sweep;
+mod verdict;
+
+pub use metric::Metric;
+pub use schema::schema;
+pub(crate) use section::{Section, section};
+pub(crate) use sweep::{score, section as swept};
+pub use verdict::{Printed, Tally, Verdict};
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::{Problem, Problems};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
 
 /// A published table: `reference/published/<paper>/table-N.toml`.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// Its number and title.
+    /// Number and title, as printed.
     pub title: String,
     /// Paper, section, page.
     pub source: String,
-    /// The unit of its figures.
+    /// Unit of the printed figures.
     pub unit: String,
-    /// The scenario whose records stand behind the cells.
+    /// The scenario whose records stand behind the cells, as in `galo-2011/corners`.
     pub scenario: String,
-    /// The method whose records stand behind the cells.
+    /// The method behind the cells, by its label, as in `forstner:window=11`.
     pub method: String,
     /// The columns, in their order.
     pub columns: Vec<String>,
-    /// What was found out about the table, as paragraphs of Markdown.
+    /// What was found out about the table: paragraphs of Markdown.
     #[serde(default)]
     pub findings: Vec<String>,
     /// Other scenarios that are shown beside it.
     #[serde(default)]
     pub beside: Vec<String>,
-    /// The sets of targets over which statistics are shown for every method.
+    /// Sets of targets over which statistics are shown for every method. Default: all targets.
     #[serde(default, rename = "set")]
     pub sets: Vec<TargetSet>,
     /// The printed cells.
@@ -39,7 +58,7 @@ pub struct Table {
 }
 
 /// A named choice of targets.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetSet {
     /// Its name in the report.
@@ -50,36 +69,36 @@ pub struct TargetSet {
 }
 
 /// A printed figure.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cell {
     /// Its row.
     pub row: String,
     /// Its column.
     pub column: String,
-    /// As printed, to the letter: `22.520`, `1/18.9`.
+    /// The figure as printed, to the letter: `22.520`, `-7`, `1/18.9`; any text where `not_comparable` says why.
     pub printed: String,
     /// Which of our figures is meant.
     pub metric: Metric,
-    /// The one target, for coordinates; otherwise all.
+    /// The target, for figures of one target: in the first image that shows it.
     #[serde(default)]
     pub target: Option<String>,
     /// Targets left out of a statistic.
     #[serde(default)]
     pub except: Vec<String>,
-    /// Added to our error to give what was printed: the true coordinate in the paper's own image.
+    /// Added to our figure to give what was printed, in its unit: a true coordinate, where the paper prints positions in an image of its own.
     #[serde(default)]
     pub plus: f64,
     /// Which cell of a sweep is meant: the value of each key that is swept.
     #[serde(default)]
     pub at: BTreeMap<String, f64>,
-    /// What is wrong in print, if anything is: what it must have been.
+    /// What is wrong in print, and what it must have been.
     #[serde(default)]
     pub misprint: Option<String>,
-    /// The method, where it is not the table's: for figures of adjustments.
+    /// The method by its label, where it is not the table's: for figures of adjustments.
     #[serde(default)]
     pub method: Option<String>,
-    /// The parameter, for figures of adjustments.
+    /// The parameter of the interior orientation, for figures of adjustments; `c` by default.
     #[serde(default)]
     pub of: Option<String>,
     /// Why the two cannot be compared, if so.
@@ -87,148 +106,26 @@ pub struct Cell {
     pub not_comparable: Option<String>,
 }
 
-/// A figure of ours.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Metric {
-    /// Measured x of one target.
-    X,
-    /// Measured y of one target.
-    Y,
-    /// Error in x of one target.
-    Dx,
-    /// Error in y of one target.
-    Dy,
-    /// Distance of one target from its true position.
-    Distance,
-    /// Mean error in x.
-    MeanDx,
-    /// Mean error in y.
-    MeanDy,
-    /// Root mean square error in x.
-    RmseX,
-    /// Root mean square error in y.
-    RmseY,
-    /// Mean distance from the truth.
-    MeanDistance,
-    /// Root mean square distance from the truth.
-    RmseXy,
-    /// None of ours: what is printed stands alone.
-    Unscored,
-    /// Of an adjustment: a parameter of the interior orientation.
-    IopValue,
-    /// Of an adjustment: its reported standard deviation.
-    IopSigma,
-    /// The same, in pixels.
-    IopSigmaPx,
-    /// Its reported standard deviation over that of the reference method.
-    SigmaRatio,
-    /// The mean of these over all parameters.
-    MeanSigmaRatio,
-    /// Planimetric RMSE of check points over their mean distance.
-    RelativeXy,
-    /// Altimetric RMSE of check points over their mean distance.
-    RelativeZ,
-    /// Planimetric RMSE over that of the reference method.
-    RelativeXyRatio,
-    /// Altimetric RMSE over that of the reference method.
-    RelativeZRatio,
-}
-
-impl Metric {
-    /// Is it a figure of one target?
-    pub fn is_of_one_target(self) -> bool {
-        matches!(self, Self::X | Self::Y | Self::Dx | Self::Dy | Self::Distance)
-    }
-
-    /// Is it a figure of adjustments?
-    pub fn is_of_adjustment(self) -> bool {
-        use Metric::{IopSigma, IopSigmaPx, IopValue, MeanSigmaRatio, RelativeXy, RelativeXyRatio, RelativeZ, RelativeZRatio, SigmaRatio};
-        matches!(
-            self,
-            IopValue | IopSigma | IopSigmaPx | SigmaRatio | MeanSigmaRatio | RelativeXy | RelativeZ | RelativeXyRatio | RelativeZRatio
-        )
-    }
-
-    /// By how many units of the last digit ours may differ: a coordinate is rounded once; what is computed from rounded figures, once more.
-    pub fn units(self) -> f64 {
-        if matches!(self, Self::X | Self::Y) { 0.5 } else { 1.0 }
-    }
-}
-
-/// A printed number: its value and one unit of its last digit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Printed {
-    /// Its value.
-    pub value: f64,
-    /// One unit of the last digit.
-    pub unit: f64,
-}
-
-impl Printed {
-    /// Reads `22.520` or a fraction `1/18.9`; `None` for anything else.
-    pub fn parse(text: &str) -> Option<Self> {
-        let decimal = |text: &str| {
-            let value: f64 = text.parse().ok().filter(|v: &f64| v.is_finite())?;
-            let digits = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-            Some((value, 10_f64.powi(-(digits as i32))))
-        };
-        match text.split_once('/') {
-            None => decimal(text).map(|(value, unit)| Self { value, unit }),
-            Some((one, below)) => {
-                let ((numerator, _), (denominator, unit)) = (decimal(one)?, decimal(below)?);
-                let value = numerator / denominator;
-                (denominator > unit).then(|| Self { value, unit: (numerator / (denominator - unit) - value).abs() })
-            }
-        }
-    }
-}
-
-/// How ours compares with a printed cell.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// Within half a unit of the last printed digit for a coordinate, within one for what is computed from rounded figures.
-    Reproduces,
-    /// Further off.
-    Differs,
-    /// Not the same thing, and why.
-    NotComparable(String),
-}
-
-impl Cell {
-    /// Compares `ours` with this cell.
-    pub fn verdict(&self, ours: Option<f64>) -> Verdict {
-        if let Some(why) = &self.not_comparable {
-            return Verdict::NotComparable(why.clone());
-        }
-        match (Printed::parse(&self.printed), ours) {
-            (None, _) => Verdict::NotComparable("the printed figure cannot be read".into()),
-            (_, None) => Verdict::NotComparable("no record of ours".into()),
-            // Rounding of the decimal text itself must not decide.
-            (Some(printed), Some(ours)) if (ours - printed.value).abs() <= printed.unit * self.metric.units() * (1.0 + 1e-6) => {
-                Verdict::Reproduces
-            }
-            _ => Verdict::Differs,
-        }
-    }
-}
-
-impl Cell {
-    /// Compares a printed figure of a single run with the mean of many: it reproduces within `range` of `mean`, widened by half a unit of its last digit.
-    pub fn verdict_within(&self, mean: f64, range: f64) -> Verdict {
-        match (&self.not_comparable, Printed::parse(&self.printed)) {
-            (Some(why), _) => Verdict::NotComparable(why.clone()),
-            (None, None) => Verdict::NotComparable("the printed figure cannot be read".into()),
-            (None, Some(printed)) if (mean - printed.value).abs() <= range + 0.5 * printed.unit => Verdict::Reproduces,
-            _ => Verdict::Differs,
-        }
-    }
-}
-
 impl Table {
-    /// Are its figures those of adjustments?
+    /// Whether its figures are those of adjustments.
     pub fn is_of_adjustments(&self) -> bool {
         self.cells.iter().any(|cell| cell.metric.is_of_adjustment())
+    }
+
+    /// The labels of its rows, in their order, once each.
+    fn rows(&self) -> Vec<&str> {
+        let mut labels: Vec<&str> = Vec::new();
+        for cell in &self.cells {
+            if !labels.contains(&cell.row.as_str()) {
+                labels.push(&cell.row);
+            }
+        }
+        labels
+    }
+
+    /// Its sets of targets, or all targets where it names none.
+    fn sets_or_all(&self) -> Vec<TargetSet> {
+        if self.sets.is_empty() { vec![TargetSet { name: "all".to_owned(), except: Vec::new() }] } else { self.sets.clone() }
     }
 }
 

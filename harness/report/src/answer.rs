@@ -1,0 +1,223 @@
+//! What a page says first: who has the least error in which scenario, and how many printed figures reproduce.
+
+use calibench_records::score::Score;
+
+use crate::field::plain;
+use crate::load::{Loaded, LoadedSweep};
+use crate::markdown::{MarkdownTable, anchor};
+use crate::published::Tally;
+
+/// Shares of lost and rejected points above this disqualify a method here, as on the page `which operator, when`.
+const MOST_FAILURES: f64 = 0.01;
+
+/// The answers of a page, gathered while its sections are made.
+#[derive(Default)]
+pub struct Answers {
+    tables: Vec<(String, Tally)>,
+    winners: Vec<Winner>,
+    said: Option<String>,
+}
+
+/// The method with the least RMSE in a scenario, or in cells of a sweep.
+struct Winner {
+    scenario: String,
+    /// How many of the scenario's cells it leads, of how many; 1 of 1 where nothing is swept.
+    cells: (usize, usize),
+    method: String,
+    /// What stands in the table: RMSE, ratio to the bound, failures, the next, OpenCV's.
+    row: Vec<String>,
+}
+
+impl Answers {
+    /// Counts the verdicts of a published table.
+    pub fn table(&mut self, title: &str, tally: Tally) {
+        self.tables.push((title.to_owned(), tally));
+    }
+
+    /// An answer in words, of a section that has one.
+    pub fn say(&mut self, answer: String) {
+        self.said = Some(answer);
+    }
+
+    /// A scenario with scores.
+    pub fn scenario(&mut self, loaded: &Loaded) {
+        let labels = loaded.head.methods.iter().map(|info| &*info.label);
+        let candidates: Vec<(&str, &Score)> = labels.zip(&loaded.scores.methods).filter(|(name, _)| *name != "pixel").collect();
+        if let Some((best, row)) = lead(&candidates) {
+            self.winners.push(Winner { scenario: loaded.scenario.name.clone(), cells: (1, 1), method: best.to_owned(), row });
+        }
+    }
+
+    /// A sweep: who leads in most of its cells.
+    pub fn sweep(&mut self, loaded: &LoadedSweep) {
+        let mut wins: Vec<(String, usize)> = Vec::new();
+        let cells = loaded.sweep.cells();
+        for cell in 0..cells {
+            let named = loaded.methods.iter().enumerate().filter(|(_, method)| method.name != "pixel");
+            let candidates: Vec<(&str, &Score)> =
+                named.filter_map(|(index, method)| Some((method.name.as_str(), loaded.score(cell, index)?))).collect();
+            if let Some((best, _)) = lead(&candidates) {
+                match wins.iter_mut().find(|(name, _)| name == best) {
+                    Some((_, count)) => *count += 1,
+                    None => wins.push((best.to_owned(), 1)),
+                }
+            }
+        }
+        let Some((method, count)) = wins.into_iter().max_by_key(|(_, count)| *count) else { return };
+        let row = vec![format!("in {count} of {cells} cells")];
+        self.winners.push(Winner { scenario: loaded.scenario.name.clone(), cells: (count, cells), method, row });
+    }
+
+    /// The first paragraph: a sentence or two, without the numbers that stand in the tables.
+    pub fn paragraph(&self) -> String {
+        let mut sentences: Vec<String> = self.said.iter().cloned().collect();
+        let mut total = Tally::default();
+        self.tables.iter().for_each(|(_, tally)| total += *tally);
+        if total.cells() > 0 {
+            let Tally { reproduce, differ, not_comparable } = total;
+            sentences.push(format!(
+                "Of {} printed figures {reproduce} reproduce, {differ} differ and {not_comparable} are not comparable.",
+                total.cells()
+            ));
+        }
+        sentences.extend(self.leaders());
+        sentences.join(" ")
+    }
+
+    /// Who leads how often, by operator.
+    fn leaders(&self) -> Option<String> {
+        let mut wins: Vec<(&str, usize)> = Vec::new();
+        for winner in &self.winners {
+            let operator = winner.method.split(':').next().unwrap_or(&winner.method);
+            match wins.iter_mut().find(|(name, _)| *name == operator) {
+                Some((_, count)) => *count += winner.cells.0,
+                None => wins.push((operator, winner.cells.0)),
+            }
+        }
+        wins.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let of: usize = self.winners.iter().map(|winner| winner.cells.1).sum();
+        let things = if self.winners.iter().any(|winner| winner.cells.1 > 1) { "cells" } else { "scenarios" };
+        let (first, rest) = wins.split_first()?;
+        if of == 1 {
+            return Some(format!("`{}` has the least error.", first.0));
+        }
+        let rest: String = rest.iter().map(|(name, count)| format!(", `{name}` in {count}")).collect();
+        Some(format!("Least error: `{}` in {} of {of} {things}{rest}.", first.0, first.1))
+    }
+
+    /// The tables behind the paragraph.
+    pub fn tables(&self) -> String {
+        let mut text = String::new();
+        if !self.tables.is_empty() {
+            let mut rows = MarkdownTable::new(&["printed table", "reproduce", "differ", "not comparable"]);
+            for (title, Tally { reproduce, differ, not_comparable }) in &self.tables {
+                let counts = [reproduce, differ, not_comparable].map(ToString::to_string);
+                rows.row(std::iter::once(format!("[{title}](#{})", anchor(title))).chain(counts));
+            }
+            text.push_str(&format!("{}\n", rows.render()));
+        }
+        if self.winners.len() > 1 {
+            let mut rows = MarkdownTable::new(&["scenario", "least RMSE", "px", "RMSE / bound", "failed, %", "the next", "`opencv_subpix`"]);
+            for winner in &self.winners {
+                let link = format!("[{}](#{})", short(&winner.scenario), anchor(&heading(&winner.scenario)));
+                rows.row([link, format!("`{}`", winner.method)].into_iter().chain(winner.row.iter().cloned()));
+            }
+            text.push_str(&format!(
+                "{}\nLost and rejected points count as 1 px off; methods that fail at more than {} % of the points are left out while another is sound. \u{b1}: standard error. \
+                 *The next* and `opencv_subpix` are multiples of the least RMSE.\n\n",
+                rows.render(),
+                MOST_FAILURES * 100.0
+            ));
+        }
+        text
+    }
+}
+
+/// The heading of a scenario's section.
+pub fn heading(scenario: &str) -> String {
+    format!("Scenario `{scenario}`")
+}
+
+fn short(scenario: &str) -> &str {
+    scenario.split_once('/').map_or(scenario, |(_, rest)| rest)
+}
+
+/// The mean squared error, px^2, with failures counted as errors of 1 px, and the share of failures; `None` where nothing was tried.
+fn loss(score: &Score) -> Option<(f64, f64)> {
+    let points = score.points() as f64;
+    let failed = (score.points() - score.measured) as f64;
+    let kept = score.kept.square.mean().unwrap_or(0.0) * score.kept.square.count() as f64;
+    (points > 0.0 && score.kept.square.count() == score.measured).then(|| ((kept + failed) / points, failed / points))
+}
+
+/// The best of some methods, and its row.
+fn lead<'a>(candidates: &[(&'a str, &Score)]) -> Option<(&'a str, Vec<String>)> {
+    let mut ranked: Vec<(&str, &Score, f64, f64)> =
+        candidates.iter().filter_map(|(name, score)| loss(score).map(|(loss, failures)| (*name, *score, loss, failures))).collect();
+    ranked.sort_by(|a, b| (a.3 > MOST_FAILURES).cmp(&(b.3 > MOST_FAILURES)).then(a.2.total_cmp(&b.2)));
+    let (best, score, least, failures) = *ranked.first()?;
+    let times = |other: Option<&(&str, &Score, f64, f64)>| other.filter(|_| least > 0.0).map(|other| (other.2 / least).sqrt());
+    let next = ranked.get(1);
+    let opencv = ranked.iter().filter(|other| other.0.starts_with("opencv_subpix")).min_by(|a, b| a.2.total_cmp(&b.2));
+    let rmse = least.sqrt();
+    let error = score.kept.square.standard_error().filter(|_| rmse > 0.0).map(|error| error / (2.0 * rmse));
+    let bound = calibench_records::score::root(&score.to_bound, 0.99);
+    Some((
+        best,
+        vec![
+            error.map_or_else(|| plain(rmse), |error| format!("{} \u{b1} {}", plain(rmse), plain_error(rmse, error))),
+            bound.map_or_else(String::new, |(ratio, _)| format!("{ratio:.2}")),
+            format!("{:.1}", 100.0 * failures),
+            next.zip(times(next)).map_or_else(String::new, |(other, times)| format!("`{}`: {times:.2}", other.0)),
+            times(opencv).map_or_else(String::new, |times| format!("{times:.2}")),
+        ],
+    ))
+}
+
+/// A standard error with the decimals of its figure.
+fn plain_error(value: f64, error: f64) -> String {
+    let decimals = plain(value).split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    format!("{error:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use calibench_records::score::Errors;
+
+    use super::*;
+
+    fn score(errors: &[f64], rejected: u64) -> Score {
+        let mut kept = Errors::default();
+        errors.chunks(2).for_each(|trial| kept.add(&trial.iter().map(|e| (*e, 0.0)).collect::<Vec<_>>()));
+        let mut score = Score { measured: errors.len() as u64, kept, whole: kept, ..Score::default() };
+        if rejected > 0 {
+            score.rejected.insert("no_corner", rejected);
+        }
+        score
+    }
+
+    #[test]
+    fn the_least_error_leads_unless_it_fails_too_often() {
+        let (good, lossy, cv) = (score(&[0.03, 0.05, 0.04, 0.04], 0), score(&[0.01, 0.01, 0.01], 1), score(&[0.1, 0.1, 0.1, 0.1], 0));
+        let candidates = [("lossy", &lossy), ("opencv_subpix:window=11", &cv), ("good:window=9", &good)];
+        let (best, row) = lead(&candidates).unwrap();
+        assert_eq!(best, "good:window=9");
+        // sqrt((9 + 25 + 16 + 16) / 4) = 4.06 hundredths; 0.1 / 0.0406 = 2.46.
+        assert!(row[0].starts_with("0.0406 \u{b1} 0.000"), "{row:?}");
+        assert_eq!(row[1..], ["", "0.0", "`opencv_subpix:window=11`: 2.46", "2.46"].map(String::from));
+    }
+
+    #[test]
+    fn a_paragraph_counts_figures_and_scenarios() {
+        let mut answers = Answers::default();
+        answers.table("Table 1: x", Tally { reproduce: 2, differ: 1, not_comparable: 0 });
+        answers.table("Table 2", Tally { reproduce: 1, differ: 0, not_comparable: 4 });
+        for (scenario, method) in [("f/a", "one:window=9"), ("f/b", "one"), ("f/c", "two")] {
+            answers.winners.push(Winner { scenario: scenario.into(), cells: (1, 1), method: method.into(), row: vec!["0.1".into()] });
+        }
+        let expected = "Of 8 printed figures 3 reproduce, 1 differ and 4 are not comparable. Least error: `one` in 2 of 3 scenarios, `two` in 1.";
+        assert_eq!(answers.paragraph(), expected);
+        let tables = answers.tables();
+        assert!(tables.contains("[Table 1: x](#table-1-x)") && tables.contains("[a](#scenario-fa)"), "{tables}");
+    }
+}

@@ -1,0 +1,70 @@
+//! A published table beside one run of ours.
+
+use super::figure::of_points;
+use super::notes::Notes;
+use super::{Cell, Printed, Table, Tally, Verdict};
+use crate::load::Loaded;
+use crate::markdown::{MarkdownTable, fixed, fraction};
+
+/// The table beside the first trial, one row of print a row.
+pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
+    let mut header = vec!["row".to_owned()];
+    for column in &table.columns {
+        header.extend([format!("{column} printed"), format!("{column} ours")]);
+    }
+    header.push("verdict".to_owned());
+    let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    let (mut tally, mut notes) = (Tally::default(), Notes::default());
+    for label in table.rows() {
+        let mut cells = vec![label.to_owned()];
+        let (mut verdicts, mut misprints) = (Vec::new(), String::new());
+        for column in &table.columns {
+            let Some(cell) = table.cells.iter().find(|cell| cell.row == label && cell.column == *column) else {
+                cells.extend([String::new(), String::new()]);
+                continue;
+            };
+            let ours = figure(table, main, cell);
+            let verdict = cell.verdict(ours);
+            tally.count(&verdict);
+            cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);
+            verdicts.push(verdict);
+            if let Some(misprint) = &cell.misprint {
+                misprints.push_str(&notes.mark(&format!("misprint in {column}: {misprint}")));
+            }
+        }
+        cells.push(gravest(verdicts, &mut notes) + &misprints);
+        rows.row(cells);
+    }
+    let text = format!(
+        "Printed beside ours (`{}`, `{}`). A coordinate *reproduces* when ours is within half a unit of the last printed digit; what the paper computed from rounded \
+         figures, within one unit. A row has the verdict of its gravest cell.\n\n{}\n{}{}\n\n",
+        table.method,
+        table.scenario,
+        rows.render(),
+        notes.render(),
+        tally.sentence()
+    );
+    (text, tally)
+}
+
+/// Our figure for `cell` in the first trial.
+fn figure(table: &Table, main: &Loaded, cell: &Cell) -> Option<f64> {
+    let method = main.method(cell.method.as_deref().unwrap_or(&table.method))?;
+    of_points(&main.first.points, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus)
+}
+
+/// The gravest of some cells' verdicts in words; its reason goes below the table.
+pub fn gravest(verdicts: Vec<Verdict>, notes: &mut Notes) -> String {
+    let Some(gravest) = verdicts.into_iter().max_by_key(Verdict::gravity) else { return String::new() };
+    let why = if let Verdict::NotComparable(why) = &gravest { notes.mark(why) } else { String::new() };
+    gravest.word().to_owned() + &why
+}
+
+/// Ours with one digit more than printed, in the form of the printed figure.
+pub fn like(cell: &Cell, value: f64) -> String {
+    if cell.printed.contains('/') {
+        return fraction(value);
+    }
+    let digits = Printed::parse(&cell.printed).map_or(4, |printed| (-printed.unit.log10()).round() as usize + 1);
+    fixed(value, digits)
+}

@@ -1,0 +1,78 @@
+//! The section of a published table: its cells beside ours, what was found out, every method.
+
+use super::adjustment::ours;
+use super::{Table, Tally, every_method, many, one};
+use crate::load::{LoadError, Loaded};
+
+/// A section of a page, and the verdicts of its cells.
+pub struct Section {
+    /// Markdown.
+    pub text: String,
+    /// Its verdicts.
+    pub tally: Tally,
+}
+
+/// The section of `table`, whose scenario's records are `main`; other scenarios stand `beside` it.
+///
+/// # Errors
+/// Records that cannot be read.
+pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> Result<Section, LoadError> {
+    let mut text = head(table);
+    let compared = if table.is_of_adjustments() { adjustments(table, main) } else { points(table, main)? };
+    let tally = match compared {
+        Ok((comparison, tally)) => {
+            text.push_str(&comparison);
+            tally
+        }
+        Err(nothing) => {
+            text.push_str(&nothing);
+            Tally::default()
+        }
+    };
+    text.push_str(&findings(table));
+    if !table.is_of_adjustments() {
+        text.push_str(&every_method::section(table, main, beside));
+    }
+    Ok(Section { text, tally })
+}
+
+/// Heading, source and unit.
+pub fn head(table: &Table) -> String {
+    format!("## {}\n\n{}. Unit: {}.\n\n", table.title, table.source, table.unit)
+}
+
+/// The comparison, or why there is none.
+type Compared = Result<(String, Tally), String>;
+
+fn points(table: &Table, main: &Loaded) -> Result<Compared, LoadError> {
+    if main.method(&table.method).is_none() {
+        return Ok(Err(no_method(table)));
+    }
+    if main.scores.trials < 2 {
+        return Ok(Ok(one::comparison(table, main)));
+    }
+    Ok(Ok(many::comparison(table, &many::of_all_trials(table, main)?, main.scores.trials)))
+}
+
+fn adjustments(table: &Table, main: &Loaded) -> Compared {
+    let Some(found) = &main.calibrations else {
+        return Err(format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario));
+    };
+    let pitch = main.scenario.pitch_um().unwrap_or(f64::NAN);
+    let figures: Vec<_> = table.cells.iter().map(|cell| ours(found, cell, &table.method, pitch)).collect();
+    Ok(many::comparison(table, &figures, found.trials))
+}
+
+/// Records of the scenario that lack the table's method.
+pub fn no_method(table: &Table) -> String {
+    format!("The records of `{}` hold no method `{}`: nothing to compare.\n\n", table.scenario, table.method)
+}
+
+/// What was found out about a table.
+pub fn findings(table: &Table) -> String {
+    if table.findings.is_empty() {
+        return String::new();
+    }
+    let lines: String = table.findings.iter().map(|finding| format!("- {}\n", finding.trim().replace('\n', " "))).collect();
+    format!("### What was found out\n\n{lines}\n")
+}
