@@ -127,11 +127,21 @@ fn what_is_unverified_is_said_and_can_be_decided() {
 #[test]
 fn conventions_are_listed_with_what_is_verified() {
     let text = good(&root(), &["list", "conventions"]);
-    for part in
-        ["photogrammetric", "ebner", "pix4d", "metashape", "opencv-fisheye", "unverified:", "verified:", "targets of `convert --to`"]
-    {
+    for part in ["photogrammetric", "ebner", "pix4d", "metashape", "opencv-fisheye", "unverified:", "verified:"] {
         assert!(text.contains(part), "{part}");
     }
+}
+
+#[test]
+fn formats_are_listed_with_what_convert_can_be_told() {
+    let text = good(&root(), &["list", "formats"]);
+    for format in calibench_exchange::camera::FORMATS {
+        assert!(text.contains(&format!("  {} (.{}): {}", format.name, format.extension, format.tool)), "{}: {text}", format.name);
+    }
+    assert!(
+        text.contains("targets of `convert --to`\n  photogrammetric: ") && text.contains("; --model chooses among plumb_bob"),
+        "{text}"
+    );
 }
 
 #[test]

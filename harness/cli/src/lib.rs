@@ -26,6 +26,7 @@ mod render;
 mod report;
 mod resect;
 mod run;
+mod schema;
 mod show;
 mod speed;
 mod toolbox;
@@ -99,8 +100,12 @@ enum Command {
     Camera(camera::CameraCommand),
     /// Say how far two cameras differ, in px over the frame, after the best rotation
     Diff(diff::Diff),
-    /// Print the JSON Schema of scenario files, for editors
-    Schema,
+    /// Print the JSON Schema of scenario files or of published tables, for editors
+    Schema {
+        /// Of which files
+        #[arg(default_value = "scenarios")]
+        of: schema::Schema,
+    },
 }
 
 /// Runs the command line of this process.
@@ -141,6 +146,6 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),
-        Command::Schema => deliver::print(&format!("{:#}\n", calibench_scenario::schema::schema(&toolbox.registry))),
+        Command::Schema { of } => deliver::print(&of.text(&toolbox.registry)),
     }
 }

@@ -117,7 +117,8 @@ impl Answers {
             text.push_str(&format!("{}\n", rows.render()));
         }
         if self.winners.len() > 1 {
-            let mut rows = MarkdownTable::new(&["scenario", "least RMSE", "px", "RMSE / bound", "failed, %", "the next", "`opencv_subpix`"]);
+            let mut rows =
+                MarkdownTable::new(&["scenario", "least RMSE", "px", "RMSE / bound", "failed, %", "the next", "`opencv_subpix`"]);
             for winner in &self.winners {
                 let link = format!("[{}](#{})", short(&winner.scenario), anchor(&heading(&winner.scenario)));
                 rows.row([link, format!("`{}`", winner.method)].into_iter().chain(winner.row.iter().cloned()));
@@ -215,7 +216,8 @@ mod tests {
         for (scenario, method) in [("f/a", "one:window=9"), ("f/b", "one"), ("f/c", "two")] {
             answers.winners.push(Winner { scenario: scenario.into(), cells: (1, 1), method: method.into(), row: vec!["0.1".into()] });
         }
-        let expected = "Of 8 printed figures 3 reproduce, 1 differ and 4 are not comparable. Least error: `one` in 2 of 3 scenarios, `two` in 1.";
+        let expected =
+            "Of 8 printed figures 3 reproduce, 1 differ and 4 are not comparable. Least error: `one` in 2 of 3 scenarios, `two` in 1.";
         assert_eq!(answers.paragraph(), expected);
         let tables = answers.tables();
         assert!(tables.contains("[Table 1: x](#table-1-x)") && tables.contains("[a](#scenario-fa)"), "{tables}");

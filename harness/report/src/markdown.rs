@@ -70,8 +70,7 @@ pub fn contents(text: &str) -> String {
         return String::new();
     }
     let indent = |line: &str| if line.starts_with("### ") { "  " } else { "" };
-    let lines: String =
-        headings.iter().map(|(line, heading)| format!("{}- [{heading}](#{})\n", indent(line), anchor(heading))).collect();
+    let lines: String = headings.iter().map(|(line, heading)| format!("{}- [{heading}](#{})\n", indent(line), anchor(heading))).collect();
     format!("**Contents**\n\n{lines}\n")
 }
 

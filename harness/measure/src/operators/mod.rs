@@ -14,6 +14,11 @@ pub mod parametric_corner;
 pub mod pixel;
 pub mod saddle;
 
+/// The worked example of CONTRIBUTING.
+#[cfg(test)]
+#[path = "../../../../examples/operator.rs"]
+mod example;
+
 /// The methods of this crate, in the order in which they are listed.
 pub(crate) fn methods() -> Vec<Method> {
     vec![

@@ -28,6 +28,11 @@ mod reality_capture;
 mod ros;
 mod theia;
 
+/// The worked example of CONTRIBUTING.
+#[cfg(test)]
+#[path = "../../../../../examples/camera_format.rs"]
+mod example;
+
 use calibench_model::camera::Convention;
 
 use super::fit::{Keeps, KeptCovariance, KeptPose, Model};
