@@ -42,8 +42,10 @@ fn every_method(table: &Table, loaded: &Loaded) -> String {
             let of = |metric| of_points(&loaded.first.points, method, metric, None, &set.except);
             let px = |metric| of(metric).map_or("none".into(), |value| fixed(value, 4));
             let part = |metric| of(metric).map_or(String::new(), fraction);
-            let (count, all) =
-                (errors(&loaded.first.points, method, &set.except).count(), targets(loaded).filter(|id| !set.except.contains(id)).count());
+            let (count, all) = (
+                errors(&loaded.first.points, method, &set.except).count(),
+                of_method(&loaded.first.points, method).filter(|p| !set.except.iter().any(|id| **id == *p.target)).count(),
+            );
             let mean = |metric| of(metric).map_or("none".into(), |value| signed(value, 4));
             let common = (!missed.is_empty()).then(|| {
                 let except: Vec<String> = set.except.iter().chain(&missed).cloned().collect();
