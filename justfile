@@ -62,9 +62,7 @@ deny:
 perf:
     cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards
 
-# Write the JSON Schemas of scenario files and of published tables
+# Write the JSON Schema of scenario files
 schema: build
     {{calibench}} schema scenarios > scenarios/scenario.schema.json.new
     mv scenarios/scenario.schema.json.new scenarios/scenario.schema.json
-    {{calibench}} schema tables > reference/published/table.schema.json.new
-    mv reference/published/table.schema.json.new reference/published/table.schema.json

@@ -3,8 +3,6 @@
 mod examples;
 mod pages;
 
-use std::path::Path;
-
 use crate::project::{root, run, stdout};
 use pages::{Page, anchors, pages};
 
@@ -31,8 +29,6 @@ fn links_lead_somewhere() {
 /// Every command that stands in an indented block exists, with all its options.
 #[test]
 fn commands_and_options_exist() {
-    let program = env!("CARGO_PKG_NAME");
-    assert!(!program.is_empty());
     let mut tried = 0;
     for page in pages() {
         for command in page.commands() {
@@ -146,7 +142,4 @@ fn keys_and_metrics_of_published_tables_are_described() {
     names.sort();
     names.dedup();
     assert_eq!(described, names);
-    let committed = std::fs::read_to_string(root().join("reference/published/table.schema.json")).unwrap();
-    assert!(committed == format!("{schema:#}\n"), "reference/published/table.schema.json is stale: run `just schema`");
-    assert!(Path::new(&root()).join("reference/published").is_dir());
 }

@@ -31,7 +31,7 @@ pub struct Page {
 pub fn which(groups: &[Group], machine: &str, evidence: &str) -> Page {
     let all: Vec<Vec<Candidate>> = groups.iter().flat_map(|group| &group.rows).map(|row| row.candidates.clone()).collect();
     let verdicts = decide(&all);
-    let short = short(groups, &verdicts);
+    let short = answers(groups, &verdicts);
     let mut body = String::new();
     let mut next = verdicts.iter();
     for group in groups {
@@ -58,7 +58,7 @@ struct Short {
     sentences: Vec<String>,
 }
 
-fn short(groups: &[Group], verdicts: &[Verdict]) -> Short {
+fn answers(groups: &[Group], verdicts: &[Verdict]) -> Short {
     let mut short = Short { table: MarkdownTable::new(&["what is measured", "where", "take"]), sentences: Vec::new() };
     let mut next = verdicts.iter();
     for group in groups {

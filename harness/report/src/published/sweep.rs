@@ -61,7 +61,7 @@ fn comparison(table: &Table, loaded: &LoadedSweep, method: usize) -> (String, Ta
 }
 
 /// The figures of the cell of the sweep that `cell` names.
-pub fn score<'a>(loaded: &'a LoadedSweep, method: usize, cell: &Cell) -> Option<&'a Score> {
+fn score<'a>(loaded: &'a LoadedSweep, method: usize, cell: &Cell) -> Option<&'a Score> {
     let meant = |index: &usize| {
         let mut pairs = loaded.sweep.axes.iter().zip(loaded.sweep.values(*index));
         pairs.all(|(axis, value)| cell.at.iter().any(|(key, at)| axis.is_called(key) && value.number == Some(*at)))
