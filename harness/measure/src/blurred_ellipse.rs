@@ -6,8 +6,9 @@
 
 use multiversion::multiversion;
 
+use crate::blurred_step::{DENSITY, step};
 use crate::ellipse::Ellipse;
-use crate::lanes::{DENSITY, LANES, Lanes, step};
+use crate::lanes::{LANES, Lanes};
 
 /// Steps of the outline in standard deviations of the blur: the error is `2 exp(-2 pi^2 / STEP^2)`.
 const STEP: f64 = 1.1;

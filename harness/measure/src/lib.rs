@@ -5,6 +5,7 @@
 
 pub mod blob;
 mod blurred_ellipse;
+mod blurred_step;
 pub mod board;
 mod cholesky;
 pub mod conformance;

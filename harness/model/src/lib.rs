@@ -7,6 +7,7 @@ pub mod frames;
 pub mod image;
 pub mod observation;
 pub mod pose;
+pub mod quadrature;
 pub mod scene;
 pub mod target;
 pub mod testfield;

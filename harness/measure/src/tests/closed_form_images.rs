@@ -1,15 +1,13 @@
 //! Images in closed form for the tests: shapes under a pixel and a Gaussian, integrated column by column (no operator works this way).
 
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+use calibench_model::quadrature::gauss_legendre;
 use calibench_model::{Affine, Image, TargetKind};
 
-/// The five-point Gauss rule on [-1, 1].
-const GAUSS: [(f64, f64); 5] = [
-    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
-    (-0.538_469_310_105_683, 0.478_628_670_499_366_5),
-    (0.0, 0.568_888_888_888_888_9),
-    (0.538_469_310_105_683, 0.478_628_670_499_366_5),
-    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
-];
+/// The Gauss-Legendre rule of five points on [0, 1].
+static RULE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_legendre(5));
 
 /// A target in an image: its own plane mapped by `affine`, at `at`; blur `sigma` px; grey values `ground` and `ground + contrast`.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +39,7 @@ fn pieces(kind: TargetKind) -> Vec<Vec<[f64; 2]>> {
 }
 
 fn normal(u: f64) -> (f64, f64) {
-    ((-0.5 * u * u).exp() / (2.0 * std::f64::consts::PI).sqrt(), 0.5 * (1.0 + libm::erf(u / 2_f64.sqrt())))
+    ((-0.5 * u * u).exp() / (2.0 * PI).sqrt(), 0.5 * (1.0 + libm::erf(u / 2_f64.sqrt())))
 }
 
 impl Picture {
@@ -92,10 +90,9 @@ impl Picture {
 
     fn panels(&self, from: f64, to: f64, longest: f64, mut visit: impl FnMut(f64, f64)) {
         let count = (longest / (0.5 * self.sigma)).ceil().max(1.0) as usize;
-        let half = (to - from) / (2.0 * count as f64);
+        let width = (to - from) / count as f64;
         for panel in 0..count {
-            let middle = from + (2 * panel + 1) as f64 * half;
-            GAUSS.iter().for_each(|&(node, weight)| visit(middle + node * half, weight * half));
+            RULE.iter().for_each(|&(node, weight)| visit(from + (panel as f64 + node) * width, weight * width));
         }
     }
 
@@ -104,12 +101,11 @@ impl Picture {
         let a = &self.affine;
         let (xx, xy, yy) =
             ((a.axx * a.axx + a.axy * a.axy) / 4.0, (a.axx * a.ayx + a.axy * a.ayy) / 4.0, (a.ayx * a.ayx + a.ayy * a.ayy) / 4.0);
-        let half_pi = std::f64::consts::FRAC_PI_2;
         let count = 80;
         for panel in 0..count {
-            for (node, weight) in GAUSS {
-                let angle = half_pi * ((f64::from(2 * panel + 1) + node) / f64::from(count) - 1.0);
-                let (x, step) = (xx.sqrt() * angle.sin(), xx.sqrt() * angle.cos() * weight * half_pi / f64::from(count));
+            for &(node, weight) in RULE.iter() {
+                let angle = PI * ((f64::from(panel) + node) / f64::from(count) - 0.5);
+                let (x, step) = (xx.sqrt() * angle.sin(), xx.sqrt() * angle.cos() * weight * PI / f64::from(count));
                 let height = ((xx * yy - xy * xy) / xx).sqrt() * angle.cos();
                 let y = self.at[1] + xy / xx * x;
                 columns.push((self.at[0] + x, step, y - height, y + height));

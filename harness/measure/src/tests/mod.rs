@@ -1,4 +1,5 @@
-//! Images whose contents are known, for the tests of several operators. They share no code with any operator.
+//! Images whose contents are known, and errors against the bound, for the tests of several operators. They share no formula with any operator.
 
+pub(crate) mod bound;
 pub(crate) mod closed_form_images;
 pub(crate) mod quadrature_images;

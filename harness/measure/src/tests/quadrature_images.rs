@@ -5,6 +5,7 @@
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use calibench_model::Image;
+use calibench_model::quadrature::gauss_legendre;
 use statrs::function::erf::erfc;
 
 /// A chess corner: the grey value is `mean + half * sign u * sign v`, with `u = n1 . d + curvature t^2 / 2`, d from the corner and t along the edge.
@@ -49,33 +50,13 @@ fn profile(z: f64, blur: f64, width: f64) -> (f64, f64) {
     (blur * (area(high) - area(low)) / width, (phi(high) - phi(low)) / width)
 }
 
-/// Nodes and weights of Gauss and Legendre on [-1, 1].
-pub(crate) fn legendre(n: usize) -> Vec<(f64, f64)> {
-    let order = n as f64;
-    (0..n)
-        .map(|i| {
-            let (mut x, mut slope) = ((PI * (i as f64 + 0.75) / (order + 0.5)).cos(), 0.0);
-            for _ in 0..100 {
-                let (mut p, mut q) = (1.0, x);
-                for k in 2..=n {
-                    let k = k as f64;
-                    (p, q) = (q, ((2.0 * k - 1.0) * x * q - (k - 1.0) * p) / k);
-                }
-                slope = order * (x * q - p) / (x * x - 1.0);
-                x -= q / slope;
-            }
-            (x, 2.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .collect()
-}
-
 impl Chess {
     /// The grey values of `side` x `side` px, row by row, unrounded.
     pub(crate) fn render(&self, side: usize) -> Vec<f64> {
         let far = 12.0 * self.blur + 2.0;
         let (low, high) = (-far, side as f64 - 1.0 + far);
         let mut sum = vec![self.sides(low, low); side * side];
-        let rule = legendre(8);
+        let rule = gauss_legendre(8);
         for which in 0..2 {
             for direction in [1.0, -1.0] {
                 let (x, y) = self.leave(which, direction, low, high);
@@ -140,10 +121,10 @@ impl Chess {
         let (ny, nx) = self.normals[which].sin_cos();
         for panel in 0..panels as usize {
             for (node, weight) in rule {
-                let t = direction * length * (panel as f64 + 0.5 + 0.5 * node) / panels;
+                let t = direction * length * (panel as f64 + node) / panels;
                 let (x, y) = self.point(which, t);
                 let other = self.signed(1 - which, x, y).signum();
-                let jump = 2.0 * other * (nx - self.curvature[which] * t * ny) * weight * 0.5 * length / panels;
+                let jump = 2.0 * other * (nx - self.curvature[which] * t * ny) * weight * length / panels;
                 let across: Vec<f64> = (0..side).map(|column| profile(column as f64 - x, self.blur, self.photosite).0).collect();
                 for row in 0..side {
                     let down = profile(row as f64 - y, self.blur, self.photosite).1;
@@ -165,20 +146,20 @@ impl Ellipse {
         // The inverse of A^2.
         let (q12, q22) = (-(a * b + b * c) / determinant, (a * a + b * b) / determinant);
         let width = (q22 * determinant).sqrt();
-        let (panels, rule, pixel) = ((PI * width / self.blur).ceil(), legendre(8), legendre(8));
+        let (panels, rule, pixel) = ((PI * width / self.blur).ceil(), gauss_legendre(8), gauss_legendre(8));
         let mut covered = vec![0.0; side * side];
         for panel in 0..panels as usize {
             for (node, weight) in &rule {
-                let psi = PI * ((panel as f64 + 0.5 + 0.5 * node) / panels - 0.5);
+                let psi = PI * ((panel as f64 + node) / panels - 0.5);
                 let dx = width * psi.sin();
                 let (middle, half) = (self.position[1] - q12 * dx / q22, psi.cos() / q22.sqrt());
                 let mean = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
-                    let over = |at: usize| pixel.iter().map(|(node, weight)| 0.5 * weight * f(at as f64 + 0.5 * node)).sum();
+                    let over = |at: usize| pixel.iter().map(|(node, weight)| weight * f(at as f64 - 0.5 + node)).sum();
                     (0..side).map(over).collect()
                 };
                 let across = mean(&|x| bell((x - self.position[0] - dx) / self.blur) / self.blur);
                 let down = mean(&|y| phi((middle + half - y) / self.blur) - phi((middle - half - y) / self.blur));
-                let weight = weight * 0.5 * PI / panels * width * psi.cos();
+                let weight = weight * PI / panels * width * psi.cos();
                 for (line, down) in covered.chunks_mut(side).zip(&down) {
                     line.iter_mut().zip(&across).for_each(|(value, across)| *value += weight * down * across);
                 }
@@ -219,67 +200,4 @@ fn all_of_an_ellipse_is_in_its_image() {
     let ellipse = Ellipse { position: [14.2, 15.1], shape: [4.0, 0.7, 2.5], blur: 0.5, inside: 1.0, outside: 0.0 };
     let area: f64 = ellipse.render(30).iter().sum();
     assert!((area - PI * (4.0 * 2.5 - 0.49)).abs() < 1e-8, "{area}");
-}
-
-/// White noise of standard deviation `sigma` from a stream of its own.
-pub(crate) fn noisy(grey: &[f64], sigma: f64, rng: &mut rand_chacha::ChaCha8Rng) -> Vec<f64> {
-    use rand_distr::{Distribution, Normal};
-    let normal = Normal::new(0.0, sigma).unwrap();
-    grey.iter().map(|g| g + normal.sample(rng)).collect()
-}
-
-/// The Cramér-Rao bound of the first two of `P` unknowns for white noise of unit variance: its trace, px^2.
-pub(crate) fn bound<const P: usize>(at: [f64; P], render: impl Fn(&[f64; P]) -> Vec<f64>) -> f64 {
-    use nalgebra::SMatrix;
-    let derivative = |i: usize| {
-        let shifted = |h: f64| {
-            let mut x = at;
-            x[i] += h;
-            render(&x)
-        };
-        let (high, low) = (shifted(1e-4), shifted(-1e-4));
-        high.iter().zip(&low).map(|(h, l)| (h - l) / 2e-4).collect::<Vec<_>>()
-    };
-    let j: Vec<Vec<f64>> = (0..P).map(derivative).collect();
-    let n = SMatrix::<f64, P, P>::from_fn(|a, b| j[a].iter().zip(&j[b]).map(|(a, b)| a * b).sum());
-    let inverse = n.try_inverse().expect("all unknowns are determined");
-    inverse[(0, 0)] + inverse[(1, 1)]
-}
-
-/// Squared errors in units of the bound, pooled: their number, mean and standard error.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pool {
-    n: f64,
-    sum: f64,
-    squares: f64,
-}
-
-impl Pool {
-    pub(crate) fn add(&mut self, value: f64) {
-        self.n += 1.0;
-        self.sum += value;
-        self.squares += value * value;
-    }
-
-    pub(crate) fn join(&mut self, other: &Self) {
-        self.n += other.n;
-        self.sum += other.sum;
-        self.squares += other.squares;
-    }
-
-    pub(crate) fn trials(&self) -> usize {
-        self.n as usize
-    }
-
-    /// The root of the mean, and its 99 % interval.
-    pub(crate) fn ratio(&self) -> (f64, [f64; 2]) {
-        self.within(2.576)
-    }
-
-    /// The root of the mean, and its interval of so many standard errors of the mean.
-    pub(crate) fn within(&self, errors: f64) -> (f64, [f64; 2]) {
-        let mean = self.sum / self.n;
-        let error = ((self.squares / self.n - mean * mean).max(0.0) / self.n).sqrt();
-        (mean.sqrt(), [(mean - errors * error).max(0.0).sqrt(), (mean + errors * error).sqrt()])
-    }
 }

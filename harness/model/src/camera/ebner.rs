@@ -1,11 +1,10 @@
 //! The canonical orientation with Ebner's twelve additional parameters.
 
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
-use super::measured_to_ideal::{self, Correction};
+use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
 use super::plane_map::PlaneMap;
-use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Photogrammetric, Ray, named};
-use crate::PixelPoint;
+use super::{CameraModel, CameraParameter, DerivativeBuffer, Photogrammetric, named};
 
 /// [`Photogrammetric`] with Ebner's twelve additional parameters. Direction: **measured to ideal**; mm; y points up.
 ///
@@ -127,48 +126,27 @@ impl Correction for Ebner {
     }
 }
 
-impl CameraModel for Ebner {
-    fn size(&self) -> ImageSize {
-        self.base.size
-    }
-
-    fn parameters(&self) -> Vec<CameraParameter> {
+impl Ebner {
+    fn named_parameters(&self) -> Vec<CameraParameter> {
         let mut all = self.base.parameters();
         all.extend(named(&NAMES, &self.parameters));
         all
     }
 
-    fn with_parameters(&self, values: &[f64]) -> Self {
+    fn with_values(&self, values: &[f64]) -> Self {
         let (base, own) = values.split_at(values.len() - self.parameters.len());
         let mut parameters = self.parameters;
         parameters.copy_from_slice(own);
         Self { base: self.base.with_parameters(base), parameters, ..*self }
     }
-
-    fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
-        measured_to_ideal::project(self, ray)
-    }
-
-    fn project_near(&self, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
-        measured_to_ideal::project_near(self, ray, near)
-    }
-
-    fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
-        measured_to_ideal::unproject(self, point)
-    }
-
-    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
-        measured_to_ideal::derivatives_into(self, ray, into)
-    }
-
-    fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
-        measured_to_ideal::fold_towards(self, angle)
-    }
 }
+
+measured_camera!(Ebner);
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::ImageSize;
     use crate::camera::conformance::{self, Shape};
 
     fn camera() -> Ebner {

@@ -88,3 +88,51 @@ pub(super) fn fold_towards(camera: &impl Correction, angle: f64) -> Option<Pixel
     let s = plane_map::first_fold(|s| determinant(camera.map([s * cos, -s * sin]).1), farthest, PLACES)?;
     to_pixel(base, [s * cos, -s * sin]).ok()
 }
+
+/// The methods of [`super::CameraModel`] for a [`Correction`] that has `named_parameters` and `with_values`.
+macro_rules! measured_camera {
+    ($model:ty) => {
+        impl $crate::camera::CameraModel for $model {
+            fn size(&self) -> $crate::camera::ImageSize {
+                $crate::camera::measured_to_ideal::Correction::base(self).size
+            }
+
+            fn parameters(&self) -> Vec<$crate::camera::CameraParameter> {
+                self.named_parameters()
+            }
+
+            fn with_parameters(&self, values: &[f64]) -> Self {
+                self.with_values(values)
+            }
+
+            fn project(&self, ray: $crate::camera::Ray) -> Result<$crate::PixelPoint, $crate::camera::NoCounterpart> {
+                $crate::camera::measured_to_ideal::project(self, ray)
+            }
+
+            fn project_near(
+                &self,
+                ray: $crate::camera::Ray,
+                near: $crate::PixelPoint,
+            ) -> Result<$crate::PixelPoint, $crate::camera::NoCounterpart> {
+                $crate::camera::measured_to_ideal::project_near(self, ray, near)
+            }
+
+            fn unproject(&self, point: $crate::PixelPoint) -> Result<$crate::camera::Ray, $crate::camera::NoCounterpart> {
+                $crate::camera::measured_to_ideal::unproject(self, point)
+            }
+
+            fn derivatives_into(
+                &self,
+                ray: $crate::camera::Ray,
+                into: &mut $crate::camera::DerivativeBuffer,
+            ) -> Result<(), $crate::camera::NoCounterpart> {
+                $crate::camera::measured_to_ideal::derivatives_into(self, ray, into)
+            }
+
+            fn fold_towards(&self, angle: f64) -> Option<$crate::PixelPoint> {
+                $crate::camera::measured_to_ideal::fold_towards(self, angle)
+            }
+        }
+    };
+}
+pub(super) use measured_camera;

@@ -1,11 +1,10 @@
 //! The canonical interior orientation: photogrammetric, a correction of measured coordinates.
 
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
-use super::measured_to_ideal::{self, Correction};
+use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
 use super::plane_map::{PlaneMap, is_one_to_one};
-use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
-use crate::PixelPoint;
+use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 
 /// Interior orientation in mm, y up, from the centre of the frame. Direction: **measured to ideal**.
 ///
@@ -108,48 +107,28 @@ impl Correction for Photogrammetric {
     }
 }
 
-impl CameraModel for Photogrammetric {
-    fn size(&self) -> ImageSize {
-        self.size
-    }
-
-    fn parameters(&self) -> Vec<CameraParameter> {
+impl Photogrammetric {
+    fn named_parameters(&self) -> Vec<CameraParameter> {
         let [k1, k2, k3] = self.k;
         let values = [self.c, self.x0, self.y0, k1, k2, k3, self.p[0], self.p[1], self.b[0], self.b[1]];
         named(&NAMES, &values)
     }
 
-    fn with_parameters(&self, values: &[f64]) -> Self {
+    fn with_values(&self, values: &[f64]) -> Self {
         let v = |i: usize| values[i];
         Self { c: v(0), x0: v(1), y0: v(2), k: [v(3), v(4), v(5)], p: [v(6), v(7)], b: [v(8), v(9)], ..*self }
     }
-
-    fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
-        measured_to_ideal::project(self, ray)
-    }
-
-    fn project_near(&self, ray: Ray, near: PixelPoint) -> Result<PixelPoint, NoCounterpart> {
-        measured_to_ideal::project_near(self, ray, near)
-    }
-
-    fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
-        measured_to_ideal::unproject(self, point)
-    }
-
-    fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
-        measured_to_ideal::derivatives_into(self, ray, into)
-    }
-
-    fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
-        measured_to_ideal::fold_towards(self, angle)
-    }
 }
+
+measured_camera!(Photogrammetric);
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::PixelPoint;
     use crate::camera::conformance::{self, Shape};
     use crate::camera::fold;
+    use crate::camera::{CameraModel, NoCounterpart, Ray};
 
     fn camera() -> Photogrammetric {
         let size = ImageSize { width: 4272, height: 2848 };

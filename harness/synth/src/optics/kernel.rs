@@ -2,7 +2,8 @@
 
 use super::profile::Profile;
 use super::spread::Spread;
-use super::{Motion, Optics, gauss_legendre};
+use super::{Motion, Optics};
+use calibench_model::quadrature::gauss_legendre;
 
 /// One separable part: weight times (profile along x) times (profile along y), moved.
 #[derive(Clone, Debug)]

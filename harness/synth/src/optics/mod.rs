@@ -1,12 +1,10 @@
 //! From the lens to the photosite: blur and aperture.
 
-mod gauss_legendre;
 mod kernel;
 mod levels;
 mod profile;
 mod spread;
 
-pub(crate) use gauss_legendre::gauss_legendre;
 pub(crate) use kernel::{Kernel, Part};
 pub(crate) use levels::Levels;
 

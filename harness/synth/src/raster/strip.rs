@@ -6,11 +6,12 @@
 
 use std::sync::LazyLock;
 
+use calibench_model::quadrature::gauss_legendre;
 use multiversion::multiversion;
 
 use super::piece::{Piece, at, slope};
 use super::sharp;
-use crate::optics::{Kernel, Part, gauss_legendre};
+use crate::optics::{Kernel, Part};
 
 /// Nodes of one stretch of a piece, at most.
 const MOST_NODES: usize = 32;

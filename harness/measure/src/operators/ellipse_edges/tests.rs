@@ -3,7 +3,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::parametric_circle::tests::{SIDE, bound_of, disc, operator, pools, worst_without_noise};
-use crate::tests::quadrature_images::{self, Pool, noisy};
+use crate::tests::bound::{Pool, noisy};
+use crate::tests::quadrature_images;
 
 /// Phases of the pixel grid in a cell, and trials at each.
 const PHASES: usize = 10;

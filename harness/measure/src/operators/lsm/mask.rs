@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use calibench_model::quadrature::gauss_legendre;
 use calibench_model::{Affine, Curve, TargetKind};
 
 /// Nodes of the longest rule.
@@ -183,42 +184,9 @@ fn moment(curves: &[Curve]) -> Option<f64> {
     (area > 0.0).then(|| second / area)
 }
 
-/// Newton's method on Legendre's polynomial, whose values come from its recurrence.
-fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
-    let node = |i: usize| {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..50 {
-            let (mut before, mut value) = (0.0, 1.0);
-            for k in 0..n {
-                let k = k as f64;
-                (before, value) = (value, ((2.0 * k + 1.0) * x * value - k * before) / (k + 1.0));
-            }
-            slope = n as f64 * (x * value - before) / (x * x - 1.0);
-            let step = value / slope;
-            x -= step;
-            if step.abs() < 1e-15 {
-                break;
-            }
-        }
-        ((1.0 - x) / 2.0, 1.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..n).map(node).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn rules_integrate_polynomials() {
-        for (index, rule) in RULES.iter().enumerate() {
-            for degree in [0, 1, index, 2 * index + 1] {
-                let sum: f64 = rule.iter().map(|(x, w)| w * x.powi(degree as i32)).sum();
-                assert!((sum * (degree + 1) as f64 - 1.0).abs() < 1e-12, "{} points, degree {degree}: {sum}", index + 1);
-            }
-        }
-    }
 
     #[test]
     fn moments_are_those_of_the_shapes() {

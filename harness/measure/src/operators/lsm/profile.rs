@@ -2,6 +2,7 @@
 
 use multiversion::multiversion;
 
+use crate::blurred_step::{DENSITY, step};
 use crate::lanes::{self, Lanes};
 
 /// Fractions of a px at which the profile is tabulated; between them it is a Taylor series.
@@ -200,11 +201,11 @@ fn tabulate(table: &mut [f32], stride: usize, width: usize, half: f64, sigma: f6
 /// What borders of pixels give to `W`, `k` and the derivatives of `k`, at `u` standard deviations.
 #[inline(always)]
 fn boundary(u: &Lanes, sigma: f64) -> [Lanes; DERIVATIVES] {
-    let (edge, bell) = lanes::step(u);
+    let (edge, bell) = step(u);
     let mut values = [[0.0; lanes::LANES]; DERIVATIVES];
     let s = 1.0 / sigma;
     for i in 0..lanes::LANES {
-        let (u, density, below) = (u[i], bell[i] * lanes::DENSITY, 0.5 + 0.5 * edge[i]);
+        let (u, density, below) = (u[i], bell[i] * DENSITY, 0.5 + 0.5 * edge[i]);
         values[0][i] = sigma * (u * below + density);
         values[1][i] = below;
         values[2][i] = density * s;

@@ -3,7 +3,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::registry::Registry;
-use crate::tests::quadrature_images::{self, Pool, bound, noisy};
+use crate::tests::bound::{Pool, bound, noisy};
+use crate::tests::quadrature_images;
 
 /// A dark ellipse of semi-axes `radius` and `radius * squeeze` on light ground, in the middle of a window of [`SIDE`] px.
 pub(crate) fn disc(radius: f64, squeeze: f64, turn: f64, blur: f64, phase: [f64; 2]) -> quadrature_images::Ellipse {

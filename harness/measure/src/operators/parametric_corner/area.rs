@@ -1,7 +1,8 @@
 //! What the photosite's area does to a grey value beyond widening the blur by its variance.
 
 use super::model::Model;
-use super::real::{Real, WIDE, Wide, step};
+use crate::blurred_step::{exp_minus, step};
+use crate::lanes::{WIDE, Wide};
 
 /// A chunk of pixels, seen from the two edges, px: the distance from the tangents at the corner, and the way along them.
 pub(super) struct Seen {
@@ -61,7 +62,7 @@ impl Model<f32> {
                 for i in 0..WIDE {
                     exponent[i] = square * squares[i] - mixed * product[i];
                 }
-                let term = f32::exp_minus(&exponent);
+                let term = exp_minus(&exponent);
                 for i in 0..WIDE {
                     value[i] += weight * term[i];
                 }

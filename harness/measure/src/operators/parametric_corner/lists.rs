@@ -1,7 +1,7 @@
 //! The pixels of a window by what can be seen from them.
 
 use super::model::Model;
-use super::real::{WIDE, Wide};
+use crate::lanes::{WIDE, Wide};
 
 /// From a pixel both edges can be seen, ...
 pub(super) const CORNER: usize = 0;

@@ -4,7 +4,6 @@ mod area;
 mod levels;
 mod lists;
 mod model;
-mod real;
 mod start;
 mod sums;
 mod window;

@@ -2,7 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::real::{WIDE, Wide};
+use crate::lanes::{WIDE, Wide};
 use crate::marquardt::Normal;
 
 /// The upper triangle, the right-hand side and the squares of the residuals, in lanes.

@@ -10,8 +10,8 @@ use nalgebra::SVector;
 use super::levels::{ADDED, BOTH, EVEN, LIGHT, Levels};
 use super::lists::{AREAS, CORNER, EDGES, List, Lists};
 use super::model::{BASE, Fidelity, Field, Model, Shape};
-use super::real::{WIDE, Wide};
 use super::sums::Sums;
+use crate::lanes::{WIDE, Wide};
 use crate::marquardt::{Normal, Problem};
 
 /// The widest window, px.

@@ -5,7 +5,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::{SIDE, chess, operator};
 use crate::operator::Operator;
-use crate::tests::quadrature_images::{self, Chess, Pool, bound, noisy};
+use crate::tests::bound::{Pool, bound, noisy};
+use crate::tests::quadrature_images::{self, Chess};
 use calibench_model::{Gradient, PixelPoint, Start};
 
 pub(super) const BLURS: [f64; 5] = [0.3, 0.5, 0.8, 1.3, 2.0];

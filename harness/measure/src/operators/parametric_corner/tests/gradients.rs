@@ -10,7 +10,8 @@ use super::efficiency::{BLURS, NOISES, TILTS, bound_of, near};
 use super::{SIDE, chess, operator};
 use crate::marquardt::Problem;
 use crate::operator::Operator;
-use crate::tests::quadrature_images::{self, Chess, Pool, noisy};
+use crate::tests::bound::{Pool, noisy};
+use crate::tests::quadrature_images::{self, Chess};
 use calibench_model::{Gradient, Image, PixelPoint, Start};
 
 /// Black ink on white paper, lit by light that grows by `share` of the contrast a px.

@@ -2,9 +2,8 @@ mod efficiency;
 mod gradients;
 
 use super::model::{Fidelity, Model, Shape};
-use super::real::WIDE;
 use super::*;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, WIDE};
 use crate::registry::Registry;
 use crate::tests::quadrature_images::{self, Chess};
 

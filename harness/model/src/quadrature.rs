@@ -1,9 +1,14 @@
-//! Nodes and weights of Gauss and Legendre's quadrature.
+//! Gauss-Legendre quadrature.
 
 use std::f64::consts::PI;
 
-/// Nodes in (0, 1) and weights that add up to 1, for `n` nodes: exact for polynomials up to degree 2n - 1.
-pub(crate) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+/// Nodes and weights of the Gauss-Legendre rule of `n` points on the interval from 0 to 1.
+///
+/// Nodes rise, weights add up to 1; polynomials up to degree 2n - 1 are integrated exactly, to rounding. Empty for `n` = 0.
+/// Nodes are found by Newton's method on the Legendre polynomial, its values by the three-term recurrence.
+///
+/// Source: Abramowitz & Stegun 1964, 25.4.29 (on -1 to 1) and 22.7.10.
+pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let node = |i: usize| {
         let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
         let mut slope = 1.0;
@@ -21,7 +26,7 @@ pub(crate) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     (0..n).map(node).collect()
 }
 
-/// The Legendre polynomials of degree `n` and `n - 1`.
+/// Values at `x` of the Legendre polynomials of degree `n` (1 or more) and `n - 1`.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     (1..n).fold((x, 1.0), |(value, below), k| {
         let k = k as f64;

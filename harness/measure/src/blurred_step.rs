@@ -1,0 +1,103 @@
+//! The step of an edge under a Gaussian blur, and the Gaussian itself, for numbers side by side.
+
+use std::f64::consts::{FRAC_1_SQRT_2, LOG2_E};
+
+use crate::lanes::Real;
+
+/// 1 / sqrt(2 pi).
+pub(crate) const DENSITY: f64 = 0.398_942_280_401_432_7;
+
+/// Chebyshev fit of `(1 + 2 z) exp(z^2) erfc(z)` for z from 0 to 6, as a polynomial in `(z - 3.4) / (z + 3.4)`.
+///
+/// The form is that of Shepherd & Laframboise 1981; the coefficients are fitted anew, to an error of erfc of 6e-10.
+const ERFCX: [f64; 10] = [
+    1.244_375_846_053_946_7,
+    -0.139_610_989_764_242,
+    -0.016_960_689_947_235_83,
+    0.103_848_136_867_238_26,
+    -0.116_987_945_056_996_36,
+    0.085_362_955_825_145_44,
+    -0.044_232_776_189_734_15,
+    0.015_094_192_289_025_36,
+    -0.003_423_261_916_757_26,
+    -0.001_923_122_359_961_13,
+];
+const KNEE: f64 = 3.4;
+
+/// Taylor's coefficients of the exponential.
+const EXP: [f64; 9] = [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0, 1.0 / 40320.0];
+
+/// `exp(-y)` for y >= 0: error 2e-7 in single precision, 3e-10 in double.
+#[inline(always)]
+pub(crate) fn exp_minus<T: Real, const N: usize>(y: &[T; N]) -> [T; N] {
+    let mut result = [T::of(0.0); N];
+    for i in 0..N {
+        let x = -(if y[i] < T::LARGEST { y[i] } else { T::LARGEST });
+        let shifted = x * T::of(LOG2_E) + T::ROUND;
+        let whole = shifted - T::ROUND;
+        let [high, low] = T::LOG_2;
+        let r = (x - whole * high) - whole * low;
+        let mut p = T::of(EXP[T::DEGREE]);
+        for c in EXP[..T::DEGREE].iter().rev() {
+            p = p * r + T::of(*c);
+        }
+        result[i] = p * T::power_of_two(shifted);
+    }
+    result
+}
+
+/// For x in units of the blur: the blurred unit step `2 Phi(x) - 1` (from -1 to 1) and `exp(-x^2 / 2)`.
+///
+/// Errors: 5e-7 and 2e-7 in single precision, 1e-9 and 3e-10 in double.
+#[inline(always)]
+pub(crate) fn step<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
+    let mut half = [T::of(0.0); N];
+    for i in 0..N {
+        half[i] = T::of(0.5) * x[i] * x[i];
+    }
+    let bell = exp_minus(&half);
+    let mut edge = [T::of(0.0); N];
+    for i in 0..N {
+        let z = x[i].magnitude() * T::of(FRAC_1_SQRT_2);
+        // One division for both quotients.
+        let (above, beyond) = (z + T::of(KNEE), T::of(1.0) + T::of(2.0) * z);
+        let inverse = T::of(1.0) / (above * beyond);
+        let q = (z - T::of(KNEE)) * beyond * inverse;
+        let mut p = T::of(ERFCX[9]);
+        for c in ERFCX[..9].iter().rev() {
+            p = p * q + T::of(*c);
+        }
+        edge[i] = (T::of(1.0) - bell[i] * p * above * inverse).signed_as(x[i]);
+    }
+    (edge, bell)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{LANES, WIDE};
+    use statrs::function::erf::erf;
+
+    #[test]
+    fn functions_agree_with_another_library_in_double_precision() {
+        for index in -4000..4000 {
+            let x = f64::from(index) * 0.011_3;
+            let (edge, bell) = step(&[x; LANES]);
+            assert!((edge[3] - erf(x * FRAC_1_SQRT_2)).abs() < 1e-9, "{x}");
+            assert!((bell[5] - (-0.5 * x * x).exp()).abs() < 3e-10, "{x}");
+        }
+        assert!(exp_minus(&[1e9_f64; LANES])[0] < 1e-300 && exp_minus(&[0.0_f64; LANES])[0] == 1.0);
+    }
+
+    #[test]
+    fn functions_agree_with_another_library_in_single_precision() {
+        for index in -4000..4000 {
+            let x = index as f32 * 0.011_3;
+            let (edge, bell) = step(&[x; WIDE]);
+            let x = f64::from(x);
+            assert!((f64::from(edge[3]) - erf(x * FRAC_1_SQRT_2)).abs() < 5e-7, "{x}");
+            assert!((f64::from(bell[5]) - (-0.5 * x * x).exp()).abs() < 2e-7, "{x}");
+        }
+        assert!(exp_minus(&[1e9_f32; WIDE])[0] < 1e-37 && exp_minus(&[0.0_f32; WIDE])[0] == 1.0);
+    }
+}
