@@ -1,5 +1,6 @@
 //! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
 
+mod bless;
 mod calibrate;
 mod camera;
 mod camera_files;
@@ -11,6 +12,7 @@ mod detect;
 mod diff;
 mod failure;
 mod inputs;
+mod gated;
 mod intersect;
 mod judge;
 mod list;
@@ -76,7 +78,7 @@ enum Command {
     /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
     Check(check::Check),
     /// Accept today's accuracy as the baseline: lists what gets worse, and asks
-    Bless(check::Bless),
+    Bless(bless::Bless),
     /// Measure points per second of methods, on one thread, for reports to read
     Speed(speed::SpeedCommand),
     /// Measure points in photographs

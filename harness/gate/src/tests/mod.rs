@@ -2,6 +2,7 @@
 
 mod files;
 mod findings;
+mod judged;
 
 use calibench_model::{PixelPoint, Rejection};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
