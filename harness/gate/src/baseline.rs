@@ -21,6 +21,11 @@ pub fn baseline_path(folder: &Path, scenario: &str) -> PathBuf {
     folder.join(format!("{}.csv", scenario.replace('/', "--")))
 }
 
+/// Where the figures of the adjustments of a scenario are: beside its baseline, as `<scenario>.figures.csv`.
+pub fn figures_path(folder: &Path, scenario: &str) -> PathBuf {
+    folder.join(format!("{}.figures.csv", scenario.replace('/', "--")))
+}
+
 /// The heads of the methods that a file keeps: those that were available.
 pub(super) fn head_method(label: &Arc<str>, method: &MethodTable, rows: usize) -> HeadMethod {
     HeadMethod {

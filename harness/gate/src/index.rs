@@ -72,9 +72,25 @@ impl Index {
         write_atomically(&path, |file| write!(file, "{FIRST}\n\n{text}")).map_err(failed)
     }
 
-    /// Whether the file of this name, whose checksum is `found`, is the one that was blessed; in words if not. `None` stands for no file.
-    pub fn mistake(&self, file: &str, found: Option<&str>) -> Option<String> {
-        match (self.files.get(file), found) {
+    /// Whether the file at `path` is listed, by its name.
+    pub fn lists(&self, path: &Path) -> bool {
+        self.files.contains_key(&name(path))
+    }
+
+    /// Notes the file at `path` as blessed.
+    pub fn bless(&mut self, path: &Path, checksum: String) {
+        self.files.insert(name(path), checksum);
+    }
+
+    /// Notes that the file at `path` is blessed no more.
+    pub fn forget(&mut self, path: &Path) {
+        self.files.remove(&name(path));
+    }
+
+    /// Whether the file at `path`, whose checksum is `found`, is the one that was blessed; in words if not. `None` stands for no file.
+    pub fn mistake(&self, path: &Path, found: Option<&str>) -> Option<String> {
+        let file = name(path);
+        match (self.files.get(&file), found) {
             (Some(_), None) => Some(format!("the baseline is missing: {file} is blessed and not there; restore it, or bless anew")),
             (Some(blessed), Some(found)) if blessed != found => {
                 Some(format!("{file} is not the file that was blessed: its checksum is {found}, blessed is {blessed}; bless anew"))
@@ -83,6 +99,10 @@ impl Index {
             _ => None,
         }
     }
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 #[cfg(test)]
@@ -103,10 +123,10 @@ mod tests {
     #[test]
     fn what_is_not_as_listed_is_said() {
         let index = Index { files: BTreeMap::from([("a.csv".to_owned(), "12".to_owned())]) };
-        assert_eq!(index.mistake("a.csv", Some("12")), None);
-        assert_eq!(index.mistake("b.csv", None), None);
-        assert!(index.mistake("a.csv", None).unwrap().contains("missing"));
-        assert!(index.mistake("a.csv", Some("13")).unwrap().contains("not the file that was blessed"));
-        assert!(index.mistake("b.csv", Some("13")).unwrap().contains("not in blessed.toml"));
+        assert_eq!(index.mistake(Path::new("a.csv"), Some("12")), None);
+        assert_eq!(index.mistake(Path::new("b.csv"), None), None);
+        assert!(index.mistake(Path::new("a.csv"), None).unwrap().contains("missing"));
+        assert!(index.mistake(Path::new("a.csv"), Some("13")).unwrap().contains("not the file that was blessed"));
+        assert!(index.mistake(Path::new("b.csv"), Some("13")).unwrap().contains("not in blessed.toml"));
     }
 }

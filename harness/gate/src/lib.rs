@@ -7,37 +7,48 @@
 mod adjusted;
 mod baseline;
 mod ceilings;
+mod cells;
 mod changed;
 mod compare;
 mod counts;
 mod entry;
 mod exact;
 mod few;
+mod figures;
 mod finding;
 mod index;
 mod judge;
 mod junit;
 mod missing;
 mod pairs;
+pub mod power;
 mod render;
 mod sheet;
+mod sums;
+mod sums_judged;
 mod table;
+mod verdicts;
 mod worse;
 
 #[cfg(test)]
 mod tests;
 
-pub use baseline::{baseline_path, read_baseline, write_baseline};
+pub use baseline::{baseline_path, figures_path, read_baseline, write_baseline};
 pub use ceilings::{Ceiling, CeilingError, CeilingMetric, Ceilings};
+pub use cells::{Cells, Kept};
 pub use compare::OTHER_VERSION;
 pub use entry::{Coordinates, DECIMALS, Entry, Found, Place};
 pub use few::FEW_GROWTH;
+pub use figures::{FIGURE_GROWTH, FigureSums};
 pub use finding::{Finding, Rules, Verdict};
 pub use index::{INDEX, Index, IndexError};
 pub use junit::junit;
 pub use render::{Tally, json, render};
-pub use sheet::{BaselineError, machine};
+pub use sheet::{BaselineError, Kind, machine};
+pub use sums::PointSums;
+pub use sums_judged::{CELL_GROWTH, FAILURES, SIGMA_DRIFT, TARGET_GROWTH};
 pub use table::{FigureKey, MethodTable, Numbers, Table, fingerprint};
+pub use verdicts::Verdicts;
 pub use worse::worse_than;
 
 use calibench_records::statistics::holm;
@@ -90,6 +101,26 @@ impl Check {
     pub fn unblessed(&mut self, current: &Table) {
         let empty = Table::new(current.scenario.as_str(), current.seed, current.coordinates, &[]);
         self.findings.extend(missing::completeness(&empty, current));
+    }
+
+    /// Compares the sums of a run with those that were blessed, cell by cell.
+    pub fn compare_cells<T: Kept>(&mut self, baseline: &Cells<T>, current: &Cells<T>) {
+        let [methods, count] = baseline.counts();
+        match T::KIND {
+            Kind::Figures => self.tally.figures += count,
+            Kind::Points | Kind::Sums | Kind::Verdicts => {
+                self.tally.scenarios += baseline.len();
+                self.tally.methods += methods;
+                self.tally.points += count;
+            }
+        }
+        self.findings.extend(baseline.compare(current));
+    }
+
+    /// Compares the verdicts of published cells.
+    pub fn verdicts(&mut self, baseline: &Verdicts, current: &Verdicts) {
+        self.tally.cells += baseline.0.len();
+        self.findings.extend(baseline.compare(current));
     }
 
     /// Notes what the caller found.

@@ -59,6 +59,8 @@ pub enum Kind {
     Sums,
     /// One row a figure of adjustments, method and cell: sums over trials.
     Figures,
+    /// One row a published cell: its verdict.
+    Verdicts,
 }
 
 /// A method of a file; rows name it by its place in the list, from 1.

@@ -143,6 +143,12 @@ impl Table {
         self.methods.values().map(|method| method.points.len()).sum()
     }
 
+    /// The same run with the method `label` alone, its results replaced by `other` if there are any.
+    pub fn only(&self, label: &str, other: Option<MethodTable>) -> Self {
+        let kept = self.methods.get_key_value(label).map(|(label, method)| (label.clone(), other.unwrap_or_else(|| method.clone())));
+        Self { scenario: self.scenario.clone(), text: self.text.clone(), labels: Vec::new(), methods: kept.into_iter().collect(), ..*self }
+    }
+
     /// The method of this label, new if there was none.
     pub fn method_mut(&mut self, label: &Arc<str>, version: &Arc<str>) -> &mut MethodTable {
         self.methods.entry(label.clone()).or_insert_with(|| MethodTable::new(version.clone()))

@@ -48,6 +48,11 @@ fn figure(loaded: &Loaded, method: usize, metric: Metric, target: Option<&str>, 
     }
 }
 
+/// Our figure for a printed cell, px.
+pub(super) fn ours(main: &Loaded, method: usize, cell: &Cell) -> Option<f64> {
+    figure(main, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus)
+}
+
 /// The section of a table: printed beside ours, what was found out, and every method on the same points.
 pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> String {
     let mut text = format!("## {}\n\n{}. Unit: {}.\n\n", table.title, table.source, table.unit);
@@ -105,7 +110,7 @@ fn comparison(table: &Table, main: &Loaded, method: usize) -> String {
                 cells.extend([String::new(), String::new()]);
                 continue;
             };
-            let ours = figure(main, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus);
+            let ours = ours(main, method, cell);
             let verdict = cell.verdict(ours);
             tally[place(&verdict)] += 1;
             cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);

@@ -36,7 +36,7 @@ fn comparison(table: &Table, loaded: &LoadedSweep, method: usize) -> String {
                 continue;
             };
             let score = score(loaded, method, cell);
-            let ours = score.and_then(|score| figure(score, cell.metric)).map(|ours| ours + cell.plus);
+            let ours = ours(loaded, method, cell);
             let interval = score.filter(|_| cell.metric == Metric::RmseXy).and_then(|score| score.whole.rmse_interval());
             let verdict = cell.verdict(ours);
             tally[place(&verdict)] += 1;
@@ -72,6 +72,11 @@ pub(super) fn score<'a>(loaded: &'a LoadedSweep, method: usize, cell: &Cell) -> 
         pairs.all(|(axis, value)| cell.at.iter().any(|(key, at)| axis.is_called(key) && value.number == Some(*at)))
     };
     loaded.score((0..loaded.sweep.cells()).find(meant)?, method)
+}
+
+/// Our figure for a printed cell, px.
+pub(super) fn ours(loaded: &LoadedSweep, method: usize, cell: &Cell) -> Option<f64> {
+    score(loaded, method, cell).and_then(|score| figure(score, cell.metric)).map(|ours| ours + cell.plus)
 }
 
 /// Statistics over all points of a cell; figures of one target are not kept by trial.

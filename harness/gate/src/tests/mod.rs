@@ -1,5 +1,6 @@
 //! Tests of the whole gate.
 
+mod cells;
 mod files;
 mod findings;
 mod judged;

@@ -6,7 +6,7 @@ mod published;
 mod sweep;
 mod tables;
 
-pub use published::section as published;
+pub use published::{section as published, word as published_word};
 pub use sweep::section as sweep;
 
 use calibench_scenario::Subject;

@@ -40,7 +40,7 @@ fn comparison(table: &Table, found: &Summaries, pitch_um: f64) -> String {
         tally[verdict] += 1;
         let mut row = vec![cell.row.clone(), cell.column.clone(), cell.printed.clone()];
         row.extend(figure.map_or_else(|| vec!["none".to_owned(); 5], |ours| cells(cell, &ours)));
-        row.extend([["reproduces", "differs", "not comparable"][verdict].to_owned(), word]);
+        row.extend([WORDS[verdict].to_owned(), word]);
         rows.row(row);
     }
     let [reproduces, differs, not_comparable] = tally;
@@ -54,6 +54,14 @@ fn comparison(table: &Table, found: &Summaries, pitch_um: f64) -> String {
         table.cells.len()
     )
 }
+
+/// The verdict of a printed cell in a word.
+pub fn word(table: &Table, cell: &Cell, found: &Summaries, pitch_um: f64) -> &'static str {
+    WORDS[verdict(cell, ours(found, cell, &table.method, pitch_um).as_ref()).0]
+}
+
+/// The words of verdicts, by their index.
+const WORDS: [&str; 3] = ["reproduces", "differs", "not comparable"];
 
 /// Index of the verdict, and why.
 fn verdict(cell: &Cell, ours: Option<&Ours>) -> (usize, String) {
