@@ -31,9 +31,14 @@ test:
 summary:
     @awk '/^test result:/ { passed += $4; failed += $6; skipped += $8 } END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' target/test.log
 
-# Compare accuracy with reference/baselines; exit 1 and a table if it regressed
+# Compare all numbers with reference/baselines; exit 1 and a table if any is worse, changed without a bless, or not blessed
 check: build
-    {{calibench}} check
+    {{calibench}} check --strict --locked
+
+# What the gate sees and how often it is wrong, on the shipped baselines: docs/gate-power.md
+power: build
+    {{calibench}} gate-power > docs/gate-power.md.new
+    mv docs/gate-power.md.new docs/gate-power.md
 
 # Accept today's accuracy as the baseline, after looking
 bless: build

@@ -32,7 +32,18 @@ pub fn copy_with(families: &[&str]) -> tempfile::TempDir {
     if !families.contains(&NETWORKS) {
         remove_networks(folder.path());
     }
+    list_baselines(folder.path());
     folder
+}
+
+/// Takes out of the list of blessed files those that are not there.
+fn list_baselines(project: &Path) {
+    let folder = project.join("reference/baselines");
+    let list = folder.join("blessed.toml");
+    let text = std::fs::read_to_string(&list).expect("the list of blessed files");
+    let file = |line: &str| line.strip_prefix('"').and_then(|rest| rest.split('"').next()).map(|name| folder.join(name));
+    let kept: String = text.lines().filter(|line| file(line).is_none_or(|path| path.is_file())).map(|line| format!("{line}\n")).collect();
+    std::fs::write(list, kept).expect("the list of blessed files");
 }
 
 /// The scenarios of `galo-2011` that adjust every trial: hundreds of trials each.

@@ -1,5 +1,6 @@
 //! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
 
+mod bless;
 mod calibrate;
 mod camera;
 mod camera_files;
@@ -11,6 +12,8 @@ mod detect;
 mod diff;
 mod failure;
 mod inputs;
+mod gated;
+mod init;
 mod intersect;
 mod judge;
 mod list;
@@ -19,9 +22,11 @@ mod orient;
 mod output;
 mod photos;
 mod plot;
+mod power;
 mod print;
 mod progress;
 mod reading;
+mod recorded;
 mod render;
 mod report;
 mod resect;
@@ -76,8 +81,12 @@ enum Command {
     Plot(plot::Plot),
     /// Compare today's accuracy with the blessed one; exit code 1 and a table if it regressed
     Check(check::Check),
+    /// Start a project of one's own with a gate: a scenario, its baseline, the schema
+    Init(init::Init),
     /// Accept today's accuracy as the baseline: lists what gets worse, and asks
-    Bless(check::Bless),
+    Bless(bless::Bless),
+    /// Measure what the gate sees and how often it is wrong, on the baselines of this project; prints a page of Markdown
+    GatePower(power::Power),
     /// Measure points per second of methods, on one thread, for reports to read
     Speed(speed::SpeedCommand),
     /// Measure points in photographs
@@ -134,7 +143,9 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Report(report) => report.run(&context),
         Command::Plot(plot) => plot.run(&context),
         Command::Check(check) => check.run(&context),
+        Command::Init(init) => init.run(&context),
         Command::Bless(bless) => bless.run(&context),
+        Command::GatePower(power) => power.run(&context),
         Command::Speed(speed) => speed.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),

@@ -1,9 +1,10 @@
-//! Adjustments as the gate compares them: as if they were points, one pair of figures each, trial by trial.
+//! Adjustments as the gate compares them: as if they were points, one pair of figures each, trial by trial; and figure by figure.
 
 use calibench_model::Rejection;
 use calibench_records::results::{Calibrated, Group};
 
-use super::table::{Entry, rounded};
+use super::entry::{Entry, Found, rounded};
+use super::table::{FigureKey, Numbers};
 
 /// The view under which they stand.
 pub(super) const VIEW: &str = "adjustment";
@@ -14,10 +15,22 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(&'static str, Entry)> {
     let Ok(figures) = &adjusted.outcome else { return vec![("camera", failed), ("check points", failed)] };
     let find = |group: Group, name: &str| figures.iter().find(|figure| figure.group == group && &*figure.name == name);
     let mm = |name: &str| find(Group::Check, name).map(|figure| if figure.unit == "m" { 1e3 * figure.value } else { figure.value });
-    let camera = find(Group::Frame, "rms").map_or(failed, |figure| Entry::Measured([rounded(figure.value), 0.0]));
+    let measured = |x: f64, y: f64| Entry::Measured(Found::bare([rounded(x), rounded(y)]));
+    let camera = find(Group::Frame, "rms").map_or(failed, |figure| measured(figure.value, 0.0));
     let check = match (mm("rmse_xy"), mm("rmse_z")) {
-        (Some(xy), Some(z)) => Some(Entry::Measured([rounded(xy), rounded(z)])),
+        (Some(xy), Some(z)) => Some(measured(xy, z)),
         _ => adjusted.check_failed.as_ref().map(|_| failed),
     };
     [("camera", Some(camera)), ("check points", check)].into_iter().filter_map(|(name, entry)| Some((name, entry?))).collect()
+}
+
+/// Every figure but the residuals of single points, each in its unit.
+pub(super) fn figures(adjusted: &Calibrated) -> Vec<(FigureKey, Numbers)> {
+    let figures = adjusted.outcome.iter().flatten().filter(|figure| figure.group != Group::Point);
+    figures
+        .map(|figure| {
+            let numbers = Numbers { value: figure.value, sigma: figure.sigma, error: figure.error };
+            ((adjusted.set, figure.group, figure.name.clone()), numbers)
+        })
+        .collect()
 }

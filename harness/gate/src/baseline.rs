@@ -1,43 +1,19 @@
-//! Baseline files: our own blessed numbers, one CSV a scenario, one row a point.
+//! Baselines of scenarios: one file a scenario, one row a point.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use calibench_exchange::atomic::write_atomically;
 use calibench_model::Rejection;
-use csv::{Position, StringRecord};
-use thiserror::Error;
 
-use super::table::{Coordinates, DECIMALS, Entry, Place, Table};
+use super::entry::{Coordinates, DECIMALS, Entry, Found, Place, SIGMA_DECIMALS};
+use super::sheet::{self, BaselineError, Head, HeadMethod, Kind, Row};
+use super::table::{MethodTable, Table};
 
 /// The columns before the two coordinates.
-const COLUMNS: [&str; 8] = ["method", "version", "seed", "trial", "view", "target", "status", "reason"];
+const COLUMNS: [&str; 6] = ["method", "trial", "view", "target", "status", "reason"];
 
-/// A baseline file that is none.
-#[derive(Debug, Error)]
-pub enum BaselineError {
-    /// It cannot be read or written.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// Which.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A place in it that means nothing.
-    #[error("{}: line {line}, column `{column}`: {problem}", path.display())]
-    Row {
-        /// Which file.
-        path: PathBuf,
-        /// Counted from 1; the header is line 1.
-        line: u64,
-        /// The column's name, or `all`.
-        column: String,
-        /// What was found and what was expected.
-        problem: String,
-    },
+fn columns(coordinates: Coordinates) -> Vec<&'static str> {
+    COLUMNS.into_iter().chain(coordinates.names()).chain(["sigma"]).collect()
 }
 
 /// Where the baseline of a scenario is: `folder/<scenario with '/' as '--'>.csv`.
@@ -45,124 +21,88 @@ pub fn baseline_path(folder: &Path, scenario: &str) -> PathBuf {
     folder.join(format!("{}.csv", scenario.replace('/', "--")))
 }
 
-/// Writes a baseline: whole or not at all, the same bytes for the same table. Unavailable methods have no rows.
+/// Where the figures of the adjustments of a scenario are: beside its baseline, as `<scenario>.figures.csv`.
+pub fn figures_path(folder: &Path, scenario: &str) -> PathBuf {
+    folder.join(format!("{}.figures.csv", scenario.replace('/', "--")))
+}
+
+/// The heads of the methods that a file keeps: those that were available.
+pub(super) fn head_method(label: &Arc<str>, method: &MethodTable, rows: usize) -> HeadMethod {
+    HeadMethod {
+        label: label.to_string(),
+        version: method.version.to_string(),
+        settings: method.settings.clone(),
+        library: method.library.clone(),
+        rows: rows as u64,
+    }
+}
+
+/// Writes a baseline, whole or not at all, the same bytes for the same table, and returns its checksum. Unavailable methods have no rows.
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_baseline(path: &Path, table: &Table) -> Result<(), BaselineError> {
-    let write = |output: &mut dyn io::Write| {
-        let mut csv = csv::Writer::from_writer(output);
-        csv.write_record(COLUMNS.iter().chain(&table.coordinates.names()))?;
-        for (label, method) in table.methods() {
-            for (place, entry) in &method.points {
-                write_row(&mut csv, [label, &method.version], table.seed, place, entry)?;
-            }
-        }
-        csv.flush()
+pub fn write_baseline(path: &Path, table: &Table) -> Result<String, BaselineError> {
+    let (name, coordinates) = (table.coordinates.name(), table.coordinates);
+    let mut head = Head::new(Kind::Points, &table.scenario, &table.text, table.seed, name, vec![String::new()]);
+    let kept: Vec<(&Arc<str>, &MethodTable)> = table.methods().filter(|(_, method)| method.unavailable.is_none()).collect();
+    head.method = kept.iter().map(|(label, method)| head_method(label, method, method.points.len())).collect();
+    let of_method = |(index, (_, method)): (usize, &(&Arc<str>, &'_ MethodTable))| {
+        method.points.iter().map(|(place, entry)| row(index + 1, place, entry)).collect::<Vec<_>>()
     };
-    write_atomically(path, write).map_err(|source| BaselineError::File { path: path.to_owned(), source })
+    sheet::write(path, &head, &columns(coordinates), kept.iter().enumerate().flat_map(of_method))
 }
 
-fn write_row<W: io::Write>(
-    csv: &mut csv::Writer<W>,
-    [label, version]: [&str; 2],
-    seed: u64,
-    place: &Place,
-    entry: &Entry,
-) -> io::Result<()> {
+fn row(method: usize, place: &Place, entry: &Entry) -> Vec<String> {
     let reason = if let Entry::Rejected(why) = entry { why.name() } else { "" };
     let [a, b] = entry.coordinates().map_or_else(Default::default, |at| at.map(|value| format!("{value:.DECIMALS$}")));
-    let (seed, trial) = (seed.to_string(), place.trial.to_string());
-    Ok(csv.write_record([label, version, &seed, &trial, &place.view, &place.target, entry.status(), reason, &a, &b])?)
+    let sigma = entry.found().and_then(|found| found.sigma).map_or_else(String::new, |sigma| format!("{sigma:.SIGMA_DECIMALS$}"));
+    let [view, target, status, reason] = [&*place.view, &*place.target, entry.status(), reason].map(str::to_owned);
+    vec![method.to_string(), place.trial.to_string(), view, target, status, reason, a, b, sigma]
 }
 
 /// Reads the baseline of `scenario`; `None` when there is no such file.
 ///
 /// # Errors
-/// A file that [`write_baseline`] did not write, with line and column.
-pub fn read_baseline(path: &Path, scenario: &str) -> Result<Option<Table>, BaselineError> {
-    match fs::read(path) {
-        Ok(bytes) => parse(path, scenario, &bytes).map(Some),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(BaselineError::File { path: path.to_owned(), source }),
+/// A file that is not to the letter what [`write_baseline`] wrote: cut, edited, of another scenario; with line and column where there is one.
+pub fn read_baseline(path: &Path, scenario: &str) -> Result<Option<(Table, String)>, BaselineError> {
+    let of = |coordinates: Coordinates| sheet::read(path, Kind::Points, &columns(coordinates));
+    let read = of(Coordinates::Errors).or_else(|first| of(Coordinates::Positions).map_err(|_| first))?;
+    let Some(sheet) = read else { return Ok(None) };
+    let damaged = |problem: String| BaselineError::Damaged { path: path.to_owned(), problem };
+    let head = &sheet.head;
+    if head.scenario != scenario {
+        return Err(damaged(format!("is the baseline of `{}`, expected that of `{scenario}`", head.scenario)));
     }
-}
-
-fn parse(path: &Path, scenario: &str, bytes: &[u8]) -> Result<Table, BaselineError> {
-    let mut csv = csv::Reader::from_reader(bytes);
-    let broken = |error: csv::Error| {
-        let line = error.position().map_or(1, Position::line);
-        BaselineError::Row { path: path.to_owned(), line, column: "all".into(), problem: error.to_string() }
-    };
-    let header = csv.headers().map_err(broken)?.clone();
-    let read = |coordinates: Coordinates| header.iter().eq(COLUMNS.into_iter().chain(coordinates.names()));
-    let Some(coordinates) = [Coordinates::Errors, Coordinates::Positions].into_iter().find(|c| read(*c)) else {
-        let problem = format!("expected the columns {} and dx,dy or x,y", COLUMNS.join(","));
-        return Err(BaselineError::Row { path: path.to_owned(), line: 1, column: "all".into(), problem });
-    };
-    let mut table = Table::new(scenario, 0, coordinates, &[]);
-    let mut first = true;
-    for record in csv.records() {
-        let record = record.map_err(broken)?;
-        let row = Row { path, record: &record, header: &header };
-        let seed = row.parse(2)?;
-        if !first && seed != table.seed {
-            return Err(row.wrong(2, &format!("expected the seed of the rows before, {}", table.seed)));
-        }
-        (table.seed, first) = (seed, false);
-        add(&mut table, &row)?;
+    let coordinates = if head.coordinates == Coordinates::Errors.name() { Coordinates::Errors } else { Coordinates::Positions };
+    let seed = head.seed.parse().map_err(|_| damaged(format!("its head says seed {}, expected a whole number", head.seed)))?;
+    let mut table = Table::new(scenario, seed, coordinates, &[]);
+    table.text.clone_from(&head.text);
+    let labels: Vec<(Arc<str>, Arc<str>)> = head.method.iter().map(|m| (m.label.as_str().into(), m.version.as_str().into())).collect();
+    for (method, (label, version)) in head.method.iter().zip(&labels) {
+        table.method_mut(label, version);
+        table.describe(label, method.settings.clone(), method.library.clone());
     }
-    Ok(table)
-}
-
-fn add(table: &mut Table, row: &Row<'_>) -> Result<(), BaselineError> {
-    let (label, version): (Arc<str>, Arc<str>) = (row.text(0).into(), row.text(1).into());
-    let entry = row.entry()?;
-    let place = Place { trial: row.parse(3)?, view: row.text(4).into(), target: row.text(5).into() };
-    let method = table.method_mut(&label, &version);
-    if method.version != version {
-        return Err(row.wrong(1, &format!("expected the version of the rows before, {}", method.version)));
-    }
-    if method.points.insert(place, entry).is_some() {
-        return Err(row.wrong(5, "the point is there twice"));
-    }
-    Ok(())
-}
-
-struct Row<'a> {
-    path: &'a Path,
-    record: &'a StringRecord,
-    header: &'a StringRecord,
-}
-
-impl Row<'_> {
-    fn text(&self, column: usize) -> &str {
-        self.record.get(column).unwrap_or_default()
-    }
-
-    fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, BaselineError> {
-        self.text(column).parse().map_err(|_| self.wrong(column, "expected a number"))
-    }
-
-    fn entry(&self) -> Result<Entry, BaselineError> {
-        let at = || Ok([self.parse(8)?, self.parse(9)?]);
-        match self.text(6) {
-            "measured" => Ok(Entry::Measured(at()?)),
-            "lost" => Ok(Entry::Lost(at()?)),
-            "rejected" => {
-                let known = Rejection::ALL.into_iter().find(|why| why.name() == self.text(7));
-                known.map(Entry::Rejected).ok_or_else(|| self.wrong(7, "expected a reason of rejection"))
-            }
-            _ => Err(self.wrong(6, "expected measured, lost or rejected")),
+    for row in sheet.rows() {
+        let (label, version) = &labels[row.place(0, labels.len())?];
+        let place = Place { trial: row.parse(1)?, view: row.text(2).into(), target: row.text(3).into() };
+        let entry = entry(&row)?;
+        if table.method_mut(label, version).points.insert(place, entry).is_some() {
+            return Err(row.wrong(3, "the point is there twice"));
         }
     }
+    sheet.verify()?;
+    Ok(Some((table, sheet.checksum)))
+}
 
-    fn wrong(&self, column: usize, expected: &str) -> BaselineError {
-        BaselineError::Row {
-            path: self.path.to_owned(),
-            line: self.record.position().map_or(0, Position::line),
-            column: self.header.get(column).unwrap_or_default().to_owned(),
-            problem: format!("found `{}`, {expected}", self.text(column)),
+fn entry(row: &Row<'_>) -> Result<Entry, BaselineError> {
+    let found = || Ok(Found { at: [row.parse(6)?, row.parse(7)?], sigma: row.optional(8)? });
+    match row.text(4) {
+        "measured" => Ok(Entry::Measured(found()?)),
+        "lost" => Ok(Entry::Lost(found()?)),
+        "rejected" => {
+            let known = Rejection::ALL.into_iter().find(|why| why.name() == row.text(5));
+            known.map(Entry::Rejected).ok_or_else(|| row.wrong(5, "expected a reason of rejection"))
         }
+        _ => Err(row.wrong(4, "expected measured, lost or rejected")),
     }
 }

@@ -9,8 +9,9 @@ use serde::Deserialize;
 use thiserror::Error;
 use toml::Spanned;
 
+use super::entry::{Coordinates, Entry};
 use super::finding::{Finding, Verdict};
-use super::table::{Coordinates, Entry, MethodTable, Table};
+use super::table::{MethodTable, Table};
 
 /// What a ceiling bounds.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
@@ -52,6 +53,9 @@ pub struct Ceilings {
 /// A file of ceilings that is none.
 #[derive(Debug, Error)]
 pub enum CeilingError {
+    /// It is not there: what was deleted must not pass for what was never written.
+    #[error("{}: there is no such file; expected the project's ceilings, or an empty file if it has none", .0.display())]
+    Missing(PathBuf),
     /// It cannot be read.
     #[error("{}: {source}", path.display())]
     File {
@@ -106,14 +110,14 @@ impl CeilingMetric {
 }
 
 impl Ceilings {
-    /// Reads the file; there is no ceiling when there is no file.
+    /// Reads the file. A project without ceilings has one that says so: an empty one.
     ///
     /// # Errors
-    /// A file that cannot be read; every mistake in it with line and column, unknown keys among them.
+    /// A file that is not there or cannot be read; every mistake in it with line and column, unknown keys among them.
     pub fn read(path: &Path) -> Result<Self, CeilingError> {
         match fs::read_to_string(path) {
             Ok(text) => Ok(Self::parse(&path.display().to_string(), &text)?),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::default()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Err(CeilingError::Missing(path.to_owned())),
             Err(source) => Err(CeilingError::File { path: path.to_owned(), source }),
         }
     }

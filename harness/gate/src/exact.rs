@@ -1,66 +1,62 @@
-//! Deterministic scenarios: every coordinate, point by point.
+//! Runs in which nothing is random, and those without truth: each point is judged by itself.
 
 use super::TOLERANCE;
+use super::changed::{Changes, Pair, agree};
+use super::entry::Coordinates;
 use super::finding::{Finding, Verdict};
-use super::table::{Coordinates, Entry, MethodTable, Place, Table};
+use super::table::{MethodTable, Table};
 
-/// Every point that changed its status, its reason or, by more than [`TOLERANCE`], a coordinate. All of them fail.
-pub(super) fn exact(baseline: &Table, current: &Table) -> Vec<Finding> {
+/// A finding for every point that changed. What is worse fails, and what no truth can judge; what is better or as far off elsewhere changed.
+pub(super) fn exact(table: &Table, label: &str, [base, now]: [&MethodTable; 2], changes: &Changes<'_>) -> Vec<Finding> {
+    let new = |verdict, metric, message: String| Finding::new(verdict, &table.scenario, label, metric, message);
     let mut findings = Vec::new();
-    for (label, base) in baseline.methods() {
-        let Some(now) = current.method(label) else { continue };
-        let pairs = base.points.iter().filter_map(|(place, old)| Some((place, old, now.points.get(place)?)));
-        let changed = pairs.flat_map(|(place, old, new)| point(baseline, label, place, old, new));
-        let changed: Vec<Finding> = changed.collect();
-        let statuses = changed.iter().any(|finding| finding.metric == "status");
-        findings.extend(changed);
-        if statuses {
-            findings.extend(counts(baseline, label, base, now));
-        }
+    for pair in &changes.statuses {
+        let verdict = if worse_status(pair) { Verdict::Fails } else { Verdict::Changed };
+        findings.push(new(verdict, "status", status(pair)).at(pair.0.to_string()));
+    }
+    for pair in &changes.moved {
+        findings.extend(moved(table.coordinates, pair, &new));
+    }
+    if !changes.statuses.is_empty() {
+        findings.extend(counts(&new, base, now));
     }
     findings
 }
 
-fn point(table: &Table, label: &str, place: &Place, old: &Entry, new: &Entry) -> Vec<Finding> {
-    let fails = |metric, message| Finding::new(Verdict::Fails, &table.scenario, label, metric, message).at(place.to_string());
-    let (Some(a), Some(b)) = (old.coordinates(), new.coordinates()) else {
-        let same = old == new;
-        return if same { Vec::new() } else { vec![fails("status", format!("was {}, is {}", old.describe(), new.describe()))] };
-    };
-    let mut findings = Vec::new();
-    if old.status() != new.status() {
-        findings.push(fails("status", format!("was {}, is {}", old.describe(), new.describe())));
-    }
-    let verdict = verdict(table.coordinates, a, b);
-    for (axis, metric) in table.coordinates.names().into_iter().enumerate() {
-        if !agree(a[axis], b[axis]) {
-            findings.push(fails(metric, verdict.to_owned()).figures(a[axis], b[axis]));
-        }
-    }
-    findings
+/// Whether a point that was measured is measured no more.
+pub(super) fn worse_status((_, old, new): &Pair<'_>) -> bool {
+    (old.is_kept() && !new.is_kept()) || (new.is_nan() && !old.is_nan())
 }
 
-fn agree(a: f64, b: f64) -> bool {
-    (a - b).abs() <= TOLERANCE || (a.is_nan() && b.is_nan())
+/// The change of status in words.
+pub(super) fn status((_, old, new): &Pair<'_>) -> String {
+    format!("was {}, is {}", old.describe(), new.describe())
+}
+
+fn moved(kind: Coordinates, (place, old, new): &Pair<'_>, finding: &dyn Fn(Verdict, &'static str, String) -> Finding) -> Vec<Finding> {
+    let (Some(a), Some(b)) = (old.coordinates(), new.coordinates()) else { return Vec::new() };
+    let (verdict, message) = judged(kind, a, b);
+    let axes = kind.names().into_iter().enumerate().filter(|(axis, _)| !agree(a[*axis], b[*axis]));
+    axes.map(|(axis, metric)| finding(verdict, metric, message.to_owned()).at(place.to_string()).figures(a[axis], b[axis])).collect()
 }
 
 /// Which way a point went, by the magnitude of its error.
-fn verdict(coordinates: Coordinates, old: [f64; 2], new: [f64; 2]) -> &'static str {
+fn judged(coordinates: Coordinates, old: [f64; 2], new: [f64; 2]) -> (Verdict, &'static str) {
     let [old, new] = [old, new].map(|[x, y]| x.hypot(y));
     match coordinates {
-        Coordinates::Positions => "moved; no truth says whether for the better",
-        Coordinates::Errors if new <= old - TOLERANCE => "better, not blessed",
-        Coordinates::Errors if (new - old).abs() < TOLERANCE => "as far off, elsewhere; not blessed",
-        Coordinates::Errors => "worse",
+        Coordinates::Positions => (Verdict::Fails, "moved; no truth says whether for the better"),
+        Coordinates::Errors if new <= old - TOLERANCE => (Verdict::Changed, "better, not blessed"),
+        Coordinates::Errors if (new - old).abs() < TOLERANCE => (Verdict::Changed, "as far off, elsewhere; not blessed"),
+        Coordinates::Errors => (Verdict::Fails, "worse"),
     }
 }
 
-fn counts(table: &Table, label: &str, base: &MethodTable, now: &MethodTable) -> Vec<Finding> {
+fn counts(new: &dyn Fn(Verdict, &'static str, String) -> Finding, base: &MethodTable, now: &MethodTable) -> Vec<Finding> {
     let figures = base.counts().into_iter().zip(now.counts()).zip(["measured", "lost", "rejected"]);
     let changed = figures.filter(|((old, new), _)| old != new);
-    let finding = |((old, new), metric)| {
-        let message = format!("{old} of {} points, now {new} of {}", base.points.len(), now.points.len());
-        Finding::new(Verdict::Informs, &table.scenario, label, metric, message).figures(old as f64, new as f64)
+    let finding = |((old, count), metric)| {
+        let message = format!("{old} of {} points, now {count} of {}", base.points.len(), now.points.len());
+        new(Verdict::Informs, metric, message).figures(old as f64, count as f64)
     };
     changed.map(finding).collect()
 }

@@ -2,21 +2,37 @@
 
 use std::cmp::Ordering;
 
-/// Does a finding fail the check?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+use serde::Serialize;
+
+/// What a finding does to a check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Yes.
+    /// It fails the check.
     Fails,
-    /// No: to be known, perhaps to be blessed.
+    /// Other numbers than those that were blessed, and not worse: it fails a strict check.
+    Changed,
+    /// Not blessed at all: it fails a locked check.
+    Unblessed,
+    /// To be known.
     Informs,
 }
 
+/// Which findings fail a check beside those that always do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rules {
+    /// Whether what changed fails, if it is not worse.
+    pub strict: bool,
+    /// Whether what is not blessed fails.
+    pub locked: bool,
+}
+
 /// One thing that differs from what was blessed, or breaks a ceiling.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// Does it fail the check?
+    /// What it does to the check.
     pub verdict: Verdict,
-    /// The scenario.
+    /// The scenario, with the cell of a sweep behind `@`.
     pub scenario: String,
     /// The method's label.
     pub method: String,
@@ -28,29 +44,44 @@ pub struct Finding {
     pub baseline: Option<f64>,
     /// The figure now, in the metric's unit.
     pub now: Option<f64>,
-    /// The p-value, adjusted for all tests of the check, where a test was made.
+    /// The p-value, adjusted for all tests of its family, where a test was made.
     pub p: Option<f64>,
     /// In words.
     pub message: String,
 }
 
 impl Finding {
-    pub(super) fn new(verdict: Verdict, scenario: &str, method: &str, metric: &'static str, message: impl Into<String>) -> Self {
+    /// A finding without figures.
+    pub fn new(verdict: Verdict, scenario: &str, method: &str, metric: &'static str, message: impl Into<String>) -> Self {
         let (scenario, method, message) = (scenario.to_owned(), method.to_owned(), message.into());
         Self { verdict, scenario, method, target: None, metric, baseline: None, now: None, p: None, message }
     }
 
-    pub(super) fn at(self, target: impl Into<String>) -> Self {
+    /// The same about `target`.
+    #[must_use]
+    pub fn at(self, target: impl Into<String>) -> Self {
         Self { target: Some(target.into()), ..self }
     }
 
-    pub(super) fn figures(self, baseline: f64, now: f64) -> Self {
+    /// The same with both figures.
+    #[must_use]
+    pub fn figures(self, baseline: f64, now: f64) -> Self {
         Self { baseline: Some(baseline), now: Some(now), ..self }
     }
 
-    /// Does it fail the check?
+    /// Whether it fails any check.
     pub fn fails(&self) -> bool {
         self.verdict == Verdict::Fails
+    }
+
+    /// Whether it fails a check by `rules`.
+    pub fn fails_by(&self, rules: Rules) -> bool {
+        match self.verdict {
+            Verdict::Fails => true,
+            Verdict::Changed => rules.strict,
+            Verdict::Unblessed => rules.locked,
+            Verdict::Informs => false,
+        }
     }
 
     /// The figure now less the baseline's.

@@ -1,41 +1,70 @@
-//! The accuracy gate: is a run still as good as the numbers that were blessed?
+//! The accuracy gate: are the numbers of a run still those that were blessed?
 //!
-//! A deterministic scenario is compared coordinate by coordinate. A Monte Carlo scenario is compared by paired differences of the
-//! same trials, under one error budget for all tests of all scenarios of a check. Ceilings, written by hand, stand beside both.
+//! With the same seed the numbers are the same, so they are compared, point by point. Only what changed is judged: where nothing is random,
+//! or no truth is known, point by point; elsewhere by tests on the paired differences of the same trials, under one error budget for a check. Sweeps
+//! and adjustments are kept as digests and sums and judged by these. Ceilings, written by hand, stand beside all of it.
 
 mod adjusted;
 mod baseline;
 mod ceilings;
+mod cells;
+mod changed;
+mod compare;
+mod counts;
+mod entry;
 mod exact;
+mod few;
+mod figures;
 mod finding;
+mod index;
+mod judge;
+mod junit;
 mod missing;
-mod paired;
+mod pairs;
+pub mod power;
 mod render;
+mod sheet;
+mod sums;
+mod sums_judged;
 mod table;
+mod verdicts;
 mod worse;
 
 #[cfg(test)]
 mod tests;
 
-pub use baseline::{BaselineError, baseline_path, read_baseline, write_baseline};
+pub use baseline::{baseline_path, figures_path, read_baseline, write_baseline};
 pub use ceilings::{Ceiling, CeilingError, CeilingMetric, Ceilings};
-pub use finding::{Finding, Verdict};
-pub use render::render;
-pub use table::{Coordinates, DECIMALS, Entry, MethodTable, Place, Table};
+pub use cells::{Cells, Kept};
+pub use compare::OTHER_VERSION;
+pub use entry::{Coordinates, DECIMALS, Entry, Found, Place};
+pub use few::FEW_GROWTH;
+pub use figures::{FIGURE_GROWTH, FigureSums};
+pub use finding::{Finding, Rules, Verdict};
+pub use index::{INDEX, Index, IndexError};
+pub use junit::junit;
+pub use render::{Tally, json, render};
+pub use sheet::{BaselineError, Kind, machine};
+pub use sums::PointSums;
+pub use sums_judged::{CELL_GROWTH, FAILURES, SIGMA_DRIFT, TARGET_GROWTH};
+pub use table::{FigureKey, MethodTable, Numbers, Table, fingerprint};
+pub use verdicts::Verdicts;
 pub use worse::worse_than;
 
 use calibench_records::statistics::holm;
+use judge::{Family, Test};
 
 /// The family-wise error rate of a check: the chance that it fails although nothing became worse, over all its tests together.
 ///
 /// At most one of a hundred runs may be a false alarm. A rate of 0.01 would hold that in expectation only, and break it every
 /// fourth time; at 0.001 the expectation is 0.1, and two or more false alarms in a hundred have a chance below 0.01.
+/// Counts, means, spread and reported standard deviations have a quarter of it each, whatever the number of their tests.
 pub const ALPHA: f64 = 0.001;
 
-/// What is no change at all, px: last bits that differ between machines. Also the tolerance of deterministic scenarios.
+/// What is no change at all, px: last bits that differ between machines.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// Fewer pairs than this are not put to a t-test: a handful of like differences would look certain.
+/// Fewer trials than this are not put to a t-test, whose differences of a handful would look certain; their figures are compared directly.
 pub const LEAST_PAIRS: usize = 10;
 
 /// Errors count in means and mean squares as no more than this in each coordinate, px: what is further off is simply elsewhere.
@@ -45,7 +74,8 @@ pub const BOUND: f64 = 3.0;
 #[derive(Default)]
 pub struct Check {
     findings: Vec<Finding>,
-    tests: Vec<paired::Test>,
+    tests: Vec<Test>,
+    tally: Tally,
 }
 
 impl Check {
@@ -57,24 +87,14 @@ impl Check {
     /// Compares a run with its baseline. `deterministic` is true of a scenario in which nothing is random;
     /// photographs, whose truth is unknown, are compared exactly in any case.
     pub fn compare(&mut self, baseline: &Table, current: &Table, deterministic: bool) {
-        self.findings.extend(missing::completeness(baseline, current));
-        if baseline.coordinates != current.coordinates {
-            let message = "the baseline has errors and the run positions, or the other way round: bless anew";
-            self.findings.push(Finding::new(Verdict::Fails, &baseline.scenario, "", "coordinates", message));
-        } else if deterministic || baseline.coordinates == Coordinates::Positions {
-            self.findings.extend(exact::exact(baseline, current));
-        } else {
-            if baseline.seed != current.seed {
-                let message = format!(
-                    "the seed is {} and was {}: the trials no longer share their random numbers; bless anew",
-                    current.seed, baseline.seed
-                );
-                self.findings.push(Finding::new(Verdict::Fails, &baseline.scenario, "all methods", "seed", message));
-            }
-            let (tests, untested) = paired::tests(baseline, current);
-            self.tests.extend(tests);
-            self.findings.extend(untested);
-        }
+        let found = compare::compare(baseline, current, deterministic);
+        let [same, changed] = found.methods;
+        self.tally.scenarios += 1;
+        self.tally.methods += same + changed;
+        self.tally.changed += changed;
+        self.tally.points += baseline.points();
+        self.findings.extend(found.findings);
+        self.tests.extend(found.tests);
     }
 
     /// Notes a run that has no baseline.
@@ -83,8 +103,34 @@ impl Check {
         self.findings.extend(missing::completeness(&empty, current));
     }
 
+    /// Compares the sums of a run with those that were blessed, cell by cell.
+    pub fn compare_cells<T: Kept>(&mut self, baseline: &Cells<T>, current: &Cells<T>) {
+        let [methods, count] = baseline.counts();
+        match T::KIND {
+            Kind::Figures => self.tally.figures += count,
+            Kind::Points | Kind::Sums | Kind::Verdicts => {
+                self.tally.scenarios += baseline.len();
+                self.tally.methods += methods;
+                self.tally.points += count;
+            }
+        }
+        self.findings.extend(baseline.compare(current));
+    }
+
+    /// Compares the verdicts of published cells.
+    pub fn verdicts(&mut self, baseline: &Verdicts, current: &Verdicts) {
+        self.tally.cells += baseline.0.len();
+        self.findings.extend(baseline.compare(current));
+    }
+
+    /// Notes what the caller found.
+    pub fn note(&mut self, finding: Finding) {
+        self.findings.push(finding);
+    }
+
     /// Holds the runs against the ceilings.
     pub fn ceilings(&mut self, ceilings: &Ceilings, runs: &[&Table]) {
+        self.tally.ceilings += ceilings.list.len();
         self.findings.extend(ceilings.check(runs));
     }
 
@@ -93,21 +139,37 @@ impl Check {
         self.tests.len()
     }
 
+    /// What was compared so far.
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
     /// Decides all tests together and returns what was found: first what fails, each part sorted.
     pub fn conclude(self) -> Vec<Finding> {
         let mut findings = self.findings;
-        let column = |of: fn(&paired::Test) -> f64| self.tests.iter().map(of).collect::<Vec<f64>>();
-        let (worse, better) = (holm(&column(|test| test.worse)), holm(&column(|test| test.better)));
-        for (test, (worse, better)) in self.tests.into_iter().zip(worse.into_iter().zip(better)) {
-            if worse <= ALPHA {
-                findings.push(Finding { verdict: Verdict::Fails, p: Some(worse), message: "worse".into(), ..test.finding });
-            } else if better <= ALPHA {
-                findings.push(Finding { p: Some(better), ..test.finding });
-            }
+        for family in Family::ALL {
+            findings.extend(decide(self.tests.iter().filter(|test| test.family == family).collect()));
         }
         findings.sort_by(Finding::order);
         findings
     }
+}
+
+/// What the tests of one family say under its share of [`ALPHA`].
+fn decide(tests: Vec<&Test>) -> Vec<Finding> {
+    let share = ALPHA / Family::ALL.len() as f64;
+    let column = |of: fn(&Test) -> f64| tests.iter().map(|test| of(test)).collect::<Vec<f64>>();
+    let (worse, better) = (holm(&column(|test| test.worse)), holm(&column(|test| test.better)));
+    let mut findings = Vec::new();
+    for (test, (worse, better)) in tests.into_iter().zip(worse.into_iter().zip(better)) {
+        let finding = test.finding.clone();
+        if worse <= share {
+            findings.push(Finding { verdict: Verdict::Fails, p: Some(worse), message: "worse".into(), ..finding });
+        } else if better <= share {
+            findings.push(Finding { p: Some(better), ..finding });
+        }
+    }
+    findings
 }
 
 /// Compares one run with its baseline, as a check of its own.

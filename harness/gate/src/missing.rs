@@ -3,10 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use super::entry::Place;
 use super::finding::{Finding, Verdict};
-use super::table::{MethodTable, Place, Table};
+use super::table::{MethodTable, Table};
 
-/// What the baseline has and the current table lacks fails; what is new, or measured by another version, informs.
+/// What the baseline has and the current table lacks fails; what is new is not blessed; another version or other parameters are a change.
 pub(super) fn completeness(baseline: &Table, current: &Table) -> Vec<Finding> {
     let mut findings = Vec::new();
     let name = baseline.scenario.as_str();
@@ -28,7 +29,7 @@ pub(super) fn completeness(baseline: &Table, current: &Table) -> Vec<Finding> {
             Some(why) => format!("not blessed yet, and unavailable: {why}"),
             None => format!("not blessed yet: {} points", now.points.len()),
         };
-        findings.push(Finding::new(Verdict::Informs, name, label, "points", message));
+        findings.push(Finding::new(Verdict::Unblessed, name, label, "points", message));
     }
     findings
 }
@@ -72,11 +73,17 @@ fn news(scenario: &str, label: &str, base: &MethodTable, now: &MethodTable) -> V
     let mut findings = Vec::new();
     if base.version != now.version {
         let message = format!("the version changed from {} to {}: look, then bless", base.version, now.version);
-        findings.push(Finding::new(Verdict::Informs, scenario, label, "version", message));
+        // A library's version is the machine's.
+        let verdict = if now.library != base.library { Verdict::Informs } else { Verdict::Changed };
+        findings.push(Finding::new(verdict, scenario, label, "version", message));
+    }
+    if !base.settings.is_empty() && !now.settings.is_empty() && base.settings != now.settings {
+        let message = format!("the parameters were {} and are {}: look, then bless", base.settings, now.settings);
+        findings.push(Finding::new(Verdict::Changed, scenario, label, "parameters", message));
     }
     let new = now.points.keys().filter(|place| !base.points.contains_key(place)).count();
     if new > 0 {
-        findings.push(Finding::new(Verdict::Informs, scenario, label, "points", format!("not blessed yet: {new} points")));
+        findings.push(Finding::new(Verdict::Unblessed, scenario, label, "points", format!("not blessed yet: {new} points")));
     }
     findings
 }

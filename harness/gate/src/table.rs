@@ -1,115 +1,42 @@
 //! What the gate compares: every point of a run, by method, with coordinates as a baseline file holds them.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::sync::Arc;
 
-use calibench_model::Rejection;
-use calibench_records::results::{LOST, MethodInfo, Outcome, PointResult, Trial};
+use calibench_records::results::{Group, MethodInfo, Trial};
 
-/// Decimals of a coordinate, px: what a baseline file keeps, and what a table is rounded to, so that both compare alike.
-pub const DECIMALS: usize = 9;
+use super::adjusted;
+use super::entry::{Coordinates, Entry, Place};
 
-/// What the two coordinates of a measured point are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Coordinates {
-    /// Measured less true position (dx, dy), px.
-    Errors,
-    /// The measured position (x, y), px, of which no truth is known.
-    Positions,
-}
-
-impl Coordinates {
-    /// What a run yields: errors where the truth is known, positions elsewhere.
-    pub const fn of(truth_is_known: bool) -> Self {
-        if truth_is_known { Self::Errors } else { Self::Positions }
-    }
-
-    /// The names of the columns.
-    pub const fn names(self) -> [&'static str; 2] {
-        match self {
-            Self::Errors => ["dx", "dy"],
-            Self::Positions => ["x", "y"],
-        }
-    }
-}
-
-/// Which point of a run.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
-    /// The trial, from 0.
-    pub trial: u64,
-    /// The image.
-    pub view: Arc<str>,
-    /// The target.
-    pub target: Arc<str>,
-}
-
-/// `view/target`, with the trial before it unless that is the first.
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.trial > 0 {
-            write!(f, "trial {} ", self.trial)?;
-        }
-        write!(f, "{}/{}", self.view, self.target)
-    }
-}
-
-/// What became of a point.
+/// Value, standard deviation and error of a figure of an adjustment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Entry {
-    /// Measured: its coordinates, px, as the table's [`Coordinates`] say.
-    Measured([f64; 2]),
-    /// Measured, and more than [`LOST`] px from the truth, or not a number.
-    Lost([f64; 2]),
-    /// Rejected by the operator.
-    Rejected(Rejection),
+pub struct Numbers {
+    /// The value, in the figure's unit.
+    pub value: f64,
+    /// Its reported standard deviation.
+    pub sigma: Option<f64>,
+    /// Value less truth.
+    pub error: Option<f64>,
 }
 
-impl Entry {
-    /// The word in files.
-    pub const fn status(&self) -> &'static str {
-        match self {
-            Self::Measured(_) => "measured",
-            Self::Lost(_) => "lost",
-            Self::Rejected(_) => "rejected",
-        }
-    }
-
-    /// Status and reason in words.
-    pub fn describe(&self) -> String {
-        match self {
-            Self::Rejected(why) => format!("rejected ({why})"),
-            _ => self.status().to_owned(),
-        }
-    }
-
-    /// The coordinates, lost or not.
-    pub const fn coordinates(&self) -> Option<[f64; 2]> {
-        match self {
-            Self::Measured(at) | Self::Lost(at) => Some(*at),
-            Self::Rejected(_) => None,
-        }
-    }
-
-    /// The coordinates of a point that was measured and not lost.
-    pub const fn kept(&self) -> Option<[f64; 2]> {
-        match self {
-            Self::Measured(at) => Some(*at),
-            _ => None,
-        }
-    }
-}
+/// Which figure of the adjustments of a method: the set of parameters (from 0), the group, the name within it.
+pub type FigureKey = (usize, Group, Arc<str>);
 
 /// The points of one method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodTable {
     /// The method's version.
     pub version: Arc<str>,
+    /// All its parameters with their values, those at their default among them; empty where they are not known.
+    pub settings: String,
+    /// The library on which its numbers depend, with the version that this machine has; empty where there is none.
+    pub library: String,
     /// Why it measured nothing, if so.
     pub unavailable: Option<String>,
     /// Every point, in order.
     pub points: BTreeMap<Place, Entry>,
+    /// Every figure of its adjustments, by trial; residuals of single points are left out.
+    pub figures: BTreeMap<FigureKey, BTreeMap<u64, Numbers>>,
 }
 
 /// The points of one run of one scenario. Filled trial by trial; trials may come in any order.
@@ -117,6 +44,8 @@ pub struct MethodTable {
 pub struct Table {
     /// The scenario's name.
     pub scenario: String,
+    /// The fingerprint of the scenario's text, where it is known.
+    pub text: String,
     /// The seed of the run.
     pub seed: u64,
     /// What the coordinates are.
@@ -125,15 +54,38 @@ pub struct Table {
     methods: BTreeMap<Arc<str>, MethodTable>,
 }
 
+/// The fingerprint of a scenario's text: the first 16 bytes of its BLAKE3 hash, in hexadecimal, with line ends of any system.
+pub fn fingerprint(text: &str) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for line in text.lines() {
+        hasher.update(line.as_bytes());
+        hasher.update(b"\n");
+    }
+    hasher.finalize().to_hex()[..32].to_owned()
+}
+
 impl Table {
     /// An empty table for `methods`, in the order in which the trials' points name them.
     pub fn new(scenario: impl Into<String>, seed: u64, coordinates: Coordinates, methods: &[MethodInfo]) -> Self {
-        let mut table = Self { scenario: scenario.into(), seed, coordinates, labels: Vec::new(), methods: BTreeMap::new() };
-        for info in methods {
-            table.labels.push(info.label.clone());
-            table.method_mut(&info.label, &info.version).unavailable.clone_from(&info.unavailable);
-        }
+        let mut table =
+            Self { scenario: scenario.into(), text: String::new(), seed, coordinates, labels: Vec::new(), methods: BTreeMap::new() };
+        table.name_methods(methods);
         table
+    }
+
+    /// Makes sure that every one of `methods` has its place: records name a method when they first meet it.
+    pub fn name_methods(&mut self, methods: &[MethodInfo]) {
+        for info in methods.iter().skip(self.labels.len()) {
+            self.labels.push(info.label.clone());
+            self.method_mut(&info.label, &info.version).unavailable.clone_from(&info.unavailable);
+        }
+    }
+
+    /// States all parameters of the method `label`, and the library on which its numbers depend.
+    pub fn describe(&mut self, label: &str, settings: String, library: String) {
+        if let Some(method) = self.methods.get_mut(label) {
+            (method.settings, method.library) = (settings, library);
+        }
     }
 
     /// Adds a trial.
@@ -145,23 +97,29 @@ impl Table {
             return self.add_adjusted(trial);
         }
         for point in &trial.points {
-            let entry = entry(&point.outcome, self.coordinates);
-            let PointResult { view, target, .. } = point;
-            let place = Place { trial: trial.number, view: view.clone(), target: target.clone() };
-            let method = self.methods.get_mut(&self.labels[point.method]).expect("every label has its points");
-            method.points.insert(place, entry);
+            let place = Place { trial: trial.number, view: point.view.clone(), target: point.target.clone() };
+            let entry = Entry::of(point, self.coordinates);
+            self.of_index(point.method).points.insert(place, entry);
         }
     }
 
-    /// Adds what became of the adjustments of a trial, in place of its points: the camera over the frame (px, 0), and the check points (RMSE_XY, RMSE_Z in mm).
+    /// Adds what became of the adjustments of a trial, in place of its points: the camera over the frame (px, 0), the check points
+    /// (RMSE_XY, RMSE_Z in mm), and every figure with its standard deviation.
     fn add_adjusted(&mut self, trial: &Trial) {
-        for adjusted in trial.calibrations.iter().filter(|adjusted| adjusted.set == 0) {
-            let method = self.methods.get_mut(&self.labels[adjusted.method]).expect("every label has its points");
-            for (target, entry) in super::adjusted::entries(adjusted) {
-                let place = Place { trial: trial.number, view: super::adjusted::VIEW.into(), target: target.into() };
+        for adjusted in &trial.calibrations {
+            let method = self.of_index(adjusted.method);
+            for (key, numbers) in adjusted::figures(adjusted) {
+                method.figures.entry(key).or_default().insert(trial.number, numbers);
+            }
+            for (target, entry) in adjusted::entries(adjusted).into_iter().filter(|_| adjusted.set == 0) {
+                let place = Place { trial: trial.number, view: adjusted::VIEW.into(), target: target.into() };
                 method.points.insert(place, entry);
             }
         }
+    }
+
+    fn of_index(&mut self, method: usize) -> &mut MethodTable {
+        self.methods.get_mut(&self.labels[method]).expect("every label has its points")
     }
 
     /// The methods, by label.
@@ -180,34 +138,33 @@ impl Table {
         numbers.collect::<BTreeSet<u64>>().len()
     }
 
-    pub(super) fn method_mut(&mut self, label: &Arc<str>, version: &Arc<str>) -> &mut MethodTable {
-        let empty = || MethodTable { version: version.clone(), unavailable: None, points: BTreeMap::new() };
-        self.methods.entry(label.clone()).or_insert_with(empty)
+    /// How many points all methods have.
+    pub fn points(&self) -> usize {
+        self.methods.values().map(|method| method.points.len()).sum()
+    }
+
+    /// The same run with the method `label` alone, its results replaced by `other` if there are any.
+    pub fn only(&self, label: &str, other: Option<MethodTable>) -> Self {
+        let kept = self.methods.get_key_value(label).map(|(label, method)| (label.clone(), other.unwrap_or_else(|| method.clone())));
+        Self { scenario: self.scenario.clone(), text: self.text.clone(), labels: Vec::new(), methods: kept.into_iter().collect(), ..*self }
+    }
+
+    /// The method of this label, new if there was none.
+    pub fn method_mut(&mut self, label: &Arc<str>, version: &Arc<str>) -> &mut MethodTable {
+        self.methods.entry(label.clone()).or_insert_with(|| MethodTable::new(version.clone()))
     }
 }
 
 impl MethodTable {
+    /// A method without a point.
+    pub fn new(version: Arc<str>) -> Self {
+        let (settings, points, figures) = (String::new(), BTreeMap::new(), BTreeMap::new());
+        Self { version, settings, library: String::new(), unavailable: None, points, figures }
+    }
+
     /// How many points are measured, lost and rejected.
     pub fn counts(&self) -> [usize; 3] {
         let count = |status| self.points.values().filter(|entry| entry.status() == status).count();
         ["measured", "lost", "rejected"].map(count)
     }
-}
-
-fn entry(outcome: &Outcome, coordinates: Coordinates) -> Entry {
-    match (outcome, coordinates) {
-        (Outcome::Rejected(why), _) => Entry::Rejected(*why),
-        (Outcome::Measured { position, .. }, Coordinates::Positions) => Entry::Measured([rounded(position.x), rounded(position.y)]),
-        (Outcome::Measured { error, .. }, Coordinates::Errors) => {
-            let (dx, dy) = error.unwrap_or((f64::NAN, f64::NAN));
-            let at = [rounded(dx), rounded(dy)];
-            if dx.hypot(dy) <= LOST { Entry::Measured(at) } else { Entry::Lost(at) }
-        }
-    }
-}
-
-/// The value that the file's decimals hold, without a negative zero.
-pub(super) fn rounded(value: f64) -> f64 {
-    let text = format!("{value:.DECIMALS$}");
-    text.parse::<f64>().unwrap_or(f64::NAN) + 0.0
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use calibench_records::statistics::paired::mean;
 
 use super::ceilings::CeilingMetric;
-use super::table::{Coordinates, MethodTable, Table};
+use super::entry::Coordinates;
+use super::table::{MethodTable, Table};
 use super::{TOLERANCE, missing};
 
 /// A line for each statistic that gets worse when `new` replaces `old`: points that disappear; per method the root mean square,

@@ -22,6 +22,7 @@ mod scores_section;
 pub mod speeds;
 pub mod sweep;
 pub(crate) mod ticks;
+pub mod verdicts;
 mod zhu;
 
 pub use canvas::Canvas;

@@ -1,5 +1,6 @@
 //! The gate as CI meets it.
 
+mod init;
 mod requirement;
 
 use std::path::Path;
@@ -70,14 +71,89 @@ fn bless_lists_what_gets_worse_and_writes_only_when_told() {
 }
 
 #[test]
-fn a_broken_baseline_is_named_with_its_line() {
+fn a_baseline_that_is_not_as_it_was_blessed_is_named() {
     let project = copy();
     let path = project.path().join("reference/baselines/galo-2011--corners.csv");
     let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replacen("measured", "mesured", 1)).unwrap();
-    let output = run(project.path(), &["check", "galo-2011/corners", "-q"]);
+    let last = text.lines().last().unwrap();
+    for (damaged, expected) in [
+        (Some(text.replacen(",measured,", ",mesured,", 1)), "found `mesured`"),
+        (Some(text.replacen(last, "", 1).trim_end().to_owned() + "\n"), "rows were cut or added"),
+        (Some(text.replacen("dx", "dz", 1)), "expected the columns"),
+        (Some(text.replacen(",0.0", ",0.1", 1)), "was edited after it was blessed"),
+        (None, "the baseline is missing"),
+    ] {
+        match damaged {
+            Some(damaged) => std::fs::write(&path, damaged).unwrap(),
+            None => std::fs::remove_file(&path).unwrap(),
+        }
+        let output = run(project.path(), &["check", "galo-2011/corners", "-q"]);
+        assert_eq!(output.status.code(), Some(1), "{expected}");
+        assert!(stdout(&output).contains(expected), "{expected}: {}", stdout(&output));
+    }
+}
+
+#[test]
+fn nothing_to_check_is_an_error() {
+    for (gone, expected) in [
+        ("scenarios/galo-2011/corners.toml", "no scenario is called"),
+        ("reference/baselines/ceilings.toml", "ceilings.toml: there is no such file"),
+        ("reference/baselines/blessed.toml", "nothing is known to be blessed"),
+    ] {
+        let project = copy();
+        std::fs::remove_file(project.path().join(gone)).unwrap();
+        let output = run(project.path(), &["check", "galo-2011/corners", "-q"]);
+        assert_eq!(output.status.code(), Some(2), "{gone}");
+        assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    }
+    let project = copy();
+    std::fs::remove_dir_all(project.path().join("scenarios")).unwrap();
+    std::fs::create_dir(project.path().join("scenarios")).unwrap();
+    let output = run(project.path(), &["check", "-q"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("galo-2011--corners.csv: line 2"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("there is no scenario"), "{}", stderr(&output));
+}
+
+#[test]
+fn strict_and_locked_fail_on_what_is_new() {
+    let project = copy();
+    let holds = |flags: &[&str]| run(project.path(), &[&["check", "galo-2011/corners", "-q"], flags].concat()).status.code();
+    assert_eq!((holds(&[]), holds(&["--strict", "--locked"])), (Some(0), Some(0)));
+    change(project.path(), "galo-2011/corners.toml", "why", "# said better\nwhy");
+    assert_eq!((holds(&[]), holds(&["--strict"])), (Some(0), Some(1)), "a comment changes no number");
+    let project = copy();
+    let text = std::fs::read_to_string(project.path().join("scenarios/galo-2011/corners.toml")).unwrap();
+    std::fs::write(project.path().join("scenarios/galo-2011/other.toml"), text).unwrap();
+    let code =
+        |flags: &[&str]| run(project.path(), &[&["check", "galo-2011/corners", "galo-2011/other", "-q"], flags].concat()).status.code();
+    assert_eq!((code(&[]), code(&["--locked"])), (Some(0), Some(1)));
+}
+
+#[test]
+fn a_sweep_is_gated_cell_by_cell() {
+    let project = copy();
+    let output = run(project.path(), &["check", "zhu-2007/bias", "--strict", "--locked", "-q"]);
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    change(project.path(), "zhu-2007/bias.toml", "\"method.sigma\" = [0.5,", "\"method.sigma\" = [0.51,");
+    let output = run(project.path(), &["check", "zhu-2007/bias", "-q"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stdout(&output).contains("the cell is missing"), "{}", stdout(&output));
+}
+
+#[test]
+fn two_runs_are_compared_point_by_point() {
+    let project = copy();
+    let scenario = "zhu-2007/bias";
+    assert!(run(project.path(), &["run", scenario, "-q"]).status.success());
+    let output = run(project.path(), &["check", scenario, "--against", "records", "--strict", "-q", "--json", "--junit", "gate.xml"]);
+    assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
+    assert!(stdout(&output).contains("\"holds\": true"), "{}", stdout(&output));
+    assert!(std::fs::read_to_string(project.path().join("gate.xml")).unwrap().contains("failures=\"0\""));
+    let records = project.path().join("records/zhu-2007/bias/cell-0003/records.csv");
+    let text = std::fs::read_to_string(&records).unwrap();
+    std::fs::write(&records, text.replacen(",dx,", ",dx,1", 1)).unwrap();
+    let output = run(project.path(), &["check", scenario, "--against", "records", "--strict", "-q"]);
+    assert_eq!(output.status.code(), Some(1), "{}{}", stdout(&output), stderr(&output));
 }
 
 #[test]

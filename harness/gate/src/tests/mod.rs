@@ -1,7 +1,9 @@
 //! Tests of the whole gate.
 
+mod cells;
 mod files;
 mod findings;
+mod judged;
 
 use calibench_model::{PixelPoint, Rejection};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};

@@ -80,7 +80,8 @@ pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (Stri
     (text, tally)
 }
 
-fn verdict(cell: &Cell, ours: Option<&Ours>) -> Verdict {
+/// The verdict of `cell`, given our figure or none.
+pub fn verdict(cell: &Cell, ours: Option<&Ours>) -> Verdict {
     match (&cell.not_comparable, ours) {
         (Some(why), _) => Verdict::NotComparable(why.clone()),
         (None, None) => Verdict::NotComparable("no record of ours".to_owned()),

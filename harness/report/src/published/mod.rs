@@ -14,8 +14,8 @@ mod verdict;
 
 pub use metric::Metric;
 pub use schema::schema;
-pub(crate) use section::section;
-pub(crate) use sweep::section as swept;
+pub(crate) use section::{section, verdicts};
+pub(crate) use sweep::{section as swept, verdicts as swept_verdicts};
 pub use verdict::{Printed, Tally, Verdict};
 
 use std::collections::BTreeMap;

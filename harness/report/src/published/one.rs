@@ -48,7 +48,7 @@ pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
 }
 
 /// Our figure for `cell` in the first trial.
-fn figure(table: &Table, main: &Loaded, cell: &Cell) -> Option<f64> {
+pub fn figure(table: &Table, main: &Loaded, cell: &Cell) -> Option<f64> {
     let method = main.method(cell.method.as_deref().unwrap_or(&table.method))?;
     of_points(&main.first.points, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus)
 }

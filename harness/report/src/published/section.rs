@@ -1,7 +1,9 @@
 //! The section of a published table: its cells beside ours, what was found out, every method.
 
 use super::adjustment::ours;
-use super::{Table, Tally, every_method, many, one};
+use super::figure::Ours;
+use super::{Table, Tally, Verdict, every_method, many, one};
+use crate::load::adjustments::Summaries;
 use crate::load::{LoadError, Loaded};
 
 /// A section of a page, and the verdicts of its cells.
@@ -58,9 +60,31 @@ fn adjustments(table: &Table, main: &Loaded) -> Compared {
     let Some(found) = &main.calibrations else {
         return Err(format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario));
     };
+    Ok(many::comparison(table, &of_adjustments(table, main, found), found.trials))
+}
+
+/// Our figure for each cell.
+fn of_adjustments(table: &Table, main: &Loaded, found: &Summaries) -> Vec<Option<Ours>> {
     let pitch = main.scenario.pitch_um().unwrap_or(f64::NAN);
-    let figures: Vec<_> = table.cells.iter().map(|cell| ours(found, cell, &table.method, pitch)).collect();
-    Ok(many::comparison(table, &figures, found.trials))
+    table.cells.iter().map(|cell| ours(found, cell, &table.method, pitch)).collect()
+}
+
+/// The verdict of each cell of `table`, as its section states them; `None` where the records `main` hold nothing of its method.
+///
+/// # Errors
+/// Records that cannot be read.
+pub fn verdicts(table: &Table, main: &Loaded) -> Result<Option<Vec<Verdict>>, LoadError> {
+    let of_many = |figures: &[Option<Ours>]| table.cells.iter().zip(figures).map(|(cell, ours)| many::verdict(cell, ours.as_ref())).collect();
+    if table.is_of_adjustments() {
+        return Ok(main.calibrations.as_ref().map(|found| of_many(&of_adjustments(table, main, found))));
+    }
+    if main.method(&table.method).is_none() {
+        return Ok(None);
+    }
+    if main.scores.trials < 2 {
+        return Ok(Some(table.cells.iter().map(|cell| cell.verdict(one::figure(table, main, cell))).collect()));
+    }
+    Ok(Some(of_many(&many::of_all_trials(table, main)?)))
 }
 
 /// Records of the scenario that lack the table's method.

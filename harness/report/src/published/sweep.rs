@@ -5,7 +5,7 @@ use calibench_records::score::Score;
 use super::notes::Notes;
 use super::one::{gravest, like};
 use super::section::{Section, findings, head, no_method};
-use super::{Cell, Metric, Table, Tally};
+use super::{Cell, Metric, Table, Tally, Verdict};
 use crate::markdown::{MarkdownTable, fixed};
 use crate::sweep::LoadedSweep;
 
@@ -14,6 +14,12 @@ pub fn section(table: &Table, loaded: &LoadedSweep) -> Section {
     let compared = loaded.methods.iter().position(|method| method.name == table.method).map(|method| comparison(table, loaded, method));
     let (text, tally) = compared.unwrap_or_else(|| (no_method(table), Tally::default()));
     Section { text: head(table) + &text + &findings(table), tally }
+}
+
+/// The verdict of each cell of `table`; `None` where the sweep lacks its method.
+pub fn verdicts(table: &Table, loaded: &LoadedSweep) -> Option<Vec<Verdict>> {
+    let method = loaded.methods.iter().position(|method| method.name == table.method)?;
+    Some(table.cells.iter().map(|cell| cell.verdict(ours(loaded, method, cell))).collect())
 }
 
 fn comparison(table: &Table, loaded: &LoadedSweep, method: usize) -> (String, Tally) {
@@ -32,7 +38,7 @@ fn comparison(table: &Table, loaded: &LoadedSweep, method: usize) -> (String, Ta
                 continue;
             };
             let score = score(loaded, method, cell);
-            let ours = score.and_then(|score| figure(score, cell.metric)).map(|ours| ours + cell.plus);
+            let ours = ours(loaded, method, cell);
             let interval = score.filter(|_| cell.metric == Metric::RmseXy).and_then(|score| score.whole.rmse_interval());
             let verdict = cell.verdict(ours);
             tally.count(&verdict);
@@ -67,6 +73,11 @@ fn score<'a>(loaded: &'a LoadedSweep, method: usize, cell: &Cell) -> Option<&'a 
         pairs.all(|(axis, value)| cell.at.iter().any(|(key, at)| axis.is_called(key) && value.number == Some(*at)))
     };
     loaded.score((0..loaded.sweep.cells()).find(meant)?, method)
+}
+
+/// Our figure for a printed cell, px.
+fn ours(loaded: &LoadedSweep, method: usize, cell: &Cell) -> Option<f64> {
+    score(loaded, method, cell).and_then(|score| figure(score, cell.metric)).map(|ours| ours + cell.plus)
 }
 
 /// Statistics over all points of a cell; figures of one target are not kept by trial.

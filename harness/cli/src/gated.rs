@@ -1,0 +1,225 @@
+//! Scenarios run in memory, or read from records, for the gate.
+
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::FolderWriter;
+use calibench_gate::{Cells, Coordinates, FigureSums, Kept, PointSums, Table, Verdicts, fingerprint};
+use calibench_measure::Configured;
+use calibench_report::verdicts;
+use calibench_run::Plan;
+use calibench_run::store::{self, SweepPlan};
+use calibench_scenario::{Scenario, Sweep, parse_cell};
+
+use super::context::Context;
+use super::progress::Progress;
+use super::recorded::stored;
+use super::{Failure, scenario_failure};
+
+/// A scenario and what became of it.
+pub struct Gated {
+    pub scenario: Scenario,
+    pub outcome: Outcome,
+    /// The figures of its adjustments, if it makes any.
+    pub figures: Option<Cells<FigureSums>>,
+}
+
+/// The results of a scenario as its file says: its own methods, seed and trials.
+pub enum Outcome {
+    /// Every point.
+    Points(Table),
+    /// Of a sweep, sums by cell.
+    Sums(Cells<PointSums>),
+    /// Nothing that the gate compares, and why.
+    NotCompared(String),
+}
+
+impl Gated {
+    /// The points, if there are any.
+    pub fn table(&self) -> Option<&Table> {
+        match &self.outcome {
+            Outcome::Points(table) => Some(table),
+            Outcome::Sums(_) | Outcome::NotCompared(_) => None,
+        }
+    }
+}
+
+/// Where results come from, and who else sees them.
+pub struct Source<'a> {
+    /// What has been run before, in place of running now.
+    pub records: Option<PathBuf>,
+    /// Where the records of the scenarios that published tables stand on are kept for their verdicts.
+    pub kept: Option<Keep>,
+    /// Gets every table with the scenario and the cell of its sweep.
+    pub each: &'a mut dyn FnMut(&Scenario, Option<usize>, &Table) -> Result<(), Failure>,
+}
+
+/// A temporary folder of records, and whose.
+pub struct Keep {
+    folder: tempfile::TempDir,
+    scenarios: Vec<String>,
+}
+
+impl Keep {
+    /// An empty folder for the records behind the project's published tables.
+    pub fn new(context: &Context<'_>) -> Result<Self, Failure> {
+        let scenarios = verdicts::scenarios(&context.root()?.join(PUBLISHED))?;
+        Ok(Self { folder: tempfile::tempdir()?, scenarios })
+    }
+}
+
+/// The folder of published tables in a project.
+const PUBLISHED: &str = "reference/published";
+
+/// The verdicts of all published cells whose records are there.
+pub fn cell_verdicts(context: &Context<'_>, source: &Source<'_>) -> Result<Verdicts, Failure> {
+    let kept = source.kept.as_ref().map(|keep| keep.folder.path());
+    let Some(records) = source.records.as_deref().or(kept) else { return Ok(Verdicts::default()) };
+    let all = verdicts::verdicts(records, &context.root()?.join(PUBLISHED), &context.toolbox.registry)?;
+    Ok(Verdicts(all.into_iter().collect()))
+}
+
+/// Results of the named scenarios, or all.
+///
+/// # Errors
+/// A scenario that cannot be loaded or run, and none at all.
+pub fn gated(context: &Context<'_>, names: &[String], source: &mut Source<'_>) -> Result<Vec<Gated>, Failure> {
+    let names = if names.is_empty() { context.catalogue()?.names()? } else { names.to_vec() };
+    if names.is_empty() {
+        let folder = context.root()?.join("scenarios");
+        return Err(Failure::input(format!("{}: there is no scenario, so there is nothing to check", folder.display())));
+    }
+    let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
+    scenarios.into_iter().map(|scenario| one(context, scenario, source)).collect()
+}
+
+fn one(context: &Context<'_>, scenario: Scenario, source: &mut Source<'_>) -> Result<Gated, Failure> {
+    let plan = plan(context, &scenario)?;
+    let missing = plan.missing();
+    if let Some(why) = missing.filter(|_| source.records.is_none()) {
+        return Ok(Gated { outcome: Outcome::NotCompared(format!("unavailable: {why}")), scenario, figures: None });
+    }
+    let keep = source.kept.as_ref().filter(|keep| source.records.is_none() && keep.scenarios.contains(&scenario.name));
+    let records = match keep {
+        Some(keep) => {
+            run_into(context, &scenario, keep.folder.path())?;
+            Some(keep.folder.path().to_owned())
+        }
+        None => source.records.clone(),
+    };
+    if let Some(sweep) = &scenario.sweep {
+        let (sums, figures) = swept(context, &scenario, sweep, (records.as_deref(), source))?;
+        return Ok(Gated { outcome: Outcome::Sums(sums), scenario, figures });
+    }
+    let table = match &records {
+        Some(folder) => described(stored(&folder.join(&scenario.name), &scenario.name, &scenario)?, &plan, keep.is_some()),
+        None => {
+            let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
+            let table = run(&plan, &scenario.name, &|| progress.step())?;
+            progress.finish("measured");
+            table
+        }
+    };
+    (source.each)(&scenario, None, &table)?;
+    let mut figures = empty(&scenario);
+    figures.add("", &table);
+    Ok(Gated { outcome: Outcome::Points(table), figures: kept(figures), scenario })
+}
+
+/// All cells of a sweep, one after the other.
+fn swept(
+    context: &Context<'_>,
+    scenario: &Scenario,
+    sweep: &Sweep,
+    (records, source): (Option<&Path>, &mut Source<'_>),
+) -> Result<(Cells<PointSums>, Option<Cells<FigureSums>>), Failure> {
+    let (mut sums, mut figures) = (empty(scenario), empty(scenario));
+    let progress = Progress::start(&scenario.name, sweep.cells() as u64, context.quiet);
+    for index in 0..sweep.cells() {
+        let label = sweep.label(index);
+        let name = format!("{}@{label}", scenario.name);
+        let cell = parse_cell(scenario, sweep, index, &context.toolbox.registry).map_err(|problems| scenario_failure(problems.into()))?;
+        let plan = plan(context, &cell)?;
+        let table = match records {
+            Some(records) => {
+                described(stored(&folder_of(records, scenario, Some(index)), &name, scenario)?, &plan, source.records.is_none())
+            }
+            None => run(&plan, &name, &|| ())?,
+        };
+        (source.each)(scenario, Some(index), &table)?;
+        sums.add(&label, &table);
+        figures.add(&label, &table);
+        progress.step();
+    }
+    progress.finish("measured");
+    Ok((sums, kept(figures)))
+}
+
+fn plan<'a>(context: &'a Context<'_>, scenario: &'a Scenario) -> Result<Plan<'a>, Failure> {
+    // The gate compares errors with errors.
+    Ok(Plan { bounds: false, ..Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?) })
+}
+
+fn empty<T: Kept>(scenario: &Scenario) -> Cells<T> {
+    Cells::new(&scenario.name, &fingerprint(&scenario.text), scenario.seed, Coordinates::of(scenario.has_truth()))
+}
+
+fn kept(figures: Cells<FigureSums>) -> Option<Cells<FigureSums>> {
+    (!figures.is_empty()).then_some(figures)
+}
+
+/// Runs `plan` into a table called `name`.
+fn run(plan: &Plan<'_>, name: &str, step: &(dyn Fn() + Sync)) -> Result<Table, Failure> {
+    let scenario = plan.scenario;
+    let mut table = Table::new(name, plan.seed, Coordinates::of(scenario.has_truth()), &plan.method_infos());
+    table = described(table, plan, true);
+    plan.run(step, &mut |trial| {
+        table.add(&trial);
+        Ok(())
+    })?;
+    Ok(table)
+}
+
+/// Runs a scenario into `records`: its figures are then those of the records, as reports have them.
+fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Result<(), Failure> {
+    let (writer, revision) = (FolderWriter::new(records)?, context.revision()?);
+    let Some(sweep) = &scenario.sweep else {
+        let mut plan = plan(context, scenario)?;
+        let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
+        store::run(&writer, &mut plan, &revision, &|| progress.step())?;
+        progress.finish("measured");
+        return Ok(());
+    };
+    let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
+    let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, detector, data: context.data()?, registry };
+    Ok(store::run_sweep(&writer, &plan, &revision, &|| ())?)
+}
+
+/// The table with what its plan knows of it: if it was made `now`, the scenario's text, all parameters and libraries.
+fn described(mut table: Table, plan: &Plan<'_>, now: bool) -> Table {
+    if !now {
+        return table;
+    }
+    table.text = fingerprint(&plan.scenario.text);
+    let detector = plan.detector_used().map(|(name, version)| format!("{name} {version}"));
+    for method in plan.methods {
+        table.describe(&method.label, settings(method), library(method, detector.as_deref()));
+    }
+    table
+}
+
+/// All parameters, those at their defaults among them.
+fn settings(method: &Configured) -> String {
+    method.settings.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(",")
+}
+
+/// The libraries of this machine on which a method's numbers depend.
+fn library(method: &Configured, detector: Option<&str>) -> String {
+    let own = method.label.starts_with("opencv").then(|| format!("OpenCV {}", method.version));
+    own.into_iter().chain(detector.map(str::to_owned)).collect::<Vec<_>>().join(", ")
+}
+
+/// The folder of the records of a scenario, or of a cell of its sweep, below `records`.
+pub fn folder_of(records: &Path, scenario: &Scenario, cell: Option<usize>) -> PathBuf {
+    let folder = records.join(&scenario.name);
+    cell.map_or_else(|| folder.clone(), |index| calibench_records::names::cell_folder(&folder, index))
+}

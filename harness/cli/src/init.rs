@@ -1,0 +1,58 @@
+//! `calibench init`: a project of one's own with a gate.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::bless::Bless;
+use super::context::Context;
+use super::{Failure, print};
+
+/// What is written, by its path in the project.
+const FILES: [(&str, &str); 4] = [
+    ("README.md", include_str!("init/README.md")),
+    (".gitignore", "/records/\n"),
+    ("scenarios/first/corners.toml", include_str!("init/corners.toml")),
+    ("reference/baselines/ceilings.toml", include_str!("init/ceilings.toml")),
+];
+
+#[derive(Args)]
+pub struct Init {
+    /// The folder, new or empty
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
+impl Init {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let folder = &self.folder;
+        let failed = |path: &Path, error: &std::io::Error| Failure::input(format!("{}: {error}", path.display()));
+        if let Some(first) = first_entry(folder).map_err(|error| failed(folder, &error))? {
+            return Err(Failure::input(format!("{}: holds `{first}`; expected a new or an empty folder", folder.display())));
+        }
+        let schema = format!("{:#}\n", calibench_scenario::schema::schema(&context.toolbox.registry));
+        for (name, text) in FILES.into_iter().chain([("scenarios/scenario.schema.json", schema.as_str())]) {
+            let path = folder.join(name);
+            path.parent()
+                .map_or(Ok(()), fs::create_dir_all)
+                .and_then(|()| fs::write(&path, text))
+                .map_err(|error| failed(&path, &error))?;
+        }
+        let inside = Context { root: Some(folder.clone()), quiet: context.quiet, toolbox: context.toolbox };
+        Bless::all().run(&inside)?;
+        print(&format!(
+            "{}: one scenario, blessed. Next: `calibench check` in that folder; its README.md has the commands\n",
+            folder.display()
+        ))
+    }
+}
+
+/// The name of something in the folder; nothing if it is empty or not there.
+fn first_entry(folder: &Path) -> std::io::Result<Option<String>> {
+    match fs::read_dir(folder) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error),
+        Ok(mut entries) => entries.next().map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned())).transpose(),
+    }
+}

@@ -1,0 +1,224 @@
+//! The figures of adjustments over all trials: parameters, poses and check points with their reported standard deviations, as sums.
+
+use std::collections::BTreeMap;
+
+use calibench_records::results::Group;
+
+use super::cells::Kept;
+use super::finding::{Finding, Verdict};
+use super::sheet::{BaselineError, Kind, Row};
+use super::table::{FigureKey, MethodTable, Numbers};
+
+/// What is no change of a figure, as a fraction of its standard deviation or scatter: last bits, carried through an adjustment.
+const SAME: f64 = 1e-4;
+/// What is no change of a figure, as a fraction of its value, whatever its standard deviation.
+const DIGITS: f64 = 1e-8;
+/// By how much, as a fraction, a root mean square error may grow without being worse.
+pub const FIGURE_GROWTH: f64 = 0.02;
+/// By how much, as a fraction, errors may move away from the reported standard deviations.
+const SIGMA_DRIFT: f64 = 0.05;
+
+/// A figure over all trials.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct FigureSum {
+    /// In how many trials there is one.
+    pub count: u64,
+    /// The mean value, in the figure's unit.
+    pub mean: f64,
+    /// The scatter of the values, divided by their number.
+    pub scatter: f64,
+    /// The root mean square error against the truth, where that is known.
+    pub error: Option<f64>,
+    /// The root mean square of the reported standard deviations.
+    pub sigma: Option<f64>,
+}
+
+impl FigureSum {
+    fn of<'a>(numbers: impl Iterator<Item = &'a Numbers>) -> Self {
+        let all: Vec<&Numbers> = numbers.collect();
+        let n = all.len().max(1) as f64;
+        let mean = all.iter().map(|x| x.value).sum::<f64>() / n;
+        let scatter = (all.iter().map(|x| (x.value - mean).powi(2)).sum::<f64>() / n).sqrt();
+        let rms = |of: fn(&Numbers) -> Option<f64>| {
+            let squares: Vec<f64> = all.iter().filter_map(|x| of(x)).map(|value| value * value).collect();
+            (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+        };
+        Self { count: all.len() as u64, mean, scatter, error: rms(|x| x.error), sigma: rms(|x| x.sigma) }
+    }
+
+    /// Whether both are the same but for last bits.
+    fn same(&self, other: &Self) -> bool {
+        let scale = self.sigma.unwrap_or(0.0).max(self.scatter).max(self.error.unwrap_or(0.0));
+        let agree = |a: f64, b: f64| (a - b).abs() <= SAME * scale + DIGITS * a.abs() || (a.is_nan() && b.is_nan());
+        let optional = |a: Option<f64>, b: Option<f64>| match (a, b) {
+            (Some(a), Some(b)) => agree(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        self.count == other.count
+            && agree(self.mean, other.mean)
+            && agree(self.scatter, other.scatter)
+            && optional(self.error, other.error)
+            && optional(self.sigma, other.sigma)
+    }
+
+    /// How far errors are from the reported standard deviations: the logarithm of their ratio.
+    fn misfit(&self) -> Option<f64> {
+        let ratio = self.error? / self.sigma.filter(|sigma| *sigma > 0.0)?;
+        (ratio > 0.0).then(|| ratio.ln().abs())
+    }
+}
+
+/// All figures of a method in a cell.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FigureSums(pub(super) BTreeMap<FigureKey, FigureSum>);
+
+impl Kept for FigureSums {
+    const KIND: Kind = Kind::Figures;
+    const COLUMNS: &'static [&'static str] = &["set", "group", "name", "count", "mean", "scatter", "error", "sigma"];
+
+    fn of(method: &MethodTable) -> Self {
+        Self(method.figures.iter().map(|(key, trials)| (key.clone(), FigureSum::of(trials.values()))).collect())
+    }
+
+    fn rows(&self) -> Vec<Vec<String>> {
+        let digits = |value: f64| format!("{value:.9e}");
+        let optional = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6e}"));
+        let row = |((set, group, name), sum): (&FigureKey, &FigureSum)| {
+            let [set, group, name] = [(set + 1).to_string(), group.name().to_owned(), name.to_string()];
+            vec![
+                set,
+                group,
+                name,
+                sum.count.to_string(),
+                digits(sum.mean),
+                format!("{:.6e}", sum.scatter),
+                optional(sum.error),
+                optional(sum.sigma),
+            ]
+        };
+        self.0.iter().map(row).collect()
+    }
+
+    fn add(&mut self, row: &Row<'_>) -> Result<(), BaselineError> {
+        let group = Group::ALL.iter().find(|(_, name)| *name == row.text(3)).ok_or_else(|| row.wrong(3, "expected a group of figures"))?.0;
+        let set: usize = row.parse(2)?;
+        let key = (set.checked_sub(1).ok_or_else(|| row.wrong(2, "expected 1 or more"))?, group, row.text(4).into());
+        let [count, mean, scatter] = [5, 6, 7];
+        let sum = FigureSum {
+            count: row.parse(count)?,
+            mean: row.parse(mean)?,
+            scatter: row.parse(scatter)?,
+            error: row.optional(8)?,
+            sigma: row.optional(9)?,
+        };
+        if self.0.insert(key, sum).is_some() { Err(row.wrong(4, "the figure is there twice")) } else { Ok(()) }
+    }
+
+    fn compare(&self, now: &Self, finding: &dyn Fn(Verdict, &'static str, String) -> Finding) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        for (key, old) in &self.0 {
+            let name = format!("set {} {} {}", key.0 + 1, key.1.name(), key.2);
+            let Some(new) = now.0.get(key) else {
+                findings.push(finding(Verdict::Fails, "figure", "the figure is missing".into()).at(name));
+                continue;
+            };
+            if !old.same(new) {
+                findings.extend(judged(key.1, old, new, finding).map(|found| found.at(name.as_str())));
+            }
+        }
+        let new = now.0.keys().filter(|key| !self.0.contains_key(*key)).count();
+        if new > 0 {
+            findings.push(finding(Verdict::Unblessed, "figure", format!("not blessed yet: {new} figures of adjustments")));
+        }
+        findings
+    }
+
+    fn count(&self) -> usize {
+        self.0.len()
+    }
+}
+
+/// What changed of a figure, and what of it is worse.
+fn judged(
+    group: Group,
+    old: &FigureSum,
+    new: &FigureSum,
+    finding: &dyn Fn(Verdict, &'static str, String) -> Finding,
+) -> impl Iterator<Item = Finding> {
+    let mut findings = Vec::new();
+    if new.count < old.count {
+        let message = "fewer adjustments give this figure".to_owned();
+        findings.push(finding(Verdict::Fails, "adjusted", message).figures(old.count as f64, new.count as f64));
+    }
+    // The distance of cameras over the frame and the errors of check points are errors themselves.
+    let error = |sum: &FigureSum| if matches!(group, Group::Frame | Group::Check) { Some(sum.mean) } else { sum.error };
+    if let (Some(a), Some(b)) = (error(old), error(new)) {
+        if !(b <= a * (1.0 + FIGURE_GROWTH)) {
+            findings.push(finding(Verdict::Fails, "error", format!("worse by more than {} %", 100.0 * FIGURE_GROWTH)).figures(a, b));
+        }
+    }
+    match (old.sigma, new.sigma) {
+        (Some(a), None) => {
+            findings.push(finding(Verdict::Fails, "sigma", "the reported standard deviation is missing".into()).figures(a, 0.0))
+        }
+        (Some(a), Some(b)) if new.misfit().zip(old.misfit()).is_some_and(|(new, old)| new > old + SIGMA_DRIFT) || b.is_nan() => {
+            let message = format!("errors fit the reported standard deviation less, by more than {} %", 100.0 * SIGMA_DRIFT);
+            findings.push(finding(Verdict::Fails, "sigma", message).figures(a, b));
+        }
+        _ => {}
+    }
+    if findings.is_empty() {
+        findings.push(finding(Verdict::Changed, "figure", "the figure is another".into()).figures(old.mean, new.mean));
+    }
+    findings.into_iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(value: f64, error: f64) -> Numbers {
+        Numbers { value, sigma: Some(0.5), error: Some(error) }
+    }
+
+    fn sums(group: Group, trials: &[Numbers]) -> FigureSums {
+        FigureSums(BTreeMap::from([((0, group, "c".into()), FigureSum::of(trials.iter()))]))
+    }
+
+    fn verdicts(old: &FigureSums, new: &FigureSums) -> Vec<(Verdict, &'static str)> {
+        let make = |verdict, metric, message| Finding::new(verdict, "f/s", "m", metric, message);
+        old.compare(new, &make).iter().map(|found| (found.verdict, found.metric)).collect()
+    }
+
+    #[test]
+    fn sums_by_hand() {
+        let sum = FigureSum::of([numbers(1.0, 0.3), numbers(3.0, -0.4)].iter());
+        assert_eq!((sum.count, sum.mean, sum.scatter, sum.sigma), (2, 2.0, 1.0, Some(0.5)));
+        assert!((sum.error.unwrap() - 0.125_f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_is_worse_fails_and_what_is_other_changed() {
+        let with = |value: f64, error: f64, sigma: Option<f64>| {
+            sums(Group::Iop, &[Numbers { value, sigma, error: Some(error) }, Numbers { value: value + 1.0, sigma, error: Some(-error) }])
+        };
+        let base = with(1.0, 0.5, Some(0.5));
+        assert_eq!(verdicts(&base, &with(1.0 + 4e-5, 0.5, Some(0.5))), []);
+        assert_eq!(verdicts(&base, &with(1.1, 0.5, Some(0.5))), [(Verdict::Changed, "figure")]);
+        assert_eq!(verdicts(&base, &with(1.0, 0.505, Some(0.5))), [(Verdict::Changed, "figure")]);
+        assert_eq!(verdicts(&base, &with(1.0, 0.515, Some(0.5))), [(Verdict::Fails, "error")]);
+        assert_eq!(verdicts(&base, &with(1.0, 0.5, Some(0.4))), [(Verdict::Fails, "sigma")], "too sure by 25 %");
+        assert_eq!(verdicts(&base, &with(1.0, 0.5, None)), [(Verdict::Fails, "sigma")]);
+        assert_eq!(verdicts(&base, &with(1.0, f64::NAN, Some(0.5))).first(), Some(&(Verdict::Fails, "error")));
+        assert_eq!(verdicts(&base, &sums(Group::Iop, &[numbers(1.0, 0.5)])).first(), Some(&(Verdict::Fails, "adjusted")));
+        assert_eq!(verdicts(&base, &FigureSums::default()), [(Verdict::Fails, "figure")]);
+    }
+
+    #[test]
+    fn distances_of_cameras_are_errors() {
+        let with = |value: f64| sums(Group::Frame, &[Numbers { value, sigma: None, error: None }]);
+        assert_eq!(verdicts(&with(0.1), &with(0.103)), [(Verdict::Fails, "error")]);
+        assert_eq!(verdicts(&with(0.1), &with(0.09)), [(Verdict::Changed, "figure")]);
+    }
+}
