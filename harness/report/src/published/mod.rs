@@ -14,7 +14,7 @@ mod verdict;
 
 pub use metric::Metric;
 pub use schema::schema;
-pub(crate) use section::section;
+pub(crate) use section::{section, without_records};
 pub(crate) use sweep::section as swept;
 pub use verdict::{Printed, Tally, Verdict};
 

@@ -56,11 +56,20 @@ fn points(table: &Table, main: &Loaded) -> Result<Compared, LoadError> {
 
 fn adjustments(table: &Table, main: &Loaded) -> Compared {
     let Some(found) = &main.calibrations else {
-        return Err(format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario));
+        return Err(no_adjustments(table));
     };
     let pitch = main.scenario.pitch_um().unwrap_or(f64::NAN);
     let figures: Vec<_> = table.cells.iter().map(|cell| ours(found, cell, &table.method, pitch)).collect();
     Ok(many::comparison(table, &figures, found.trials))
+}
+
+/// The section of a table of adjustments whose scenario was not run.
+pub fn without_records(table: &Table) -> Section {
+    Section { text: head(table) + &no_adjustments(table) + &findings(table), tally: Tally::default() }
+}
+
+fn no_adjustments(table: &Table) -> String {
+    format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario)
 }
 
 /// Records of the scenario that lack the table's method.
