@@ -35,6 +35,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
         let swept = all.iter().filter_map(Either::sweep).find(|swept| swept.scenario.name == table.scenario);
         let section = match swept {
             Some(swept) if !table.is_of_adjustments() => published::swept(table, swept),
+            _ if table.is_of_adjustments() && by_name(&table.scenario).is_err() => published::without_records(table),
             _ => {
                 let beside = table.beside.iter().map(by_name).collect::<Result<Vec<_>, _>>()?;
                 published::section(table, by_name(&table.scenario)?, &beside)?

@@ -14,7 +14,7 @@ mod verdict;
 
 pub use metric::Metric;
 pub use schema::schema;
-pub(crate) use section::{section, verdicts};
+pub(crate) use section::{section, verdicts, without_records};
 pub(crate) use sweep::{section as swept, verdicts as swept_verdicts};
 pub use verdict::{Printed, Tally, Verdict};
 

@@ -58,7 +58,7 @@ fn points(table: &Table, main: &Loaded) -> Result<Compared, LoadError> {
 
 fn adjustments(table: &Table, main: &Loaded) -> Compared {
     let Some(found) = &main.calibrations else {
-        return Err(format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario));
+        return Err(no_adjustments(table));
     };
     Ok(many::comparison(table, &of_adjustments(table, main, found), found.trials))
 }
@@ -85,6 +85,15 @@ pub fn verdicts(table: &Table, main: &Loaded) -> Result<Option<Vec<Verdict>>, Lo
         return Ok(Some(table.cells.iter().map(|cell| cell.verdict(one::figure(table, main, cell))).collect()));
     }
     Ok(Some(of_many(&many::of_all_trials(table, main)?)))
+}
+
+/// The section of a table of adjustments whose scenario was not run.
+pub fn without_records(table: &Table) -> Section {
+    Section { text: head(table) + &no_adjustments(table) + &findings(table), tally: Tally::default() }
+}
+
+fn no_adjustments(table: &Table) -> String {
+    format!("There are no adjustments of `{}`: run it with `calibench run {}`.\n\n", table.scenario, table.scenario)
 }
 
 /// Records of the scenario that lack the table's method.
