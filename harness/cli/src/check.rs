@@ -148,7 +148,7 @@ fn confirmed(count: usize) -> Result<bool, Failure> {
 /// Runs the named scenarios, or all, in memory. What is unavailable here is said and left out.
 fn measure(context: &Context<'_>, names: &[String]) -> Result<Vec<Measured>, Failure> {
     let names = if names.is_empty() { context.catalogue()?.names()? } else { names.to_vec() };
-    let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
+    let scenarios = context.scenarios(&names)?;
     let mut measured = Vec::new();
     for scenario in scenarios {
         if let Some(sweep) = &scenario.sweep {

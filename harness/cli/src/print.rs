@@ -47,7 +47,7 @@ impl Print {
         };
         let stem = scenario.name.replace('/', "-");
         let options = PrintOptions { name: stem.clone(), mm_per_unit: subject.unit.mm(), paper };
-        output::folder("-o", &self.output)?.replace::<PrintError>(|folder| {
+        output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario))?.replace::<PrintError>(|folder| {
             write_svg(folder, &subject.field, &options)?;
             write_pdf(&folder.join(format!("{stem}.pdf")), &subject.field, &options)
         })?;

@@ -26,6 +26,9 @@ pub enum BaselineError {
         /// What the system says.
         source: io::Error,
     },
+    /// It cannot be written; the message names it.
+    #[error(transparent)]
+    Output(#[from] io::Error),
     /// A place in it that means nothing.
     #[error("{}: line {line}, column `{column}`: {problem}", path.display())]
     Row {
@@ -60,7 +63,7 @@ pub fn write_baseline(path: &Path, table: &Table) -> Result<(), BaselineError> {
         }
         csv.flush()
     };
-    write_atomically(path, write).map_err(|source| BaselineError::File { path: path.to_owned(), source })
+    Ok(write_atomically(path, write)?)
 }
 
 fn write_row<W: io::Write>(

@@ -1,6 +1,7 @@
 //! What each common mistake in converting a camera costs: px over the frame, mm on an object.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::{Problem, Problems};
@@ -62,9 +63,9 @@ pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
     }
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| -> Result<(), ReportError> {
         for (name, picture) in &pictures {
-            picture.write(&folder.join(name))?;
+            folder.write(name, |file| picture.encode(file))?;
         }
-        Ok(fs::write(folder.join(PAGE), text.trim_end().to_owned() + "\n")?)
+        Ok(folder.write(PAGE, |file| writeln!(file, "{}", text.trim_end()))?)
     })?;
     Ok(places.reports.join(FAMILY).join(PAGE))
 }

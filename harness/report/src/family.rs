@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use calibench_exchange::OutputFolder;
+use calibench_exchange::folder::write_beside;
 use calibench_measure::Registry;
 
 use crate::page::Page;
@@ -99,10 +100,10 @@ impl Either {
 /// Writes the page that lists the reports that are there.
 ///
 /// # Errors
-/// What the file system refuses.
+/// A page of this name that calibench did not write or that was changed since, and what the file system refuses.
 pub fn write_index(reports: &Path) -> io::Result<()> {
     let mut names: Vec<String> = Vec::new();
-    for entry in fs::read_dir(reports)? {
+    for entry in fs::read_dir(reports).map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", reports.display())))? {
         let entry = entry?;
         if entry.path().join(PAGE).is_file() {
             names.extend(entry.file_name().into_string());
@@ -113,7 +114,7 @@ pub fn write_index(reports: &Path) -> io::Result<()> {
     let text = format!(
         "# Reports\n\nMade by `calibench report` from the records of `calibench run` and the published tables; nothing here is written by hand.\n\n{lines}"
     );
-    calibench_exchange::atomic::write_atomically(&reports.join(PAGE), |file| io::Write::write_all(file, text.as_bytes()))
+    write_beside(reports, PAGE, text.as_bytes())
 }
 
 /// The paper's mean reduction factors, to be drawn beside a sweep of adjustments.

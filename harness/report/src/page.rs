@@ -1,9 +1,8 @@
 //! The page of a report.
 
-use std::fs;
 use std::io;
-use std::path::Path;
 
+use calibench_exchange::NewFolder;
 use calibench_scenario::{Scenario, Subject};
 
 use crate::places::PAGE;
@@ -91,13 +90,13 @@ impl Page {
         }
     }
 
-    pub fn write(&self, folder: &Path) -> io::Result<()> {
+    pub fn write(&self, folder: &NewFolder) -> io::Result<()> {
         for (name, picture) in &self.pictures {
-            picture.write(&folder.join(name))?;
+            folder.write(name, |file| picture.encode(file))?;
         }
         let legend = if self.scored { format!("\n\n{}", scores_section::legend()) } else { "\n".to_owned() };
         let text = self.text.trim_end().to_owned() + &legend;
-        fs::write(folder.join(PAGE), text)
+        folder.write(PAGE, |file| file.write_all(text.as_bytes()))
     }
 }
 

@@ -90,6 +90,11 @@ impl FromStr for Claim {
 }
 
 impl Cameras {
+    /// The camera files to start from.
+    pub fn starts(&self) -> impl Iterator<Item = PathBuf> {
+        self.start.iter().map(|start| PathBuf::from(&start.value))
+    }
+
     /// The pixel pitch of a camera, um.
     pub fn pitch_um(&self, camera: &str) -> Option<f64> {
         of(&self.pitch, camera).copied()
