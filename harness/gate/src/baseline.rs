@@ -148,7 +148,7 @@ impl Row<'_> {
     }
 
     fn entry(&self) -> Result<Entry, BaselineError> {
-        let at = || Ok([self.parse(8)?, self.parse(9)?]);
+        let at = || Ok::<_, BaselineError>([self.parse(8)?, self.parse(9)?]);
         match self.text(6) {
             "measured" => Ok(Entry::Measured(at()?)),
             "lost" => Ok(Entry::Lost(at()?)),
