@@ -1,7 +1,6 @@
 //! What each common mistake in converting a camera costs: px over the frame, mm on an object.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::{Problem, Problems};

@@ -1,6 +1,6 @@
 //! What is run, and with what.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use calibench_exchange::NewFolder;
 use calibench_measure::{BoardDetector, Configured};

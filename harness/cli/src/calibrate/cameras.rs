@@ -1,5 +1,6 @@
 //! The cameras of a calibration: which images each took, and what is known and wanted of it.
 
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use calibench_calibrate::{Optics, Prior};
