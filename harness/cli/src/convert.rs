@@ -100,7 +100,7 @@ impl Convert {
         Ok(match &self.output {
             None => CamerasFile::Standard,
             Some(path) if self.all && !output::is_camera_name(path) => CamerasFile::Folder(output::folder("-o", path, inputs)?),
-            Some(path) => CamerasFile::File(output::camera("-o", path, inputs)?),
+            Some(path) => CamerasFile::File(output::camera("-o", path, true, inputs)?),
         })
     }
 

@@ -47,21 +47,28 @@ pub fn is_camera_name(path: &Path) -> bool {
     ending.is_some_and(|ending| camera_endings().iter().any(|known| ending == *known))
 }
 
-/// A camera file of any format that is written.
-pub fn camera(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+/// A camera file of any format that is written; one whose format is named by another option needs no ending.
+pub fn camera(option: &str, path: &Path, is_named: bool, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    if is_named && path.extension().is_none() {
+        return checked(option, path, inputs);
+    }
     file(option, path, ("a camera file", &camera_endings()), inputs)
 }
 
 fn file(option: &str, path: &Path, (what, endings): (&str, &[&str]), inputs: &Inputs) -> Result<OutputFile, Failure> {
-    if let Some(input) = inputs.written_by(path) {
-        return Err(is_input(option, path, input));
-    }
-    let file = OutputFile::open(path).map_err(|error| refused(option, &error))?;
+    let file = checked(option, path, inputs)?;
     if file.has_ending(endings) {
         return Ok(file);
     }
     let known: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
     Err(Failure::input(format!("{option} {}: {what} ends in {}", path.display(), known.join(", "))))
+}
+
+fn checked(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    match inputs.written_by(path) {
+        Some(input) => Err(is_input(option, path, input)),
+        None => OutputFile::open(path).map_err(|error| refused(option, &error)),
+    }
 }
 
 /// Two outputs must be two files.

@@ -76,7 +76,7 @@ impl Calibrate {
         let given = [&self.points, &self.control, &self.poses].into_iter().flatten().cloned();
         let inputs = Inputs::new(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
-        let output = self.output.as_deref().map(|path| output::camera("-o", path, &inputs)).transpose()?;
+        let output = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
         let (corners, control) = self.input(context)?;
         let settings = self.settings(&corners.photos)?;
         let mut prepared = prepare(&corners.points, &control, &settings)?;
