@@ -72,7 +72,7 @@ fn a_rig_is_listed_chosen_from_and_converted_whole() {
     good(folder.path(), &["convert", "rig.yaml", "--all", "--to", "ros", "-o", "ros"]);
     let mut names: Vec<_> = std::fs::read_dir(folder.path().join("ros")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     names.sort();
-    assert_eq!(names, ["001-cam0.yaml", "002-cam1.yaml"]);
+    assert_eq!(names, [".calibench-manifest", "001-cam0.yaml", "002-cam1.yaml"]);
     let output = run(folder.path(), &["convert", "rig.yaml", "--all", "--to", "ros"]);
     assert!(stderr(&output).contains("ros holds one camera a file: name a folder with -o"), "{}", stderr(&output));
 }

@@ -19,6 +19,7 @@ mod networks;
 mod opencv_gate;
 mod operators;
 mod orient;
+mod outputs;
 mod paper;
 mod photographs;
 mod priors;

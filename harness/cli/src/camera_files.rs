@@ -43,6 +43,11 @@ impl FromStr for ImagesFile {
 }
 
 impl CameraFiles {
+    /// The files.
+    pub fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        self.files.iter().map(|given| &given.file)
+    }
+
     /// The camera of each image.
     pub fn of(&self, images: &[String]) -> Result<Vec<Camera>, Failure> {
         let cameras = self.files.iter().map(|given| camera(&given.file, self.size)).collect::<Result<Vec<_>, _>>()?;

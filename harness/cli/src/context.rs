@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use calibench_diagnostics::nearest;
+use calibench_exchange::Inputs;
 use calibench_measure::{Configured, MethodError};
 use calibench_report::Places;
-use calibench_scenario::Scenario;
-use calibench_scenario::catalogue::Catalogue;
+use calibench_scenario::catalogue::{Catalogue, LOCAL, is_toml};
 use calibench_scenario::data::data_folder;
+use calibench_scenario::{Scenario, Subject};
 
 use crate::failure::{Failure, scenario_failure};
 use crate::toolbox::Toolbox;
@@ -24,30 +25,101 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// The project's folder: named, or the nearest one upwards that holds scenarios/ and reference/.
-    pub fn root(&self) -> Result<PathBuf, Failure> {
+    /// The project's folder: named, or the nearest one upwards that holds scenarios/ and reference/, if there is one.
+    fn project(&self) -> Result<Option<PathBuf>, Failure> {
         let is_root = |folder: &Path| folder.join("scenarios").is_dir() && folder.join("reference").is_dir();
         if let Some(root) = &self.root {
             return if is_root(root) {
-                Ok(root.clone())
+                Ok(Some(root.clone()))
             } else {
                 Err(Failure::input(format!("--root {}: expected a folder that holds scenarios/ and reference/", root.display())))
             };
         }
         let here = std::env::current_dir()?;
-        here.ancestors().find(|folder| is_root(folder)).map(Path::to_owned).ok_or_else(|| {
+        Ok(here.ancestors().find(|folder| is_root(folder)).map(Path::to_owned))
+    }
+
+    /// The project's folder, where there must be one.
+    pub fn root(&self) -> Result<PathBuf, Failure> {
+        self.project()?.ok_or_else(|| {
             Failure::input("no folder with scenarios/ and reference/ from here upwards; go to the project or name it with --root DIR")
         })
     }
 
-    /// The scenarios.
+    /// The project's folder, or the current one outside of a project: there records and reports of one's own files are.
+    fn base(&self) -> Result<PathBuf, Failure> {
+        Ok(match self.project()? {
+            Some(root) => root,
+            None => std::env::current_dir()?,
+        })
+    }
+
+    /// The project's scenarios.
     pub fn catalogue(&self) -> Result<Catalogue, Failure> {
         Ok(Catalogue::new(self.root()?.join("scenarios")))
     }
 
-    /// The scenario called `name`, or of the file `name`.
+    /// The names of the project's scenarios; outside of a project there are none.
+    pub fn scenario_names(&self) -> Result<Vec<String>, Failure> {
+        self.project()?.map_or(Ok(Vec::new()), |root| Ok(Catalogue::new(root.join("scenarios")).names()?))
+    }
+
+    /// Whether there is a project.
+    pub fn is_in_project(&self) -> Result<bool, Failure> {
+        Ok(self.project()?.is_some())
+    }
+
+    /// The scenario called `name`, or of the file `name`, which needs no project.
     pub fn scenario(&self, name: &str) -> Result<Scenario, Failure> {
-        self.catalogue()?.load(name, &self.toolbox.registry).map_err(scenario_failure)
+        let catalogue = match self.project()? {
+            Some(root) => Catalogue::new(root.join("scenarios")),
+            None if is_toml(Path::new(name)) => Catalogue::outside(),
+            None => {
+                return Err(Failure::input(format!(
+                    "{name}: no folder with scenarios/ and reference/ from here upwards; go to the project, name it with --root DIR, or expected a TOML file"
+                )));
+            }
+        };
+        catalogue.load(name, &self.toolbox.registry).map_err(scenario_failure)
+    }
+
+    /// The scenarios of these names or files, each once and under a name of its own.
+    pub fn scenarios(&self, names: &[String]) -> Result<Vec<Scenario>, Failure> {
+        let mut loaded: Vec<Scenario> = Vec::new();
+        for (place, name) in names.iter().enumerate() {
+            let scenario = self.scenario(name)?;
+            if let Some(earlier) = loaded.iter().position(|earlier| earlier.name == scenario.name) {
+                let (earlier, called) = (&names[earlier], &scenario.name);
+                return Err(Failure::input(if names[..place].contains(name) {
+                    format!("{name}: asked for twice; expected each scenario once")
+                } else {
+                    format!(
+                        "{earlier} and {name}: both are called `{called}`, and one would replace the other; rename one, or take one at a time"
+                    )
+                }));
+            }
+            loaded.push(scenario);
+        }
+        Ok(loaded)
+    }
+
+    /// The scenario's file, if it is not one of the project's.
+    pub fn origin<'n>(&self, name: &'n str, scenario: &Scenario) -> Option<&'n Path> {
+        Some(Path::new(name)).filter(|path| is_toml(path) && scenario.name.starts_with(LOCAL))
+    }
+
+    /// What is read with the scenario `name`: its file, its camera, its photographs.
+    pub fn inputs(&self, name: &str, scenario: &Scenario) -> Inputs {
+        let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
+        let camera = match &scenario.subject {
+            Subject::Views(views) => views.camera_file.clone(),
+            Subject::Scene(_) | Subject::Photographs(_) => None,
+        };
+        let photographs = match (&scenario.subject, self.data()) {
+            (Subject::Photographs(found), Ok(data)) => found.files.iter().map(|file| data.join(&found.folder).join(file)).collect(),
+            _ => Vec::new(),
+        };
+        Inputs::new(file.into_iter().chain(camera).chain(photographs))
     }
 
     /// The method that `text` names, with the nearest name for a misspelt one.
@@ -65,12 +137,12 @@ impl Context<'_> {
 
     /// Where photographs are.
     pub fn data(&self) -> Result<PathBuf, Failure> {
-        Ok(data_folder(&self.root()?))
+        Ok(data_folder(&self.base()?))
     }
 
     /// Where records, published tables and reports are.
     pub fn places(&self) -> Result<Places, Failure> {
-        let root = self.root()?;
+        let root = self.base()?;
         let [records, published, cameras, reports] =
             ["records", "reference/published", "reference/cameras", "reports"].map(|folder| root.join(folder));
         Ok(Places { records, published, cameras, reports })
@@ -78,13 +150,12 @@ impl Context<'_> {
 
     /// The code's revision for records: that of the checkout, or the version of the program outside of one.
     pub fn revision(&self) -> Result<String, Failure> {
-        let git = Command::new("git")
-            .arg("-C")
-            .arg(self.root()?)
-            .args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"])
-            .output();
-        let revision =
-            git.ok().filter(|output| output.status.success()).map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
+        let describe = |root: PathBuf| {
+            let git =
+                Command::new("git").arg("-C").arg(root).args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]).output();
+            git.ok().filter(|output| output.status.success()).map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+        };
+        let revision = self.project()?.and_then(describe);
         Ok(revision.unwrap_or_else(|| env!("CARGO_PKG_VERSION").to_owned()))
     }
 }

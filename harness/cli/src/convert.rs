@@ -1,12 +1,14 @@
 //! `calibench convert`: cameras from one convention, or one tool's file, to another.
 
+use std::io;
 use std::path::PathBuf;
 
 use calibench_diagnostics::nearest;
 use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
 use calibench_exchange::camera::fit::{FitError, losses};
 use calibench_exchange::camera::target::{Given, Goal, TargetError, goal};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_text, write_camera};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_text};
+use calibench_exchange::{Inputs, OutputFile, OutputFolder};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,
@@ -15,6 +17,7 @@ use calibench_report::{Field, plain};
 use clap::Args;
 
 use super::context::Context;
+use super::output;
 use super::reading::Reading;
 use crate::deliver::print;
 use crate::failure::Failure;
@@ -71,12 +74,15 @@ pub fn region(radius: Option<f64>) -> Region {
 
 impl Convert {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let inputs = Inputs::new([&self.file]);
+        let cameras_file = self.cameras_file(&inputs)?;
+        let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
         let mut results = Vec::new();
         for (index, source) in sources.iter().enumerate() {
             let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
             let label = (sources.len() > 1).then_some(place);
-            results.push(self.converted(source, label.as_deref(), context.quiet)?);
+            results.push(self.converted(source, label.as_deref(), plot.as_ref(), context.quiet)?);
         }
         let Some((_, goal)) = results.last() else { return Err(Failure::input("the file holds no camera")) };
         let format = goal.format;
@@ -86,34 +92,32 @@ impl Convert {
         let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
         lost.dedup();
         lost.iter().for_each(|what| eprintln!("warning: lost: {what}"));
-        self.write(format, &cameras)
+        cameras_file.write(format, &cameras)
     }
 
-    fn write(&self, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), Failure> {
-        let one_file = cameras.len() == 1 || format.many;
-        match &self.output {
-            Some(path) if one_file && !(self.all && path.is_dir()) => Ok(write_camera(path, format, cameras)?),
-            None if one_file => print(&camera_text(format, cameras)?),
-            None => Err(Failure::input(format!("{} holds one camera a file: name a folder with -o", format.name))),
-            Some(folder) => {
-                std::fs::create_dir_all(folder).map_err(|error| Failure::input(format!("{}: {error}", folder.display())))?;
-                for (index, camera) in cameras.iter().enumerate() {
-                    let name = file_name(&camera.name, index);
-                    write_camera(&folder.join(format!("{name}.{}", format.extension)), format, std::slice::from_ref(camera))?;
-                }
-                Ok(())
-            }
-        }
+    /// Where the cameras go: a name with the ending of a camera file is a file, any other one the folder of `--all`.
+    fn cameras_file(&self, inputs: &Inputs) -> Result<CamerasFile, Failure> {
+        Ok(match &self.output {
+            None => CamerasFile::Standard,
+            Some(path) if self.all && !output::is_camera_name(path) => CamerasFile::Folder(output::folder("-o", path, inputs)?),
+            Some(path) => CamerasFile::File(output::camera("-o", path, true, inputs)?),
+        })
     }
 
     /// A camera in the new convention, and the format of its file.
-    fn converted(&self, source: &NamedCamera, label: Option<&str>, quiet: bool) -> Result<(NamedCamera, Goal), Failure> {
+    fn converted(
+        &self,
+        source: &NamedCamera,
+        label: Option<&str>,
+        plot: Option<&OutputFile>,
+        quiet: bool,
+    ) -> Result<(NamedCamera, Goal), Failure> {
         let order = self.reading.open_points().order();
         let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order, output: self.output.as_deref() };
         let goal = goal(&self.to, &given).map_err(no_target)?;
         if self.naive {
             let pitch_um = self.pitch.or(source.pitch_um);
-            let result = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, quiet)?) };
+            let result = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, plot, quiet)?) };
             return Ok((result, goal));
         }
         let options =
@@ -130,7 +134,7 @@ impl Convert {
             let (radius, share) = (plain(fold.radius_px), 100.0 * fold.share);
             eprintln!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
         }
-        self.draw(&conversion)?;
+        plot.map_or(Ok(()), |plot| drawn(&conversion).write(plot))?;
         if goal.format.convention.is_none() && conversion.camera.convention() != source.camera.convention() {
             self.reading.warn(&conversion.camera);
         }
@@ -146,7 +150,7 @@ impl Convert {
         }
     }
 
-    fn naive(&self, source: &NamedCamera, pitch_um: Option<f64>, quiet: bool) -> Result<Camera, Failure> {
+    fn naive(&self, source: &NamedCamera, pitch_um: Option<f64>, plot: Option<&OutputFile>, quiet: bool) -> Result<Camera, Failure> {
         if self.to != "photogrammetric" {
             return Err(Failure::input("--naive converts to photogrammetric only"));
         }
@@ -156,17 +160,47 @@ impl Convert {
         if !quiet {
             eprintln!("naive: {} from the source after the best rotation", size_of(&cost.spread));
         }
-        if let Some(path) = &self.plot {
-            field("Naive conversion: from the source to the result", &source.camera, &cost.vectors).write(path)?;
+        if let Some(plot) = plot {
+            field("Naive conversion: from the source to the result", &source.camera, &cost.vectors).write(plot)?;
         }
         Ok(camera)
     }
+}
 
-    fn draw(&self, conversion: &Conversion) -> Result<(), Failure> {
-        let Some(path) = &self.plot else { return Ok(()) };
-        let title =
-            if conversion.method == Method::Exact { "Exact conversion: no residuals" } else { "Residuals of the fitted conversion" };
-        Ok(field(title, &conversion.camera, &conversion.residuals).write(path)?)
+/// The residuals of a conversion as a picture.
+fn drawn(conversion: &Conversion) -> calibench_report::Canvas {
+    let title = if conversion.method == Method::Exact { "Exact conversion: no residuals" } else { "Residuals of the fitted conversion" };
+    field(title, &conversion.camera, &conversion.residuals)
+}
+
+/// Where converted cameras go.
+enum CamerasFile {
+    Standard,
+    File(OutputFile),
+    Folder(OutputFolder),
+}
+
+impl CamerasFile {
+    fn write(&self, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), Failure> {
+        match self {
+            Self::Folder(folder) => folder.replace(|folder| {
+                for (index, camera) in cameras.iter().enumerate() {
+                    let text = camera_text(format, std::slice::from_ref(camera)).map_err(io::Error::other)?;
+                    let name = format!("{}.{}", file_name(&camera.name, index), format.extension);
+                    folder.write(&name, |file| file.write_all(text.as_bytes()))?;
+                }
+                Ok(())
+            }),
+            Self::Standard | Self::File(_) if cameras.len() > 1 && !format.many => {
+                Err(Failure::input(format!("{} holds one camera a file: name a folder with -o", format.name)))
+            }
+            Self::Standard => print(&camera_text(format, cameras)?),
+            Self::File(file) => {
+                let text =
+                    camera_text(format, cameras).map_err(|error| Failure::input(format!("-o {}: {error}", file.path().display())))?;
+                Ok(file.write(|output| output.write_all(text.as_bytes()))?)
+            }
+        }
     }
 }
 

@@ -1,9 +1,8 @@
 //! Where results go.
 
 use std::io::{self, ErrorKind, Write, stdout};
-use std::path::Path;
 
-use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::OutputFile;
 
 use crate::failure::Failure;
 
@@ -15,10 +14,10 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a result to `path`, whole or not at all, or to standard output.
-pub fn deliver(path: Option<&Path>, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    match path {
-        Some(path) => write_atomically(path, write).map_err(|error| Failure::input(format!("{}: {error}", path.display()))),
+/// Writes a result to `file`, or to standard output.
+pub fn deliver(file: Option<&OutputFile>, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    match file {
+        Some(file) => Ok(file.write(write)?),
         None => {
             let mut bytes = Vec::new();
             write(&mut bytes)?;

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::write_points;
+use calibench_exchange::{Inputs, write_points};
 use calibench_measure::Board;
 use calibench_photographs::corners::detect_corners;
 use calibench_photographs::names::once;
 use clap::Args;
 
 use super::context::Context;
+use super::output;
 use super::progress::Progress;
 use crate::deliver::deliver;
 use crate::failure::Failure;
@@ -28,6 +29,7 @@ pub struct Detect {
 
 impl Detect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let output = output::table("-o", self.output.as_deref(), &Inputs::new(&self.photos))?;
         let detector = context.toolbox.detector.as_deref();
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
@@ -43,6 +45,6 @@ impl Detect {
         if seen == 0 {
             return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
         }
-        deliver(self.output.as_deref(), |file| write_points(file, found.iter().flatten()))
+        deliver(output.as_ref(), |file| write_points(file, found.iter().flatten()))
     }
 }

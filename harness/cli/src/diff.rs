@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use calibench_exchange::Inputs;
 use calibench_model::camera::CameraModel;
 use calibench_model::convert::{DifferenceOptions, difference};
 use calibench_report::plain;
 use clap::Args;
 
 use super::convert::{advise, field, positive, region, size_of};
+use super::output;
 use super::reading::Reading;
 use crate::deliver::print;
 use crate::failure::Failure;
@@ -36,6 +38,8 @@ pub struct Diff {
 
 impl Diff {
     pub fn run(&self) -> Result<(), Failure> {
+        let inputs = Inputs::new([&self.first, &self.second]);
+        let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let camera = |path: &Path| self.reading.one(path).map(|named| named.camera);
         let (first, second) = (camera(&self.first)?, camera(&self.second)?);
         let (a, b) = (first.size(), second.size());
@@ -79,9 +83,9 @@ impl Diff {
             ));
         }
         print(&text)?;
-        let Some(path) = &self.plot else { return Ok(()) };
+        let Some(plot) = &plot else { return Ok(()) };
         let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
-        Ok(field(&title, &first, &found.vectors).write(path)?)
+        Ok(field(&title, &first, &found.vectors).write(plot)?)
     }
 }
 

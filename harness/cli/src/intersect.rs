@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use calibench_adjust::approximate::{Intersection, Search, Sight, Tolerance, intersect};
 use calibench_calibrate::Survey;
-use calibench_exchange::{StationRow, read_stations, write_table};
+use calibench_exchange::{Inputs, StationRow, read_stations, write_table};
 use calibench_model::Pose;
 use clap::Args;
 
 use super::camera_files::CameraFiles;
 use super::context::Context;
+use super::output;
 use crate::deliver::deliver;
 use crate::failure::Failure;
 use crate::inputs::read_measured;
@@ -40,6 +41,8 @@ const COLUMNS: [&str; 13] =
 
 impl Intersect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let inputs = Inputs::new([&self.points, &self.stations].into_iter().chain(self.cameras.paths()));
+        let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let points = read_measured(&self.points)?;
         let survey = Survey::without_control(&points);
         let cameras = self.cameras.of(&survey.images)?;
@@ -73,7 +76,7 @@ impl Intersect {
         if !context.quiet {
             eprintln!("intersect: {} of {} targets, {failed} without a result", rows.len(), survey.targets.len());
         }
-        deliver(self.output.as_deref(), |file| write_table(file, &COLUMNS, &rows))
+        deliver(output.as_ref(), |file| write_table(file, &COLUMNS, &rows))
     }
 }
 

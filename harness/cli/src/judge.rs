@@ -1,12 +1,9 @@
 //! `calibench judge`: which operator and which camera model to trust on a folder of photographs.
 
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use calibench_calibrate::choice::{HALF, ModelChoice};
-use calibench_exchange::atomic::write_atomically;
-use calibench_exchange::read_photo;
+use calibench_exchange::{Inputs, NewFolder, read_photo};
 use calibench_judge::{JudgementError, Material, Options, judge, published_camera};
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::camera::ImageSize;
@@ -91,7 +88,8 @@ impl Judge {
             return Err(JudgementError::TooFewViews { found: self.photos.len(), needed }.into());
         }
         once(&self.photos)?;
-        let folder = self.report.as_deref().map(|path| output::folder("--report", path)).transpose()?;
+        let inputs = Inputs::new(self.photos.iter().chain(&self.published));
+        let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
         let (trial, size) = self.measure(context, &methods)?;
         let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
         let material = Material::new(&trial, &infos, self.chessboard.board, self.chessboard.side, size);
@@ -157,12 +155,12 @@ impl Judge {
         Ok((trial, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
     }
 
-    fn write(&self, folder: &Path, rows: &[Row], summary: &Summary) -> std::io::Result<()> {
+    fn write(&self, folder: &NewFolder, rows: &[Row], summary: &Summary) -> std::io::Result<()> {
         let info = RunInfo { scenario: "judge".into(), seed: self.seed, revision: env!("CARGO_PKG_VERSION").into(), detector: None };
-        write_rows(BufWriter::new(File::create(folder.join(JUDGEMENT))?), &info, rows)?;
+        folder.write(JUDGEMENT, |file| write_rows(file, &info, rows))?;
         let (text, pictures) = section(summary);
         for (name, picture) in &pictures {
-            picture.write(&folder.join(name))?;
+            folder.write(name, |file| picture.encode(file))?;
         }
         let (board, side) = (self.chessboard.board, self.chessboard.side);
         let text = format!(
@@ -173,7 +171,7 @@ impl Judge {
             board.rows,
             text.trim_end()
         );
-        write_atomically(&folder.join("README.md"), |file| file.write_all(text.as_bytes()))
+        folder.write("README.md", |file| file.write_all(text.as_bytes()))
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{MeasuredRow, Outcome, PointFile, PointRow, read_points, write_measured};
+use calibench_exchange::{Inputs, MeasuredRow, Outcome, PointFile, PointRow, read_points, write_measured};
 use calibench_photographs::points::{by_name, measure_points};
 use clap::Args;
 
 use super::context::Context;
+use super::output;
 use super::progress::Progress;
 use crate::deliver::deliver;
 use crate::failure::Failure;
@@ -29,6 +30,8 @@ pub struct Measure {
 
 impl Measure {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let inputs = Inputs::new(self.photos.iter().chain([&self.points]));
+        let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let methods = self.methods.iter().map(|text| context.method(text)).collect::<Result<Vec<_>, _>>()?;
         if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {
             return Err(Failure::input(format!("-m {}: unavailable: {why}", method.label)));
@@ -52,7 +55,7 @@ impl Measure {
             let outcome = |i: usize| outcomes[i].get(m).cloned().unwrap_or_else(|| not_given(&points[i]));
             points.iter().enumerate().map(move |(i, given)| MeasuredRow { given, method: label, outcome: outcome(i) }).collect::<Vec<_>>()
         });
-        deliver(self.output.as_deref(), |file| write_measured(file, rows))?;
+        deliver(output.as_ref(), |file| write_measured(file, rows))?;
         progress.finish(&summary(&outcomes, &points));
         Ok(())
     }

@@ -1,12 +1,92 @@
-//! What a command writes, by the option that names it.
+//! What a command writes, by the option that names it. All is checked before anything is computed.
 
+use std::io;
 use std::path::Path;
 
-use calibench_exchange::OutputFolder;
+use calibench_exchange::camera::FORMATS;
+use calibench_exchange::{Inputs, OutputFile, OutputFolder};
 
 use crate::failure::Failure;
 
-/// The folder `path` that `option` names.
-pub fn folder(option: &str, path: &Path) -> Result<OutputFolder, Failure> {
-    OutputFolder::open(path).map_err(|error| Failure::input(format!("{option} {error}")))
+/// A folder that is replaced must hold no input.
+pub fn apart(path: &Path, inputs: &Inputs) -> Result<(), Failure> {
+    inputs.lost_with(path).map_or(Ok(()), |input| Err(is_input("", path, input)))
+}
+
+/// The folder `path` that `option` names: new, empty, or one that calibench wrote; and none that holds an input.
+pub fn folder(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFolder, Failure> {
+    if let Some(input) = inputs.lost_with(path) {
+        return Err(is_input(option, path, input));
+    }
+    OutputFolder::open(path).map_err(|error| refused(option, &error))
+}
+
+/// A CSV file, if one is named.
+pub fn table(option: &str, path: Option<&Path>, inputs: &Inputs) -> Result<Option<OutputFile>, Failure> {
+    path.map(|path| file(option, path, ("a table", &["csv"]), inputs)).transpose()
+}
+
+/// A PNG file.
+pub fn picture(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    file(option, path, ("a picture", &["png"]), inputs)
+}
+
+/// The endings of camera files that are written.
+fn camera_endings() -> Vec<&'static str> {
+    let mut endings: Vec<&str> = FORMATS.iter().filter(|format| format.is_written()).map(|format| format.extension).collect();
+    // OpenCV reads both.
+    endings.extend(["yml", "yaml"]);
+    endings.sort_unstable();
+    endings.dedup();
+    endings
+}
+
+/// Whether a path is that of a camera file, by its ending.
+pub fn is_camera_name(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    ending.is_some_and(|ending| camera_endings().iter().any(|known| ending == *known))
+}
+
+/// A camera file of any format that is written; one whose format is named by another option needs no ending.
+pub fn camera(option: &str, path: &Path, is_named: bool, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    if is_named && path.extension().is_none() {
+        return checked(option, path, inputs);
+    }
+    file(option, path, ("a camera file", &camera_endings()), inputs)
+}
+
+fn file(option: &str, path: &Path, (what, endings): (&str, &[&str]), inputs: &Inputs) -> Result<OutputFile, Failure> {
+    let file = checked(option, path, inputs)?;
+    if file.has_ending(endings) {
+        return Ok(file);
+    }
+    let known: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
+    Err(Failure::input(format!("{option} {}: {what} ends in {}", path.display(), known.join(", "))))
+}
+
+fn checked(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    match inputs.written_by(path) {
+        Some(input) => Err(is_input(option, path, input)),
+        None => OutputFile::open(path).map_err(|error| refused(option, &error)),
+    }
+}
+
+/// Two outputs must be two files.
+pub fn distinct(one: (&str, Option<&OutputFile>), other: (&str, Option<&OutputFile>)) -> Result<(), Failure> {
+    match (one.1, other.1) {
+        (Some(a), Some(b)) if a.is_same(b) => {
+            Err(Failure::input(format!("{} and {} both name {}: expected two files", one.0, other.0, a.path().display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn refused(option: &str, error: &io::Error) -> Failure {
+    Failure::input(format!("{option} {error}"))
+}
+
+fn is_input(option: &str, path: &Path, input: &Path) -> Failure {
+    let (path, input) = (path.display(), input.display());
+    let option = if option.is_empty() { String::new() } else { format!("{option} ") };
+    Failure::input(format!("{option}{path}: the command reads {input} there, and would write over it; name another place"))
 }

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::{Inputs, OutputFile};
 use calibench_report::sweep;
 use calibench_report::sweep::{Choice, Layout, LoadedSweep, Metric};
 use clap::Args;
 
 use super::context::Context;
+use super::output;
 use crate::deliver::print;
 use crate::failure::Failure;
 
@@ -49,7 +50,8 @@ fn pair(text: &str) -> Result<(String, String), String> {
 
 impl Plot {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let loaded = self.load(context)?;
+        let (loaded, records) = self.load(context)?;
+        let (path, picture, numbers) = self.outputs(&loaded, &Inputs::new([records]))?;
         let choice = Choice {
             x: self.x.clone(),
             by: Some(self.map.clone().unwrap_or_else(|| self.by.clone())),
@@ -58,32 +60,42 @@ impl Plot {
             methods: self.methods.clone(),
         };
         let layout = Layout::new(&loaded, &choice, self.y, self.map.is_some())?;
-        let picture = if self.map.is_some() { sweep::map(&loaded, &layout) } else { sweep::curves(&loaded, &layout) };
-        let default = || PathBuf::from(format!("{}.png", loaded.scenario.name.replace('/', "-")));
-        let path = self.output.clone().unwrap_or_else(default);
-        let numbers = path.with_extension("csv");
-        if numbers == path {
-            return Err(Failure::input(format!("-o {}: the numbers go there; expected the name of a PNG", path.display())));
-        }
-        picture.write(&path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
-        write_atomically(&numbers, |file| sweep::write_numbers(file, &loaded, &layout).map_err(std::io::Error::other))?;
-        print(&format!("{}\n{}\n", path.display(), numbers.display()))
+        let drawn = if self.map.is_some() { sweep::map(&loaded, &layout) } else { sweep::curves(&loaded, &layout) };
+        drawn.write(&picture)?;
+        print(&format!("{}\n", path.display()))?;
+        let Some(numbers) = numbers else { return Ok(()) };
+        numbers.write(|file| sweep::write_numbers(file, &loaded, &layout).map_err(std::io::Error::from))?;
+        print(&format!("{}\n", numbers.path().display()))
     }
 
-    /// The records of the scenario of this name or file, or in this folder.
-    fn load(&self, context: &Context<'_>) -> Result<LoadedSweep, Failure> {
+    /// The picture, and its numbers beside it if it is a file.
+    fn outputs(&self, loaded: &LoadedSweep, inputs: &Inputs) -> Result<(PathBuf, OutputFile, Option<OutputFile>), Failure> {
+        let default = || PathBuf::from(format!("{}.png", loaded.scenario.name.replace('/', "-")));
+        let path = self.output.clone().unwrap_or_else(default);
+        let picture = output::picture("-o", &path, inputs)?;
+        let numbers = Some(path.with_extension("csv")).filter(|_| picture.is_file());
+        let numbers = output::table("-o: the numbers of the picture go to", numbers.as_deref(), inputs)?;
+        Ok((path, picture, numbers))
+    }
+
+    /// The records of the scenario of this name or file, or in this folder; and their folder.
+    fn load(&self, context: &Context<'_>) -> Result<(LoadedSweep, PathBuf), Failure> {
         let registry = &context.toolbox.registry;
         let folder = Path::new(&self.sweep);
         if folder.join(calibench_records::names::SCENARIO).is_file() {
             let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let found = sweep::load(folder.parent().unwrap_or(Path::new("")), &name, registry)?;
-            return found.ok_or_else(|| Failure::input(format!("{}: these records are not of a sweep", folder.display())));
+            let found = found.ok_or_else(|| Failure::input(format!("{}: these records are not of a sweep", folder.display())))?;
+            return Ok((found, folder.to_owned()));
         }
         let scenario = context.scenario(&self.sweep)?;
         if scenario.sweep.is_none() {
             return Err(Failure::input(format!("`{}` has no [sweep]; expected a scenario that sweeps a key", scenario.name)));
         }
-        let found = sweep::load(&context.places()?.records, &scenario.name, registry)?;
-        found.ok_or_else(|| Failure::input(format!("no records of `{0}`: run it first with `calibench run {0}`", scenario.name)))
+        let records = context.places()?.records;
+        let found = sweep::load(&records, &scenario.name, registry)?;
+        let found =
+            found.ok_or_else(|| Failure::input(format!("no records of `{0}`: run it first with `calibench run {0}`", self.sweep)))?;
+        Ok((found, records.join(&scenario.name)))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::print::{Paper, PrintError, PrintOptions, write_pdf, write_svg};
+use calibench_exchange::print::{Paper, PrintOptions, write_sheets};
 use calibench_scenario::Subject;
 use clap::{Args, ValueEnum};
 
@@ -46,11 +46,9 @@ impl Print {
             Size::A3 => Paper::A3,
         };
         let stem = scenario.name.replace('/', "-");
-        let options = PrintOptions { name: stem.clone(), mm_per_unit: subject.unit.mm(), paper };
-        output::folder("-o", &self.output)?.replace::<PrintError>(|folder| {
-            write_svg(folder, &subject.field, &options)?;
-            write_pdf(&folder.join(format!("{stem}.pdf")), &subject.field, &options)
-        })?;
+        let options = PrintOptions { name: stem, mm_per_unit: subject.unit.mm(), paper };
+        let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario))?;
+        output.replace(|folder| write_sheets(folder, &subject.field, &options))?;
         crate::deliver::print(&format!("{}\n", self.output.display()))
     }
 }

@@ -1,9 +1,8 @@
 //! `calibench render`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use calibench_exchange::write_png;
-use calibench_model::camera::Camera;
+use calibench_exchange::{NewFolder, encode_png};
 use calibench_random::Key;
 use calibench_run::truth;
 use calibench_run::views::Prepared;
@@ -44,7 +43,7 @@ pub struct Render {
 impl Render {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let scenario = context.scenario(&self.scenario)?;
-        let output = output::folder("-o", &self.output)?;
+        let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario))?;
         let key = Key { seed: self.seed.unwrap_or(scenario.seed), scenario: &scenario.name, trial: self.trial, view: "", target: "" };
         let mut notes = Vec::new();
         output.replace::<RunError>(|folder| {
@@ -61,7 +60,7 @@ impl Render {
         print(&format!("{}\n{}", self.output.display(), notes.iter().map(|note| format!("  {note}\n")).collect::<String>()))
     }
 
-    fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &Path) -> Result<Vec<String>, RunError> {
+    fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &NewFolder) -> Result<Vec<String>, RunError> {
         if let Some(name) = self.stations.iter().find(|name| *name != VIEW) {
             return Err(RunError::NoStation { name: name.clone(), known: VIEW.into() });
         }
@@ -69,12 +68,13 @@ impl Render {
         let scene = trial_truth(subject, key);
         let renderer = subject.renderer()?;
         let exposure = trial_picture(subject, &renderer, &scene, key)?;
-        write_png(&folder.join(format!("{VIEW}.png")), &exposure.image, subject.is_deep())?;
+        folder.write(&format!("{VIEW}.png"), |file| encode_png(file, &exposure.image, subject.is_deep()))?;
         if self.noise_free {
             let picture = calibench_synth::raster::Picture::from(&scene);
-            write_png(&folder.join(format!("{VIEW}{NOISE_FREE}.png")), &renderer.render(&picture, &[]), true)?;
+            let noise_free = renderer.render(&picture, &[]);
+            folder.write(&format!("{VIEW}{NOISE_FREE}.png"), |file| encode_png(file, &noise_free, true))?;
         }
-        truth::write_scene(&folder.join(format!("{VIEW}.csv")), &scene)?;
+        truth::write_scene(folder, &format!("{VIEW}.csv"), &scene)?;
         Ok(truth::clipping_note(VIEW, exposure.clipped, exposure.image.grey().len()).into_iter().collect())
     }
 
@@ -84,7 +84,7 @@ impl Render {
         scenario: &Scenario,
         subject: &ViewsSubject,
         key: Key<'_>,
-        folder: &Path,
+        folder: &NewFolder,
     ) -> Result<Vec<String>, RunError> {
         let drawn = subject.stations_of(key)?;
         if let Some(unknown) = self.stations.iter().find(|name| drawn.iter().all(|station| station.name != **name)) {
@@ -99,25 +99,20 @@ impl Render {
         for view in &prepared.views {
             let name = &view.station.name;
             let exposure = prepared.image(view, key)?;
-            write_png(&folder.join(format!("{name}.png")), &exposure.image, prepared.is_deep())?;
+            folder.write(&format!("{name}.png"), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
             if self.noise_free {
-                write_png(&folder.join(format!("{name}{NOISE_FREE}.png")), &prepared.irradiance(view), true)?;
+                folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
             }
-            truth::write_view(&folder.join(format!("{name}.csv")), subject, view)?;
+            truth::write_view(folder, &format!("{name}.csv"), subject, view)?;
             notes.extend(truth::clipping_note(name, exposure.clipped, exposure.image.grey().len()));
             notes.extend(truth::warnings(subject, view));
             rows.push(truth::StationRow::new(view.station, exposure.clipped));
             progress.step();
         }
-        truth::write_stations(&folder.join("stations.csv"), &rows)?;
-        truth::write_control(&folder.join("control.csv"), subject)?;
-        write_camera(&folder.join("camera"), &subject.camera)?;
+        truth::write_stations(folder, "stations.csv", &rows)?;
+        truth::write_control(folder, "control.csv", subject)?;
+        truth::write_camera(folder, "camera", &subject.camera)?;
         progress.finish(&format!("{} images", stations.len()));
         Ok(notes)
     }
-}
-
-/// The camera in its own convention: a file that every command reads.
-fn write_camera(stem: &Path, camera: &Camera) -> Result<(), RunError> {
-    truth::write_camera(stem, camera).map_err(RunError::Output)
 }

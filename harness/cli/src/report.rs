@@ -20,14 +20,18 @@ impl Report {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let mut families: BTreeMap<String, Vec<String>> = BTreeMap::new();
         let places = context.places()?;
-        let mut names = context.catalogue()?.names()?;
+        let mut names = context.scenario_names()?;
         names.extend(calibench_report::recorded(&places.records).into_iter().filter(|name| name.starts_with("local/")));
         names.sort();
         names.dedup();
         for name in names {
             families.entry(name.split('/').next().unwrap_or(&name).to_owned()).or_default().push(name);
         }
-        families.insert(conventions::FAMILY.to_owned(), Vec::new());
+        if context.is_in_project()? {
+            families.insert(conventions::FAMILY.to_owned(), Vec::new());
+        } else if families.is_empty() {
+            return Err(Failure::input(format!("{}: no records; `calibench run FILE.toml` makes them", places.records.display())));
+        }
         for paper in &self.papers {
             if !families.contains_key(paper) {
                 let known: Vec<&str> = families.keys().map(String::as_str).collect();

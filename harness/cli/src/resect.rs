@@ -4,11 +4,12 @@ use std::path::PathBuf;
 
 use calibench_adjust::approximate::{Resection, Search, Tolerance, resect};
 use calibench_calibrate::{Survey, control_of};
-use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_control, station_numbers, write_table};
+use calibench_exchange::{Inputs, POSE_COLUMNS, POSE_SIGMA_COLUMNS, read_control, station_numbers, write_table};
 use clap::Args;
 
 use super::camera_files::CameraFiles;
 use super::context::Context;
+use super::output;
 use crate::deliver::deliver;
 use crate::failure::Failure;
 use crate::inputs::read_measured;
@@ -35,6 +36,8 @@ const FURTHER_COLUMNS: [&str; 6] = ["points", "sigma0_px", "redundancy", "reject
 
 impl Resect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let inputs = Inputs::new([&self.points, &self.control].into_iter().chain(self.cameras.paths()));
+        let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let survey = Survey::new(&read_measured(&self.points)?, &read_control(&self.control)?)?;
         let cameras = self.cameras.of(&survey.images)?;
         let known: Vec<_> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
@@ -60,7 +63,7 @@ impl Resect {
             eprintln!("resect: {} of {} images oriented", rows.len(), survey.images.len());
         }
         let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &FURTHER_COLUMNS].concat();
-        deliver(self.output.as_deref(), |file| write_table(file, &columns, &rows))?;
+        deliver(output.as_ref(), |file| write_table(file, &columns, &rows))?;
         if failed.is_empty() { Ok(()) } else { Err(Failure::input(format!("{} images could not be oriented", failed.len()))) }
     }
 }

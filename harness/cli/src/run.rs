@@ -2,15 +2,14 @@
 
 use std::time::Instant;
 
-use calibench_exchange::OutputFolder;
 use calibench_measure::Configured;
 use calibench_run::Plan;
-use calibench_run::store;
-use calibench_run::store::SweepPlan;
+use calibench_run::store::{self, RecordsFolder, SweepPlan};
 use calibench_scenario::{Scenario, Subject, Sweep};
 use clap::Args;
 
 use super::context::Context;
+use super::output;
 use super::progress::Progress;
 use crate::failure::Failure;
 
@@ -64,10 +63,15 @@ impl Run {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let names = if self.all { context.catalogue()?.names()? } else { self.scenarios.clone() };
         // All are checked before the first is run.
-        let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
+        let scenarios = context.scenarios(&names)?;
         let methods = self.changes.methods(context)?;
         let records = context.places()?.records;
-        let folders = scenarios.iter().map(|scenario| store::folder(&records, &scenario.name)).collect::<Result<Vec<_>, _>>()?;
+        let folder = |(name, scenario): (&String, &Scenario)| -> Result<RecordsFolder, Failure> {
+            let path = records.join(&scenario.name);
+            output::apart(&path, &context.inputs(name, scenario))?;
+            Ok(RecordsFolder::open(&records, &scenario.name, context.origin(name, scenario))?)
+        };
+        let folders = names.iter().zip(&scenarios).map(folder).collect::<Result<Vec<_>, Failure>>()?;
         let revision = context.revision()?;
         for (scenario, folder) in scenarios.iter().zip(&folders) {
             if let Some(sweep) = &scenario.sweep {
@@ -94,7 +98,7 @@ impl Run {
         scenario: &Scenario,
         sweep: &Sweep,
         methods: &[Configured],
-        (folder, revision): (&OutputFolder, &str),
+        (folder, revision): (&RecordsFolder, &str),
     ) -> Result<(), Failure> {
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));

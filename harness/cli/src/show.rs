@@ -16,6 +16,7 @@ use calibench_synth::view::Visibility;
 use clap::Args;
 
 use super::context::Context;
+use super::output;
 use crate::deliver::print;
 use crate::failure::Failure;
 
@@ -31,11 +32,12 @@ pub struct Show {
 impl Show {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let scenario = context.scenario(&self.scenario)?;
-        let mut text = card(&scenario);
         let path = self.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scenario.name.replace('/', "-"))));
+        let output = output::picture("-o", &path, &context.inputs(&self.scenario, &scenario))?;
+        let mut text = card(&scenario);
         match picture(context, &scenario)? {
             Ok((image, targets)) => {
-                preview(&image, &targets).write(&path)?;
+                preview(&image, &targets).write(&output)?;
                 let _ = writeln!(text, "\n# preview: {}", path.display());
             }
             Err(why) => {

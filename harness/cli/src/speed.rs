@@ -4,18 +4,20 @@ use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::Inputs;
 use calibench_measure::{Configured, Operator};
 use calibench_model::{Image, Start};
 use calibench_report::speeds::{SPEEDS, Speed, Speeds};
 use calibench_run::views::first_image;
+use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject};
 use clap::Args;
 
 use super::context::Context;
+use super::output;
 use super::progress::Progress;
 use super::run::Changes;
-use crate::deliver::print;
+use crate::deliver::{deliver, print};
 use crate::failure::Failure;
 
 /// The scenarios whose methods and images are taken if none is named.
@@ -43,6 +45,9 @@ impl SpeedCommand {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let names: Vec<&str> = if self.scenarios.is_empty() { USUAL.to_vec() } else { self.scenarios.iter().map(String::as_str).collect() };
         let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
+        let inputs = Inputs::new(self.scenarios.iter().filter(|name| is_toml(name.as_ref())));
+        let path = self.output.clone().map_or_else(|| Ok::<_, Failure>(context.root()?.join(SPEEDS)), Ok)?;
+        let output = output::table("-o", Some(&path), &inputs)?;
         let methods = Changes::of_methods(&self.methods, context)?;
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
         let mut speeds = Speeds { machine: machine(), rows: Vec::new() };
@@ -56,8 +61,7 @@ impl SpeedCommand {
             speeds.rows.extend(one.install(|| self.time(scenario, methods, &image, &starts, &|| progress.step())));
             progress.finish(&format!("{} methods on {} points", methods.len(), starts.len()));
         }
-        let path = self.output.clone().map_or_else(|| Ok::<_, Failure>(context.root()?.join(SPEEDS)), Ok)?;
-        write_atomically(&path, |file| speeds.write(file)).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        deliver(output.as_ref(), |file| speeds.write(file))?;
         print(&format!("{}\n", path.display()))
     }
 

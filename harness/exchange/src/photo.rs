@@ -1,7 +1,7 @@
 //! Photographs in, images out.
 
 use std::fs::File;
-use std::io::{self, BufReader};
+use std::io::{self, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 use calibench_model::Image;
@@ -22,6 +22,9 @@ pub enum PhotoError {
         /// What the system says.
         source: io::Error,
     },
+    /// A file that cannot be written; the message names it.
+    #[error(transparent)]
+    Output(#[from] io::Error),
     /// Its content.
     #[error("{}: not an image that can be read: {source} (expected PNG, JPEG, TIFF or PNM)", path.display())]
     Content {
@@ -78,11 +81,19 @@ fn grey_of<T: Copy + Into<f64>>(values: &[T], channels: usize, full_scale: f64) 
     values.chunks_exact(channels).map(|pixel| (luma(pixel) / full_scale) as f32).collect()
 }
 
-/// Writes an image as PNG of 8 or 16 bits, compressed fast; values outside [0, 1] are clipped.
+/// Writes an image as PNG file: [`encode_png`].
 ///
 /// # Errors
 /// What the file system refuses; an older file is then as it was.
 pub fn write_png(path: &Path, image: &Image, sixteen_bits: bool) -> Result<(), PhotoError> {
+    Ok(write_atomically(path, |file| encode_png(file, image, sixteen_bits))?)
+}
+
+/// Encodes an image as PNG of 8 or 16 bits, compressed fast; values outside [0, 1] are clipped.
+///
+/// # Errors
+/// What the output refuses.
+pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
     let (width, height) = (image.width() as u32, image.height() as u32);
     let (bytes, colour) = if sixteen_bits {
         let level = |g: &f32| (g.clamp(0.0, 1.0) * 65535.0).round() as u16;
@@ -90,11 +101,8 @@ pub fn write_png(path: &Path, image: &Image, sixteen_bits: bool) -> Result<(), P
     } else {
         (image.to_u8(), ExtendedColorType::L8)
     };
-    let written: io::Result<()> = write_atomically(path, |file| {
-        let encoder = PngEncoder::new_with_quality(file, CompressionType::Fast, FilterType::Adaptive);
-        encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
-    });
-    written.map_err(|source| PhotoError::File { path: path.to_owned(), source })
+    let encoder = PngEncoder::new_with_quality(output, CompressionType::Fast, FilterType::Adaptive);
+    encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
 }
 
 #[cfg(test)]

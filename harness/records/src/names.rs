@@ -7,12 +7,25 @@ pub const RECORDS: &str = "records.csv";
 /// The scenario as it was run, in the same folder.
 pub const SCENARIO: &str = "scenario.toml";
 
-/// The folder of a cell's records in that of its scenario.
-pub fn cell_folder(folder: &Path, index: usize) -> PathBuf {
-    folder.join(format!("cell-{:04}", index + 1))
+/// In the same folder, the path of the scenario's file, if it is not one of the project's.
+pub const ORIGIN: &str = "origin.txt";
+
+/// The name of the folder of a cell's records in that of its scenario.
+pub fn cell_name(index: usize) -> String {
+    format!("cell-{:04}", index + 1)
 }
 
-/// Where the image of view `view` is kept in the folder of a scenario's records: under its full name, so that `a.jpg` and `a.png` do not meet.
+/// The folder of a cell's records in that of its scenario.
+pub fn cell_folder(folder: &Path, index: usize) -> PathBuf {
+    folder.join(cell_name(index))
+}
+
+/// The name under which the image of view `view` is kept: its full name, so that `a.jpg` and `a.png` do not meet.
+pub fn kept_image_name(view: &str) -> String {
+    format!("{view}.png")
+}
+
+/// Where the image of view `view` is kept in the folder of a scenario's records.
 pub fn kept_image(folder: &Path, view: &str) -> PathBuf {
-    folder.join(format!("{view}.png"))
+    folder.join(kept_image_name(view))
 }

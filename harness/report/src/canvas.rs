@@ -1,10 +1,10 @@
 //! Pictures: enlarged images with marks on them.
 
-use std::io;
-use std::path::Path;
+use std::io::{self, Write};
 use std::sync::Once;
 
-use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::OutputFile;
+use calibench_exchange::photograph::marked;
 use calibench_model::Image;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -173,14 +173,22 @@ impl Canvas {
         area.present().ok();
     }
 
-    /// Writes the picture as PNG.
+    /// Encodes the picture as PNG.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn encode(&self, output: &mut dyn Write) -> io::Result<()> {
+        let encoder = PngEncoder::new_with_quality(output, CompressionType::Default, FilterType::Adaptive);
+        encoder.write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8).map_err(io::Error::other)
+    }
+
+    /// Writes the picture as a PNG file of its own, marked as drawn by this program: it is replaced when it is drawn again, a photograph never is.
     ///
     /// # Errors
     /// What the file system refuses.
-    pub fn write(&self, path: &Path) -> io::Result<()> {
-        write_atomically(path, |file| {
-            let encoder = PngEncoder::new_with_quality(file, CompressionType::Default, FilterType::Adaptive);
-            encoder.write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8).map_err(io::Error::other)
-        })
+    pub fn write(&self, file: &OutputFile) -> io::Result<()> {
+        let mut png = Vec::new();
+        self.encode(&mut png)?;
+        file.write(|output| output.write_all(&marked(png)))
     }
 }

@@ -62,9 +62,9 @@ pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
     let text = format!("# {FAMILY}\n\n{}{INTRODUCTION}{}{body}", overview(&prices), contents(&body));
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| -> Result<(), ReportError> {
         for (name, picture) in &pictures {
-            picture.write(&folder.join(name))?;
+            folder.write(name, |file| picture.encode(file))?;
         }
-        Ok(fs::write(folder.join(PAGE), text.trim_end().to_owned() + "\n")?)
+        Ok(folder.write(PAGE, |file| writeln!(file, "{}", text.trim_end()))?)
     })?;
     Ok(places.reports.join(FAMILY).join(PAGE))
 }

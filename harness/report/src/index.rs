@@ -12,7 +12,7 @@ use crate::places::PAGE;
 /// What the file system refuses.
 pub fn write_index(reports: &Path) -> io::Result<()> {
     let mut names: Vec<String> = Vec::new();
-    for entry in fs::read_dir(reports)? {
+    for entry in fs::read_dir(reports).map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", reports.display())))? {
         let entry = entry?;
         if entry.path().join(PAGE).is_file() {
             names.extend(entry.file_name().into_string());
@@ -28,7 +28,7 @@ pub fn write_index(reports: &Path) -> io::Result<()> {
         "# Reports\n\nThe answer of each page; behind it stand the figures. Made by `calibench report` from the records of `calibench run` and the published tables; nothing here is written by \
          hand.\n\n{lines}"
     );
-    calibench_exchange::atomic::write_atomically(&reports.join(PAGE), |file| io::Write::write_all(file, text.as_bytes()))
+    calibench_exchange::folder::write_beside(reports, PAGE, text.as_bytes())
 }
 
 /// What follows the title, up to an empty line, on one line; its links start from the folder above.

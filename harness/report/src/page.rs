@@ -1,9 +1,8 @@
 //! The page of a report.
 
-use std::fs;
 use std::io;
-use std::path::Path;
 
+use calibench_exchange::NewFolder;
 use calibench_scenario::{Scenario, Subject};
 
 use crate::answer::{Answers, heading};
@@ -102,9 +101,9 @@ impl Page {
         }
     }
 
-    pub fn write(&self, folder: &Path) -> io::Result<()> {
+    pub fn write(&self, folder: &NewFolder) -> io::Result<()> {
         for (name, picture) in &self.pictures {
-            picture.write(&folder.join(name))?;
+            folder.write(name, |file| picture.encode(file))?;
         }
         let legend = if self.scored { scores_section::legend() } else { String::new() };
         let body = format!("{}\n\n{legend}", self.text.trim_end());
@@ -116,7 +115,7 @@ impl Page {
         let (answer, tables) = (self.answers.paragraph(), self.answers.tables());
         let answer = if answer.is_empty() { answer } else { format!("{answer}\n\n") };
         let text = format!("# {family}\n\n{answer}{tables}{}{made}\n\n{}\n", contents(&body), body.trim_end());
-        fs::write(folder.join(PAGE), text)
+        folder.write(PAGE, |file| file.write_all(text.as_bytes()))
     }
 }
 

@@ -1,9 +1,8 @@
 //! Judging the photographs of a scenario.
 
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 
+use calibench_exchange::NewFolder;
 use calibench_judge::{Material, Options, judge, published_camera};
 use calibench_model::camera::ImageSize;
 use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
@@ -20,11 +19,10 @@ use crate::{Plan, RunError};
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_judgement(folder: &Path, plan: &Plan<'_>, run: &RunInfo, trial: &Trial) -> Result<(), RunError> {
+pub fn write_judgement(folder: &NewFolder, plan: &Plan<'_>, run: &RunInfo, trial: &Trial) -> Result<(), RunError> {
     let Subject::Photographs(PhotographsSubject { judgement: Some(wanted), .. }) = &plan.scenario.subject else { return Ok(()) };
-    let rows = rows(folder, plan, wanted, trial).unwrap_or_else(|why| vec![Row::without("", "", "unavailable", &why)]);
-    let file = BufWriter::new(File::create(folder.join(JUDGEMENT))?);
-    Ok(write_rows(file, run, &rows)?)
+    let rows = rows(folder.path(), plan, wanted, trial).unwrap_or_else(|why| vec![Row::without("", "", "unavailable", &why)]);
+    Ok(folder.write(JUDGEMENT, |file| write_rows(file, run, &rows))?)
 }
 
 fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -> Result<Vec<Row>, String> {

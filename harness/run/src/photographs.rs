@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use calibench_exchange::{read_photo, write_png};
+use calibench_exchange::{encode_png, read_photo};
 use calibench_photographs::measured_board;
+use calibench_records::names::kept_image_name;
 use calibench_records::results::Trial;
 use calibench_scenario::PhotographsSubject;
 use rayon::prelude::*;
@@ -35,7 +36,7 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
     let image = read_photo(path)?;
     let view: Arc<str> = file.into();
     if let Some(folder) = plan.images {
-        write_png(&calibench_records::names::kept_image(folder, file), &image, false)?;
+        folder.write(&kept_image_name(file), |file| encode_png(file, &image, false))?;
     }
     Ok(plan.detector.map_or_else(Trial::default, |detector| measured_board(&image, &view, (detector, subject.board), plan.methods)))
 }

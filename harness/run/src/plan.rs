@@ -1,7 +1,8 @@
 //! What is run, and with what.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use calibench_exchange::NewFolder;
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::{Image, Rejection, Start, Unknowns};
 use calibench_records::results::MethodInfo;
@@ -24,7 +25,7 @@ pub struct Plan<'a> {
     /// Is the Cramér-Rao bound of each target wanted?
     pub bounds: bool,
     /// Where the images of the first trial are written, if anywhere.
-    pub images: Option<&'a Path>,
+    pub images: Option<&'a NewFolder>,
 }
 
 impl<'a> Plan<'a> {

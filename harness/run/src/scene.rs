@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use calibench_exchange::write_png;
+use calibench_exchange::encode_png;
 use calibench_model::{Image, Scene, Start};
 use calibench_random::{Key, Purpose, stream};
+use calibench_records::names::kept_image_name;
 use calibench_records::results::{PointResult, Trial};
 use calibench_scenario::{Phase, Pixels, SceneSubject, Starts};
 use calibench_synth::draw;
@@ -50,7 +51,7 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     let truth = trial_truth(subject, key);
     let image = trial_picture(subject, renderer, &truth, key)?.image;
     if let Some(folder) = plan.images.filter(|_| number == 0) {
-        write_png(&calibench_records::names::kept_image(folder, VIEW), &image, subject.is_deep())?;
+        folder.write(&kept_image_name(VIEW), |file| encode_png(file, &image, subject.is_deep()))?;
     }
     let starts = starts(subject, &image, &truth, key);
     let view: Arc<str> = VIEW.into();

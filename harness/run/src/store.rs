@@ -1,13 +1,13 @@
 //! Where records lie, and how a run replaces them.
 
-use std::fs::File;
-use std::io::BufWriter;
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::OutputFolder;
+use calibench_exchange::{NewFile, NewFolder, OutputFolder};
 use calibench_measure::{BoardDetector, Configured, Registry};
 use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
-use calibench_records::names::{RECORDS, SCENARIO, cell_folder};
+use calibench_records::names::{ORIGIN, RECORDS, SCENARIO, cell_name};
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_scenario::camera::KEPT;
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
@@ -16,67 +16,91 @@ use crate::judgement::write_judgement;
 use crate::{Plan, RunError};
 
 /// Copies the scenario's camera file to where the scenario as it was run looks for it.
-fn keep_camera(scenario: &Scenario, folder: &Path) -> Result<(), RunError> {
+fn keep_camera(scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> {
     let Subject::Views(views) = &scenario.subject else { return Ok(()) };
-    let Some((path, name)) = views.camera_file.as_deref().and_then(|path| Some((path, path.file_name()?))) else { return Ok(()) };
-    let kept = folder.join(KEPT);
-    std::fs::create_dir(&kept)?;
-    std::fs::copy(path, kept.join(name))?;
-    Ok(())
+    let named = views.camera_file.as_deref().and_then(|path| Some((path, path.file_name()?.to_str()?)));
+    let Some((path, name)) = named else { return Ok(()) };
+    let bytes = fs::read(path).map_err(|error| io::Error::new(error.kind(), format!("{}: {error}", path.display())))?;
+    Ok(folder.folder(KEPT)?.write(name, |file| file.write_all(&bytes))?)
 }
 
-/// The folder of the records of scenario `name` below the records' folder.
-///
-/// # Errors
-/// As [`OutputFolder::open`].
-pub fn folder(records: &Path, name: &str) -> std::io::Result<OutputFolder> {
-    OutputFolder::open(&records.join(name))
+/// The folder of a scenario's records.
+pub struct RecordsFolder {
+    output: OutputFolder,
+    /// The scenario's file, if it is not one of the project's.
+    origin: Option<String>,
+}
+
+impl RecordsFolder {
+    /// That of scenario `name` below the folder of all records. `origin` is the scenario's file, if it is not one of the project's: files in several
+    /// folders may give their scenarios one name.
+    ///
+    /// # Errors
+    /// As [`OutputFolder::open`]; records of another file that is still there.
+    pub fn open(records: &Path, name: &str, origin: Option<&Path>) -> io::Result<Self> {
+        let path = records.join(name);
+        let output = OutputFolder::open(&path)?;
+        let origin = origin.map(|file| Ok::<_, io::Error>(file.canonicalize()?.to_string_lossy().into_owned())).transpose()?;
+        let there = match fs::read_to_string(path.join(ORIGIN)) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            other => Some(other?.trim_end().to_owned()),
+        };
+        let other = match &there {
+            Some(file) if there != origin && Path::new(file).exists() => Some(file.as_str()),
+            None if origin.is_some() && path.join(SCENARIO).exists() => Some("a scenario of the project"),
+            _ => None,
+        };
+        let Some(other) = other else { return Ok(Self { output, origin }) };
+        let why = "whose name is the same; nothing was written: rename one of them, or delete these records";
+        Err(io::Error::new(io::ErrorKind::AlreadyExists, format!("{}: holds the records of {other}, {why}", path.display())))
+    }
+
+    /// Keeps what tells the scenario.
+    fn keep(&self, scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> {
+        folder.write(SCENARIO, |file| file.write_all(scenario.text.as_bytes()))?;
+        if let Some(origin) = &self.origin {
+            folder.write(ORIGIN, |file| writeln!(file, "{origin}"))?;
+        }
+        keep_camera(scenario, folder)
+    }
 }
 
 /// Runs `plan` and puts its records, its scenario and the first trial's images in the place of older ones, all at once, when it is done.
 ///
 /// # Errors
 /// What the run or the file system refuses; older records are then as they were.
-pub fn run(output: &OutputFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
+pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
     let name = plan.scenario.name.clone();
-    output.replace(|folder: &Path| {
+    records.output.replace(|folder| {
         let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
         write_records(folder, &name, &plan, revision, step)?;
-        std::fs::write(folder.join(SCENARIO), &plan.scenario.text)?;
-        keep_camera(plan.scenario, folder)
+        records.keep(plan.scenario, folder)
     })
 }
 
 /// Runs `plan` and writes its records into `folder`, under the name `name`.
-fn write_records(folder: &Path, name: &str, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
+fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
-    let file = BufWriter::new(File::create(folder.join(RECORDS))?);
-    let mut records = RecordWriter::new(file, info.clone(), plan.method_infos()).map_err(std::io::Error::other)?;
+    let mut records = RecordWriter::new(folder.create(RECORDS)?, info.clone(), plan.method_infos()).map_err(io::Error::other)?;
     let mut calibrations = calibrations(folder, name, plan, revision)?;
     plan.run(step, &mut |trial| {
         if let Some(writer) = &mut calibrations {
-            writer.trial(trial.number, &trial.calibrations).map_err(std::io::Error::other)?;
+            writer.trial(trial.number, &trial.calibrations).map_err(io::Error::other)?;
         }
-        records.trial(&trial).map_err(std::io::Error::other)?;
+        records.trial(&trial).map_err(io::Error::other)?;
         write_judgement(folder, plan, &info, &trial)
     })?;
-    calibrations.map_or(Ok(()), CalibrationWriter::finish).map_err(std::io::Error::other)?;
-    Ok(records.finish().map_err(std::io::Error::other)?)
+    calibrations.map_or(Ok(()), CalibrationWriter::finish).map_err(io::Error::other)?;
+    Ok(records.finish().map_err(io::Error::other)?)
 }
 
 /// What writes the adjustments of `plan`, if it makes any.
-fn calibrations(
-    folder: &Path,
-    name: &str,
-    plan: &Plan<'_>,
-    revision: &str,
-) -> Result<Option<CalibrationWriter<BufWriter<File>>>, RunError> {
+fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str) -> Result<Option<CalibrationWriter<NewFile>>, RunError> {
     let Subject::Views(views) = &plan.scenario.subject else { return Ok(None) };
     let Some(calibration) = &views.calibration else { return Ok(None) };
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: None };
-    let file = BufWriter::new(File::create(folder.join(CALIBRATIONS))?);
     let sets = calibration.sets.iter().map(|set| set.name.clone()).collect();
-    let writer = CalibrationWriter::new(file, info, plan.method_infos(), sets).map_err(std::io::Error::other)?;
+    let writer = CalibrationWriter::new(folder.create(CALIBRATIONS)?, info, plan.method_infos(), sets).map_err(io::Error::other)?;
     Ok(Some(writer))
 }
 
@@ -107,23 +131,26 @@ pub struct SweepPlan<'a> {
 ///
 /// # Errors
 /// What a run or the file system refuses; older records are then as they were.
-pub fn run_sweep(output: &OutputFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
+pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
     let scenario = plan.scenario;
-    output.replace(|folder: &Path| {
+    records.output.replace(|folder| {
         for index in 0..plan.sweep.cells() {
-            let cell = parse_cell(scenario, plan.sweep, index, plan.registry).map_err(std::io::Error::other)?;
+            let cell = parse_cell(scenario, plan.sweep, index, plan.registry).map_err(io::Error::other)?;
             let mut run = Plan::new(&cell, plan.detector, plan.data.clone());
             if !plan.methods.is_empty() {
                 run.methods = plan.methods;
             }
             run.seed = plan.seed.unwrap_or(cell.seed);
             run.trials = plan.trials.filter(|_| !cell.is_deterministic()).unwrap_or(cell.trials);
-            let folder = cell_folder(folder, index);
-            std::fs::create_dir_all(&folder)?;
-            write_records(&folder, &format!("{}@{}", scenario.name, plan.sweep.label(index)), &run, revision, &|| ())?;
+            write_records(
+                &folder.folder(&cell_name(index))?,
+                &format!("{}@{}", scenario.name, plan.sweep.label(index)),
+                &run,
+                revision,
+                &|| (),
+            )?;
             step();
         }
-        std::fs::write(folder.join(SCENARIO), &scenario.text)?;
-        keep_camera(scenario, folder)
+        records.keep(scenario, folder)
     })
 }

@@ -1,11 +1,9 @@
 //! The truth of rendered images as files.
 
 use std::io;
-use std::path::Path;
 
-use calibench_exchange::atomic::write_atomically;
-use calibench_exchange::camera::{FORMATS, NamedCamera, write_camera as write_file};
-use calibench_exchange::{ControlRow, POSE_COLUMNS, station_numbers, write_table};
+use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
+use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, station_numbers, write_table};
 use calibench_model::camera::Camera;
 use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene};
 use calibench_scenario::ViewsSubject;
@@ -51,28 +49,28 @@ impl<'a> StationRow<'a> {
     }
 }
 
-fn table(path: &Path, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
-    write_atomically(path, |file| write_table(file, columns, rows))
+fn table(folder: &NewFolder, name: &str, columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> io::Result<()> {
+    folder.write(name, |file| write_table(file, columns, rows))
 }
 
 /// All targets of a flat scene: name, kind, true position (px).
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_scene(path: &Path, scene: &Scene) -> io::Result<()> {
+pub fn write_scene(folder: &NewFolder, name: &str, scene: &Scene) -> io::Result<()> {
     let row = |target: &calibench_model::SceneTarget| {
         vec![crate::VIEW.to_owned(), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
     };
-    table(path, &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
+    table(folder, name, &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
 }
 
 /// All targets of a testfield in one image, with what is to be known of each.
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_view(path: &Path, subject: &ViewsSubject, view: &PreparedView<'_>) -> io::Result<()> {
+pub fn write_view(folder: &NewFolder, name: &str, subject: &ViewsSubject, view: &PreparedView<'_>) -> io::Result<()> {
     let rows = subject.field.targets.iter().zip(&view.truth).map(|(target, truth)| view_row(subject, view, target, truth));
-    table(path, &VIEW_COLUMNS, rows)
+    table(folder, name, &VIEW_COLUMNS, rows)
 }
 
 fn view_row(subject: &ViewsSubject, view: &PreparedView<'_>, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
@@ -137,7 +135,7 @@ pub fn clipping_note(view: &str, clipped: Clipped, pixels: usize) -> Option<Stri
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_stations(path: &Path, rows: &[StationRow<'_>]) -> io::Result<()> {
+pub fn write_stations(folder: &NewFolder, name: &str, rows: &[StationRow<'_>]) -> io::Result<()> {
     let columns = [&["image"], &POSE_COLUMNS[..], &["clipped_low", "clipped_high"]].concat();
     let row = |row: &StationRow<'_>| {
         let mut cells = vec![row.station.name.clone()];
@@ -145,30 +143,30 @@ pub fn write_stations(path: &Path, rows: &[StationRow<'_>]) -> io::Result<()> {
         cells.extend([row.clipped.low, row.clipped.high].iter().map(u64::to_string));
         cells
     };
-    table(path, &columns, rows.iter().map(row))
+    table(folder, name, &columns, rows.iter().map(row))
 }
 
 /// The targets as a user knows them: surveyed coordinates, object units, with their standard deviations where the testfield was surveyed with any error.
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_control(path: &Path, subject: &ViewsSubject) -> io::Result<()> {
+pub fn write_control(folder: &NewFolder, name: &str, subject: &ViewsSubject) -> io::Result<()> {
     let sigmas = subject.survey_sigma.map(|sigma| [sigma; 3]);
     let row = |target: &ObjectTarget| ControlRow { target: target.id.clone(), position: target.surveyed.coords.into(), sigmas };
     let rows: Vec<ControlRow> = subject.field.targets.iter().map(row).collect();
-    write_atomically(path, |file| calibench_exchange::write_control(file, &rows))
+    folder.write(name, |file| calibench_exchange::write_control(file, &rows))
 }
 
 /// The camera as a file of the first format that holds it as it is; its ending is put to `stem`.
 ///
 /// # Errors
-/// What the file system refuses.
-pub fn write_camera(stem: &Path, camera: &Camera) -> io::Result<()> {
+/// A camera that no format holds, and what the file system refuses.
+pub fn write_camera(folder: &NewFolder, stem: &str, camera: &Camera) -> io::Result<()> {
     let named = [NamedCamera::new("", *camera)];
     let mut last = None;
     for format in FORMATS.iter().filter(|format| format.is_written()) {
-        match write_file(&stem.with_extension(format.extension), format, &named) {
-            Ok(()) => return Ok(()),
+        match camera_text(format, &named) {
+            Ok(text) => return folder.write(&format!("{stem}.{}", format.extension), |file| file.write_all(text.as_bytes())),
             Err(error) => last = Some(error),
         }
     }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use calibench_exchange::write_png;
+use calibench_exchange::encode_png;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, PixelPoint, Start};
 use calibench_random::{Key, Purpose, stream};
+use calibench_records::names::kept_image_name;
 use calibench_records::results::{PointResult, Trial};
 use calibench_scenario::{Calibration, ViewsSubject};
 use calibench_synth::raster::{Picture, Renderer};
@@ -171,7 +172,7 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
     for view in &prepared.views {
         let image = prepared.image(view, key)?.image;
         if let Some(folder) = plan.images.filter(|_| number == 0) {
-            write_png(&calibench_records::names::kept_image(folder, &view.station.name), &image, prepared.is_deep())?;
+            folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, prepared.is_deep()))?;
         }
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
         let starts = match &prepared.subject.detector {

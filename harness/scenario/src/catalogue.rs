@@ -10,10 +10,13 @@ use thiserror::Error;
 
 use super::{Scenario, check};
 
+/// What the names of scenarios begin with whose files are not in the folder.
+pub const LOCAL: &str = "local/";
+
 /// The folder of scenario files.
 #[derive(Clone, Debug)]
 pub struct Catalogue {
-    folder: PathBuf,
+    folder: Option<PathBuf>,
 }
 
 /// A scenario that cannot be loaded.
@@ -43,7 +46,12 @@ pub enum CatalogueError {
 impl Catalogue {
     /// The scenarios below `folder`.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
-        Self { folder: folder.into() }
+        Self { folder: Some(folder.into()) }
+    }
+
+    /// No folder: only files are loaded.
+    pub fn outside() -> Self {
+        Self { folder: None }
     }
 
     /// The names of all scenarios, sorted.
@@ -52,7 +60,7 @@ impl Catalogue {
     /// A folder that cannot be read.
     pub fn names(&self) -> Result<Vec<String>, CatalogueError> {
         let mut names = Vec::new();
-        collect(&self.folder, "", &mut names)?;
+        self.folder.as_ref().map_or(Ok(()), |folder| collect(folder, "", &mut names))?;
         names.sort();
         Ok(names)
     }
@@ -62,7 +70,10 @@ impl Catalogue {
     /// # Errors
     /// No such scenario, or every mistake in its file.
     pub fn load(&self, name: &str, registry: &Registry) -> Result<Scenario, CatalogueError> {
-        let path = if is_toml(Path::new(name)) { PathBuf::from(name) } else { self.folder.join(format!("{name}.toml")) };
+        let path = match &self.folder {
+            Some(folder) if !is_toml(Path::new(name)) => folder.join(format!("{name}.toml")),
+            _ => PathBuf::from(name),
+        };
         let text = match fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == io::ErrorKind::NotFound && !is_toml(Path::new(name)) => return Err(self.unknown(name)),
@@ -79,16 +90,17 @@ impl Catalogue {
 
     /// The path below the folder, or, for a file elsewhere, `local/` and its stem.
     fn name_of(&self, path: &Path) -> String {
-        let below = match (path.canonicalize(), self.folder.canonicalize()) {
-            (Ok(path), Ok(folder)) => path.strip_prefix(folder).ok().map(Path::to_owned),
+        let below = match (path.canonicalize(), self.folder.as_ref().map(|folder| folder.canonicalize())) {
+            (Ok(path), Some(Ok(folder))) => path.strip_prefix(folder).ok().map(Path::to_owned),
             _ => None,
         };
         let stem = |path: &Path| path.with_extension("").to_string_lossy().replace('\\', "/");
-        below.map_or_else(|| format!("local/{}", path.file_stem().unwrap_or_default().to_string_lossy()), |path| stem(&path))
+        below.map_or_else(|| format!("{LOCAL}{}", path.file_stem().unwrap_or_default().to_string_lossy()), |path| stem(&path))
     }
 }
 
-fn is_toml(path: &Path) -> bool {
+/// Whether a name is that of a scenario's file.
+pub fn is_toml(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "toml")
 }
 

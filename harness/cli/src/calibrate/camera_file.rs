@@ -4,11 +4,12 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use calibench_calibrate::Calibration;
+use calibench_exchange::OutputFile;
 use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
 use calibench_exchange::camera::ending::{as_it_is, by_ending};
 use calibench_exchange::camera::fit::losses;
 use calibench_exchange::camera::target::{Given, goal};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_text, write_camera};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_text};
 use calibench_model::camera::TangentialOrder;
 use calibench_model::convert::{ConvertError, ConvertOptions, Method};
 
@@ -17,7 +18,8 @@ use crate::failure::Failure;
 
 /// Writes the cameras with their covariances: in the convention asked for, or in the first format that holds them as they are and has the file's ending.
 /// Several go into one file if its format holds several, or else into a file each.
-pub fn write(path: &Path, calibration: &Calibration<'_>, to: Option<&str>) -> Result<(), Failure> {
+pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str>) -> Result<(), Failure> {
+    let path = output.path();
     let made = (0..calibration.cameras())
         .map(|camera| made(path, &calibration.named_camera(camera).map_err(Failure::Input)?, to))
         .collect::<Result<Vec<_>, Failure>>()?;
@@ -27,12 +29,22 @@ pub fn write(path: &Path, calibration: &Calibration<'_>, to: Option<&str>) -> Re
     }
     if let Some(format) = common(&made) {
         let all: Vec<NamedCamera> = made.into_iter().map(|(_, result)| result).collect();
-        return Ok(write_camera(path, format, &all)?);
+        let text = camera_text(format, &all).map_err(|error| Failure::input(format!("-o {}: {error}", path.display())))?;
+        return Ok(output.write(|file| file.write_all(text.as_bytes()))?);
     }
-    for (format, result) in made {
-        let own = own(path, &result.name);
-        write_camera(&own, format, &[NamedCamera { name: String::new(), ..result }])?;
-        eprintln!("{}: written", own.display());
+    if !output.is_file() {
+        return Err(Failure::input(format!("-o {}: the format holds one camera a file; expected the name of a file", path.display())));
+    }
+    let file = |(format, result): (_, NamedCamera)| {
+        let own = OutputFile::open(&own(path, &result.name)).map_err(|error| Failure::input(format!("-o {error}")))?;
+        let text = camera_text(format, &[NamedCamera { name: String::new(), ..result }]);
+        Ok((text.map_err(|error| Failure::input(format!("-o {}: {error}", own.path().display())))?, own))
+    };
+    // All are possible before the first is written.
+    let files = made.into_iter().map(file).collect::<Result<Vec<_>, Failure>>()?;
+    for (text, own) in files {
+        own.write(|file| file.write_all(text.as_bytes()))?;
+        eprintln!("{}: written", own.path().display());
     }
     Ok(())
 }

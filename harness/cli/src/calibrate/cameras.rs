@@ -1,5 +1,6 @@
 //! The cameras of a calibration: which images each took, and what is known and wanted of it.
 
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use calibench_calibrate::{Optics, Prior};
@@ -90,6 +91,11 @@ impl FromStr for Claim {
 }
 
 impl Cameras {
+    /// The camera files to start from.
+    pub fn starts(&self) -> impl Iterator<Item = PathBuf> {
+        self.start.iter().map(|start| PathBuf::from(&start.value))
+    }
+
     /// The pixel pitch of a camera, um.
     pub fn pitch_um(&self, camera: &str) -> Option<f64> {
         of(&self.pitch, camera).copied()

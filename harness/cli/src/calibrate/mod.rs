@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::{Calibration, DatumChoice, Settings, prepare};
-use calibench_exchange::{ControlRow, OutputFolder, PointFile, read_control, read_observed_stations};
+use calibench_exchange::{ControlRow, Inputs, OutputFile, OutputFolder, PointFile, read_control, read_observed_stations};
 use calibench_photographs::{Chessboard, Corners, Photo};
 use calibench_report::calibration::{summary, write_report};
 use clap::Args;
@@ -73,7 +73,10 @@ pub struct Calibrate {
 
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let report = self.report.as_deref().map(|path| output::folder("--report", path)).transpose()?;
+        let given = [&self.points, &self.control, &self.poses].into_iter().flatten().cloned();
+        let inputs = Inputs::new(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
+        let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
+        let output = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
         let (corners, control) = self.input(context)?;
         let settings = self.settings(&corners.photos)?;
         let mut prepared = prepare(&corners.points, &control, &settings)?;
@@ -82,7 +85,7 @@ impl Calibrate {
         if !self.compare.is_empty() {
             calibration.compare(&sets(&self.compare)?)?;
         }
-        self.deliver(&calibration, report.as_ref())?;
+        self.deliver(&calibration, output.as_ref(), report.as_ref())?;
         print(&summary(&calibration))
     }
 
@@ -109,9 +112,9 @@ impl Calibrate {
         })
     }
 
-    fn deliver(&self, calibration: &Calibration<'_>, report: Option<&OutputFolder>) -> Result<(), Failure> {
-        if let Some(path) = &self.output {
-            camera_file::write(path, calibration, self.to.as_deref())?;
+    fn deliver(&self, calibration: &Calibration<'_>, output: Option<&OutputFile>, report: Option<&OutputFolder>) -> Result<(), Failure> {
+        if let Some(output) = output {
+            camera_file::write(output, calibration, self.to.as_deref())?;
         }
         Ok(report.map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, folder)))?)
     }

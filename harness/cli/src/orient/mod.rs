@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use calibench_adjust::approximate::{ApproximateError, RelativeOrientation, Search, Tolerance, orient_relatively};
 use calibench_diagnostics::nearest;
-use calibench_exchange::PointRow;
+use calibench_exchange::{Inputs, PointRow};
 use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
 use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
+use super::output;
 use crate::deliver::deliver;
 use crate::failure::Failure;
 use crate::inputs::{camera, read_measured};
@@ -65,6 +66,10 @@ pub struct Orient {
 
 impl Orient {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let inputs = Inputs::new([&self.points, &self.camera].into_iter().chain(&self.camera_right));
+        let output = output::table("-o", self.output.as_deref(), &inputs)?;
+        let poses = output::table("--poses", self.poses.as_deref(), &inputs)?;
+        output::distinct(("-o", output.as_ref()), ("--poses", poses.as_ref()))?;
         let left = camera(&self.camera, self.size)?;
         let right = self.camera_right.as_deref().map_or(Ok(left), |path| camera(path, self.size))?;
         let seen = self.seen(&read_measured(&self.points)?)?;
@@ -74,9 +79,9 @@ impl Orient {
             eprint!("{}", words::summary(&model, [&self.left, &self.right]));
         }
         words::warnings(&model).iter().for_each(|warning| eprintln!("warning: {warning}"));
-        deliver(self.output.as_deref(), |file| model.write_points(file))?;
-        match &self.poses {
-            Some(path) => deliver(Some(path), |file| model.write_poses(file, [&self.left, &self.right])),
+        deliver(output.as_ref(), |file| model.write_points(file))?;
+        match &poses {
+            Some(poses) => deliver(Some(poses), |file| model.write_poses(file, [&self.left, &self.right])),
             None => Ok(()),
         }
     }

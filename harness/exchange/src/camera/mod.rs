@@ -187,7 +187,7 @@ fn check(camera: &NamedCamera) -> Result<(), CameraFileError> {
 pub fn write_camera(path: &Path, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), CameraFileError> {
     let name = path.display().to_string();
     let text = camera_text(format, cameras).map_err(|error| error.in_file(&name))?;
-    write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(|error| CameraFileError::new(error.to_string()).in_file(&name))
+    write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(|error: std::io::Error| CameraFileError::new(error.to_string()))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The list of the files that calibench wrote into a folder.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io;
 use std::path::Path;
@@ -11,10 +11,10 @@ use super::at;
 pub const MANIFEST: &str = ".calibench-manifest";
 const HEAD: &str = "# calibench wrote these files and replaces no others here: blake3 digest and name";
 
-/// Files below a folder: their names, with `/` between folders, and their digests.
+/// Files below a folder: their names, with `/` between folders, and their digests, of which each may have one of several.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Manifest {
-    files: BTreeMap<String, String>,
+    files: BTreeMap<String, BTreeSet<String>>,
 }
 
 /// What an entry of a folder is; links are not followed.
@@ -72,13 +72,13 @@ pub(super) fn digest(path: &Path) -> io::Result<String> {
 impl Manifest {
     /// That of a folder that calibench has just filled.
     pub fn of(folder: &Path) -> io::Result<Self> {
-        let mut files = BTreeMap::new();
+        let mut manifest = Self::default();
         for entry in entries(folder)?.into_iter().filter(|entry| entry.kind == Kind::File) {
             let name = entry.name.filter(|name| !name.contains(char::is_control));
             let name = name.ok_or_else(|| io::Error::other(format!("{:?}: no name for a file", entry.path)))?;
-            files.insert(name, digest(&entry.path)?);
+            manifest.add(&name, &digest(&entry.path)?);
         }
-        Ok(Self { files })
+        Ok(manifest)
     }
 
     /// That of `folder`, if it has one.
@@ -102,17 +102,19 @@ impl Manifest {
     /// # Errors
     /// The number of the first line that is wrong.
     fn parse(text: &str) -> Result<Self, usize> {
-        let mut files = BTreeMap::new();
+        let mut manifest = Self::default();
         for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.starts_with('#')) {
             let is_digest = |digest: &str| digest.len() == 64 && digest.bytes().all(|byte| byte.is_ascii_hexdigit());
             let (digest, name) = line.split_once("  ").filter(|(digest, name)| is_digest(digest) && !name.is_empty()).ok_or(index + 1)?;
-            files.insert(name.to_owned(), digest.to_owned());
+            manifest.add(name, digest);
         }
-        Ok(Self { files })
+        Ok(manifest)
     }
 
-    fn text(&self) -> String {
-        let lines = self.files.iter().map(|(name, digest)| format!("{digest}  {name}\n"));
+    pub fn text(&self) -> String {
+        let one =
+            |(name, digests): (&String, &BTreeSet<String>)| digests.iter().map(|digest| format!("{digest}  {name}\n")).collect::<String>();
+        let lines = self.files.iter().map(one);
         format!("{HEAD}\n{}", lines.collect::<String>())
     }
 
@@ -122,12 +124,27 @@ impl Manifest {
         fs::write(&path, self.text()).map_err(|error| at(&path, &error))
     }
 
-    /// The digest of the file of this name, if it is listed.
-    pub fn digest(&self, name: &str) -> Option<&str> {
-        self.files.get(name).map(String::as_str)
+    /// Lists a file, beside what it may be already.
+    pub fn add(&mut self, name: &str, digest: &str) {
+        self.files.entry(name.to_owned()).or_default().insert(digest.to_owned());
     }
 
-    /// Lies a listed file below this folder?
+    /// Lists a file as this alone.
+    pub fn set(&mut self, name: &str, digest: &str) {
+        self.files.insert(name.to_owned(), [digest.to_owned()].into());
+    }
+
+    /// Whether a file of this name is listed.
+    pub fn lists(&self, name: &str) -> bool {
+        self.files.contains_key(name)
+    }
+
+    /// Whether it is listed with this digest.
+    pub fn has(&self, name: &str, digest: &str) -> bool {
+        self.files.get(name).is_some_and(|digests| digests.contains(digest))
+    }
+
+    /// Whether a listed file lies below this folder.
     pub fn has_folder(&self, name: &str) -> bool {
         let below = format!("{name}/");
         self.files.range(below.clone()..).next().is_some_and(|(file, _)| file.starts_with(&below))
@@ -152,7 +169,7 @@ mod tests {
         let manifest = Manifest::of(folder.path()).unwrap();
         manifest.write(folder.path()).unwrap();
         assert_eq!(Manifest::read(folder.path()).unwrap(), Some(manifest.clone()));
-        assert_eq!(manifest.digest("README.md").unwrap(), blake3::hash(b"README.md").to_hex().as_str());
+        assert!(manifest.has("README.md", blake3::hash(b"README.md").to_hex().as_str()) && !manifest.has("README.md", ""));
         assert!(manifest.has_folder("cell") && !manifest.has_folder("cel") && !manifest.has_folder("README.md"));
     }
 

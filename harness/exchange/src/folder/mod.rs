@@ -3,7 +3,9 @@
 //! Each folder holds a [manifest](manifest): the files that calibench wrote there, with their digests. A folder in which anything else is, or in
 //! which a file was changed since, is refused. A new one is filled beside the old one and exchanged with it at once.
 
+mod beside;
 mod manifest;
+mod new;
 mod place;
 mod scratch;
 
@@ -11,8 +13,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+pub use beside::write_beside;
 pub use manifest::MANIFEST;
 use manifest::Manifest;
+pub use new::{NewFile, NewFolder};
 use place::Place;
 use scratch::Scratch;
 
@@ -38,14 +42,14 @@ impl OutputFolder {
     ///
     /// # Errors
     /// As [`Self::open`], what `fill` returns, and what the file system refuses.
-    pub fn replace<E: From<io::Error>>(&self, fill: impl FnOnce(&Path) -> Result<(), E>) -> Result<(), E> {
+    pub fn replace<E: From<io::Error>>(&self, fill: impl FnOnce(&NewFolder) -> Result<(), E>) -> Result<(), E> {
         let made = MadeFolders::above(&self.path)?;
         let place = Place::of(&self.path)?;
         place.check()?;
         let scratch = Scratch::new(&place.parent, &place.name)?;
-        let new = scratch.new_folder();
+        let new = NewFolder::new(scratch.new_folder(), self.path.clone());
         fill(&new)?;
-        Manifest::of(&new)?.write(&new)?;
+        Manifest::of(new.path())?.write(new.path())?;
         // Whatever came into the old folder while the new one was filled is seen here.
         let old = place.check()?;
         scratch.put(&place.path(), old.as_ref())?;
@@ -82,6 +86,11 @@ impl Drop for MadeFolders {
 /// An error of the file system with the path that it is about.
 pub(crate) fn at(path: &Path, error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+}
+
+/// The same while a file is written, which tries again after an interrupt.
+pub(crate) fn named(path: &Path, error: io::Error) -> io::Error {
+    if error.kind() == io::ErrorKind::Interrupted { error } else { at(path, &error) }
 }
 
 #[cfg(test)]

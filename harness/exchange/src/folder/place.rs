@@ -133,12 +133,10 @@ fn obstacle(entry: &Entry, manifest: &Manifest) -> io::Result<Option<&'static st
     let Some(name) = &entry.name else { return Ok(Some("")) };
     Ok(match entry.kind {
         Kind::File if name == MANIFEST => None,
-        Kind::File => match manifest.digest(name) {
-            None => Some(""),
-            Some(_) if fs::metadata(&entry.path)?.permissions().readonly() => Some(" (write-protected)"),
-            Some(written) if digest(&entry.path)? != written => Some(" (changed)"),
-            Some(_) => None,
-        },
+        Kind::File if !manifest.lists(name) => Some(""),
+        Kind::File if fs::metadata(&entry.path)?.permissions().readonly() => Some(" (write-protected)"),
+        Kind::File if !manifest.has(name, &digest(&entry.path)?) => Some(" (changed)"),
+        Kind::File => None,
         Kind::Folder if manifest.has_folder(name) => None,
         Kind::Folder => Some(" (a folder)"),
         Kind::Other => Some(" (no regular file)"),

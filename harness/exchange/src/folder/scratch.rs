@@ -133,7 +133,7 @@ fn remove_listed(folder: &Path, manifest: &Manifest) -> io::Result<()> {
     for entry in entries(folder)? {
         let Some(name) = &entry.name else { continue };
         match entry.kind {
-            Kind::File if manifest.digest(name).is_some() => fs::remove_file(&entry.path)?,
+            Kind::File if manifest.lists(name) => fs::remove_file(&entry.path)?,
             Kind::Folder if manifest.has_folder(name) => folders.push(entry.path),
             _ => {}
         }

@@ -2,10 +2,10 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use super::{MANIFEST, OutputFolder};
+use super::{MANIFEST, NewFolder, OutputFolder};
 
-fn write(text: &'static str) -> impl FnOnce(&Path) -> io::Result<()> {
-    move |folder| fs::write(folder.join("page"), text)
+fn write(text: &'static str) -> impl FnOnce(&NewFolder) -> io::Result<()> {
+    move |folder| folder.write("page", |file| file.write_all(text.as_bytes()))
 }
 
 fn replace(path: &Path, text: &'static str) -> io::Result<()> {
@@ -22,8 +22,8 @@ fn names(folder: &Path) -> Vec<String> {
 fn a_folder_is_replaced_whole_or_not_at_all() {
     let parent = tempfile::tempdir().unwrap();
     let place = parent.path().join("a/b");
-    let failing = |folder: &Path| {
-        fs::write(folder.join("page"), "half")?;
+    let failing = |folder: &NewFolder| {
+        write("half")(folder)?;
         Err::<(), _>(io::Error::other("interrupted"))
     };
     assert!(OutputFolder::open(&place).unwrap().replace(failing).is_err());
@@ -71,11 +71,30 @@ fn what_comes_while_the_new_folder_is_filled_is_kept() {
     replace(&place, "old").unwrap();
     let result = OutputFolder::open(&place).unwrap().replace(|folder| {
         fs::write(place.join("notes.txt"), "mine")?;
-        fs::write(folder.join("page"), "new")
+        write("new")(folder)
     });
     assert!(result.unwrap_err().to_string().contains("notes.txt"));
     assert_eq!(fs::read_to_string(place.join("page")).unwrap(), "old");
     assert_eq!(names(&place), [MANIFEST, "notes.txt", "page"]);
+}
+
+#[test]
+fn names_lead_nowhere_else_and_are_there_once() {
+    let parent = tempfile::tempdir().unwrap();
+    let place = parent.path().join("out");
+    for name in ["../page", "/page", "a/../../page", "", ".", "..", "a\nb", "a\\b", MANIFEST, "a/.calibench-manifest"] {
+        let result = OutputFolder::open(&place).unwrap().replace(|folder| folder.write(name, |_| Ok::<_, io::Error>(())));
+        let error = result.unwrap_err().to_string();
+        assert!(error.contains("out: `") && error.contains("cannot be the name of a file"), "{name}: {error}");
+    }
+    let twice = |folder: &NewFolder| write("one")(folder).and_then(|()| write("two")(folder));
+    let error = OutputFolder::open(&place).unwrap().replace(twice).unwrap_err().to_string();
+    assert!(error.contains("out/page: two results have this name"), "{error}");
+    assert!(names(parent.path()).is_empty());
+    let below = |folder: &NewFolder| write("one")(folder).and_then(|()| write("two")(&folder.folder("cell")?));
+    OutputFolder::open(&place).unwrap().replace(below).unwrap();
+    replace(&place, "new").unwrap();
+    assert_eq!(names(&place), [MANIFEST, "page"]);
 }
 
 #[test]
@@ -141,7 +160,7 @@ fn two_write_side_by_side_and_nothing_of_them_stays() {
     let at = |name: &str| parent.path().join(name);
     let outer = OutputFolder::open(&at("a")).unwrap().replace(|folder| {
         replace(&at("b"), "b")?;
-        fs::write(folder.join("page"), "a")
+        write("a")(folder)
     });
     outer.unwrap();
     assert_eq!(names(parent.path()), ["a", "b"]);

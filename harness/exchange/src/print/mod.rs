@@ -8,12 +8,11 @@ mod pdf;
 mod svg;
 
 use std::io;
-use std::path::{Path, PathBuf};
 
 use calibench_model::Testfield;
 use thiserror::Error;
 
-use crate::atomic::write_atomically;
+use crate::folder::NewFolder;
 
 pub use layout::{Paper, Sheet, sheets};
 pub use pdf::pdf;
@@ -72,27 +71,17 @@ pub enum PrintError {
     Io(#[from] io::Error),
 }
 
-/// Writes one SVG file a page into `folder` and returns their paths.
+/// Writes one SVG file a page into `folder`, and all pages as the PDF file `NAME.pdf`.
 ///
 /// # Errors
 /// What cannot be printed, and what the file system refuses.
-pub fn write_svg(folder: &Path, field: &Testfield, options: &PrintOptions) -> Result<Vec<PathBuf>, PrintError> {
+pub fn write_sheets(folder: &NewFolder, field: &Testfield, options: &PrintOptions) -> Result<(), PrintError> {
     let pages = sheets(field, options)?;
-    let write = |sheet: &Sheet<'_>| {
-        let path = folder.join(format!("{}.svg", sheet.file_stem));
-        write_atomically(&path, |file| file.write_all(svg(sheet).as_bytes()).map_err(PrintError::from))?;
-        Ok(path)
-    };
-    pages.iter().map(write).collect()
-}
-
-/// Writes all pages into the PDF file `path`.
-///
-/// # Errors
-/// What cannot be printed, and what the file system refuses.
-pub fn write_pdf(path: &Path, field: &Testfield, options: &PrintOptions) -> Result<(), PrintError> {
-    let bytes = pdf(&sheets(field, options)?)?;
-    write_atomically(path, |file| file.write_all(&bytes).map_err(PrintError::from))
+    let pdf = pdf(&pages)?;
+    for sheet in &pages {
+        folder.write(&format!("{}.svg", sheet.file_stem), |file| file.write_all(svg(sheet).as_bytes()))?;
+    }
+    Ok(folder.write(&format!("{}.pdf", options.name), |file| file.write_all(&pdf))?)
 }
 
 /// A length in mm to a nanometre, as short as can be.

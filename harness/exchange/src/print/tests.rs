@@ -1,9 +1,11 @@
 use std::f64::consts::FRAC_PI_2;
+use std::path::PathBuf;
 
 use calibench_model::testfield::{Area, Curve, Outline, PlatePoint};
 use calibench_model::{Plate, Testfield};
 
 use super::*;
+use crate::OutputFolder;
 
 /// A sheet of 300 x 200 mm with a triangle, a disc inside a square, and a sector of 200 degrees that turns from v towards u.
 fn field() -> Testfield {
@@ -188,14 +190,14 @@ fn tiles_cover_a_plate_without_gap_or_overlap() {
 #[test]
 fn files_are_written_whole() {
     let folder = tempfile::tempdir().unwrap();
-    let paths = write_svg(folder.path(), &field(), &options(Paper::A4)).unwrap();
-    assert_eq!(paths.len(), 2);
-    assert!(paths.iter().all(|path| std::fs::read_to_string(path).unwrap().ends_with("</svg>\n")));
-    let path = folder.path().join("field.pdf");
-    write_pdf(&path, &field(), &options(Paper::A4)).unwrap();
-    assert_eq!(contents(&std::fs::read(&path).unwrap()).len(), 2);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
-    assert!(matches!(write_pdf(&folder.path().join("no/field.pdf"), &field(), &options(Paper::A4)), Err(PrintError::Io(_))));
+    let output = OutputFolder::open(&folder.path().join("out")).unwrap();
+    output.replace(|folder| write_sheets(folder, &field(), &options(Paper::A4))).unwrap();
+    let paths: Vec<PathBuf> = std::fs::read_dir(folder.path().join("out")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let with = |ending: &str| paths.iter().filter(|path| path.extension().is_some_and(|e| e == ending)).collect::<Vec<_>>();
+    let (svgs, pdfs) = (with("svg"), with("pdf"));
+    assert_eq!((svgs.len(), pdfs.len()), (2, 1));
+    assert!(svgs.iter().all(|path| std::fs::read_to_string(path).unwrap().ends_with("</svg>\n")));
+    assert_eq!(contents(&std::fs::read(pdfs[0]).unwrap()).len(), 2);
 }
 
 #[test]

@@ -10,9 +10,7 @@ mod rows;
 mod settings;
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io;
-use std::path::Path;
 
 use calibench_exchange::OutputFolder;
 use calibench_measure::Registry;
@@ -64,11 +62,22 @@ pub fn write(places: &Places, names: &[String], registry: &Registry) -> Result<W
     }
     let which = page::which(&groups(&parts, &speeds), &speeds.machine, &evidence(&parts));
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| {
-        files.iter().try_for_each(|(name, picture): &(String, Canvas)| picture.write(&folder.join(name)))?;
-        numbers(&parts, &folder.join(NUMBERS)).map_err(io::Error::other)?;
-        fs::write(folder.join(WHICH), &which.text)?;
-        let page = format!("# Atlas of operators\n\n{}\n\n{}{}{}\n", which.answer, contents(&text), introduction(), text.trim_end());
-        fs::write(folder.join(PAGE), page)
+        files.iter().try_for_each(|(name, picture): &(String, Canvas)| folder.write(name, |file| picture.encode(file)))?;
+        folder.write(NUMBERS, |file| Ok::<_, io::Error>(numbers(&parts, file)?))?;
+        folder.write(WHICH, |file| file.write_all(which.text.as_bytes()))?;
+        let page = format!(
+            "# Atlas of operators
+
+{}
+
+{}{}{}
+",
+            which.answer,
+            contents(&text),
+            introduction(),
+            text.trim_end()
+        );
+        folder.write(PAGE, |file| file.write_all(page.as_bytes()))
     })?;
     Ok(Written::New(places.reports.join(FAMILY).join(PAGE)))
 }
@@ -236,10 +245,10 @@ fn evidence(parts: &Parts) -> String {
 }
 
 /// Every figure of every cell and method.
-fn numbers(parts: &Parts, path: &Path) -> Result<(), csv::Error> {
+fn numbers(parts: &Parts, output: &mut dyn io::Write) -> Result<(), csv::Error> {
     const METRICS: [Metric; 7] =
         [Metric::Rmse, Metric::Bias, Metric::Scatter, Metric::Ratio, Metric::Predicted, Metric::Lost, Metric::Rejected];
-    let mut csv = csv::Writer::from_path(path)?;
+    let mut csv = csv::Writer::from_writer(output);
     let named = METRICS.iter().map(|metric| metric.name().0);
     csv.write_record(["scenario", "cell", "method"].into_iter().chain(named).chain(["points"]))?;
     for (name, part) in parts {

@@ -2,11 +2,10 @@
 
 use std::fmt::Write;
 use std::io;
-use std::path::Path;
 
 use calibench_adjust::{Significance, Use};
 use calibench_calibrate::Calibration;
-use calibench_exchange::atomic::write_atomically;
+use calibench_exchange::NewFolder;
 use calibench_model::camera::CameraModel;
 
 use super::limits::{BASIC, CORRELATED, DOUBTFUL};
@@ -21,7 +20,7 @@ const MOST: usize = 200;
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_report(calibration: &Calibration<'_>, folder: &Path) -> io::Result<()> {
+pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     tables::write(calibration, folder)?;
     let mut text = format!("# Calibration\n\n{}\n", facts(calibration));
     for camera in 0..calibration.cameras() {
@@ -42,7 +41,7 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &Path) -> io::Result<
         "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
          targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points).\n",
     );
-    write_atomically(&folder.join("README.md"), |file| file.write_all(text.as_bytes()))
+    folder.write("README.md", |file| file.write_all(text.as_bytes()))
 }
 
 /// What a user reads first: the parameters with their standard deviations and what is wrong with them.

@@ -1,9 +1,9 @@
 //! Sets of parameters beside each other, for the page, the terminal and as CSV.
 
 use std::io;
-use std::path::Path;
 
 use calibench_calibrate::{Compared, ComparedSet, SetResult};
+use calibench_exchange::NewFolder;
 
 use super::csv::table;
 use super::limits::{BASIC, DOUBTFUL};
@@ -63,7 +63,7 @@ fn tests(result: &SetResult) -> String {
 }
 
 /// Writes `sets.csv`: a row for each set and parameter, with what holds of the whole set; one row with a reason for a set that is not determined.
-pub(super) fn write(compared: &Compared, path: &Path) -> io::Result<()> {
+pub(super) fn write(compared: &Compared, folder: &NewFolder) -> io::Result<()> {
     let columns = [
         "set",
         "parameter",
@@ -85,7 +85,7 @@ pub(super) fn write(compared: &Compared, path: &Path) -> io::Result<()> {
         "reason",
     ];
     let rows = compared.sets.iter().enumerate().flat_map(|(index, set)| csv_rows(index, set));
-    table(path, &columns, rows)
+    table(folder, "sets.csv", &columns, rows)
 }
 
 fn csv_rows(index: usize, set: &ComparedSet) -> Vec<Vec<String>> {

@@ -2,27 +2,25 @@
 
 use std::collections::HashMap;
 use std::io;
-use std::path::Path;
 
 use calibench_adjust::{Found, PointReliability, Significance, Use};
 use calibench_calibrate::Calibration;
-use calibench_exchange::atomic::write_atomically;
-use calibench_exchange::{ControlRow, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control};
+use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control};
 use calibench_model::camera::CameraModel;
 
 use super::csv::table;
 
 /// Writes all tables into `folder`.
-pub(super) fn write(calibration: &Calibration<'_>, folder: &Path) -> io::Result<()> {
-    residuals(calibration, &folder.join("residuals.csv"))?;
+pub(super) fn write(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
+    residuals(calibration, folder)?;
     if let Some(compared) = &calibration.compared {
-        super::sets_page::write(compared, &folder.join("sets.csv"))?;
+        super::sets_page::write(compared, folder)?;
     }
-    parameters(calibration, &folder.join("parameters.csv"))?;
-    correlations(calibration, &folder.join("correlations.csv"))?;
-    stations(calibration, &folder.join("stations.csv"))?;
+    parameters(calibration, folder)?;
+    correlations(calibration, folder)?;
+    stations(calibration, folder)?;
     let rows = object_points(calibration);
-    write_atomically(&folder.join("points.csv"), |file| write_control(file, &rows))
+    folder.write("points.csv", |file| write_control(file, &rows))
 }
 
 fn texts<const N: usize>(values: Option<[f64; N]>) -> Vec<String> {
@@ -30,7 +28,7 @@ fn texts<const N: usize>(values: Option<[f64; N]>) -> Vec<String> {
 }
 
 /// Every row that was given, and every target that a method could not measure, with what became of it. Residuals are adjusted less observed, px.
-fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+fn residuals(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let prepared = calibration.prepared;
     let survey = &prepared.survey;
     let mut rows: Vec<Option<Vec<String>>> = vec![None; survey.sights.len()];
@@ -94,11 +92,11 @@ fn residuals(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         "status",
         "reason",
     ];
-    table(path, &columns, rows.into_iter().flatten().chain(unmeasured))
+    table(folder, "residuals.csv", &columns, rows.into_iter().flatten().chain(unmeasured))
 }
 
 /// All parameters; those that were not solved for have no standard deviation.
-fn parameters(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+fn parameters(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let tests = calibration.solution.significance().unwrap_or_default();
     let of_camera = |camera: usize| {
         let rows = of_camera(calibration, &tests, camera);
@@ -106,7 +104,7 @@ fn parameters(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         rows.into_iter().map(move |row| [vec![name.to_owned()], row].concat())
     };
     let columns = ["camera", "parameter", "unit", "value", "sigma", "t", "p", "status"];
-    table(path, &columns, (0..calibration.cameras()).flat_map(of_camera))
+    table(folder, "parameters.csv", &columns, (0..calibration.cameras()).flat_map(of_camera))
 }
 
 fn of_camera(calibration: &Calibration<'_>, tests: &[Significance], camera: usize) -> Vec<Vec<String>> {
@@ -135,16 +133,16 @@ fn of_camera(calibration: &Calibration<'_>, tests: &[Significance], camera: usiz
 }
 
 /// Every pair of solved parameters once.
-fn correlations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+fn correlations(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let rho = calibration.covariances.correlations();
     let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
     let pairs = (0..names.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
     let rows = pairs.map(|(i, j)| vec![names[i].clone(), names[j].clone(), rho[(i, j)].to_string()]);
-    table(path, &["first", "second", "rho"], rows)
+    table(folder, "correlations.csv", &["first", "second", "rho"], rows)
 }
 
 /// Poses as `render` writes them, with standard deviations: of X0 in object units, of a small rotation about the camera's axes in degrees.
-fn stations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
+fn stations(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &["points", "rms_px", "camera"]].concat();
     let (poses, rms) = (calibration.solution.poses(), calibration.solution.rms_by_image());
     let observations = &calibration.prepared.network.observations;
@@ -160,7 +158,7 @@ fn stations(calibration: &Calibration<'_>, path: &Path) -> io::Result<()> {
         row.push(calibration.name_of(calibration.owner(index)).to_owned());
         row
     };
-    table(path, &columns, calibration.prepared.survey.images.iter().enumerate().map(row))
+    table(folder, "stations.csv", &columns, calibration.prepared.survey.images.iter().enumerate().map(row))
 }
 
 /// Object points as a control file; fixed ones have no standard deviation.

@@ -8,9 +8,9 @@ mod residuals;
 mod uncertainty;
 
 use std::io;
-use std::path::Path;
 
 use calibench_calibrate::Calibration;
+use calibench_exchange::NewFolder;
 
 use crate::Canvas;
 
@@ -23,7 +23,7 @@ pub(super) struct Picture {
 }
 
 /// Draws all pictures into `folder`, camera by camera.
-pub(super) fn draw(calibration: &Calibration<'_>, folder: &Path) -> io::Result<Vec<Picture>> {
+pub(super) fn draw(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<Vec<Picture>> {
     let mut drawn = Vec::new();
     for camera in 0..calibration.cameras() {
         let (prefix, whose) = match calibration.cameras() {
@@ -32,7 +32,7 @@ pub(super) fn draw(calibration: &Calibration<'_>, folder: &Path) -> io::Result<V
         };
         for (file, caption, canvas) in of_camera(calibration, camera) {
             let file = format!("{prefix}{file}");
-            canvas.write(&folder.join(&file))?;
+            folder.write(&file, |output| canvas.encode(output))?;
             drawn.push(Picture { file, caption: format!("{whose}{caption}") });
         }
     }
