@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use calibench_exchange::OutputFile;
 use calibench_gate::{
     BaselineError, Ceilings, Cells, Check as Gate, FigureSums, Finding, INDEX, Index, Rules, Table, Verdict, Verdicts, baseline_path,
     figures_path, json, junit, read_baseline, render,
@@ -11,8 +12,9 @@ use clap::Args;
 
 use super::context::Context;
 use super::gated::{Gated, Keep, Outcome, Source, cell_verdicts, folder_of, gated};
+use super::output;
 use super::recorded::stored;
-use crate::deliver::{deliver, print};
+use crate::deliver::print;
 use crate::failure::Failure;
 
 #[derive(Args)]
@@ -42,8 +44,9 @@ pub struct Check {
 
 impl Check {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let junit = self.junit.as_deref().map(|path| output::findings("--junit", path)).transpose()?;
         if let Some(against) = &self.against {
-            return self.against(context, against);
+            return self.against(context, against, junit.as_ref());
         }
         let folder = context.root()?.join("reference/baselines");
         // What is missing is said before anything is run.
@@ -63,11 +66,11 @@ impl Check {
         let tables: Vec<&Table> = all.iter().filter_map(Gated::table).collect();
         gate.ceilings(&ceilings, &tables);
         let of = |table: &&Table| table.methods().map(|(label, _)| (table.scenario.clone(), label.to_string())).collect::<Vec<_>>();
-        self.report(gate, &tables.iter().flat_map(of).collect::<Vec<_>>())
+        self.report(gate, &tables.iter().flat_map(of).collect::<Vec<_>>(), junit.as_ref())
     }
 
     /// Compares with records instead of baselines.
-    fn against(&self, context: &Context<'_>, against: &Path) -> Result<(), Failure> {
+    fn against(&self, context: &Context<'_>, against: &Path, junit: Option<&OutputFile>) -> Result<(), Failure> {
         let (mut gate, mut compared) = (Gate::new(), Vec::new());
         let mut each = |scenario: &Scenario, cell: Option<usize>, table: &Table| {
             let mut earlier = stored(&folder_of(against, scenario, cell), &table.scenario, scenario)?;
@@ -80,16 +83,16 @@ impl Check {
             Ok(())
         };
         gated(context, &self.scenarios, &mut Source { records: self.records.clone(), kept: None, each: &mut each })?;
-        self.report(gate, &compared)
+        self.report(gate, &compared, junit)
     }
 
-    fn report(&self, gate: Gate, compared: &[(String, String)]) -> Result<(), Failure> {
+    fn report(&self, gate: Gate, compared: &[(String, String)], findings_file: Option<&OutputFile>) -> Result<(), Failure> {
         let rules = Rules { strict: self.strict, locked: self.locked };
         let tally = gate.tally();
         let findings = gate.conclude();
-        if let Some(path) = &self.junit {
+        if let Some(file) = findings_file {
             let text = junit(&findings, compared, rules);
-            deliver(Some(path.as_path()), |file| file.write_all(text.as_bytes()))?;
+            file.write(|file| file.write_all(text.as_bytes()))?;
         }
         print(&if self.json { json(&findings, rules, tally) } else { render(&findings, rules, tally) })?;
         if findings.iter().any(|finding| finding.fails_by(rules)) {

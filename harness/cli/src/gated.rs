@@ -6,7 +6,7 @@ use calibench_gate::{Cells, Coordinates, FigureSums, Kept, PointSums, Table, Ver
 use calibench_measure::Configured;
 use calibench_report::verdicts;
 use calibench_run::Plan;
-use calibench_run::store::{self, SweepPlan};
+use calibench_run::store::{self, RecordsFolder, SweepPlan};
 use calibench_scenario::{Scenario, Sweep, parse_cell};
 
 use super::context::Context;
@@ -180,7 +180,7 @@ fn run(plan: &Plan<'_>, name: &str, step: &(dyn Fn() + Sync)) -> Result<Table, F
 
 /// Runs a scenario into `records`: its figures are then those of the records, as reports have them.
 fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Result<(), Failure> {
-    let (output, revision) = (store::folder(records, &scenario.name)?, context.revision()?);
+    let (output, revision) = (RecordsFolder::open(records, &scenario.name, None)?, context.revision()?);
     let Some(sweep) = &scenario.sweep else {
         let mut plan = plan(context, scenario)?;
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);

@@ -31,6 +31,11 @@ pub fn picture(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile,
     file(option, path, ("a picture", &["png"]), inputs)
 }
 
+/// A JUnit XML file.
+pub fn findings(option: &str, path: &Path) -> Result<OutputFile, Failure> {
+    file(option, path, ("a JUnit file", &["xml"]), &Inputs::default())
+}
+
 /// The endings of camera files that are written.
 fn camera_endings() -> Vec<&'static str> {
     let mut endings: Vec<&str> = FORMATS.iter().filter(|format| format.is_written()).map(|format| format.extension).collect();
