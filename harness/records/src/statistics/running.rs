@@ -120,4 +120,37 @@ mod tests {
         });
         assert!(covered.count() > 170);
     }
+
+    /// Squares 1, 4, 9 against 4, 1, 4: means 14/3 and 3, variances 49/3 and 3, covariance 1, so that the relative variance of the ratio of means is
+    /// (3/4 + 1/3 - 1/7) / 3; t(0.975, 2) = 4.302653.
+    #[test]
+    fn the_interval_of_a_ratio_has_the_scatter_of_both_and_what_they_share() {
+        let mut paired = Paired::default();
+        [(1.0, 2.0), (-2.0, 1.0), (3.0, -2.0)].into_iter().for_each(|(own, reference)| paired.add(own, reference));
+        let (ratio, half) = paired.ratio().unwrap();
+        assert!((ratio - 1.247_219_129).abs() < 1e-9, "sqrt(14 / 9): {ratio}");
+        assert!((half.unwrap() / 1.502_319_6 - 1.0).abs() < 1e-6, "{half:?}");
+        // A reference that scatters alone: half = t / 2 * ratio * (s / mean) / sqrt(n).
+        let mut alone = Paired::default();
+        [1.0, 2.0, 3.0].into_iter().for_each(|reference| alone.add(1.0, reference));
+        let (ratio, half) = alone.ratio().unwrap();
+        assert!((ratio - (3.0_f64 / 14.0).sqrt()).abs() < 1e-12);
+        let by_hand = 4.302_652_73 / 2.0 * ratio * ((49.0_f64 / 3.0).sqrt() / (14.0 / 3.0)) / 3.0_f64.sqrt();
+        assert!((half.unwrap() / by_hand - 1.0).abs() < 1e-6, "{half:?} {by_hand}");
+    }
+
+    #[test]
+    fn a_ratio_of_nothing_is_none_and_one_trial_has_no_interval() {
+        assert_eq!(Paired::default().ratio(), None);
+        let mut zero = Paired::default();
+        zero.add(1.0, 0.0);
+        assert_eq!(zero.ratio(), None, "nothing is a multiple of an exact method");
+        let mut one = Paired::default();
+        one.add(3.0, 2.0);
+        assert_eq!(one.ratio(), Some((1.5, None)));
+        let mut exact = Paired::default();
+        [1.0, 2.0].into_iter().for_each(|reference| exact.add(0.0, reference));
+        assert_eq!(exact.ratio(), Some((0.0, None)));
+        assert_eq!((Running::default().mean(), Running::default().deviation(), Running::default().half()), (None, None, None));
+    }
 }

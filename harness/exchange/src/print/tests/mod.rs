@@ -7,6 +7,8 @@ use calibench_model::{Plate, Testfield};
 use super::*;
 use crate::OutputFolder;
 
+mod paper;
+
 /// A sheet of 300 x 200 mm with a triangle, a disc inside a square, and a sector of 200 degrees that turns from v towards u.
 fn field() -> Testfield {
     let area = |outline, level, ground| Area { outline, level, ground };
