@@ -26,7 +26,7 @@ fn writers() -> Vec<FileWriter> {
         new(&["speed", "mine.toml", "-q", "--rounds", "3"], "-o", "csv", "mine.toml"),
         new(&["measure", "wall/s01-r1.png", "-q", "--points", "starts.csv", "-m", "pixel"], "-o", "csv", "wall/s01-r1.png"),
         new(&["measure", "wall/s01-r1.png", "-q", "--points", "starts.csv", "-m", "pixel"], "--output", "csv", "starts.csv"),
-        new(&["detect", "board/s01.png", "-q", "--chessboard", "9x6"], "-o", "csv", "board/s01.png"),
+        new(&["detect", "board/s01-r1.png", "-q", "--chessboard", "9x6"], "-o", "csv", "board/s01-r1.png"),
         new(&WALL, "-o", "toml", "points.csv"),
         new(&[&WALL[..], &["--start", "wall/camera.toml"]].concat(), "-o", "toml", "wall/camera.toml"),
         new(&[&["resect", "-q", "--control", "control.csv"][..], &points, &camera].concat(), "-o", "csv", "control.csv"),

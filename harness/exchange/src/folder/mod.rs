@@ -46,7 +46,7 @@ impl OutputFolder {
         let made = MadeFolders::above(&self.path)?;
         let place = Place::of(&self.path)?;
         place.check()?;
-        let scratch = Scratch::new(&place.parent, &place.name)?;
+        let scratch = Scratch::new(&place.parent, &place.name, &self.path)?;
         let new = NewFolder::new(scratch.new_folder(), self.path.clone());
         fill(&new)?;
         Manifest::of(new.path())?.write(new.path())?;

@@ -22,14 +22,17 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// Makes one in `parent` for the folder `name` in it, after removing those that killed processes left there.
-    pub fn new(parent: &Path, name: &str) -> io::Result<Self> {
+    /// Makes one in `parent` for the folder `name` in it, which the user calls `shown`, after removing those that killed processes left there.
+    pub fn new(parent: &Path, name: &str, shown: &Path) -> io::Result<Self> {
         clear(parent)?;
         loop {
-            let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(parent).map_err(|error| at(parent, &error))?.keep();
-            if let Some(lock) = lock(&folder, name).map_err(|error| at(&folder, &error))? {
+            let folder = tempfile::Builder::new().prefix(PREFIX).tempdir_in(parent).map_err(|error| at(shown, &error))?.keep();
+            if let Some(lock) = lock(&folder, name).map_err(|error| {
+                remove(&folder).ok();
+                at(shown, &error)
+            })? {
                 let scratch = Self { folder, _lock: lock };
-                fs::create_dir(scratch.new_folder()).map_err(|error| at(parent, &error))?;
+                fs::create_dir(scratch.new_folder()).map_err(|error| at(shown, &error))?;
                 return Ok(scratch);
             }
         }
@@ -123,8 +126,13 @@ fn remove(folder: &Path) -> io::Result<()> {
             return Ok(());
         }
     }
-    fs::remove_file(folder.join(LOCK))?;
+    if_there(fs::remove_file(folder.join(LOCK)))?;
     fs::remove_dir(folder)
+}
+
+/// Nothing to remove is no error.
+fn if_there(removed: io::Result<()>) -> io::Result<()> {
+    removed.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })
 }
 
 /// Removes the files of `manifest`, the manifest, and the folders that are then empty.
@@ -139,7 +147,7 @@ fn remove_listed(folder: &Path, manifest: &Manifest) -> io::Result<()> {
         }
     }
     // Last: whoever finds the rest knows what it is.
-    fs::remove_file(folder.join(MANIFEST)).or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
+    if_there(fs::remove_file(folder.join(MANIFEST)))?;
     for folder in folders.iter().rev() {
         fs::remove_dir(folder).ok();
     }
@@ -190,7 +198,7 @@ mod tests {
         let parent = tempfile::tempdir().unwrap();
         let at = |name: &str| parent.path().join(name);
         let page = |folder: &Path| fs::read_to_string(folder.join("page")).unwrap();
-        let scratch = Scratch::new(parent.path(), "a").unwrap();
+        let scratch = Scratch::new(parent.path(), "a", Path::new("a")).unwrap();
         for (folder, text) in [(at("a"), "old"), (scratch.new_folder(), "new")] {
             fs::create_dir_all(&folder).unwrap();
             fs::write(folder.join("page"), text).unwrap();
@@ -213,7 +221,7 @@ mod tests {
     #[test]
     fn what_came_at_the_last_moment_is_given_back() {
         let parent = tempfile::tempdir().unwrap();
-        let (place, scratch) = (parent.path().join("a"), Scratch::new(parent.path(), "a").unwrap());
+        let (place, scratch) = (parent.path().join("a"), Scratch::new(parent.path(), "a", Path::new("a")).unwrap());
         fs::create_dir_all(place.join("cell")).unwrap();
         fs::write(place.join("cell/page"), "old").unwrap();
         let old = Manifest::of(&place).unwrap();
