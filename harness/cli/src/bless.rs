@@ -11,7 +11,8 @@ use clap::Args;
 
 use super::context::Context;
 use super::gated::{Gated, Keep, Outcome, Source, cell_verdicts, gated};
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Bless {

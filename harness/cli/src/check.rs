@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::atomic::write_atomically;
 use calibench_gate::{
     BaselineError, Ceilings, Cells, Check as Gate, FigureSums, Finding, INDEX, Index, Rules, Table, Verdict, Verdicts, baseline_path,
     figures_path, json, junit, read_baseline, render,
@@ -13,7 +12,8 @@ use clap::Args;
 use super::context::Context;
 use super::gated::{Gated, Keep, Outcome, Source, cell_verdicts, folder_of, gated};
 use super::recorded::stored;
-use super::{Failure, print};
+use crate::deliver::{deliver, print};
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Check {
@@ -89,8 +89,7 @@ impl Check {
         let findings = gate.conclude();
         if let Some(path) = &self.junit {
             let text = junit(&findings, compared, rules);
-            write_atomically(path, |file| file.write_all(text.as_bytes()))
-                .map_err(|error: std::io::Error| Failure::input(format!("{}: {error}", path.display())))?;
+            deliver(Some(path.as_path()), |file| file.write_all(text.as_bytes()))?;
         }
         print(&if self.json { json(&findings, rules, tally) } else { render(&findings, rules, tally) })?;
         if findings.iter().any(|finding| finding.fails_by(rules)) {

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::FolderWriter;
 use calibench_gate::{Cells, Coordinates, FigureSums, Kept, PointSums, Table, Verdicts, fingerprint};
 use calibench_measure::Configured;
 use calibench_report::verdicts;
@@ -13,7 +12,7 @@ use calibench_scenario::{Scenario, Sweep, parse_cell};
 use super::context::Context;
 use super::progress::Progress;
 use super::recorded::stored;
-use super::{Failure, scenario_failure};
+use crate::failure::{Failure, scenario_failure};
 
 /// A scenario and what became of it.
 pub struct Gated {
@@ -181,17 +180,17 @@ fn run(plan: &Plan<'_>, name: &str, step: &(dyn Fn() + Sync)) -> Result<Table, F
 
 /// Runs a scenario into `records`: its figures are then those of the records, as reports have them.
 fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Result<(), Failure> {
-    let (writer, revision) = (FolderWriter::new(records)?, context.revision()?);
+    let (output, revision) = (store::folder(records, &scenario.name)?, context.revision()?);
     let Some(sweep) = &scenario.sweep else {
         let mut plan = plan(context, scenario)?;
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
-        store::run(&writer, &mut plan, &revision, &|| progress.step())?;
+        store::run(&output, &mut plan, &revision, &|| progress.step())?;
         progress.finish("measured");
         return Ok(());
     };
     let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
     let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, detector, data: context.data()?, registry };
-    Ok(store::run_sweep(&writer, &plan, &revision, &|| ())?)
+    Ok(store::run_sweep(&output, &plan, &revision, &|| ())?)
 }
 
 /// The table with what its plan knows of it: if it was made `now`, the scenario's text, all parameters and libraries.

@@ -7,7 +7,8 @@ use clap::Args;
 
 use super::bless::Bless;
 use super::context::Context;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 /// What is written, by its path in the project.
 const FILES: [(&str, &str); 4] = [

@@ -5,7 +5,8 @@ use calibench_gate::{Coordinates, Table, baseline_path, read_baseline};
 use clap::Args;
 
 use super::context::Context;
-use super::{Failure, print};
+use crate::deliver::print;
+use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Power {

@@ -12,7 +12,7 @@ use calibench_records::points::read_records;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo, Outcome, Trial};
 use calibench_scenario::{Scenario, Subject};
 
-use super::Failure;
+use crate::failure::Failure;
 
 /// The records of `scenario`, or of a cell of its sweep, in `folder` as a table called `name`.
 ///
