@@ -7,6 +7,7 @@ use calibench_photographs::points::{by_name, measure_points};
 use clap::Args;
 
 use super::context::Context;
+use super::photos::say_turns;
 use super::progress::Progress;
 use crate::deliver::deliver;
 use crate::failure::Failure;
@@ -45,6 +46,7 @@ impl Measure {
         }
         // What is wrong with the photographs' names is said before any is read.
         by_name(&self.photos, &points)?;
+        say_turns(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let outcomes = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
         let rows = (0..methods.len()).flat_map(|m| {

@@ -15,7 +15,7 @@ pub mod table;
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
 pub use control::{ControlRow, read_control, write_control};
 pub use folder::OutputFolder;
-pub use photo::{PhotoError, read_photo, write_png};
+pub use photo::{Photo, PhotoError, Turn, parse_photo, read_photo, turn_of, write_png};
 pub use points::{LostRow, PointFile, PointFileError, PointRow, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use stations::{ObservedStation, POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_observed_stations, read_stations, station_numbers};
