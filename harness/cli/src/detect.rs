@@ -10,6 +10,7 @@ use clap::Args;
 
 use super::context::Context;
 use super::output;
+use super::photos::say_turns;
 use super::progress::Progress;
 use crate::deliver::deliver;
 use crate::failure::Failure;
@@ -34,6 +35,7 @@ impl Detect {
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
+        say_turns(&self.photos)?;
         let found = detect_corners(&self.photos, self.chessboard, detector, &|| progress.step())?;
         let seen = found.iter().filter(|rows| !rows.is_empty()).count();
         progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use super::context::Context;
 use super::convert::positive;
 use super::output;
-use super::photos::one_size;
+use super::photos::{one_size, say_turns};
 use super::progress::Progress;
 use crate::deliver::print;
 use crate::failure::Failure;
@@ -128,6 +128,7 @@ impl Judge {
         let detector = context.toolbox.detector.as_deref();
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("judge", self.photos.len() as u64, context.quiet);
+        say_turns(&self.photos)?;
         let names = names(&self.photos);
         let one = |(path, name): (&PathBuf, &String)| {
             let found = self.one(path, name, detector, methods);
@@ -150,7 +151,7 @@ impl Judge {
     }
 
     fn one(&self, path: &Path, name: &str, detector: &dyn BoardDetector, methods: &[Configured]) -> Result<(Trial, ImageSize), Failure> {
-        let image = read_photo(path)?;
+        let image = read_photo(path)?.image;
         let trial = measured_board(&image, name, (detector, self.chessboard.board), methods);
         Ok((trial, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
     }

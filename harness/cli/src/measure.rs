@@ -8,6 +8,7 @@ use clap::Args;
 
 use super::context::Context;
 use super::output;
+use super::photos::say_turns;
 use super::progress::Progress;
 use crate::deliver::deliver;
 use crate::failure::Failure;
@@ -48,6 +49,7 @@ impl Measure {
         }
         // What is wrong with the photographs' names is said before any is read.
         by_name(&self.photos, &points)?;
+        say_turns(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let outcomes = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
         let rows = (0..methods.len()).flat_map(|m| {

@@ -3,10 +3,16 @@
 use std::path::PathBuf;
 
 use calibench_model::camera::ImageSize;
-use calibench_photographs::PhotographsError;
 use calibench_photographs::names::same_size;
+use calibench_photographs::{PhotographsError, turns};
 
 use crate::failure::Failure;
+
+/// Says how photographs are turned, on standard error.
+pub fn say_turns(photos: &[PathBuf]) -> Result<(), Failure> {
+    turns(photos)?.iter().for_each(|line| eprintln!("{line}"));
+    Ok(())
+}
 
 /// The size that all photographs have; several cameras have an option.
 pub fn one_size<'p>(photos: impl IntoIterator<Item = (&'p PathBuf, ImageSize)>) -> Result<ImageSize, Failure> {

@@ -17,6 +17,7 @@ use clap::Args;
 
 use super::context::Context;
 use super::output;
+use super::photos::say_turns;
 use crate::deliver::print;
 use crate::failure::Failure;
 
@@ -158,7 +159,8 @@ fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture,
             if !path.is_file() {
                 return Ok(Err(format!("`{}` is not in `{}`", subject.files[0], subject.folder)));
             }
-            let image = read_photo(&path)?;
+            say_turns(std::slice::from_ref(&path))?;
+            let image = read_photo(&path)?.image;
             let corners = context.toolbox.detector.as_ref().and_then(|detector| detector.detect(&image, subject.board));
             let named = |(index, at): (usize, PixelPoint)| (subject.board.target(index), at);
             Ok(Ok((image, corners.unwrap_or_default().into_iter().enumerate().map(named).collect())))

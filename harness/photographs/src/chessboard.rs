@@ -103,7 +103,7 @@ impl Chessboard {
         operator: &dyn Operator,
         method: &str,
     ) -> Result<Corners, PhotographsError> {
-        let image = read_photo(path)?;
+        let image = read_photo(path)?.image;
         let rows = corners_of(detector, &image, name, self.board);
         let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();
         let measured = operator.measure_all(&image, &starts);

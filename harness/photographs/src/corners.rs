@@ -22,7 +22,7 @@ pub fn detect_corners(
 ) -> Result<Vec<Vec<PointRow>>, PhotographsError> {
     once(photos)?;
     let one = |(path, name): (&PathBuf, &String)| {
-        let image = read_photo(path)?;
+        let image = read_photo(path)?.image;
         let rows = corners_of(detector, &image, name, board);
         step();
         Ok(rows)

@@ -6,7 +6,9 @@ mod error;
 mod measured_board;
 pub mod names;
 pub mod points;
+mod turns;
 
 pub use chessboard::{Chessboard, Corners, Photo};
 pub use error::PhotographsError;
 pub use measured_board::measured_board;
+pub use turns::turns;

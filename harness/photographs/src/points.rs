@@ -54,7 +54,7 @@ pub fn by_name<'p>(paths: &'p [PathBuf], points: &[PointRow]) -> Result<BTreeMap
 fn in_photo(points: &[PointRow], name: &str, path: &Path, methods: &[Configured]) -> Result<Vec<(usize, Vec<Outcome>)>, PhotographsError> {
     let wanted: Vec<usize> = (0..points.len()).filter(|&i| is_called(&points[i].image, name, path)).collect();
     // Read even if no point asks for it: a photograph that cannot be read is a mistake.
-    let image = read_photo(path)?;
+    let image = read_photo(path)?.image;
     let starts: Vec<Start> = wanted.iter().map(|&i| points[i].start).collect();
     let mut outcomes: Vec<(usize, Vec<Outcome>)> = wanted.into_iter().map(|i| (i, Vec::new())).collect();
     for operator in methods.iter().filter_map(|method| method.operator.as_ref().ok()) {

@@ -33,7 +33,7 @@ pub(super) fn run(plan: &Plan<'_>, subject: &PhotographsSubject, step: &(dyn Fn(
 }
 
 fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) -> Result<Trial, RunError> {
-    let image = read_photo(path)?;
+    let image = read_photo(path)?.image;
     let view: Arc<str> = file.into();
     if let Some(folder) = plan.images {
         folder.write(&kept_image_name(file), |file| encode_png(file, &image, false))?;

@@ -6,6 +6,7 @@ use calibench_exchange::LostRow;
 use calibench_photographs::chessboard::{Chessboard, Corners, NOT_FOUND};
 
 use super::super::context::Context;
+use super::super::photos::say_turns;
 use super::super::progress::Progress;
 use crate::failure::Failure;
 
@@ -16,6 +17,7 @@ pub fn corners(context: &Context<'_>, chessboard: Chessboard, photos: &[PathBuf]
     let method = context.method(method)?;
     let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
     let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
+    say_turns(photos)?;
     let found = chessboard.measure(photos, detector, (&method.label, operator.as_ref()), &|| progress.step())?;
     let mut seen = 0;
     for (path, Corners { points, lost, .. }) in photos.iter().zip(&found) {

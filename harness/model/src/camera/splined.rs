@@ -45,12 +45,15 @@ struct Basis {
 }
 
 impl Basis {
+    /// Where `at` is no number, values and slopes are none either.
     fn new(order: usize, at: f64, count: usize) -> Self {
+        // A cast takes what is no number to 0.
+        let before = |place: f64| (place as usize).saturating_sub(1);
         if order == 2 {
             let middle = (at + 0.5).floor().clamp(1.0, (count - 2) as f64);
             let t = at - middle;
             let value = [(0.5 - t) * (0.5 - t) / 2.0, 0.75 - t * t, (0.5 + t) * (0.5 + t) / 2.0, 0.0];
-            return Self { first: middle as usize - 1, value, slope: [t - 0.5, -2.0 * t, t + 0.5, 0.0] };
+            return Self { first: before(middle), value, slope: [t - 0.5, -2.0 * t, t + 0.5, 0.0] };
         }
         let left = at.floor().clamp(1.0, (count - 3) as f64);
         let t = at - left;
@@ -58,7 +61,7 @@ impl Basis {
         let value =
             [s * s * s / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0, (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0, t * t * t / 6.0];
         let slope = [-s * s / 2.0, (3.0 * t * t - 4.0 * t) / 2.0, -(3.0 * s * s - 4.0 * s) / 2.0, t * t / 2.0];
-        Self { first: left as usize - 1, value, slope }
+        Self { first: before(left), value, slope }
     }
 }
 
@@ -214,6 +217,23 @@ mod tests {
         for u in [[0.0, 0.0], [0.3, -0.2], [-0.61, 0.44]] {
             let ([x, y], _) = camera.map(u);
             assert!((x - u[0] * (1.0 + 0.03 * per_u)).abs() < 1e-13 && (y - u[1] * (1.0 - 0.02 * per_u)).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn knots_of_any_size_are_no_panic() {
+        let rays = [[0.0, 0.0], [0.1, -0.2], [2.0, 1.0]].map(|[x, y]| Ray::from_tangent(x, y));
+        for (order, huge) in [2, 3].into_iter().flat_map(|order| [1e308, -1e308, f64::MIN_POSITIVE, f64::NAN].map(|huge| (order, huge))) {
+            for place in 0..2 * 12 * 9 {
+                let mut camera = camera(order);
+                camera.control[place / 2][place % 2] = huge;
+                for ray in rays {
+                    let _ = (camera.project(ray), camera.derivatives(ray));
+                }
+                let _ = (camera.unproject(PixelPoint::new(0.0, 0.0)), camera.unproject(PixelPoint::new(1599.0, 600.0)));
+            }
+            let map = camera(order).map([huge * 10.0, f64::NAN]);
+            assert!(map.0[1].is_nan());
         }
     }
 

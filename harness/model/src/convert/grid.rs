@@ -59,12 +59,15 @@ pub(super) struct Sight {
     pub(super) ray: Ray,
 }
 
-/// A regular grid of `columns` columns and as many rows as make it square, from the first pixel to the last. Weights are those of the trapezoidal rule,
-/// so that sums converge with the square of the spacing; they sum up to one.
+/// Rows of a grid at most, in columns: frames that are taller have oblong cells, so that the cost does not grow with a stated size.
+const TALLEST: usize = 4;
+
+/// A regular grid of `columns` columns and as many rows as make it square, from the first pixel to the last; [`TALLEST`] bounds the rows. Weights are
+/// those of the trapezoidal rule, so that sums converge with the square of the spacing; they sum up to one.
 pub(super) fn nodes(size: ImageSize, columns: usize) -> Vec<Node> {
     let (width, height) = (f64::from(size.width.max(2) - 1), f64::from(size.height.max(2) - 1));
     let columns = columns.max(3);
-    let rows = (((columns - 1) as f64 * height / width).round() as usize + 1).max(3);
+    let rows = (((columns - 1) as f64 * height / width).round() as usize + 1).clamp(3, TALLEST * columns);
     let weight = |i: usize, count: usize| if i == 0 || i + 1 == count { 0.5 } else { 1.0 } / (count - 1) as f64;
     let place = |i: usize, count: usize, length: f64| length * i as f64 / (count - 1) as f64;
     (0..rows)
@@ -142,5 +145,17 @@ mod tests {
         // The mean of x^2 over the frame is w^2 / 3.
         assert!((mean(|p| p.x * p.x) / 120_000.0 - 1.0).abs() < 1e-3);
         assert_eq!(nodes.last().unwrap().point, PixelPoint::new(600.0, 400.0));
+    }
+
+    #[test]
+    fn the_stated_size_does_not_set_the_cost() {
+        for (width, height) in [(752, 1_048_576), (1, 1_048_576), (1_048_576, 1), (1, 1)] {
+            let nodes = nodes(ImageSize { width, height }, 41);
+            assert!(nodes.len() <= 41 * 164, "{width} x {height}: {} nodes", nodes.len());
+            assert!((nodes.iter().map(|node| node.weight).sum::<f64>() - 1.0).abs() < 1e-12);
+            assert_eq!(nodes.last().unwrap().point, PixelPoint::new(f64::from(width.max(2) - 1), f64::from(height.max(2) - 1)));
+        }
+        // Up to that, cells are square.
+        assert_eq!(nodes(ImageSize { width: 1001, height: 3001 }, 41).len(), 41 * 121);
     }
 }

@@ -1,0 +1,200 @@
+//! Photographs in, images out.
+
+mod budget;
+mod jpeg;
+mod turn;
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use calibench_model::Image;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader};
+use thiserror::Error;
+
+use crate::atomic::write_atomically;
+
+pub use budget::MOST_BYTES;
+pub use turn::Turn;
+
+/// Bytes of a file in which its orientation usually stands.
+const HEAD: u64 = 1 << 20;
+
+/// A photograph that cannot be read, or an image that cannot be written.
+#[derive(Debug, Error)]
+pub enum PhotoError {
+    /// The file itself.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A file that cannot be written; the message names it.
+    #[error(transparent)]
+    Output(#[from] io::Error),
+    /// Its content.
+    #[error("{}: not an image that can be read: {source} (expected PNG, JPEG, TIFF or PNM)", path.display())]
+    Content {
+        /// Which file.
+        path: PathBuf,
+        /// What the decoder says.
+        source: ImageError,
+    },
+    /// A part of the image is missing.
+    #[error("{}: is cut short: the end mark of the JPEG is missing; expected a whole image, copy it again", path.display())]
+    Truncated {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// More than the memory that photographs may take while they are read.
+    #[error(
+        "{}: {width} x {height} px take {} MB while they are read, more than {} MB; cut the image into tiles or save it with 8 bits",
+        path.display(), bytes >> 20, MOST_BYTES >> 20
+    )]
+    TooLarge {
+        /// Which file.
+        path: PathBuf,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Memory, bytes.
+        bytes: u64,
+    },
+}
+
+/// A photograph as it is meant to be seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Photo {
+    /// Its grey values, upright.
+    pub image: Image,
+    /// How the pixels of the file were turned to be upright; `None` if the file asks for nothing.
+    pub turn: Option<Turn>,
+}
+
+/// Reads a photograph as grey values. The format is found by content; all bits of 16-bit images are kept.
+///
+/// Colour becomes luma with the weights .299, .587, .114 of Rec. 601, in floating point; transparency is ignored. The orientation that EXIF (JPEG, PNG) or
+/// the TIFF tag asks for is applied, as OpenCV's `imread` does: columns and rows are those of the image as it is seen.
+///
+/// Memory: at most [`MOST_BYTES`] for all photographs that are being decoded at a time, others wait; 4 bytes a pixel once read. The file itself is not counted.
+///
+/// # Errors
+/// A file that is missing, no image, cut short, or too large.
+pub fn read_photo(path: &Path) -> Result<Photo, PhotoError> {
+    let in_file = |source| PhotoError::File { path: path.to_owned(), source };
+    let file = File::open(path).map_err(in_file)?;
+    if file.metadata().map_err(in_file)?.is_dir() {
+        return Err(in_file(io::Error::other("is a folder, expected an image file")));
+    }
+    decode(path, BufReader::new(file))
+}
+
+/// How [`read_photo`] turns a photograph, from its head alone.
+///
+/// # Errors
+/// A file that is missing or no image.
+pub fn turn_of(path: &Path) -> Result<Option<Turn>, PhotoError> {
+    let in_file = |source| PhotoError::File { path: path.to_owned(), source };
+    let mut head = Vec::new();
+    File::open(path).map_err(in_file)?.take(HEAD).read_to_end(&mut head).map_err(in_file)?;
+    let content = |source| PhotoError::Content { path: path.to_owned(), source };
+    match turn_in(io::Cursor::new(head)) {
+        Ok(turn) => Ok(turn),
+        // What a TIFF says of itself may stand at its end.
+        Err(_) => turn_in(BufReader::new(File::open(path).map_err(in_file)?)).map_err(content),
+    }
+}
+
+fn turn_in(input: impl BufRead + Seek) -> Result<Option<Turn>, ImageError> {
+    let mut reader = ImageReader::new(input).with_guessed_format()?;
+    reader.limits(budget::limits(MOST_BYTES));
+    Ok(Turn::of(reader.into_decoder()?.orientation()?))
+}
+
+/// As [`read_photo`], from bytes; `path` is the name in errors.
+///
+/// # Errors
+/// As [`read_photo`].
+pub fn parse_photo(path: &Path, bytes: &[u8]) -> Result<Photo, PhotoError> {
+    decode(path, io::Cursor::new(bytes))
+}
+
+fn decode(path: &Path, mut input: impl BufRead + Seek) -> Result<Photo, PhotoError> {
+    let in_file = |source| PhotoError::File { path: path.to_owned(), source };
+    let content = |source| PhotoError::Content { path: path.to_owned(), source };
+    let format = ImageReader::new(&mut input).with_guessed_format().map_err(in_file)?.format();
+    if format == Some(ImageFormat::Jpeg) && !jpeg::is_whole(&mut input).map_err(in_file)? {
+        // The decoder would fill what is missing with grey.
+        return Err(PhotoError::Truncated { path: path.to_owned() });
+    }
+    let mut reader = ImageReader::new(input).with_guessed_format().map_err(in_file)?;
+    reader.limits(budget::limits(MOST_BYTES));
+    let mut decoder = reader.into_decoder().map_err(content)?;
+    let (width, height) = decoder.dimensions();
+    let bytes = budget::needed(&decoder);
+    let _share = budget::share(bytes).ok_or_else(|| PhotoError::TooLarge { path: path.to_owned(), width, height, bytes })?;
+    decoder.set_limits(budget::limits(bytes)).map_err(content)?;
+    let turn = Turn::of(decoder.orientation().map_err(content)?);
+    let image = to_grey(&DynamicImage::from_decoder(decoder).map_err(content)?);
+    let image = if let Some(turn) = turn { turn.apply(&image) } else { image };
+    Ok(Photo { image, turn })
+}
+
+fn to_grey(decoded: &DynamicImage) -> Image {
+    let (width, height) = (decoded.width() as usize, decoded.height() as usize);
+    let eight = |values: &[u8], channels| grey_of(values, channels, 255.0);
+    let sixteen = |values: &[u16], channels| grey_of(values, channels, 65535.0);
+    let grey = match decoded {
+        DynamicImage::ImageLuma8(i) => eight(i, 1),
+        DynamicImage::ImageLumaA8(i) => eight(i, 2),
+        DynamicImage::ImageRgb8(i) => eight(i, 3),
+        DynamicImage::ImageRgba8(i) => eight(i, 4),
+        DynamicImage::ImageLuma16(i) => sixteen(i, 1),
+        DynamicImage::ImageLumaA16(i) => sixteen(i, 2),
+        DynamicImage::ImageRgb16(i) => sixteen(i, 3),
+        DynamicImage::ImageRgba16(i) => sixteen(i, 4),
+        other => grey_of(&other.to_rgb32f(), 3, 1.0),
+    };
+    Image::new(width, height, grey)
+}
+
+/// `channels` 1 or 2: grey (and alpha); 3 or 4: red, green, blue (and alpha).
+fn grey_of<T: Copy + Into<f64>>(values: &[T], channels: usize, full_scale: f64) -> Vec<f32> {
+    let luma = |pixel: &[T]| match *pixel {
+        [red, green, blue, ..] => 0.299 * red.into() + 0.587 * green.into() + 0.114 * blue.into(),
+        [grey, ..] => grey.into(),
+        [] => 0.0,
+    };
+    values.chunks_exact(channels).map(|pixel| (luma(pixel) / full_scale) as f32).collect()
+}
+
+/// Writes an image as PNG file: [`encode_png`].
+///
+/// # Errors
+/// What the file system refuses; an older file is then as it was.
+pub fn write_png(path: &Path, image: &Image, sixteen_bits: bool) -> Result<(), PhotoError> {
+    Ok(write_atomically(path, |file| encode_png(file, image, sixteen_bits))?)
+}
+
+/// Encodes an image as PNG of 8 or 16 bits, compressed fast; values outside [0, 1] are clipped.
+///
+/// # Errors
+/// What the output refuses.
+pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
+    let (width, height) = (image.width() as u32, image.height() as u32);
+    let (bytes, colour) = if sixteen_bits {
+        let level = |g: &f32| (g.clamp(0.0, 1.0) * 65535.0).round() as u16;
+        (image.grey().iter().flat_map(|g| level(g).to_ne_bytes()).collect(), ExtendedColorType::L16)
+    } else {
+        (image.to_u8(), ExtendedColorType::L8)
+    };
+    let encoder = PngEncoder::new_with_quality(output, CompressionType::Fast, FilterType::Adaptive);
+    encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
+}
+
+#[cfg(test)]
+mod tests;
