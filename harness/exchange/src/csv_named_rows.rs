@@ -19,7 +19,7 @@ pub(crate) struct Form {
     pub(crate) required: &'static [&'static str],
     /// Columns of numbers that may be there, all or none.
     pub(crate) optional: &'static [&'static str],
-    /// Are columns of other names read over?
+    /// Columns of other names are read over.
     pub(crate) others: bool,
 }
 

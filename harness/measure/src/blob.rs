@@ -2,7 +2,7 @@
 
 use calibench_model::{Image, PixelPoint, Rejection};
 
-/// Is the target darker or lighter than what surrounds it?
+/// Whether the target is darker or lighter than its surroundings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Polarity {
     /// The window says: what most of its border is, the target is not.
@@ -31,7 +31,7 @@ pub struct Blob {
     pub pixels: Vec<(f64, f64, f64)>,
     /// The area that each stands for, px^2.
     pub cell: f64,
-    /// Does it reach the window's border, and so perhaps go on past it?
+    /// It reaches the window's border, and so perhaps goes on past it.
     pub cut: bool,
 }
 

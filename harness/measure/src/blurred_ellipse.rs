@@ -23,7 +23,7 @@ pub(crate) const SHARPEST: f64 = 0.01;
 /// The smallest semi-axis, px.
 const SMALLEST: f64 = 0.3;
 
-/// Can a window of `side` px picture such an ellipse under a blur of `variance` px^2? Numbers that are none are refused.
+/// Whether a window of `side` px can picture such an ellipse under a blur of `variance` px^2; `false` for what is not a number.
 pub(crate) fn is_pictured(ellipse: &Ellipse, variance: f64, side: usize) -> bool {
     let (side, [large, small]) = (side as f64, ellipse.semi_axes());
     ellipse.position.iter().all(|c| (-side..2.0 * side).contains(c)) && small >= SMALLEST && large <= side && variance <= side * side

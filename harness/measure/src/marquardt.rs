@@ -126,7 +126,7 @@ impl<const P: usize> Scaled<P> {
 }
 
 impl<const P: usize> Normal<P> {
-    /// Is the step of the position short against its standard deviation? `square` is that of the fraction, times the variance of unit weight.
+    /// Whether the step of the position is short against its standard deviation; `square` is the squared fraction times the variance of unit weight.
     pub(crate) fn position_rests(&self, step: &SVector<f64, P>, square: f64) -> bool {
         self.cofactors().is_some_and(|q| step[0].powi(2) + step[1].powi(2) <= square * (q[(0, 0)] + q[(1, 1)]))
     }

@@ -20,7 +20,7 @@ pub trait Operator: Send + Sync {
         Unknowns::default()
     }
 
-    /// Does the result depend on the grey values? Only pointing at a pixel does not.
+    /// Whether the result depends on the grey values: true of all operators but the one that returns its start.
     fn reads_grey_values(&self) -> bool {
         true
     }

@@ -29,7 +29,7 @@ pub enum Domain {
 }
 
 impl Domain {
-    /// Is `value` one of these?
+    /// Whether `value` is one of these.
     pub fn holds(self, value: f64) -> bool {
         let (min, max) = self.range();
         let right_form = match self {
@@ -70,7 +70,7 @@ pub struct Parameter {
     pub domain: Domain,
     /// What it is when nobody sets it.
     pub default: f64,
-    /// Is it part of the method's label even at its default?
+    /// It is part of the method's label even at its default.
     pub always_shown: bool,
 }
 

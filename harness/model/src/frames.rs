@@ -47,7 +47,7 @@ impl PixelPoint {
         (self.x - other.x).hypot(self.y - other.y)
     }
 
-    /// Are both coordinates finite?
+    /// Whether both coordinates are finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite()
@@ -139,7 +139,7 @@ pub struct Covariance {
 }
 
 impl Covariance {
-    /// Is this the covariance of something: finite, no negative variance, |rho| <= 1 within rounding?
+    /// Whether this is a covariance: finite, no negative variance, |rho| <= 1 within rounding.
     pub fn is_valid(&self) -> bool {
         let product = self.sxx * self.syy;
         self.sxx >= 0.0 && self.syy >= 0.0 && product.is_finite() && self.sxy * self.sxy <= product * (1.0 + 1e-9)

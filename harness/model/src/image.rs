@@ -67,7 +67,7 @@ impl Image {
         self.row(y)[x]
     }
 
-    /// Does the square of half-width `reach` px around pixel (`x`, `y`) lie inside the image?
+    /// Whether the square of half-width `reach` px around pixel (`x`, `y`) lies inside the image.
     #[inline]
     pub fn holds(&self, x: i64, y: i64, reach: i64) -> bool {
         x >= reach && y >= reach && x + reach < self.width as i64 && y + reach < self.height as i64

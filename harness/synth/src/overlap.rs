@@ -1,4 +1,4 @@
-//! Do two areas overlap? Coverage adds up only if they do not.
+//! Overlap of areas: coverage adds up only where there is none.
 
 use calibench_model::{PixelPoint, Polygon};
 
@@ -13,7 +13,7 @@ pub fn overlap(a: &Polygon, b: &Polygon) -> Option<PixelPoint> {
     border_inside(a, b).or_else(|| border_inside(b, a))
 }
 
-/// Does a polygon's border cross or touch itself? Its coverage would then count some area twice or not at all.
+/// Whether a polygon's border crosses or touches itself: its coverage would then count some area twice or not at all.
 pub fn crosses_itself(polygon: &Polygon) -> Option<PixelPoint> {
     let edges: Vec<_> = polygon.edges().collect();
     let n = edges.len();
@@ -79,7 +79,7 @@ fn on_segment((from, to): (PixelPoint, PixelPoint), p: PixelPoint) -> bool {
     (wx * uy - wy * ux).abs() <= TOLERANCE * length && along >= -TOLERANCE && along <= length + TOLERANCE
 }
 
-/// Is `p` inside? Even-odd rule; a point within 1e-9 px of the border counts as outside.
+/// Whether `p` is inside, by the even-odd rule; a point within 1e-9 px of the border counts as outside.
 pub fn contains(polygon: &Polygon, p: PixelPoint) -> bool {
     if polygon.edges().any(|edge| on_segment(edge, p)) {
         return false;

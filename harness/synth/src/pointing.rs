@@ -9,7 +9,7 @@ use rand_distr::{Distribution, Normal};
 pub struct Hand {
     /// Standard deviation of the hand per axis, px.
     pub sigma: f64,
-    /// Does the pointer stop at whole pixels?
+    /// The pointer stops at whole pixels.
     pub whole_pixels: bool,
 }
 

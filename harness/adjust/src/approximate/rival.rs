@@ -5,7 +5,7 @@ const HOPELESS: f64 = 50.0;
 /// A squared residual that is always worth it, px^2.
 const NEARLY_EXACT: f64 = 1e-6;
 
-/// May a start value whose residuals have the sum of squares `squares` lead `points` points to a minimum that rivals one of `best`? All px^2.
+/// Whether a start value whose residuals have the sum of squares `squares` may lead `points` points to a minimum that rivals one of `best`; px^2.
 pub(super) fn is_worth(squares: f64, best: f64, points: usize) -> bool {
     squares <= HOPELESS * best + points as f64 * NEARLY_EXACT
 }

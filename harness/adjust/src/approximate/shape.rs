@@ -1,4 +1,4 @@
-//! Are points on a line, in a plane, in space?
+//! The extent of a set of points: a line, a plane or space.
 
 use nalgebra::{Matrix3, Point3, SMatrix, Vector3};
 

@@ -65,7 +65,7 @@ pub enum NetworkError {
 }
 
 impl Network {
-    /// Is this a network at all?
+    /// The first of the mistakes that leave nothing to adjust.
     pub(crate) fn check(&self) -> Result<(), NetworkError> {
         self.cameras.iter().try_for_each(check_camera)?;
         self.images.iter().try_for_each(|image| {

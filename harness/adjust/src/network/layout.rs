@@ -52,9 +52,9 @@ pub(crate) struct Layout {
     pub(crate) camera_of: Vec<usize>,
     /// Unknowns of all cameras together.
     pub(crate) width: usize,
-    /// May rotation and centre of an image change?
+    /// Of each image: whether its rotation and its centre are unknowns.
     pub(crate) pose_free: Vec<[bool; 2]>,
-    /// May X, Y and Z of a point change?
+    /// Of each point: whether X, Y and Z are unknowns.
     pub(crate) point_free: Vec<[bool; 3]>,
     has_unknown_points: bool,
     pub(crate) pairs: Vec<Pair>,
@@ -150,7 +150,7 @@ impl Layout {
         self.pose_free[image] != [false; 2]
     }
 
-    /// May each of the six unknowns of an image change?
+    /// Which of the six unknowns of an image are free: rotation about the camera's axes, then its centre.
     pub(crate) fn pose_mask(&self, image: usize) -> [bool; 6] {
         let [rotation, centre] = self.pose_free[image];
         [rotation, rotation, rotation, centre, centre, centre]

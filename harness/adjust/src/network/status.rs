@@ -54,7 +54,7 @@ pub enum Attitude {
 }
 
 impl Status {
-    /// Is it an unknown?
+    /// Whether it is an unknown of the adjustment: free or observed.
     pub const fn is_unknown(self) -> bool {
         !matches!(self, Self::Fixed)
     }

@@ -127,7 +127,7 @@ fn whole(engine: &Engine, schur: &Schur, kept: &[f64]) -> Step {
     step
 }
 
-/// Does `step`, times a standard deviation, leave the range in which a linear estimate of precision holds?
+/// Whether `step`, times a standard deviation, leaves the range in which a linear estimate of precision holds.
 fn senseless(engine: &Engine, state: &State, step: &Step, deviation: f64) -> bool {
     let distance = |camera: usize, parameter: usize| {
         let parameters = state.cameras[camera].parameters();

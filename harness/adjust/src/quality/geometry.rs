@@ -38,7 +38,7 @@ fn extents(points: &[&Point3<f64>]) -> [f64; 2] {
     [0, 1].map(|i| (squares[i].max(0.0) / squares[2].max(f64::MIN_POSITIVE)).sqrt())
 }
 
-/// Is an image rolled about its axis against the first?
+/// Whether an image is rolled about its axis against the first.
 fn rolls(state: &State, images: &[usize]) -> bool {
     let first = &state.poses[images[0]].rotation;
     images.iter().any(|&i| {

@@ -59,7 +59,7 @@ impl Solution<'_> {
     }
 }
 
-/// Does the second solution, with more parameters, fit better than chance would have it?
+/// Test of whether the second solution, with more parameters, fits better than by chance.
 ///
 /// # Errors
 /// [`AdjustError::NotAvailable`] if both do not adjust the same observations, or the second has no more parameters or no redundancy.

@@ -30,7 +30,7 @@ pub struct Found {
     pub w: f64,
     /// What it would have had to exceed.
     pub critical: f64,
-    /// Was it left out? Not if the network needs it, or if as many were left out as may be.
+    /// It was left out. `false` if the network needs it, or if as many were left out as may be.
     pub left_out: bool,
 }
 

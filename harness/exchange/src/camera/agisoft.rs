@@ -47,7 +47,7 @@ fn frame_only(node: Node<'_, '_>) -> Result<(), CameraFileError> {
     projection_is_frame(projection, xml::text(projection)?)
 }
 
-/// Is this the projection `frame`?
+/// Refuses another projection than `frame`.
 pub(super) fn projection_is_frame(at: Node<'_, '_>, found: &str) -> Result<(), CameraFileError> {
     if found == "frame" {
         return Ok(());

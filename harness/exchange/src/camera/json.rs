@@ -130,7 +130,7 @@ impl Reader<'_> {
         tree::map(entries)
     }
 
-    /// Steps over a comma or the end of a list; is it the end?
+    /// Steps over a comma or the end of a list; true at the end.
     fn ends(&mut self, end: u8, first: bool) -> Result<bool, CameraFileError> {
         self.space();
         if self.peek() == Some(end) {

@@ -29,7 +29,7 @@ impl OpenPoints {
         self.order.unwrap_or(TangentialOrder::OpenCv)
     }
 
-    /// Was it decided that the corner of the first pixel is the origin of a format that leaves it open?
+    /// Whether the corner of the first pixel was chosen as the origin of a format that leaves it open.
     pub fn starts_at_corner(self, format: &CameraFormat) -> bool {
         format.origin_is_open && self.origin == Some(Origin::Corner)
     }

@@ -15,6 +15,9 @@ pub(super) struct Matrix {
 
 impl Entry {
     /// The matrix: `rows`, `cols`, `dt` and as many numbers in `data`; at most `most`.
+    ///
+    /// # Errors
+    /// A part that is missing, sides that are no whole numbers from 1, more than `most` numbers, another type than d or f, another count of numbers.
     pub fn matrix(&self, most: usize) -> Result<Matrix, CameraFileError> {
         let part = |name: &str| self.get(&[name])?.ok_or_else(|| self.wrong(&format!("has no `{name}`; expected rows, cols, dt, data")));
         let side = |name: &str| {

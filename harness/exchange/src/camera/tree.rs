@@ -25,6 +25,9 @@ pub(super) enum Value {
 
 impl Entry {
     /// The entry that has one of these names; two of them contradict each other.
+    ///
+    /// # Errors
+    /// An entry without names, or with two of `names`.
     pub fn get<'a>(&'a self, names: &[&str]) -> Result<Option<(&'a str, &'a Self)>, CameraFileError> {
         let Value::Map(entries) = &self.value else { return Err(self.wrong("expected names with values")) };
         let mut found = entries.iter().filter(|(name, _)| names.contains(&name.as_str()));
@@ -36,6 +39,9 @@ impl Entry {
     }
 
     /// The text of a scalar.
+    ///
+    /// # Errors
+    /// An entry that is no scalar.
     pub fn text(&self) -> Result<&str, CameraFileError> {
         match &self.value {
             Value::Scalar(text) => Ok(text.trim().trim_matches('"')),
@@ -49,16 +55,25 @@ impl Entry {
     }
 
     /// The entry called `name`, if there is one.
+    ///
+    /// # Errors
+    /// An entry without names.
     pub fn key(&self, name: &str) -> Result<Option<&Self>, CameraFileError> {
         Ok(self.get(&[name])?.map(|(_, entry)| entry))
     }
 
     /// The entry called `name`.
+    ///
+    /// # Errors
+    /// An entry without names, or without this one.
     pub fn required(&self, name: &str) -> Result<&Self, CameraFileError> {
         self.key(name)?.ok_or_else(|| self.wrong(&format!("has no `{name}`")))
     }
 
     /// Names and values.
+    ///
+    /// # Errors
+    /// An entry without names.
     pub fn entries(&self) -> Result<&[(String, Self)], CameraFileError> {
         match &self.value {
             Value::Map(entries) => Ok(entries),
@@ -67,6 +82,9 @@ impl Entry {
     }
 
     /// Values in a row.
+    ///
+    /// # Errors
+    /// An entry that is no list.
     pub fn items(&self) -> Result<&[Self], CameraFileError> {
         match &self.value {
             Value::List(items) => Ok(items),
@@ -75,31 +93,49 @@ impl Entry {
     }
 
     /// A finite number.
+    ///
+    /// # Errors
+    /// An entry that is no scalar, or not a finite number.
     pub fn number(&self) -> Result<f64, CameraFileError> {
         finite(self.text()?).map_err(|error| error.on_line(self.line))
     }
 
     /// The number called `name`.
+    ///
+    /// # Errors
+    /// A name that is missing, a value that is not a finite number.
     pub fn number_of(&self, name: &str) -> Result<f64, CameraFileError> {
         self.required(name)?.number().map_err(|error| error.of(name))
     }
 
     /// The number called `name`, or zero without it.
+    ///
+    /// # Errors
+    /// A value that is not a finite number.
     pub fn number_or_zero(&self, name: &str) -> Result<f64, CameraFileError> {
         self.key(name)?.map_or(Ok(0.0), |entry| entry.number().map_err(|error| error.of(name)))
     }
 
     /// The text called `name`.
+    ///
+    /// # Errors
+    /// A name that is missing, a value that is no scalar.
     pub fn text_of(&self, name: &str) -> Result<&str, CameraFileError> {
         self.required(name)?.text().map_err(|error| error.of(name))
     }
 
     /// Numbers in a row.
+    ///
+    /// # Errors
+    /// An entry that is no list, a value that is not a finite number.
     pub fn row(&self) -> Result<Vec<f64>, CameraFileError> {
         self.items()?.iter().map(Self::number).collect()
     }
 
     /// Exactly `N` numbers in the row called `name`.
+    ///
+    /// # Errors
+    /// A name that is missing, another count than `N`, a value that is not a finite number.
     pub fn row_of<const N: usize>(&self, name: &str) -> Result<[f64; N], CameraFileError> {
         let entry = self.required(name)?;
         let row = entry.row().map_err(|error| error.of(name))?;
@@ -108,11 +144,17 @@ impl Entry {
     }
 
     /// Rows of numbers.
+    ///
+    /// # Errors
+    /// An entry that is no list of lists of finite numbers.
     pub fn rows(&self) -> Result<Vec<Vec<f64>>, CameraFileError> {
         self.items()?.iter().map(Self::row).collect()
     }
 
     /// The size in two numbers of pixels.
+    ///
+    /// # Errors
+    /// A name that is missing, a value that is no whole number of pixels.
     pub fn size_of(&self, width: &str, height: &str) -> Result<ImageSize, CameraFileError> {
         let side = |name: &str| {
             let entry = self.required(name)?;
@@ -122,6 +164,9 @@ impl Entry {
     }
 
     /// The size in a row of two numbers.
+    ///
+    /// # Errors
+    /// A name that is missing, another count than two, a value that is no whole number of pixels.
     pub fn size_in(&self, name: &str) -> Result<ImageSize, CameraFileError> {
         let entry = self.required(name)?;
         let side = |side: &Self| pixels(side.text()?).map_err(|error| error.on_line(side.line).of(name));
@@ -132,6 +177,9 @@ impl Entry {
     }
 
     /// A note on all names that are not among `known`, if there are any.
+    ///
+    /// # Errors
+    /// An entry without names.
     pub fn unknown(&self, known: &[&str]) -> Result<Vec<String>, CameraFileError> {
         let names = self.entries()?.iter().map(|(name, _)| name.as_str());
         Ok(all_left_out(names.filter(|name| !known.contains(name))))

@@ -99,7 +99,7 @@ pub(super) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str, C
     node.attribute(name).ok_or_else(|| at(node, CameraFileError::new(format!("has no attribute `{name}`"))))
 }
 
-/// Is this the root's name? If not, what is it?
+/// Accepts this name of the root; the error says what it is instead.
 pub(super) fn root_is(document: Option<&Document<'_>>, name: &str) -> Result<(), String> {
     let Some(document) = document else { return Err("is not XML".into()) };
     let found = document.root_element().tag_name().name();

@@ -44,7 +44,7 @@ pub trait Pinhole: Copy {
     fn affinity(&self) -> Affinity;
     /// Adds d(pixel) / d(parameter) at ideal tangents, of which the distorted ones are given.
     fn by_parameters(&self, ideal: [f64; 2], distorted: [f64; 2], into: &mut DerivativeBuffer);
-    /// Is the distortion certainly one to one within `radius`?
+    /// Whether the distortion is certainly one to one for ideal tangents within `radius` of the axis; `false` when in doubt.
     fn is_surely_one_to_one(&self, radius: f64) -> bool;
 }
 

@@ -13,13 +13,13 @@ pub(super) trait PlaneMap {
     /// Value and derivatives; not numbers where the map has a pole or ends.
     fn map(&self, at: [f64; 2]) -> ValueAndDerivatives;
 
-    /// Is the map certainly one to one within `radius` of the origin? A cheap answer that spares the search; `false` when in doubt.
+    /// Whether the map is certainly one to one within `radius` of the origin, in its own unit: a cheap bound that spares the search; `false` when in doubt.
     fn is_surely_one_to_one(&self, _radius: f64) -> bool {
         false
     }
 }
 
-/// Is `at` on the branch of `map`?
+/// Whether `at` lies on the branch of `map` that holds the origin.
 pub(super) fn is_on_branch(map: &impl PlaneMap, at: [f64; 2]) -> bool {
     if !(at[0].is_finite() && at[1].is_finite()) {
         return false;
@@ -118,7 +118,7 @@ pub(super) fn is_one_to_one(radius: f64, radial: &[f64], tangential: &[f64], lin
     sum + rest < 1.0 || (rest < 1.0 && stays_above(rest, r2, radial, |_| 1.0) && stays_above(rest, r2, radial, |i| (2 * i + 3) as f64))
 }
 
-/// Is `1 + sum weight(i) k_i s^(i+1)` above `bound` for all s from 0 to `end`? By the middle of each of some pieces and a bound of the slope there.
+/// Whether `1 + sum weight(i) k_i s^(i+1)` is above `bound` for all s from 0 to `end`: by the middle of each of some pieces and a bound of the slope there.
 fn stays_above(bound: f64, end: f64, radial: &[f64], weight: impl Fn(usize) -> f64) -> bool {
     const PIECES: usize = 24;
     let half = 0.5 * end / PIECES as f64;

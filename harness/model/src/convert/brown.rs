@@ -91,7 +91,7 @@ impl BrownForm {
         Ok(Self { size: camera.size(), a, b: -by_y, d: -d, centre, k: [0.0; 4], p: [0.0; 4] })
     }
 
-    /// Does the form hold all of `camera`?
+    /// Whether the form holds every term of `camera`.
     pub(super) fn holds(camera: &Camera) -> bool {
         match camera {
             Camera::OpenCv(camera) => camera.distortion[5..].iter().all(|&value| value == 0.0),

@@ -33,7 +33,7 @@ pub(super) fn closed_form(source: &Camera, target: &Target) -> Option<Camera> {
     }
 }
 
-/// Does the closed form hold all of `source`?
+/// Whether the closed form holds every term of `source`.
 fn is_complete(source: &Camera, target: &Target, camera: &Camera) -> bool {
     match (source, target) {
         (Camera::Photogrammetric(_), Target::Photogrammetric { .. })
@@ -54,7 +54,7 @@ fn is_complete(source: &Camera, target: &Target, camera: &Camera) -> bool {
     }
 }
 
-/// Are all terms of the form in the target?
+/// Whether the target holds every term of the form.
 pub(super) fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> bool {
     let affine = form.a != form.d;
     let (k, p) = (form.k, form.p);

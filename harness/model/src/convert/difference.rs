@@ -12,9 +12,9 @@ use crate::camera::{Camera, CameraModel, CameraParameter, DerivativeBuffer, Imag
 pub struct DifferenceOptions {
     /// The part of the frame to compare over; a radius counts from the first camera's principal point.
     pub region: Region,
-    /// Compare after the best rotation? A rotation of the camera cannot be told from one of its exterior orientation.
+    /// Compare after the best rotation: a rotation of the camera cannot be told from one of its exterior orientation.
     pub rotation: bool,
-    /// Say as well what is left after the best principal distance and point?
+    /// Also compare after the best principal distance and principal point.
     pub compensation: bool,
     /// Columns of the grid; rows make it square.
     pub columns: usize,

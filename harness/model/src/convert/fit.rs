@@ -19,7 +19,7 @@ pub(super) struct Problem<'a> {
     pub(super) sights: &'a [Sight],
     /// Indices of the parameters that may change.
     pub(super) free: &'a [usize],
-    /// May the rays be rotated?
+    /// The rays may be rotated: three more unknowns.
     pub(super) rotation: bool,
 }
 

@@ -45,13 +45,13 @@ pub const COLUMNS: usize = 41;
 pub struct ConvertOptions {
     /// The part of the frame to fit over, and that the result holds for.
     pub region: Region,
-    /// May a fit rotate the camera?
+    /// A fit may rotate the camera.
     pub rotation: bool,
     /// Largest residual that passes without a word, px.
     pub warning_px: f64,
     /// Largest residual that passes, px.
     pub error_px: f64,
-    /// Take the result whatever the residuals?
+    /// Take the result whatever its residuals.
     pub accept: bool,
     /// Columns of the grid; rows make it square.
     pub columns: usize,

@@ -16,9 +16,9 @@ pub enum Target {
         pitch_um: f64,
         /// Radial coefficients: 0 to 3.
         radial: usize,
-        /// p1 and p2?
+        /// Holds p1 and p2.
         tangential: bool,
-        /// b1 and b2?
+        /// Holds b1 and b2.
         affinity: bool,
     },
     /// Ebner's twelve parameters around c, x0, y0, without other distortion.
@@ -43,7 +43,7 @@ pub enum Target {
         radial: usize,
         /// Decentring coefficients: 0, 2, 3 or 4; 2 at most for the older versions.
         tangential: usize,
-        /// b1 and b2?
+        /// Holds b1 and b2.
         affinity: bool,
     },
     /// Pix4D's perspective camera.
@@ -64,7 +64,7 @@ pub enum Target {
     Eucm,
     /// Mei's unified camera.
     Omni {
-        /// k1, k2, p1, p2?
+        /// Holds k1, k2, p1, p2.
         distortion: bool,
     },
     /// Field of view.
@@ -75,7 +75,7 @@ pub enum Target {
     MicMac {
         /// Radial coefficients: 0 to 5.
         radial: usize,
-        /// P1 and P2?
+        /// Holds P1 and P2.
         tangential: bool,
     },
 }
@@ -91,7 +91,7 @@ impl Target {
         Self::Agisoft { version: AgisoftVersion::Metashape, radial: 3, tangential: 2, affinity: true }
     }
 
-    /// Does a formula lead from `camera` to this convention, with nothing left out?
+    /// Whether a formula leads from `camera` to this convention, with nothing left out.
     pub fn is_exact_for(&self, camera: &Camera) -> bool {
         self.check().is_ok() && super::closed_form::exact(camera, self).is_some()
     }
@@ -184,7 +184,7 @@ impl Target {
         camera.parameters().iter().enumerate().filter(|(_, p)| !left_out.contains(&p.name)).map(|(i, _)| i).collect()
     }
 
-    /// Is every parameter that this shape leaves out zero in `camera`?
+    /// Whether every parameter that this shape leaves out is zero in `camera`.
     pub(super) fn holds(&self, camera: &Camera) -> bool {
         let left_out = self.left_out();
         camera.parameters().iter().all(|p| !left_out.contains(&p.name) || p.value == 0.0)

@@ -123,7 +123,7 @@ impl Wells {
         if expected < self.counted { poisson(expected, rng) } else { bent(expected, 0.0, StandardNormal.sample(rng)) }
     }
 
-    /// Is the number of electrons to be known by itself?
+    /// Whether the number of electrons must be known by itself.
     #[inline(always)]
     fn is_counted(&self, expected: f32) -> bool {
         expected > 0.0 && expected < self.above && (expected < self.counted || expected > self.below)

@@ -203,7 +203,7 @@ impl Sensor {
         &self.design
     }
 
-    /// Is there nothing random in what it does? Row jitter is not its business.
+    /// Whether nothing random is in what it does; row jitter is the renderer's.
     pub fn is_deterministic(&self) -> bool {
         matches!(self.design.noise, Noise::None | Noise::White { sigma: 0.0 })
     }
@@ -224,7 +224,7 @@ impl Sensor {
         Ok(Exposure { image, clipped: exposed + developed })
     }
 
-    /// Does [`Sensor::develop`] leave exposed rows as they are? The rows are then final, and the image may be written strip by strip.
+    /// Whether [`Sensor::develop`] leaves exposed rows as they are: they are then final, and the image may be written strip by strip.
     pub fn works_by_rows(&self) -> bool {
         self.design.demosaic.is_none() && self.design.jpeg.is_none()
     }

@@ -99,7 +99,7 @@ fn rolls(rolls: &[f64]) -> Result<(), StationError> {
     rolls.iter().try_for_each(|&roll| angle("rolls", roll, -360.0, 360.0))
 }
 
-/// Are all names different?
+/// Whether all names differ.
 ///
 /// # Errors
 /// The first name that stands twice.

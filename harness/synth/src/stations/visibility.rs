@@ -1,4 +1,4 @@
-//! Does a station see the field?
+//! The share of a testfield that a station sees.
 
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{ObjectTarget, Pose, Testfield};

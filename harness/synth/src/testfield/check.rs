@@ -7,7 +7,10 @@ use super::{FieldError, Levels, Shape, SheetBend};
 /// What counts as a length, object units.
 const LENGTHS: RangeInclusive<f64> = 1e-6..=1e6;
 
-/// Is `value` in `range`? Not a number never is.
+/// Refuses a `value` outside `range`, and what is not a number.
+///
+/// # Errors
+/// [`FieldError::Parameter`] with the parameter, its value and what was expected.
 pub fn within(parameter: &'static str, value: f64, range: RangeInclusive<f64>) -> Result<(), FieldError> {
     if range.contains(&value) {
         return Ok(());
@@ -16,7 +19,10 @@ pub fn within(parameter: &'static str, value: f64, range: RangeInclusive<f64>) -
     Err(FieldError::Parameter { parameter, value, expected })
 }
 
-/// Is `count` in `range`?
+/// Refuses a `count` outside `range`.
+///
+/// # Errors
+/// [`FieldError::Parameter`] with the parameter, its value and what was expected.
 pub fn counted(parameter: &'static str, count: usize, range: RangeInclusive<usize>) -> Result<(), FieldError> {
     if range.contains(&count) {
         return Ok(());
@@ -26,16 +32,25 @@ pub fn counted(parameter: &'static str, count: usize, range: RangeInclusive<usiz
 }
 
 /// A length above zero.
+///
+/// # Errors
+/// [`FieldError::Parameter`] with the parameter, its value and what was expected.
 pub fn length(parameter: &'static str, value: f64) -> Result<(), FieldError> {
     within(parameter, value, LENGTHS)
 }
 
 /// A length or zero.
+///
+/// # Errors
+/// [`FieldError::Parameter`] with the parameter, its value and what was expected.
 pub fn distance(parameter: &'static str, value: f64) -> Result<(), FieldError> {
     within(parameter, value, 0.0..=*LENGTHS.end())
 }
 
 /// Reflectances, which must differ.
+///
+/// # Errors
+/// [`FieldError::Parameter`] with the parameter, its value and what was expected.
 pub fn levels(levels: Levels) -> Result<(), FieldError> {
     within("paper", levels.paper, 0.0..=1.0)?;
     within("ink", levels.ink, 0.0..=1.0)?;
@@ -46,6 +61,9 @@ pub fn levels(levels: Levels) -> Result<(), FieldError> {
 }
 
 /// A bend whose height is at most a quarter of the sheet's shorter side: it is a paper's or a board's, not a roll's.
+///
+/// # Errors
+/// [`FieldError::Parameter`] with the parameter, its value and what was expected.
 pub fn bend(bend: Option<SheetBend>, [width, height]: [f64; 2]) -> Result<(), FieldError> {
     let Some(bend) = bend else { return Ok(()) };
     let most = 0.25 * width.min(height);
@@ -54,6 +72,9 @@ pub fn bend(bend: Option<SheetBend>, [width, height]: [f64; 2]) -> Result<(), Fi
 }
 
 /// The free numbers of a shape: a corner from 30 to 150 degrees, bars from a twentieth to half of their length.
+///
+/// # Errors
+/// [`FieldError::Parameter`] with the parameter, its value and what was expected.
 pub fn shape(shape: Shape) -> Result<(), FieldError> {
     const ROUNDING: f64 = 1e-9;
     match shape {

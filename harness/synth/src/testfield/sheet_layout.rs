@@ -1,4 +1,4 @@
-//! Targets on one sheet: are they on it, and apart?
+//! The layout of one sheet: its targets lie on it, and apart.
 
 use calibench_model::testfield::{Outline, PlatePoint};
 use calibench_model::{PixelPoint, Polygon};
@@ -18,9 +18,12 @@ struct Placed<'a> {
     polygons: Vec<Polygon>,
 }
 
-/// Are all targets (names and outlines) wholly on the sheet `plate` of these `corners`, and apart from each other?
+/// Refuses targets (names and outlines) that are not wholly on the sheet `plate` of these `corners`, or that overlap.
 ///
 /// Takes time in proportion to the targets and to the pairs whose boxes meet in u.
+///
+/// # Errors
+/// [`FieldError::OffPlate`] for a target that reaches over the border, [`FieldError::Overlap`] for the first pair that overlaps.
 pub fn check(plate: &str, corners: [PlatePoint; 2], targets: &[(&str, Vec<Outline>)]) -> Result<(), FieldError> {
     let mut placed: Vec<Placed<'_>> = targets.iter().map(|(id, outlines)| place(id, outlines)).collect();
     let slack = ROUNDING * (corners[1][0] - corners[0][0]).max(corners[1][1] - corners[0][1]);

@@ -69,7 +69,7 @@ pub struct Zhu {
     pub angle: Option<f64>,
     /// The width of the pen, px, with which the outline is drawn beside the filling: what is drawn reaches half of it past the geometry, as in drawing programs.
     pub pen: f64,
-    /// Does one edge of a corner run along +x, rather than its bisector? (h) stays as it is.
+    /// One edge of a corner runs along +x, rather than its bisector; (h) stays as it is.
     pub edge_along_x: bool,
 }
 

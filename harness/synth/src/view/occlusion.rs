@@ -10,7 +10,7 @@ use super::{Frame, View, ViewError, clip};
 pub(crate) struct Sheet<'a> {
     /// The plate.
     pub plate: &'a Plate,
-    /// Is its printed side seen?
+    /// Its printed side is seen.
     pub front: bool,
     /// What hides it: convex polygons in tangents.
     pub hidden_by: Vec<Convex>,
@@ -94,7 +94,7 @@ impl<'a> Pictured<'a> {
 }
 
 impl Sheet<'_> {
-    /// Is the direction to `point` free?
+    /// Whether nothing hides `point`.
     pub fn shows(&self, view: &View<'_>, point: &Point3<f64>) -> bool {
         let Some((x, y)) = view.pose.ray(point).tangent() else { return false };
         self.front && !self.hidden_by.iter().any(|hull| hull.holds([x, y]))

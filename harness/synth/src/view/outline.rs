@@ -67,7 +67,7 @@ fn outline(
     Ok(())
 }
 
-/// Does nothing hide any part of an outline? Boxes tell.
+/// Whether nothing hides any part of an outline, judged by boxes.
 fn is_free(view: &View<'_>, sheet: &Sheet<'_>, outline: &Outline) -> bool {
     let around = bounds(&clip::tangents(view.pose, sheet.plate, outline));
     sheet.hidden_by.iter().all(|hull| apart(hull.bounds(), around))

@@ -38,7 +38,7 @@ impl Convex {
         self.0.iter().copied().zip(self.0.iter().copied().cycle().skip(1))
     }
 
-    /// Does it hold `p`, border included?
+    /// Whether it holds `p`, border included.
     pub fn holds(&self, p: Tangent) -> bool {
         self.edges().all(|(a, b)| turn(a, b, p) >= 0.0)
     }
@@ -72,7 +72,7 @@ pub(crate) fn bounds(points: &[Tangent]) -> [Tangent; 2] {
     points.iter().fold(start, |[low, high], p| [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]])
 }
 
-/// Do two boxes have no point in common?
+/// Whether two boxes have no point in common.
 pub(crate) fn apart(a: [Tangent; 2], b: [Tangent; 2]) -> bool {
     (0..2).any(|i| a[1][i] < b[0][i] || b[1][i] < a[0][i])
 }

@@ -92,7 +92,7 @@ fn tail([a, b, c, d, e]: [f64; 5]) -> f64 {
     CAUTION * (third + fourth) * (high / low).min(1.0)
 }
 
-/// Do all points lie beyond one side of the frame?
+/// Whether all points lie beyond one side of the frame.
 fn beyond([left, top, right, bottom]: [f64; 4], points: &[[f64; 2]]) -> bool {
     let all = |outside: &dyn Fn(&[f64; 2]) -> bool| points.iter().all(outside);
     all(&|p| p[0] < left) || all(&|p| p[0] > right) || all(&|p| p[1] < top) || all(&|p| p[1] > bottom)

@@ -67,7 +67,7 @@ pub(super) fn normalised(pairs: &[([f64; 2], [f64; 2])]) -> Result<(Matrix3<f64>
     Ok((matrix, from, to))
 }
 
-/// Do all first points, or all but one, lie on a line?
+/// Whether all first points, or all but one, lie on a line.
 fn all_but_one_in_line(pairs: &[([f64; 2], [f64; 2])]) -> bool {
     let points = pairs.iter().map(|&([x, y], _)| Point3::new(x, y, 0.0));
     let rest = |left_out: usize| points.clone().enumerate().filter(move |(i, _)| *i != left_out).map(|(_, point)| point);

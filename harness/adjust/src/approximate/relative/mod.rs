@@ -156,7 +156,7 @@ impl<'a> Network<'a> {
         Some(Fit { motion, squares: normal.squares, redundancy: normal.redundancy(), cofactor: normal.cofactor() })
     }
 
-    /// Does a rotation without a base explain the pictures as well?
+    /// Whether a rotation without a base explains the pictures as well.
     fn is_rotation(&self, best: &Fit, chosen: &[usize]) -> bool {
         let pairs: Vec<_> = chosen.iter().filter_map(|&i| self.pairs[i].as_ref().map(|(pair, _)| pair)).collect();
         let products = pairs.iter().map(|pair| pair.rays()).map(|[a, b]| b.normalize() * a.normalize().transpose()).sum::<Matrix3<f64>>();
@@ -195,7 +195,7 @@ impl<'a> Network<'a> {
         rival.map(|fit| fit.motion.pose())
     }
 
-    /// Are the points before both cameras?
+    /// Whether the points lie before both cameras.
     fn is_before(&self, motion: &Motion, chosen: &[usize]) -> bool {
         let t = -(motion.rotation * motion.base);
         let before = |(pair, _): &(Pair, Slopes)| {

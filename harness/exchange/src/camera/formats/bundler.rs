@@ -96,6 +96,9 @@ pub(super) struct Stream<'a, I: Iterator<Item = (usize, &'a str)>> {
 
 impl<'a, I: Iterator<Item = (usize, &'a str)>> Stream<'a, I> {
     /// The next number.
+    ///
+    /// # Errors
+    /// The text ends, or the next word is not a finite number; `what` is named.
     pub fn number(&mut self, what: &str) -> Result<f64, CameraFileError> {
         while self.left.is_empty() {
             let (line, text) = self.lines.next().ok_or_else(|| CameraFileError::new(format!("ends before {what}")))?;

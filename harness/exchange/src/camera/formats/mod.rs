@@ -85,11 +85,11 @@ pub struct CameraFormat {
     pub extension: &'static str,
     /// Which of the tool's own numbers were reproduced; `None`: unverified.
     pub verified: Option<&'static str>,
-    /// May it hold more than one camera?
+    /// It may hold more than one camera.
     pub many: bool,
-    /// Does it state the size of the images? If not, [`ReadOptions::size`] is needed. OpenCV's may leave it out.
+    /// It states the size of the images; where it does not, [`ReadOptions::size`] is needed. OpenCV's may leave it out.
     pub states_size: bool,
-    /// Is this file one? If not, why?
+    /// Accepts a file of this format; the error says why it is none.
     pub(super) recognise: fn(&Source<'_>) -> Result<(), String>,
     pub(super) read: fn(&Source<'_>, &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
     pub(super) write: Option<Writer>,
@@ -99,7 +99,7 @@ pub struct CameraFormat {
     pub(super) models: fn(Option<f64>) -> Vec<Model>,
     /// What it has a place for besides the camera.
     pub keeps: Keeps,
-    /// Do public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner?
+    /// Public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner.
     pub origin_is_open: bool,
 }
 
@@ -122,7 +122,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
 };
 
 impl CameraFormat {
-    /// Can it be written?
+    /// Whether it can be written.
     pub fn is_written(&self) -> bool {
         self.write.is_some()
     }

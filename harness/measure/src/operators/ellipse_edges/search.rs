@@ -62,7 +62,7 @@ pub(super) fn search(window: &mut Window, start: Unknowns, short: f64) -> Option
     None
 }
 
-/// Is the step short against its standard deviation, and that of the position shorter than the `short`th part?
+/// Whether the step is short against its standard deviation, and that of the position shorter than the `short`th part.
 fn stands(step: &Step, normal: &Normal<UNKNOWNS>, redundancy: f64, short: f64, search: usize) -> bool {
     let variance = normal.omega / redundancy;
     (step.square <= variance || search >= PATIENCE) && normal.position_rests(&step.by, short * short * variance)
@@ -88,7 +88,7 @@ fn bounded(from: &Unknowns, to: &Unknowns) -> Unknowns {
     to
 }
 
-/// Does the blur press against its bound?
+/// Whether the blur presses against its bound.
 fn pressed(b: &Unknowns, x: &Unknowns) -> bool {
     x[BLUR] <= SHARPEST && b[BLUR] <= 0.0
 }

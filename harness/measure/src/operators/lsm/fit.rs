@@ -39,7 +39,7 @@ pub(super) struct Limits {
     pub(super) iterations: usize,
     /// Last step of the position, px.
     pub(super) epsilon: f64,
-    /// Is the blur unknown?
+    /// The blur is an unknown.
     pub(super) blur: bool,
 }
 

@@ -58,7 +58,7 @@ impl Mask {
         }
     }
 
-    /// Do its edges go on past the window?
+    /// Whether its edges go on past the window.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.kind, TargetKind::Corner | TargetKind::ChessCorner)
     }

@@ -107,7 +107,7 @@ impl<'a> Around<'a> {
         (inside(self.first), inside(self.first + self.width))
     }
 
-    /// Does it lie so far before the first pixel that none sees anything of what is to its left?
+    /// Whether it lies so far before the first pixel that no pixel sees anything to its left.
     #[inline(always)]
     pub(super) fn is_before(&self) -> bool {
         self.first + self.width <= 0
