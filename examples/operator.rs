@@ -20,7 +20,7 @@ const PARAMETERS: &[Parameter] = &[Parameter {
     name: "window",
     about: "side of the window, px",
     domain: Domain::Odd { min: 3, max: 31 },
-    default: 11.0,
+    default: 21.0,
     always_shown: true,
 }];
 
@@ -72,8 +72,8 @@ mod tests {
     #[test]
     fn conforms() {
         let registry = Registry::default().with(super::method());
-        for spec in ["edge_centroid", "edge_centroid:window=7", "edge_centroid:window=21"] {
-            conformance::check(&*registry.parse(spec).unwrap().operator.unwrap(), 1e-9);
+        for spec in ["edge_centroid", "edge_centroid:window=19", "edge_centroid:window=23"] {
+            conformance::check_on(&*registry.parse(spec).unwrap().operator.unwrap(), conformance::disc, 1e-9);
         }
     }
 }

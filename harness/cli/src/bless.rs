@@ -24,10 +24,13 @@ pub struct Bless {
     yes: bool,
 }
 
+/// Writes a baseline to a path; returns its checksum.
+type Writer<'a> = Box<dyn Fn(&Path) -> Result<String, BaselineError> + 'a>;
+
 /// A file that is to be written, and how.
 struct New<'a> {
     path: PathBuf,
-    write: Box<dyn Fn(&Path) -> Result<String, BaselineError> + 'a>,
+    write: Writer<'a>,
 }
 
 impl Bless {

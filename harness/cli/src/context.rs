@@ -103,11 +103,6 @@ impl Context<'_> {
         Ok(loaded)
     }
 
-    /// The scenario's file, if it is not one of the project's.
-    pub fn origin<'n>(&self, name: &'n str, scenario: &Scenario) -> Option<&'n Path> {
-        Some(Path::new(name)).filter(|path| is_toml(path) && scenario.name.starts_with(LOCAL))
-    }
-
     /// What is read with the scenario `name`: its file, its camera, its photographs.
     pub fn inputs(&self, name: &str, scenario: &Scenario) -> Inputs {
         let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
@@ -158,4 +153,9 @@ impl Context<'_> {
         let revision = self.project()?.and_then(describe);
         Ok(revision.unwrap_or_else(|| env!("CARGO_PKG_VERSION").to_owned()))
     }
+}
+
+/// The file of `scenario`, which was asked for as `name`, if it is not one of the project's.
+pub fn origin<'n>(name: &'n str, scenario: &Scenario) -> Option<&'n Path> {
+    Some(Path::new(name)).filter(|path| is_toml(path) && scenario.name.starts_with(LOCAL))
 }

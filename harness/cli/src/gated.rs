@@ -42,6 +42,9 @@ impl Gated {
     }
 }
 
+/// Gets a table with its scenario and the cell of its sweep.
+pub type Seen<'a> = dyn FnMut(&Scenario, Option<usize>, &Table) -> Result<(), Failure> + 'a;
+
 /// Where results come from, and who else sees them.
 pub struct Source<'a> {
     /// What has been run before, in place of running now.
@@ -49,7 +52,7 @@ pub struct Source<'a> {
     /// Where the records of the scenarios that published tables stand on are kept for their verdicts.
     pub kept: Option<Keep>,
     /// Gets every table with the scenario and the cell of its sweep.
-    pub each: &'a mut dyn FnMut(&Scenario, Option<usize>, &Table) -> Result<(), Failure>,
+    pub each: &'a mut Seen<'a>,
 }
 
 /// A temporary folder of records, and whose.

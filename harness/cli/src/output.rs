@@ -48,7 +48,7 @@ fn camera_endings() -> Vec<&'static str> {
 
 /// Whether a path is that of a camera file, by its ending.
 pub fn is_camera_name(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
     ending.is_some_and(|ending| camera_endings().iter().any(|known| ending == *known))
 }
 

@@ -8,7 +8,7 @@ use calibench_run::store::{self, RecordsFolder, SweepPlan};
 use calibench_scenario::{Scenario, Subject, Sweep};
 use clap::Args;
 
-use super::context::Context;
+use super::context::{Context, origin};
 use super::output;
 use super::progress::Progress;
 use crate::failure::Failure;
@@ -69,7 +69,7 @@ impl Run {
         let folder = |(name, scenario): (&String, &Scenario)| -> Result<RecordsFolder, Failure> {
             let path = records.join(&scenario.name);
             output::apart(&path, &context.inputs(name, scenario))?;
-            Ok(RecordsFolder::open(&records, &scenario.name, context.origin(name, scenario))?)
+            Ok(RecordsFolder::open(&records, &scenario.name, origin(name, scenario))?)
         };
         let folders = names.iter().zip(&scenarios).map(folder).collect::<Result<Vec<_>, Failure>>()?;
         let revision = context.revision()?;

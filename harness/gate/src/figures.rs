@@ -153,14 +153,14 @@ fn judged(
     }
     // The distance of cameras over the frame and the errors of check points are errors themselves.
     let error = |sum: &FigureSum| if matches!(group, Group::Frame | Group::Check) { Some(sum.mean) } else { sum.error };
-    if let (Some(a), Some(b)) = (error(old), error(new)) {
-        if !(b <= a * (1.0 + FIGURE_GROWTH)) {
-            findings.push(finding(Verdict::Fails, "error", format!("worse by more than {} %", 100.0 * FIGURE_GROWTH)).figures(a, b));
-        }
+    if let (Some(a), Some(b)) = (error(old), error(new))
+        && (b.is_nan() || b > a * (1.0 + FIGURE_GROWTH))
+    {
+        findings.push(finding(Verdict::Fails, "error", format!("worse by more than {} %", 100.0 * FIGURE_GROWTH)).figures(a, b));
     }
     match (old.sigma, new.sigma) {
         (Some(a), None) => {
-            findings.push(finding(Verdict::Fails, "sigma", "the reported standard deviation is missing".into()).figures(a, 0.0))
+            findings.push(finding(Verdict::Fails, "sigma", "the reported standard deviation is missing".into()).figures(a, 0.0));
         }
         (Some(a), Some(b)) if new.misfit().zip(old.misfit()).is_some_and(|(new, old)| new > old + SIGMA_DRIFT) || b.is_nan() => {
             let message = format!("errors fit the reported standard deviation less, by more than {} %", 100.0 * SIGMA_DRIFT);

@@ -74,7 +74,7 @@ fn news(scenario: &str, label: &str, base: &MethodTable, now: &MethodTable) -> V
     if base.version != now.version {
         let message = format!("the version changed from {} to {}: look, then bless", base.version, now.version);
         // A library's version is the machine's.
-        let verdict = if now.library != base.library { Verdict::Informs } else { Verdict::Changed };
+        let verdict = if now.library == base.library { Verdict::Changed } else { Verdict::Informs };
         findings.push(Finding::new(verdict, scenario, label, "version", message));
     }
     if !base.settings.is_empty() && !now.settings.is_empty() && base.settings != now.settings {

@@ -96,7 +96,7 @@ fn sigmas(old: &PointSums, new: &PointSums, finding: Make<'_>) -> Vec<Finding> {
     };
     let (a, b) = (ratio(|pair| *pair.0), ratio(|pair| *pair.1));
     let message = format!("the reported standard deviations of {} targets are others", changed.len());
-    let worse = !(b.ln().abs() <= a.ln().abs() + SIGMA_DRIFT);
+    let worse = b.is_nan() || a.is_nan() || b.ln().abs() > a.ln().abs() + SIGMA_DRIFT;
     vec![finding(if worse { Verdict::Fails } else { Verdict::Changed }, "error_over_sigma", message).figures(a, b)]
 }
 

@@ -144,6 +144,7 @@ impl Table {
     }
 
     /// The same run with the method `label` alone, its results replaced by `other` if there are any.
+    #[must_use]
     pub fn only(&self, label: &str, other: Option<MethodTable>) -> Self {
         let kept = self.methods.get_key_value(label).map(|(label, method)| (label.clone(), other.unwrap_or_else(|| method.clone())));
         Self { scenario: self.scenario.clone(), text: self.text.clone(), labels: Vec::new(), methods: kept.into_iter().collect(), ..*self }

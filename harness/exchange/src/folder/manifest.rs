@@ -75,7 +75,7 @@ impl Manifest {
         let mut manifest = Self::default();
         for entry in entries(folder)?.into_iter().filter(|entry| entry.kind == Kind::File) {
             let name = entry.name.filter(|name| !name.contains(char::is_control));
-            let name = name.ok_or_else(|| io::Error::other(format!("{:?}: no name for a file", entry.path)))?;
+            let name = name.ok_or_else(|| io::Error::other(format!("{}: no name for a file", entry.path.display())))?;
             manifest.add(&name, &digest(&entry.path)?);
         }
         Ok(manifest)

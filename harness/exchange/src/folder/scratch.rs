@@ -48,7 +48,7 @@ impl Scratch {
         let new = self.new_folder();
         match fs::metadata(place) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return fs::rename(&new, place).map_err(|error| at(place, &error)),
-            about => fs::set_permissions(&new, about.and_then(|about| Ok(about.permissions())).map_err(|error| at(place, &error))?)?,
+            about => fs::set_permissions(&new, about.map(|about| about.permissions()).map_err(|error| at(place, &error))?)?,
         }
         exchange(&new, place, &self.folder.join(OLD)).map_err(|error| at(place, &error))?;
         remove_listed(&new, old.unwrap_or(&Manifest::default()))?;

@@ -126,6 +126,8 @@ fn sixteen_bits_are_kept() {
     let image = Image::from_fn(256, 256, |x, y| (256 * y + x) as f32 / 65535.0);
     write_png(&path, &image, true).unwrap();
     assert_eq!(read_photo(&path).unwrap(), Photo { image: image.clone(), turn: None });
+    // An image that it did not draw is not replaced.
+    let path = folder.path().join("shallow.png");
     write_png(&path, &image, false).unwrap();
     assert!(read_photo(&path).unwrap().image != image);
 }

@@ -81,7 +81,7 @@ fn what_was_cut_or_edited_is_said() {
     }
     let cut = |lines: usize| damaged(|text| text.lines().take(text.lines().count() - lines).map(|line| format!("{line}\n")).collect());
     assert!(cut(1).contains("3 rows are there, its head says 4: rows were cut or added"), "{}", cut(1));
-    assert!(damaged(|text| text.trim_end().trim_end_matches(",").trim_end_matches('0').to_owned()).contains("edited"));
+    assert!(damaged(|text| text.trim_end().trim_end_matches(',').trim_end_matches('0').to_owned()).contains("edited"));
     assert!(damaged(|text| text.lines().skip(1).collect::<Vec<_>>().join("\n")).contains("has no head with fingerprints"));
     assert!(read_baseline(Path::new("/nowhere/b.csv"), "f/s").unwrap().is_none());
 }

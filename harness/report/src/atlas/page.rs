@@ -175,7 +175,7 @@ mod tests {
         let short: Vec<&str> = text.lines().filter(|line| line.starts_with("| [Corners](#corners) ")).collect();
         assert!(short.len() == 2 && short[0].contains("| sharp ") && short[0].contains("| `a:window=9` "), "{text}");
         assert!(short[1].contains("| dark ") && short[1].contains("| none: every operator fails too often |"), "{text}");
-        assert!(text.contains("| 3.00 (window=11) | 3.00 "), "{text}");
+        assert!(text.contains("| 3.00 (window=11) |  3.00 |"), "{text}");
         assert!(text.contains("none; `lossy` fails least, 18.0 %"), "{text}");
         assert!(text.contains("20k") && text.contains("a machine") && text.ends_with("Evidence.\n"));
         assert_eq!(page.answer, "");
