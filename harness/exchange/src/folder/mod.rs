@@ -1,6 +1,6 @@
 //! Folders that are whole or as they were, and in which nothing but calibench's own files is replaced.
 //!
-//! Each folder holds a [manifest](manifest): the files that calibench wrote there, with their digests. A folder in which anything else is, or in
+//! Each folder holds a manifest: the files that calibench wrote there, with their digests. A folder in which anything else is, or in
 //! which a file was changed since, is refused. A new one is filled beside the old one and exchanged with it at once.
 
 mod beside;
