@@ -85,12 +85,16 @@ pub struct Photo {
 /// # Errors
 /// A file that is missing, no image, cut short, or too large.
 pub fn read_photo(path: &Path) -> Result<Photo, PhotoError> {
+    decode(path, BufReader::new(open(path)?))
+}
+
+fn open(path: &Path) -> Result<File, PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
     let file = File::open(path).map_err(in_file)?;
     if file.metadata().map_err(in_file)?.is_dir() {
         return Err(in_file(io::Error::other("is a folder, expected an image file")));
     }
-    decode(path, BufReader::new(file))
+    Ok(file)
 }
 
 /// How [`read_photo`] turns a photograph, from its head alone.
@@ -100,12 +104,12 @@ pub fn read_photo(path: &Path) -> Result<Photo, PhotoError> {
 pub fn turn_of(path: &Path) -> Result<Option<Turn>, PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
     let mut head = Vec::new();
-    File::open(path).map_err(in_file)?.take(HEAD).read_to_end(&mut head).map_err(in_file)?;
+    open(path)?.take(HEAD).read_to_end(&mut head).map_err(in_file)?;
     let content = |source| PhotoError::Content { path: path.to_owned(), source };
     match turn_in(io::Cursor::new(head)) {
         Ok(turn) => Ok(turn),
         // What a TIFF says of itself may stand at its end.
-        Err(_) => turn_in(BufReader::new(File::open(path).map_err(in_file)?)).map_err(content),
+        Err(_) => turn_in(BufReader::new(open(path)?)).map_err(content),
     }
 }
 
