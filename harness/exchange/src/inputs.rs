@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 /// The files and folders that a command reads.
 ///
-/// Compared are real paths and, where the system numbers files, these numbers: a link to a file, hard or symbolic, is that file.
+/// Compared are real paths and, where the system numbers files, these numbers: a link to a file, hard or symbolic, is that file, and so is one to a file in a
+/// folder that is read.
 #[derive(Clone, Debug, Default)]
 pub struct Inputs {
     read: Vec<Input>,
@@ -32,10 +33,11 @@ impl Inputs {
     /// The input, as it was given, that would be lost or changed by writing the file `path`: the same file, or a folder that holds it.
     pub fn written_by(&self, path: &Path) -> Option<&Path> {
         let about = fs::metadata(path).ok().filter(fs::Metadata::is_file);
-        let number = about.as_ref().and_then(number);
+        let (number, linked) = (about.as_ref().and_then(number), about.as_ref().is_some_and(has_other_names));
         let real = real(path);
         let is = |input: &&Input| {
-            real.as_ref().is_some_and(|real| real.starts_with(&input.real)) || (number.is_some() && input.number == number)
+            let same = number.is_some_and(|number| input.number == Some(number) || (linked && holds(&input.real, number)));
+            same || real.as_ref().is_some_and(|real| real.starts_with(&input.real))
         };
         self.read.iter().find(is).map(|input| input.given.as_path())
     }
@@ -46,6 +48,14 @@ impl Inputs {
         let is = |input: &&Input| input.real.starts_with(&folder) || folder.starts_with(&input.real);
         self.read.iter().find(is).map(|input| input.given.as_path())
     }
+}
+
+/// Whether the file of this number lies in `folder`, at any depth. What cannot be read holds nothing.
+fn holds(folder: &Path, file: (u64, u64)) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter_map(|entry| Some((entry.path(), entry.metadata().ok()?))).any(|(path, about)| {
+        if about.is_dir() { holds(&path, file) } else { number(&about) == Some(file) }
+    })
 }
 
 /// The real path of what is there or could be made.
@@ -61,6 +71,17 @@ fn real(path: &Path) -> Option<PathBuf> {
 fn number(about: &fs::Metadata) -> Option<(u64, u64)> {
     use std::os::unix::fs::MetadataExt;
     Some((about.dev(), about.ino()))
+}
+
+#[cfg(unix)]
+fn has_other_names(about: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    about.nlink() > 1
+}
+
+#[cfg(not(unix))]
+fn has_other_names(_: &fs::Metadata) -> bool {
+    false
 }
 
 #[cfg(not(unix))]
@@ -88,6 +109,10 @@ mod tests {
         assert!(inputs.lost_with(&at("photos")).is_some() && inputs.lost_with(folder.path()).is_some());
         assert!(inputs.lost_with(&at("photos/sub")).is_none() && inputs.lost_with(&at("other")).is_none());
         let inputs = Inputs::new([at("photos")]);
+        assert_eq!(inputs.written_by(&at("hard.jpg")), Some(at("photos").as_path()), "a file of a folder by another name");
+        fs::write(at("other.jpg"), "").unwrap();
+        fs::hard_link(at("other.jpg"), at("other-too.jpg")).unwrap();
+        assert_eq!(inputs.written_by(&at("other.jpg")), None);
         assert!(inputs.written_by(&at("photos/new.csv")).is_some() && inputs.lost_with(&at("photos/new/er")).is_some());
     }
 }

@@ -40,7 +40,6 @@ fn writers() -> Vec<FileWriter> {
 }
 
 #[test]
-#[ignore = "open: `plot -o` does not yet refuse all that other commands refuse"]
 fn a_file_of_ones_own_is_replaced_and_nothing_else_is() {
     let folder = workshop();
     let at = |name: &str| folder.path().join(name);
@@ -133,7 +132,6 @@ fn without_space_the_old_file_stays_and_the_message_names_it() {
 }
 
 #[test]
-#[ignore = "open: `plot` into the folder of its records is refused before its two outputs are compared"]
 fn two_outputs_are_two_files() {
     let folder = workshop();
     let pair = ["orient", "-q", "--left", "s01-r1.png", "--right", "s04-r1.png", "--points", "points.csv", "--camera", "wall/camera.toml"];

@@ -68,12 +68,14 @@ fn keeps_what_is_not_its_own(folder: &Path, arguments: &[&str], out: &str) {
 }
 
 #[test]
-#[ignore = "open: `convert --all -o` with the ending of a camera file means a file, not a folder"]
 fn a_folder_is_replaced_only_where_all_of_it_is_calibenchs_own() {
     let folder = workshop();
     for writer in writers() {
         keeps_what_is_not_its_own(folder.path(), &writer.to("out"), "out");
-        refused(folder.path(), &writer.to("mine.toml"), &["mine.toml"]);
+        // A file stands in the folder's place.
+        fs::write(folder.path().join("taken"), "mine").unwrap();
+        refused(folder.path(), &writer.to("taken"), &["taken"]);
+        fs::remove_file(folder.path().join("taken")).unwrap();
         refused(folder.path(), &writer.to("."), &[" .: "]);
     }
     keeps_what_is_not_its_own(folder.path(), &["run", "mine.toml", "-q"], "records/local/mine");

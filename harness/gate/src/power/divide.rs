@@ -19,8 +19,11 @@ use crate::{LEAST_PAIRS, decide};
 pub struct Alarms {
     /// How many divisions.
     pub divisions: usize,
-    /// How many of them a check fails.
+    /// How many of them the tests fail.
     pub failed: usize,
+    /// How many of them leave a target, found by both halves together, in too few trials for a test. A check would name that; it is no statement of chance: with
+    /// the same seed the trials are not shuffled, and no target loses its pair.
+    pub lacking: usize,
     /// How many methods take part in each division.
     pub methods: usize,
     /// How many tests share the error budget of a division.
@@ -84,27 +87,34 @@ pub fn alarms(tables: &[&Table], divisions: usize) -> Alarms {
     let all: Vec<Stored<'_>> =
         tables.iter().flat_map(|table| table.methods().map(|(label, method)| Stored::of(&table.scenario, label, method))).collect();
     let (enough, few): (Vec<Stored<'_>>, Vec<Stored<'_>>) = all.into_iter().partition(|stored| stored.trials.len() >= 2 * LEAST_PAIRS);
-    let counted: Vec<(bool, usize)> = (0..divisions).into_par_iter().map(|number| one(&enough, number as u64)).collect();
+    let divided: Vec<Division> = (0..divisions).into_par_iter().map(|number| one(&enough, number as u64)).collect();
     Alarms {
         divisions,
-        failed: counted.iter().filter(|(failed, _)| *failed).count(),
+        failed: divided.iter().filter(|division| division.failed).count(),
+        lacking: divided.iter().filter(|division| division.lacking).count(),
         methods: enough.len(),
-        tests: counted.first().map_or(0, |(_, tests)| *tests),
+        tests: divided.first().map_or(0, |division| division.tests),
         too_few: few.len(),
     }
 }
 
-/// Whether division `number` fails, and by how many tests.
-fn one(stored: &[Stored<'_>], number: u64) -> (bool, usize) {
-    let (mut tests, mut lacking): (Vec<Test>, Vec<Finding>) = (Vec::new(), Vec::new());
+/// What a check makes of one division.
+struct Division {
+    failed: bool,
+    lacking: bool,
+    tests: usize,
+}
+
+fn one(stored: &[Stored<'_>], number: u64) -> Division {
+    let (mut tests, mut lacking): (Vec<Test>, bool) = (Vec::new(), false);
     for method in stored {
         let mut order: Vec<usize> = (0..method.trials.len()).collect();
         let key = Key { seed: 0, scenario: method.scenario, trial: number, view: "", target: "" };
         order.shuffle(&mut stream(key, Purpose::Split));
         let (found, missing) = judge::tests(method.scenario, method.label, &method.pairs(&order));
         tests.extend(found);
-        lacking.extend(missing);
+        lacking |= !missing.is_empty();
     }
     let worse = |family| decide(tests.iter().filter(|test| test.family == family).collect()).iter().any(Finding::fails);
-    (Family::ALL.into_iter().any(worse) || !lacking.is_empty(), tests.len())
+    Division { failed: Family::ALL.into_iter().any(worse), lacking, tests: tests.len() }
 }

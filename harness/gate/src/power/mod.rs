@@ -115,10 +115,12 @@ fn untested(outcomes: &[Outcome]) -> String {
 }
 
 fn false_alarms(alarms: &Alarms) -> String {
-    let Alarms { divisions, failed, methods, tests, too_few } = alarms;
+    let Alarms { divisions, failed, lacking, methods, tests, too_few } = alarms;
     format!(
         "\n## False alarms\n\nThe stored trials of a scenario, divided at random into a baseline and a run, are alike: a check that fails there is wrong. {divisions} divisions of the \
-         {methods} methods with at least {} trials, {tests} tests in each: **{failed} failed**. The gate promises a rate of {ALPHA}. {too_few} methods have fewer trials and take no part: \
+         {methods} methods with at least {} trials, {tests} tests in each: **{failed} failed**. The gate promises a rate of {ALPHA}. \
+         In {lacking} divisions a target that is seldom found was left in fewer than {LEAST_PAIRS} pairs; a check names that exactly, without a test, and with the same seed it cannot come \
+         by chance. {too_few} methods have fewer trials and take no part: \
          with the same seed a check tests nothing that is unchanged, and cannot be wrong there.\n",
         2 * LEAST_PAIRS
     )
