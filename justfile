@@ -4,6 +4,9 @@
 everything := "--release --workspace"
 calibench := "./target/release/calibench"
 
+# Snapshots are compared and not written; `INSTA_UPDATE=always just test` accepts what is there now.
+export INSTA_UPDATE := env("INSTA_UPDATE", "no")
+
 # List the recipes
 default:
     @just --list --unsorted
@@ -50,6 +53,10 @@ lint:
     cargo clippy {{everything}} --all-targets --quiet -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
     sh -n bootstrap
+
+# Small faults in what scores, gates, adjusts and reports that no test of its crate notices: COUNT mutants by SEED, at most MINUTES (`./bootstrap mutants` installs cargo-mutants)
+mutants SEED="2026" COUNT="200" MINUTES="60":
+    .ci/mutants {{SEED}} {{COUNT}} {{MINUTES}}
 
 # Licences and sources of all dependencies, and advisories against them where their database can be reached (`./bootstrap deny` installs cargo-deny)
 deny:

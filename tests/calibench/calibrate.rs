@@ -4,8 +4,9 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use calibench_exchange::camera::NamedCamera;
-use calibench_exchange::{read_camera, read_control, read_stations};
+use calibench_exchange::{StationRow, read_camera, read_control, read_stations};
 use calibench_model::camera::CameraModel;
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::project::{root, run, stderr, stdout};
 
@@ -173,6 +174,9 @@ fn resection_and_intersection_go_there_and_back() {
             assert!((number(row, column) - number(&truth, column)).abs() < 4.5 * number(row, sigma), "{column}: {row:?}");
         }
     }
+    let ratios = turns_over_sigmas(&folder.path().join("poses.csv"), &folder.path().join("wall/stations.csv"));
+    let rms = (ratios.iter().map(|ratio| ratio * ratio).sum::<f64>() / ratios.len() as f64).sqrt();
+    assert!(ratios.len() == 24 && (0.5..2.0).contains(&rms), "{rms}: {ratios:?}");
     let output = run(folder.path(), &[&["intersect"], &common[..], &["--stations", "wall/stations.csv", "-o", "points3d.csv"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     let known: HashMap<_, _> =
@@ -186,6 +190,22 @@ fn resection_and_intersection_go_there_and_back() {
             assert!((number(row, column) - known[&row["target"]][axis]).abs() < 4.5 * sigma, "{column}: {row:?}");
         }
     }
+}
+
+/// The errors of rotations, about the camera's axes, over their standard deviations; both in degrees, as the columns say.
+fn turns_over_sigmas(found: &Path, truth: &Path) -> Vec<f64> {
+    let poses = read_stations(found).unwrap();
+    let truth = read_stations(truth).unwrap();
+    let of = |(row, (found, truth)): (&HashMap<String, String>, (&StationRow, &StationRow))| {
+        let turn = turn(&found.pose.rotation, &truth.pose.rotation);
+        ["sx_deg", "sy_deg", "sz_deg"].iter().zip(turn.iter()).map(|(column, turn)| turn / number(row, column)).collect::<Vec<_>>()
+    };
+    table(found).iter().zip(poses.iter().zip(&truth)).flat_map(of).collect()
+}
+
+/// The small rotation from `truth` to `found` about the camera's axes, degrees.
+pub fn turn(found: &Matrix3<f64>, truth: &Matrix3<f64>) -> Vector3<f64> {
+    Rotation3::from_matrix_unchecked(found * truth.transpose()).scaled_axis().map(f64::to_degrees)
 }
 
 /// A plane of 5 x 4 points as a frontal camera sees it from `images` distances, a little noisy.

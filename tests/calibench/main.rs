@@ -14,6 +14,7 @@ mod gate;
 mod judge;
 mod killed;
 mod measure;
+mod messages;
 mod models;
 mod networks;
 mod opencv_gate;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibench_exchange::{read_control, read_stations};
 
-use crate::calibrate::{Table, number, table, wall, write};
+use crate::calibrate::{Table, number, table, turn, wall, write};
 use crate::project::{run, stderr};
 
 const PAIR: [&str; 9] =
@@ -64,7 +64,14 @@ fn the_model_of_a_rendered_pair_is_the_object_in_the_left_images_axes() {
         let (error, sigma) = (number(&pair[1], column) - expected, number(&pair[1], &format!("s{column}")));
         assert!(error.abs() < 4.5 * sigma, "{column}: {error}, {sigma}");
     }
-    assert_eq!(read_stations(&folder.path().join("pair.csv")).unwrap().len(), 2);
+    let found = read_stations(&folder.path().join("pair.csv")).unwrap();
+    assert_eq!(found.len(), 2);
+    // Rotations in the left image's axes, with standard deviations in degrees: three ratios of a normal variable, none huge, not all tiny.
+    let turn = turn(&found[1].pose.rotation, &(right.rotation * left.rotation.transpose()));
+    let ratios: Vec<f64> =
+        ["sx_deg", "sy_deg", "sz_deg"].iter().zip(turn.iter()).map(|(column, turn)| turn / number(&pair[1], column)).collect();
+    let largest = ratios.iter().fold(0.0_f64, |largest, ratio| largest.max(ratio.abs()));
+    assert!((0.1..4.5).contains(&largest), "{ratios:?}");
 }
 
 #[test]

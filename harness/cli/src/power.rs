@@ -1,7 +1,7 @@
 //! `calibench gate-power`: what the gate sees, and how often it is wrong, on this project's own baselines.
 
-use calibench_gate::power::{alarms, page, power};
-use calibench_gate::{Coordinates, Table, baseline_path, read_baseline};
+use calibench_gate::power::{alarms, page, power, sweep_power};
+use calibench_gate::{Cells, Coordinates, PointSums, Table, baseline_path, read_baseline};
 use clap::Args;
 
 use super::context::Context;
@@ -18,13 +18,18 @@ pub struct Power {
 impl Power {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let folder = context.root()?.join("reference/baselines");
-        let mut tables: Vec<Table> = Vec::new();
+        let (mut tables, mut sweeps): (Vec<Table>, Vec<Cells<PointSums>>) = (Vec::new(), Vec::new());
         for name in context.catalogue()?.names()? {
             let scenario = context.scenario(&name)?;
-            if scenario.sweep.is_some() || scenario.is_deterministic() {
+            let path = baseline_path(&folder, &name);
+            if scenario.sweep.is_some() {
+                sweeps.extend(Cells::read(&path, &name)?.map(|(cells, _)| cells));
                 continue;
             }
-            let Some((table, _)) = read_baseline(&baseline_path(&folder, &name), &name)? else { continue };
+            if scenario.is_deterministic() {
+                continue;
+            }
+            let Some((table, _)) = read_baseline(&path, &name)? else { continue };
             if table.coordinates == Coordinates::Errors && table.trials() > 1 {
                 tables.push(table);
             }
@@ -33,6 +38,6 @@ impl Power {
             return Err(Failure::input("no scenario with random trials has a baseline: there is nothing to measure the gate with"));
         }
         let tables: Vec<&Table> = tables.iter().collect();
-        print(&page(&power(&tables), &alarms(&tables, self.divisions as usize)))
+        print(&page(&power(&tables), &sweep_power(&sweeps), &alarms(&tables, self.divisions as usize)))
     }
 }

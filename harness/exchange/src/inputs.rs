@@ -53,9 +53,9 @@ impl Inputs {
 /// Whether the file of this number lies in `folder`, at any depth. What cannot be read holds nothing.
 fn holds(folder: &Path, file: (u64, u64)) -> bool {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    entries.filter_map(|entry| Some((entry.path(), entry.metadata().ok()?))).any(|(path, about)| {
-        if about.is_dir() { holds(&path, file) } else { number(&about) == Some(file) }
-    })
+    entries
+        .filter_map(|entry| Some((entry.path(), entry.metadata().ok()?)))
+        .any(|(path, about)| if about.is_dir() { holds(&path, file) } else { number(&about) == Some(file) })
 }
 
 /// The real path of what is there or could be made.

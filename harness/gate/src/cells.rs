@@ -70,6 +70,11 @@ impl<T: Kept> Cells<T> {
         self.values.push(values);
     }
 
+    /// What is kept of every method of every cell.
+    pub fn values(&self) -> impl Iterator<Item = &T> {
+        self.values.iter().flat_map(BTreeMap::values)
+    }
+
     /// How many cells.
     pub fn len(&self) -> usize {
         self.labels.len()
@@ -77,13 +82,12 @@ impl<T: Kept> Cells<T> {
 
     /// Whether nothing is kept at all.
     pub fn is_empty(&self) -> bool {
-        self.values.iter().all(|cell| cell.values().all(|value| value.count() == 0))
+        self.values().all(|value| value.count() == 0)
     }
 
     /// How many methods of all cells, and how many points or figures these have.
     pub fn counts(&self) -> [usize; 2] {
-        let all = self.values.iter().flat_map(BTreeMap::values);
-        [all.clone().count(), all.map(Kept::count).sum()]
+        [self.values().count(), self.values().map(Kept::count).sum()]
     }
 
     /// Writes the file, whole or not at all, and returns its checksum.

@@ -10,3 +10,6 @@ pub mod score;
 pub mod statistics;
 
 pub use cells::RecordError;
+
+#[cfg(test)]
+mod tests;

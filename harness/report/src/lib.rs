@@ -32,3 +32,6 @@ pub use index::write_index;
 pub use load::{LoadError, Loaded, load, recorded};
 pub use places::{Places, ReportError, Written};
 pub use scene_figures::preview;
+
+#[cfg(test)]
+mod tests;

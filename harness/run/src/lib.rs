@@ -15,3 +15,6 @@ pub mod views;
 pub use error::RunError;
 pub use plan::Plan;
 pub use scene::{VIEW, trial_picture, trial_truth};
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,8 @@
 //! A project elsewhere: five commands from an empty folder.
 
+use std::path::Path;
+use std::process::{Command, Output};
+
 use crate::project::{run, stderr, stdout};
 
 #[test]
@@ -35,4 +38,36 @@ fn a_folder_that_holds_something_is_left_alone() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("holds `photo.jpg`; expected a new or an empty folder"), "{}", stderr(&output));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+/// The program of `examples/own_gate.rs`, as docs/gate-elsewhere.md tells it.
+fn own(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_own-gate")).current_dir(folder).env_remove("CALIBENCH_ROOT").args(arguments).output().unwrap()
+}
+
+#[test]
+fn an_operator_of_ones_own_is_gated() {
+    let empty = tempfile::tempdir().unwrap();
+    assert!(own(empty.path(), &["init", "mine", "-q"]).status.success());
+    let mine = empty.path().join("mine");
+    let path = mine.join("scenarios/first/corners.toml");
+    let with = |shift: &str| {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let start = text.find("\n[[method]]\nname = \"shifted\"").unwrap_or(text.len());
+        std::fs::write(&path, format!("{}\n[[method]]\nname = \"shifted\"\nshift = {shift}\n", &text[..start])).unwrap();
+    };
+    with("0.25");
+    let output = own(&mine, &["check", "--locked", "-q"]);
+    assert_eq!(output.status.code(), Some(1), "not blessed yet: {}", stdout(&output));
+    assert!(own(&mine, &["bless", "--yes", "-q"]).status.success());
+    let output = own(&mine, &["check", "--strict", "--locked", "-q"]);
+    assert!(output.status.success() && stdout(&output).contains("2 methods, 160 points"), "{}{}", stdout(&output), stderr(&output));
+    with("0.5");
+    let output = own(&mine, &["check", "-q"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+    assert!(stdout(&output).contains("shifted"), "{}", stdout(&output));
+    // calibench itself has no such method.
+    let output = run(&mine, &["check", "-q"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("no method is called `shifted`"), "{}", stderr(&output));
 }

@@ -5,5 +5,6 @@ mod datum;
 mod networks;
 mod noise_free;
 mod quality;
+mod significance;
 mod standard_deviations;
 mod undetermined;

@@ -2,6 +2,7 @@
 
 mod divide;
 mod mutate;
+mod sums;
 
 use std::collections::BTreeMap;
 
@@ -10,6 +11,7 @@ use rayon::prelude::*;
 
 pub use divide::{Alarms, alarms};
 pub use mutate::Mutation;
+pub use sums::{SweepOutcome, sweep_power};
 
 use crate::finding::{Finding, Rules};
 use crate::table::Table;
@@ -46,8 +48,8 @@ fn one(table: &Table, label: &str, mutation: Mutation) -> Outcome {
     Outcome { scenario: table.scenario.clone(), method: label.to_owned(), mutation, caught }
 }
 
-/// The page: faults caught by scenario, what was not caught or could not be put in, false alarms.
-pub fn page(outcomes: &[Outcome], alarms: &Alarms) -> String {
+/// The page: faults caught by scenario, what was not caught or could not be put in, the same of sweeps, false alarms.
+pub fn page(outcomes: &[Outcome], sweeps: &[SweepOutcome], alarms: &Alarms) -> String {
     let pairs = outcomes.len() / Mutation::ALL.len();
     let mut text = format!(
         "# What the gate sees\n\nMade by `just power` from the shipped baselines; nothing here is written by hand.\n\n\
@@ -68,7 +70,20 @@ pub fn page(outcomes: &[Outcome], alarms: &Alarms) -> String {
     }
     text.push_str("\n## Not tested\n\nFaults that cannot be put into the numbers of a method, and why.\n\n");
     text.push_str(&untested(outcomes));
+    text.push_str(&of_sweeps(sweeps));
     text.push_str(&false_alarms(alarms));
+    text
+}
+
+/// A row for each fault and sweep, and why a fault could not be put in.
+fn of_sweeps(sweeps: &[SweepOutcome]) -> String {
+    let mut text = "\n## Cells of sweeps\n\nOf a method in a cell of a sweep a digest of its points and sums are kept: the sums are given what the fault does to them on \
+                    average, and another digest.\n\n| sweep | fault | put into | caught, strict | caught, plain | not tested |\n|---|---|---:|---:|---:|---|\n"
+        .to_owned();
+    for SweepOutcome { scenario, mutation, tried, caught: [strict, plain], untested } in sweeps {
+        let why: Vec<String> = untested.iter().map(|(why, count)| format!("{count}: {why}")).collect();
+        text.push_str(&format!("| `{scenario}` | {} | {tried} | {strict} | {plain} | {} |\n", name(*mutation), why.join("; ")));
+    }
     text
 }
 

@@ -8,3 +8,6 @@ mod sets_page;
 mod tables;
 
 pub use page::{summary, write_report};
+
+#[cfg(test)]
+mod tests;

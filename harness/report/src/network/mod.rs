@@ -50,3 +50,6 @@ pub fn section(loaded: &Loaded, stem: &str, illustrated: bool) -> Option<(String
     add("convergence", "The residuals by the convergence of the image", pictures::residuals::by_convergence(found, views));
     Some((text, drawn))
 }
+
+#[cfg(test)]
+mod tests;

@@ -79,3 +79,43 @@ pub fn of_points(points: &[PointResult], method: usize, metric: Metric, target: 
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_model::{PixelPoint, Rejection};
+
+    use super::*;
+
+    fn point(target: &str, outcome: Option<(f64, f64)>) -> PointResult {
+        let measured = |(dx, dy)| Outcome::Measured { position: PixelPoint::new(10.0 + dx, 20.0 + dy), error: Some((dx, dy)) };
+        PointResult::new("v", target, 1, outcome.map_or(Outcome::Rejected(Rejection::Border), measured))
+    }
+
+    /// Errors (0.3, 0.4), (-0.6, 0.8), (0, -0.5): distances 0.5, 1 and 0.5.
+    #[test]
+    fn figures_of_points_are_those_computed_by_hand() {
+        let mut points = vec![point("a", Some((0.3, 0.4))), point("b", Some((-0.6, 0.8))), point("c", Some((0.0, -0.5))), point("d", None)];
+        points.push(PointResult { method: 0, ..point("a", Some((7.0, 7.0))) });
+        let of = |metric, target| of_points(&points, 1, metric, target, &[]);
+        let all = [
+            (Metric::MeanDx, -0.1),
+            (Metric::MeanDy, 0.7 / 3.0),
+            (Metric::RmseX, 0.15_f64.sqrt()),
+            (Metric::RmseY, 0.35_f64.sqrt()),
+            (Metric::RmseXy, 0.5_f64.sqrt()),
+            (Metric::MeanDistance, 2.0 / 3.0),
+        ];
+        for (metric, expected) in all {
+            let found = of(metric, None).unwrap();
+            assert!((found - expected).abs() < 1e-12, "{metric:?}: {found} is not {expected}");
+        }
+        let without = of_points(&points, 1, Metric::RmseXy, None, &["b".into()]).unwrap();
+        assert!((without - 0.5).abs() < 1e-12, "{without}");
+        let one = [(Metric::X, 9.4), (Metric::Y, 20.8), (Metric::Dx, -0.6), (Metric::Dy, 0.8), (Metric::Distance, 1.0)];
+        for (metric, expected) in one {
+            assert!((of(metric, Some("b")).unwrap() - expected).abs() < 1e-12, "{metric:?}");
+            assert_eq!((of(metric, Some("d")), of(metric, Some("e"))), (None, None), "{metric:?}");
+        }
+        assert_eq!(of_points(&points, 2, Metric::MeanDx, None, &[]), None);
+    }
+}

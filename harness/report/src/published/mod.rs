@@ -1,6 +1,6 @@
 //! What papers printed, and which of our figures stands behind each cell.
 
-mod adjustment;
+pub(crate) mod adjustment;
 mod every_method;
 mod figure;
 mod many;

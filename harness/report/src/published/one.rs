@@ -68,3 +68,20 @@ pub fn like(cell: &Cell, value: f64) -> String {
     let digits = Printed::parse(&cell.printed).map_or(4, |printed| (-printed.unit.log10()).round() as usize + 1);
     fixed(value, digits)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_judged_by_its_gravest_cell() {
+        use Verdict::{Differs, NotComparable, Reproduces};
+        let of = |verdicts: &[Verdict]| gravest(verdicts.to_vec(), &mut Notes::default());
+        let why = || NotComparable("another axis".into());
+        assert_eq!(of(&[]), "");
+        assert_eq!(of(&[Reproduces, Reproduces]), "reproduces");
+        assert_eq!(of(&[Reproduces, Differs, Reproduces]), "differs");
+        assert_eq!(of(&[why(), Differs, Reproduces]), "differs");
+        assert_eq!(of(&[Reproduces, why()]), "not comparable (a)");
+    }
+}

@@ -5,6 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Step of the differences, radians.
 const STEP: f64 = 1e-6;
+/// The cosine of phi below which omega and kappa turn about one axis: what differences of [`STEP`] leave of its digits.
+const ONE_AXIS: f64 = 1e-9;
 
 /// Standard deviations of omega, phi and kappa, radians, from the covariance of a small rotation about the camera's axes (`M` becomes `(1 + [d]x) M`).
 /// `None` where they are not determined.
@@ -19,7 +21,8 @@ pub fn sigmas(pose: &Pose, covariance: &Matrix3<f64>) -> Option<[f64; 3]> {
         small(&(moved(1.0) * moved(-1.0).transpose())) / (2.0 * STEP)
     };
     let by_angles = Matrix3::from_columns(&[column(0), column(1), column(2)]);
-    let back = by_angles.try_inverse()?;
+    // The determinant is the cosine of phi.
+    let back = Some(by_angles).filter(|matrix| matrix.determinant().abs() > ONE_AXIS)?.try_inverse()?;
     let turned = back * covariance * back.transpose();
     Some([0, 1, 2].map(|i| turned[(i, i)].max(0.0).sqrt()))
 }

@@ -3,8 +3,8 @@
 //! The adjustment is told what a user would know: image coordinates, surveyed control, a data sheet's principal distance. Poses start from resections.
 
 mod adjustment;
-mod angles;
-mod check;
+pub(crate) mod angles;
+pub(crate) mod check;
 mod job;
 mod observe;
 

@@ -1,0 +1,60 @@
+//! A whole report from records of a few points, whose figures are computed by hand.
+
+mod small;
+
+use small::{Family, line, row};
+
+/// Errors of `centroid`, px: in trial 0 (0.03, 0.04) and (-0.01, 0.02), `c` rejected; in trial 1 (0.05, 0), `b` lost at (3, 4), (0.02, -0.02).
+#[test]
+fn the_figures_of_a_method_are_those_computed_by_hand() {
+    let page = Family::new().page();
+    // Squares of the kept points 25e-4, 5e-4, 25e-4, 8e-4: mean 15.75e-4; with the lost one (25 + 63e-4) / 5.
+    let found = row(&page, &["`centroid:window=15`", "6"]);
+    assert_eq!(found[2..5], ["1 border", "1 (16.7 ± 15.2 %)", "0.0397"]);
+    assert!(found[7].starts_with("2.2363 ± "), "{found:?}");
+    // Sums over trials of kept dx: 0.02 and 0.07 of two points each. The mean is 0.0225, the residuals of the sums -0.025 and 0.025; times 2 / (2 - 1),
+    // the root over four points: 0.0125.
+    let found = row(&page, &["`centroid:window=15`", "+0.0225 ± 0.0125"]);
+    assert_eq!(found[2..4], ["+0.0100 ± 0.0200", "0.0311"]);
+    // (0.3, 0.4), (0, 0), (0, 0.5), (0, 0.1), (0.1, 0), (-0.4, 0.3): the mean square is 0.77 / 6.
+    assert_eq!(row(&page, &["`pixel`", "6"])[2..5], ["0", "0", "0.3582"]);
+}
+
+/// The two runs have 0.03 and 0.05, 0.04 and 0: means 0.04 and 0.02, single runs within 0.0277 and 0.0554 of them.
+#[test]
+fn a_printed_figure_is_judged_by_where_single_runs_lie() {
+    let page = Family::new().page();
+    let verdict = |name: &str, column: &str| row(&page, &[name, column]).last().unwrap().clone();
+    assert_eq!(row(&page, &["a", "dx"])[2..4], ["0.03", "0.030"]);
+    assert!(row(&page, &["a", "dx"])[4].starts_with("0.040"));
+    assert_eq!(verdict("a", "dx"), "reproduces");
+    assert_eq!(verdict("a", "dy"), "differs: 0.20 times");
+    assert_eq!(verdict("b", "dy"), "not comparable (a)");
+    // Of the first run: sqrt((0.03^2 + 0.01^2) / 2) in x alone, sqrt((25e-4 + 5e-4) / 2) in the plane.
+    assert_eq!([&row(&page, &["all", "dx"])[3], &row(&page, &["all", "dy"])[3]], ["0.0224", "0.0387"]);
+}
+
+/// The page as a reader sees it, to the letter.
+#[test]
+fn the_page_of_a_small_family() {
+    insta::assert_snapshot!(Family::new().page());
+}
+
+#[test]
+fn records_that_are_not_the_scenario_of_the_file_are_named() {
+    let family = Family::new();
+    assert!(!family.page().contains("Not the scenario"), "two trials, as the file says");
+    family.change_scenario("trials = 2", "trials = 3");
+    let page = family.page();
+    assert_eq!(line(&page, "**Not the scenario"), "**Not the scenario as its file says: 2 trials in place of 3.**");
+}
+
+#[test]
+fn what_is_missing_or_broken_is_named_with_its_path() {
+    let family = Family::new();
+    std::fs::write(family.records(), "a,b\n1,2\n").unwrap();
+    let message = family.message();
+    assert!(message.contains("records.csv: line 1: expected the columns scenario,trial,view"), "{message}");
+    std::fs::remove_file(family.records()).unwrap();
+    insta::assert_snapshot!(family.message(), @"no records of `small/scene`: run it first with `calibench run small/scene`");
+}

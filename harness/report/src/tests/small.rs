@@ -1,0 +1,193 @@
+//! A family of one scenario with two trials of two methods, and a published table.
+
+use std::fs;
+use std::path::PathBuf;
+
+use calibench_measure::Registry;
+use calibench_model::{PixelPoint, Rejection};
+use calibench_records::points::{RecordWriter, RunInfo};
+use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
+use tempfile::TempDir;
+
+use crate::{Places, write};
+
+const NAME: &str = "small/scene";
+
+const SCENARIO: &str = r#"
+why = "Three discs."
+source = "ours"
+notes = ["Nothing is rendered here."]
+seed = 5
+trials = 2
+
+[scene]
+width = 60
+height = 30
+background = 0.9
+grey_noise = 0.01
+
+[[scene.polygon]]
+id = "dark"
+grey = 0.1
+vertices = [[10.5, 10.5], [15.5, 10.5], [15.5, 15.5], [10.5, 15.5]]
+
+[scene.pointing]
+sigma = 0.5
+whole_pixels = true
+
+[[scene.target]]
+id = "a"
+kind = "square"
+at = [13, 13]
+
+[[scene.target]]
+id = "b"
+kind = "square"
+at = [30, 13]
+
+[[scene.target]]
+id = "c"
+kind = "square"
+at = [47, 13]
+
+[[method]]
+name = "pixel"
+
+[[method]]
+name = "centroid"
+window = 15
+"#;
+
+const TABLE: &str = r#"
+title = "Table 1: errors"
+source = "Nobody 2000, p. 1"
+unit = "px"
+scenario = "small/scene"
+method = "centroid:window=15"
+columns = ["dx", "dy"]
+findings = ["The figures are made up."]
+
+[[set]]
+name = "all"
+
+[[set]]
+name = "without a"
+except = ["a"]
+
+[[cell]]
+row = "a"
+column = "dx"
+printed = "0.03"
+metric = "dx"
+target = "a"
+
+[[cell]]
+row = "a"
+column = "dy"
+printed = "0.10"
+metric = "dy"
+target = "a"
+
+[[cell]]
+row = "b"
+column = "dx"
+printed = "-0.01"
+metric = "dx"
+target = "b"
+
+[[cell]]
+row = "b"
+column = "dy"
+printed = "7"
+metric = "dy"
+target = "b"
+not_comparable = "another axis"
+
+[[cell]]
+row = "all"
+column = "dx"
+printed = "0.022"
+metric = "rmse_x"
+
+[[cell]]
+row = "all"
+column = "dy"
+printed = "0.039"
+metric = "rmse_xy"
+"#;
+
+fn trial(number: u64, pixel: [(f64, f64); 3], centroid: [Option<(f64, f64)>; 3]) -> Trial {
+    let truth = [("a", 13.0), ("b", 30.0), ("c", 47.0)];
+    let measured = |at: f64, (dx, dy)| Outcome::Measured { position: PixelPoint::new(at + dx, 13.0 + dy), error: Some((dx, dy)) };
+    let of = |method, outcomes: [Outcome; 3]| {
+        truth.into_iter().zip(outcomes).map(move |((target, _), outcome)| PointResult::new("image", target, method, outcome))
+    };
+    let place = |index: usize| truth[index].1;
+    let pixel = of(0, std::array::from_fn(|i| measured(place(i), pixel[i])));
+    let rejected = Outcome::Rejected(Rejection::Border);
+    let centroid = of(1, std::array::from_fn(|i| centroid[i].map_or(rejected, |error| measured(place(i), error))));
+    Trial { number, points: pixel.chain(centroid).collect(), ..Trial::default() }
+}
+
+/// The family in a scratch folder.
+pub struct Family {
+    folder: TempDir,
+}
+
+impl Family {
+    pub fn new() -> Self {
+        let family = Self { folder: tempfile::tempdir().unwrap() };
+        let records = family.folder.path().join("records").join(NAME);
+        fs::create_dir_all(&records).unwrap();
+        fs::create_dir_all(family.folder.path().join("published/small")).unwrap();
+        fs::write(records.join("scenario.toml"), SCENARIO).unwrap();
+        fs::write(family.folder.path().join("published/small/table-1.toml"), TABLE).unwrap();
+        let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
+        let run = RunInfo { scenario: NAME.into(), seed: 5, revision: "r".into(), detector: None };
+        let file = fs::File::create(family.records()).unwrap();
+        let mut writer = RecordWriter::new(file, run, vec![info("pixel"), info("centroid:window=15")]).unwrap();
+        let first = [Some((0.03, 0.04)), Some((-0.01, 0.02)), None];
+        let second = [Some((0.05, 0.0)), Some((3.0, 4.0)), Some((0.02, -0.02))];
+        writer.trial(&trial(0, [(0.3, 0.4), (0.0, 0.0), (0.0, 0.5)], first)).unwrap();
+        writer.trial(&trial(1, [(0.0, 0.1), (0.1, 0.0), (-0.4, 0.3)], second)).unwrap();
+        writer.finish().unwrap();
+        family
+    }
+
+    pub fn records(&self) -> PathBuf {
+        self.folder.path().join("records").join(NAME).join("records.csv")
+    }
+
+    pub fn change_scenario(&self, old: &str, new: &str) {
+        assert!(SCENARIO.contains(old));
+        fs::write(self.records().with_file_name("scenario.toml"), SCENARIO.replace(old, new)).unwrap();
+    }
+
+    fn write(&self) -> Result<PathBuf, String> {
+        let at = |name: &str| self.folder.path().join(name);
+        let places = Places { records: at("records"), published: at("published"), cameras: at("cameras"), reports: at("reports") };
+        write(&places, "small", &[NAME.to_owned()], &Registry::builtin()).map_err(|error| error.to_string())?;
+        Ok(at("reports/small/README.md"))
+    }
+
+    pub fn page(&self) -> String {
+        fs::read_to_string(self.write().unwrap()).unwrap()
+    }
+
+    /// Why there is no page, without the scratch folder's path.
+    pub fn message(&self) -> String {
+        self.write().unwrap_err().replace(&self.folder.path().display().to_string(), "")
+    }
+}
+
+/// The first line of a page that begins so.
+pub fn line<'a>(page: &'a str, start: &str) -> &'a str {
+    page.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("no line begins with {start}\n{page}"))
+}
+
+/// The first row of any table that begins with these cells.
+pub fn row(page: &str, start: &[&str]) -> Vec<String> {
+    let rows = page.lines().filter(|line| line.starts_with('|'));
+    let mut cells = rows.map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>());
+    cells.find(|cells| cells.iter().zip(start).all(|(cell, start)| cell == start)).unwrap_or_else(|| panic!("no row {start:?}\n{page}"))
+}

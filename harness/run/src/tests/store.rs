@@ -1,0 +1,122 @@
+//! Records in their folder.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use calibench_measure::Registry;
+use calibench_records::adjustments;
+use calibench_records::points::read_records;
+use calibench_records::results::Group;
+use calibench_scenario::Scenario;
+
+use super::{NAME, SCENARIO, scenario, trials};
+use crate::store::{RecordsFolder, SweepPlan, run, run_sweep};
+use crate::{Plan, RunError};
+
+fn stored(records: &Path, scenario: &Scenario) -> Result<(), RunError> {
+    run(&RecordsFolder::open(records, &scenario.name, None)?, &mut Plan::new(scenario, None, PathBuf::new()), "r1", &|| ())
+}
+
+/// Names and contents of all files below a folder.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            found.extend(files(&path).into_iter().map(|(below, bytes)| (format!("{name}/{below}"), bytes)));
+        } else {
+            found.insert(name, std::fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+#[test]
+fn what_is_stored_is_what_the_run_gave() {
+    let (scenario, parent) = (scenario(&[]), tempfile::tempdir().unwrap());
+    stored(parent.path(), &scenario).unwrap();
+    let stored = files(&parent.path().join(NAME));
+    assert_eq!(stored["scenario.toml"], SCENARIO.as_bytes());
+    let mut again = Vec::new();
+    let head = read_records(&stored["records.csv"][..], |trial, _| again.push(trial.points)).unwrap();
+    assert_eq!((head.run.scenario.as_str(), head.run.seed, head.run.revision.as_str()), (NAME, 3, "r1"));
+    assert_eq!(head.methods.iter().map(|method| &*method.label).collect::<Vec<_>>(), ["pixel", "forstner:window=9"]);
+    let run = trials(&scenario, 3);
+    assert_eq!(again, [run[0].points.clone()], "of later trials the adjustments alone are kept");
+    let mut rows = Vec::new();
+    adjustments::read(&stored["calibrations.csv"][..], |row| rows.push(row)).unwrap();
+    for (number, trial) in run.iter().enumerate() {
+        for calibrated in &trial.calibrations {
+            let (method, set) = (["pixel", "forstner:window=9"][calibrated.method], ["c,x0,y0", "c"][calibrated.set]);
+            for figure in calibrated.outcome.as_ref().unwrap() {
+                let row = rows.iter().find(|row| {
+                    (row.trial, &*row.method, &*row.set, row.group, &*row.name) == (number as u64, method, set, figure.group, &*figure.name)
+                });
+                let numbers = row.unwrap_or_else(|| panic!("no row of {}", figure.name)).figure.as_ref().unwrap();
+                let near = |read: f64, given: f64| (read - given).abs() <= 1e-8 * given.abs();
+                assert!(near(numbers.value, figure.value), "{}: {numbers:?} {figure:?}", figure.name);
+                for (read, given) in [(numbers.sigma, figure.sigma), (numbers.error, figure.error)] {
+                    assert_eq!(read.is_some(), given.is_some());
+                    assert!(read.zip(given).is_none_or(|(read, given)| near(read, given)), "{}: {numbers:?} {figure:?}", figure.name);
+                }
+            }
+        }
+    }
+    assert!(rows.iter().any(|row| row.group == Group::Check));
+}
+
+#[test]
+fn a_second_run_replaces_the_first_and_one_that_fails_leaves_it() {
+    let parent = tempfile::tempdir().unwrap();
+    stored(parent.path(), &scenario(&[])).unwrap();
+    let before = files(parent.path());
+    stored(parent.path(), &scenario(&[])).unwrap();
+    assert!(files(parent.path()) == before, "the same seed gives the same bytes");
+    // A camera file that has gone since the scenario was read.
+    let mut broken = scenario(&[("seed = 3", "seed = 4")]);
+    let calibench_scenario::Subject::Views(views) = &mut broken.subject else { panic!("views") };
+    views.camera_file = Some(parent.path().join("gone.toml"));
+    assert!(stored(parent.path(), &broken).is_err());
+    assert!(files(parent.path()) == before, "nothing of a failed run is left");
+    stored(parent.path(), &scenario(&[("seed = 3", "seed = 4")])).unwrap();
+    let after = files(parent.path());
+    assert!(after.keys().eq(before.keys()) && after != before);
+}
+
+#[test]
+fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
+    let text =
+        format!("{SCENARIO}\n[sweep]\n\"calibration.floor_px\" = [0.0, 0.2]\n").replace("control_sigma", "floor_px = 0.0\ncontrol_sigma");
+    let scenario =
+        calibench_scenario::parse(NAME, "wall.toml", &text, &Registry::builtin()).unwrap_or_else(|problems| panic!("{problems}"));
+    let registry = Registry::builtin();
+    let plan = SweepPlan {
+        scenario: &scenario,
+        sweep: scenario.sweep.as_ref().unwrap(),
+        methods: &[],
+        seed: None,
+        trials: None,
+        detector: None,
+        data: PathBuf::new(),
+        registry: &registry,
+    };
+    let parent = tempfile::tempdir().unwrap();
+    let steps = std::sync::atomic::AtomicU64::new(0);
+    let count = || {
+        steps.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    };
+    run_sweep(&RecordsFolder::open(parent.path(), NAME, None).unwrap(), &plan, "r1", &count).unwrap();
+    assert_eq!(steps.into_inner(), 2);
+    let stored = files(&parent.path().join(NAME));
+    assert_eq!(stored["scenario.toml"], text.as_bytes());
+    let points = |cell: &str| {
+        let mut found = Vec::new();
+        let head = read_records(&stored[&format!("{cell}/records.csv")][..], |trial, _| found.push(trial.points)).unwrap();
+        (head.run.scenario, found)
+    };
+    let ((first, a), (second, b)) = (points("cell-0001"), points("cell-0002"));
+    assert!(first.starts_with("small/wall@") && first != second, "{first} {second}");
+    assert_eq!(a, b, "the floor concerns the adjustment, the points are the same");
+    assert_ne!(stored["cell-0001/calibrations.csv"], stored["cell-0002/calibrations.csv"]);
+}
