@@ -53,7 +53,7 @@ fn minimal(text: &str) -> Option<DatumChoice> {
 }
 
 impl DatumChoice {
-    /// Are control points start values only?
+    /// Whether control points are start values only.
     pub(super) fn is_minimal(&self) -> bool {
         matches!(self, Self::Free | Self::Minimal { .. })
     }

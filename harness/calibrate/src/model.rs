@@ -82,7 +82,7 @@ pub(super) fn converted(start: &Camera, optics: &Optics, options: &ConvertOption
     Ok(camera.with_parameters(&values))
 }
 
-/// Can the model picture lenses that a camera without distortion does not come near?
+/// Whether the model pictures lenses that a camera without distortion does not come near.
 pub(super) fn is_wide(optics: &Optics) -> bool {
     // Coefficients that are not solved for are to stay zero.
     WIDE.contains(&name(optics)) || (RATIONAL.contains(&name(optics)) && optics.solve.is_none())

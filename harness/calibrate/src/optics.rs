@@ -35,7 +35,7 @@ impl Optics {
         Self { name: ALONE.into(), images: Vec::new(), size, pitch_um: None, model: None, solve: None, priors: Vec::new(), start: None }
     }
 
-    /// Does it claim an image?
+    /// Whether it claims an image, by its name.
     pub fn claims(&self, image: &str) -> bool {
         self.images.is_empty() || self.images.iter().any(|pattern| pattern.matches(image))
     }

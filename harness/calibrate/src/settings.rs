@@ -14,11 +14,11 @@ pub struct Settings {
     pub datum: DatumChoice,
     /// Bound of Huber's weights, in standard deviations.
     pub huber: Option<f64>,
-    /// Leave out what Baarda's test rejects?
+    /// Whether what Baarda's test rejects is left out.
     pub snoop: bool,
     /// A-priori standard deviation of an image coordinate, px; `None` for [`USUAL_SIGMA`], about which nothing is known but its order of magnitude.
     pub sigma_px: Option<f64>,
-    /// Weigh image points by their own covariances, where they have them?
+    /// Whether image points are weighted by their own covariances, where they have them.
     pub covariances: bool,
     /// Poses that were observed, or parts of them.
     pub stations: Vec<ObservedStation>,

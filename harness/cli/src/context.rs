@@ -18,7 +18,7 @@ use crate::toolbox::Toolbox;
 pub struct Context<'a> {
     /// The project's folder, if the user named it.
     pub root: Option<PathBuf>,
-    /// No progress?
+    /// Whether progress is not shown.
     pub quiet: bool,
     /// What this build can do.
     pub toolbox: &'a Toolbox,

@@ -77,7 +77,7 @@ impl Outcome {
         }
     }
 
-    /// Was it measured more than [`LOST`] px from the truth?
+    /// Whether it was measured more than [`LOST`] px from the truth.
     pub fn is_lost(&self) -> bool {
         matches!(self, Self::Measured { error: Some((dx, dy)), .. } if dx.hypot(*dy) > LOST)
     }

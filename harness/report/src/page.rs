@@ -18,7 +18,7 @@ pub struct Page {
     /// Scenarios that a published table of adjustments stands on: they are shown in pictures.
     pub illustrated: Vec<String>,
     pub text: String,
-    /// Are there tables of scores?
+    /// Whether there are tables of scores.
     scored: bool,
     pub pictures: Vec<(String, Canvas)>,
 }

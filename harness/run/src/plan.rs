@@ -22,7 +22,7 @@ pub struct Plan<'a> {
     pub detector: Option<&'a dyn BoardDetector>,
     /// Where photographs are.
     pub data: PathBuf,
-    /// Is the Cramér-Rao bound of each target wanted?
+    /// Whether the Cramér-Rao bound of each target is computed.
     pub bounds: bool,
     /// Where the images of the first trial are written, if anywhere.
     pub images: Option<&'a NewFolder>,

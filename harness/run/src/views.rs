@@ -103,7 +103,7 @@ impl<'a> Prepared<'a> {
         self.renderer.render(&view.picture, &[])
     }
 
-    /// Is the image to be kept with 16 bits?
+    /// Whether the image is kept with 16 bits.
     pub fn is_deep(&self) -> bool {
         self.subject.imaging.is_deep()
     }

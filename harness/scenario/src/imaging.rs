@@ -49,12 +49,12 @@ impl Imaging {
         Ok(Exposure { image, clipped: clipped.into_inner().unwrap_or_default() })
     }
 
-    /// Has the image more than 8 bits?
+    /// Whether the image has more than 8 bits.
     pub fn is_deep(&self) -> bool {
         self.sensor.as_ref().is_none_or(|setup| setup.sensor.bits().is_none_or(|bits| bits > 8))
     }
 
-    /// Is a sensor's noise, or anything else in it, random?
+    /// Whether a sensor's noise, or anything else in it, is random.
     pub fn is_random(&self) -> bool {
         self.sensor.as_ref().is_some_and(|setup| setup.row_jitter > 0.0 || !setup.sensor.is_deterministic())
     }

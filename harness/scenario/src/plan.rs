@@ -46,12 +46,12 @@ impl Scenario {
         }
     }
 
-    /// Is the truth of its points known?
+    /// Whether the truth of its points is known.
     pub fn has_truth(&self) -> bool {
         !matches!(self.subject, Subject::Photographs(_))
     }
 
-    /// Do its points go through an adjustment?
+    /// Whether its points go through an adjustment.
     pub fn is_adjusted(&self) -> bool {
         matches!(&self.subject, Subject::Views(views) if views.calibration.is_some())
     }

@@ -51,7 +51,7 @@ impl SceneSubject {
         self.imaging.renderer(self.scene.width, self.scene.height)
     }
 
-    /// Is the image to be kept with 16 bits?
+    /// Whether the image is kept with 16 bits.
     pub fn is_deep(&self) -> bool {
         if self.imaging.sensor.is_some() { self.imaging.is_deep() } else { self.bits.is_none_or(|bits| bits > 8) }
     }
@@ -107,7 +107,7 @@ pub enum Starts {
 }
 
 impl Starts {
-    /// Are they the same for the same image?
+    /// Whether they are the same for the same image.
     pub(crate) fn are_fixed(&self) -> bool {
         match self {
             Self::Given(_) | Self::Detected(_) => true,

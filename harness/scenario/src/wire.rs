@@ -268,7 +268,7 @@ pub enum Phase {
 pub struct PointingWire {
     /// Standard deviation of the hand per axis, px.
     pub sigma: HandSigma,
-    /// Does the pointer stop at whole pixels?
+    /// Whether the pointer stops at whole pixels.
     pub whole_pixels: bool,
 }
 

@@ -17,7 +17,7 @@ const SMALLEST: i32 = 25;
 /// Tolerances at which OpenCV tries to see a contour as a quadrangle, px.
 const TOLERANCES: [f64; 7] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// Are the quadrangles in `image` few enough for a search for `board`?
+/// Whether the quadrangles in `image` are few enough for a search for `board`.
 ///
 /// They are counted as findChessboardCorners sees them in its first adaptive passes, where noise shows most.
 pub(super) fn is_bearable(image: &Mat, board: Board) -> opencv::Result<bool> {

@@ -14,7 +14,7 @@ pub struct Box2 {
 }
 
 impl Box2 {
-    /// Do they share an area?
+    /// Whether they share an area.
     pub fn overlaps(&self, other: &Self) -> bool {
         self.x < other.x + other.width && other.x < self.x + self.width && self.y < other.y + other.height && other.y < self.y + self.height
     }

@@ -17,7 +17,7 @@ struct Wanted {
     /// Panels of curves, and a key that is held at a value.
     facet: Option<&'static str>,
     at: Option<(&'static str, &'static str)>,
-    /// All methods, or the usual settings alone?
+    /// All methods, not the usual settings alone.
     all: bool,
 }
 

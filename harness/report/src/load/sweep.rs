@@ -77,7 +77,7 @@ pub fn load_with(records: &Path, name: &str, registry: &Registry, watch: &mut Wa
 }
 
 impl LoadedSweep {
-    /// Did no method measure anything?
+    /// Whether no method measured anything.
     pub fn is_unavailable(&self) -> bool {
         self.methods.iter().all(|method| method.unavailable.is_some())
     }

@@ -42,14 +42,14 @@ pub struct Calibration {
     pub control_sigma: f64,
     /// Where coordinates are drawn: of each method, in the scenario's order, the standard deviation per axis; `None` for the hand.
     pub drawn: Option<Vec<(String, Option<f64>)>>,
-    /// Are the image points of every trial kept?
+    /// Whether the image points of every trial are kept.
     pub keep_points: bool,
     /// The second step.
     pub check: Option<CheckPlan>,
 }
 
 impl Calibration {
-    /// Does it draw random numbers of its own?
+    /// Whether it draws random numbers of its own.
     pub fn is_random(&self) -> bool {
         let drawn = self.drawn.iter().flatten().any(|(_, sigma)| sigma.is_some_and(|sigma| sigma > 0.0));
         drawn || self.floor_px > 0.0 || self.survey_sigma > 0.0
@@ -75,7 +75,7 @@ pub struct Seen<'a> {
     pub field: &'a Testfield,
     /// The stations.
     pub stations: &'a [Station],
-    /// Are the stations others in each trial?
+    /// Whether the stations are others in each trial.
     pub redrawn: bool,
 }
 

@@ -61,7 +61,7 @@ pub struct StationPlan {
     pub generator: Option<Generator>,
     /// The fraction of the targets that every station must see.
     pub sees: f64,
-    /// Are they drawn anew in each trial?
+    /// Whether they are drawn anew in each trial.
     pub each_trial: bool,
     given: Vec<Given>,
     aim: [Option<[f64; 3]>; 3],
@@ -207,7 +207,7 @@ fn read_generator(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Opti
     }
 }
 
-/// Can images be called by this name on any file system?
+/// Whether images can be called by this name on any file system.
 fn names_a_file(name: &str) -> bool {
     !name.starts_with('.') && name.len() <= 100 && !name.contains(['/', '\\', ':', '*', '?', '"', '<', '>', '|'])
 }

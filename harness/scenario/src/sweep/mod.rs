@@ -32,7 +32,7 @@ pub struct Axis {
     pub name: String,
     /// Its values, as they are written.
     pub values: Vec<Value>,
-    /// Are they steps of a factor rather than of a difference?
+    /// Whether steps are factors, not differences.
     pub log: bool,
     /// Where the key stands.
     span: Range<usize>,
@@ -82,12 +82,12 @@ fn number(literal: &str) -> Option<f64> {
 }
 
 impl Axis {
-    /// Are all its values numbers?
+    /// Whether all its values are numbers.
     pub fn is_numeric(&self) -> bool {
         self.values.iter().all(|value| value.number.is_some())
     }
 
-    /// Is this what the user calls it: its key, or its whole path?
+    /// Whether this is what the user calls it: its key, or its whole path.
     pub fn is_called(&self, name: &str) -> bool {
         self.path == name || self.name == name || self.path.rsplit('.').next() == Some(name)
     }
@@ -138,7 +138,7 @@ impl Sweep {
         if kept.is_empty() { name.to_owned() } else { format!("{name}:{}", kept.join(",")) }
     }
 
-    /// Does it change the methods?
+    /// Whether it changes the methods.
     pub fn changes_methods(&self) -> bool {
         self.axes.iter().any(|axis| axis.path.starts_with("method."))
     }

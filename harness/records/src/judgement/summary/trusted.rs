@@ -47,7 +47,7 @@ impl Summary {
         Some(Trusted { cell, least, farthest, operators, models })
     }
 
-    /// Did the operator measure enough to be compared?
+    /// Whether the operator measured enough to be compared.
     pub fn is_compared(&self, method: &str) -> bool {
         let found = self.methods.iter().find(|measured| &*measured.method == method);
         found.is_some_and(|measured| measured.found as f64 >= super::super::COMPARABLE * measured.of as f64)

@@ -141,7 +141,7 @@ impl Radial {
         b + 0.5 * t * (c - a) + 0.5 * t * t * (a - 2.0 * b + c)
     }
 
-    /// Is a whole photosite at this distance within the disc, or outside?
+    /// Whether a whole photosite at this distance, px, is within the disc or outside.
     fn is_flat(&self, distance: f64) -> bool {
         distance + 0.8 < self.start || distance - 0.8 > self.start + self.step * self.values.len() as f64
     }
