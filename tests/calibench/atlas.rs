@@ -7,7 +7,7 @@ use calibench_report::atlas::{Part, best, unmeasured};
 use crate::project::{copy_with, files, run, stderr};
 
 fn part(project: &Path, name: &str) -> Part {
-    Part::load(&project.join("records"), name, &calibench_opencv::registry()).expect("records").expect("a sweep")
+    Part::load(&project.join("records"), name).expect("records").expect("a sweep")
 }
 
 #[test]

@@ -4,11 +4,14 @@ use calibench_measure::Registry;
 use calibench_measure::harris_paraboloid::HarrisParaboloid;
 use calibench_measure::{Operator, Settings};
 use calibench_model::{PixelPoint, Rejection, Start};
+use calibench_records::theory::{HALF, THEORY, read};
 use calibench_run::Plan;
 use calibench_scenario::parse;
 use calibench_synth::optics::Optics;
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::testfield::{Figure4, Zhu};
+
+use crate::project::{copy, run, stderr};
 
 /// A printed table: its cells as (row, column, printed).
 fn printed(table: &str) -> Vec<[String; 3]> {
@@ -180,6 +183,32 @@ fn a_target_without_detection_is_a_missed_row_of_every_method() {
             assert!(outcome.position().unwrap().distance(PixelPoint::new(20.0, 20.0)) < 2.0, "{method}");
         }
     }
+}
+
+#[test]
+fn theory_stands_beside_the_records_of_a_scene_without_noise() {
+    let theory = |text: &str| {
+        let project = copy();
+        std::fs::create_dir_all(project.path().join("scenarios/t")).unwrap();
+        std::fs::write(project.path().join("scenarios/t/s.toml"), text).unwrap();
+        let ran = run(project.path(), &["run", "t/s", "--quiet"]);
+        assert!(ran.status.success(), "{}", stderr(&ran));
+        let file = std::fs::File::open(project.path().join("records/t/s").join(THEORY)).ok();
+        file.map(|file| read(file).unwrap())
+    };
+    assert!(
+        theory(&DETECTED.replace("background = 0.8", "background = 0.8\ngrey_noise = 0.01")).is_none(),
+        "theory is of an image without noise"
+    );
+    let all = theory(DETECTED).unwrap();
+    let [there] = &all[..] else { panic!("a flat patch has no strength: {all:?}") };
+    let strengths = there.strengths.as_ref().unwrap();
+    let most = strengths.values.iter().flatten().copied().fold(0.0, f64::max);
+    assert_eq!((there.method.as_str(), there.target.as_str()), ("harris_paraboloid:window=11", "there"));
+    assert_eq!(strengths.values[HALF][HALF], most, "the strongest pixel is in the middle");
+    assert!(strengths.maximum.unwrap().distance(PixelPoint::new(20.0, 20.0)) < 2.0);
+    let sigmas = there.sigmas.unwrap();
+    assert!([sigmas.printed, sigmas.corrected, sigmas.nine, sigmas.uncorrelated].iter().all(|sigma| *sigma > 0.0), "{sigmas:?}");
 }
 
 #[test]

@@ -76,7 +76,7 @@ const PUBLISHED: &str = "reference/published";
 pub fn cell_verdicts(context: &Context<'_>, source: &Source<'_>) -> Result<Verdicts, Failure> {
     let kept = source.kept.as_ref().map(|keep| keep.folder.path());
     let Some(records) = source.records.as_deref().or(kept) else { return Ok(Verdicts::default()) };
-    let all = verdicts::verdicts(records, &context.root()?.join(PUBLISHED), &context.toolbox.registry)?;
+    let all = verdicts::verdicts(records, &context.root()?.join(PUBLISHED))?;
     Ok(Verdicts(all.into_iter().collect()))
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::{Inputs, OutputFile};
 use calibench_report::sweep;
 use calibench_report::sweep::{Choice, Layout, LoadedSweep, Metric};
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::context::Context;
 use super::output;
@@ -21,8 +21,8 @@ pub struct Plot {
     #[arg(long, value_name = "KEY")]
     x: Option<String>,
     /// The figure
-    #[arg(long, value_enum, default_value_t = Metric::Rmse)]
-    y: Metric,
+    #[arg(long, value_enum, default_value_t = Figure::Rmse)]
+    y: Figure,
     /// One curve for each value of this key, or for each method
     #[arg(long, value_name = "KEY", default_value = "method", conflicts_with = "map")]
     by: String,
@@ -43,6 +43,45 @@ pub struct Plot {
     output: Option<PathBuf>,
 }
 
+/// What is plotted.
+#[derive(Clone, Copy, ValueEnum)]
+enum Figure {
+    /// `sqrt(mean(dx^2 + dy^2))` of the points that were measured and not lost, px
+    Rmse,
+    /// Length of their mean error, px
+    Bias,
+    /// Mean error in x of all points that were measured, lost ones among them, px
+    MeanX,
+    /// Their 2D deviation about the mean error, px
+    Scatter,
+    /// Root mean squared error in units of the Cramér-Rao bound of each point
+    Ratio,
+    /// Root mean squared error in units of the method's own standard deviation of each point
+    Predicted,
+    /// Share of points measured more than 1 px from the truth, %
+    Lost,
+    /// Share of points that the operator rejected, %
+    Rejected,
+    /// Share of points lost or rejected, %
+    Failed,
+}
+
+impl From<Figure> for Metric {
+    fn from(figure: Figure) -> Self {
+        match figure {
+            Figure::Rmse => Self::Rmse,
+            Figure::Bias => Self::Bias,
+            Figure::MeanX => Self::MeanX,
+            Figure::Scatter => Self::Scatter,
+            Figure::Ratio => Self::Ratio,
+            Figure::Predicted => Self::Predicted,
+            Figure::Lost => Self::Lost,
+            Figure::Rejected => Self::Rejected,
+            Figure::Failed => Self::Failed,
+        }
+    }
+}
+
 fn pair(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or_else(|| "expected KEY=VALUE, as in blur=0.5".to_owned())?;
     Ok((key.to_owned(), value.to_owned()))
@@ -59,7 +98,7 @@ impl Plot {
             at: self.at.clone(),
             methods: self.methods.clone(),
         };
-        let layout = Layout::new(&loaded, &choice, self.y, self.map.is_some())?;
+        let layout = Layout::new(&loaded, &choice, self.y.into(), self.map.is_some())?;
         let drawn = if self.map.is_some() { sweep::map(&loaded, &layout) } else { sweep::curves(&loaded, &layout) };
         drawn.write(&picture)?;
         print(&format!("{}\n", path.display()))?;
@@ -70,7 +109,7 @@ impl Plot {
 
     /// The picture, and its numbers beside it if it is a file.
     fn outputs(&self, loaded: &LoadedSweep, inputs: &Inputs) -> Result<(PathBuf, OutputFile, Option<OutputFile>), Failure> {
-        let default = || PathBuf::from(format!("{}.png", loaded.scenario.name.replace('/', "-")));
+        let default = || PathBuf::from(format!("{}.png", loaded.name.replace('/', "-")));
         let path = self.output.clone().unwrap_or_else(default);
         let picture = output::picture("-o", &path, inputs)?;
         let numbers = Some(path.with_extension("csv")).filter(|_| picture.is_file());
@@ -80,11 +119,10 @@ impl Plot {
 
     /// The records of the scenario of this name or file, or in this folder; and their folder.
     fn load(&self, context: &Context<'_>) -> Result<(LoadedSweep, PathBuf), Failure> {
-        let registry = &context.toolbox.registry;
         let folder = Path::new(&self.sweep);
         if folder.join(calibench_records::names::SCENARIO).is_file() {
             let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let found = sweep::load(folder.parent().unwrap_or(Path::new("")), &name, registry)?;
+            let found = sweep::load(folder.parent().unwrap_or(Path::new("")), &name)?;
             let found = found.ok_or_else(|| Failure::input(format!("{}: these records are not of a sweep", folder.display())))?;
             return Ok((found, folder.to_owned()));
         }
@@ -93,7 +131,7 @@ impl Plot {
             return Err(Failure::input(format!("`{}` has no [sweep]; expected a scenario that sweeps a key", scenario.name)));
         }
         let records = context.places()?.records;
-        let found = sweep::load(&records, &scenario.name, registry)?;
+        let found = sweep::load(&records, &scenario.name)?;
         let found =
             found.ok_or_else(|| Failure::input(format!("no records of `{0}`: run it first with `calibench run {0}`", self.sweep)))?;
         Ok((found, records.join(&scenario.name)))

@@ -46,7 +46,7 @@ impl Report {
             let written = if family == conventions::FAMILY {
                 Written::New(conventions::write(&places)?)
             } else {
-                calibench_report::write(&places, family, scenarios, &context.toolbox.registry)?
+                calibench_report::write(&places, family, scenarios)?
             };
             match written {
                 Written::New(page) if !context.quiet => eprintln!("{}", page.display()),

@@ -1,10 +1,25 @@
 //! Adjustments as the gate compares them: as if they were points, one pair of figures each, trial by trial; and figure by figure.
 
+use std::sync::Arc;
+
 use calibench_model::Rejection;
 use calibench_records::results::{Calibrated, Group};
 
 use super::entry::{Entry, Found, rounded};
-use super::table::{FigureKey, Numbers};
+
+/// Value, standard deviation and error of a figure of an adjustment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbers {
+    /// The value, in the figure's unit.
+    pub value: f64,
+    /// Its reported standard deviation.
+    pub sigma: Option<f64>,
+    /// Value less truth.
+    pub error: Option<f64>,
+}
+
+/// Which figure of the adjustments of a method: the set of parameters (from 0), the group, the name within it.
+pub type FigureKey = (usize, Group, Arc<str>);
 
 /// The view under which they stand.
 pub(super) const VIEW: &str = "adjustment";

@@ -19,7 +19,9 @@ mod finding;
 mod index;
 mod judge;
 mod junit;
+mod limits;
 mod missing;
+mod moments;
 mod pairs;
 pub mod power;
 mod render;
@@ -33,6 +35,7 @@ mod worse;
 #[cfg(test)]
 mod tests;
 
+pub use adjusted::{FigureKey, Numbers};
 pub use baseline::{baseline_path, figures_path, read_baseline, write_baseline};
 pub use ceilings::{Ceiling, CeilingError, CeilingMetric, Ceilings};
 pub use cells::{Cells, Kept};
@@ -43,32 +46,17 @@ pub use figures::{FIGURE_GROWTH, FigureSums};
 pub use finding::{Finding, Rules, Verdict};
 pub use index::{INDEX, Index, IndexError};
 pub use junit::junit;
+pub use limits::{ALPHA, BOUND, LEAST_PAIRS, TOLERANCE};
+pub use moments::PointSums;
 pub use render::{Tally, json, render};
 pub use sheet::{BaselineError, Kind, machine};
-pub use sums::PointSums;
 pub use sums_judged::{CELL_GROWTH, FAILURES, SIGMA_DRIFT, TARGET_GROWTH};
-pub use table::{FigureKey, MethodTable, Numbers, Table, fingerprint};
+pub use table::{MethodTable, Table, fingerprint};
 pub use verdicts::Verdicts;
 pub use worse::worse_than;
 
 use calibench_records::statistics::holm;
 use judge::{Family, Test};
-
-/// The family-wise error rate of a check: the chance that it fails although nothing became worse, over all its tests together.
-///
-/// At most one of a hundred runs may be a false alarm. A rate of 0.01 would hold that in expectation only, and break it every
-/// fourth time; at 0.001 the expectation is 0.1, and two or more false alarms in a hundred have a chance below 0.01.
-/// Counts, means, spread and reported standard deviations have a quarter of it each, whatever the number of their tests.
-pub const ALPHA: f64 = 0.001;
-
-/// What is no change at all, px: last bits that differ between machines.
-pub const TOLERANCE: f64 = 1e-6;
-
-/// Fewer trials than this are not put to a t-test, whose differences of a handful would look certain; their figures are compared directly.
-pub const LEAST_PAIRS: usize = 10;
-
-/// Errors count in means and mean squares as no more than this in each coordinate, px: what is further off is simply elsewhere.
-pub const BOUND: f64 = 3.0;
 
 /// One check: scenarios are added, then all is decided together.
 #[derive(Default)]

@@ -1,7 +1,7 @@
 //! Two digests that differ, judged by counts and moments.
 
 use super::finding::{Finding, Verdict};
-use super::sums::{PointSums, Sum};
+use super::moments::{PointSums, Sum};
 
 /// By how much, as a fraction, the root mean square error of a method in a cell may grow without being worse; its scatter by twice as much.
 pub const CELL_GROWTH: f64 = 0.02;

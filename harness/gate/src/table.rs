@@ -3,24 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use calibench_records::results::{Group, MethodInfo, Trial};
+use calibench_records::results::{MethodInfo, Trial};
 
-use super::adjusted;
+use super::adjusted::{self, FigureKey, Numbers};
 use super::entry::{Coordinates, Entry, Place};
-
-/// Value, standard deviation and error of a figure of an adjustment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Numbers {
-    /// The value, in the figure's unit.
-    pub value: f64,
-    /// Its reported standard deviation.
-    pub sigma: Option<f64>,
-    /// Value less truth.
-    pub error: Option<f64>,
-}
-
-/// Which figure of the adjustments of a method: the set of parameters (from 0), the group, the name within it.
-pub type FigureKey = (usize, Group, Arc<str>);
 
 /// The points of one method.
 #[derive(Clone, Debug, PartialEq)]

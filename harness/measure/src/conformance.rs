@@ -4,14 +4,15 @@ use calibench_model::{Image, PixelPoint, Rejection, Start};
 
 use crate::operator::Operator;
 
-/// The corner of [`textured_corner`], from the image's centre, px.
+/// The corner that is pictured, from the image's centre, px.
 const CORNER: (f64, f64) = (0.31, -0.17);
 const SIDE: usize = 90;
 /// Where the check starts, from the image's centre, px: not a tie for rounding in any orientation.
 const OFFSET: (f64, f64) = (0.9, 0.7);
 
 /// A blurred corner of 80 degrees at (0.31, -0.17) px from the middle of a square image of `side` px, with a faint texture that has no symmetry.
-pub fn textured_corner(side: usize) -> Image {
+#[cfg(test)]
+pub(crate) fn textured_corner(side: usize) -> Image {
     let middle = (side / 2) as f64;
     Image::from_fn(side, side, |x, y| grey(x as f64 - middle, y as f64 - middle))
 }

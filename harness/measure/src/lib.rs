@@ -10,6 +10,7 @@ pub mod board;
 mod cholesky;
 pub mod conformance;
 pub mod ellipse;
+mod error;
 pub mod harris;
 mod lanes;
 mod marquardt;
@@ -24,7 +25,8 @@ pub mod strength_noise;
 mod tests;
 
 pub use board::{Board, BoardDetector};
+pub use error::MethodError;
 pub use operator::Operator;
 pub use operators::*;
 pub use parameter::{Parameter, Settings};
-pub use registry::{Configured, Method, MethodError, Registry};
+pub use registry::{Configured, Method, Registry};

@@ -1,6 +1,6 @@
 //! Parameters of operators: declared once, checked here, described in `list` and in the scenario schema.
 
-use crate::registry::MethodError;
+use crate::error::MethodError;
 
 /// What a parameter may be. Every domain excludes NaN and infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]

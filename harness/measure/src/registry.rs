@@ -1,7 +1,6 @@
 //! Which methods there are, by name.
 
-use thiserror::Error;
-
+use crate::error::MethodError;
 use crate::operator::Operator;
 use crate::parameter::{Parameter, Settings};
 
@@ -35,61 +34,14 @@ pub enum Build {
 pub struct Configured {
     /// Name and parameters in one word, as in `forstner:window=11`: the windows and whatever differs from its default.
     pub label: String,
+    /// The label of the same operator with all parameters at their defaults.
+    pub default_label: String,
     /// The method's version.
     pub version: String,
     /// All parameters.
     pub settings: Settings,
     /// The operator, or why there is none.
     pub operator: Result<Box<dyn Operator>, &'static str>,
-}
-
-/// A method or parameter that cannot be.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum MethodError {
-    /// No method has this name.
-    #[error("no method is called `{name}`; known are {}", known.join(", "))]
-    UnknownMethod {
-        /// What was asked for.
-        name: String,
-        /// What there is.
-        known: Vec<String>,
-    },
-    /// The method has no such parameter.
-    #[error("`{method}` has no parameter `{key}`; {}", if known.is_empty() { "it has none".to_owned() } else { format!("it has {}", known.join(", ")) })]
-    UnknownParameter {
-        /// The method.
-        method: String,
-        /// What was asked for.
-        key: String,
-        /// What there is.
-        known: Vec<String>,
-    },
-    /// A value outside its domain.
-    #[error("`{key}` of `{method}` must be {expected}, found {found}")]
-    Domain {
-        /// The method.
-        method: String,
-        /// The parameter.
-        key: String,
-        /// What it may be.
-        expected: String,
-        /// What it is.
-        found: String,
-    },
-    /// A parameter given twice.
-    #[error("`{key}` of `{method}` is given twice")]
-    Twice {
-        /// The method.
-        method: String,
-        /// The parameter.
-        key: String,
-    },
-    /// Not of the form `name:key=value,key=value`.
-    #[error("`{text}` is no method: expected `name` or `name:key=value,key=value`, as in `forstner:window=11`")]
-    Form {
-        /// What was found.
-        text: String,
-    },
 }
 
 /// All methods of a build, in the order in which they are listed.
@@ -99,11 +51,6 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// The methods of this crate.
-    pub fn builtin() -> Self {
-        Self { methods: crate::operators::methods() }
-    }
-
     /// Adds a method, in place of one of the same name if there is one.
     #[must_use]
     pub fn with(mut self, method: Method) -> Self {
@@ -133,7 +80,8 @@ impl Registry {
             Build::With(build) => Ok(build(&settings)),
             Build::Unavailable(why) => Err(why),
         };
-        Ok(Configured { label: label(method, &settings), version: method.version.clone(), settings, operator })
+        let default_label = label(method, &Settings::resolve(name, method.parameters, &[])?);
+        Ok(Configured { label: label(method, &settings), default_label, version: method.version.clone(), settings, operator })
     }
 
     /// The method that `text` names, as in `forstner:window=15`.
@@ -172,6 +120,7 @@ mod tests {
         assert_eq!(registry.parse("forstner").unwrap().label, "forstner:window=11");
         assert_eq!(registry.parse("forstner: window = 15").unwrap().label, "forstner:window=15");
         assert_eq!(registry.parse("harris_paraboloid:k=0.2,sigma=2,window=7").unwrap().label, "harris_paraboloid:window=7,sigma=2");
+        assert_eq!(registry.parse("forstner:window=15").unwrap().default_label, "forstner:window=11");
         assert_eq!(registry.parse("pixel").unwrap().label, "pixel");
     }
 

@@ -2,12 +2,14 @@
 
 pub mod adjustments;
 mod cells;
+pub mod description;
 pub mod judgement;
 pub mod names;
 pub mod points;
 pub mod results;
 pub mod score;
 pub mod statistics;
+pub mod theory;
 
 pub use cells::RecordError;
 

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 pub const RECORDS: &str = "records.csv";
 /// The scenario as it was run, in the same folder.
 pub const SCENARIO: &str = "scenario.toml";
+/// What the pages of the scenario tell of it, in the same folder: a [`Description`](crate::description::Description).
+pub const DESCRIPTION: &str = "scenario.json";
 
 /// In the same folder, the path of the scenario's file, if it is not one of the project's.
 pub const ORIGIN: &str = "origin.txt";

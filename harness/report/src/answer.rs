@@ -44,14 +44,14 @@ impl Answers {
         let labels = loaded.head.methods.iter().map(|info| &*info.label);
         let candidates: Vec<(&str, &Score)> = labels.zip(&loaded.scores.methods).filter(|(name, _)| *name != "pixel").collect();
         if let Some((best, row)) = lead(&candidates) {
-            self.winners.push(Winner { scenario: loaded.scenario.name.clone(), cells: (1, 1), method: best.to_owned(), row });
+            self.winners.push(Winner { scenario: loaded.name.clone(), cells: (1, 1), method: best.to_owned(), row });
         }
     }
 
     /// A sweep: who leads in most of its cells.
     pub fn sweep(&mut self, loaded: &LoadedSweep) {
         let mut wins: Vec<(String, usize)> = Vec::new();
-        let cells = loaded.sweep.cells();
+        let cells = loaded.sweep.cells.len();
         for cell in 0..cells {
             let named = loaded.methods.iter().enumerate().filter(|(_, method)| method.name != "pixel");
             let candidates: Vec<(&str, &Score)> =
@@ -65,7 +65,7 @@ impl Answers {
         }
         let Some((method, count)) = wins.into_iter().max_by_key(|(_, count)| *count) else { return };
         let row = vec![format!("in {count} of {cells} cells")];
-        self.winners.push(Winner { scenario: loaded.scenario.name.clone(), cells: (count, cells), method, row });
+        self.winners.push(Winner { scenario: loaded.name.clone(), cells: (count, cells), method, row });
     }
 
     /// The first paragraph: a sentence or two, without the numbers that stand in the tables.

@@ -1,7 +1,6 @@
 //! The report of a family of scenarios.
 
 use calibench_exchange::OutputFolder;
-use calibench_measure::Registry;
 
 use crate::page::Page;
 use crate::places::PAGE;
@@ -12,14 +11,14 @@ use crate::{LoadError, Loaded, Places, ReportError, Written, atlas, load, publis
 ///
 /// # Errors
 /// Records or tables that cannot be read; the older report is then as it was.
-pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Registry) -> Result<Written, ReportError> {
+pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Written, ReportError> {
     if family == atlas::FAMILY {
-        return atlas::write(places, scenarios, registry);
+        return atlas::write(places, scenarios);
     }
     let of = |name: &String| {
-        Ok::<_, LoadError>(match sweep::load(&places.records, name, registry)? {
+        Ok::<_, LoadError>(match sweep::load(&places.records, name)? {
             Some(sweep) => Either::Sweep(Box::new(sweep)),
-            None => Either::Plain(Box::new(load(&places.records, name, registry)?)),
+            None => Either::Plain(Box::new(load(&places.records, name)?)),
         })
     };
     let all = scenarios.iter().map(of).collect::<Result<Vec<_>, _>>()?;
@@ -30,9 +29,9 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
     }
     let tables = published::tables(&places.published, family)?;
     let mut page = Page::new(family);
-    let by_name = |name: &String| loaded.iter().find(|l| l.scenario.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
+    let by_name = |name: &String| loaded.iter().find(|l| l.name == *name).copied().ok_or_else(|| LoadError::None(name.clone()));
     for (_, table) in &tables {
-        let swept = all.iter().filter_map(Either::sweep).find(|swept| swept.scenario.name == table.scenario);
+        let swept = all.iter().filter_map(Either::sweep).find(|swept| swept.name == table.scenario);
         let section = match swept {
             Some(swept) if !table.is_of_adjustments() => published::swept(table, swept),
             _ if table.is_of_adjustments() && by_name(&table.scenario).is_err() => published::without_records(table),
@@ -48,7 +47,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String], registry: &Reg
         }
     }
     if family == zhu::FAMILY {
-        let (text, pictures) = zhu::section(&loaded, &all.iter().filter_map(Either::sweep).collect::<Vec<_>>());
+        let (text, pictures) = zhu::section(&loaded, &all.iter().filter_map(Either::sweep).collect::<Vec<_>>())?;
         page.text.push_str(&text);
         page.pictures.extend(pictures);
     }

@@ -3,7 +3,7 @@
 use std::io;
 
 use calibench_exchange::NewFolder;
-use calibench_scenario::{Scenario, Subject};
+use calibench_records::description::{Description, Subject};
 
 use crate::answer::{Answers, heading};
 use crate::markdown::contents;
@@ -36,10 +36,10 @@ impl Page {
     }
 
     /// The heading of a scenario; the stem of its pictures' names.
-    fn head(&mut self, scenario: &Scenario, deviations: &str) -> String {
+    fn head(&mut self, name: &str, scenario: &Description, deviations: &str) -> String {
         self.text.push_str(&format!(
             "## {}\n\n{}\n\nSource: {}.\n\n",
-            heading(&scenario.name),
+            heading(name),
             scenario.why.trim(),
             scenario.source.trim_end_matches('.')
         ));
@@ -50,13 +50,13 @@ impl Page {
         if !scenario.notes.is_empty() {
             self.text.push('\n');
         }
-        scenario.name.split_once('/').map_or(scenario.name.as_str(), |(_, rest)| rest).replace('/', "-")
+        name.split_once('/').map_or(name, |(_, rest)| rest).replace('/', "-")
     }
 
     pub fn sweep(&mut self, loaded: &sweep::LoadedSweep, printed: &[(String, f64)]) -> Result<(), LoadError> {
         // The points of adjusted scenarios are those of the first trial: how many there were is in their tables.
-        let deviations = if loaded.scenario.is_adjusted() { String::new() } else { sweep::deviations(loaded) };
-        let stem = self.head(&loaded.scenario, &deviations);
+        let deviations = if loaded.scenario.adjusted().is_some() { String::new() } else { sweep::deviations(loaded) };
+        let stem = self.head(&loaded.name, &loaded.scenario, &deviations);
         if let Some((text, pictures)) = network::sweep(loaded, &stem, printed)? {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
@@ -71,20 +71,20 @@ impl Page {
 
     pub fn scenario(&mut self, loaded: &Loaded) {
         let scenario = &loaded.scenario;
-        let stem = self.head(scenario, &deviations(loaded));
-        if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&scenario.name)) {
+        let stem = self.head(&loaded.name, scenario, &deviations(loaded));
+        if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&loaded.name)) {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
             return;
         }
         match &scenario.subject {
-            Subject::Photographs(_) => {
+            Subject::Photographs { .. } => {
                 photographs::answer(loaded).into_iter().for_each(|answer| self.answers.say(answer));
                 let (text, pictures) = photographs::section(loaded);
                 self.text.push_str(&text);
                 self.pictures.extend(pictures);
             }
-            Subject::Scene(_) | Subject::Views(_) => {
+            Subject::Scene | Subject::Views(_) => {
                 self.scored = true;
                 self.answers.scenario(loaded);
                 self.text.push_str(&scores_section::section(loaded));
@@ -134,7 +134,7 @@ fn deviations(loaded: &Loaded) -> String {
         found.push(format!("seed {} in place of {}", head.run.seed, scenario.seed));
     }
     let has = |label: &str| head.methods.iter().any(|method| &*method.label == label);
-    let methods = scenario.methods.iter().filter(|method| !has(&method.label)).count();
+    let methods = scenario.methods.iter().filter(|label| !has(label)).count();
     if methods > 0 || head.methods.len() != scenario.methods.len() {
         found.push("other methods".to_owned());
     }

@@ -5,8 +5,8 @@ use std::fs::File;
 use std::sync::Arc;
 
 use calibench_model::{Image, PixelPoint};
+use calibench_records::description::Subject;
 use calibench_records::judgement::{JUDGEMENT, Summary, read_rows};
-use calibench_scenario::Subject;
 
 use super::canvas::Canvas;
 use super::figures::{Layer, MarkAt, Panel, panels};
@@ -118,7 +118,7 @@ fn judged(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
 
 /// The judgement that the scenario asks for, or why its records cannot be read.
 fn judgement_of(loaded: &Loaded) -> Option<Result<Summary, String>> {
-    let wanted = matches!(&loaded.scenario.subject, Subject::Photographs(subject) if subject.judgement.is_some());
+    let wanted = matches!(loaded.scenario.subject, Subject::Photographs { judged: true });
     let rows = || File::open(loaded.folder.join(JUDGEMENT)).map_err(|error| error.to_string());
     let read = || rows().and_then(|file| read_rows(file).map_err(|error| error.to_string()));
     wanted.then(|| read().map(|(seed, rows)| Summary::new(&rows, seed)))

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use calibench_measure::Registry;
-
 use crate::published::{self, Table};
 use crate::{LoadError, ReportError, load, sweep};
 
@@ -31,11 +29,11 @@ pub fn scenarios(published: &Path) -> Result<Vec<String>, ReportError> {
 ///
 /// # Errors
 /// Records or tables that cannot be read.
-pub fn verdicts(records: &Path, published: &Path, registry: &Registry) -> Result<Vec<CellVerdict>, ReportError> {
+pub fn verdicts(records: &Path, published: &Path) -> Result<Vec<CellVerdict>, ReportError> {
     let mut all = Vec::new();
     for paper in published::papers(published) {
         for (name, table) in published::tables(published, &paper)? {
-            let words = match of_table(records, &table, registry) {
+            let words = match of_table(records, &table) {
                 Err(LoadError::None(_)) => continue,
                 other => other?,
             };
@@ -47,10 +45,10 @@ pub fn verdicts(records: &Path, published: &Path, registry: &Registry) -> Result
 }
 
 /// The word for each cell of a table, in their order.
-fn of_table(records: &Path, table: &Table, registry: &Registry) -> Result<Vec<String>, LoadError> {
-    let verdicts = match sweep::load(records, &table.scenario, registry)? {
+fn of_table(records: &Path, table: &Table) -> Result<Vec<String>, LoadError> {
+    let verdicts = match sweep::load(records, &table.scenario)? {
         Some(loaded) => published::swept_verdicts(table, &loaded),
-        None => published::verdicts(table, &load(records, &table.scenario, registry)?)?,
+        None => published::verdicts(table, &load(records, &table.scenario)?)?,
     };
     let words = verdicts.map(|verdicts| verdicts.iter().map(|verdict| verdict.word().to_owned()).collect());
     Ok(words.unwrap_or_else(|| vec![NO_RECORDS.to_owned(); table.cells.len()]))

@@ -1,6 +1,7 @@
 //! Scenarios to results: truth-blind measuring, scored against the truth at the end.
 
 mod bounds;
+pub mod description;
 mod error;
 pub mod judgement;
 pub mod network;
@@ -8,6 +9,7 @@ mod photographs;
 mod plan;
 mod scene;
 pub mod store;
+mod theory;
 mod trials;
 pub mod truth;
 pub mod views;

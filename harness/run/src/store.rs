@@ -7,12 +7,15 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::{NewFile, NewFolder, OutputFolder};
 use calibench_measure::{BoardDetector, Configured, Registry};
 use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
-use calibench_records::names::{ORIGIN, RECORDS, SCENARIO, cell_name};
+use calibench_records::description::write as write_description;
+use calibench_records::names::{DESCRIPTION, ORIGIN, RECORDS, SCENARIO, cell_name};
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_scenario::camera::KEPT;
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
+use crate::description::description;
 use crate::judgement::write_judgement;
+use crate::theory::write_theory;
 use crate::{Plan, RunError};
 
 /// Copies the scenario's camera file to where the scenario as it was run looks for it.
@@ -55,9 +58,10 @@ impl RecordsFolder {
         Err(io::Error::new(io::ErrorKind::AlreadyExists, format!("{}: holds the records of {other}, {why}", path.display())))
     }
 
-    /// Keeps what tells the scenario.
-    fn keep(&self, scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> {
+    /// Keeps what tells the scenario, which was run with `methods`.
+    fn keep(&self, scenario: &Scenario, methods: &[Configured], folder: &NewFolder) -> Result<(), RunError> {
         folder.write(SCENARIO, |file| file.write_all(scenario.text.as_bytes()))?;
+        folder.write(DESCRIPTION, |file| write_description(file, &description(scenario, methods)))?;
         if let Some(origin) = &self.origin {
             folder.write(ORIGIN, |file| writeln!(file, "{origin}"))?;
         }
@@ -74,7 +78,7 @@ pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &
     records.output.replace(|folder| {
         let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
         write_records(folder, &name, &plan, revision, step)?;
-        records.keep(plan.scenario, folder)
+        records.keep(plan.scenario, plan.methods, folder)
     })
 }
 
@@ -91,6 +95,7 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
         write_judgement(folder, plan, &info, &trial)
     })?;
     calibrations.map_or(Ok(()), CalibrationWriter::finish).map_err(io::Error::other)?;
+    write_theory(plan, &info)?;
     Ok(records.finish().map_err(io::Error::other)?)
 }
 
@@ -151,6 +156,6 @@ pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, 
             )?;
             step();
         }
-        records.keep(scenario, folder)
+        records.keep(scenario, plan.methods, folder)
     })
 }

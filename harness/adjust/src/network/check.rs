@@ -1,68 +1,9 @@
 //! Networks that are none.
 
 use calibench_model::camera::CameraModel;
-use thiserror::Error;
 
+use super::error::NetworkError;
 use super::{Attitude, Centre, Datum, Network, Precision, Status};
-
-/// What is wrong with the description of a network.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum NetworkError {
-    /// A camera has no parameter of that name.
-    #[error("{camera} has no parameter {name}: it has {known}")]
-    NoSuchParameter {
-        /// Name of the camera.
-        camera: String,
-        /// What was asked for.
-        name: String,
-        /// What there is.
-        known: String,
-    },
-    /// An index leads nowhere.
-    #[error("{of} refers to {what} {index}, of which there are {count}")]
-    NoSuch {
-        /// Who refers.
-        of: String,
-        /// To what.
-        what: &'static str,
-        /// Which.
-        index: usize,
-        /// How many there are.
-        count: usize,
-    },
-    /// A number is not finite, or a standard deviation is not positive.
-    #[error("{of}: {what}")]
-    NotANumber {
-        /// Whose.
-        of: String,
-        /// What is wrong.
-        what: &'static str,
-    },
-    /// A camera has more or fewer statuses than parameters.
-    #[error("{camera} has {parameters} parameters and {given} statuses")]
-    ParameterCount {
-        /// Name of the camera.
-        camera: String,
-        /// Parameters of the model.
-        parameters: usize,
-        /// Statuses given.
-        given: usize,
-    },
-    /// A point is measured twice in an image.
-    #[error("point {point} is measured twice in image {image}")]
-    Twice {
-        /// Name of the image.
-        image: String,
-        /// Name of the point.
-        point: String,
-    },
-    /// The datum does not fit what is known.
-    #[error("the datum does not fit: {0}")]
-    Datum(String),
-    /// There is nothing to adjust.
-    #[error("nothing is unknown")]
-    NothingUnknown,
-}
 
 impl Network {
     /// The first of the mistakes that leave nothing to adjust.

@@ -1,6 +1,7 @@
 //! What is adjusted: cameras, images, object points and image coordinates, with start values and what is known of each.
 
 mod check;
+mod error;
 mod layout;
 mod status;
 
@@ -10,7 +11,7 @@ use nalgebra::Point3;
 
 use crate::AdjustError;
 
-pub use check::NetworkError;
+pub use error::NetworkError;
 pub(crate) use layout::{CameraPlace, Layout, Sight};
 pub use status::{Attitude, Centre, Status};
 

@@ -4,7 +4,8 @@ use calibench_model::camera::{Camera, Splined};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Target, Verdict, convert, fit};
 use thiserror::Error;
 
-use super::{CameraFormat, NamedCamera, ParameterCovariance, PoseFrame};
+use super::format::CameraFormat;
+use super::{NamedCamera, ParameterCovariance, PoseFrame};
 
 /// A model that a format holds.
 #[derive(Clone, Copy, Debug)]

@@ -10,6 +10,7 @@ mod covariance;
 pub mod ending;
 mod error;
 pub mod fit;
+mod format;
 pub mod formats;
 mod json;
 mod number;
@@ -31,7 +32,8 @@ use crate::atomic::write_atomically;
 
 pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;
-pub use formats::{CameraFormat, FORMATS, format_named};
+pub use format::CameraFormat;
+pub use formats::{FORMATS, format_named};
 pub use pose::{Pose, PoseFrame};
 pub use source::LARGEST_FILE;
 use source::Source;

@@ -1,6 +1,6 @@
 //! The operators: one file each. A new one is its file and its two lines here.
 
-use crate::registry::Method;
+use crate::registry::Registry;
 
 pub mod centroid;
 pub mod chess_corners;
@@ -19,20 +19,23 @@ pub mod saddle;
 #[path = "../../../../examples/operator.rs"]
 mod example;
 
-/// The methods of this crate, in the order in which they are listed.
-pub(crate) fn methods() -> Vec<Method> {
-    vec![
-        pixel::method(),
-        forstner::method(),
-        harris_paraboloid::method(),
-        harris_paraboloid::linear(),
-        centroid::method(),
-        centroid::binary(),
-        lsm::method(),
-        saddle::method(),
-        parametric_corner::method(),
-        parametric_circle::method(),
-        ellipse_edges::method(),
-        chess_corners::method(),
-    ]
+impl Registry {
+    /// The methods of this crate, in the order in which they are listed.
+    pub fn builtin() -> Self {
+        let methods = [
+            pixel::method(),
+            forstner::method(),
+            harris_paraboloid::method(),
+            harris_paraboloid::linear(),
+            centroid::method(),
+            centroid::binary(),
+            lsm::method(),
+            saddle::method(),
+            parametric_corner::method(),
+            parametric_circle::method(),
+            ellipse_edges::method(),
+            chess_corners::method(),
+        ];
+        methods.into_iter().fold(Self::default(), Self::with)
+    }
 }

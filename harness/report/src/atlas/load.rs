@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use calibench_measure::Registry;
 use calibench_records::results::{LOST, Outcome, Trial};
 
 use crate::LoadError;
@@ -25,9 +24,9 @@ impl Part {
     ///
     /// # Errors
     /// Records that are not whole or not of this version.
-    pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Option<Self>, LoadError> {
+    pub fn load(records: &Path, name: &str) -> Result<Option<Self>, LoadError> {
         let mut found: BTreeMap<(usize, String), Losses> = BTreeMap::new();
-        let sweep = load_with(records, name, registry, &mut |cell, trial, names| {
+        let sweep = load_with(records, name, &mut |cell, trial, names| {
             for (method, loss) in losses(trial) {
                 if let Some(name) = names.get(method) {
                     found.entry((cell, name.clone())).or_default().insert(trial.number, loss);

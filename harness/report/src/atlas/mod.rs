@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 use std::io;
 
 use calibench_exchange::OutputFolder;
-use calibench_measure::Registry;
 
 use self::frontier::Spot;
 use self::page::Group;
@@ -45,11 +44,11 @@ type Parts = BTreeMap<String, Part>;
 ///
 /// # Errors
 /// Records or speeds that cannot be read; the older report is then as it was.
-pub fn write(places: &Places, names: &[String], registry: &Registry) -> Result<Written, ReportError> {
+pub fn write(places: &Places, names: &[String]) -> Result<Written, ReportError> {
     let speeds = Speeds::read(&places.published.with_file_name("speeds.csv"))?;
     let mut parts = Parts::new();
     for name in names {
-        let part = Part::load(&places.records, name, registry)?.ok_or_else(|| LoadError::None(name.clone()))?;
+        let part = Part::load(&places.records, name)?.ok_or_else(|| LoadError::None(name.clone()))?;
         parts.insert(name.clone(), part);
     }
     let mut text = String::new();
@@ -58,7 +57,7 @@ pub fn write(places: &Places, names: &[String], registry: &Registry) -> Result<W
         speed_section(&parts, &speeds, (scenario, search, targets), &mut text, &mut files);
     }
     for part in parts.values() {
-        section(part, &usual(&parts, &part.sweep.scenario.name, registry), &mut text, &mut files);
+        section(part, &usual(&parts, &part.sweep.name), &mut text, &mut files);
     }
     let which = page::which(&groups(&parts, &speeds), &speeds.machine, &evidence(&parts));
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| {
@@ -91,16 +90,15 @@ fn introduction() -> String {
 }
 
 /// The labels of a sweep's methods but those that it has from its search alone.
-fn usual(parts: &Parts, scenario: &str, registry: &Registry) -> Vec<String> {
+fn usual(parts: &Parts, scenario: &str) -> Vec<String> {
     let Some(part) = parts.get(scenario) else { return Vec::new() };
     // The settings of the search stand in the scenarios beside those of its corners.
     let family = scenario.split('-').next().unwrap_or(scenario);
     let search = SEARCHED.iter().find(|(evaluated, _, _)| *evaluated == family).and_then(|(_, search, _)| parts.get(*search));
     let found: Vec<String> =
         search.map_or_else(Vec::new, |search| best(search).into_iter().flat_map(|(_, found)| found).map(|found| found.label).collect());
-    let plain = |label: &str| registry.parse(label.split(':').next().unwrap_or(label)).is_ok_and(|method| method.label == label);
     let methods = part.sweep.methods.iter().filter(|method| method.unavailable.is_none()).map(|method| method.name.clone());
-    methods.filter(|label| plain(label) || !found.contains(label)).collect()
+    methods.filter(|label| part.sweep.scenario.is_default(label) || !found.contains(label)).collect()
 }
 
 /// The settings that a search found, and accuracy against speed.
@@ -120,7 +118,7 @@ fn speed_section(
     }
     text.push_str(&format!(
         "## Settings for {targets}\n\nFrom the records of `{}` (seed {}): of each operator the setting with the least RMSE, a lost or rejected point counted as 1 px off. `{scenario}` measures them with seed {}.\n\n{}\n",
-        search.sweep.scenario.name,
+        search.sweep.name,
         search.sweep.seed,
         part.sweep.seed,
         table.render()
@@ -154,7 +152,7 @@ fn section(part: &Part, usual: &[String], text: &mut String, files: &mut Vec<(St
         return;
     }
     let trials = part.sweep.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
-    text.push_str(&format!("## Scenario `{}`\n\n{}\n\n{}", scenario.name, scenario.why.trim(), deviations(&part.sweep)));
+    text.push_str(&format!("## Scenario `{}`\n\n{}\n\n{}", part.sweep.name, scenario.why.trim(), deviations(&part.sweep)));
     scenario.notes.iter().for_each(|note| text.push_str(&format!("- {}\n", note.split_whitespace().collect::<Vec<_>>().join(" "))));
     text.push_str(&format!(
         "- {} cells of {trials} trials, seed {}; bars in the curves are 95 % intervals.\n\n",
@@ -256,7 +254,7 @@ fn numbers(parts: &Parts, output: &mut dyn io::Write) -> Result<(), csv::Error> 
             for (method, info) in part.sweep.methods.iter().enumerate() {
                 let Some(score) = part.sweep.score(cell, method) else { continue };
                 let value = |metric: &Metric| metric.of(score).map_or_else(String::new, |found| format!("{:.4e}", found.value));
-                let head = [name.clone(), part.sweep.sweep.label(cell), info.name.clone()];
+                let head = [name.clone(), part.sweep.sweep.cells[cell].label.clone(), info.name.clone()];
                 csv.write_record(head.into_iter().chain(METRICS.iter().map(value)).chain([score.points().to_string()]))?;
             }
         }

@@ -90,7 +90,7 @@ fn wanted(scenario: &str) -> Vec<Wanted> {
 
 /// The pictures of a sweep: file name, what it shows, picture. `usual` are the methods at their usual settings.
 pub fn pictures(loaded: &LoadedSweep, usual: &[String]) -> Vec<(String, &'static str, Canvas)> {
-    let stem = loaded.scenario.name.replace("atlas/", "").replace('/', "-");
+    let stem = loaded.name.replace("atlas/", "").replace('/', "-");
     let draw = |wanted: Wanted| {
         let choice = Choice {
             x: Some(wanted.x.to_owned()),
@@ -104,5 +104,5 @@ pub fn pictures(loaded: &LoadedSweep, usual: &[String]) -> Vec<(String, &'static
         let picture = if wanted.map.is_some() { map(loaded, &layout) } else { curves(loaded, &layout) };
         Some((format!("{stem}-{}.png", wanted.stem), wanted.about, picture))
     };
-    wanted(&loaded.scenario.name).into_iter().filter_map(draw).collect()
+    wanted(&loaded.name).into_iter().filter_map(draw).collect()
 }

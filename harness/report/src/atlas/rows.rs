@@ -96,7 +96,7 @@ pub fn candidates(part: &Part, speeds: &Speeds, cells: &[usize]) -> Vec<Candidat
             failed: scores.iter().map(|score| score.points() - score.measured).sum(),
             points: scores.iter().map(|score| score.points()).sum(),
             ratio: (count > 0.0).then(|| (sum / count).sqrt()),
-            speed: speeds.of(family(&part.sweep.scenario.name), &info.name).map(|speed| speed.points_per_second),
+            speed: speeds.of(family(&part.sweep.name), &info.name).map(|speed| speed.points_per_second),
         }
     };
     available.map(of).collect()

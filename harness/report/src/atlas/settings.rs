@@ -16,7 +16,7 @@ pub struct Found {
 /// For each cell of the search its value and the best setting of each operator, in the order of the file; of equal ones the first.
 pub fn best(search: &Part) -> Vec<(String, Vec<Found>)> {
     let cells = 0..search.sweep.cells.len();
-    cells.map(|cell| (search.sweep.sweep.label(cell), best_of(search, cell))).collect()
+    cells.map(|cell| (search.sweep.sweep.cells[cell].label.clone(), best_of(search, cell))).collect()
 }
 
 fn best_of(search: &Part, cell: usize) -> Vec<Found> {
@@ -40,7 +40,7 @@ fn best_of(search: &Part, cell: usize) -> Vec<Found> {
 
 /// The settings of the search that `evaluation` does not measure: none, if its file is up to date.
 pub fn unmeasured(search: &Part, evaluation: &Part) -> Vec<String> {
-    let measured = |label: &str| evaluation.sweep.scenario.methods.iter().any(|method| method.label == label);
+    let measured = |label: &str| evaluation.sweep.scenario.methods.iter().any(|known| known == label);
     let mut missing: Vec<String> =
         best(search).into_iter().flat_map(|(_, found)| found).map(|found| found.label).filter(|label| !measured(label)).collect();
     missing.sort();

@@ -28,7 +28,20 @@ pub enum LoadError {
         /// What is wrong.
         source: RecordError,
     },
-    /// The scenario as it was run no longer passes the checks.
-    #[error("{0}\nthese records are of an older scenario format: run the scenario again")]
-    Scenario(#[from] calibench_diagnostics::Problems),
+    /// They do not tell what their scenario is: an older version left them.
+    #[error("{}: records without `scenario.json`, of an older version: run `{name}` again", folder.display())]
+    Undescribed {
+        /// Where.
+        folder: PathBuf,
+        /// The scenario.
+        name: String,
+    },
+    /// What they tell of their scenario is of another form.
+    #[error("{}: {source}\nthese records were not written by this version, run the scenario again", path.display())]
+    Description {
+        /// Which.
+        path: PathBuf,
+        /// Line and mistake.
+        source: serde_json::Error,
+    },
 }

@@ -1,10 +1,12 @@
 //! Records, read for reports.
 
 pub mod adjustments;
+mod description;
 mod error;
 mod groups;
 mod plain;
 pub mod sweep;
+pub(crate) mod theory;
 
 pub use error::LoadError;
 pub use groups::MOST_TARGETS;

@@ -5,22 +5,24 @@ use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::read_photo;
-use calibench_measure::Registry;
 use calibench_model::Image;
+use calibench_records::description::Description;
 use calibench_records::names::{RECORDS, SCENARIO, kept_image};
 use calibench_records::points::{RecordHead, read_records};
 use calibench_records::results::Trial;
 use calibench_records::score::Scores;
-use calibench_scenario::Scenario;
 
 use super::LoadError;
 use super::adjustments::{self, Summaries};
+use super::description::description;
 use super::groups::groups;
 
 /// All that a report needs of one scenario. Its size does not grow with the number of trials.
 pub struct Loaded {
+    /// The scenario's name.
+    pub name: String,
     /// The scenario as it was run.
-    pub scenario: Scenario,
+    pub scenario: Description,
     /// Run and methods.
     pub head: RecordHead,
     /// The figures of all trials.
@@ -37,7 +39,7 @@ pub struct Loaded {
 ///
 /// # Errors
 /// Records that are absent or not of this version.
-pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, LoadError> {
+pub fn load(records: &Path, name: &str) -> Result<Loaded, LoadError> {
     let folder = records.join(name);
     let path = folder.join(RECORDS);
     let in_file = |path: PathBuf| move |source| LoadError::File { path, source };
@@ -45,9 +47,7 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(LoadError::None(name.to_owned())),
         other => other.map_err(in_file(path.clone()))?,
     };
-    let text_path = folder.join(SCENARIO);
-    let text = std::fs::read_to_string(&text_path).map_err(in_file(text_path.clone()))?;
-    let scenario = calibench_scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
+    let scenario = description(&folder, name)?.ok_or_else(|| LoadError::None(name.to_owned()))?;
     let mut scores = Scores { groups: groups(&scenario), ..Scores::default() };
     let mut first = None;
     // The methods of a file are named as they come; `pixel` is the one that does not look at the image.
@@ -58,7 +58,7 @@ pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Loaded, L
     let head = head.map_err(|source| LoadError::Records { path, source })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
     let calibrations = adjustments::load(&folder)?;
-    Ok(Loaded { calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
+    Ok(Loaded { name: name.to_owned(), calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
 }
 
 /// The names of all scenarios that have records, those of files elsewhere (`local/...`) among them.

@@ -4,20 +4,22 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use calibench_measure::Registry;
-use calibench_records::names::{RECORDS, SCENARIO, cell_folder};
+use calibench_records::description::{Description, Sweep};
+use calibench_records::names::{RECORDS, cell_folder};
 use calibench_records::points::read_records;
 use calibench_records::results::Trial;
 use calibench_records::score::{Score, Scores};
-use calibench_scenario::{Scenario, Sweep};
 
 use crate::LoadError;
+use crate::load::description::description;
 use crate::load::groups::groups;
 
 /// All that reports and plots need of a sweep. Its size does not grow with the number of trials.
 pub struct LoadedSweep {
-    /// The scenario as it was run.
-    pub scenario: Scenario,
+    /// The scenario's name.
+    pub name: String,
+    /// The scenario as it was run, its sweep apart.
+    pub scenario: Description,
     /// Its sweep.
     pub sweep: Sweep,
     /// The methods without their swept parameters, in the order of the records.
@@ -51,8 +53,8 @@ pub struct LoadedCell {
 ///
 /// # Errors
 /// Records that are not whole or not of this version.
-pub fn load(records: &Path, name: &str, registry: &Registry) -> Result<Option<LoadedSweep>, LoadError> {
-    load_with(records, name, registry, &mut |_, _, _| ())
+pub fn load(records: &Path, name: &str) -> Result<Option<LoadedSweep>, LoadError> {
+    load_with(records, name, &mut |_, _, _| ())
 }
 
 /// Is shown every trial: the cell, the trial, and the names of the methods that its points index.
@@ -62,14 +64,13 @@ pub type Watch<'a> = dyn FnMut(usize, &Trial, &[String]) + 'a;
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with(records: &Path, name: &str, registry: &Registry, watch: &mut Watch<'_>) -> Result<Option<LoadedSweep>, LoadError> {
+pub fn load_with(records: &Path, name: &str, watch: &mut Watch<'_>) -> Result<Option<LoadedSweep>, LoadError> {
     let folder = records.join(name);
-    let text_path = folder.join(SCENARIO);
-    let Ok(text) = std::fs::read_to_string(&text_path) else { return Ok(None) };
-    let mut scenario = calibench_scenario::parse(name, &text_path.display().to_string(), &text, registry)?;
+    let Some(mut scenario) = description(&folder, name)? else { return Ok(None) };
     let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
-    let mut loaded = LoadedSweep { scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder: folder.clone() };
-    for index in 0..loaded.sweep.cells() {
+    let mut loaded =
+        LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder: folder.clone() };
+    for index in 0..loaded.sweep.cells.len() {
         loaded.add(&cell_folder(&folder, index).join(RECORDS), watch)?;
     }
     loaded.order();
@@ -115,7 +116,7 @@ impl LoadedSweep {
 
     /// The methods in the order of the scenario: records name those first that are unavailable.
     fn order(&mut self) {
-        let known: Vec<String> = self.scenario.methods.iter().map(|method| self.sweep.method(&method.label)).collect();
+        let known: Vec<String> = self.scenario.methods.iter().map(|label| self.sweep.method(label)).collect();
         let mut order: Vec<usize> = (0..self.methods.len()).collect();
         order.sort_by_key(|&index| known.iter().position(|name| *name == self.methods[index].name).unwrap_or(known.len()));
         self.methods = order.iter().map(|&index| self.methods[index].clone()).collect();

@@ -6,23 +6,20 @@ mod tables;
 
 pub use sweep::section as sweep;
 
-use calibench_scenario::Subject;
-
 use super::load::Loaded;
 use crate::canvas::{Canvas, Pictures};
 
 /// The text of a calibrated scenario and its pictures, whose names begin with `stem`; `None` for a scenario without adjustments.
 pub fn section(loaded: &Loaded, stem: &str, illustrated: bool) -> Option<(String, Pictures)> {
     let found = loaded.calibrations.as_ref()?;
-    let Subject::Views(views) = &loaded.scenario.subject else { return None };
-    let calibration = views.calibration.as_ref()?;
+    let (views, told) = loaded.scenario.adjusted()?;
     let mut text = tables::methods(found);
     if found.sets.len() > 1 {
         text.push_str(&tables::sets(found));
     }
     let mut drawn: Pictures = Vec::new();
     // Networks that are alike need no picture of their own; what real operators leave behind does.
-    let shown = |name: &str| illustrated || (calibration.drawn.is_none() && name == "convergence");
+    let shown = |name: &str| illustrated || (!told.drawn && name == "convergence");
     let mut add = |name: &str, caption: &str, canvas: Option<Canvas>| {
         if let Some(canvas) = canvas.filter(|_| shown(name)) {
             let file = format!("{stem}-{name}.png");
@@ -33,7 +30,7 @@ pub fn section(loaded: &Loaded, stem: &str, illustrated: bool) -> Option<(String
     add(
         "plan",
         "The network from above, and the wall with control and check points (the paper's Fig. 10 and 11)",
-        pictures::plan::plan(views, calibration),
+        pictures::plan::plan(views),
     );
     add(
         "distribution",

@@ -2,7 +2,6 @@
 
 use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
-use calibench_scenario::Subject;
 
 use super::pictures::floor::{Curve, floor};
 use super::tables::with_half;
@@ -20,8 +19,7 @@ type Printed = [(String, f64)];
 /// # Errors
 /// Records that cannot be read.
 pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Option<(String, Pictures)>, LoadError> {
-    let Subject::Views(views) = &loaded.scenario.subject else { return Ok(None) };
-    if views.calibration.is_none() {
+    if loaded.scenario.adjusted().is_none() {
         return Ok(None);
     }
     let mut cells = Vec::new();

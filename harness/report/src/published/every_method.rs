@@ -17,7 +17,7 @@ pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> String {
         "### Every method on the same points\n\nDistances from the truth in px, and as fractions of a pixel. {images} `dx` is positive to the right, `dy` downwards.\n\n"
     );
     for loaded in std::iter::once(main).chain(beside.iter().copied()) {
-        text.push_str(&format!("**`{}`**\n\n{}\n", loaded.scenario.name, every_method(table, loaded)));
+        text.push_str(&format!("**`{}`**\n\n{}\n", loaded.name, every_method(table, loaded)));
     }
     text
 }

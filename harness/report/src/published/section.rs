@@ -65,7 +65,7 @@ fn adjustments(table: &Table, main: &Loaded) -> Compared {
 
 /// Our figure for each cell.
 fn of_adjustments(table: &Table, main: &Loaded, found: &Summaries) -> Vec<Option<Ours>> {
-    let pitch = main.scenario.pitch_um().unwrap_or(f64::NAN);
+    let pitch = main.scenario.adjusted().map_or(f64::NAN, |(_, told)| told.pitch_um);
     table.cells.iter().map(|cell| ours(found, cell, &table.method, pitch)).collect()
 }
 

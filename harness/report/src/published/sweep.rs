@@ -72,7 +72,7 @@ fn score<'a>(loaded: &'a LoadedSweep, method: usize, cell: &Cell) -> Option<&'a 
         let mut pairs = loaded.sweep.axes.iter().zip(loaded.sweep.values(*index));
         pairs.all(|(axis, value)| cell.at.iter().any(|(key, at)| axis.is_called(key) && value.number == Some(*at)))
     };
-    loaded.score((0..loaded.sweep.cells()).find(meant)?, method)
+    loaded.score((0..loaded.sweep.cells.len()).find(meant)?, method)
 }
 
 /// Our figure for a printed cell, px.

@@ -1,6 +1,6 @@
 //! Axes: from values to parts of a side, with ticks.
 
-use calibench_scenario::sweep::Axis;
+use calibench_records::description::Axis;
 
 use crate::ticks;
 

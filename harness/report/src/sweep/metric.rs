@@ -1,28 +1,27 @@
 //! The figures of a sweep, each with its 95 % interval.
 
 use calibench_records::score::{Pooled, Score, root};
-use clap::ValueEnum;
 
 /// What is plotted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
-    /// `sqrt(mean(dx^2 + dy^2))` of the points that were measured and not lost, px
+    /// `sqrt(mean(dx^2 + dy^2))` of the points that were measured and not lost, px.
     Rmse,
-    /// Length of their mean error, px
+    /// Length of their mean error, px.
     Bias,
-    /// Mean error in x of all points that were measured, lost ones among them, px
+    /// Mean error in x of all points that were measured, lost ones among them, px.
     MeanX,
-    /// Their 2D deviation about the mean error, px
+    /// Their 2D deviation about the mean error, px.
     Scatter,
-    /// Root mean squared error in units of the Cramér-Rao bound of each point
+    /// Root mean squared error in units of the Cramér-Rao bound of each point.
     Ratio,
-    /// Root mean squared error in units of the method's own standard deviation of each point
+    /// Root mean squared error in units of the method's own standard deviation of each point.
     Predicted,
-    /// Share of points measured more than 1 px from the truth, %
+    /// Share of points measured more than 1 px from the truth, %.
     Lost,
-    /// Share of points that the operator rejected, %
+    /// Share of points that the operator rejected, %.
     Rejected,
-    /// Share of points lost or rejected, %
+    /// Share of points lost or rejected, %.
     Failed,
 }
 

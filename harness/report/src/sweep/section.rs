@@ -18,7 +18,7 @@ pub fn deviations(loaded: &LoadedSweep) -> String {
         found.push(format!("seed {} in place of {}", loaded.seed, loaded.scenario.seed));
     }
     let has = |label: &str| loaded.methods.iter().any(|method| method.name == loaded.sweep.method(label));
-    if loaded.scenario.methods.len() != loaded.methods.len() || !loaded.scenario.methods.iter().all(|method| has(&method.label)) {
+    if loaded.scenario.methods.len() != loaded.methods.len() || !loaded.scenario.methods.iter().all(|label| has(label)) {
         found.push("other methods".to_owned());
     }
     if found.is_empty() { String::new() } else { format!("**Not the scenario as its file says: {}.**\n\n", found.join(", ")) }
@@ -32,7 +32,7 @@ pub fn section(loaded: &LoadedSweep, stem: &str) -> (String, Option<Canvas>) {
     }
     if mostly_lost(loaded) {
         let why = "More than half of all measured points lie more than 1 px from the truth: the RMSE of the others would say little";
-        return (format!("{why}. `calibench plot {} --y mean-x` draws the mean error of all.\n\n", loaded.scenario.name), None);
+        return (format!("{why}. `calibench plot {} --y mean-x` draws the mean error of all.\n\n", loaded.name), None);
     }
     let mut text = table(loaded);
     for method in &loaded.methods {
@@ -76,7 +76,7 @@ fn table(loaded: &LoadedSweep) -> String {
          The gate does not compare sweeps.\n\n",
         rows.render(),
         loaded.seed,
-        loaded.scenario.name
+        loaded.name
     )
 }
 

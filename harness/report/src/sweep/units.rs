@@ -1,6 +1,6 @@
 //! What a swept key and its values are called on an axis: in the field's words, with the unit.
 
-use calibench_scenario::sweep::{Axis, Value};
+use calibench_records::description::{Axis, Value};
 
 /// The noise as a ratio of contrast to noise, dB; shown as noise in % of the contrast.
 const SNR: &str = "snr_contrast_db";

@@ -35,7 +35,7 @@ pub(super) fn section(loaded: &LoadedSweep) -> Option<Part> {
          where a pixel sees hardly more than one edge, and at blunt corners (at 30 degrees it moves it outwards). Two edges of equal weight that meet at an angle have a determinant of `sin^2(angle) / 4` of the squared trace: 0.0625 at \
          150 degrees, and the rounding of the tip by blur and gradient takes it below 0.04 unless the integration is wide beside them (3 px is). The strength is then nowhere positive, and every \
          point is rejected as `no_corner`; most points are rejected at 120 and 135 degrees, too, with an integration of 0.5 px.\n\n{}\n![Mean error along the bisector over the angle](bias-along.png)\n\n",
-        loaded.scenario.name,
+        loaded.name,
         rows.render()
     );
     Some((text, Some(("bias-along.png".into(), curves(loaded, &layout)))))

@@ -38,7 +38,7 @@ pub(super) fn section(loaded: &Loaded) -> Option<Part> {
     let text = format!(
         "## The eight corners close up\n\n{SIDE} x {SIDE} px of each image of `{}`, {ZOOM} times enlarged: truth, detected pixel, refined position. Without noise; what separates the refined \
          position from the truth is bias.\n\n![Eight corners, each with truth, detection and refined position](close-up.png)\n\n",
-        loaded.scenario.name
+        loaded.name
     );
     Some((text, Some(("close-up.png".into(), panels(&all, &layers, SIDE, ZOOM, 4)))))
 }

@@ -8,26 +8,26 @@ mod precision;
 mod surface;
 
 use super::canvas::Canvas;
-use super::load::Loaded;
+use super::load::{LoadError, Loaded};
 use super::sweep::LoadedSweep;
 
 /// The family of the report.
 pub const FAMILY: &str = "zhu-2007";
 
 /// Its sections and pictures, as far as the records of the scenarios are there.
-pub fn section(plain: &[&Loaded], swept: &[&LoadedSweep]) -> (String, Vec<(String, Canvas)>) {
-    let scene = |name: &str| plain.iter().find(|loaded| loaded.scenario.name == format!("{FAMILY}/{name}")).copied();
-    let sweep = |name: &str| swept.iter().find(|loaded| loaded.scenario.name == format!("{FAMILY}/{name}")).copied();
-    let parts = [
-        scene("table-1-rendered").and_then(surface::section),
-        scene("table-1").and_then(close::section),
-        sweep("bias").and_then(bias::section),
-        scene("table-1").zip(sweep("table-2")).and_then(|(images, noisy)| precision::section(images, noisy)),
-    ];
+///
+/// # Errors
+/// Records that cannot be read.
+pub fn section(plain: &[&Loaded], swept: &[&LoadedSweep]) -> Result<(String, Vec<(String, Canvas)>), LoadError> {
+    let scene = |name: &str| plain.iter().find(|loaded| loaded.name == format!("{FAMILY}/{name}")).copied();
+    let sweep = |name: &str| swept.iter().find(|loaded| loaded.name == format!("{FAMILY}/{name}")).copied();
+    let peak = scene("table-1-rendered").map(surface::section).transpose()?;
+    let precise = scene("table-1").zip(sweep("table-2")).map(|(images, noisy)| precision::section(images, noisy)).transpose()?;
+    let parts = [peak.flatten(), scene("table-1").and_then(close::section), sweep("bias").and_then(bias::section), precise.flatten()];
     let (mut text, mut pictures) = (String::new(), Vec::new());
     for (part, picture) in parts.into_iter().flatten() {
         text.push_str(&part);
         pictures.extend(picture);
     }
-    (text, pictures)
+    Ok((text, pictures))
 }

@@ -1,84 +1,72 @@
 //! Theoretical precision (Eq. 14 to 18) beside the scatter of the noisy images.
 
-use calibench_measure::harris_paraboloid::HarrisParaboloid;
-use calibench_measure::paraboloid::Weights;
-use calibench_measure::paraboloid_precision::{Form, precision, white};
-use calibench_measure::strength_noise::strength_covariance;
-use calibench_model::{Image, PixelPoint, Start};
-use calibench_records::score::Errors;
+use calibench_records::score::{Errors, Score, TargetScore};
+use calibench_records::theory::{Sigmas, Theory};
 
-use super::part::{OPERATOR, Part};
-use crate::load::Loaded;
+use super::part::{Part, theory_of};
+use crate::load::{LoadError, Loaded};
 use crate::markdown::{MarkdownTable, fixed};
-use crate::scene_figures::targets;
 use crate::sweep::LoadedSweep;
 
 /// Theory is of first order: the least noise of the sweep is what it is compared with.
 const CELL: usize = 0;
 
-pub(super) fn section(images: &Loaded, noisy: &LoadedSweep) -> Option<Part> {
-    let view = &images.first.points.first()?.view;
-    let image = images.image(view)?;
-    let configured = images.scenario.methods.iter().find(|method| method.label.starts_with(OPERATOR))?;
-    let operator = HarrisParaboloid::of(&configured.settings);
-    let sigma = noisy.sweep.values(CELL).first()?.number?;
-    let method = noisy.methods.iter().position(|method| method.name == configured.label)?;
-    let score = noisy.score(CELL, method)?;
-    let weights = Weights::new(configured.settings.get("k"));
-    let mut rows = MarkdownTable::new(&[
-        "image",
-        "Eq. 11 as printed",
-        "Eq. 11 corrected",
-        "nine samples",
-        "the same, samples uncorrelated",
-        "actual scatter",
-        "95 %",
-        "theory / actual",
-        "points",
-    ]);
-    for (id, truth) in targets(images, view) {
-        let Some(theory) = theory(&operator, weights, &image, truth, sigma) else { continue };
-        let Some(target) = score.targets.iter().find(|target| *target.target == *id) else { continue };
-        let actual = scatter(&target.whole);
-        let mut cells = vec![format!("({id})")];
-        cells.extend(theory.iter().map(|value| fixed(*value, 4)));
-        cells.extend([
-            actual.map_or("none".into(), |(value, _)| fixed(value, 4)),
-            actual
-                .and_then(|(_, interval)| interval)
-                .map_or(String::new(), |(low, high)| format!("{} to {}", fixed(low, 4), fixed(high, 4))),
-            actual.filter(|(value, _)| *value > 0.0).map_or(String::new(), |(value, _)| fixed(theory[2] / value, 2)),
-            target.whole.dx.count().to_string(),
-        ]);
-        rows.row(cells);
-    }
+const HEADER: [&str; 9] = [
+    "image",
+    "Eq. 11 as printed",
+    "Eq. 11 corrected",
+    "nine samples",
+    "the same, samples uncorrelated",
+    "actual scatter",
+    "95 %",
+    "theory / actual",
+    "points",
+];
+
+/// The section on the theory of `images` beside the scatter of `noisy`, where the records hold both.
+///
+/// # Errors
+/// Records that cannot be read.
+pub(super) fn section(images: &Loaded, noisy: &LoadedSweep) -> Result<Option<Part>, LoadError> {
+    let Some((label, all)) = theory_of(images)? else { return Ok(None) };
+    let sigma = noisy.sweep.values(CELL).first().and_then(|value| value.number);
+    let method = noisy.methods.iter().position(|method| method.name == label);
+    let score = method.and_then(|method| noisy.score(CELL, method));
+    let found = sigma.zip(score).map(|(sigma, score)| part(images, noisy, (label, &all), (sigma, score)));
+    Ok(found)
+}
+
+fn part(images: &Loaded, noisy: &LoadedSweep, (label, all): (&str, &[Theory]), (sigma, score): (f64, &Score)) -> Part {
+    let mut rows = MarkdownTable::new(&HEADER);
+    let named = |theory: &&Theory| Some((theory.sigmas?, score.targets.iter().find(|target| *target.target == *theory.target)?));
+    all.iter().filter_map(|theory| named(&theory)).for_each(|(sigmas, target)| rows.row(row(sigmas, sigma, target)));
     let text = format!(
         "## Theoretical against actual precision\n\nStandard deviation `sqrt(sigma_x^2 + sigma_y^2)` in px of the refined position at grey-value noise of {sigma} (fraction of full scale), `{}`. Theory is \
          propagated from the noise-free image of `{}`: white noise of the grey values to the covariance of the 3 x 3 strengths (the paper does not say which it takes), then Eq. 14 to 18. *As \
          printed* and *corrected* propagate the six samples of Eq. 11; *nine samples* is the solution that the method delivers, the fourth column the same with equal variances and no \
          correlation. The actual scatter is about each target's own mean, from the trials of `{}`; its interval is that of the squares. Bias is in neither: it is what Table I shows. Theory takes the strongest pixel of the image without noise; where noise makes another pixel the strongest, \
          the paraboloid is another one, and the scatter is wider than theory.\n\n{}\n",
-        configured.label,
-        images.scenario.name,
-        noisy.scenario.name,
+        label,
+        images.name,
+        noisy.name,
         rows.render()
     );
-    Some((text, None))
+    (text, None)
 }
 
-/// The theoretical standard deviation in four forms, px.
-fn theory(operator: &HarrisParaboloid, weights: Weights, image: &Image, truth: PixelPoint, sigma: f64) -> Option<[f64; 4]> {
-    let pixel = operator.strongest_pixel(image, &Start::at(truth)).ok()?;
-    let f = operator.strengths_around(image, pixel, 1).ok()?.around(1, 1);
-    let q_ff = strength_covariance(operator, image, pixel, sigma).ok()?;
-    let mean = (0..9).map(|i| q_ff[i][i]).sum::<f64>() / 9.0;
-    let of = |form, q_ff| Some(precision(form, &f, q_ff)?.sigma());
-    Some([
-        of(Form::Printed, &q_ff)?,
-        of(Form::Corrected, &q_ff)?,
-        of(Form::Adjusted(weights), &q_ff)?,
-        of(Form::Adjusted(weights), &white(mean))?,
-    ])
+/// The cells of one target at grey-value noise `sigma`, fraction of full scale.
+fn row(Sigmas { printed, corrected, nine, uncorrelated }: Sigmas, sigma: f64, target: &TargetScore) -> Vec<String> {
+    let theory = [printed, corrected, nine, uncorrelated].map(|value| value * sigma);
+    let actual = scatter(&target.whole);
+    let mut cells = vec![format!("({})", target.target)];
+    cells.extend(theory.iter().map(|value| fixed(*value, 4)));
+    cells.extend([
+        actual.map_or("none".into(), |(value, _)| fixed(value, 4)),
+        actual.and_then(|(_, interval)| interval).map_or(String::new(), |(low, high)| format!("{} to {}", fixed(low, 4), fixed(high, 4))),
+        actual.filter(|(value, _)| *value > 0.0).map_or(String::new(), |(value, _)| fixed(theory[2] / value, 2)),
+        target.whole.dx.count().to_string(),
+    ]);
+    cells
 }
 
 /// The 2D scatter about the mean error of one target with its 95 % interval, px. The trials are independent and each has one such point.

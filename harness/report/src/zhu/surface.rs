@@ -1,29 +1,27 @@
 //! The strength around a corner as in the paper's Fig. 1: a map and a surface of 7 x 7 pixels.
 
-use calibench_measure::harris::Strengths;
-use calibench_measure::harris_paraboloid::HarrisParaboloid;
-use calibench_measure::paraboloid::Paraboloid;
-use calibench_model::{PixelPoint, Start};
+use calibench_model::PixelPoint;
+use calibench_records::theory::{HALF as HALF_SIDE, SIDE, Strengths};
 use plotters::prelude::*;
 
-use super::part::{OPERATOR, Part};
+use super::part::{OPERATOR, Part, theory_of};
 use crate::canvas::{Canvas, Mark};
 use crate::field::shade;
 use crate::figures::Layer;
-use crate::load::Loaded;
+use crate::load::{LoadError, Loaded};
 use crate::scene_figures::targets;
 
 /// The image that is shown: the solid right angle.
 const SHOWN: &str = "h";
 /// Half the side of what is shown, px.
-const HALF: i64 = 3;
+const HALF: i64 = HALF_SIDE as i64;
 const CELL: u32 = 64;
 const LEFT: u32 = 90;
 const TOP: u32 = 60;
 
 /// A corner's strengths with what is marked in them.
 struct Peak {
-    strengths: Strengths,
+    values: [[f64; SIDE]; SIDE],
     /// The largest of them.
     most: f64,
     pixel: (i64, i64),
@@ -31,32 +29,39 @@ struct Peak {
     truth: PixelPoint,
 }
 
-pub(super) fn section(loaded: &Loaded) -> Option<Part> {
+/// The section on the strengths of `loaded`, where its records hold them.
+///
+/// # Errors
+/// Records that cannot be read.
+pub(super) fn section(loaded: &Loaded) -> Result<Option<Part>, LoadError> {
+    let found = theory_of(loaded)?.and_then(|(label, all)| {
+        let shown = all.into_iter().find(|theory| theory.target == SHOWN)?;
+        Some(part(loaded, label, &peak(loaded, shown.strengths?)?))
+    });
+    Ok(found)
+}
+
+fn peak(loaded: &Loaded, Strengths { pixel, values, maximum }: Strengths) -> Option<Peak> {
     let view = &loaded.first.points.first()?.view;
-    let image = loaded.image(view)?;
-    let configured = loaded.scenario.methods.iter().find(|method| method.label.starts_with(OPERATOR))?;
-    let operator = HarrisParaboloid::of(&configured.settings);
     let (_, truth) = targets(loaded, view).into_iter().find(|(id, _)| id == SHOWN)?;
-    let pixel = operator.strongest_pixel(&image, &Start::at(truth)).ok()?;
-    let strengths = operator.strengths_around(&image, pixel, HALF as usize).ok()?;
-    let middle = HALF as usize;
-    let (dx, dy) = Paraboloid::fit(&strengths.around(middle, middle), configured.settings.get("k")).maximum()?;
-    let refined = PixelPoint::new(pixel.0 as f64 + dx, pixel.1 as f64 + dy);
-    let peak = Peak { most: strengths.at(middle, middle), strengths, pixel, refined, truth };
+    Some(Peak { most: values[HALF_SIDE][HALF_SIDE], values, pixel, refined: maximum?, truth })
+}
+
+fn part(loaded: &Loaded, label: &str, peak: &Peak) -> Part {
     let text = format!(
         "## The strength around a corner\n\nHarris strength of 7 x 7 pixels at the solid right angle ({SHOWN}) of `{}` (`{}`), in units of its largest value, {:.3e} (grey values as fractions of full \
          scale, to the fourth power per px^4): the paper's Fig. 1. The dark area lies to the upper right; the maximum lies inside it, {:.2} px from the corner, and the paraboloid finds that \
          maximum well. The method is exact for what it looks for; what it looks for is not the corner.\n\n![Harris strength around a right angle, as a map and as a surface](strength.png)\n\n",
-        loaded.scenario.name,
-        configured.label,
+        loaded.name,
+        label,
         peak.most,
         peak.refined.distance(peak.truth)
     );
-    Some((text, Some(("strength.png".into(), picture(&peak)))))
+    (text, Some(("strength.png".into(), picture(peak))))
 }
 
 fn picture(peak: &Peak) -> Canvas {
-    let side = (2 * HALF + 1) as u32 * CELL;
+    let side = SIDE as u32 * CELL;
     let mut canvas = Canvas::new(LEFT + side + 640, TOP + side + 110);
     map(&mut canvas, peak);
     surface(&mut canvas, peak, LEFT + side + 30, side + TOP);
@@ -64,18 +69,18 @@ fn picture(peak: &Peak) -> Canvas {
 }
 
 fn map(canvas: &mut Canvas, peak: &Peak) {
-    let count = (2 * HALF + 1) as usize;
+    let count = SIDE;
     let corner = |column: usize, row: usize| ((LEFT + column as u32 * CELL) as i32, (TOP + row as u32 * CELL) as i32);
     canvas.paint(|area| {
         for (row, column) in (0..count).flat_map(|row| (0..count).map(move |column| (row, column))) {
-            let part = peak.strengths.at(column, row) / peak.most;
+            let part = peak.values[row][column] / peak.most;
             let ends = [corner(column, row), corner(column + 1, row + 1)];
             area.draw(&Rectangle::new(ends, shade(part).filled())).ok();
         }
     });
     for (row, column) in (0..count).flat_map(|row| (0..count).map(move |column| (row, column))) {
         let (x, y) = corner(column, row);
-        canvas.label(&format!("{:.2}", peak.strengths.at(column, row) / peak.most), 15, (x as u32 + 4, y as u32 + 12));
+        canvas.label(&format!("{:.2}", peak.values[row][column] / peak.most), 15, (x as u32 + 4, y as u32 + 12));
     }
     for index in 0..count {
         let (x, y) = corner(index, index);
@@ -106,7 +111,7 @@ fn map(canvas: &mut Canvas, peak: &Peak) {
 }
 
 fn surface(canvas: &mut Canvas, peak: &Peak, left: u32, height: u32) {
-    let value = |x: i64, y: i64| peak.strengths.at((x + HALF) as usize, (y + HALF) as usize) / peak.most;
+    let value = |x: i64, y: i64| peak.values[(y + HALF) as usize][(x + HALF) as usize] / peak.most;
     let least = (-HALF..=HALF).flat_map(|y| (-HALF..=HALF).map(move |x| (x, y))).map(|(x, y)| value(x, y)).fold(0.0, f64::min);
     canvas.paint(|area| {
         let (_, right) = area.split_horizontally(left as i32);

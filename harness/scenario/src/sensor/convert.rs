@@ -9,7 +9,9 @@ use calibench_synth::sensor::{
     ColourFilter, Demosaic, DemosaicTo, Design, Electrons, FallOff, Gamma, Gradient, Noise, Pattern, Per, Sensor, SensorError, Vignetting,
 };
 
-use super::{DemosaicWire, Filter, Numbers, SensorSetup, SensorWire, Surroundings};
+use super::numbers::{self, Numbers};
+use super::setup::{SensorSetup, Surroundings};
+use super::wire::{DemosaicWire, Filter, SensorWire};
 use crate::section::Section;
 
 /// The ways to describe noise: the first key of each says that it is meant, the others belong to it.
@@ -161,7 +163,7 @@ fn vignetting(wire: &SensorWire, keys: &Keys, around: &Surroundings, problems: &
 }
 
 fn gradient(wire: &SensorWire) -> Option<Gradient> {
-    let of = |numbers: Numbers<super::Gradient, 2>, per| Gradient { x: numbers.0[0].0, y: numbers.0[1].0, per };
+    let of = |numbers: Numbers<numbers::Gradient, 2>, per| Gradient { x: numbers.0[0].0, y: numbers.0[1].0, per };
     let across = wire.gradient_across.map(|numbers| of(numbers, Per::Frame));
     wire.gradient_per_pixel.map(|numbers| of(numbers, Per::Pixel)).or(across)
 }

@@ -8,7 +8,7 @@ use calibench_measure::Registry;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use super::Axis;
+use super::axis::Axis;
 
 /// Replaces the value of `axis` in `table`, or adds it: a key that the file may not have is found out when its table is read, at its place in
 /// the sweep. Of a list of tables those that the path names by index, `id` or `name` are meant, or all; of methods all with such a parameter.

@@ -1,25 +1,26 @@
 //! The `[testfield]` table: what the cameras of a scenario look at.
 
-use std::ops::Range;
-
 use calibench_diagnostics::Problem;
 use calibench_model::Testfield;
 use calibench_random::Key;
-use calibench_synth::testfield::{Chessboard, Coded, FieldError, House, Levels, Panels, SheetBend, Wall};
+use calibench_synth::testfield::{Chessboard, Coded, FieldError, House, Wall};
 use toml::de::DeValue;
 
 use super::section::Section;
-use super::wire::Grey;
 
+mod common;
+mod generator;
+mod spans;
 mod wall;
 pub mod wire;
 
-use wire::{ChessboardWire, CodedWire, Degrees, Height, HouseWire};
+use common::{BACKGROUND, bend, levels};
+pub use generator::Generator;
+pub(super) use spans::Spans;
+use wire::{ChessboardWire, CodedWire, Height, HouseWire};
 
 /// The kinds of testfield.
 pub const KINDS: [&str; 4] = ["chessboard", "wall", "coded", "house"];
-/// Background where the file gives none.
-const BACKGROUND: f64 = 0.2;
 
 /// The unit of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,19 +48,6 @@ impl Unit {
             Self::Metre => 1000.0,
         }
     }
-}
-
-/// What makes the testfield.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Generator {
-    /// A chessboard.
-    Chessboard(Chessboard),
-    /// A wall, whose sheets are those of the panels, if any, after its own.
-    Wall(Wall, Option<Panels>),
-    /// The coded field.
-    Coded(Coded),
-    /// The house.
-    House(House),
 }
 
 /// A checked `[testfield]`.
@@ -108,45 +96,6 @@ impl FieldPlan {
             _ => None,
         };
         Problem::new(span.unwrap_or_else(|| self.spans.whole.clone()), error.to_string())
-    }
-}
-
-/// Where keys and named things stand.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Spans {
-    pub whole: Range<usize>,
-    keys: Vec<(String, Range<usize>)>,
-    ids: Vec<(String, Range<usize>)>,
-}
-
-impl Spans {
-    /// Of the table itself and its keys.
-    pub fn of(section: &Section<'_>) -> Self {
-        let mut spans = Self { whole: section.span.clone(), ..Self::default() };
-        spans.add(section);
-        spans
-    }
-
-    /// Adds the keys of a table within, and its name under `id` or `name`.
-    pub fn add(&mut self, section: &Section<'_>) {
-        for (key, value) in &section.table {
-            self.keys.push((key.get_ref().to_string(), value.span()));
-            if let ("id" | "name", Some(name)) = (key.get_ref().as_ref(), value.get_ref().as_str()) {
-                self.ids.push((name.to_owned(), value.span()));
-            }
-        }
-    }
-
-    /// The value of a key, if it stands in one place only.
-    pub fn of_key(&self, name: &str) -> Option<Range<usize>> {
-        let mut found = self.keys.iter().filter(|(key, _)| key == name);
-        let first = found.next()?;
-        found.next().is_none().then(|| first.1.clone())
-    }
-
-    /// The last place of a name: of two that are equal the second is the mistake.
-    pub fn of_id(&self, name: &str) -> Option<Range<usize>> {
-        self.ids.iter().rfind(|(id, _)| id == name).map(|(_, span)| span.clone())
     }
 }
 
@@ -207,16 +156,6 @@ fn take_unit(section: &mut Section<'_>, problems: &mut Vec<Problem>) -> Option<U
 
 fn shown(value: &DeValue<'_>) -> String {
     value.as_str().map_or_else(|| format!("a value of type {}", value.type_str()), |text| format!("`{text}`"))
-}
-
-fn levels(paper: Option<Grey>, ink: Option<Grey>) -> Levels {
-    let usual = Levels::default();
-    Levels { paper: paper.map_or(usual.paper, |level| level.0), ink: ink.map_or(usual.ink, |level| level.0) }
-}
-
-fn bend(peak: Option<Height>, across: Option<Degrees>) -> Option<SheetBend> {
-    let peak = peak.map(|peak| peak.0).filter(|peak| *peak != 0.0)?;
-    Some(SheetBend { peak, across: across.map_or(0.0, |angle| angle.0.to_radians()) })
 }
 
 fn chessboard(wire: &ChessboardWire) -> Chessboard {

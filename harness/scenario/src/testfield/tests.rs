@@ -1,4 +1,5 @@
 use calibench_diagnostics::Problems;
+use calibench_synth::testfield::Levels;
 use toml::de::DeTable;
 
 use super::*;

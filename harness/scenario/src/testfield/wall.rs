@@ -6,9 +6,11 @@ use calibench_synth::testfield::{Arrangement, Fill, Panels, Shape, Sheet, Turn, 
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
 
-use super::super::section::Section;
+use super::common::{BACKGROUND, bend, levels};
+use super::generator::Generator;
+use super::spans::Spans;
 use super::wire::{Degrees, FillWire, Fraction, PanelsWire, PlateWire, WallTargetWire, WallWire};
-use super::{BACKGROUND, Generator, Spans, bend, levels};
+use crate::section::Section;
 
 /// The tables within, for proposals.
 const TABLES: [&str; 6] = ["plate", "target", "panels", "fill", "kind", "unit"];

@@ -30,16 +30,8 @@ impl Sensor {
         self.scatter(grey, true)
     }
 
-    /// Signal-to-noise ratio SNR(mu_p) of a pixel whose mean is `grey`: the signal above the dark one, to the standard deviation from image to image.
-    /// The camera's patterns are not in it. `None` as for [`Sensor::variance`], or if there is no noise.
-    ///
-    /// Source: EMVA 1288, release 4.0, section 2.3: SNR = eta mu_p / sqrt(sigma_d^2 + sigma_q^2 / K^2 + eta mu_p).
-    pub fn snr(&self, grey: f64) -> Option<f64> {
-        let sigma = self.scatter(grey, false)?.sqrt();
-        (sigma > 0.0).then(|| (grey - self.mean(0.0).unwrap_or(0.0)) / sigma)
-    }
-
-    fn scatter(&self, grey: f64, patterns: bool) -> Option<f64> {
+    /// [`Sensor::variance`] with the camera's patterns or without them, from image to image.
+    pub(super) fn scatter(&self, grey: f64, patterns: bool) -> Option<f64> {
         let design = &self.design;
         if design.demosaic.is_some() || design.gamma.is_some() || design.jpeg.is_some() {
             return None;

@@ -33,11 +33,7 @@ mod theia;
 #[path = "../../../../../examples/camera_format.rs"]
 mod example;
 
-use calibench_model::camera::Convention;
-
-use super::fit::{Keeps, KeptCovariance, KeptPose, Model};
-use super::source::Source;
-use super::{CameraFileError, NamedCamera, ReadOptions};
+use super::format::{CameraFormat, PLAIN};
 
 /// Every format, in the order in which they are tried.
 pub static FORMATS: &[&CameraFormat] = &[
@@ -69,83 +65,6 @@ pub static FORMATS: &[&CameraFormat] = &[
     &bal::FORMAT,
     &caltech::FORMAT,
 ];
-
-/// Cameras to text.
-pub(super) type Writer = fn(&[NamedCamera]) -> Result<String, CameraFileError>;
-
-/// A format of camera files.
-pub struct CameraFormat {
-    /// Its name here.
-    pub name: &'static str,
-    /// The tool, or tools, that it belongs to.
-    pub tool: &'static str,
-    /// The tool's versions that it is known from.
-    pub versions: &'static str,
-    /// The usual ending of its file names, without a dot.
-    pub extension: &'static str,
-    /// Which of the tool's own numbers were reproduced; `None`: unverified.
-    pub verified: Option<&'static str>,
-    /// It may hold more than one camera.
-    pub many: bool,
-    /// It states the size of the images; where it does not, [`ReadOptions::size`] is needed. OpenCV's may leave it out.
-    pub states_size: bool,
-    /// Accepts a file of this format; the error says why it is none.
-    pub(super) recognise: fn(&Source<'_>) -> Result<(), String>,
-    pub(super) read: fn(&Source<'_>, &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
-    pub(super) write: Option<Writer>,
-    /// The convention of its numbers, where the cameras read from it are of another.
-    pub convention: Option<&'static Convention>,
-    /// The models that it holds, the leanest first, for a pixel pitch in um if one is known; empty for a format that is written through its convention.
-    pub(super) models: fn(Option<f64>) -> Vec<Model>,
-    /// What it has a place for besides the camera.
-    pub keeps: Keeps,
-    /// Public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner.
-    pub origin_is_open: bool,
-}
-
-/// What most formats have in common, for struct updates.
-pub(super) const PLAIN: CameraFormat = CameraFormat {
-    name: "",
-    tool: "",
-    versions: "",
-    extension: "",
-    verified: None,
-    many: false,
-    states_size: true,
-    recognise: |_| Err(String::new()),
-    read: |_, _| Ok(Vec::new()),
-    write: None,
-    convention: None,
-    models: |_| Vec::new(),
-    keeps: Keeps { name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
-    origin_is_open: false,
-};
-
-impl CameraFormat {
-    /// Whether it can be written.
-    pub fn is_written(&self) -> bool {
-        self.write.is_some()
-    }
-
-    /// The error for a camera whose model the format does not hold.
-    pub(super) fn other_model(&self, model: &str) -> CameraFileError {
-        CameraFileError::new(format!("{} holds {model}; convert the camera first", self.name))
-    }
-}
-
-impl PartialEq for CameraFormat {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Eq for CameraFormat {}
-
-impl std::fmt::Debug for CameraFormat {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.name)
-    }
-}
 
 /// The format called `name`.
 pub fn format_named(name: &str) -> Option<&'static CameraFormat> {

@@ -79,11 +79,6 @@ impl Trusted<'_> {
         self.cell.split.filter(|split| split.p < HONEST).map_or(1.0, |split| split.modes.max(split.ratio()).max(1.0))
     }
 
-    /// The operators that cannot be told from the trusted one.
-    pub fn equal_operators(&self) -> impl Iterator<Item = &Cell> {
-        self.operators.iter().filter(|(_, p)| *p > ALPHA).map(|(cell, _)| *cell)
-    }
-
     /// The models that cannot be told from the best one.
     pub fn equal_models(&self) -> impl Iterator<Item = &Cell> {
         self.models.iter().filter(|(_, p)| *p > ALPHA).map(|(cell, _)| *cell)

@@ -1,7 +1,6 @@
 //! All image points of the first trial over the frame.
 
-use calibench_model::camera::CameraModel;
-use calibench_scenario::ViewsSubject;
+use calibench_records::description::Views;
 use plotters::prelude::*;
 
 use super::axes::Axes;
@@ -9,14 +8,13 @@ use crate::canvas::{COLOURS, Canvas};
 use crate::load::Loaded;
 
 /// The points of the first method, all images laid over one another.
-pub fn distribution(loaded: &Loaded, views: &ViewsSubject) -> Option<Canvas> {
+pub fn distribution(loaded: &Loaded, views: &Views) -> Option<Canvas> {
     let points: Vec<_> =
         loaded.first.points.iter().filter(|point| point.method == 0).filter_map(|point| point.outcome.position()).collect();
     if points.is_empty() {
         return None;
     }
-    let size = views.camera.size();
-    let (width, height) = (f64::from(size.width), f64::from(size.height));
+    let [width, height] = views.size.map(f64::from);
     let shown = (760.0 * height / width).round() as i32;
     let axes = Axes { at: [70, 80, 760, shown], x: [-0.5, width - 0.5], y: [height - 0.5, -0.5] };
     let mut canvas = Canvas::new(870, (shown + 150) as u32);

@@ -1,6 +1,7 @@
 //! The network from above, and the wall with control and check points.
 
-use calibench_scenario::{Calibration, ViewsSubject};
+use calibench_records::description::{Role, Views};
+use nalgebra::{Point3, Vector3};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
@@ -11,11 +12,10 @@ use crate::field::{arrow, write};
 const HEIGHT: i32 = 460;
 
 /// From above: stations with their axes before the wall; those of the second step in orange. Beside it the wall from the front.
-pub fn plan(views: &ViewsSubject, calibration: &Calibration) -> Option<Canvas> {
-    let [low, high] = views.field.extent()?;
-    let centres: Vec<_> = views.stations.iter().map(|station| station.pose.centre).collect();
-    let checked = |index: usize| calibration.check.as_ref().is_some_and(|check| check.views.contains(&index));
-    let span = |of: &dyn Fn(&nalgebra::Point3<f64>) -> f64| {
+pub fn plan(views: &Views) -> Option<Canvas> {
+    let [low, high] = views.extent?.map(Point3::from);
+    let centres: Vec<_> = views.stations.iter().map(|station| Point3::from(station.centre)).collect();
+    let span = |of: &dyn Fn(&Point3<f64>) -> f64| {
         let values = centres.iter().map(of).chain([of(&low), of(&high)]);
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
     };
@@ -27,7 +27,7 @@ pub fn plan(views: &ViewsSubject, calibration: &Calibration) -> Option<Canvas> {
     let axes = Axes { at: [70, 80, width, HEIGHT], x, y };
     let front = front_axes([low.x, high.x], [low.y, high.y], 70 + width + 90);
     let mut canvas = Canvas::new((front.at[0] + front.at[2] + 40) as u32, (HEIGHT + 210) as u32);
-    let unit = views.unit.name();
+    let unit = &views.unit;
     canvas.text("The network from above", 20, (70, 20));
     canvas.text("The wall from the front", 20, (front.at[0] as u32, 20));
     canvas.paint(|area| {
@@ -37,23 +37,21 @@ pub fn plan(views: &ViewsSubject, calibration: &Calibration) -> Option<Canvas> {
         area.draw(&PathElement::new(wall, ShapeStyle::from(&BLACK).stroke_width(5))).ok();
         let named = axes.place(0.5 * (low.x + high.x), -0.5 * (low.z + high.z));
         write(area, "wall", (named.0, named.1 - 16), HPos::Center);
-        for station in &views.stations {
-            let centre = station.pose.centre;
-            let sight = -station.pose.rotation.row(2).transpose();
-            let to = centre + sight * (0.16 * (far - near));
+        for (station, centre) in views.stations.iter().zip(&centres) {
+            let to = centre + Vector3::from(station.sight) * (0.16 * (far - near));
             arrow(area, axes.place(centre.x, -centre.z), axes.place(to.x, -to.z));
         }
         front.vertical(area, &format!("Y, {unit}"));
         front.horizontal(area, &format!("X, {unit}"));
     });
     let mut marks = Vec::new();
-    for (index, station) in views.stations.iter().enumerate() {
-        let (px, py) = axes.place(station.pose.centre.x, -station.pose.centre.z);
-        let look = if checked(index) { (Mark::Diamond, COLOURS[0]) } else { (Mark::Circle, COLOURS[1]) };
+    for (station, centre) in views.stations.iter().zip(&centres) {
+        let (px, py) = axes.place(centre.x, -centre.z);
+        let look = if station.second_step { (Mark::Diamond, COLOURS[0]) } else { (Mark::Circle, COLOURS[1]) };
         marks.push((look.0, look.1, (f64::from(px), f64::from(py))));
         canvas.label(&station.name, 18, (px as u32 + 10, py as u32 + 14));
     }
-    points(&mut canvas, views, calibration, &front, &mut marks);
+    points(&mut canvas, views, &front, &mut marks);
     canvas.marks(&marks);
     legend(&mut canvas, front.at[0] as u32);
     Some(canvas)
@@ -64,25 +62,14 @@ fn front_axes(x: [f64; 2], y: [f64; 2], left: i32) -> Axes {
     Axes { at: [left, 80, width, HEIGHT], x, y }
 }
 
-fn points(
-    canvas: &mut Canvas,
-    views: &ViewsSubject,
-    calibration: &Calibration,
-    axes: &Axes,
-    marks: &mut Vec<(Mark, RGBColor, (f64, f64))>,
-) {
-    for (index, target) in views.field.targets.iter().enumerate() {
-        let at = target.surveyed;
-        let (x, y) = axes.place(at.x, at.y);
-        let of = |list: fn(&calibench_scenario::calibration::CheckPlan) -> &Vec<usize>| {
-            calibration.check.as_ref().is_some_and(|check| list(check).contains(&index))
-        };
-        let look = if of(|check| &check.control) {
-            (Mark::Triangle, COLOURS[0])
-        } else if of(|check| &check.points) {
-            (Mark::Cross, COLOURS[1])
-        } else {
-            (Mark::Square, RGBColor(120, 120, 120))
+fn points(canvas: &mut Canvas, views: &Views, axes: &Axes, marks: &mut Vec<(Mark, RGBColor, (f64, f64))>) {
+    for target in &views.targets {
+        let [x, y, _] = target.surveyed;
+        let (x, y) = axes.place(x, y);
+        let look = match target.role {
+            Some(Role::Control) => (Mark::Triangle, COLOURS[0]),
+            Some(Role::Check) => (Mark::Cross, COLOURS[1]),
+            None => (Mark::Square, RGBColor(120, 120, 120)),
         };
         marks.push((look.0, look.1, (f64::from(x), f64::from(y))));
         if look.0 == Mark::Triangle {

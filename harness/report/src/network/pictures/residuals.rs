@@ -1,7 +1,8 @@
 //! Residuals of the first trial by image point, and of all trials by the convergence of the image.
 
+use calibench_records::description::Views;
 use calibench_records::results::Group;
-use calibench_scenario::ViewsSubject;
+use nalgebra::Vector3;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
@@ -70,13 +71,10 @@ fn images(area: &crate::field::Area<'_>, axes: &Axes, rows: &[(&str, &str, f64)]
 }
 
 /// Root mean square residual of each image over the angle between its axis and the wall's normal, mean over the trials with the scatter of single trials.
-pub fn by_convergence(found: &Summaries, views: &ViewsSubject) -> Option<Canvas> {
-    let normal = views.field.plates.first()?.normal();
-    let angles: Vec<f64> = views
-        .stations
-        .iter()
-        .map(|station| (station.pose.rotation.row(2).transpose().dot(&normal)).clamp(-1.0, 1.0).acos().to_degrees())
-        .collect();
+pub fn by_convergence(found: &Summaries, views: &Views) -> Option<Canvas> {
+    let normal = Vector3::from(views.normal?);
+    let angles: Vec<f64> =
+        views.stations.iter().map(|station| (-Vector3::from(station.sight).dot(&normal)).clamp(-1.0, 1.0).acos().to_degrees()).collect();
     let widest = angles.iter().copied().fold(10.0, f64::max);
     let figure = |method: &str, name: &str| found.get(method, Group::Residual, name).map(|s| s.value);
     let highest = found

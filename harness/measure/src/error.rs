@@ -1,0 +1,52 @@
+//! Why there is no such method.
+
+use thiserror::Error;
+
+/// A method or parameter that cannot be.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum MethodError {
+    /// No method has this name.
+    #[error("no method is called `{name}`; known are {}", known.join(", "))]
+    UnknownMethod {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// The method has no such parameter.
+    #[error("`{method}` has no parameter `{key}`; {}", if known.is_empty() { "it has none".to_owned() } else { format!("it has {}", known.join(", ")) })]
+    UnknownParameter {
+        /// The method.
+        method: String,
+        /// What was asked for.
+        key: String,
+        /// What there is.
+        known: Vec<String>,
+    },
+    /// A value outside its domain.
+    #[error("`{key}` of `{method}` must be {expected}, found {found}")]
+    Domain {
+        /// The method.
+        method: String,
+        /// The parameter.
+        key: String,
+        /// What it may be.
+        expected: String,
+        /// What it is.
+        found: String,
+    },
+    /// A parameter given twice.
+    #[error("`{key}` of `{method}` is given twice")]
+    Twice {
+        /// The method.
+        method: String,
+        /// The parameter.
+        key: String,
+    },
+    /// Not of the form `name:key=value,key=value`.
+    #[error("`{text}` is no method: expected `name` or `name:key=value,key=value`, as in `forstner:window=11`")]
+    Form {
+        /// What was found.
+        text: String,
+    },
+}

@@ -1,0 +1,128 @@
+//! A scenario as its pages tell it: what a report needs of it, beside the records of its run.
+
+mod sweep;
+mod views;
+
+use std::collections::BTreeMap;
+use std::io::{Read, Write};
+
+use serde::{Deserialize, Serialize};
+
+pub use sweep::{Axis, Cell, Sweep, Value};
+pub use views::{Adjustment, Role, Station, Target, Views};
+
+/// A scenario: its words, what was to be run, and what its pages draw. That of a sweep is of its first cell but for the sweep itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// What the scenario is to show.
+    pub why: String,
+    /// Its source.
+    pub source: String,
+    /// Paragraphs of Markdown to be read beside its figures.
+    pub notes: Vec<String>,
+    /// The seed of its file.
+    pub seed: u64,
+    /// The number of trials of its file.
+    pub trials: u64,
+    /// Side of the window to which the Cramér-Rao bound belongs, px.
+    pub bound_window: usize,
+    /// The labels of the methods of its file, in their order.
+    pub methods: Vec<String>,
+    /// The label of each operator with all parameters at their defaults, by the operator's name.
+    pub defaults: BTreeMap<String, String>,
+    /// What is measured.
+    pub subject: Subject,
+    /// What is swept, if anything.
+    pub sweep: Option<Sweep>,
+}
+
+/// What a scenario measures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Subject {
+    /// A rendered scene.
+    Scene,
+    /// Views of a testfield.
+    Views(Box<Views>),
+    /// Photographs, of which no truth is known.
+    Photographs {
+        /// Calibrations from them are judged.
+        judged: bool,
+    },
+}
+
+impl Description {
+    /// The views of an adjusted scenario and what its adjustment is told.
+    pub fn adjusted(&self) -> Option<(&Views, &Adjustment)> {
+        let Subject::Views(views) = &self.subject else { return None };
+        Some((views, views.adjustment.as_ref()?))
+    }
+
+    /// Whether `label` is that of an operator with all parameters at their defaults.
+    pub fn is_default(&self, label: &str) -> bool {
+        self.defaults.get(operator(label)).is_some_and(|default| default == label)
+    }
+}
+
+/// The operator of a method's label: `forstner` of `forstner:window=15`.
+pub fn operator(label: &str) -> &str {
+    label.split(':').next().unwrap_or(label)
+}
+
+/// Writes `description` as JSON.
+///
+/// # Errors
+/// What the output refuses.
+pub fn write(mut output: impl Write, description: &Description) -> std::io::Result<()> {
+    serde_json::to_writer_pretty(&mut output, description)?;
+    writeln!(output)
+}
+
+/// Reads what [`write`] wrote, every number to its last bit.
+///
+/// # Errors
+/// A text of another form, with its line and column.
+pub fn read(input: impl Read) -> Result<Description, serde_json::Error> {
+    serde_json::from_reader(input)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_again_to_the_last_bit() {
+        let station = Station { name: "1".into(), centre: [0.1 + 0.2, -1.0 / 3.0, 1e-17], sight: [0.0, 5e-324, -1.0], second_step: true };
+        let target =
+            Target { id: "a".into(), kind: "cross".into(), surveyed: [123.456_789_012_345_67, 2.0, 1e300], role: Some(Role::Control) };
+        let views = Views {
+            size: [4000, 3000],
+            unit: "m".into(),
+            extent: Some([[-1.0; 3], [1.0; 3]]),
+            normal: None,
+            stations: vec![station],
+            targets: vec![target],
+            adjustment: Some(Adjustment { pitch_um: 3.9, drawn: true }),
+        };
+        let description = Description {
+            why: "To see \"this\".\n".into(),
+            source: "a test".into(),
+            notes: vec!["$x$".into()],
+            seed: i64::MAX as u64,
+            trials: 3,
+            bound_window: 15,
+            methods: vec!["forstner:window=15".into()],
+            defaults: [("forstner".into(), "forstner:window=11".into())].into(),
+            subject: Subject::Views(Box::new(views)),
+            sweep: None,
+        };
+        let mut text = Vec::new();
+        write(&mut text, &description).unwrap();
+        assert_eq!(read(&text[..]).unwrap(), description);
+        assert!(
+            description.is_default("forstner:window=11") && !description.is_default("forstner:window=15") && !description.is_default("x")
+        );
+        assert!(read(&b"{}"[..]).is_err());
+    }
+}

@@ -1,0 +1,81 @@
+//! What the pages of a scenario tell of it, for its records.
+
+use calibench_measure::Configured;
+use calibench_model::camera::CameraModel;
+use calibench_records::description::{self, Adjustment, Axis, Cell, Description, Role, Station, Target, Value, Views, operator};
+use calibench_scenario::calibration::CheckPlan;
+use calibench_scenario::{Scenario, Subject, Sweep, ViewsSubject};
+
+/// The description of `scenario`, which `methods` were run on: its own or others.
+pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
+    let default = |method: &Configured| (operator(&method.label).to_owned(), method.default_label.clone());
+    let subject = match &scenario.subject {
+        Subject::Scene(_) => description::Subject::Scene,
+        Subject::Views(subject) => description::Subject::Views(Box::new(views(subject))),
+        Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
+    };
+    Description {
+        why: scenario.why.clone(),
+        source: scenario.source.clone(),
+        notes: scenario.notes.clone(),
+        seed: scenario.seed,
+        trials: scenario.trials,
+        bound_window: scenario.bound_window,
+        methods: scenario.methods.iter().map(|method| method.label.clone()).collect(),
+        defaults: scenario.methods.iter().chain(methods).map(default).collect(),
+        subject,
+        sweep: scenario.sweep.as_ref().map(sweep),
+    }
+}
+
+fn sweep(sweep: &Sweep) -> description::Sweep {
+    let axis = |axis: &calibench_scenario::sweep::Axis| {
+        let values = axis.values.iter().map(|value| Value { text: value.text.clone(), number: value.number }).collect();
+        Axis { path: axis.path.clone(), name: axis.name.clone(), values, log: axis.log }
+    };
+    let cell = |index| Cell { label: sweep.label(index), places: sweep.places(index) };
+    description::Sweep { axes: sweep.axes.iter().map(axis).collect(), cells: (0..sweep.cells()).map(cell).collect() }
+}
+
+fn views(subject: &ViewsSubject) -> Views {
+    let check = subject.calibration.as_ref().and_then(|calibration| calibration.check.as_ref());
+    let size = subject.camera.size();
+    Views {
+        size: [size.width, size.height],
+        unit: subject.unit.name().to_owned(),
+        extent: subject.field.extent().map(|ends| ends.map(|at| at.coords.into())),
+        normal: subject.field.plates.first().map(|plate| plate.normal().into()),
+        stations: stations(subject, check),
+        targets: targets(subject, check),
+        adjustment: subject
+            .calibration
+            .as_ref()
+            .map(|calibration| Adjustment { pitch_um: calibration.start.pitch_um, drawn: calibration.drawn.is_some() }),
+    }
+}
+
+fn stations(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<Station> {
+    let station = |(index, station): (usize, &calibench_synth::stations::Station)| Station {
+        name: station.name.clone(),
+        centre: station.pose.centre.coords.into(),
+        // A camera looks along its -z.
+        sight: (-station.pose.rotation.row(2).transpose()).into(),
+        second_step: check.is_some_and(|check| check.views.contains(&index)),
+    };
+    subject.stations.iter().enumerate().map(station).collect()
+}
+
+fn targets(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<Target> {
+    let role = |index: &usize| match check {
+        Some(check) if check.control.contains(index) => Some(Role::Control),
+        Some(check) if check.points.contains(index) => Some(Role::Check),
+        _ => None,
+    };
+    let target = |(index, target): (usize, &calibench_model::ObjectTarget)| Target {
+        id: target.id.clone(),
+        kind: target.kind.name().to_owned(),
+        surveyed: target.surveyed.coords.into(),
+        role: role(&index),
+    };
+    subject.field.targets.iter().enumerate().map(target).collect()
+}

@@ -1,0 +1,16 @@
+//! What makes a testfield.
+
+use calibench_synth::testfield::{Chessboard, Coded, House, Panels, Wall};
+
+/// What makes the testfield.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Generator {
+    /// A chessboard.
+    Chessboard(Chessboard),
+    /// A wall, whose sheets are those of the panels, if any, after its own.
+    Wall(Wall, Option<Panels>),
+    /// The coded field.
+    Coded(Coded),
+    /// The house.
+    House(House),
+}

@@ -1,0 +1,90 @@
+//! The drawing of crates and modules: arrows as the page says, no circle between folders, files that are read at one go.
+
+mod modules;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::project::root;
+use modules::Modules;
+
+/// More lines than this hold more than one idea.
+const MOST_LINES: usize = 400;
+
+/// The folders of the crates in `harness/`, by the crate's short name.
+fn crates() -> BTreeMap<String, PathBuf> {
+    let folders = fs::read_dir(root().join("harness")).unwrap().map(|entry| entry.unwrap().path());
+    let named = |folder: PathBuf| Some((folder.file_name()?.to_str()?.to_owned(), folder));
+    folders.filter(|folder| folder.join("Cargo.toml").is_file()).filter_map(named).collect()
+}
+
+/// Every Rust file below `folder`.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The crates that the table of the page says each crate needs.
+fn drawn() -> BTreeMap<String, BTreeSet<String>> {
+    let page = fs::read_to_string(root().join("docs/ARCHITECTURE.md")).unwrap();
+    let names = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<BTreeSet<String>>();
+    let table = page.lines().skip_while(|line| !line.starts_with("| crate ")).skip(2).take_while(|line| line.starts_with('|'));
+    table.map(|line| line.split('|').collect::<Vec<_>>()).map(|cells| (names(cells[1]).pop_first().unwrap(), names(cells[3]))).collect()
+}
+
+/// The crates that the manifest in `folder` names.
+fn needed(folder: &Path) -> BTreeSet<String> {
+    let manifest: toml::Table = fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap();
+    let named = manifest["dependencies"].as_table().into_iter().flat_map(toml::Table::keys);
+    named.filter_map(|name| name.strip_prefix("calibench-")).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_crates_need_each_other_as_the_page_says() {
+    let found: BTreeMap<String, BTreeSet<String>> = crates().into_iter().map(|(name, folder)| (name, needed(&folder))).collect();
+    assert_eq!(drawn(), found, "docs/ARCHITECTURE.md on the left, Cargo.toml on the right");
+}
+
+#[test]
+fn no_circle_of_modules_leaves_a_folder() {
+    let circles: Vec<String> = crates()
+        .into_iter()
+        .flat_map(|(name, folder)| Modules::of(&folder.join("src")).circles().into_iter().map(move |circle| format!("{name}: {circle}")))
+        .collect();
+    assert!(circles.is_empty(), "files of different folders need each other: move what they share down\n{}", circles.join("\n"));
+}
+
+#[test]
+fn a_circle_between_folders_is_seen_and_one_within_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    write("lib.rs", "mod a; mod b; pub use a::Thing;");
+    write("b.rs", "use crate::Thing;");
+    write("a/mod.rs", "mod one; mod two; pub use one::Thing; const X: f64 = two::Y;");
+    write("a/one.rs", "use super::two::Y; pub struct Thing;");
+    write("a/two.rs", "use super::one::Thing; #[cfg(test)] mod tests { use crate::b::B; }");
+    assert_eq!(Modules::of(folder.path()).circles(), Vec::<String>::new());
+    write("a/one.rs", "pub struct Thing(crate::b::B);");
+    assert_eq!(Modules::of(folder.path()).circles(), ["a/one -> b -> a/one", "b -> a/one -> b"]);
+}
+
+#[test]
+fn no_file_has_more_than_400_lines() {
+    let all = ["harness", "tests", "examples"].map(|name| sources(&root().join(name))).concat();
+    let long = all.into_iter().filter(|path| fs::read_to_string(path).unwrap().lines().count() > MOST_LINES);
+    assert_eq!(long.collect::<Vec<_>>(), Vec::<PathBuf>::new());
+}
