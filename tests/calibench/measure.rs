@@ -56,6 +56,32 @@ fn one_row_for_every_point_in_the_order_given() {
     }
 }
 
+/// The file's pixels are upside down, and its EXIF says so: what is measured is as it is seen.
+#[test]
+fn a_photograph_is_turned_as_its_exif_asks_and_it_is_said() {
+    use image::ImageEncoder;
+    let folder = folder();
+    let mut levels = corners(0.3).to_u8();
+    levels.reverse();
+    let exif = [77, 77, 0, 42, 0, 0, 0, 8, 0, 1, 1, 18, 0, 3, 0, 0, 0, 1, 0, 3, 0, 0, 0, 0, 0, 0];
+    let mut bytes = Vec::new();
+    let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    encoder.set_exif_metadata(exif.to_vec()).unwrap();
+    encoder.write_image(&levels, 100, 60, image::ExtendedColorType::L8).unwrap();
+    std::fs::write(folder.path().join("turned.png"), bytes).unwrap();
+    write(folder.path(), "p.csv", "image,target,x,y\na.png,left,30,29\n");
+    write(folder.path(), "q.csv", "image,target,x,y\nturned.png,left,30,29\n");
+    let measured = |photo: &str, points: &str| run(folder.path(), &["measure", photo, "--points", points, "-q"]);
+    let (upright, turned) = (measured("a.png", "p.csv"), measured("turned.png", "q.csv"));
+    assert_eq!(stdout(&turned).replace("turned.png", "a.png"), stdout(&upright));
+    assert!(
+        stderr(&turned).contains("turned.png: EXIF orientation 3, turned by 180 degrees, as OpenCV's imread does"),
+        "{}",
+        stderr(&turned)
+    );
+    assert!(!stderr(&upright).contains("EXIF"));
+}
+
 #[test]
 fn sixteen_bits_are_measured_as_such() {
     let folder = folder();
@@ -96,12 +122,17 @@ fn bad_input_is_named_and_leaves_the_old_output() {
     write(folder.path(), "text.png", "no image");
     write(folder.path(), "good.csv", POINTS);
     std::fs::create_dir(folder.path().join("sub")).unwrap();
+    std::fs::copy(folder.path().join("a.png"), folder.path().join("c.png")).unwrap();
     write_png(&folder.path().join("sub/a.png"), &corners(0.1), false).unwrap();
     for (arguments, expected) in [
         (&["measure", "a.png", "--points", "p.csv"][..], "p.csv:2, column `y`: expected a finite number"),
         (&["measure", "a.png", "text.png", "--points", "good.csv"], "text.png: not an image"),
         (&["measure", "a.png", "sub/a.png", "--points", "good.csv"], "two photographs are called a.png"),
         (&["measure", "a.png", "sub", "--points", "good.csv"], "sub: is a folder"),
+        (
+            &["measure", "c.png", "--points", "good.csv"],
+            "no point is of a photograph that was given: points name `deep.png`, the photographs are called `c.png`",
+        ),
         (&["measure", "a.png", "--points", "good.csv", "-m", "forstner:window=10"], "odd number from 3 to 31"),
     ] {
         let output = run(folder.path(), &[arguments, &["-o", "out.csv"]].concat());

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::{DatumChoice, Optics, Settings, prepare};
-use calibench_exchange::{ControlRow, PointRow};
+use calibench_exchange::{ControlRow, PointRow, Points};
 use calibench_model::Start;
 use calibench_model::camera::CameraModel;
 use calibench_random::Key;
@@ -76,7 +76,7 @@ fn a_user_who_calibrates_the_same_coordinates_finds_the_same_camera() {
         .map(|(i, at)| ControlRow { target: name(i), position: (*at).into(), sigmas: Some([calibration.control_sigma; 3]) })
         .collect();
     for calibrated in &trial.calibrations {
-        let points: Vec<PointRow> = observed.points.iter().filter(|point| point.method == calibrated.method).map(row).collect();
+        let points: Points = observed.points.iter().filter(|point| point.method == calibrated.method).map(row).collect();
         let optics = Optics {
             pitch_um: Some(4.70),
             model: Some("photogrammetric".into()),
@@ -85,7 +85,7 @@ fn a_user_who_calibrates_the_same_coordinates_finds_the_same_camera() {
             ..Optics::new(views.camera.size())
         };
         let settings = Settings { datum: DatumChoice::Control, sigma_px: Some(calibration.sigma_px), ..Settings::new(vec![optics]) };
-        let prepared = prepare(&points, &control, &settings).unwrap();
+        let prepared = prepare(points, &control, &settings).unwrap();
         let theirs = prepared.adjust().unwrap();
         for parameter in theirs.camera(0).parameters() {
             if !calibration.sets[calibrated.set].parameters.iter().any(|name| name == parameter.name) {

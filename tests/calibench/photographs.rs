@@ -43,21 +43,22 @@ fn detect_feeds_measure() {
 fn without_photographs_the_scenario_is_unavailable_visibly() {
     let project = copy();
     let empty = tempfile::tempdir().unwrap();
-    let command = |arguments: &[&str]| {
+    let ends = |arguments: &[&str], code: i32| {
         let output = crate::project::program(project.path()).args(arguments).env("CALIBENCH_DATA", empty.path()).output().unwrap();
-        assert!(output.status.success(), "{}", stderr(&output));
+        assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
         stderr(&output) + &stdout(&output)
     };
     let why = "unavailable: 13 of 13 photographs are not in `opencv-left`";
-    assert!(command(&["run", "photographs/opencv-left"]).contains(why));
-    command(&["report", "photographs"]);
+    let said = ends(&["run", "photographs/opencv-left"], 2);
+    assert!(said.contains(why) && said.contains("error: photographs/opencv-left: nothing was measured"), "{said}");
+    ends(&["report", "photographs"], 0);
     let page = std::fs::read_to_string(project.path().join("reports/photographs/README.md")).unwrap();
     assert!(page.contains("**unavailable**: 13 of 13 photographs are not in `opencv-left`"), "{page}");
     let records = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/records.csv")).unwrap();
     assert_eq!(records.matches(",unavailable,").count(), 9, "a row for each method");
     let judgement = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/judgement.csv")).unwrap();
     assert_eq!(judgement.matches(",unavailable,").count(), 1, "{judgement}");
-    assert!(command(&["show", "photographs/opencv-left"]).contains("no preview, unavailable"));
+    assert!(ends(&["show", "photographs/opencv-left"], 0).contains("no preview, unavailable"));
 }
 
 #[test]

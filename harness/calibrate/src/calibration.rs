@@ -88,7 +88,7 @@ impl Calibration<'_> {
 
     /// Root mean square of the residuals in use, px: `sqrt(mean(vx^2 + vy^2))`.
     pub fn rms_px(&self) -> f64 {
-        let used = self.solution.residuals().into_iter().filter(|r| r.used != calibench_adjust::Use::LeftOut).filter_map(|r| r.v);
+        let used = self.solution.each_residual().filter(|r| r.used != calibench_adjust::Use::LeftOut).filter_map(|r| r.v);
         let (sum, count) = used.fold((0.0, 0), |(sum, count), [x, y]| (sum + x * x + y * y, count + 1));
         (sum / f64::from(count.max(1))).sqrt()
     }

@@ -27,4 +27,4 @@ pub use prior::{NoPrior, Prior};
 pub use sets::compare_sets;
 pub use settings::{Settings, USUAL_SIGMA};
 pub use start::{control_of, pose_of};
-pub use survey::{LeftOut, Sight, Survey};
+pub use survey::{Known, LeftOut, Sight, Survey};

@@ -4,7 +4,7 @@ use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoin
 use calibench_model::camera::Camera;
 
 use super::start::Starts;
-use super::survey::Target;
+use super::survey::Known;
 use super::{CalibrationError, DatumChoice, LeftOut, Optics, Settings, Survey, model, prior};
 
 /// The network, the sight behind each of its observations, and the sights that take no part.
@@ -13,28 +13,30 @@ pub(super) fn network(
     owners: &[usize],
     starts: &Starts,
     settings: &Settings,
-) -> Result<(Network, Vec<usize>, Vec<LeftOut>), CalibrationError> {
+) -> Result<(Network, Vec<u32>, Vec<LeftOut>), CalibrationError> {
     let cameras = settings.cameras.iter().zip(&starts.cameras).map(|(optics, camera)| interior(optics, camera));
     let cameras = cameras.collect::<Result<Vec<_>, _>>()?;
     let image = |((name, &camera), pose): ((&String, &usize), &calibench_model::Pose)| {
         prior::exterior(Exterior::free(name.clone(), camera, *pose), prior::station(&settings.stations, name))
     };
     let images = survey.images.iter().zip(owners).zip(&starts.poses).map(image).collect();
-    let (mut points, mut place) = (Vec::new(), vec![None; survey.targets.len()]);
-    for (index, (target, position)) in survey.targets.iter().zip(&starts.points).enumerate() {
+    let (mut points, mut place) = (Vec::new(), vec![None; survey.targets()]);
+    for (target, position) in starts.points.iter().enumerate() {
         if let Ok(position) = position {
-            place[index] = Some(points.len());
-            points.push(point(target, *position, &settings.datum));
+            place[target] = Some(points.len());
+            points.push(point(survey.target(target), survey.control(target), *position, &settings.datum));
         }
     }
-    let (mut observations, mut sights, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
-    for (index, sight) in survey.sights.iter().enumerate() {
+    let (mut observations, mut sights) = (Vec::with_capacity(survey.sights()), Vec::with_capacity(survey.sights()));
+    let mut left_out = Vec::new();
+    for (index, sight) in (0..survey.sights()).map(|index| (index, survey.sight(index))) {
         match (place[sight.target], &starts.points[sight.target]) {
             (Some(point), _) => {
                 let own = sight.covariance.filter(|_| settings.covariances);
                 let precision = own.map_or(Precision::Sigma(settings.sigma()), Precision::Covariance);
-                observations.push(ImageObservation { image: sight.image, point, position: sight.position, precision });
-                sights.push(index);
+                observations
+                    .push(ImageObservation { precision, ..ImageObservation::new(sight.image, point, sight.position, settings.sigma()) });
+                sights.push(index as u32);
             }
             (None, why) => {
                 let why = why.as_ref().err().cloned().unwrap_or_default();
@@ -42,7 +44,8 @@ pub(super) fn network(
             }
         }
     }
-    let control = |name: &str| survey.targets.iter().position(|t| t.name == name && t.control.is_some()).and_then(|i| place[i]);
+    let control =
+        |name: &str| survey.target_called(name).filter(|&target| survey.control(target).is_some()).and_then(|target| place[target]);
     let datum = settings.datum.datum(control)?;
     Ok((Network { cameras, images, points, observations, datum }, sights, left_out))
 }
@@ -53,9 +56,8 @@ fn interior(optics: &Optics, camera: &Camera) -> Result<Interior, CalibrationErr
     prior::observed(Interior::fixed(optics.name.clone(), *camera).free(&names)?, &optics.priors)
 }
 
-fn point(target: &Target, position: nalgebra::Point3<f64>, datum: &DatumChoice) -> ObjectPoint {
-    let name = target.name.clone();
-    match &target.control {
+fn point(name: &str, control: Option<&Known>, position: nalgebra::Point3<f64>, datum: &DatumChoice) -> ObjectPoint {
+    match control {
         Some(_) if datum.is_minimal() => ObjectPoint::free(name, position),
         Some(control) => match control.sigmas.filter(|_| *datum == DatumChoice::Control) {
             Some(sigmas) => ObjectPoint::observed(name, position, sigmas),

@@ -1,7 +1,7 @@
 //! From points and control to a network with start values.
 
 use calibench_adjust::Network;
-use calibench_exchange::{ControlRow, LostRow, PointRow};
+use calibench_exchange::{ControlRow, LostRows, Points};
 
 use crate::{CalibrationError, LeftOut, Settings, Survey, network, optics, stages, start};
 
@@ -17,22 +17,22 @@ pub struct Prepared {
     /// What is adjusted.
     pub network: Network,
     /// The sight behind each observation of the network.
-    pub sights: Vec<usize>,
+    pub sights: Vec<u32>,
     /// Rows that take no part, with the reason.
     pub left_out: Vec<LeftOut>,
     /// Targets that a method was given and that have no position; [`prepare`] leaves it empty. They have a row in the residuals' table.
-    pub unmeasured: Vec<LostRow>,
+    pub unmeasured: LostRows,
 }
 
 /// Joins points with control and finds start values for everything.
 ///
 /// # Errors
 /// No point in common, an unknown model or parameter, too few control points in an image, a datum of unknown targets.
-pub fn prepare(points: &[PointRow], control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
+pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
     let survey = Survey::new(points, control)?;
     let owners = optics::owners(&settings.cameras, &survey.images)?;
     let rough = start::starts(&survey, &owners, settings)?;
     let starts = stages::refined(&survey, &owners, rough, settings)?;
     let (network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
-    Ok(Prepared { settings: settings.clone(), survey, origins: starts.origins, network, sights, left_out, unmeasured: Vec::new() })
+    Ok(Prepared { settings: settings.clone(), survey, origins: starts.origins, network, sights, left_out, unmeasured: LostRows::default() })
 }

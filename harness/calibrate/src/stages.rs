@@ -36,7 +36,7 @@ fn by_stages(survey: &Survey, owners: &[usize], starts: &Starts, settings: &Sett
     let solution = adjust(&network, &options).ok()?;
     let (mut cameras, mut origins) = (solution.cameras().to_vec(), starts.origins.clone());
     for (index, simple) in simpler.iter().enumerate().filter_map(|(index, simple)| Some((index, simple.as_ref()?))) {
-        let own = survey.sights.iter().filter(|sight| owners[sight.image] == index);
+        let own = (0..survey.sights()).map(|index| survey.sight(index)).filter(|sight| owners[sight.image] == index);
         cameras[index] = converted(own, &cameras[index], &settings.cameras[index])?;
         origins[index] = format!("{}, then an adjustment with {}, converted", origins[index], model::name(simple));
     }
@@ -55,7 +55,7 @@ fn simpler(optics: &Optics, rough: &Camera) -> Option<Optics> {
 
 /// The camera of `optics` that is nearest to `simple` in the circle about its axis that holds all its image points, since a fit need not suit what was not
 /// seen; in a smaller one if the model pictures no more.
-fn converted<'s>(sights: impl Iterator<Item = &'s Sight>, simple: &Camera, optics: &Optics) -> Option<Camera> {
+fn converted(sights: impl Iterator<Item = Sight>, simple: &Camera, optics: &Optics) -> Option<Camera> {
     let axis = simple.project(Ray { x: 0.0, y: 0.0, z: -1.0 }).ok()?;
     let farthest = sights.map(|sight| sight.position.distance(axis)).fold(1.0, f64::max);
     CIRCLES.iter().find_map(|share| {

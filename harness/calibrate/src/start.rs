@@ -18,6 +18,8 @@ const FOCAL: [f64; 4] = [0.6, 1.2, 2.4, 4.8];
 const FOCAL_WIDE: [f64; 4] = [0.22, 0.32, 0.45, 0.65];
 /// Rounds of resection and intersection for images that see too little control.
 const ROUNDS: usize = 3;
+/// Control points of an image that start values are found from, at most: their cost then grows with the images alone.
+const ENOUGH: usize = 500;
 /// Rays that meet at less are parallel, rad.
 const PARALLEL: f64 = 1e-3;
 
@@ -39,8 +41,8 @@ pub(super) struct Starts {
 pub(super) fn starts(survey: &Survey, owners: &[usize], settings: &Settings) -> Result<Starts, CalibrationError> {
     settings.cameras.iter().try_for_each(model::check)?;
     prior::check(&settings.stations, &survey.images)?;
-    let known: Vec<Option<Point3<f64>>> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
-    let views: Vec<Vec<Control>> = (0..survey.images.len()).map(|image| control_of(survey, &known, image)).collect();
+    let known: Vec<Option<Point3<f64>>> = (0..survey.targets()).map(|target| survey.known(target)).collect();
+    let views: Vec<Vec<Control>> = (0..survey.images.len()).map(|image| some_control_of(survey, &known, image)).collect();
     let rough = |(index, optics): (usize, &Optics)| {
         let own: Vec<&[Control]> =
             views.iter().zip(owners).filter(|(_, owner)| **owner == index).map(|(view, _)| view.as_slice()).collect();
@@ -66,8 +68,32 @@ fn rough(optics: &Optics, views: &[&[Control]], flat: bool) -> Result<(Camera, S
 
 /// What an image sees of the points that are known.
 pub fn control_of(survey: &Survey, known: &[Option<Point3<f64>>], image: usize) -> Vec<Control> {
-    let seen = survey.sights.iter().filter(|sight| sight.image == image);
-    seen.filter_map(|sight| Some(Control { object: known[sight.target]?, image: sight.position })).collect()
+    seen_of(survey, known, image).collect()
+}
+
+fn seen_of<'s>(survey: &'s Survey, known: &'s [Option<Point3<f64>>], image: usize) -> impl Iterator<Item = Control> + 's {
+    let sights = survey.of_image(image).map(move |index| survey.sight(index));
+    sights.filter_map(move |sight| Some(Control { object: known[sight.target]?, image: sight.position }))
+}
+
+/// As [`control_of`], of many points [`ENOUGH`], spread over their order: start values need no more.
+fn some_control_of(survey: &Survey, known: &[Option<Point3<f64>>], image: usize) -> Vec<Control> {
+    let count = seen_of(survey, known, image).count();
+    if count <= ENOUGH {
+        return control_of(survey, known, image);
+    }
+    let mut places = spread(count).peekable();
+    seen_of(survey, known, image).enumerate().filter(|(place, _)| places.next_if_eq(place).is_some()).map(|(_, control)| control).collect()
+}
+
+/// [`ENOUGH`] places of `count`, one in each of as many parts, at a different place within each: the points of a grid, whose order has a period, are
+/// not taken from one of its lines.
+fn spread(count: usize) -> impl Iterator<Item = usize> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    (0..ENOUGH).map(move |part| {
+        let (first, next) = (part * count / ENOUGH, (part + 1) * count / ENOUGH);
+        first + ((part as f64 * GOLDEN).fract() * (next - first) as f64) as usize
+    })
 }
 
 fn is_flat(known: &[Option<Point3<f64>>]) -> bool {
@@ -171,12 +197,18 @@ fn orient(
 ) -> Result<(Vec<Pose>, Points), CalibrationError> {
     let mut poses: Vec<Result<Pose, String>> = vec![Err(String::new()); survey.images.len()];
     let mut why = vec![String::new(); known.len()];
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
+        let mut new = false;
         for (image, pose) in poses.iter_mut().enumerate().filter(|(_, pose)| pose.is_err()) {
-            let found = pose_of(&cameras[image], &control_of(survey, &known, image));
+            let found = pose_of(&cameras[image], &some_control_of(survey, &known, image));
             *pose = found.or_else(|why| observed[image].ok_or(why));
+            new |= pose.is_ok();
         }
-        for target in (0..known.len()).filter(|&target| survey.targets[target].control.is_none()) {
+        if round > 0 && !new {
+            // Tie points would come out as they are.
+            break;
+        }
+        for target in (0..known.len()).filter(|&target| survey.control(target).is_none()) {
             match tie_point(survey, cameras, &poses, target) {
                 Ok(point) => known[target] = Some(point),
                 Err(reason) => why[target] = reason,
@@ -193,7 +225,7 @@ fn orient(
 }
 
 fn tie_point(survey: &Survey, cameras: &[Camera], poses: &[Result<Pose, String>], target: usize) -> Result<Point3<f64>, String> {
-    let seen = survey.sights.iter().filter(|sight| sight.target == target);
+    let seen = survey.of_target(target).map(|index| survey.sight(index));
     let rays: Vec<Ray<'_>> = seen
         .filter_map(|sight| Some(Ray { camera: &cameras[sight.image], pose: poses[sight.image].as_ref().ok()?, image: sight.position }))
         .collect();
@@ -201,4 +233,22 @@ fn tie_point(survey: &Survey, cameras: &[Camera], poses: &[Result<Pose, String>]
         return Err("no control point, and not seen in two oriented images".into());
     }
     intersect(&rays, PARALLEL, None).map(|found| found.point).map_err(|error| format!("no control point, and no intersection: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_spread_and_have_no_period() {
+        for count in [501, 1000, 999_983, 1_000_000] {
+            let places: Vec<usize> = spread(count).collect();
+            assert_eq!(places.len(), ENOUGH);
+            assert!(places.is_sorted_by(|a, b| a < b) && places[ENOUGH - 1] < count && places[0] < count / ENOUGH + 1);
+        }
+        // A grid of 2000 columns and 500 rows, row by row: every column of ten is met.
+        let mut met = [0; 10];
+        spread(1_000_000).for_each(|place| met[place % 2000 / 200] += 1);
+        assert!(met.iter().all(|&count| count > 40), "{met:?}");
+    }
 }

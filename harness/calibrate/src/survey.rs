@@ -1,32 +1,31 @@
 //! Measured points and control, joined by name.
 
-use std::collections::HashMap;
-
 use calibench_diagnostics::nearest;
-use calibench_exchange::{ControlRow, PointRow};
+use calibench_exchange::{ControlRow, Groups, Points};
 use calibench_model::{Covariance, PixelPoint};
 use nalgebra::Point3;
 
 use super::CalibrationError;
 
-/// Who measured what.
+/// Who measured what: image points, and the control points among their targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     /// Names of the images, in the order in which they come.
     pub images: Vec<String>,
-    /// The targets, in the order in which they come.
-    pub targets: Vec<Target>,
-    /// The image points, in the order given.
-    pub sights: Vec<Sight>,
+    points: Points,
+    by_image: Groups,
+    by_target: Groups,
+    /// Of each target; `None` for a tie point.
+    control: Vec<Option<Known>>,
 }
 
-/// A measured target.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Target {
-    /// Its name.
-    pub name: String,
-    /// What is known of it; `None` for a tie point.
-    pub control: Option<ControlRow>,
+/// What is known of a target, object units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Known {
+    /// X, Y, Z.
+    pub position: Point3<f64>,
+    /// Their standard deviations; `None` where the file gives none.
+    pub sigmas: Option<[f64; 3]>,
 }
 
 /// A measured image point.
@@ -56,10 +55,10 @@ impl Survey {
     ///
     /// # Errors
     /// [`CalibrationError::NothingInCommon`].
-    pub fn new(points: &[PointRow], control: &[ControlRow]) -> Result<Self, CalibrationError> {
+    pub fn new(points: Points, control: &[ControlRow]) -> Result<Self, CalibrationError> {
         let survey = Self::join(points, control);
-        if survey.targets.iter().all(|target| target.control.is_none()) {
-            let measured = survey.targets.first().map_or_else(String::new, |target| target.name.clone());
+        if survey.control.iter().all(Option::is_none) {
+            let measured = survey.points.targets().iter().next().unwrap_or_default().to_owned();
             let near = nearest(&measured, control.iter().map(|row| row.target.as_str())).map(str::to_owned);
             let control = control.first().map_or_else(String::new, |row| row.target.clone());
             return Err(CalibrationError::NothingInCommon { measured, control, near });
@@ -68,44 +67,75 @@ impl Survey {
     }
 
     /// Tie points alone.
-    pub fn without_control(points: &[PointRow]) -> Self {
+    pub fn without_control(points: Points) -> Self {
         Self::join(points, &[])
     }
 
-    fn join(points: &[PointRow], control: &[ControlRow]) -> Self {
-        let known: HashMap<&str, &ControlRow> = control.iter().map(|row| (row.target.as_str(), row)).collect();
-        let (mut images, mut targets) = (Names::default(), Names::default());
-        let sight = |row: &PointRow| Sight {
-            image: images.place(&row.image),
-            target: targets.place(&row.target),
-            position: row.start.position,
-            covariance: row.start.covariance,
-        };
-        let sights = points.iter().map(sight).collect();
-        let target = |name: String| Target { control: known.get(name.as_str()).map(|row| (*row).clone()), name };
-        let targets = targets.list.into_iter().map(target).collect();
-        Self { images: images.list, targets, sights }
+    fn join(points: Points, rows: &[ControlRow]) -> Self {
+        let mut control = vec![None; points.targets().len()];
+        for row in rows {
+            if let Some(target) = points.targets().find(&row.target) {
+                control[target] = Some(Known { position: row.position.into(), sigmas: row.sigmas });
+            }
+        }
+        let images = points.images().iter().map(str::to_owned).collect();
+        let (by_image, by_target) = (points.by_image(), points.by_target());
+        Self { images, points, by_image, by_target, control }
+    }
+
+    /// How many targets were measured.
+    pub fn targets(&self) -> usize {
+        self.control.len()
+    }
+
+    /// The name of a target.
+    pub fn target(&self, target: usize) -> &str {
+        self.points.targets().get(target)
+    }
+
+    /// The target of a name, if it was measured.
+    pub fn target_called(&self, name: &str) -> Option<usize> {
+        self.points.targets().find(name)
+    }
+
+    /// What is known of a target; `None` for a tie point.
+    pub fn control(&self, target: usize) -> Option<&Known> {
+        self.control[target].as_ref()
+    }
+
+    /// How many of the targets are control points.
+    pub fn control_points(&self) -> usize {
+        self.control.iter().flatten().count()
     }
 
     /// Known coordinates of a target.
     pub fn known(&self, target: usize) -> Option<Point3<f64>> {
-        self.targets[target].control.as_ref().map(|row| row.position.into())
+        self.control(target).map(|known| known.position)
     }
-}
 
-#[derive(Default)]
-struct Names {
-    list: Vec<String>,
-    places: HashMap<String, usize>,
-}
+    /// How many image points there are.
+    pub fn sights(&self) -> usize {
+        self.points.len()
+    }
 
-impl Names {
-    fn place(&mut self, name: &str) -> usize {
-        if let Some(&place) = self.places.get(name) {
-            return place;
+    /// An image point, in the order given.
+    #[inline]
+    pub fn sight(&self, index: usize) -> Sight {
+        Sight {
+            image: self.points.image_of(index),
+            target: self.points.target_of(index),
+            position: self.points.position(index),
+            covariance: self.points.covariance(index),
         }
-        self.list.push(name.to_owned());
-        self.places.insert(name.to_owned(), self.list.len() - 1);
-        self.list.len() - 1
+    }
+
+    /// Indices of the image points of an image, in their order.
+    pub fn of_image(&self, image: usize) -> impl ExactSizeIterator<Item = usize> + Clone + '_ {
+        self.by_image.of_group(image)
+    }
+
+    /// Indices of the image points of a target, in their order.
+    pub fn of_target(&self, target: usize) -> impl ExactSizeIterator<Item = usize> + Clone + '_ {
+        self.by_target.of_group(target)
     }
 }

@@ -13,13 +13,14 @@ use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,
 };
+use calibench_model::escape;
 use calibench_report::{Field, plain};
 use clap::Args;
 
 use super::context::Context;
 use super::output;
 use super::reading::Reading;
-use crate::deliver::print;
+use crate::deliver::stream;
 use crate::failure::Failure;
 
 #[derive(Args)]
@@ -91,7 +92,7 @@ impl Convert {
         self.reading.warn_of_format(format);
         let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
         lost.dedup();
-        lost.iter().for_each(|what| eprintln!("warning: lost: {what}"));
+        lost.iter().for_each(|what| say!("warning: lost: {what}"));
         cameras_file.write(format, &cameras)
     }
 
@@ -127,12 +128,12 @@ impl Convert {
         if !quiet {
             let name = label.map_or(String::new(), |label| format!("{label}: "));
             let model = model.map_or(String::new(), |model| format!("{model}: "));
-            eprint!("{name}{model}{}", summary(&conversion));
+            eprint!("{}", escape::message(&format!("{name}{model}{}", summary(&conversion))));
         }
         if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
             // An exact conversion takes a fold along; it is no truth beyond it in any convention.
             let (radius, share) = (plain(fold.radius_px), 100.0 * fold.share);
-            eprintln!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
+            say!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
         }
         plot.map_or(Ok(()), |plot| drawn(&conversion).write(plot))?;
         if goal.format.convention.is_none() && conversion.camera.convention() != source.camera.convention() {
@@ -158,7 +159,7 @@ impl Convert {
         let camera: Camera = naive(&source.camera, pitch, Tangential::Converted)?.into();
         let cost = difference(&source.camera, &camera, &DifferenceOptions::default())?;
         if !quiet {
-            eprintln!("naive: {} from the source after the best rotation", size_of(&cost.spread));
+            say!("naive: {} from the source after the best rotation", size_of(&cost.spread));
         }
         if let Some(plot) = plot {
             field("Naive conversion: from the source to the result", &source.camera, &cost.vectors).write(plot)?;
@@ -194,7 +195,10 @@ impl CamerasFile {
             Self::Standard | Self::File(_) if cameras.len() > 1 && !format.many => {
                 Err(Failure::input(format!("{} holds one camera a file: name a folder with -o", format.name)))
             }
-            Self::Standard => print(&camera_text(format, cameras)?),
+            Self::Standard => {
+                let text = camera_text(format, cameras)?;
+                stream(|output| output.write_all(text.as_bytes()))
+            }
             Self::File(file) => {
                 let text =
                     camera_text(format, cameras).map_err(|error| Failure::input(format!("-o {}: {error}", file.path().display())))?;

@@ -1,16 +1,24 @@
 //! Where results go.
 
-use std::io::{self, ErrorKind, Write, stdout};
+use std::io::{self, BufWriter, ErrorKind, Write, stdout};
 
 use calibench_exchange::OutputFile;
+use calibench_model::escape;
 
 use crate::failure::Failure;
 
-/// Prints to standard output; a reader that went away is no error.
+/// Prints words to standard output; what would command the terminal is escaped. A reader that went away is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
-    match stdout().write_all(text.as_bytes()).and_then(|()| stdout().flush()) {
+    stream(|output| output.write_all(escape::message(text).as_bytes()))
+}
+
+/// Writes a result to standard output, byte by byte as it is. A reader that went away is no error.
+pub fn stream(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+    let mut output = BufWriter::new(stdout().lock());
+    match write(&mut output).and_then(|()| output.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        other => Ok(other?),
+        Err(error) => Err(Failure::input(format!("standard output: {error}"))),
+        Ok(()) => Ok(()),
     }
 }
 
@@ -18,10 +26,6 @@ pub fn print(text: &str) -> Result<(), Failure> {
 pub fn deliver(file: Option<&OutputFile>, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     match file {
         Some(file) => Ok(file.write(write)?),
-        None => {
-            let mut bytes = Vec::new();
-            write(&mut bytes)?;
-            print(&String::from_utf8_lossy(&bytes))
-        }
+        None => stream(write),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Inputs, write_points};
+use calibench_exchange::{Inputs, PointRef, write_points};
 use calibench_measure::Board;
 use calibench_photographs::corners::detect_corners;
 use calibench_photographs::names::once;
@@ -41,12 +41,12 @@ impl Detect {
         progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
         for (path, rows) in self.photos.iter().zip(&found) {
             if rows.is_empty() {
-                eprintln!("{}: no board of {} x {} inner corners found", path.display(), self.chessboard.columns, self.chessboard.rows);
+                say!("{}: no board of {} x {} inner corners found", path.display(), self.chessboard.columns, self.chessboard.rows);
             }
         }
         if seen == 0 {
             return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
         }
-        deliver(output.as_ref(), |file| write_points(file, found.iter().flatten()))
+        deliver(output.as_ref(), |file| write_points(file, found.iter().flatten().map(PointRef::from)))
     }
 }

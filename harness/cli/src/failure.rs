@@ -3,6 +3,7 @@
 use std::io::{self, IsTerminal};
 
 use calibench_diagnostics::Problems;
+use calibench_model::escape;
 use calibench_scenario::catalogue::CatalogueError;
 
 /// Why a command ends with another exit code than 0.
@@ -11,6 +12,8 @@ pub enum Failure {
     Gate,
     /// Bad input, or output that cannot be written: exit code 2.
     Input(String),
+    /// The same, as a picture with colours.
+    Picture(String),
 }
 
 impl<E: std::error::Error> From<E> for Failure {
@@ -29,7 +32,7 @@ impl Failure {
 /// A scenario's problems as a picture of the lines that they are about.
 pub fn scenario_failure(error: CatalogueError) -> Failure {
     match error {
-        CatalogueError::Problems(problems) => Failure::Input(picture(&problems)),
+        CatalogueError::Problems(problems) => Failure::Picture(picture(&problems)),
         other => other.into(),
     }
 }
@@ -37,5 +40,5 @@ pub fn scenario_failure(error: CatalogueError) -> Failure {
 fn picture(problems: &Problems) -> String {
     let count = problems.problems.len();
     let noun = if count == 1 { "mistake" } else { "mistakes" };
-    format!("{count} {noun} in {}\n{}", problems.file, problems.picture(io::stderr().is_terminal()))
+    format!("{count} {noun} in {}\n{}", escape::name(&problems.file), problems.picture(io::stderr().is_terminal()))
 }

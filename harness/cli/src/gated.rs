@@ -193,7 +193,8 @@ fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Resul
     };
     let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
     let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, detector, data: context.data()?, registry };
-    Ok(store::run_sweep(&output, &plan, &revision, &|| ())?)
+    store::run_sweep(&output, &plan, &revision, &|| ())?;
+    Ok(())
 }
 
 /// The table with what its plan knows of it: if it was made `now`, the scenario's text, all parameters and libraries.

@@ -2,23 +2,23 @@
 
 use std::path::Path;
 
-use calibench_exchange::{PointFile, PointRow, ReadOptions, read_camera_with, read_points};
+use calibench_exchange::{PointFile, Points, ReadOptions, read_camera_with, read_points};
 use calibench_model::camera::{Camera, ImageSize};
 
 use crate::failure::Failure;
 
 /// The rows of a point file that have a position, with a word about the others.
-pub fn read_measured(path: &Path) -> Result<Vec<PointRow>, Failure> {
-    Ok(measured(path)?.rows)
+pub fn read_measured(path: &Path) -> Result<Points, Failure> {
+    Ok(measured(path)?.points)
 }
 
 /// The same, with the rows of points that a method could not measure.
 pub fn measured(path: &Path) -> Result<PointFile, Failure> {
     let file = read_points(path)?;
-    if file.without_position > 0 {
-        eprintln!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.without_position);
+    if !file.lost.is_empty() {
+        say!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.lost.len());
     }
-    if file.rows.is_empty() {
+    if file.points.is_empty() {
         return Err(Failure::input(format!("{}: no row has a position", path.display())));
     }
     Ok(file)
@@ -28,7 +28,7 @@ pub fn measured(path: &Path) -> Result<PointFile, Failure> {
 pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
     let file = read_camera_with(path, &ReadOptions { size, fisheye: None })?;
     if file.cameras.len() > 1 {
-        eprintln!("{}: the first of {} cameras", path.display(), file.cameras.len());
+        say!("{}: the first of {} cameras", path.display(), file.cameras.len());
     }
     let first = file.cameras.first().map(|named| named.camera);
     first.ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))

@@ -145,7 +145,7 @@ impl Judge {
         let seen = self.photos.len() - trial.missed_views.len();
         progress.finish(&format!("the board was found in {seen} of {} photographs", self.photos.len()));
         for (view, why) in &trial.missed_views {
-            eprintln!("{view}: {why}");
+            say!("{view}: {why}");
         }
         Ok((trial, size))
     }

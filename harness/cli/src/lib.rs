@@ -1,5 +1,8 @@
 //! The command line. Exit codes: 0, 1 when a gate failed, 2 for bad input.
 
+#[macro_use]
+mod say;
+
 mod bless;
 mod calibrate;
 mod camera;
@@ -125,8 +128,12 @@ pub fn main(toolbox: &Toolbox) -> ExitCode {
     match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Gate) => ExitCode::from(1),
+        Err(Failure::Picture(picture)) => {
+            eprintln!("error: {picture}");
+            ExitCode::from(2)
+        }
         Err(Failure::Input(message)) => {
-            eprintln!("error: {message}");
+            say!("error: {message}");
             ExitCode::from(2)
         }
     }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Inputs, MeasuredRow, Outcome, PointFile, PointRow, read_points, write_measured};
-use calibench_photographs::points::{by_name, measure_points};
+use calibench_exchange::{Inputs, MeasuredRow, Outcome, Points, write_measured};
+use calibench_photographs::points::{Measured, measure_points, photos_of};
 use clap::Args;
 
 use super::context::Context;
@@ -12,6 +12,7 @@ use super::photos::say_turns;
 use super::progress::Progress;
 use crate::deliver::deliver;
 use crate::failure::Failure;
+use crate::inputs::read_measured;
 
 #[derive(Args)]
 pub struct Measure {
@@ -40,41 +41,31 @@ impl Measure {
         if let Some(twice) = methods.iter().enumerate().find(|(i, m)| methods[..*i].iter().any(|earlier| earlier.label == m.label)) {
             return Err(Failure::input(format!("-m {}: asked for twice", twice.1.label)));
         }
-        let PointFile { rows: points, without_position, .. } = read_points(&self.points)?;
-        if without_position > 0 {
-            eprintln!("{}: {without_position} rows without a position (rejected or unavailable) are left out", self.points.display());
-        }
-        if points.is_empty() {
-            return Err(Failure::input(format!("{}: no row has a position", self.points.display())));
-        }
+        let points = read_measured(&self.points)?;
         // What is wrong with the photographs' names is said before any is read.
-        by_name(&self.photos, &points)?;
+        photos_of(&points, &self.photos)?;
         say_turns(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
-        let outcomes = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
-        let rows = (0..methods.len()).flat_map(|m| {
-            let label = methods[m].label.as_str();
-            let outcome = |i: usize| outcomes[i].get(m).cloned().unwrap_or_else(|| not_given(&points[i]));
-            points.iter().enumerate().map(move |(i, given)| MeasuredRow { given, method: label, outcome: outcome(i) }).collect::<Vec<_>>()
+        let found = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
+        let rows = (0..methods.len()).flat_map(|m| (0..points.len()).map(move |i| (m, i)));
+        let rows = rows.map(|(m, i)| {
+            let given = points.row(i);
+            MeasuredRow { given, method: &methods[m].label, outcome: found.outcome(m, i).unwrap_or_else(|| not_given(given.image)) }
         });
         deliver(output.as_ref(), |file| write_measured(file, rows))?;
-        progress.finish(&summary(&outcomes, &points));
+        progress.finish(&summary(&found, &points));
         Ok(())
     }
 }
 
-fn not_given(point: &PointRow) -> Outcome {
-    Outcome::Unavailable(format!("photograph {} was not given", point.image))
+fn not_given(image: &str) -> Outcome {
+    Outcome::Unavailable(format!("photograph {image} was not given"))
 }
 
-fn summary(outcomes: &[Vec<Outcome>], points: &[PointRow]) -> String {
-    let count = |wanted: fn(&Outcome) -> bool| outcomes.iter().flatten().filter(|o| wanted(o)).count();
-    let measured = count(|o| matches!(o, Outcome::Measured(_)));
-    let rejected = count(|o| matches!(o, Outcome::Rejected(_)));
-    let absent = outcomes.iter().filter(|outcome| outcome.is_empty()).count();
-    let mut text = format!("{measured} measured, {rejected} rejected");
-    if absent > 0 {
-        text.push_str(&format!(", {absent} of {} points are of photographs that were not given", points.len()));
+fn summary(found: &Measured, points: &Points) -> String {
+    let mut text = format!("{} measured, {} rejected", found.measured(), found.rejected());
+    if found.not_given() > 0 {
+        text.push_str(&format!(", {} of {} points are of photographs that were not given", found.not_given(), points.len()));
     }
     text
 }

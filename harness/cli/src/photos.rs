@@ -10,7 +10,7 @@ use crate::failure::Failure;
 
 /// Says how photographs are turned, on standard error.
 pub fn say_turns(photos: &[PathBuf]) -> Result<(), Failure> {
-    turns(photos)?.iter().for_each(|line| eprintln!("{line}"));
+    turns(photos)?.iter().for_each(|line| say!("{line}"));
     Ok(())
 }
 

@@ -34,10 +34,10 @@ impl Progress {
         if let Some(bar) = self.bar {
             let name = bar.message();
             bar.finish_and_clear();
-            eprintln!("{name}: {result}");
+            say!("{name}: {result}");
         }
         if let Some(name) = self.line {
-            eprintln!("{name}: {result}");
+            say!("{name}: {result}");
         }
     }
 }

@@ -65,7 +65,7 @@ impl Reading {
     pub fn warn_of_format(&self, format: &CameraFormat) {
         if let Some(Verification::Unverified(open)) = format.convention.map(|convention| convention.verification) {
             let flag = if format.origin_is_open && self.origin.is_none() { "; --origin corner or --origin centre decides" } else { "" };
-            eprintln!("unverified: {}: {open}{flag}", format.name);
+            say!("unverified: {}: {open}{flag}", format.name);
         }
     }
 
@@ -77,7 +77,7 @@ impl Reading {
                 Camera::Agisoft(_) if self.order.is_none() || self.origin.is_none() => "; --order and --origin decide",
                 _ => "",
             };
-            eprintln!("unverified: {}: {open}{flag}", camera.convention().name);
+            say!("unverified: {}: {open}{flag}", camera.convention().name);
         }
     }
 
@@ -92,7 +92,7 @@ impl Reading {
         let chosen = self.choose(path, &file.cameras)?;
         if file.cameras.len() > 1 && self.camera.is_none() {
             let (count, name) = (file.cameras.len(), &file.cameras[chosen].name);
-            eprintln!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", path.display());
+            say!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", path.display());
         }
         let one = vec![file.cameras.swap_remove(chosen)];
         let one = self.decided(path, CameraFile { cameras: one, ..file });
@@ -128,7 +128,7 @@ impl Reading {
             }
             for note in &named.notes {
                 if !said.contains(note) {
-                    eprintln!("{}: {note}", path.display());
+                    say!("{}: {note}", path.display());
                     said.push(note.clone());
                 }
             }

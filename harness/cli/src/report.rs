@@ -49,9 +49,9 @@ impl Report {
                 calibench_report::write(&places, family, scenarios)?
             };
             match written {
-                Written::New(page) if !context.quiet => eprintln!("{}", page.display()),
+                Written::New(page) if !context.quiet => say!("{}", page.display()),
                 Written::Kept(page) if !context.quiet => {
-                    eprintln!("{}: kept as it is, nothing of it can be measured here", page.display());
+                    say!("{}: kept as it is, nothing of it can be measured here", page.display());
                 }
                 _ => {}
             }

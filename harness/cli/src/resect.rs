@@ -38,16 +38,16 @@ impl Resect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let inputs = Inputs::new([&self.points, &self.control].into_iter().chain(self.cameras.paths()));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
-        let survey = Survey::new(&read_measured(&self.points)?, &read_control(&self.control)?)?;
+        let survey = Survey::new(read_measured(&self.points)?, &read_control(&self.control)?)?;
         let cameras = self.cameras.of(&survey.images)?;
-        let known: Vec<_> = (0..survey.targets.len()).map(|target| survey.known(target)).collect();
+        let known: Vec<_> = (0..survey.targets()).map(|target| survey.known(target)).collect();
         let against = self.tolerance.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
         let (mut rows, mut failed) = (Vec::new(), Vec::new());
         for (index, image) in survey.images.iter().enumerate() {
             let control = control_of(&survey, &known, index);
             let rejected = |found: &Resection| {
-                let seen = survey.sights.iter().filter(|s| s.image == index && known[s.target].is_some());
-                let names: Vec<&str> = seen.map(|sight| survey.targets[sight.target].name.as_str()).collect();
+                let targets = survey.of_image(index).map(|sight| survey.sight(sight).target);
+                let names: Vec<&str> = targets.filter(|&target| known[target].is_some()).map(|target| survey.target(target)).collect();
                 found.rejected.iter().map(|&i| names[i]).collect::<Vec<_>>().join(" ")
             };
             match resect(&cameras[index], &control, against.as_ref()) {
@@ -55,12 +55,12 @@ impl Resect {
                 Err(error) => failed.push(format!("image {image}: {error}")),
             }
         }
-        failed.iter().for_each(|failed| eprintln!("{failed}"));
+        failed.iter().for_each(|failed| say!("{failed}"));
         if rows.is_empty() {
             return Err(Failure::input(format!("no image could be oriented: {}", failed.join("; "))));
         }
         if !context.quiet {
-            eprintln!("resect: {} of {} images oriented", rows.len(), survey.images.len());
+            say!("resect: {} of {} images oriented", rows.len(), survey.images.len());
         }
         let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &FURTHER_COLUMNS].concat();
         deliver(output.as_ref(), |file| write_table(file, &columns, &rows))?;

@@ -10,6 +10,7 @@ use clap::Args;
 
 use super::context::{Context, origin};
 use super::output;
+use super::photos::say_turns;
 use super::progress::Progress;
 use crate::failure::Failure;
 
@@ -73,23 +74,46 @@ impl Run {
         };
         let folders = names.iter().zip(&scenarios).map(folder).collect::<Result<Vec<_>, Failure>>()?;
         let revision = context.revision()?;
+        let mut nothing = Vec::new();
         for (scenario, folder) in scenarios.iter().zip(&folders) {
-            if let Some(sweep) = &scenario.sweep {
-                self.sweep(context, scenario, sweep, &methods, (folder, &revision))?;
-                continue;
+            let measured = match &scenario.sweep {
+                Some(sweep) => self.sweep(context, scenario, sweep, &methods, (folder, &revision))?,
+                None => self.one(context, scenario, &methods, (folder, &revision))?,
+            };
+            if measured == 0 {
+                nothing.push(scenario.name.as_str());
             }
-            let mut plan = Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?);
-            if !methods.is_empty() {
-                plan.methods = &methods;
-            }
-            plan.seed = self.changes.seed.unwrap_or(scenario.seed);
-            plan.trials = trials(scenario, self.changes.trials)?;
-            let started = Instant::now();
-            let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
-            store::run(folder, &mut plan, &revision, &|| progress.step())?;
-            progress.finish(&summary(&plan, started.elapsed().as_secs_f64()));
         }
-        Ok(())
+        // Of all that there is, some may be unavailable here; what was asked for by name may not.
+        if nothing.is_empty() || (self.all && nothing.len() < scenarios.len()) {
+            return Ok(());
+        }
+        Err(Failure::input(format!("{}: nothing was measured", nothing.join(", "))))
+    }
+
+    /// How many points were measured.
+    fn one(
+        &self,
+        context: &Context<'_>,
+        scenario: &Scenario,
+        methods: &[Configured],
+        (folder, revision): (&RecordsFolder, &str),
+    ) -> Result<u64, Failure> {
+        let mut plan = Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?);
+        if !methods.is_empty() {
+            plan.methods = methods;
+        }
+        plan.seed = self.changes.seed.unwrap_or(scenario.seed);
+        plan.trials = trials(scenario, self.changes.trials)?;
+        if let (Subject::Photographs(subject), None) = (&scenario.subject, plan.missing()) {
+            let photos = plan.data.join(&subject.folder);
+            say_turns(&subject.files.iter().map(|file| photos.join(file)).collect::<Vec<_>>())?;
+        }
+        let started = Instant::now();
+        let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
+        let measured = store::run(folder, &mut plan, revision, &|| progress.step())?;
+        progress.finish(&summary(&plan, started.elapsed().as_secs_f64()));
+        Ok(measured)
     }
 
     fn sweep(
@@ -99,7 +123,7 @@ impl Run {
         sweep: &Sweep,
         methods: &[Configured],
         (folder, revision): (&RecordsFolder, &str),
-    ) -> Result<(), Failure> {
+    ) -> Result<u64, Failure> {
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
         }
@@ -108,10 +132,10 @@ impl Run {
         let plan = SweepPlan { scenario, sweep, methods, seed, trials, detector, data: context.data()?, registry };
         let (started, cells) = (Instant::now(), sweep.cells());
         let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
-        store::run_sweep(folder, &plan, revision, &|| progress.step())?;
+        let measured = store::run_sweep(folder, &plan, revision, &|| progress.step())?;
         let trials = trials.unwrap_or(scenario.trials);
         progress.finish(&format!("{cells} cells of {trials} trials in {:.1} s", started.elapsed().as_secs_f64()));
-        Ok(())
+        Ok(measured)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use calibench_model::escape;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 use thiserror::Error;
 
@@ -70,7 +71,12 @@ impl Problems {
         let handler = GraphicalReportHandler::new_themed(theme).with_width(120);
         let mut picture = String::new();
         for problem in &self.problems {
-            let source = NamedSource::new(&self.file, self.text.clone());
+            let source = NamedSource::new(escape::name(&self.file), escape::in_place(&self.text));
+            let problem = &Problem {
+                span: problem.span.clone(),
+                message: escape::message(&problem.message).into_owned(),
+                help: problem.help.as_deref().map(|help| escape::message(help).into_owned()),
+            };
             // Writing to a String cannot fail.
             let _ = handler.render_report(&mut picture, &Picture { problem, source });
         }
@@ -84,9 +90,9 @@ impl fmt::Display for Problems {
         for (index, problem) in self.problems.iter().enumerate() {
             let (line, column) = self.place(problem.span.start);
             let separator = if index == 0 { "" } else { "\n" };
-            write!(f, "{separator}{}:{line}:{column}: {}", self.file, problem.message)?;
+            write!(f, "{separator}{}:{line}:{column}: {}", escape::name(&self.file), escape::message(&problem.message))?;
             if let Some(help) = &problem.help {
-                write!(f, " ({help})")?;
+                write!(f, " ({})", escape::message(help))?;
             }
         }
         Ok(())
@@ -132,6 +138,17 @@ mod tests {
         assert_eq!(problems.place(7), (2, 1));
         assert_eq!(problems.place(11), (2, 3));
         assert_eq!(problems.place(1000), (3, 1));
+    }
+
+    #[test]
+    fn a_file_does_not_command_the_terminal() {
+        let text = "name = \"\u{1b}[2Jwiped\u{9b}31m\"\n".to_owned();
+        let problems = vec![Problem::new(0..4, "found `\u{1b}[2J`").help("\u{7}")];
+        let problems = Problems { file: "f\u{1b}]0;x.toml".into(), text, problems };
+        for shown in [problems.picture(false), problems.to_string()] {
+            assert!(!shown.chars().any(|c| c.is_control() && c != '\n'), "{shown:?}");
+        }
+        assert!(problems.picture(false).contains("name = \"?[2Jwiped??31m\""), "{}", problems.picture(false));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
+use crate::table::write_row;
 
 const FORM: Form = Form { what: "control file", key: "target", required: &["X", "Y", "Z"], optional: &["sX", "sY", "sZ"], others: false };
 
@@ -25,8 +26,7 @@ pub struct ControlRow {
 /// The first mistake, with line and column: a missing or unknown column, a number that is none, a standard deviation that is not positive, a target given
 /// twice, no row at all.
 pub fn read_control(path: &Path) -> Result<Vec<ControlRow>, PointFileError> {
-    let name = path.display().to_string();
-    FORM.read(path)?.iter().map(|row| control(&name, row)).collect()
+    FORM.read(path, control)
 }
 
 /// As [`read_control`], from anything that can be read; `file` is its name in errors.
@@ -34,7 +34,7 @@ pub fn read_control(path: &Path) -> Result<Vec<ControlRow>, PointFileError> {
 /// # Errors
 /// As [`read_control`].
 pub fn parse_control(file: &str, input: impl Read) -> Result<Vec<ControlRow>, PointFileError> {
-    FORM.parse(file, input)?.iter().map(|row| control(file, row)).collect()
+    FORM.parse(file, input, control)
 }
 
 /// Writes a control file; the columns of the standard deviations are there if a row has them.
@@ -50,19 +50,19 @@ pub fn write_control<'a>(output: impl Write, rows: impl IntoIterator<Item = &'a 
     for row in rows {
         let sigmas = row.sigmas.map_or_else(|| vec![String::new(); 3], |sigmas| sigmas.iter().map(f64::to_string).collect());
         let numbers = row.position.iter().map(f64::to_string).chain(sigmas.into_iter().filter(|_| with_sigmas));
-        writer.write_record(std::iter::once(row.target.clone()).chain(numbers))?;
+        write_row(&mut writer, std::iter::once(row.target.clone()).chain(numbers))?;
     }
     writer.flush()
 }
 
-fn control(file: &str, row: &Row) -> Result<ControlRow, PointFileError> {
+fn control(file: &str, row: Row) -> Result<ControlRow, PointFileError> {
     let three = |numbers: &Vec<f64>| [numbers[0], numbers[1], numbers[2]];
     let sigmas = row.optional.as_ref().map(three);
     if let Some(axis) = sigmas.and_then(|sigmas| sigmas.iter().position(|sigma| *sigma <= 0.0)) {
         let problem = "expected a positive standard deviation; leave all three empty for a point without".to_owned();
         return Err(wrong(file, Some(row.line), Some(FORM.optional[axis]), problem));
     }
-    Ok(ControlRow { target: row.name.clone(), position: three(&row.numbers), sigmas })
+    Ok(ControlRow { target: row.name, position: three(&row.numbers), sigmas })
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use calibench_model::escape;
 use csv::StringRecord;
 
-use crate::points::{PointFileError, csv_error, line_of};
+use crate::points::{Names, PointFileError, csv_error, line_of};
 
 /// The columns of a kind of sheet.
 pub(crate) struct Form {
@@ -33,29 +34,35 @@ pub(crate) struct Row {
 
 impl Form {
     /// Reads a file.
-    pub(crate) fn read(&self, path: &Path) -> Result<Vec<Row>, PointFileError> {
+    pub(crate) fn read<T>(&self, path: &Path, made: impl FnMut(&str, Row) -> Result<T, PointFileError>) -> Result<Vec<T>, PointFileError> {
         let name = path.display().to_string();
         let file = File::open(path).map_err(|error| wrong(&name, None, None, error.to_string()))?;
-        self.parse(&name, file)
+        self.parse(&name, file, made)
     }
 
-    /// Reads a text; `file` is its name in errors.
-    pub(crate) fn parse(&self, file: &str, mut input: impl Read) -> Result<Vec<Row>, PointFileError> {
+    /// Reads a text and makes something of each row; `file` is its name in errors.
+    pub(crate) fn parse<T>(
+        &self,
+        file: &str,
+        mut input: impl Read,
+        mut made: impl FnMut(&str, Row) -> Result<T, PointFileError>,
+    ) -> Result<Vec<T>, PointFileError> {
         let mut text = Vec::new();
         input.read_to_end(&mut text).map_err(|error| wrong(file, None, None, error.to_string()))?;
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(&text[..]);
         let header = reader.headers().map_err(|error| csv_error(file, &error))?.clone();
         let places = self.places(file, &header)?;
-        let (mut rows, mut seen) = (Vec::new(), HashMap::new());
-        for record in reader.records() {
-            let record = record.map_err(|error| csv_error(file, &error))?;
+        let (mut rows, mut seen, mut lines, mut record) = (Vec::new(), Names::default(), Vec::new(), StringRecord::new());
+        while reader.read_record(&mut record).map_err(|error| csv_error(file, &error))? {
             let line = line_of(&text, &record);
             let row = self.row(&Cells { file, places: &places, record: &record, line })?;
-            if let Some(earlier) = seen.insert(row.name.clone(), line) {
+            let place = seen.place(&row.name);
+            if let Some(earlier) = lines.get(place) {
                 let problem = format!("`{}` is already on line {earlier}; expected each {} once", row.name, self.key);
                 return Err(wrong(file, Some(line), Some(self.key), problem));
             }
-            rows.push(row);
+            lines.push(line);
+            rows.push(made(file, row)?);
         }
         let empty = || wrong(file, None, None, format!("holds no row; expected one for each {} below the header", self.key));
         if rows.is_empty() { Err(empty()) } else { Ok(rows) }
@@ -89,7 +96,8 @@ impl Form {
     }
 
     fn row(&self, cells: &Cells<'_>) -> Result<Row, PointFileError> {
-        let name = cells.text(self.key).ok_or_else(|| cells.wrong(self.key, "is empty; expected a name".into()))?.to_owned();
+        let name = cells.text(self.key).ok_or_else(|| cells.wrong(self.key, "is empty; expected a name".into()))?;
+        let name = escape::from_cell(name).to_owned();
         let numbers = self.required.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()?;
         let given = self.optional.iter().any(|column| cells.text(column).is_some());
         let optional = given.then(|| self.optional.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()).transpose()?;
@@ -106,7 +114,7 @@ struct Cells<'a> {
 
 impl Cells<'_> {
     fn text(&self, column: &str) -> Option<&str> {
-        self.places.get(column).and_then(|&index| self.record.get(index)).filter(|text| !text.is_empty())
+        self.places.get(column).and_then(|&index| self.record.get(index)).map(str::trim).filter(|text| !text.is_empty())
     }
 
     fn number(&self, column: &str) -> Result<f64, PointFileError> {

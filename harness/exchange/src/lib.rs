@@ -20,7 +20,7 @@ pub use control::{ControlRow, read_control, write_control};
 pub use folder::{NewFile, NewFolder, OutputFolder};
 pub use inputs::Inputs;
 pub use photo::{Photo, PhotoError, Turn, encode_png, parse_photo, read_photo, turn_of, write_png};
-pub use points::{LostRow, PointFile, PointFileError, PointRow, read_points};
+pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, PointRef, PointRow, Points, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use stations::{ObservedStation, POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_observed_stations, read_stations, station_numbers};
 pub use table::write_table;

@@ -55,7 +55,7 @@ pub fn read_observed_stations(path: &Path) -> Result<Vec<ObservedStation>, Point
 /// # Errors
 /// As [`read_observed_stations`].
 pub fn parse_observed_stations(file: &str, text: &[u8]) -> Result<Vec<ObservedStation>, PointFileError> {
-    let (centres, turns) = (CENTRES.parse(file, text)?, TURNS.parse(file, text)?);
+    let (centres, turns) = (CENTRES.parse(file, text, |_, row| Ok(row))?, TURNS.parse(file, text, |_, row| Ok(row))?);
     let observed = |(centre, turn): (&Row, &Row)| {
         let rotation = sigmas(file, &TURNS, turn)?.map(|sigmas| sigmas.map(f64::to_radians));
         Ok(ObservedStation { station: station(centre), centre: sigmas(file, &CENTRES, centre)?, rotation })
@@ -84,7 +84,7 @@ fn sigmas(file: &str, form: &Form, row: &Row) -> Result<Option<[f64; 3]>, PointF
 /// # Errors
 /// The first mistake, with line and column: a missing column, a number that is none, an image given twice, no row at all.
 pub fn read_stations(path: &Path) -> Result<Vec<StationRow>, PointFileError> {
-    Ok(FORM.read(path)?.iter().map(station).collect())
+    FORM.read(path, |_, row| Ok(station(&row)))
 }
 
 /// As [`read_stations`], from anything that can be read; `file` is its name in errors.
@@ -92,7 +92,7 @@ pub fn read_stations(path: &Path) -> Result<Vec<StationRow>, PointFileError> {
 /// # Errors
 /// As [`read_stations`].
 pub fn parse_stations(file: &str, input: impl Read) -> Result<Vec<StationRow>, PointFileError> {
-    Ok(FORM.parse(file, input)?.iter().map(station).collect())
+    FORM.parse(file, input, |_, row| Ok(station(&row)))
 }
 
 /// The numbers of a pose as a station file has them: X0, Y0, Z0 and omega, phi, kappa in degrees.

@@ -32,7 +32,7 @@ pub struct Calibrated {
 /// # Errors
 /// As [`prepare`] and [`adjust`]: what cannot be determined, by name.
 pub fn calibrate(material: &Material, operator: usize, views: &[usize], settings: &Settings) -> Result<Calibrated, CalibrationError> {
-    let prepared = prepare(&material.points(operator, views), &material.control(), settings)?;
+    let prepared = prepare(material.points(operator, views), &material.control(), settings)?;
     Calibrated::of(prepared.network, views.to_vec())
 }
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use calibench_adjust::approximate::Control;
-use calibench_exchange::{ControlRow, PointRow};
+use calibench_exchange::{ControlRow, Points};
 use calibench_measure::Board;
 use calibench_model::camera::ImageSize;
 use calibench_model::{PixelPoint, Start};
@@ -90,15 +90,14 @@ impl Material {
     }
 
     /// The corners of an operator in some views, in their order.
-    pub fn points(&self, operator: usize, views: &[usize]) -> Vec<PointRow> {
-        let of = |&view: &usize| {
-            let corners = self.operators[operator].at[view].iter().enumerate();
-            corners.filter_map(move |(corner, at)| {
-                let (image, target) = (self.views[view].to_string(), self.board.target(corner));
-                Some(PointRow { image, target, start: Start::at((*at)?) })
-            })
-        };
-        views.iter().flat_map(of).collect()
+    pub fn points(&self, operator: usize, views: &[usize]) -> Points {
+        let mut points = Points::default();
+        for &view in views {
+            for (corner, at) in self.operators[operator].at[view].iter().enumerate() {
+                at.iter().for_each(|at| points.push(&self.views[view], &self.board.target(corner), Start::at(*at)));
+            }
+        }
+        points
     }
 
     /// The corners of an operator in a view among those of `chosen`, as control of a resection.

@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod convert;
 pub mod eccentricity;
+pub mod escape;
 pub mod frames;
 pub mod image;
 pub mod observation;

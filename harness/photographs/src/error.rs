@@ -25,6 +25,14 @@ pub enum PhotographsError {
         /// Those of that name.
         paths: [PathBuf; 2],
     },
+    /// No point is of any of the photographs.
+    #[error("no point is of a photograph that was given: points name `{named}`, the photographs are called `{called}`")]
+    NoneNamed {
+        /// The image of the first point.
+        named: String,
+        /// The name of the first photograph.
+        called: String,
+    },
     /// Photographs of one camera that differ in size.
     #[error("{}: {} x {} px, but {} has {} x {}; expected photographs of one camera, in one orientation", other.display(), found.0, found.1, first.display(), size.0, size.1)]
     Sizes {

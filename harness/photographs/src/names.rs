@@ -1,6 +1,6 @@
 //! What photographs are called, and how large they are.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use calibench_model::camera::ImageSize;
@@ -18,10 +18,14 @@ fn short(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// Two photographs that a name may mean.
-pub fn ambiguous<'p>(photos: &'p [PathBuf], name: &str) -> Option<[&'p Path; 2]> {
-    let mut called = photos.iter().filter(|path| short(path) == name).map(PathBuf::as_path);
-    Some([called.next()?, called.next()?])
+/// The first of `wanted` that two photographs may mean, and both.
+pub fn ambiguous<'p, 'n>(photos: &'p [PathBuf], mut wanted: impl Iterator<Item = &'n str>) -> Option<(&'n str, [&'p Path; 2])> {
+    let mut called: HashMap<String, Vec<&Path>> = HashMap::new();
+    photos.iter().for_each(|path| called.entry(short(path)).or_default().push(path));
+    wanted.find_map(|name| match called.get(name)?.as_slice() {
+        [first, second, ..] => Some((name, [*first, *second])),
+        _ => None,
+    })
 }
 
 /// Each photograph must be given once.
@@ -29,8 +33,9 @@ pub fn ambiguous<'p>(photos: &'p [PathBuf], name: &str) -> Option<[&'p Path; 2]>
 /// # Errors
 /// [`PhotographsError::Twice`].
 pub fn once(photos: &[PathBuf]) -> Result<(), PhotographsError> {
-    let twice = photos.iter().enumerate().find(|(i, photo)| photos[..*i].contains(photo));
-    twice.map_or(Ok(()), |(_, twice)| Err(PhotographsError::Twice(twice.clone())))
+    let mut seen = HashSet::new();
+    let twice = photos.iter().find(|photo| !seen.insert(photo.as_path()));
+    twice.map_or(Ok(()), |twice| Err(PhotographsError::Twice(twice.clone())))
 }
 
 /// The size that all photographs have.

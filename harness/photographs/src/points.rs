@@ -1,71 +1,177 @@
 //! Points of a file, measured in the photographs that they name.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
-use calibench_exchange::{Outcome, PointRow, read_photo};
+use calibench_exchange::{Outcome, Points, read_photo};
 use calibench_measure::Configured;
-use calibench_model::Start;
+use calibench_model::{Covariance, Measurement, PixelPoint, Rejection, Start};
 use rayon::prelude::*;
 
 use crate::PhotographsError;
 use crate::names::{ambiguous, names, once};
 
+/// Points that are handed to a method at a time: bounds the memory, whatever the number of points.
+const CHUNK: usize = 1 << 16;
+
+/// What became of points in the hands of several methods: 41 bytes a point and method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    points: usize,
+    methods: Vec<OfMethod>,
+}
+
+/// Of one method, by point.
+#[derive(Clone, Debug, PartialEq)]
+struct OfMethod {
+    state: Vec<State>,
+    position: Vec<PixelPoint>,
+    /// sxx, sxy, syy; not numbers where there is none.
+    covariance: Vec<[f64; 3]>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    /// Its photograph was not given.
+    NotGiven,
+    Measured,
+    Rejected(Rejection),
+}
+
+impl Measured {
+    fn new(points: usize, methods: usize) -> Self {
+        let nothing = PixelPoint::new(f64::NAN, f64::NAN);
+        let of_method =
+            || OfMethod { state: vec![State::NotGiven; points], position: vec![nothing; points], covariance: vec![[f64::NAN; 3]; points] };
+        Self { points, methods: (0..methods).map(|_| of_method()).collect() }
+    }
+
+    fn set(&mut self, method: usize, point: usize, result: Result<Measurement, Rejection>) {
+        let of = &mut self.methods[method];
+        match result {
+            Ok(found) => {
+                (of.state[point], of.position[point]) = (State::Measured, found.position);
+                of.covariance[point] = found.covariance.map_or([f64::NAN; 3], |s| [s.sxx, s.sxy, s.syy]);
+            }
+            Err(why) => of.state[point] = State::Rejected(why),
+        }
+    }
+
+    /// What became of a point in the hands of a method, counted among those that are available; `None` if its photograph was not given.
+    pub fn outcome(&self, method: usize, point: usize) -> Option<Outcome> {
+        let of = self.methods.get(method)?;
+        match of.state[point] {
+            State::NotGiven => None,
+            State::Rejected(why) => Some(Outcome::Rejected(why)),
+            State::Measured => {
+                let [sxx, sxy, syy] = of.covariance[point];
+                let covariance = (!sxx.is_nan()).then_some(Covariance { sxx, sxy, syy });
+                Some(Outcome::Measured(Measurement { position: of.position[point], covariance }))
+            }
+        }
+    }
+
+    /// How many points were measured, by all methods together.
+    pub fn measured(&self) -> usize {
+        self.count(|state| state == State::Measured)
+    }
+
+    /// How many were rejected, by all methods together.
+    pub fn rejected(&self) -> usize {
+        self.count(|state| matches!(state, State::Rejected(_)))
+    }
+
+    /// Points of photographs that were not given.
+    pub fn not_given(&self) -> usize {
+        self.methods.first().map_or(self.points, |of| of.state.iter().filter(|state| **state == State::NotGiven).count())
+    }
+
+    fn count(&self, wanted: impl Fn(State) -> bool) -> usize {
+        self.methods.iter().flat_map(|of| &of.state).filter(|state| wanted(**state)).count()
+    }
+}
+
 /// Measures every point in its photograph with every available method.
 ///
 /// `points` name their images by file name, with folders where two photographs share one. One photograph a thread is in memory; `step` is called after each, on
-/// any thread. Returns the outcomes of each point, in the order of the available `methods`; none for a point whose photograph is not among `photos`.
+/// any thread.
 ///
 /// # Errors
-/// A photograph that cannot be read, that is given twice, or that points do not name clearly.
+/// As [`photos_of`]; a photograph that cannot be read.
 pub fn measure_points(
-    points: &[PointRow],
+    points: &Points,
     photos: &[PathBuf],
     methods: &[Configured],
     step: &(dyn Fn() + Sync),
-) -> Result<Vec<Vec<Outcome>>, PhotographsError> {
-    let photos = by_name(photos, points)?;
-    let one = |(name, path): (&String, &&Path)| {
-        let found = in_photo(points, name, path, methods);
+) -> Result<Measured, PhotographsError> {
+    let photo_of = photos_of(points, photos)?;
+    let mut images: Vec<Vec<usize>> = vec![Vec::new(); photos.len()];
+    photo_of.iter().enumerate().for_each(|(image, photo)| photo.iter().for_each(|&photo| images[photo].push(image)));
+    let groups = points.by_image();
+    let available: Vec<_> = methods.iter().filter_map(|method| method.operator.as_ref().ok()).collect();
+    let found = Mutex::new(Measured::new(points.len(), available.len()));
+    let one = |(path, images): (&PathBuf, &Vec<usize>)| -> Result<(), PhotographsError> {
+        // Read even if no point asks for it: a photograph that cannot be read is a mistake.
+        let photo = read_photo(path)?.image;
+        let wanted: Vec<usize> = images.iter().flat_map(|&image| groups.of_group(image)).collect();
+        for chunk in wanted.chunks(CHUNK) {
+            let starts: Vec<Start> = chunk.iter().map(|&point| points.start(point)).collect();
+            for (method, operator) in available.iter().enumerate() {
+                let results = operator.measure_all(&photo, &starts);
+                let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
+                chunk.iter().zip(results).for_each(|(&point, result)| found.set(method, point, result));
+            }
+        }
         step();
-        found
+        Ok(())
     };
-    let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); points.len()];
-    for (index, outcome) in photos.par_iter().map(one).collect::<Result<Vec<_>, _>>()?.into_iter().flatten() {
-        outcomes[index] = outcome;
-    }
-    Ok(outcomes)
+    photos.par_iter().zip(&images).map(one).collect::<Result<(), PhotographsError>>()?;
+    Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Photographs by the names that point files give them: those of [`names`].
+/// The photograph of each image that points name, as its place among `photos`; `None` for one that is not among them.
+///
+/// Photographs are called as [`names`] says; a point file may give one its folders, though its name alone would do.
 ///
 /// # Errors
-/// A photograph given twice; points that may be of either of two.
-pub fn by_name<'p>(paths: &'p [PathBuf], points: &[PointRow]) -> Result<BTreeMap<String, &'p Path>, PhotographsError> {
-    once(paths)?;
-    let unclear = points.iter().find_map(|point| Some((&point.image, ambiguous(paths, &point.image)?)));
-    if let Some((name, both)) = unclear {
-        return Err(PhotographsError::Ambiguous { name: name.clone(), paths: both.map(Path::to_owned) });
+/// A photograph that is given twice, or that points do not name clearly; photographs of which points name none.
+pub fn photos_of(points: &Points, photos: &[PathBuf]) -> Result<Vec<Option<usize>>, PhotographsError> {
+    once(photos)?;
+    let called = names(photos);
+    if let Some((name, both)) = ambiguous(photos, points.images().iter()) {
+        return Err(PhotographsError::Ambiguous { name: name.to_owned(), paths: both.map(Path::to_owned) });
     }
-    Ok(names(paths).into_iter().zip(paths.iter().map(PathBuf::as_path)).collect())
-}
-
-/// (index of the point, one outcome a method).
-fn in_photo(points: &[PointRow], name: &str, path: &Path, methods: &[Configured]) -> Result<Vec<(usize, Vec<Outcome>)>, PhotographsError> {
-    let wanted: Vec<usize> = (0..points.len()).filter(|&i| is_called(&points[i].image, name, path)).collect();
-    // Read even if no point asks for it: a photograph that cannot be read is a mistake.
-    let image = read_photo(path)?.image;
-    let starts: Vec<Start> = wanted.iter().map(|&i| points[i].start).collect();
-    let mut outcomes: Vec<(usize, Vec<Outcome>)> = wanted.into_iter().map(|i| (i, Vec::new())).collect();
-    for operator in methods.iter().filter_map(|method| method.operator.as_ref().ok()) {
-        for ((_, outcome), result) in outcomes.iter_mut().zip(operator.measure_all(&image, &starts)) {
-            outcome.push(result.map_or_else(Outcome::Rejected, Outcome::Measured));
+    let by_name: HashMap<&str, usize> = called.iter().enumerate().map(|(photo, name)| (name.as_str(), photo)).collect();
+    let by_path: HashMap<&Path, usize> = photos.iter().enumerate().map(|(photo, path)| (path.as_path(), photo)).collect();
+    let of = |image: &str| by_name.get(image).or_else(|| by_path.get(Path::new(image))).copied();
+    let found: Vec<Option<usize>> = points.images().iter().map(of).collect();
+    match (points.images().iter().next(), called.first()) {
+        (Some(named), Some(called)) if found.iter().all(Option::is_none) => {
+            Err(PhotographsError::NoneNamed { named: named.to_owned(), called: called.clone() })
         }
+        _ => Ok(found),
     }
-    Ok(outcomes)
 }
 
-/// A point file may give a photograph its folders, though its name alone would do here.
-fn is_called(image: &str, name: &str, path: &Path) -> bool {
-    image == name || Path::new(image) == path
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(images: &[&str]) -> Points {
+        let mut points = Points::default();
+        images.iter().enumerate().for_each(|(i, image)| points.push(image, &i.to_string(), Start::at(PixelPoint::new(1.0, 1.0))));
+        points
+    }
+
+    #[test]
+    fn images_are_found_by_name_or_by_path() {
+        let photos = ["x/a.png", "x/b.png"].map(PathBuf::from);
+        assert_eq!(photos_of(&points(&["b.png", "c.png", "x/a.png"]), &photos).unwrap(), [Some(1), None, Some(0)]);
+        let error = |images: &[&str], photos: &[PathBuf]| photos_of(&points(images), photos).unwrap_err().to_string();
+        assert!(error(&["c.png", "d.png"], &photos).ends_with("points name `c.png`, the photographs are called `a.png`"));
+        let alike = ["x/a.png", "y/a.png"].map(PathBuf::from);
+        assert!(error(&["a.png"], &alike).starts_with("two photographs are called a.png"));
+        assert_eq!(photos_of(&points(&["y/a.png"]), &alike).unwrap(), [Some(1)]);
+    }
 }

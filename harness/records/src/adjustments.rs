@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 
 use csv::StringRecord;
 
-use crate::cells::{Cells, RecordError, open};
+use crate::cells::{Cells, RecordError, open, write_row};
 use crate::points::RunInfo;
 use crate::results::MethodInfo;
 use crate::results::{Calibrated, Figure, Group};
@@ -85,21 +85,9 @@ impl<W: Write> CalibrationWriter<W> {
         let (method, set) = (&*self.methods[one.method].label, self.sets[one.set].as_str());
         let [value, sigma, error] = numbers;
         let seed = self.run.seed.to_string();
-        self.csv.write_record([
-            &self.run.scenario,
-            trial,
-            method,
-            set,
-            group.name(),
-            name,
-            value,
-            sigma,
-            error,
-            unit,
-            status,
-            reason,
-            &seed,
-        ])
+        let cells: [&str; 13] =
+            [&self.run.scenario, trial, method, set, group.name(), name, value, sigma, error, unit, status, reason, &seed];
+        write_row(&mut self.csv, cells)
     }
 }
 
@@ -154,7 +142,7 @@ fn row(record: &StringRecord) -> Result<Row, RecordError> {
     let text = |column: usize| cells.text(column).to_owned();
     let group = Group::ALL.iter().find(|(_, name)| *name == cells.text(4)).ok_or_else(|| cells.bad(4))?.0;
     let figure = match cells.text(10) {
-        "adjusted" => Ok(Numbers { value: cells.parse(6)?, sigma: cells.optional(7)?, error: cells.optional(8)? }),
+        "adjusted" => Ok(Numbers { value: cells.number(6)?, sigma: cells.optional_number(7)?, error: cells.optional_number(8)? }),
         "failed" => Err(text(11)),
         _ => return Err(cells.bad(10)),
     };

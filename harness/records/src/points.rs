@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use calibench_model::{PixelPoint, Rejection};
 
-use crate::cells::{Cells, RecordError, open};
+use crate::cells::{Cells, RecordError, open, write_row};
 use crate::results::{MethodInfo, Outcome, PointResult, Trial};
 
 /// The columns of a records file.
@@ -43,21 +43,9 @@ impl<W: Write> RecordWriter<W> {
         if let Some((name, version)) = &run.detector {
             let (seed, nothing) = (run.seed.to_string(), "");
             let (status, reason) = ("detector", "gave the approximate positions");
-            csv.write_record([
-                &run.scenario,
-                nothing,
-                nothing,
-                nothing,
-                name,
-                version,
-                nothing,
-                nothing,
-                nothing,
-                status,
-                reason,
-                &seed,
-                &run.revision,
-            ])?;
+            let cells: [&str; 13] =
+                [&run.scenario, nothing, nothing, nothing, name, version, nothing, nothing, nothing, status, reason, &seed, &run.revision];
+            write_row(&mut csv, cells)?;
         }
         let mut writer = Self { csv, run, methods };
         for method in 0..writer.methods.len() {
@@ -113,21 +101,9 @@ impl<W: Write> RecordWriter<W> {
         let seed = self.run.seed.to_string();
         let [trial, view, target] = place;
         let [metric, value, unit] = metric;
-        self.csv.write_record([
-            &self.run.scenario,
-            trial,
-            view,
-            target,
-            label,
-            version,
-            metric,
-            value,
-            unit,
-            status,
-            reason,
-            &seed,
-            &self.run.revision,
-        ])
+        let cells: [&str; 13] =
+            [&self.run.scenario, trial, view, target, label, version, metric, value, unit, status, reason, &seed, &self.run.revision];
+        write_row(&mut self.csv, cells)
     }
 }
 
@@ -160,12 +136,13 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
         }
         let method = method_index(&mut head.methods, &row);
         if row.text(9) == "unavailable" {
-            head.methods[method.unwrap_or_default()].unavailable = Some(row.text(10).to_owned());
+            let method = method.ok_or_else(|| row.wrong("a row without a method"))?;
+            head.methods[method].unavailable = Some(row.text(10).to_owned());
             continue;
         }
         let number = row.parse(1)?;
         if trial.as_ref().is_some_and(|trial| trial.number != number) {
-            trial.take().into_iter().for_each(|trial| sink(trial, &head.methods));
+            trial.take().into_iter().try_for_each(|trial| whole(&trial, row.line()).map(|()| sink(trial, &head.methods)))?;
         }
         let trial = trial.get_or_insert_with(|| Trial { number, ..Trial::default() });
         let method = method.ok_or_else(|| row.wrong("a row without a method"))?;
@@ -179,7 +156,8 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
         }
         add(trial, &row, method)?;
     }
-    trial.into_iter().for_each(|trial| sink(trial, &head.methods));
+    let end = csv.position().line();
+    trial.into_iter().try_for_each(|trial| whole(&trial, end).map(|()| sink(trial, &head.methods)))?;
     Ok(head)
 }
 
@@ -195,17 +173,29 @@ fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>) -> Option<usize>
     }))
 }
 
+/// Both coordinates of the last point of a trial are there; else a row is missing on or before `line`.
+fn whole(trial: &Trial, line: u64) -> Result<(), RecordError> {
+    let wrong = |problem: &str| Err(RecordError::Row { line, problem: problem.to_owned() });
+    match trial.points.last().map(|point| &point.outcome) {
+        Some(Outcome::Measured { position, .. }) if position.y.is_nan() => wrong("the point that ends here has no y"),
+        Some(Outcome::Measured { error: Some((_, dy)), .. }) if dy.is_nan() => wrong("the point that ends here has dx and no dy"),
+        _ => Ok(()),
+    }
+}
+
 /// Adds a row to a trial; the rows of one point follow each other.
 fn add(trial: &mut Trial, row: &Cells<'_>, method: usize) -> Result<(), RecordError> {
     let (view, target) = (row.text(2), row.text(3));
     if row.text(9) == "rejected" {
+        whole(trial, row.line())?;
         let why = Rejection::ALL.into_iter().find(|why| why.name() == row.text(10));
         let why = why.ok_or_else(|| row.wrong("unknown reason"))?;
         trial.points.push(PointResult::new(view, target, method, Outcome::Rejected(why)));
         return Ok(());
     }
-    let value: f64 = row.parse(7)?;
+    let value = row.number(7)?;
     if row.text(6) == "x" {
+        whole(trial, row.line())?;
         let share = |old: Option<&Arc<str>>, new: &str| old.filter(|old| &***old == new).cloned().unwrap_or_else(|| new.into());
         let view = share(trial.points.last().map(|p| &p.view), view);
         let outcome = Outcome::Measured { position: PixelPoint::new(value, f64::NAN), error: None };
@@ -219,7 +209,7 @@ fn add(trial: &mut Trial, row: &Cells<'_>, method: usize) -> Result<(), RecordEr
     match row.text(6) {
         "y" => position.y = value,
         "dx" => *error = Some((value, f64::NAN)),
-        "dy" => *error = error.map(|(dx, _)| (dx, value)),
+        "dy" => error.as_mut().ok_or_else(|| row.wrong("a dy without its dx"))?.1 = value,
         "bound" => *bound = Some(value),
         "predicted" => *predicted = Some(value),
         _ => return Err(row.wrong("unknown metric")),
@@ -275,7 +265,34 @@ mod tests {
     #[test]
     fn other_files_are_refused() {
         assert!(read_records(&b"a,b\n1,2\n"[..], |_, _| ()).is_err());
-        let text = format!("{}\ns,0,v,t,m,1,dx,1,px,measured,,0,r\n", COLUMNS.join(","));
-        assert!(read_records(text.as_bytes(), |_, _| ()).unwrap_err().to_string().contains("line 2: a metric without its point"));
+        for (rows, expected) in [
+            ("s,0,v,t,m,1,dx,1,px,measured,,0,r\n", "line 2: a metric without its point"),
+            ("s,,,,,,,,,unavailable,why,0,r\n", "line 2: a row without a method"),
+            ("s,0,v,t,m,1,x,1e999,px,measured,,0,r\n", "line 2: column `value` holds `1e999`"),
+            ("s,0,v,t,m,1,x,NaN,px,measured,,0,r\n", "line 2: column `value` holds `NaN`"),
+            ("s,0,v,t,m,1,x,1,px,measured,,0,r\ns,0,v,u,m,1,x,1,px,measured,,0,r\n", "line 3: the point that ends here has no y"),
+            ("s,0,v,t,m,1,x,1,px,measured,,0,r\n", "line 3: the point that ends here has no y"),
+            ("s,0,v,t,m,1,x,1,px,measured,,0,r\ns,0,v,t,m,1,dy,1,px,measured,,0,r\n", "line 3: a dy without its dx"),
+        ] {
+            let text = format!("{}\n{rows}", COLUMNS.join(","));
+            let error = read_records(text.as_bytes(), |_, _| ()).unwrap_err().to_string();
+            assert!(error.contains(expected), "{rows}: {error}");
+        }
+    }
+
+    #[test]
+    fn names_are_no_formulas_and_are_read_again() {
+        let (methods, mut trials) = example();
+        trials[0].points[0].target = "=HYPERLINK(\"x\")".into();
+        trials[0].points[2].target = "-12".into();
+        let mut bytes = Vec::new();
+        let mut writer = RecordWriter::new(&mut bytes, RunInfo::default(), methods).unwrap();
+        trials.iter().for_each(|trial| writer.trial(trial).unwrap());
+        writer.finish().unwrap();
+        let text = String::from_utf8(bytes.clone()).unwrap();
+        assert!(text.contains(",\"'=HYPERLINK(") && text.contains(",v,-12,") && !text.contains(",=") && !text.contains(",\"="), "{text}");
+        let mut again = Vec::new();
+        read_records(&bytes[..], |trial, _| again.push(trial)).unwrap();
+        assert_eq!(again, trials);
     }
 }

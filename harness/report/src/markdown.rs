@@ -21,7 +21,7 @@ impl MarkdownTable {
 
     /// The table as Markdown, with its columns aligned so that the text reads well too.
     pub fn render(&self) -> String {
-        let escaped = |cell: &str| cell.replace('|', "\\|").replace('\n', " ");
+        let escaped = |cell: &str| bars(cell).replace('\n', " ");
         let cell = |row: &[String], column: usize| escaped(row.get(column).map_or("", String::as_str));
         let columns = self.header.len();
         let numeric = |column: usize| {
@@ -48,6 +48,20 @@ impl MarkdownTable {
         }
         text
     }
+}
+
+/// A cell whose bars do not end it: those that are escaped already stay.
+fn bars(cell: &str) -> String {
+    let mut out = String::with_capacity(cell.len());
+    let mut escaped = false;
+    for c in cell.chars() {
+        if c == '|' && !escaped {
+            out.push('\\');
+        }
+        escaped = c == '\\' && !escaped;
+        out.push(c);
+    }
+    out
 }
 
 /// The anchor of a heading: lower case, blanks as hyphens, no punctuation.

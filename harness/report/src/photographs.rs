@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::sync::Arc;
 
-use calibench_model::{Image, PixelPoint};
+use calibench_model::{Image, PixelPoint, escape};
 use calibench_records::description::Subject;
 use calibench_records::judgement::{JUDGEMENT, Summary, read_rows};
 
@@ -162,7 +162,7 @@ fn seen(loaded: &Loaded, points: &[Compared]) -> String {
     let mut text =
         format!("The board was found in {} of {} photographs, {} corners in all.", views.len(), views.len() + missed.len(), points.len());
     for (view, why) in missed {
-        text.push_str(&format!(" `{view}`: {why}."));
+        text.push_str(&format!(" {}: {}.", escape::code(view), escape::markdown(why)));
     }
     if let Some((name, version)) = &loaded.head.run.detector {
         text.push_str(&format!(" Detector: `{name}`, version {version}."));

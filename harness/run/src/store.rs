@@ -10,6 +10,7 @@ use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
 use calibench_records::description::write as write_description;
 use calibench_records::names::{DESCRIPTION, ORIGIN, RECORDS, SCENARIO, cell_name};
 use calibench_records::points::{RecordWriter, RunInfo};
+use calibench_records::results::Outcome;
 use calibench_scenario::camera::KEPT;
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
@@ -69,34 +70,38 @@ impl RecordsFolder {
     }
 }
 
-/// Runs `plan` and puts its records, its scenario and the first trial's images in the place of older ones, all at once, when it is done.
+/// Runs `plan` and puts its records, its scenario and the first trial's images in the place of older ones, all at once, when it is done. Returns how many
+/// points were measured, by all methods in all trials.
 ///
 /// # Errors
 /// What the run or the file system refuses; older records are then as they were.
-pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
-    let name = plan.scenario.name.clone();
+pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
+    let (name, mut measured) = (plan.scenario.name.clone(), 0);
     records.output.replace(|folder| {
         let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
-        write_records(folder, &name, &plan, revision, step)?;
+        measured = write_records(folder, &name, &plan, revision, step)?;
         records.keep(plan.scenario, plan.methods, folder)
-    })
+    })?;
+    Ok(measured)
 }
 
-/// Runs `plan` and writes its records into `folder`, under the name `name`.
-fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
+/// Runs `plan` and writes its records into `folder`, under the name `name`; how many points were measured.
+fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
     let mut records = RecordWriter::new(folder.create(RECORDS)?, info.clone(), plan.method_infos()).map_err(io::Error::other)?;
-    let mut calibrations = calibrations(folder, name, plan, revision)?;
+    let (mut calibrations, mut measured) = (calibrations(folder, name, plan, revision)?, 0);
     plan.run(step, &mut |trial| {
         if let Some(writer) = &mut calibrations {
             writer.trial(trial.number, &trial.calibrations).map_err(io::Error::other)?;
         }
+        measured += trial.points.iter().filter(|point| matches!(point.outcome, Outcome::Measured { .. })).count() as u64;
         records.trial(&trial).map_err(io::Error::other)?;
         write_judgement(folder, plan, &info, &trial)
     })?;
     calibrations.map_or(Ok(()), CalibrationWriter::finish).map_err(io::Error::other)?;
     write_theory(plan, &info)?;
-    Ok(records.finish().map_err(io::Error::other)?)
+    records.finish().map_err(io::Error::other)?;
+    Ok(measured)
 }
 
 /// What writes the adjustments of `plan`, if it makes any.
@@ -132,12 +137,12 @@ pub struct SweepPlan<'a> {
 /// Runs the cells of `plan` one after the other and puts their records, each in a folder of its own, in the place of older ones, all at once.
 ///
 /// The random numbers of a cell are those of the scenario without its sweep: cells share phase, noise and stations, so that curves differ by what
-/// is swept, and none depends on which others there are. `step` is called after each cell.
+/// is swept, and none depends on which others there are. `step` is called after each cell. Returns how many points were measured.
 ///
 /// # Errors
 /// What a run or the file system refuses; older records are then as they were.
-pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<(), RunError> {
-    let scenario = plan.scenario;
+pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
+    let (scenario, mut measured) = (plan.scenario, 0);
     records.output.replace(|folder| {
         for index in 0..plan.sweep.cells() {
             let cell = parse_cell(scenario, plan.sweep, index, plan.registry).map_err(io::Error::other)?;
@@ -147,15 +152,11 @@ pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, 
             }
             run.seed = plan.seed.unwrap_or(cell.seed);
             run.trials = plan.trials.filter(|_| !cell.is_deterministic()).unwrap_or(cell.trials);
-            write_records(
-                &folder.folder(&cell_name(index))?,
-                &format!("{}@{}", scenario.name, plan.sweep.label(index)),
-                &run,
-                revision,
-                &|| (),
-            )?;
+            let (cell, label) = (folder.folder(&cell_name(index))?, plan.sweep.label(index));
+            measured += write_records(&cell, &format!("{}@{label}", scenario.name), &run, revision, &|| ())?;
             step();
         }
         records.keep(scenario, plan.methods, folder)
-    })
+    })?;
+    Ok(measured)
 }

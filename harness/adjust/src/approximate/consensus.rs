@@ -77,6 +77,12 @@ pub(super) fn search<M: Clone>(
     Ok((model, agreeing))
 }
 
+/// The indices below `count` that are not among `agreeing`, which ascend.
+pub(super) fn others(count: usize, agreeing: &[usize]) -> Vec<usize> {
+    let mut agreeing = agreeing.iter().copied().peekable();
+    (0..count).filter(|index| agreeing.next_if_eq(index).is_none()).collect()
+}
+
 fn best_trial<M>(
     judge: &Judge,
     seed: u64,
@@ -146,7 +152,10 @@ impl Judge {
 
     fn cost(&self, squares: &[f64]) -> f64 {
         match self.tolerance {
-            Tolerance::Pixels(_) => squares.iter().map(|square| square.min(self.limit(squares))).sum(),
+            Tolerance::Pixels(_) => {
+                let limit = self.limit(squares);
+                squares.iter().map(|square| square.min(limit)).sum()
+            }
             Tolerance::Unknown => self.median(squares),
         }
     }
@@ -191,6 +200,12 @@ mod tests {
             assert!((constant - 2.0).abs() < 0.1 && (slope - 0.5).abs() < 0.01);
             assert_eq!(line(tolerance, 7, &points), line(tolerance, 7, &points));
         }
+    }
+
+    #[test]
+    fn others_are_all_that_do_not_agree() {
+        assert_eq!(others(6, &[1, 2, 5]), [0, 3, 4]);
+        assert_eq!((others(3, &[]), others(2, &[0, 1])), (vec![0, 1, 2], vec![]));
     }
 
     #[test]

@@ -24,10 +24,10 @@ impl Network {
 
     fn check_observations(&self) -> Result<(), NetworkError> {
         let mut last = vec![usize::MAX; self.points.len()];
-        let mut order: Vec<usize> = (0..self.observations.len()).collect();
-        order.sort_by_key(|&i| self.observations[i].image);
+        let mut order: Vec<u32> = (0..self.observations.len() as u32).collect();
+        order.sort_unstable_by_key(|&i| (self.observations[i as usize].image, i));
         for i in order {
-            let o = &self.observations[i];
+            let o = &self.observations[i as usize];
             let of = || format!("observation {i}");
             within(of, "image", o.image, self.images.len())?;
             within(of, "point", o.point, self.points.len())?;

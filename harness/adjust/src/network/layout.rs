@@ -10,15 +10,29 @@ use crate::counts::Counts;
 /// An image point, ready for the loops.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sight {
-    pub(crate) image: usize,
-    pub(crate) point: usize,
+    pub(crate) image: u32,
+    pub(crate) point: u32,
     /// Place among the observations as given.
-    pub(crate) given: usize,
+    pub(crate) given: u32,
+    /// The pair of its point and its camera; of no meaning for a point that is known or a camera that is.
+    pub(crate) pair: u32,
     pub(crate) at: [f64; 2],
     /// Lower triangle `[a, b, c]` of the matrix that makes residuals white: `(a x, b x + c y)`.
     pub(crate) whiten: [f64; 3],
-    /// The pair of its point and its camera; of no meaning for a point that is known or a camera that is.
-    pub(crate) pair: usize,
+}
+
+impl Sight {
+    /// Index of its image.
+    #[inline]
+    pub(crate) const fn image(&self) -> usize {
+        self.image as usize
+    }
+
+    /// Index of its point.
+    #[inline]
+    pub(crate) const fn point(&self) -> usize {
+        self.point as usize
+    }
 }
 
 /// Unknowns of a camera.
@@ -45,8 +59,8 @@ pub(crate) struct Layout {
     pub(crate) sights: Vec<Sight>,
     pub(crate) of_image: Vec<Range<usize>>,
     /// Sights by point.
-    by_point: Vec<usize>,
-    point_start: Vec<usize>,
+    by_point: Vec<u32>,
+    point_start: Vec<u32>,
     pub(crate) cameras: Vec<CameraPlace>,
     /// The camera of each image.
     pub(crate) camera_of: Vec<usize>,
@@ -67,7 +81,7 @@ impl Layout {
     /// The layout of a checked network of which the datum holds the coordinates `held` (point, axis), without the observations `left_out`.
     pub(crate) fn new(network: &Network, held: &[(usize, usize)], left_out: &[usize]) -> Result<Self, NetworkError> {
         let sights = sights(network, left_out);
-        let of_image = ranges(network.images.len(), sights.iter().map(|sight| sight.image));
+        let of_image = ranges(network.images.len(), sights.iter().map(Sight::image));
         let (by_point, point_start) = by_point(network.points.len(), &sights);
         let mut point_free: Vec<[bool; 3]> = network.points.iter().map(|point| point.coordinates.map(Status::is_unknown)).collect();
         for &(point, axis) in held {
@@ -104,10 +118,10 @@ impl Layout {
     fn find_pairs(&mut self) {
         let mut seen = Vec::new();
         for point in 0..self.point_free.len() {
-            let sights = self.point_start[point]..self.point_start[point + 1];
+            let sights = self.point_start[point] as usize..self.point_start[point + 1] as usize;
             if self.is_point_unknown(point) {
                 seen.clear();
-                seen.extend(sights.clone().map(|k| self.camera_of[self.sights[self.by_point[k]].image]));
+                seen.extend(sights.clone().map(|k| self.camera_of[self.sights[self.by_point[k] as usize].image()]));
                 seen.sort_unstable();
                 seen.dedup();
                 seen.retain(|&camera| !self.cameras[camera].free.is_empty());
@@ -118,9 +132,9 @@ impl Layout {
                 self.pair_values += 3 * self.cameras[camera].free.len();
             }
             for k in sights {
-                let sight = &mut self.sights[self.by_point[k]];
-                if let Ok(place) = seen.binary_search(&self.camera_of[sight.image]) {
-                    sight.pair = first + place;
+                let sight = &mut self.sights[self.by_point[k] as usize];
+                if let Ok(place) = seen.binary_search(&self.camera_of[sight.image()]) {
+                    sight.pair = (first + place) as u32;
                 }
             }
             seen.clear();
@@ -129,8 +143,8 @@ impl Layout {
     }
 
     /// Sights of a point.
-    pub(crate) fn of_point(&self, point: usize) -> &[usize] {
-        &self.by_point[self.point_start[point]..self.point_start[point + 1]]
+    pub(crate) fn of_point(&self, point: usize) -> impl ExactSizeIterator<Item = usize> + Clone + '_ {
+        self.by_point[self.point_start[point] as usize..self.point_start[point + 1] as usize].iter().map(|&sight| sight as usize)
     }
 
     /// Pairs of a point.
@@ -171,10 +185,11 @@ fn sights(network: &Network, left_out: &[usize]) -> Vec<Sight> {
         .filter(|(given, _)| takes_part[*given])
         .map(|(given, o)| {
             let at = [o.position.x, o.position.y];
-            Sight { image: o.image, point: o.point, given, at, whiten: whiten(o.precision), pair: usize::MAX }
+            Sight { image: o.image as u32, point: o.point as u32, given: given as u32, pair: u32::MAX, at, whiten: whiten(o.precision) }
         })
         .collect();
-    sights.sort_by_key(|sight| (sight.image, sight.point));
+    // A point is measured once in an image: the order is the same, stable or not.
+    sights.sort_unstable_by_key(|sight| (sight.image, sight.point));
     sights
 }
 
@@ -203,14 +218,14 @@ fn ranges(count: usize, keys: impl Iterator<Item = usize>) -> Vec<Range<usize>> 
     sizes.into_iter().map(range).collect()
 }
 
-fn by_point(count: usize, sights: &[Sight]) -> (Vec<usize>, Vec<usize>) {
-    let mut start = vec![0; count + 1];
-    sights.iter().for_each(|sight| start[sight.point + 1] += 1);
+fn by_point(count: usize, sights: &[Sight]) -> (Vec<u32>, Vec<u32>) {
+    let mut start = vec![0_u32; count + 1];
+    sights.iter().for_each(|sight| start[sight.point() + 1] += 1);
     (0..count).for_each(|i| start[i + 1] += start[i]);
     let (mut next, mut order) = (start.clone(), vec![0; sights.len()]);
     for (i, sight) in sights.iter().enumerate() {
-        order[next[sight.point]] = i;
-        next[sight.point] += 1;
+        order[next[sight.point()] as usize] = i as u32;
+        next[sight.point()] += 1;
     }
     (order, start)
 }

@@ -1,5 +1,7 @@
 //! The normal equations of the whole network, block by block. Sums run in the order of images and points: the same bits every time.
 
+use std::ops::Range;
+
 use super::image_equations::{Lost, Residual, Setting, View};
 use super::observed_unknowns;
 use super::projection::{Optics, POSE};
@@ -29,6 +31,15 @@ pub(crate) struct Normals {
     pub(crate) residuals: Vec<Residual>,
 }
 
+/// Image points of an image that are linearised at a time: bounds the memory, whatever their number.
+const CHUNK: usize = 1 << 14;
+
+/// The parts of a range, none longer than [`CHUNK`].
+fn chunks(range: &Range<usize>) -> impl Iterator<Item = Range<usize>> + use<> {
+    let end = range.end;
+    range.clone().step_by(CHUNK).map(move |start| start..(start + CHUNK).min(end))
+}
+
 /// Memory that is used again from iteration to iteration.
 #[derive(Default)]
 pub(crate) struct Scratch(View);
@@ -52,13 +63,15 @@ pub(crate) fn linearise(
         let camera = network.images[image].camera;
         let free = &layout.cameras[camera].free;
         let setting = Setting { optics: &optics[camera], pose: &state.poses[image], free, loss };
-        let sights = &layout.sights[range.clone()];
-        let residuals = &mut into.residuals[range.clone()];
-        view.linearise(setting, sights, &state.points, residuals).map_err(|Lost(i)| Lost(range.start + i))?;
-        view.sum();
-        into.cost += view.cost;
-        into.add_view(layout, image, camera, view);
-        into.add_points(layout, state, image, view);
+        for chunk in chunks(range) {
+            let sights = &layout.sights[chunk.clone()];
+            let residuals = &mut into.residuals[chunk.clone()];
+            view.linearise(setting, sights, &state.points, residuals).map_err(|Lost(i)| Lost(chunk.start + i))?;
+            view.sum();
+            into.cost += view.cost;
+            into.add_view(layout, image, camera, view);
+            into.add_points(layout, state, image, chunk, view);
+        }
     }
     observed_unknowns::add(network, layout, state, into);
     into.hold(layout);
@@ -72,37 +85,65 @@ pub(crate) fn linearise(
 pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scratch: &mut Scratch, into: &mut Normals) -> Result<(), Lost> {
     let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
     for (image, range) in layout.of_image.iter().enumerate() {
-        let (optics, sights) = (&optics[network.images[image].camera], &layout.sights[range.clone()]);
-        let found = scratch.0.picture(optics, &state.poses[image], sights, &state.points);
-        found.map_err(|Lost(i)| Lost(range.start + i))?;
-        scratch.0.subtract(sights, &mut into.residuals[range.clone()]);
+        let optics = &optics[network.images[image].camera];
+        for chunk in chunks(range) {
+            let sights = &layout.sights[chunk.clone()];
+            let found = scratch.0.picture(optics, &state.poses[image], sights, &state.points);
+            found.map_err(|Lost(i)| Lost(chunk.start + i))?;
+            scratch.0.subtract(sights, &mut into.residuals[chunk]);
+        }
     }
     Ok(())
 }
 
-/// White derivatives of every sight: by the unknown parameters of its camera, then six by its pose, then three by its point; zero where nothing may change.
-///
-/// # Errors
-/// [`Lost`], if a measured point is not pictured.
-pub(crate) fn rows(network: &Network, layout: &Layout, state: &State, loss: Loss) -> Result<Vec<Vec<[f64; 2]>>, Lost> {
-    let optics: Vec<Optics> = state.cameras.iter().map(Optics::of).collect();
-    let (mut view, mut all) = (View::default(), Vec::with_capacity(layout.sights.len()));
-    for (image, range) in layout.of_image.iter().enumerate() {
+/// White derivatives of some sights of an image, of each so many: by the unknown parameters of its camera, then six by its pose, then three by its point;
+/// zero where nothing may change.
+#[derive(Default)]
+pub(crate) struct Rows {
+    values: Vec<[f64; 2]>,
+    residuals: Vec<Residual>,
+    view: View,
+    width: usize,
+    first: usize,
+}
+
+impl Rows {
+    /// Computes those of the sights `range` of an image.
+    ///
+    /// # Errors
+    /// [`Lost`], if a measured point is not pictured.
+    pub(crate) fn fill(
+        &mut self,
+        (network, layout): (&Network, &Layout),
+        state: &State,
+        loss: Loss,
+        image: usize,
+        range: Range<usize>,
+    ) -> Result<(), Lost> {
         let camera = network.images[image].camera;
-        let (free, pose) = (&layout.cameras[camera].free, &state.poses[image]);
-        let setting = Setting { optics: &optics[camera], pose, free, loss };
-        let sights = &layout.sights[range.clone()];
-        let mut residuals = vec![Residual::default(); sights.len()];
-        view.linearise(setting, sights, &state.points, &mut residuals).map_err(|Lost(i)| Lost(range.start + i))?;
-        let mask = layout.pose_mask(image);
-        for (k, sight) in sights.iter().enumerate() {
-            let parameters = (0..free.len()).map(|i| view.at(k, POSE + i));
-            let of_pose = (0..POSE).map(|i| if mask[i] { view.at(k, i) } else { [0.0; 2] });
-            let of_point = view.by_point(k, &pose.rotation, layout.point_free[sight.point]);
-            all.push(parameters.chain(of_pose).chain(of_point).collect());
+        let (free, pose, optics) = (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera]));
+        let (setting, mask) = (Setting { optics: &optics, pose, free, loss }, layout.pose_mask(image));
+        (self.width, self.first) = (free.len() + POSE + 3, range.start);
+        self.values.clear();
+        for chunk in chunks(&range) {
+            let sights = &layout.sights[chunk.clone()];
+            self.residuals.resize(sights.len(), Residual::default());
+            let view = &mut self.view;
+            view.linearise(setting, sights, &state.points, &mut self.residuals).map_err(|Lost(i)| Lost(chunk.start + i))?;
+            for (k, sight) in sights.iter().enumerate() {
+                let parameters = (0..free.len()).map(|i| view.at(k, POSE + i));
+                let of_pose = (0..POSE).map(|i| if mask[i] { view.at(k, i) } else { [0.0; 2] });
+                let of_point = view.by_point(k, &pose.rotation, layout.point_free[sight.point()]);
+                self.values.extend(parameters.chain(of_pose).chain(of_point));
+            }
         }
+        Ok(())
     }
-    Ok(all)
+
+    /// Those of a sight, by its place among all.
+    pub(crate) fn of(&self, sight: usize) -> &[[f64; 2]] {
+        &self.values[(sight - self.first) * self.width..][..self.width]
+    }
 }
 
 impl Normals {
@@ -114,9 +155,14 @@ impl Normals {
             zero(block, place.free.len() * place.free.len());
         }
         zero(&mut self.camera_right, layout.width);
+        self.pose.clear();
         self.pose.resize(images, [0.0; 36]);
+        self.pose_right.clear();
         self.pose_right.resize(images, [0.0; 6]);
         self.pose_camera.resize_with(images, Vec::new);
+        for (block, camera) in self.pose_camera.iter_mut().zip(&layout.camera_of) {
+            zero(block, POSE * layout.cameras[*camera].free.len());
+        }
         self.point.clear();
         self.point.resize(points, [0.0; 9]);
         self.point_right.clear();
@@ -135,15 +181,14 @@ impl Normals {
         let keep = |i: usize| if free[i] { 1.0 } else { 0.0 };
         for i in 0..POSE {
             for j in 0..=i {
-                let value = view.product(i, j) * keep(i) * keep(j);
+                let value = self.pose[image][i * POSE + j] + view.product(i, j) * keep(i) * keep(j);
                 (self.pose[image][i * POSE + j], self.pose[image][j * POSE + i]) = (value, value);
             }
-            self.pose_right[image][i] = view.product(last, i) * keep(i);
+            self.pose_right[image][i] += view.product(last, i) * keep(i);
         }
         let coupling = &mut self.pose_camera[image];
-        coupling.resize(POSE * width, 0.0);
         for i in 0..POSE {
-            (0..width).for_each(|k| coupling[i * width + k] = view.product(POSE + k, i) * keep(i));
+            (0..width).for_each(|k| coupling[i * width + k] += view.product(POSE + k, i) * keep(i));
         }
         let (block, right) = (&mut self.camera[camera], &mut self.camera_right[layout.cameras[camera].offset..]);
         for i in 0..width {
@@ -155,16 +200,16 @@ impl Normals {
         }
     }
 
-    /// What an image says of its points.
-    fn add_points(&mut self, layout: &Layout, state: &State, image: usize, view: &View) {
+    /// What the sights `range` of an image say of their points.
+    fn add_points(&mut self, layout: &Layout, state: &State, image: usize, range: Range<usize>, view: &View) {
         if !layout.has_unknown_points() {
             return;
         }
         let width = layout.cameras[layout.camera_of[image]].free.len();
-        let (m, range) = (&state.poses[image].rotation, layout.of_image[image].clone());
+        let m = &state.poses[image].rotation;
         let (pose_mask, is_pose_unknown) = (layout.pose_mask(image), layout.is_pose_unknown(image));
         for (k, sight) in layout.sights[range.clone()].iter().enumerate() {
-            let free = layout.point_free[sight.point];
+            let free = layout.point_free[sight.point()];
             if free == [false; 3] {
                 continue;
             }
@@ -173,8 +218,8 @@ impl Normals {
             let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
             let misclosure = view.at(k, POSE + width);
             for i in 0..3 {
-                (0..3).for_each(|j| self.point[sight.point][3 * i + j] += dot(by[i], by[j]));
-                self.point_right[sight.point][i] += dot(by[i], misclosure);
+                (0..3).for_each(|j| self.point[sight.point()][3 * i + j] += dot(by[i], by[j]));
+                self.point_right[sight.point()][i] += dot(by[i], misclosure);
             }
             if is_pose_unknown {
                 let block = &mut self.point_pose[range.start + k];
@@ -183,7 +228,7 @@ impl Normals {
                 }
             }
             if width > 0 {
-                let block = &mut self.point_camera[layout.pairs[sight.pair].offset..][..3 * width];
+                let block = &mut self.point_camera[layout.pairs[sight.pair as usize].offset..][..3 * width];
                 for j in 0..width {
                     let column = view.at(k, POSE + j);
                     (0..3).for_each(|i| block[i * width + j] += dot(by[i], column));

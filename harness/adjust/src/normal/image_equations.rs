@@ -73,7 +73,7 @@ impl View {
     /// Pixels and derivatives.
     pub(super) fn picture(&mut self, optics: &Optics, pose: &Pose, sights: &[Sight], points: &[nalgebra::Point3<f64>]) -> Result<(), Lost> {
         self.points.clear();
-        self.points.extend(sights.iter().map(|sight| <[f64; 3]>::from(points[sight.point].coords)));
+        self.points.extend(sights.iter().map(|sight| <[f64; 3]>::from(points[sight.point()].coords)));
         optics.picture(pose, &self.points, &mut self.pictured);
         self.pictured.pixels.iter().position(|pixel| !pixel.is_finite()).map_or(Ok(()), |i| Err(Lost(i)))
     }

@@ -10,7 +10,7 @@ mod robust;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use blocks::{Normals, Scratch, linearise, residuals, rows};
+pub(crate) use blocks::{Normals, Rows, Scratch, linearise, residuals};
 pub(crate) use image_equations::Lost;
 pub(crate) use robust::Loss;
 

@@ -6,7 +6,7 @@ use calibench_model::camera::{
 use calibench_model::{Covariance, PixelPoint, Pose};
 use nalgebra::{Point3, Rotation3, Vector3};
 
-use super::{Loss, Normals, Scratch, Step, linearise, rows};
+use super::{Loss, Normals, Rows, Scratch, Step, linearise};
 use crate::network::{Attitude, Centre, Exterior, ImageObservation, Interior, Layout, Network, ObjectPoint, Precision, Status};
 use crate::state::State;
 
@@ -83,12 +83,13 @@ fn image_coordinates_by_every_unknown_of_every_model() {
     for camera in cameras() {
         let network = network(camera);
         let (layout, state) = (Layout::new(&network, &[], &[]).unwrap(), State::of(&network));
-        let rows = rows(&network, &layout, &state, Loss::Squares).unwrap();
+        let mut rows = Rows::default();
+        rows.fill((&network, &layout), &state, Loss::Squares, 0, 0..layout.sights.len()).unwrap();
         for k in 0..layout.width + 6 + 33 {
             // The column of point `own` of each row; other points do nothing.
             let of = |sight: usize| match k.checked_sub(layout.width + 6) {
-                None => rows[sight][k],
-                Some(k) if k / 3 == sight => rows[sight][layout.width + 6 + k % 3],
+                None => rows.of(sight)[k],
+                Some(k) if k / 3 == sight => rows.of(sight)[layout.width + 6 + k % 3],
                 Some(_) => [0.0; 2],
             };
             let size = (0..11).map(|sight| of(sight)[0].hypot(of(sight)[1])).fold(0.0, f64::max);

@@ -48,7 +48,7 @@ fn images(network: &Network, layout: &Layout) -> Option<Defect> {
 
 fn cameras(network: &Network, layout: &Layout) -> Option<Defect> {
     let mut coordinates = vec![0; network.cameras.len()];
-    layout.sights.iter().for_each(|sight| coordinates[layout.camera_of[sight.image]] += 2);
+    layout.sights.iter().for_each(|sight| coordinates[layout.camera_of[sight.image()]] += 2);
     let lacking = |(i, interior): (usize, &crate::network::Interior)| {
         let free = interior.parameters.iter().filter(|status| **status == Status::Free).count();
         let missing = format!("{free} free parameters of {} and {} image coordinates", interior.name, coordinates[i]);

@@ -142,7 +142,7 @@ fn senseless(engine: &Engine, state: &State, step: &Step, deviation: f64) -> boo
     camera
         || engine.layout.of_image.iter().enumerate().any(|(i, range)| {
             let Some(sight) = engine.layout.sights.get(range.start).filter(|_| !range.is_empty()) else { return false };
-            let reach = (state.points[sight.point] - state.poses[i].centre).norm();
+            let reach = (state.points[sight.point()] - state.poses[i].centre).norm();
             let [a, b, c, x, y, z] = step.poses[i];
             let (turn, shift) = (Vector3::new(a, b, c).norm(), Vector3::new(x, y, z).norm());
             turn * deviation > SENSELESS || shift * deviation > SENSELESS * reach

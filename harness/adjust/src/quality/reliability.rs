@@ -6,9 +6,9 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::AdjustError;
 use crate::network::{Attitude, Centre, Sight, Status};
-use crate::normal::rows;
+use crate::normal::{Lost, Rows};
 use crate::solution::Solution;
-use crate::solve::{Coupled, Eliminated, Inverse, Member};
+use crate::solve::{Coupled, Eliminated, Engine, Inverse, Member};
 use crate::state::{rotation_vector, rotation_vector_slope};
 
 use super::covariance::Variance;
@@ -81,6 +81,9 @@ impl Reliability {
     }
 }
 
+/// Image points whose equations are in memory at a time.
+const CHUNK: usize = 1 << 14;
+
 /// A redundancy number below which an observation is not checked at all.
 const UNCHECKED: f64 = 1e-9;
 
@@ -101,43 +104,74 @@ impl Solution<'_> {
         let scale = [self.variance_factor(test.variance)?.sqrt(), noncentrality];
         let inverse = self.engine.inverse(&self.solved);
         let mut points = self.image_points(&inverse, scale)?;
-        points.sort_by_key(|point| point.observation);
+        points.sort_unstable_by_key(|point| point.observation);
         let observed = self.observed(scale)?;
         Ok(Reliability { test, critical, noncentrality, points, observed })
     }
 
     fn image_points(&self, inverse: &Inverse, scale: [f64; 2]) -> Result<Vec<PointReliability>, AdjustError> {
-        let engine = &self.engine;
-        let rows = rows(engine.network, &engine.layout, &self.end.state, engine.loss);
-        let rows = rows.map_err(|_| AdjustError::NotAvailable("the result does not picture its points"))?;
-        let mut found = Vec::with_capacity(rows.len());
-        let mut add = |sight: usize, adjusted: Matrix2<f64>| found.push(self.image_point(sight, adjusted, scale));
-        let plan = &engine.plan;
-        let is_member = |i: usize| plan.members.binary_search(&i).is_ok();
-        for (place, &member) in plan.members.iter().enumerate() {
-            let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
-            match plan.eliminated {
-                Eliminated::Points => {
-                    let of = inverse.member::<3>(&self.solved, plan, place);
-                    for &sight in engine.layout.of_point(member) {
-                        add(sight, self.adjusted(inverse, sight, &rows[sight], Some((&of, coupled))));
-                    }
-                }
-                Eliminated::Poses => {
-                    let of = inverse.member::<6>(&self.solved, plan, place);
-                    for sight in engine.layout.of_image[member].clone() {
-                        add(sight, self.adjusted(inverse, sight, &rows[sight], Some((&of, coupled))));
-                    }
-                }
-            }
-        }
-        for (i, sight) in engine.layout.sights.iter().enumerate() {
-            let member = if plan.eliminated == Eliminated::Points { sight.point } else { sight.image };
-            if !is_member(member) {
-                add(i, self.adjusted::<3>(inverse, i, &rows[i], None));
-            }
-        }
+        let mut found = Vec::with_capacity(self.engine.layout.sights.len());
+        let all = match self.engine.plan.eliminated {
+            Eliminated::Points => self.point_by_point(inverse, scale, &mut found),
+            Eliminated::Poses => self.image_by_image(inverse, scale, &mut found),
+        };
+        all.map_err(|_| AdjustError::NotAvailable("the result does not picture its points"))?;
         Ok(found)
+    }
+
+    fn image_by_image(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
+        let Engine { network, layout, plan, loss, .. } = &self.engine;
+        let mut rows = Rows::default();
+        for (image, range) in layout.of_image.iter().enumerate() {
+            let member = plan.members.binary_search(&image).ok().map(|place| {
+                let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
+                (inverse.member::<6>(&self.solved, plan, place), coupled)
+            });
+            for start in range.clone().step_by(CHUNK) {
+                let chunk = start..(start + CHUNK).min(range.end);
+                rows.fill((*network, layout), &self.end.state, *loss, image, chunk.clone())?;
+                for sight in chunk {
+                    let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref().map(|(of, coupled)| (of, *coupled)));
+                    found.push(self.image_point(sight, adjusted, scale));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Some points at a time, with all their sights: those of an image are in the order of their points.
+    fn point_by_point(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
+        let Engine { network, layout, plan, loss, .. } = &self.engine;
+        let (count, mut next) = (layout.point_free.len(), layout.of_image.iter().map(|range| range.start).collect::<Vec<_>>());
+        let mut rows: Vec<Rows> = (0..layout.of_image.len()).map(|_| Rows::default()).collect();
+        let mut first = 0;
+        while first < count {
+            let (mut end, mut sights) = (first, 0);
+            while end < count && (end == first || sights < CHUNK) {
+                sights += layout.of_point(end).len();
+                end += 1;
+            }
+            for (image, range) in layout.of_image.iter().enumerate() {
+                let start = next[image];
+                next[image] += layout.sights[start..range.end].iter().take_while(|sight| sight.point() < end).count();
+                if start < next[image] {
+                    rows[image].fill((*network, layout), &self.end.state, *loss, image, start..next[image])?;
+                }
+            }
+            for point in first..end {
+                let member = plan.members.binary_search(&point).ok().map(|place| {
+                    let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
+                    (inverse.member::<3>(&self.solved, plan, place), coupled)
+                });
+                for sight in layout.of_point(point) {
+                    let row = rows[layout.sights[sight].image()].of(sight);
+                    let adjusted = self.adjusted(inverse, sight, row, member.as_ref().map(|(of, coupled)| (of, *coupled)));
+                    found.push(self.image_point(sight, adjusted, scale));
+                }
+            }
+            first = end;
+        }
+        Ok(())
     }
 
     /// `A Q A^T` of an image point, white.
@@ -149,12 +183,12 @@ impl Solution<'_> {
         member: Option<(&Member<D>, &[Coupled])>,
     ) -> Matrix2<f64> {
         let (plan, layout, sight) = (&self.engine.plan, &self.engine.layout, &self.engine.layout.sights[index]);
-        let camera = layout.camera_of[sight.image];
+        let camera = layout.camera_of[sight.image()];
         let width = layout.cameras[camera].free.len();
         let (of_pose, of_point) = (&row[width..width + 6], &row[width + 6..]);
         let (own, other, kept) = match plan.eliminated {
-            Eliminated::Points => (of_point, of_pose, plan.block_of[sight.image]),
-            Eliminated::Poses => (of_pose, of_point, plan.block_of[sight.point]),
+            Eliminated::Points => (of_point, of_pose, plan.block_of[sight.image()]),
+            Eliminated::Poses => (of_pose, of_point, plan.block_of[sight.point()]),
         };
         let parts: Vec<(usize, &[[f64; 2]])> =
             [(camera, &row[..width]), (kept, other)].into_iter().filter(|(block, part)| *block != usize::MAX && !part.is_empty()).collect();
@@ -198,7 +232,7 @@ impl Solution<'_> {
         let weighted = white.transpose() * (white * Vector2::from(residual.px));
         let root = |i: usize| (numbers[(i, i)] > UNCHECKED && test[(i, i)] > 0.0).then(|| test[(i, i)].sqrt());
         PointReliability {
-            observation: sight.given,
+            observation: sight.given as usize,
             redundancy: [0, 1].map(|i| numbers[(i, i)].clamp(0.0, 1.0)),
             w: [0, 1].map(|i| root(i).map_or(0.0, |root| weighted[i] / (sigma0 * root))),
             detectable: [0, 1].map(|i| root(i).map_or(f64::INFINITY, |root| noncentrality * sigma0 / root)),

@@ -2,6 +2,7 @@
 
 use calibench_model::camera::CameraModel;
 
+use crate::network::ImageObservation;
 use crate::solution::Solution;
 
 /// How an observation took part.
@@ -33,21 +34,33 @@ pub struct Residual {
 impl Solution<'_> {
     /// The residuals of all observations, those that were left out as well, in the order given.
     pub fn residuals(&self) -> Vec<Residual> {
-        let (network, state) = (self.engine.network, &self.end.state);
-        let mut found: Vec<Option<Residual>> = vec![None; network.observations.len()];
-        for (sight, residual) in self.engine.layout.sights.iter().zip(&self.end.normals.residuals) {
-            let used = if residual.weight < 1.0 { Use::Downweighted(residual.weight) } else { Use::Full };
-            let (observation, image, point) = (sight.given, sight.image, sight.point);
-            found[observation] = Some(Residual { observation, image, point, v: Some(residual.px), used });
-        }
-        let left_out = |observation: usize| {
+        self.each_residual().collect()
+    }
+
+    /// [`Self::residuals`], one after the other.
+    pub fn each_residual(&self) -> impl ExactSizeIterator<Item = Residual> + '_ {
+        const LEFT_OUT: u32 = u32::MAX;
+        let (network, sights) = (self.engine.network, &self.engine.layout.sights);
+        let mut place = vec![LEFT_OUT; network.observations.len()];
+        sights.iter().enumerate().for_each(|(i, sight)| place[sight.given as usize] = i as u32);
+        place.into_iter().enumerate().map(move |(observation, place)| {
             let o = &network.observations[observation];
-            let ray = state.poses[o.image].ray(&state.points[o.point]);
-            let pixel = state.cameras[network.images[o.image].camera].project(ray).ok();
-            let v = pixel.map(|pixel| [pixel.x - o.position.x, pixel.y - o.position.y]);
-            Residual { observation, image: o.image, point: o.point, v, used: Use::LeftOut }
-        };
-        found.into_iter().enumerate().map(|(i, found)| found.unwrap_or_else(|| left_out(i))).collect()
+            let (image, point) = (o.image, o.point);
+            if place == LEFT_OUT {
+                return Residual { observation, image, point, v: self.left_out(o), used: Use::LeftOut };
+            }
+            let residual = &self.end.normals.residuals[place as usize];
+            let used = if residual.weight < 1.0 { Use::Downweighted(residual.weight) } else { Use::Full };
+            Residual { observation, image, point, v: Some(residual.px), used }
+        })
+    }
+
+    /// The residual of an observation that took no part, where the result pictures it.
+    fn left_out(&self, o: &ImageObservation) -> Option<[f64; 2]> {
+        let state = &self.end.state;
+        let ray = state.poses[o.image].ray(&state.points[o.point]);
+        let pixel = state.cameras[self.engine.network.images[o.image].camera].project(ray).ok()?;
+        Some([pixel.x - o.position.x, pixel.y - o.position.y])
     }
 
     /// Root mean square of the residuals in use, px: `sqrt(mean(vx^2 + vy^2))`, of each image; `None` for an image without any.

@@ -80,15 +80,15 @@ impl Plan {
                     let camera = layout.camera_of[member];
                     self.push(Source::PoseCamera(member), camera);
                     for sight in layout.of_image[member].clone() {
-                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].point]);
+                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].point()]);
                     }
                 }
                 Eliminated::Points => {
                     for pair in &layout.pairs[layout.pairs_of(member)] {
                         self.push(Source::PointCamera(pair.offset), pair.camera);
                     }
-                    for &sight in layout.of_point(member) {
-                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].image]);
+                    for sight in layout.of_point(member) {
+                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].image()]);
                     }
                 }
             }

@@ -166,7 +166,7 @@ impl<'n> Engine<'n> {
     /// # Errors
     /// [`AdjustError::NotPictured`] by the start values.
     pub(crate) fn descend(&self, start: State, most_iterations: usize) -> Result<End, AdjustError> {
-        let (mut scratch, mut normals, mut trial) = (Scratch::default(), Normals::default(), Normals::default());
+        let (mut scratch, mut normals) = (Scratch::default(), Normals::default());
         self.linearise(&start, &mut scratch, &mut normals).map_err(|lost| self.not_pictured(&start, lost))?;
         let (mut state, mut step, mut damping, mut gain) = (start, self.zero_step(), 0.0, f64::INFINITY);
         let mut schur = Schur::default();
@@ -183,11 +183,13 @@ impl<'n> Engine<'n> {
                     }
                 }
                 let moved = state.moved(&self.layout, &step);
-                let pictured = self.linearise(&moved, &mut scratch, &mut trial).is_ok();
-                accepted = pictured && trial.cost <= cost * (1.0 + ROUNDING) + NOISE * self.floor;
+                let pictured = self.linearise(&moved, &mut scratch, &mut normals).is_ok();
+                accepted = pictured && normals.cost <= cost * (1.0 + ROUNDING) + NOISE * self.floor;
                 if accepted {
                     state = moved;
-                    std::mem::swap(&mut normals, &mut trial);
+                } else {
+                    // Seldom, so that one set of equations is in memory and not two.
+                    self.linearise(&state, &mut scratch, &mut normals).map_err(|lost| self.not_pictured(&state, lost))?;
                 }
                 // Nothing to gain, or so little that rounding alone decides: it no longer falls.
                 let stands = (gain <= LITTLE * cost || gain <= NOISE * self.floor) && gain > 0.25 * before;
@@ -210,9 +212,9 @@ impl<'n> Engine<'n> {
     fn not_pictured(&self, state: &State, Lost(sight): Lost) -> AdjustError {
         use calibench_model::camera::{CameraModel, NoCounterpart};
         let sight = &self.layout.sights[sight];
-        let ray = state.poses[sight.image].ray(&state.points[sight.point]);
-        let why = state.cameras[self.layout.camera_of[sight.image]].project(ray).err().unwrap_or(NoCounterpart::NoSolution);
-        let (image, point) = (self.network.images[sight.image].name.clone(), self.network.points[sight.point].name.clone());
+        let ray = state.poses[sight.image()].ray(&state.points[sight.point()]);
+        let why = state.cameras[self.layout.camera_of[sight.image()]].project(ray).err().unwrap_or(NoCounterpart::NoSolution);
+        let (image, point) = (self.network.images[sight.image()].name.clone(), self.network.points[sight.point()].name.clone());
         AdjustError::NotPictured { image, point, why }
     }
 }

@@ -25,7 +25,7 @@ pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str
         .collect::<Result<Vec<_>, Failure>>()?;
     for (format, result) in &made {
         let whose = if made.len() > 1 { format!("{}: ", result.name) } else { String::new() };
-        losses(format, result).iter().for_each(|what| eprintln!("warning: {whose}lost: {what}"));
+        losses(format, result).iter().for_each(|what| say!("warning: {whose}lost: {what}"));
     }
     if let Some(format) = common(&made) {
         let all: Vec<NamedCamera> = made.into_iter().map(|(_, result)| result).collect();
@@ -44,7 +44,7 @@ pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str
     let files = made.into_iter().map(file).collect::<Result<Vec<_>, Failure>>()?;
     for (text, own) in files {
         own.write(|file| file.write_all(text.as_bytes()))?;
-        eprintln!("{}: written", own.path().display());
+        say!("{}: written", own.path().display());
     }
     Ok(())
 }
@@ -97,7 +97,7 @@ fn in_convention(source: &NamedCamera, to: &str, path: &Path) -> Result<(&'stati
     let Converted { camera, conversion, .. } =
         converted(source, &goal, None, None, &ConvertOptions::default()).map_err(|error| refused(path, to, &error))?;
     if conversion.method != Method::Exact {
-        eprintln!("{}: converted to {to} by a fit: residuals {}", path.display(), size_of(&conversion.residual));
+        say!("{}: converted to {to} by a fit: residuals {}", path.display(), size_of(&conversion.residual));
     }
     Ok((goal.format, camera))
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::{Calibration, DatumChoice, Settings, prepare};
-use calibench_exchange::{ControlRow, Inputs, OutputFile, OutputFolder, PointFile, read_control, read_observed_stations};
+use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
 use calibench_photographs::{Chessboard, Corners, Photo};
 use calibench_report::calibration::{summary, write_report};
 use clap::Args;
@@ -71,16 +71,27 @@ pub struct Calibrate {
     report: Option<PathBuf>,
 }
 
+/// What is calibrated from.
+struct Input {
+    points: Points,
+    /// Without a position.
+    lost: LostRows,
+    /// Where the points were measured here.
+    photos: Vec<Photo>,
+    control: Vec<ControlRow>,
+}
+
 impl Calibrate {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let given = [&self.points, &self.control, &self.poses].into_iter().flatten().cloned();
         let inputs = Inputs::new(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
         let output = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
-        let (corners, control) = self.input(context)?;
-        let settings = self.settings(&corners.photos)?;
-        let mut prepared = prepare(&corners.points, &control, &settings)?;
-        prepared.unmeasured = corners.lost;
+        let Input { points, lost, photos, control } = self.input(context)?;
+        let settings = self.settings(&photos)?;
+        let mut prepared = prepare(points, &control, &settings)?;
+        prepared.unmeasured = lost;
+        drop(control);
         let mut calibration = prepared.adjust()?;
         if !self.compare.is_empty() {
             calibration.compare(&sets(&self.compare)?)?;
@@ -89,13 +100,17 @@ impl Calibrate {
         print(&summary(&calibration))
     }
 
-    fn input(&self, context: &Context<'_>) -> Result<(Corners, Vec<ControlRow>), Failure> {
+    fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
         match (&self.points, &self.control, self.chessboard) {
             (Some(points), Some(control), _) => {
-                let PointFile { rows, lost, .. } = inputs::measured(points)?;
-                Ok((Corners { points: rows, lost, photos: Vec::new() }, read_control(control)?))
+                let PointFile { points, lost } = inputs::measured(points)?;
+                Ok(Input { points, lost, photos: Vec::new(), control: read_control(control)? })
             }
-            (_, _, Some(chessboard)) => Ok((photographs::corners(context, chessboard, &self.photos, &self.method)?, chessboard.control())),
+            (_, _, Some(chessboard)) => {
+                let Corners { points, lost, photos } = photographs::corners(context, chessboard, &self.photos, &self.method)?;
+                let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
+                Ok(Input { points, lost, photos, control: chessboard.control() })
+            }
             _ => Err(Failure::input("expected --points, --control and --size, or photographs and --chessboard")),
         }
     }

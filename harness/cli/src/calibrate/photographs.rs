@@ -23,8 +23,8 @@ pub fn corners(context: &Context<'_>, chessboard: Chessboard, photos: &[PathBuf]
     for (path, Corners { points, lost, .. }) in photos.iter().zip(&found) {
         seen += usize::from(!points.is_empty());
         match (lost.first(), lost.len()) {
-            (Some(LostRow { status, reason, .. }), 1) if status == NOT_FOUND => eprintln!("{}: {reason}", path.display()),
-            (Some(_), count) => eprintln!("{}: {count} corners were rejected by {}", path.display(), method.label),
+            (Some(LostRow { status, reason, .. }), 1) if status == NOT_FOUND => say!("{}: {reason}", path.display()),
+            (Some(_), count) => say!("{}: {count} corners were rejected by {}", path.display(), method.label),
             (None, _) => {}
         }
     }

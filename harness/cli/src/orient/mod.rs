@@ -5,9 +5,10 @@ use std::path::PathBuf;
 
 use calibench_adjust::approximate::{ApproximateError, RelativeOrientation, Search, Tolerance, orient_relatively};
 use calibench_diagnostics::nearest;
-use calibench_exchange::{Inputs, PointRow};
+use calibench_exchange::{Inputs, Points};
 use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
+use calibench_model::escape;
 use clap::Args;
 
 use super::context::Context;
@@ -76,9 +77,9 @@ impl Orient {
         let found = self.orient([&left, &right], &seen)?;
         let model = Model::of([&left, &right], &seen, &found, self.base, self.least_angle.to_radians());
         if !context.quiet {
-            eprint!("{}", words::summary(&model, [&self.left, &self.right]));
+            eprint!("{}", escape::message(&words::summary(&model, [&self.left, &self.right])));
         }
-        words::warnings(&model).iter().for_each(|warning| eprintln!("warning: {warning}"));
+        words::warnings(&model).iter().for_each(|warning| say!("warning: {warning}"));
         deliver(output.as_ref(), |file| model.write_points(file))?;
         match &poses {
             Some(poses) => deliver(Some(poses), |file| model.write_poses(file, [&self.left, &self.right])),
@@ -102,22 +103,22 @@ impl Orient {
     }
 
     /// The targets of both images, in the order of the file.
-    fn seen(&self, rows: &[PointRow]) -> Result<Vec<Seen>, Failure> {
+    fn seen(&self, points: &Points) -> Result<Vec<Seen>, Failure> {
         if self.left == self.right {
             return Err(Failure::input(format!("--left and --right both name {}: expected two images", self.left)));
         }
         for (option, name) in [("left", &self.left), ("right", &self.right)] {
-            if rows.iter().all(|row| row.image != *name) {
-                let near = nearest(name, rows.iter().map(|row| row.image.as_str()));
+            if points.images().find(name).is_none() {
+                let near = nearest(name, points.images().iter());
                 let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
                 return Err(Failure::input(format!("--{option} {name}: no point is of this image{near}")));
             }
         }
         let (mut seen, mut places) = (Vec::<Seen>::new(), HashMap::new());
-        for row in rows {
+        for row in points.rows() {
             let Some(side) = [&self.left, &self.right].iter().position(|name| **name == row.image) else { continue };
-            let place = *places.entry(row.target.as_str()).or_insert_with(|| {
-                seen.push(Seen { target: row.target.clone(), at: [None; 2] });
+            let place = *places.entry(row.target).or_insert_with(|| {
+                seen.push(Seen { target: row.target.to_owned(), at: [None; 2] });
                 seen.len() - 1
             });
             seen[place].at[side] = Some(row.start.position);

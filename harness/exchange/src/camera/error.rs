@@ -1,10 +1,11 @@
 //! What is wrong with a camera file, and where.
 
+use calibench_model::escape;
 use thiserror::Error;
 
 /// What is wrong with a camera file, and where.
 #[derive(Clone, Debug, Default, Error, PartialEq, Eq)]
-#[error("{file}{place}: {problem}", place = self.place())]
+#[error("{}{place}: {}", escape::name(file), escape::name(problem), place = escape::name(&self.place()))]
 pub struct CameraFileError {
     /// The file.
     pub file: String,

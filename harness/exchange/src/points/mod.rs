@@ -1,13 +1,22 @@
 //! Point files: image coordinates as CSV.
 
-use std::collections::HashMap;
+mod lost;
+mod names;
+mod table;
+
 use std::fs::File;
+use std::hash::{BuildHasher, RandomState};
 use std::io::Read;
 use std::path::Path;
 
-use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind};
+use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind, escape};
 use csv::StringRecord;
+use hashbrown::HashTable;
 use thiserror::Error;
+
+pub use lost::{LostRow, LostRows};
+pub use names::Names;
+pub use table::{Groups, PointRef, Points};
 
 /// The columns that must be there.
 pub const REQUIRED: [&str; 4] = ["image", "target", "x", "y"];
@@ -30,32 +39,17 @@ pub struct PointRow {
 }
 
 /// The points of a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PointFile {
     /// The rows with a position, in the order of the file.
-    pub rows: Vec<PointRow>,
-    /// How many rows had none because `measure` rejected them or could not try them: left out.
-    pub without_position: usize,
-    /// Those rows.
-    pub lost: Vec<LostRow>,
-}
-
-/// A row without a position.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LostRow {
-    /// The image's file name.
-    pub image: String,
-    /// The target's name.
-    pub target: String,
-    /// What `measure` says became of it: `rejected` or `unavailable`.
-    pub status: String,
-    /// Why, as `measure` says it.
-    pub reason: String,
+    pub points: Points,
+    /// The rows without one because `measure` rejected them or could not try them.
+    pub lost: LostRows,
 }
 
 /// What is wrong with a file of points, control or stations, and where.
 #[derive(Debug, Error, PartialEq, Eq)]
-#[error("{file}{place}: {problem}", place = place(*line, column.as_deref()))]
+#[error("{}{place}: {}", escape::name(file), escape::name(problem), place = place(*line, column.as_deref()))]
 pub struct PointFileError {
     /// The file.
     pub file: String,
@@ -69,9 +63,9 @@ pub struct PointFileError {
 
 fn place(line: Option<u64>, column: Option<&str>) -> String {
     match (line, column) {
-        (Some(line), Some(column)) => format!(":{line}, column `{column}`"),
+        (Some(line), Some(column)) => format!(":{line}, column `{}`", escape::name(column)),
         (Some(line), None) => format!(":{line}"),
-        (None, Some(column)) => format!(", column `{column}`"),
+        (None, Some(column)) => format!(", column `{}`", escape::name(column)),
         (None, None) => String::new(),
     }
 }
@@ -98,37 +92,65 @@ pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, Point
     let mut text = Vec::new();
     let unreadable = |e: std::io::Error| PointFileError { file: file.to_owned(), line: None, column: None, problem: e.to_string() };
     input.read_to_end(&mut text).map_err(unreadable)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&text[..]);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(&text[..]);
     let header = reader.headers().map_err(|error| csv_error(file, &error))?.clone();
     let columns = Columns::new(file, &header)?;
-    let mut seen: HashMap<(String, String), u64> = HashMap::new();
-    let mut rows = Vec::new();
-    let mut lost = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|error| csv_error(file, &error))?;
-        let line = line_of(&text, &record);
-        let cells = Cells { file, columns: &columns, record: &record, line };
-        if let Some(status @ ("rejected" | "unavailable")) = cells.text("status") {
-            lost.push(cells.lost(status));
+    // A row takes eight bytes at least, as in `a,b,1,2`.
+    let most = text.iter().filter(|byte| **byte == b'\n').count().min(text.len() / 8);
+    let mut found = PointFile { points: Points::with_capacity(most), lost: LostRows::default() };
+    let (mut seen, mut record) = (Once::default(), StringRecord::new());
+    while reader.read_record(&mut record).map_err(|error| csv_error(file, &error))? {
+        let cells = Cells { file, columns: &columns, record: &record, text: &text };
+        if let Some(status @ ("rejected" | "unavailable")) = cells.text(STATUS) {
+            let name = |column: usize| escape::from_cell(cells.text(column).unwrap_or_default());
+            found.lost.push([name(IMAGE), name(TARGET), status, cells.text(REASON).unwrap_or_default()]);
             continue;
         }
-        let row = cells.row()?;
-        if let Some(earlier) = seen.insert((row.image.clone(), row.target.clone()), line) {
-            let problem = format!(
-                "target `{}` of image `{}` is already on line {earlier}; expected each once{}",
-                row.target,
-                row.image,
-                cells.several()
-            );
-            return Err(PointFileError { file: file.to_owned(), line: Some(line), column: None, problem });
+        let PointRef { image, target, start } = cells.row()?;
+        found.points.push(image, target, start);
+        if let Some(earlier) = seen.add(&found.points) {
+            let earlier = line_of_row(&text, &columns, earlier);
+            let problem =
+                format!("target `{target}` of image `{image}` is already on line {earlier}; expected each once{}", cells.several());
+            return Err(PointFileError { file: file.to_owned(), line: Some(cells.line()), column: None, problem });
         }
-        rows.push(row);
     }
-    if rows.is_empty() && lost.is_empty() {
+    if found.points.is_empty() && found.lost.is_empty() {
         let problem = "holds no point; expected one row a point below the header".to_owned();
         return Err(PointFileError { file: file.to_owned(), line: None, column: None, problem });
     }
-    Ok(PointFile { rows, without_position: lost.len(), lost })
+    Ok(found)
+}
+
+/// The pairs of image and target that were there.
+#[derive(Default)]
+struct Once {
+    points: HashTable<u32>,
+    hasher: RandomState,
+}
+
+impl Once {
+    /// Adds the last of `points`; the earlier one of the same image and target, if there is one.
+    fn add(&mut self, points: &Points) -> Option<usize> {
+        let key = |index: usize| (points.image_of(index), points.target_of(index));
+        let (last, hasher) = (points.len() - 1, &self.hasher);
+        let hash = hasher.hash_one(key(last));
+        if let Some(&earlier) = self.points.find(hash, |&other| key(other as usize) == key(last)) {
+            return Some(earlier as usize);
+        }
+        self.points.insert_unique(hash, last as u32, |&other| hasher.hash_one(key(other as usize)));
+        None
+    }
+}
+
+/// The line of the point `index` of a text that was read up to there.
+fn line_of_row(text: &[u8], columns: &Columns, index: usize) -> u64 {
+    let mut reader = csv::Reader::from_reader(text);
+    let is_point = |record: &StringRecord| {
+        let status = columns.0[STATUS].and_then(|place| record.get(place)).map(str::trim);
+        !matches!(status, Some("rejected" | "unavailable"))
+    };
+    reader.records().filter_map(Result::ok).filter(is_point).nth(index).map_or(0, |record| line_of(text, &record))
 }
 
 /// The line of a record: the reader's own count starts at the empty lines before it.
@@ -149,30 +171,42 @@ pub(crate) fn csv_error(file: &str, error: &csv::Error) -> PointFileError {
     PointFileError { file: file.to_owned(), line: error.position().map(csv::Position::line), column: None, problem }
 }
 
-/// Where each known column stands.
-struct Columns(HashMap<String, usize>);
+/// Where each known column stands: [`REQUIRED`], [`COVARIANCE`], [`SHAPE`] and [`RESULT`], in this order.
+struct Columns([Option<usize>; KNOWN.len()]);
+
+const KNOWN: [&str; 15] =
+    ["image", "target", "x", "y", "sxx", "sxy", "syy", "kind", "axx", "axy", "ayx", "ayy", "method", "status", "reason"];
+const IMAGE: usize = 0;
+const TARGET: usize = 1;
+const X: usize = 2;
+const Y: usize = 3;
+const SXX: usize = 4;
+const KIND: usize = 7;
+const AXX: usize = 8;
+const METHOD: usize = 12;
+const STATUS: usize = 13;
+const REASON: usize = 14;
 
 impl Columns {
     fn new(file: &str, header: &StringRecord) -> Result<Self, PointFileError> {
         let wrong = |column: &str, problem: String| {
             Err(PointFileError { file: file.to_owned(), line: Some(1), column: Some(column.to_owned()), problem })
         };
-        let known: Vec<&str> = [&REQUIRED[..], &COVARIANCE, &SHAPE, &RESULT].concat();
-        let mut places = HashMap::new();
+        let mut places = [None; KNOWN.len()];
         for (index, name) in header.iter().enumerate() {
-            if !known.contains(&name) {
-                return wrong(name, format!("unknown; known are {}", known.join(", ")));
-            }
-            if places.insert(name.to_owned(), index).is_some() {
+            let Some(known) = KNOWN.iter().position(|known| *known == name) else {
+                return wrong(name, format!("unknown; known are {}", KNOWN.join(", ")));
+            };
+            if places[known].replace(index).is_some() {
                 return wrong(name, "stands in the header twice".to_owned());
             }
         }
-        let groups = [&REQUIRED[..], &COVARIANCE, &SHAPE[1..]];
-        for (group, required) in groups.into_iter().zip([true, false, false]) {
-            let missing: Vec<&str> = group.iter().copied().filter(|name| !places.contains_key(*name)).collect();
-            if !missing.is_empty() && (required || missing.len() < group.len()) {
+        for (group, required) in [(IMAGE..=Y, true), (SXX..=SXX + 2, false), (AXX..=AXX + 3, false)] {
+            let names = &KNOWN[group.clone()];
+            let missing: Vec<&str> = group.filter(|&known| places[known].is_none()).map(|known| KNOWN[known]).collect();
+            if !missing.is_empty() && (required || missing.len() < names.len()) {
                 let why = if required { "every point file has" } else { "these go together:" };
-                return wrong(missing[0], format!("missing in the header; {why} {}", group.join(",")));
+                return wrong(missing[0], format!("missing in the header; {why} {}", names.join(",")));
             }
         }
         Ok(Self(places))
@@ -184,43 +218,38 @@ struct Cells<'a> {
     file: &'a str,
     columns: &'a Columns,
     record: &'a StringRecord,
-    line: u64,
+    text: &'a [u8],
 }
 
-impl Cells<'_> {
-    fn row(&self) -> Result<PointRow, PointFileError> {
-        let kind = self.text("kind").map(|name| name.parse::<TargetKind>().map_err(|e| self.wrong("kind", e.to_string()))).transpose()?;
-        let position = PixelPoint::new(self.required_number("x")?, self.required_number("y")?);
-        let affine = self.group(&SHAPE[1..])?.map(|a| Affine { axx: a[0], axy: a[1], ayx: a[2], ayy: a[3] });
-        let covariance = self.group(&COVARIANCE)?.map(|s| Covariance { sxx: s[0], sxy: s[1], syy: s[2] });
+impl<'a> Cells<'a> {
+    fn row(&self) -> Result<PointRef<'a>, PointFileError> {
+        let kind = self.text(KIND).map(|name| name.parse::<TargetKind>().map_err(|e| self.wrong(KIND, e.to_string()))).transpose()?;
+        let position = PixelPoint::new(self.required_number(X)?, self.required_number(Y)?);
+        let affine = self.group(AXX)?.map(|[axx, axy, ayx, ayy]| Affine { axx, axy, ayx, ayy });
+        let covariance = self.group(SXX)?.map(|[sxx, sxy, syy]| Covariance { sxx, sxy, syy });
         if let Some(impossible) = covariance.filter(|covariance| !covariance.is_valid()) {
             let Covariance { sxx, sxy, syy } = impossible;
             let problem = format!("no covariance: expected sxx, syy >= 0 and sxy^2 <= sxx syy, found {sxx}, {sxy}, {syy}");
-            return Err(self.wrong("sxx", problem));
+            return Err(self.wrong(SXX, problem));
         }
         let start = Start { position, kind, affine, covariance };
-        Ok(PointRow { image: self.required_text("image")?, target: self.required_text("target")?, start })
-    }
-
-    fn lost(&self, status: &str) -> LostRow {
-        let text = |column: &str| self.text(column).unwrap_or_default().to_owned();
-        LostRow { image: text("image"), target: text("target"), status: status.to_owned(), reason: text("reason") }
+        Ok(PointRef { image: self.required_name(IMAGE)?, target: self.required_name(TARGET)?, start })
     }
 
     /// What to do about a point that stands twice because several methods measured it.
     fn several(&self) -> &'static str {
-        if self.text("method").is_some() { " (the file holds the results of several methods: keep those of one)" } else { "" }
+        if self.text(METHOD).is_some() { " (the file holds the results of several methods: keep those of one)" } else { "" }
     }
 
-    fn text(&self, column: &str) -> Option<&str> {
-        self.columns.0.get(column).and_then(|&index| self.record.get(index)).filter(|text| !text.is_empty())
+    fn text(&self, column: usize) -> Option<&'a str> {
+        self.columns.0[column].and_then(|place| self.record.get(place)).map(str::trim).filter(|text| !text.is_empty())
     }
 
-    fn required_text(&self, column: &str) -> Result<String, PointFileError> {
-        self.text(column).map(str::to_owned).ok_or_else(|| self.wrong(column, "is empty; expected a name".into()))
+    fn required_name(&self, column: usize) -> Result<&'a str, PointFileError> {
+        self.text(column).map(escape::from_cell).ok_or_else(|| self.wrong(column, "is empty; expected a name".into()))
     }
 
-    fn number(&self, column: &str) -> Result<Option<f64>, PointFileError> {
+    fn number(&self, column: usize) -> Result<Option<f64>, PointFileError> {
         let Some(text) = self.text(column) else { return Ok(None) };
         match text.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(Some(number)),
@@ -228,22 +257,28 @@ impl Cells<'_> {
         }
     }
 
-    fn required_number(&self, column: &str) -> Result<f64, PointFileError> {
+    fn required_number(&self, column: usize) -> Result<f64, PointFileError> {
         self.number(column)?.ok_or_else(|| self.wrong(column, "is empty; expected a number".into()))
     }
 
-    /// All numbers of a group, or `None` if all its cells are empty or absent.
-    fn group(&self, names: &[&str]) -> Result<Option<Vec<f64>>, PointFileError> {
-        let numbers = names.iter().map(|name| self.number(name)).collect::<Result<Vec<_>, _>>()?;
-        if numbers.iter().all(Option::is_none) {
+    /// The numbers of a group of columns, or `None` if all its cells are empty or absent.
+    fn group<const N: usize>(&self, first: usize) -> Result<Option<[f64; N]>, PointFileError> {
+        if (first..first + N).all(|column| self.text(column).is_none()) {
             return Ok(None);
         }
-        let required = names.iter().map(|name| self.required_number(name));
-        required.collect::<Result<Vec<_>, _>>().map(Some)
+        let mut numbers = [0.0; N];
+        for (number, column) in numbers.iter_mut().zip(first..) {
+            *number = self.required_number(column)?;
+        }
+        Ok(Some(numbers))
     }
 
-    fn wrong(&self, column: &str, problem: String) -> PointFileError {
-        PointFileError { file: self.file.to_owned(), line: Some(self.line), column: Some(column.to_owned()), problem }
+    fn line(&self) -> u64 {
+        line_of(self.text, self.record)
+    }
+
+    fn wrong(&self, column: usize, problem: String) -> PointFileError {
+        PointFileError { file: self.file.to_owned(), line: Some(self.line()), column: Some(KNOWN[column].to_owned()), problem }
     }
 }
 

@@ -2,7 +2,7 @@ use super::*;
 use proptest::prelude::*;
 
 fn parse(text: &str) -> Result<Vec<PointRow>, PointFileError> {
-    parse_points("p.csv", text.as_bytes()).map(|file| file.rows)
+    parse_points("p.csv", text.as_bytes()).map(|file| file.points.rows().map(PointRow::from).collect())
 }
 
 fn error(text: &str) -> String {
@@ -57,9 +57,29 @@ fn mistakes_name_line_and_column() {
 fn rows_without_a_position_are_counted_and_left_out() {
     let text = "image,target,x,y,method,status,reason\ni,1,2,3,m,measured,\ni,2,,,m,rejected,border\ni,3,,,m,unavailable,no\n";
     let file = parse_points("p.csv", text.as_bytes()).unwrap();
-    assert_eq!((file.rows.len(), file.without_position), (1, 2));
+    assert_eq!((file.points.len(), file.lost.len()), (1, 2));
+    assert_eq!(file.lost.iter().next(), Some(["i", "2", "rejected", "border"]));
     let twice = error("image,target,x,y,method,status,reason\ni,1,2,3,m,measured,\ni,1,2,3,n,measured,\n");
     assert!(twice.contains("keep those of one"), "{twice}");
+}
+
+#[test]
+fn the_columns_are_those_that_are_documented() {
+    assert_eq!(KNOWN.to_vec(), [&REQUIRED[..], &COVARIANCE, &SHAPE, &RESULT].concat());
+}
+
+#[test]
+fn names_are_read_as_they_were_before_they_were_made_safe() {
+    let rows = parse("image,target,x,y\n'=i,'-a,1,2\n'a,-1,1,2\n").unwrap();
+    let names: Vec<[&str; 2]> = rows.iter().map(|row| [row.image.as_str(), row.target.as_str()]).collect();
+    assert_eq!(names, [["=i", "-a"], ["'a", "-1"]]);
+    assert_eq!(error("image,target,x,y\n\u{1b}[2J,a,1,2\n\u{1b}[2J,a,1,2\n").matches("\\u{1b}[2J").count(), 1);
+}
+
+#[test]
+fn a_point_that_stands_twice_is_named_with_both_lines() {
+    let text = "image,target,x,y,status\ni,1,1,2,measured\n\ni,2,,,rejected\ni,3,1,2,\ni,4,1,2,\ni,3,5,6,\n";
+    assert!(error(text).starts_with("p.csv:7: target `3` of image `i` is already on line 5; expected each once"), "{}", error(text));
 }
 
 proptest! {

@@ -5,7 +5,7 @@ mod theirs;
 use std::path::Path;
 
 use calibench_calibrate::{Optics, Settings, prepare};
-use calibench_exchange::{ControlRow, PointRow, read_photo};
+use calibench_exchange::{ControlRow, Points, read_photo};
 use calibench_measure::{Board, BoardDetector};
 use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::{PixelPoint, Start};
@@ -29,17 +29,14 @@ fn corners(folder: &Path) -> Vec<Vec<PixelPoint>> {
 }
 
 fn same_optimum(views: &[Vec<PixelPoint>]) {
-    let row = |image: usize, index: usize, position: PixelPoint| PointRow {
-        image: format!("{image}"),
-        target: BOARD.target(index),
-        start: Start::at(position),
-    };
-    let rows: Vec<PointRow> =
-        views.iter().enumerate().flat_map(|(i, view)| view.iter().enumerate().map(move |(k, at)| row(i, k, *at))).collect();
+    let mut points = Points::default();
+    for (image, view) in views.iter().enumerate() {
+        view.iter().enumerate().for_each(|(index, at)| points.push(&image.to_string(), &BOARD.target(index), Start::at(*at)));
+    }
     let control = control();
     let optics = Optics { model: Some("opencv5".into()), ..Optics::new(SIZE) };
     let settings = Settings { sigma_px: Some(1.0), ..Settings::new(vec![optics]) };
-    let prepared = prepare(&rows, &control, &settings).unwrap();
+    let prepared = prepare(points, &control, &settings).unwrap();
     let ours = prepared.adjust().unwrap();
     let plane: Vec<[f64; 2]> = control.iter().map(|row| [row.position[0], row.position[1]]).collect();
     let board = theirs::Board {
@@ -53,7 +50,7 @@ fn same_optimum(views: &[Vec<PixelPoint>]) {
     let parameters = ours.camera(0).parameters();
     assert_eq!(names, parameters.iter().map(|p| p.name).collect::<Vec<_>>());
     // OpenCV up to 4.6 divides the sum of squares by the number of points less unknowns, not by that of coordinates.
-    let (points, unknowns) = (rows.len() as f64, ours.solution.counts().unknowns as f64);
+    let (points, unknowns) = (prepared.survey.sights() as f64, ours.solution.counts().unknowns as f64);
     let divisor = ((2.0 * points - unknowns) / (points - unknowns)).sqrt();
     let ratio = theirs.sigmas[0] / covariance[(0, 0)].sqrt();
     let expected = if (ratio - 1.0).abs() < 0.01 { 1.0 } else { divisor };

@@ -3,7 +3,7 @@
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-use crate::cells::{Cells, RecordError, open};
+use crate::cells::{Cells, RecordError, open, write_row};
 use crate::points::RunInfo;
 
 /// The file's name in a scenario's folder.
@@ -94,7 +94,7 @@ pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> io::Result
     };
     let mut writer = csv::Writer::from_writer(output);
     writer.write_record(COLUMNS)?;
-    rows.iter().try_for_each(|row| writer.write_record(cells(row)))?;
+    rows.iter().try_for_each(|row| write_row(&mut writer, cells(row)))?;
     writer.flush()
 }
 
@@ -110,7 +110,7 @@ pub fn read_rows(input: impl Read) -> Result<(u64, Vec<Row>), RecordError> {
         seed = cells.parse(11)?;
         let [method, model, measure, place] = [1, 2, 3, 4].map(|column| cells.text(column).into());
         let [unit, status, reason] = [8, 9, 10].map(|column| cells.text(column).into());
-        let (value, sigma, count) = (cells.optional(5)?, cells.optional(6)?, cells.optional(7)?);
+        let (value, sigma, count) = (cells.optional_number(5)?, cells.optional_number(6)?, cells.optional(7)?);
         rows.push(Row { method, model, measure, place, value, sigma, count, unit, status, reason });
     }
     Ok((seed, rows))

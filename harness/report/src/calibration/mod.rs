@@ -7,7 +7,17 @@ mod pictures;
 mod sets_page;
 mod tables;
 
+use calibench_calibrate::Calibration;
+
 pub use page::{summary, write_report};
+
+/// How many observations of the network are in each image.
+fn points_by_image(calibration: &Calibration<'_>) -> Vec<usize> {
+    let network = &calibration.prepared.network;
+    let mut counts = vec![0; network.images.len()];
+    network.observations.iter().for_each(|o| counts[o.image] += 1);
+    counts
+}
 
 #[cfg(test)]
 mod tests;

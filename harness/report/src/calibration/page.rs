@@ -7,6 +7,7 @@ use calibench_adjust::{Significance, Use};
 use calibench_calibrate::Calibration;
 use calibench_exchange::NewFolder;
 use calibench_model::camera::CameraModel;
+use calibench_model::escape;
 
 use super::limits::{BASIC, CORRELATED, DOUBTFUL};
 use super::{pictures, sets_page, tables};
@@ -81,7 +82,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
     let (prepared, solution) = (calibration.prepared, &calibration.solution);
     let settings = &prepared.settings;
     let counts = solution.counts();
-    let control = prepared.survey.targets.iter().filter(|target| target.control.is_some()).count();
+    let control = prepared.survey.control_points();
     let owned = |camera: usize| (0..solution.poses().len()).filter(|&image| calibration.owner(image) == camera).count();
     let models = (0..calibration.cameras()).map(|camera| {
         let (name, model) = (of(calibration, camera), calibration.camera(camera).convention().name);
@@ -197,7 +198,7 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     if kept > 0 {
         warnings.push(format!("{kept} image points were rejected and kept: the network needs them, or too many were left out"));
     }
-    let weighted = calibration.solution.residuals().iter().filter(|r| matches!(r.used, Use::Downweighted(_))).count();
+    let weighted = calibration.solution.each_residual().filter(|r| matches!(r.used, Use::Downweighted(_))).count();
     if weighted > 0 {
         warnings.push(format!("{weighted} image points have less weight (Huber)"));
     }
@@ -229,9 +230,9 @@ fn images(calibration: &Calibration<'_>) -> String {
     let columns: Vec<&str> = columns.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, name)| name).collect();
     let mut table = MarkdownTable::new(&columns);
     let rms = calibration.solution.rms_by_image();
-    let names = &calibration.prepared.survey.images;
+    let (names, counts) = (&calibration.prepared.survey.images, super::points_by_image(calibration));
     for (index, name) in names.iter().enumerate().take(MOST) {
-        let points = calibration.prepared.network.observations.iter().filter(|o| o.image == index).count();
+        let points = counts[index];
         let numbers = calibench_exchange::station_numbers(&calibration.solution.poses()[index]);
         let [sx, sy, sz] = [0, 1, 2].map(|i| calibration.covariances.poses[index][(i, i)].max(0.0).sqrt());
         let centre = [(numbers[0], sx), (numbers[1], sy), (numbers[2], sz)].map(|(value, sigma)| {
@@ -239,9 +240,9 @@ fn images(calibration: &Calibration<'_>) -> String {
             format!("{value} \u{b1} {sigma}")
         });
         let angles = numbers[3..].iter().map(|angle| format!("{angle:.4}\u{b0}"));
-        let camera = several.then(|| calibration.name_of(calibration.owner(index)).to_owned());
+        let camera = several.then(|| escape::markdown(calibration.name_of(calibration.owner(index))).into_owned());
         let row = [points.to_string(), rms[index].map_or(String::new(), plain)];
-        table.row([name.clone()].into_iter().chain(camera).chain(row).chain(centre).chain(angles));
+        table.row([escape::markdown(name).into_owned()].into_iter().chain(camera).chain(row).chain(centre).chain(angles));
     }
     let more = if names.len() > MOST { format!("\nThe first {MOST} of {} images.\n", names.len()) } else { String::new() };
     format!("\n## Images\n\n{}{more}", table.render())
@@ -254,8 +255,9 @@ fn rejected(calibration: &Calibration<'_>) -> String {
     let prepared = calibration.prepared;
     let mut table = MarkdownTable::new(&["image", "target", "normalised residual", "critical", "left out"]);
     for found in calibration.found.iter().take(MOST) {
-        let sight = &prepared.survey.sights[prepared.sights[found.observation]];
-        let names = [prepared.survey.images[sight.image].clone(), prepared.survey.targets[sight.target].name.clone()];
+        let sight = prepared.survey.sight(prepared.sights[found.observation] as usize);
+        let names = [&prepared.survey.images[sight.image], prepared.survey.target(sight.target)];
+        let names = names.map(|name| escape::markdown(name).into_owned());
         let verdict = if found.left_out { "yes" } else { "no" };
         table.row(names.into_iter().chain([format!("{:.2}", found.w), format!("{:.2}", found.critical), verdict.to_owned()]));
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::io;
 
-use calibench_adjust::{Found, PointReliability, Significance, Use};
+use calibench_adjust::{Found, PointReliability, Residual, Significance, Use};
 use calibench_calibrate::Calibration;
 use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_control};
 use calibench_model::camera::CameraModel;
@@ -27,72 +27,72 @@ fn texts<const N: usize>(values: Option<[f64; N]>) -> Vec<String> {
     values.map_or_else(|| vec![String::new(); N], |values| values.iter().map(f64::to_string).collect())
 }
 
+const RESIDUALS: [&str; 15] = [
+    "image",
+    "target",
+    "x",
+    "y",
+    "vx",
+    "vy",
+    "redundancy_x",
+    "redundancy_y",
+    "w_x",
+    "w_y",
+    "detectable_x",
+    "detectable_y",
+    "weight",
+    "status",
+    "reason",
+];
+
 /// Every row that was given, and every target that a method could not measure, with what became of it. Residuals are adjusted less observed, px.
 fn residuals(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let prepared = calibration.prepared;
     let survey = &prepared.survey;
-    let mut rows: Vec<Option<Vec<String>>> = vec![None; survey.sights.len()];
-    let start = |index: usize| {
-        let sight = &survey.sights[index];
-        let mut row = vec![survey.images[sight.image].clone(), survey.targets[sight.target].name.clone()];
-        row.extend(texts(Some([sight.position.x, sight.position.y])));
-        row
-    };
-    let checks = calibration.reliability.iter().flat_map(|r| &r.points);
-    let checked: HashMap<usize, &PointReliability> = checks.map(|point| (point.observation, point)).collect();
+    // All are in the order of the file: the next of each is that of the row or of a later one.
+    let mut residuals = calibration.solution.each_residual().peekable();
+    let mut checks = calibration.reliability.iter().flat_map(|r| &r.points).peekable();
+    let mut left_out = prepared.left_out.iter().peekable();
     let rejected: HashMap<usize, &Found> = calibration.found.iter().map(|found| (found.observation, found)).collect();
-    for residual in calibration.solution.residuals() {
-        let sight = prepared.sights[residual.observation];
-        let checked = checked.get(&residual.observation);
-        let (used, weight) = match residual.used {
-            Use::Full => ("used", Some(1.0)),
-            Use::Downweighted(weight) => ("downweighted", Some(weight)),
-            Use::LeftOut => ("rejected", Some(0.0)),
-        };
-        let found = rejected.get(&residual.observation);
-        let why = found.map_or(String::new(), |found| {
-            let kept = if found.left_out { "" } else { ", kept: the network needs it" };
-            format!("normalised residual {:.2} beyond {:.2}{kept}", found.w, found.critical)
-        });
-        let mut row = start(sight);
-        row.extend(texts(residual.v));
-        row.extend(texts(checked.map(|p| p.redundancy)));
-        row.extend(texts(checked.map(|p| p.w)));
-        row.extend(texts(checked.map(|p| p.detectable)));
-        row.extend(texts(weight.map(|weight| [weight])));
-        row.extend([used.to_owned(), why]);
-        rows[sight] = Some(row);
-    }
-    for left in &prepared.left_out {
-        let mut row = start(left.sight);
-        row.extend(vec![String::new(); 9]);
-        row.extend(["left_out".to_owned(), left.why.clone()]);
-        rows[left.sight] = Some(row);
-    }
-    let unmeasured = prepared.unmeasured.iter().map(|lost| {
-        let mut row = vec![lost.image.clone(), lost.target.clone()];
-        row.extend(vec![String::new(); 11]);
-        row.extend([lost.status.clone(), lost.reason.clone()]);
+    let given = (0..survey.sights()).map(|index| {
+        let sight = survey.sight(index);
+        let mut row = vec![survey.images[sight.image].clone(), survey.target(sight.target).to_owned()];
+        row.extend(texts(Some([sight.position.x, sight.position.y])));
+        if let Some(left) = left_out.next_if(|left| left.sight == index) {
+            row.extend(vec![String::new(); 9]);
+            row.extend(["left_out".to_owned(), left.why.clone()]);
+        } else if let Some(residual) = residuals.next_if(|residual| prepared.sights[residual.observation] as usize == index) {
+            let checked = checks.next_if(|check| check.observation == residual.observation);
+            row.extend(adjusted(&residual, checked, rejected.get(&residual.observation).copied()));
+        }
         row
     });
-    let columns = [
-        "image",
-        "target",
-        "x",
-        "y",
-        "vx",
-        "vy",
-        "redundancy_x",
-        "redundancy_y",
-        "w_x",
-        "w_y",
-        "detectable_x",
-        "detectable_y",
-        "weight",
-        "status",
-        "reason",
-    ];
-    table(folder, "residuals.csv", &columns, rows.into_iter().flatten().chain(unmeasured))
+    let unmeasured = prepared.unmeasured.iter().map(|[image, target, status, reason]| {
+        let mut row = vec![image.to_owned(), target.to_owned()];
+        row.extend(vec![String::new(); 11]);
+        row.extend([status.to_owned(), reason.to_owned()]);
+        row
+    });
+    table(folder, "residuals.csv", &RESIDUALS, given.chain(unmeasured))
+}
+
+/// The cells of a row after its coordinates.
+fn adjusted(residual: &Residual, checked: Option<&PointReliability>, rejected: Option<&Found>) -> Vec<String> {
+    let (used, weight) = match residual.used {
+        Use::Full => ("used", 1.0),
+        Use::Downweighted(weight) => ("downweighted", weight),
+        Use::LeftOut => ("rejected", 0.0),
+    };
+    let why = rejected.map_or(String::new(), |found| {
+        let kept = if found.left_out { "" } else { ", kept: the network needs it" };
+        format!("normalised residual {:.2} beyond {:.2}{kept}", found.w, found.critical)
+    });
+    let mut row = texts(residual.v);
+    row.extend(texts(checked.map(|p| p.redundancy)));
+    row.extend(texts(checked.map(|p| p.w)));
+    row.extend(texts(checked.map(|p| p.detectable)));
+    row.extend([weight.to_string(), used.to_owned(), why]);
+    row
 }
 
 /// All parameters; those that were not solved for have no standard deviation.
@@ -145,7 +145,7 @@ fn correlations(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result
 fn stations(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &["points", "rms_px", "camera"]].concat();
     let (poses, rms) = (calibration.solution.poses(), calibration.solution.rms_by_image());
-    let observations = &calibration.prepared.network.observations;
+    let counts = super::points_by_image(calibration);
     let row = |(index, name): (usize, &String)| {
         let covariance = &calibration.covariances.poses[index];
         let sigma = |i: usize| covariance[(i, i)].max(0.0).sqrt();
@@ -153,7 +153,7 @@ fn stations(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()>
         row.extend(texts(Some(station_numbers(&poses[index]))));
         row.extend(texts(Some([sigma(0), sigma(1), sigma(2)])));
         row.extend(texts(Some([sigma(3), sigma(4), sigma(5)].map(f64::to_degrees))));
-        row.push(observations.iter().filter(|o| o.image == index).count().to_string());
+        row.push(counts[index].to_string());
         row.extend(texts(rms[index].map(|rms| [rms])));
         row.push(calibration.name_of(calibration.owner(index)).to_owned());
         row

@@ -2,15 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use calibench_model::escape::{code, markdown};
 use calibench_records::judgement::{COMPARABLE, Cell, Summary, Trusted};
 
 use super::verdict::listed;
 use crate::markdown::{MarkdownTable, fixed};
 use crate::plain;
-
-fn code(text: &str) -> String {
-    format!("`{text}`")
-}
 
 fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "-".into(), plain)
@@ -43,7 +40,7 @@ pub fn about_holdout(summary: &Summary) -> String {
         }
     }
     for (view, why) in &summary.missed {
-        text.push_str(&format!(" `{view}`: {why}."));
+        text.push_str(&format!(" {}: {}.", code(view), markdown(why)));
     }
     text
 }

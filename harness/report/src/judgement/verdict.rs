@@ -1,5 +1,6 @@
 //! The verdict in words, every one of them derived from the records.
 
+use calibench_model::escape;
 use calibench_records::judgement::{ALPHA, Beside, Cell, Estimate, HONEST, OUTLIER_ALPHA, Published, Summary, Trusted};
 
 use crate::markdown::fixed;
@@ -144,8 +145,11 @@ fn beyond(summary: &Summary, trusted: &Trusted<'_>) -> Option<String> {
 }
 
 fn outlying(cell: &Cell) -> String {
-    let named: Vec<String> =
-        cell.outlying().iter().map(|view| format!("`{}` ({} px, {})", view.name, plain(view.residual.0), chance(view.p))).collect();
+    let named: Vec<String> = cell
+        .outlying()
+        .iter()
+        .map(|view| format!("{} ({} px, {})", escape::code(&view.name), plain(view.residual.0), chance(view.p)))
+        .collect();
     let mut rms: Vec<f64> = cell.views.iter().map(|view| view.residual.0).collect();
     rms.sort_by(f64::total_cmp);
     let middle = rms.get(rms.len() / 2).copied().unwrap_or_default();

@@ -14,7 +14,7 @@ pub struct Axis {
     pub name: String,
     /// Its values, as they are written.
     pub values: Vec<Value>,
-    /// Are they steps of a factor rather than of a difference?
+    /// Whether steps are factors, not differences.
     pub log: bool,
     /// Where the key stands.
     pub(super) span: Range<usize>,

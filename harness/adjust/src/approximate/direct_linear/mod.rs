@@ -5,7 +5,7 @@ use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, SMatrix, SVector, Vector3, Vector4};
 
 use super::ApproximateError;
-use super::consensus::{Search, search};
+use super::consensus::{Search, others, search};
 use super::error::at_least;
 use super::interior::interior_from_data_sheet;
 use super::least_squares::{Normal, minimise};
@@ -163,7 +163,7 @@ fn fitted(start: &Start, control: &[Control], agreeing: &[usize]) -> Result<Dire
         redundancy,
         cofactor,
         residuals: control.iter().map(|point| residual(&camera.into(), &pose, point)).collect(),
-        rejected: (0..control.len()).filter(|i| !agreeing.contains(i)).collect(),
+        rejected: others(control.len(), agreeing),
     })
 }
 

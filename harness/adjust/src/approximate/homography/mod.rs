@@ -71,7 +71,13 @@ pub(super) fn normalised(pairs: &[([f64; 2], [f64; 2])]) -> Result<(Matrix3<f64>
 fn all_but_one_in_line(pairs: &[([f64; 2], [f64; 2])]) -> bool {
     let points = pairs.iter().map(|&([x, y], _)| Point3::new(x, y, 0.0));
     let rest = |left_out: usize| points.clone().enumerate().filter(move |(i, _)| *i != left_out).map(|(_, point)| point);
-    (0..pairs.len()).any(|left_out| Shape::of(rest(left_out)).is_line())
+    // The one is the first point, or that farthest from it, or else both are on the line and it is the one farthest off.
+    let largest = |of: &dyn Fn([f64; 2]) -> f64| (0..pairs.len()).max_by(|&a, &b| of(pairs[a].0).total_cmp(&of(pairs[b].0))).unwrap_or(0);
+    let Some(&([x, y], _)) = pairs.first() else { return false };
+    let farthest = largest(&|[u, v]| (u - x).hypot(v - y));
+    let [dx, dy] = [pairs[farthest].0[0] - x, pairs[farthest].0[1] - y];
+    let off = largest(&|[u, v]| ((u - x) * dy - (v - y) * dx).abs());
+    [0, farthest, off].into_iter().any(|left_out| Shape::of(rest(left_out)).is_line())
 }
 
 /// The homography of least squares in the picture, from an approximate one: the distances of `(x', y')` from the mapped `(x, y)`.

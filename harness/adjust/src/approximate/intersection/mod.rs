@@ -5,7 +5,7 @@ use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, SVector, Vector3};
 
 use super::ApproximateError;
-use super::consensus::{Search, search};
+use super::consensus::{Search, others, search};
 use super::error::at_least;
 use super::least_squares::{Normal, minimise};
 
@@ -158,7 +158,7 @@ fn finish(sights: &[Sight<'_>], start: &Point3<f64>, agreeing: &[usize], least_a
         redundancy,
         residuals: sights.iter().map(|sight| residual(sight, &point)).collect(),
         angle,
-        rejected: (0..sights.len()).filter(|i| !agreeing.contains(i)).collect(),
+        rejected: others(sights.len(), agreeing),
     })
 }
 

@@ -8,7 +8,7 @@ use rand::seq::index::sample;
 use rand_chacha::ChaCha8Rng;
 
 use super::ApproximateError;
-use super::consensus::{Search, search};
+use super::consensus::{Search, others, search};
 use super::coplanarity::{Motion, Pair, Slopes, nearest, normal, sampson, slopes};
 use super::error::at_least;
 use super::essential::{distances, essential_matrices, motion};
@@ -79,7 +79,7 @@ pub fn orient_relatively(
         sigma0: best.variance().sqrt(),
         redundancy: best.redundancy,
         residuals: network.pairs.iter().map(|pair| network.residual(&best.motion, pair.as_ref())).collect(),
-        rejected: (0..points.len()).filter(|i| !agreeing.contains(i)).collect(),
+        rejected: others(points.len(), &agreeing),
         rival: network.rival(&best, &agreeing, against.seed),
     })
 }

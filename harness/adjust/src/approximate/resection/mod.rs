@@ -5,7 +5,7 @@ use calibench_model::camera::Camera;
 use nalgebra::{Matrix6, Vector3};
 
 use super::ApproximateError;
-use super::consensus::{Search, Tolerance, search};
+use super::consensus::{Search, Tolerance, others, search};
 use super::error::at_least;
 use super::p3p::p3p;
 use super::planar::flattened_starts;
@@ -69,8 +69,8 @@ pub fn resect(camera: &Camera, control: &[Control], against: Option<&Search>) ->
     let distance = |pose: &Pose, index: usize| square(camera, pose, &control[index]);
     let refine = |pose: &Pose, chosen: &[usize]| fit_pose(camera, pose, &of(control, chosen)).ok().map(|fit| fit.pose);
     let (pose, agreeing) = search(control.len(), 3, 2, against.unwrap_or(&everything), propose, distance, refine)?;
-    let others = spread_triples(&agreeing).flat_map(|triple| propose(&triple)).collect();
-    let (best, rival) = best_of(camera, &pose, others, &of(control, &agreeing))?;
+    let rivals = spread_triples(&agreeing).flat_map(|triple| propose(&triple)).collect();
+    let (best, rival) = best_of(camera, &pose, rivals, &of(control, &agreeing))?;
     let cofactor = best.cofactor.ok_or(ApproximateError::Critical { what: "the pose" })?;
     Ok(Resection {
         pose: best.pose,
@@ -78,7 +78,7 @@ pub fn resect(camera: &Camera, control: &[Control], against: Option<&Search>) ->
         redundancy: best.redundancy,
         cofactor,
         residuals: control.iter().map(|point| residual(camera, &best.pose, point)).collect(),
-        rejected: (0..control.len()).filter(|i| !agreeing.contains(i)).collect(),
+        rejected: others(control.len(), &agreeing),
         rival,
     })
 }

@@ -22,19 +22,42 @@ const NAME: u32 = 24;
 /// The length that the residual at the 95th percentile is drawn with, in widths of the frame.
 const LENGTH: f64 = 0.06;
 
+/// Residuals that are drawn at most: more of them cover each other.
+const MOST: usize = 50_000;
+
 /// The residuals in the images of a camera.
-fn of_camera(calibration: &Calibration<'_>, camera: usize) -> Vec<Residual> {
-    calibration.solution.residuals().into_iter().filter(|residual| calibration.owner(residual.image) == camera).collect()
+struct Residuals {
+    /// Those that are drawn.
+    drawn: Vec<Residual>,
+    /// Of so many, one is drawn.
+    every: usize,
+    /// The longest of all that take part, px.
+    longest: f64,
+    /// How many of all do not take part, or not fully.
+    doubted: usize,
+}
+
+impl Residuals {
+    fn of_camera(calibration: &Calibration<'_>, camera: usize) -> Self {
+        let all = || calibration.solution.each_residual().filter(move |residual| calibration.owner(residual.image) == camera);
+        let every = all().count().div_ceil(MOST).max(1);
+        Self {
+            drawn: all().step_by(every).collect(),
+            every,
+            longest: all().filter(|r| r.used != Use::LeftOut).filter_map(|r| length(&r)).fold(0.0, f64::max),
+            doubted: all().filter(|r| r.used != Use::Full).count(),
+        }
+    }
 }
 
 /// All images of a camera in one frame.
 pub(super) fn together(calibration: &Calibration<'_>, camera: usize) -> Canvas {
-    let residuals = of_camera(calibration, camera);
+    let residuals = Residuals::of_camera(calibration, camera);
     let size = calibration.camera(camera).size();
     let (map, mut canvas) = Map::alone(size, "Residuals of all images");
-    let times = times(&residuals, size, MAP);
+    let times = times(&residuals.drawn, size, MAP);
     canvas.paint(|area| {
-        residuals.iter().for_each(|residual| vector(area, &map, calibration, residual, times));
+        residuals.drawn.iter().for_each(|residual| vector(area, &map, calibration, residual, times));
         map.axes(area);
     });
     canvas.text(&legend(&residuals, times), 16, (LEFT, TOP + map.extent.1 + BOTTOM - 20));
@@ -43,13 +66,13 @@ pub(super) fn together(calibration: &Calibration<'_>, camera: usize) -> Canvas {
 
 /// A panel for each image of a camera, some panels in each picture, with the names of its first and last image.
 pub(super) fn by_image(calibration: &Calibration<'_>, camera: usize) -> Vec<(String, Canvas)> {
-    let residuals = of_camera(calibration, camera);
+    let residuals = Residuals::of_camera(calibration, camera);
     let images: Vec<usize> = (0..calibration.prepared.survey.images.len()).filter(|&image| calibration.owner(image) == camera).collect();
-    let times = times(&residuals, calibration.camera(camera).size(), PANEL);
+    let times = times(&residuals.drawn, calibration.camera(camera).size(), PANEL);
     images.chunks(PANELS).map(|images| panels(calibration, &residuals, images, times)).collect()
 }
 
-fn panels(calibration: &Calibration<'_>, residuals: &[Residual], images: &[usize], times: f64) -> (String, Canvas) {
+fn panels(calibration: &Calibration<'_>, residuals: &Residuals, images: &[usize], times: f64) -> (String, Canvas) {
     let size = calibration.camera(calibration.owner(images[0])).size();
     let names = &calibration.prepared.survey.images;
     let height = Map::new(size, (0, 0), PANEL).extent.1 + NAME + GAP;
@@ -63,7 +86,7 @@ fn panels(calibration: &Calibration<'_>, residuals: &[Residual], images: &[usize
         canvas.text(&format!("{}{said}", names[image]), 15, (x, y + NAME / 2));
         let map = Map::new(size, (x, y + NAME), PANEL);
         canvas.paint(|area| {
-            residuals.iter().filter(|r| r.image == image).for_each(|residual| vector(area, &map, calibration, residual, times));
+            residuals.drawn.iter().filter(|r| r.image == image).for_each(|residual| vector(area, &map, calibration, residual, times));
             map.outline(area);
         });
     }
@@ -99,9 +122,9 @@ fn vector(area: &Area<'_>, map: &Map, calibration: &Calibration<'_>, residual: &
     arrow(area, from, map.place(PixelPoint::new(at.x + x * times, at.y + y * times)));
 }
 
-fn legend(residuals: &[Residual], times: f64) -> String {
-    let longest = residuals.iter().filter(|r| r.used != Use::LeftOut).filter_map(length).fold(0.0, f64::max);
-    let doubted = residuals.iter().filter(|r| r.used != Use::Full).count();
+fn legend(residuals: &Residuals, times: f64) -> String {
+    let Residuals { every, longest, doubted, .. } = *residuals;
     let doubted = if doubted > 0 { format!("; orange: {doubted} left out or of less weight") } else { String::new() };
-    format!("arrows {times} times too long; longest {} px{doubted}", plain(longest))
+    let drawn = if every > 1 { format!("; one of {every} is drawn") } else { String::new() };
+    format!("arrows {times} times too long; longest {} px{doubted}{drawn}", plain(longest))
 }
