@@ -140,5 +140,10 @@ fn two_outputs_are_two_files() {
     fs::write(folder.path().join("plot.csv"), b"\xff\xd8\xff\xe1 a photograph").unwrap();
     refused(folder.path(), &["plot", "sweep.toml", "-o", "plot.png"], &["plot.csv"]);
     let output = run(folder.path(), &["plot", "sweep.toml", "-o", "records/local/sweep/plot.png"]);
-    assert!(stderr(&output).contains("the command reads records/local/sweep there"), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("records/local/sweep/plot.png: the command reads ")
+            && stderr(&output).contains("records/local/sweep there"),
+        "{}",
+        stderr(&output)
+    );
 }

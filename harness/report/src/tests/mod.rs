@@ -44,7 +44,7 @@ fn the_page_of_a_small_family() {
 fn records_that_are_not_the_scenario_of_the_file_are_named() {
     let family = Family::new();
     assert!(!family.page().contains("Not the scenario"), "two trials, as the file says");
-    family.change_scenario("trials = 2", "trials = 3");
+    family.ask_for_three_trials();
     let page = family.page();
     assert_eq!(line(&page, "**Not the scenario"), "**Not the scenario as its file says: 2 trials in place of 3.**");
 }

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::PathBuf;
 
-use calibench_measure::Registry;
 use calibench_model::{PixelPoint, Rejection};
+use calibench_records::description::{self, Description, Subject};
+use calibench_records::names::DESCRIPTION;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
 use tempfile::TempDir;
@@ -12,51 +13,6 @@ use tempfile::TempDir;
 use crate::{Places, write};
 
 const NAME: &str = "small/scene";
-
-const SCENARIO: &str = r#"
-why = "Three discs."
-source = "ours"
-notes = ["Nothing is rendered here."]
-seed = 5
-trials = 2
-
-[scene]
-width = 60
-height = 30
-background = 0.9
-grey_noise = 0.01
-
-[[scene.polygon]]
-id = "dark"
-grey = 0.1
-vertices = [[10.5, 10.5], [15.5, 10.5], [15.5, 15.5], [10.5, 15.5]]
-
-[scene.pointing]
-sigma = 0.5
-whole_pixels = true
-
-[[scene.target]]
-id = "a"
-kind = "square"
-at = [13, 13]
-
-[[scene.target]]
-id = "b"
-kind = "square"
-at = [30, 13]
-
-[[scene.target]]
-id = "c"
-kind = "square"
-at = [47, 13]
-
-[[method]]
-name = "pixel"
-
-[[method]]
-name = "centroid"
-window = 15
-"#;
 
 const TABLE: &str = r#"
 title = "Table 1: errors"
@@ -116,6 +72,21 @@ printed = "0.039"
 metric = "rmse_xy"
 "#;
 
+fn description() -> Description {
+    Description {
+        why: "Three discs.".into(),
+        source: "ours".into(),
+        notes: vec!["Nothing is rendered here.".into()],
+        seed: 5,
+        trials: 2,
+        bound_window: 15,
+        methods: vec!["pixel".into(), "centroid:window=15".into()],
+        defaults: [("pixel".into(), "pixel".into()), ("centroid".into(), "centroid:window=15".into())].into(),
+        subject: Subject::Scene,
+        sweep: None,
+    }
+}
+
 fn trial(number: u64, pixel: [(f64, f64); 3], centroid: [Option<(f64, f64)>; 3]) -> Trial {
     let truth = [("a", 13.0), ("b", 30.0), ("c", 47.0)];
     let measured = |at: f64, (dx, dy)| Outcome::Measured { position: PixelPoint::new(at + dx, 13.0 + dy), error: Some((dx, dy)) };
@@ -140,7 +111,6 @@ impl Family {
         let records = family.folder.path().join("records").join(NAME);
         fs::create_dir_all(&records).unwrap();
         fs::create_dir_all(family.folder.path().join("published/small")).unwrap();
-        fs::write(records.join("scenario.toml"), SCENARIO).unwrap();
         fs::write(family.folder.path().join("published/small/table-1.toml"), TABLE).unwrap();
         let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
         let run = RunInfo { scenario: NAME.into(), seed: 5, revision: "r".into(), detector: None };
@@ -151,6 +121,7 @@ impl Family {
         writer.trial(&trial(0, [(0.3, 0.4), (0.0, 0.0), (0.0, 0.5)], first)).unwrap();
         writer.trial(&trial(1, [(0.0, 0.1), (0.1, 0.0), (-0.4, 0.3)], second)).unwrap();
         writer.finish().unwrap();
+        family.describe(&description());
         family
     }
 
@@ -158,15 +129,20 @@ impl Family {
         self.folder.path().join("records").join(NAME).join("records.csv")
     }
 
-    pub fn change_scenario(&self, old: &str, new: &str) {
-        assert!(SCENARIO.contains(old));
-        fs::write(self.records().with_file_name("scenario.toml"), SCENARIO.replace(old, new)).unwrap();
+    /// Three trials in place of two.
+    pub fn ask_for_three_trials(&self) {
+        self.describe(&Description { trials: 3, ..description() });
+    }
+
+    fn describe(&self, scenario: &Description) {
+        let file = fs::File::create(self.records().with_file_name(DESCRIPTION)).unwrap();
+        description::write(file, scenario).unwrap();
     }
 
     fn write(&self) -> Result<PathBuf, String> {
         let at = |name: &str| self.folder.path().join(name);
         let places = Places { records: at("records"), published: at("published"), cameras: at("cameras"), reports: at("reports") };
-        write(&places, "small", &[NAME.to_owned()], &Registry::builtin()).map_err(|error| error.to_string())?;
+        write(&places, "small", &[NAME.to_owned()]).map_err(|error| error.to_string())?;
         Ok(at("reports/small/README.md"))
     }
 
