@@ -1,8 +1,8 @@
-//! The drawing of crates and modules: arrows as the page says, no circle between folders, files that are read at one go.
+//! The drawing of modules: no circle between folders, files that are read at one go.
 
 mod modules;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,27 +32,6 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     }
     found.sort();
     found
-}
-
-/// The crates that the table of the page says each crate needs.
-fn drawn() -> BTreeMap<String, BTreeSet<String>> {
-    let page = fs::read_to_string(root().join("docs/ARCHITECTURE.md")).unwrap();
-    let names = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<BTreeSet<String>>();
-    let table = page.lines().skip_while(|line| !line.starts_with("| crate ")).skip(2).take_while(|line| line.starts_with('|'));
-    table.map(|line| line.split('|').collect::<Vec<_>>()).map(|cells| (names(cells[1]).pop_first().unwrap(), names(cells[3]))).collect()
-}
-
-/// The crates that the manifest in `folder` names.
-fn needed(folder: &Path) -> BTreeSet<String> {
-    let manifest: toml::Table = fs::read_to_string(folder.join("Cargo.toml")).unwrap().parse().unwrap();
-    let named = manifest["dependencies"].as_table().into_iter().flat_map(toml::Table::keys);
-    named.filter_map(|name| name.strip_prefix("calibench-")).map(str::to_owned).collect()
-}
-
-#[test]
-fn the_crates_need_each_other_as_the_page_says() {
-    let found: BTreeMap<String, BTreeSet<String>> = crates().into_iter().map(|(name, folder)| (name, needed(&folder))).collect();
-    assert_eq!(drawn(), found, "docs/ARCHITECTURE.md on the left, Cargo.toml on the right");
 }
 
 #[test]

@@ -173,10 +173,13 @@ fn every_written_format_is_round_tripped() {
         "pix4d",
         "pix4d-parameters",
     ];
-    let written = super::super::FORMATS.iter().filter(|format| format.is_written()).map(|format| format.name);
-    let (own, others): (Vec<_>, Vec<_>) = written.partition(|name| here.contains(name));
-    assert_eq!(own, here);
-    assert_eq!(others, super::tool_formats::ROUND_TRIPPED);
+    let listed = [&here[..], &super::tool_formats::ROUND_TRIPPED].concat();
+    let written = || super::super::FORMATS.iter().filter(|format| format.is_written());
+    assert!(listed.iter().all(|name| written().any(|format| format.name == *name)), "{listed:?}");
+    // A format with models is written and read again with cameras of every model, in `any_model`.
+    let left: Vec<&str> =
+        written().filter(|format| !listed.contains(&format.name) && format.models(None).is_empty()).map(|format| format.name).collect();
+    assert_eq!(left, Vec::<&str>::new(), "nobody reads again what these write");
 }
 
 #[test]
