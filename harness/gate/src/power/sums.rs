@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::mutate::Mutation;
 use crate::cells::Cells;
 use crate::finding::{Finding, Rules, Verdict};
-use crate::sums::{PointSums, Sum};
+use crate::moments::{PointSums, Sum};
 use crate::sums_judged::judged;
 
 /// What became of one kind of fault in all methods of all cells of a sweep.
