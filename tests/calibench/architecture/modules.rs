@@ -57,7 +57,7 @@ impl Modules {
             }
             for next in self.needs.get(last).into_iter().flatten() {
                 if seen.insert(next.clone()) {
-                    waiting.push_back([&way[..], &[next.clone()]].concat());
+                    waiting.push_back([&way[..], std::slice::from_ref(next)].concat());
                 }
             }
         }
@@ -148,9 +148,9 @@ impl Resolver<'_> {
         // What is handed on may be handed on again.
         for _ in 0..10 {
             while let Some((first, after)) = rest.split_first()
-                && self.files.contains_key(&[&at[..], &[first.clone()]].concat())
+                && self.files.contains_key(&[&at[..], std::slice::from_ref(first)].concat())
             {
-                (at, rest) = ([&at[..], &[first.clone()]].concat(), after.to_vec());
+                (at, rest) = ([&at[..], std::slice::from_ref(first)].concat(), after.to_vec());
             }
             let Some((first, after)) = rest.split_first() else { break };
             let Some(handed) = self.named.get(&at).and_then(|named| named.handed_on.get(first)) else { break };
