@@ -84,7 +84,7 @@ pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: St
 
 /// The normal equations at the end, solved.
 fn determined(engine: &Engine, end: &mut End) -> Result<Solved, AdjustError> {
-    let solved = end.solved.take().or_else(|| engine.decompose(&end.normals, 0.0));
+    let solved = end.solved.take().or_else(|| engine.decompose((&end.state, &end.normals), 0.0));
     let suspect = solved.as_ref().is_none_or(|solved| solved.factor.smallest_pivot < SUSPECT);
     if suspect || !end.converged {
         let redundancy = engine.layout.counts.redundancy().max(1);
@@ -164,7 +164,7 @@ impl<'n> Solution<'n> {
         let mut end = End { state, ..self.end.clone() };
         let lost = |_| refuse("the transformed network does not picture its points");
         self.engine.linearise(&end.state, &mut Scratch::default(), &mut end.normals).map_err(lost)?;
-        let solved = self.engine.decompose(&end.normals, 0.0).ok_or_else(|| refuse("the coordinates held do not suffice"))?;
+        let solved = self.engine.decompose((&end.state, &end.normals), 0.0).ok_or_else(|| refuse("the coordinates held do not suffice"))?;
         Ok(Self { engine: self.engine.clone(), end, solved, datum: datum.clone() })
     }
 }

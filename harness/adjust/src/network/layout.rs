@@ -71,6 +71,8 @@ pub(crate) struct Layout {
     /// Of each point: whether X, Y and Z are unknowns.
     pub(crate) point_free: Vec<[bool; 3]>,
     has_unknown_points: bool,
+    /// Whether what couples points with cameras and poses is kept for all sights, and not made anew for some points at a time.
+    pub(crate) keeps_couplings: bool,
     pub(crate) pairs: Vec<Pair>,
     pair_start: Vec<usize>,
     pub(crate) pair_values: usize,
@@ -106,6 +108,7 @@ impl Layout {
             pose_free,
             has_unknown_points: point_free.iter().any(|free| *free != [false; 3]),
             point_free,
+            keeps_couplings: true,
             pairs: Vec::new(),
             pair_start: vec![0],
             pair_values: 0,

@@ -167,8 +167,8 @@ impl Normals {
         self.point.resize(points, [0.0; 9]);
         self.point_right.clear();
         self.point_right.resize(points, [0.0; 3]);
-        zero(&mut self.point_camera, layout.pair_values);
-        let coupled = if layout.has_unknown_points() { layout.sights.len() } else { 0 };
+        zero(&mut self.point_camera, if layout.keeps_couplings { layout.pair_values } else { 0 });
+        let coupled = if layout.has_unknown_points() && layout.keeps_couplings { layout.sights.len() } else { 0 };
         self.point_pose.resize(coupled, [0.0; 18]);
         self.residuals.resize(layout.sights.len(), Residual::default());
     }
@@ -220,6 +220,9 @@ impl Normals {
             for i in 0..3 {
                 (0..3).for_each(|j| self.point[sight.point()][3 * i + j] += dot(by[i], by[j]));
                 self.point_right[sight.point()][i] += dot(by[i], misclosure);
+            }
+            if !layout.keeps_couplings {
+                continue;
             }
             if is_pose_unknown {
                 let block = &mut self.point_pose[range.start + k];

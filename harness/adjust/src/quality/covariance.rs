@@ -8,7 +8,7 @@ use crate::datum::STransformation;
 use crate::network::Datum;
 use crate::normal::Step;
 use crate::solution::Solution;
-use crate::solve::{Eliminated, Inverse};
+use crate::solve::{Coupling, Eliminated, Inverse};
 
 /// The variance factor that covariances are scaled with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -138,7 +138,7 @@ impl Solution<'_> {
                 k => right.points[(k - width) / 3 - 2 * images][(k - width) % 3] = 1.0,
             }
             engine.mask(&mut right);
-            let mut step = engine.answer(&self.solved, &right);
+            let mut step = engine.answer(&self.solved, &self.end, &right);
             engine.mask(&mut step);
             for (i, value) in step.cameras.iter().enumerate() {
                 full[(i, k)] = value * variance_factor;
@@ -196,13 +196,16 @@ impl Solution<'_> {
                 Eliminated::Points => poses[kept] = Matrix6::from_row_slice(&values),
             }
         }
+        let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
         for (place, &member) in plan.members.iter().enumerate() {
             match plan.eliminated {
                 Eliminated::Poses => {
-                    poses[member] = Matrix6::from_row_slice(inverse.member::<6>(&self.solved, plan, place).own.as_flattened());
+                    poses[member] =
+                        Matrix6::from_row_slice(inverse.member::<6>(&self.solved, ordered, place, &mut coupling).own.as_flattened());
                 }
                 Eliminated::Points => {
-                    points[member] = Matrix3::from_row_slice(inverse.member::<3>(&self.solved, plan, place).own.as_flattened());
+                    points[member] =
+                        Matrix3::from_row_slice(inverse.member::<3>(&self.solved, ordered, place, &mut coupling).own.as_flattened());
                 }
             }
         }
@@ -228,7 +231,7 @@ impl Solution<'_> {
             .map(|constraint| {
                 let mut right = constraint.clone();
                 engine.mask(&mut right);
-                let mut step = engine.answer(&self.solved, &right);
+                let mut step = engine.answer(&self.solved, &self.end, &right);
                 engine.mask(&mut step);
                 step
             })

@@ -70,15 +70,20 @@ fn members(engine: &Engine, normals: &Normals) -> Vec<Found> {
             }
             found.push(Found { step, eigenvalue: eigen.eigenvalues[k].max(0.0) });
         }
+        // Each is as large as all unknowns together.
+        if found.len() >= MOST {
+            break;
+        }
     }
     found
 }
 
 /// Singular or senseless directions of what is kept.
 fn kept(engine: &Engine, normals: &Normals, state: &State, sigma0: f64) -> Vec<Found> {
-    let Some((schur, pairs)) = engine.weakest(normals) else { return Vec::new() };
+    let Some((schur, pairs)) = engine.weakest(state, normals) else { return Vec::new() };
     let weak = pairs.into_iter().take_while(|(eigenvalue, _)| *eigenvalue < WEAK);
-    let mut weak: Vec<Found> = weak.map(|(value, kept)| Found { step: whole(engine, &schur, &kept), eigenvalue: value.max(0.0) }).collect();
+    let mut weak: Vec<Found> =
+        weak.map(|(value, kept)| Found { step: whole(engine, (state, normals), &schur, &kept), eigenvalue: value.max(0.0) }).collect();
     let lost = |found: &Found| {
         let deviation = sigma0 / found.eigenvalue.max(f64::MIN_POSITIVE).sqrt();
         found.eigenvalue < SINGULAR || senseless(engine, state, &found.step, deviation)
@@ -121,9 +126,9 @@ fn subtract(from: &mut Step, step: &Step, share: f64) {
 }
 
 /// A direction of all unknowns from that of those that are kept.
-fn whole(engine: &Engine, schur: &Schur, kept: &[f64]) -> Step {
+fn whole(engine: &Engine, (state, normals): (&State, &Normals), schur: &Schur, kept: &[f64]) -> Step {
     let mut step = engine.zero_step();
-    schur.follow(&engine.plan, &engine.layout, kept, &mut step);
+    schur.follow(engine.ordered(state, normals), kept, &mut step);
     step
 }
 

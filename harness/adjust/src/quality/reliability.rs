@@ -8,7 +8,7 @@ use crate::AdjustError;
 use crate::network::{Attitude, Centre, Sight, Status};
 use crate::normal::{Lost, Rows};
 use crate::solution::Solution;
-use crate::solve::{Coupled, Eliminated, Engine, Inverse, Member};
+use crate::solve::{Coupling, Eliminated, Engine, Inverse, Member};
 use crate::state::{rotation_vector, rotation_vector_slope};
 
 use super::covariance::Variance;
@@ -121,17 +121,16 @@ impl Solution<'_> {
 
     fn image_by_image(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
+        let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
         let mut rows = Rows::default();
         for (image, range) in layout.of_image.iter().enumerate() {
-            let member = plan.members.binary_search(&image).ok().map(|place| {
-                let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
-                (inverse.member::<6>(&self.solved, plan, place), coupled)
-            });
+            let place = plan.members.binary_search(&image).ok();
+            let member = place.map(|place| inverse.member::<6>(&self.solved, ordered, place, &mut coupling));
             for start in range.clone().step_by(CHUNK) {
                 let chunk = start..(start + CHUNK).min(range.end);
                 rows.fill((*network, layout), &self.end.state, *loss, image, chunk.clone())?;
                 for sight in chunk {
-                    let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref().map(|(of, coupled)| (of, *coupled)));
+                    let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref());
                     found.push(self.image_point(sight, adjusted, scale));
                 }
             }
@@ -142,6 +141,7 @@ impl Solution<'_> {
     /// Some points at a time, with all their sights: those of an image are in the order of their points.
     fn point_by_point(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
+        let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
         let (count, mut next) = (layout.point_free.len(), layout.of_image.iter().map(|range| range.start).collect::<Vec<_>>());
         let mut rows: Vec<Rows> = (0..layout.of_image.len()).map(|_| Rows::default()).collect();
         let mut first = 0;
@@ -159,13 +159,11 @@ impl Solution<'_> {
                 }
             }
             for point in first..end {
-                let member = plan.members.binary_search(&point).ok().map(|place| {
-                    let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
-                    (inverse.member::<3>(&self.solved, plan, place), coupled)
-                });
+                let place = plan.members.binary_search(&point).ok();
+                let member = place.map(|place| inverse.member::<3>(&self.solved, ordered, place, &mut coupling));
                 for sight in layout.of_point(point) {
                     let row = rows[layout.sights[sight].image()].of(sight);
-                    let adjusted = self.adjusted(inverse, sight, row, member.as_ref().map(|(of, coupled)| (of, *coupled)));
+                    let adjusted = self.adjusted(inverse, sight, row, member.as_ref());
                     found.push(self.image_point(sight, adjusted, scale));
                 }
             }
@@ -175,13 +173,7 @@ impl Solution<'_> {
     }
 
     /// `A Q A^T` of an image point, white.
-    fn adjusted<const D: usize>(
-        &self,
-        inverse: &Inverse,
-        index: usize,
-        row: &[[f64; 2]],
-        member: Option<(&Member<D>, &[Coupled])>,
-    ) -> Matrix2<f64> {
+    fn adjusted<const D: usize>(&self, inverse: &Inverse, index: usize, row: &[[f64; 2]], member: Option<&Member<D>>) -> Matrix2<f64> {
         let (plan, layout, sight) = (&self.engine.plan, &self.engine.layout, &self.engine.layout.sights[index]);
         let camera = layout.camera_of[sight.image()];
         let width = layout.cameras[camera].free.len();
@@ -202,12 +194,12 @@ impl Solution<'_> {
                 }
             }
         }
-        let Some((member, coupled)) = member else { return sum };
+        let Some(member) = member else { return sum };
         for d in 0..D {
             (0..D).for_each(|e| sum += column(own[d]) * column(own[e]).transpose() * member.own[d][e]);
         }
         let mut first = 0;
-        for coupled in coupled {
+        for coupled in &member.coupled {
             if let Some((_, part)) = parts.iter().find(|(block, _)| *block == coupled.block) {
                 for (d, own) in own.iter().enumerate() {
                     for (q, by) in member.cross(d, first, coupled.width).iter().zip(*part) {

@@ -2,8 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use super::Engine;
+use super::window::Window;
 use crate::network::Layout;
 use crate::normal::Normals;
+use crate::state::State;
 
 /// The blocks that are eliminated one by one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,16 +38,20 @@ pub(crate) struct Coupled {
     pub(crate) width: usize,
 }
 
+/// The normal equations in the order of elimination, and the values at which they were made.
+#[derive(Clone, Copy)]
+pub(crate) struct Ordered<'a> {
+    pub(crate) engine: &'a Engine<'a>,
+    pub(crate) state: &'a State,
+    pub(crate) normals: &'a Normals,
+}
+
 /// The order of elimination.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) eliminated: Eliminated,
     /// Images or points that are eliminated.
     pub(crate) members: Vec<usize>,
-    /// Of each member: its range in `coupled`.
-    pub(crate) start: Vec<usize>,
-    /// Sorted by offset within a member.
-    pub(crate) coupled: Vec<Coupled>,
     /// First unknown of each kept block, and of none at the end.
     pub(crate) kept: Vec<usize>,
     /// The kept block of each point or image that is kept, or `usize::MAX`.
@@ -67,38 +74,33 @@ impl Plan {
             kept.push(layout.width + i * size);
         }
         kept.push(layout.width + (kept.len() - layout.cameras.len()) * size);
-        let mut plan = Self { eliminated, members, start: vec![0], coupled: Vec::new(), kept, block_of };
-        plan.couple(layout);
-        plan
+        Self { eliminated, members, kept, block_of }
     }
 
-    fn couple(&mut self, layout: &Layout) {
-        for i in 0..self.members.len() {
-            let member = self.members[i];
-            match self.eliminated {
-                Eliminated::Poses => {
-                    let camera = layout.camera_of[member];
-                    self.push(Source::PoseCamera(member), camera);
-                    for sight in layout.of_image[member].clone() {
-                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].point()]);
-                    }
-                }
-                Eliminated::Points => {
-                    for pair in &layout.pairs[layout.pairs_of(member)] {
-                        self.push(Source::PointCamera(pair.offset), pair.camera);
-                    }
-                    for sight in layout.of_point(member) {
-                        self.push(Source::Sight(sight), self.block_of[layout.sights[sight].image()]);
-                    }
+    /// What a member is coupled with, sorted by offset: found where it is needed, since all lists together are longer than the observations.
+    pub(crate) fn couple(&self, layout: &Layout, place: usize, into: &mut Vec<Coupled>) {
+        let member = self.members[place];
+        into.clear();
+        let mut push = |source: Source, block: usize| {
+            if block != usize::MAX && self.width(block) > 0 {
+                into.push(Coupled { source, block, offset: self.kept[block], width: self.width(block) });
+            }
+        };
+        match self.eliminated {
+            Eliminated::Poses => {
+                push(Source::PoseCamera(member), layout.camera_of[member]);
+                for sight in layout.of_image[member].clone() {
+                    push(Source::Sight(sight), self.block_of[layout.sights[sight].point()]);
                 }
             }
-            self.start.push(self.coupled.len());
-        }
-    }
-
-    fn push(&mut self, source: Source, block: usize) {
-        if block != usize::MAX && self.width(block) > 0 {
-            self.coupled.push(Coupled { source, block, offset: self.kept[block], width: self.width(block) });
+            Eliminated::Points => {
+                for pair in &layout.pairs[layout.pairs_of(member)] {
+                    push(Source::PointCamera(pair.offset), pair.camera);
+                }
+                for sight in layout.of_point(member) {
+                    push(Source::Sight(sight), self.block_of[layout.sights[sight].image()]);
+                }
+            }
         }
     }
 
@@ -123,8 +125,9 @@ impl Plan {
     /// Pairs of kept blocks (row, column) that have a block in the reduced matrix: row at or below column.
     pub(crate) fn pattern(&self, layout: &Layout) -> BTreeSet<(usize, usize)> {
         let mut pattern: BTreeSet<_> = (0..self.kept.len() - 1).map(|block| (block, block)).collect();
-        for window in self.start.windows(2) {
-            let coupled = &self.coupled[window[0]..window[1]];
+        let mut coupled = Vec::new();
+        for place in 0..self.members.len() {
+            self.couple(layout, place, &mut coupled);
             for (i, row) in coupled.iter().enumerate() {
                 pattern.extend(coupled[..=i].iter().map(|column| (row.block, column.block)));
             }
@@ -139,15 +142,21 @@ impl Plan {
         }
         pattern
     }
+}
 
-    /// Adds row `d` of a coupling, of `width` numbers, to `into`.
+impl Ordered<'_> {
+    /// Copies row `d` of a coupling, of `width` numbers, to `into`.
     #[inline]
-    pub(crate) fn coupling_row(&self, normals: &Normals, coupled: &Coupled, d: usize, into: &mut [f64]) {
-        match (coupled.source, self.eliminated) {
-            (Source::PoseCamera(image), _) => into.copy_from_slice(&normals.pose_camera[image][d * coupled.width..][..coupled.width]),
-            (Source::PointCamera(first), _) => into.copy_from_slice(&normals.point_camera[first + d * coupled.width..][..coupled.width]),
-            (Source::Sight(sight), Eliminated::Points) => into.copy_from_slice(&normals.point_pose[sight][6 * d..6 * d + 6]),
-            (Source::Sight(sight), Eliminated::Poses) => (0..3).for_each(|i| into[i] = normals.point_pose[sight][6 * i + d]),
+    pub(crate) fn coupling_row(&self, window: &Window, coupled: &Coupled, d: usize, into: &mut [f64]) {
+        let (own, width) = (d * coupled.width, coupled.width);
+        match (coupled.source, self.engine.plan.eliminated) {
+            (Source::PoseCamera(image), _) => into.copy_from_slice(&self.normals.pose_camera[image][own..][..width]),
+            (Source::PointCamera(first), _) => into.copy_from_slice(&window.camera(*self, first)[own..][..width]),
+            (Source::Sight(sight), Eliminated::Points) => into.copy_from_slice(&window.pose(*self, sight)[6 * d..6 * d + 6]),
+            (Source::Sight(sight), Eliminated::Poses) => {
+                let block = window.pose(*self, sight);
+                (0..3).for_each(|i| into[i] = block[6 * i + d]);
+            }
         }
     }
 }

@@ -6,9 +6,10 @@
 use multiversion::multiversion;
 
 use super::Solved;
-use super::elimination_order::Plan;
+use super::elimination_order::{Coupled, Ordered, Plan};
 use super::kernel::{Run, runs};
 use super::reduced::Reduced;
+use super::schur::Coupling;
 use super::small_cholesky::backward;
 
 /// Blocks of `Q_kk`.
@@ -19,6 +20,8 @@ pub(crate) struct Inverse(Reduced);
 #[derive(Clone, Debug)]
 pub(crate) struct Member<const D: usize> {
     pub(crate) own: [[f64; D]; D],
+    /// What it is coupled with, in the order of the columns.
+    pub(crate) coupled: Vec<Coupled>,
     cross: Vec<f64>,
     columns: usize,
 }
@@ -74,10 +77,10 @@ impl Inverse {
     }
 
     /// Cofactors of a member.
-    pub(crate) fn member<const D: usize>(&self, solved: &Solved, plan: &Plan, place: usize) -> Member<D> {
-        let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
-        let (first, columns) = solved.schur.place[place];
-        let y = &solved.schur.y[first..first + D * columns];
+    pub(crate) fn member<const D: usize>(&self, solved: &Solved, of: Ordered, place: usize, coupling: &mut Coupling) -> Member<D> {
+        let l = solved.schur.factor::<D>(place);
+        coupling.make(of, place, &l);
+        let (coupled, y, columns) = (&coupling.coupled, &coupling.y, coupling.columns);
         let (mut z, mut found, mut down) = (vec![0.0; D * columns], Vec::new(), 0);
         for (i, column) in coupled.iter().enumerate() {
             let stride = runs(coupled, i, down, &self.0, &mut found);
@@ -89,7 +92,6 @@ impl Inverse {
             }
             down += column.width;
         }
-        let l = solved.schur.factor::<D>(place);
         let mut own = [[0.0; D]; D];
         for i in 0..D {
             for j in 0..D {
@@ -108,7 +110,7 @@ impl Inverse {
             z[d * columns..(d + 1) * columns].iter_mut().for_each(|z| *z /= l[d][d]);
         }
         z.iter_mut().for_each(|z| *z = -*z);
-        Member { own: cofactors, cross: z, columns }
+        Member { own: cofactors, coupled: coupled.clone(), cross: z, columns }
     }
 }
 

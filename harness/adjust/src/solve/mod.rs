@@ -8,17 +8,20 @@ mod kernel;
 mod reduced;
 mod schur;
 mod small_cholesky;
+mod window;
 
 use crate::AdjustError;
 use crate::network::{Layout, Network};
 use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise, residuals};
 use crate::state::State;
-pub(crate) use elimination_order::{Coupled, Eliminated, Plan};
+pub(crate) use elimination_order::{Eliminated, Ordered, Plan};
 use factor::{Factor, Structure};
 pub(crate) use inverse::{Inverse, Member};
 use reduced::Reduced;
-pub(crate) use schur::Schur;
+pub(crate) use schur::{Coupling, Schur};
 
+/// Sights up to which the couplings of all are kept.
+const MOST_KEPT: usize = 1 << 18;
 /// Damping that is tried first, and below which there is none.
 const FIRST: f64 = 1e-6;
 const LEAST: f64 = 1e-9;
@@ -69,8 +72,9 @@ pub(crate) struct End {
 }
 
 impl<'n> Engine<'n> {
-    pub(crate) fn new(network: &'n Network, layout: Layout, loss: Loss) -> Self {
+    pub(crate) fn new(network: &'n Network, mut layout: Layout, loss: Loss) -> Self {
         let plan = Plan::of(&layout);
+        layout.keeps_couplings = plan.eliminated == Eliminated::Poses || layout.sights.len() <= MOST_KEPT;
         let blank = Reduced::new(&plan.kept, || plan.pattern(&layout));
         let structure = Structure::of(&blank);
         let rounding = |at: f64, whiten: f64| (4.0 * f64::EPSILON * at.abs().max(1.0) * whiten).powi(2);
@@ -82,24 +86,29 @@ impl<'n> Engine<'n> {
         linearise(self.network, &self.layout, state, self.loss, scratch, into)
     }
 
+    /// The normal equations made at `state`, in the order of elimination.
+    pub(crate) fn ordered<'a>(&'a self, state: &'a State, normals: &'a Normals) -> Ordered<'a> {
+        Ordered { engine: self, state, normals }
+    }
+
     /// Solves the normal equations with their diagonal raised; `None` if they are singular.
-    pub(crate) fn decompose(&self, normals: &Normals, damping: f64) -> Option<Solved> {
+    pub(crate) fn decompose(&self, (state, normals): (&State, &Normals), damping: f64) -> Option<Solved> {
         let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
-        schur.eliminate(&self.plan, &self.layout, normals, damping, &mut reduced).ok()?;
+        schur.eliminate(self.ordered(state, normals), damping, &mut reduced).ok()?;
         let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;
         Some(Solved { schur, factor })
     }
 
     /// Eigenvalues and eigenvectors of the reduced matrix, scaled to ones on the diagonal of the normal equations, from the smallest on: all of a small
     /// matrix, a few of a large one. Vectors are in the unknowns' own units. `None` if an eliminated block is singular by itself.
-    pub(crate) fn weakest(&self, normals: &Normals) -> Option<(Schur, Vec<eigen::Pair>)> {
+    pub(crate) fn weakest(&self, state: &State, normals: &Normals) -> Option<(Schur, Vec<eigen::Pair>)> {
         let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
-        schur.eliminate(&self.plan, &self.layout, normals, 0.0, &mut reduced).ok()?;
+        schur.eliminate(self.ordered(state, normals), 0.0, &mut reduced).ok()?;
         let scale = self.scale(normals);
         let pairs = if scale.len() <= eigen::FULL {
             eigen::all(&reduced.into_dense(), &scale)
         } else {
-            eigen::few(&self.decompose(normals, eigen::SHIFT)?.factor, &scale)
+            eigen::few(&self.decompose((state, normals), eigen::SHIFT)?.factor, &scale)
         };
         let own = |(value, vector): eigen::Pair| (value, vector.iter().zip(&scale).map(|(x, scale)| x / scale).collect());
         Some((schur, pairs.into_iter().map(own).collect()))
@@ -131,8 +140,8 @@ impl<'n> Engine<'n> {
     }
 
     /// `N^-1 right`.
-    pub(crate) fn answer(&self, solved: &Solved, right: &Step) -> Step {
-        solved.schur.answer(&self.plan, &self.layout, right, |x| solved.factor.solve(x))
+    pub(crate) fn answer(&self, solved: &Solved, End { state, normals, .. }: &End, right: &Step) -> Step {
+        solved.schur.answer(self.ordered(state, normals), right, |x| solved.factor.solve(x))
     }
 
     /// Zeros where nothing may change.
@@ -151,13 +160,13 @@ impl<'n> Engine<'n> {
     }
 
     /// The step with `damping`, what it promises and the decomposition behind it; `None` if there is none.
-    fn step(&self, normals: &Normals, damping: f64, schur: &mut Schur, step: &mut Step) -> Option<(f64, Factor)> {
+    fn step(&self, (state, normals): (&State, &Normals), damping: f64, schur: &mut Schur, step: &mut Step) -> Option<(f64, Factor)> {
         let mut reduced = self.blank.clone();
-        schur.eliminate(&self.plan, &self.layout, normals, damping, &mut reduced).ok()?;
+        schur.eliminate(self.ordered(state, normals), damping, &mut reduced).ok()?;
         let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;
         let mut kept = schur.reduced.clone();
         factor.solve(&mut kept);
-        schur.back(&self.plan, &self.layout, &kept, step);
+        schur.back(self.ordered(state, normals), &kept, step);
         step.is_finite().then(|| (normals.along(step), factor))
     }
 
@@ -172,7 +181,7 @@ impl<'n> Engine<'n> {
         let mut schur = Schur::default();
         for iterations in 1..=most_iterations {
             let mut accepted = false;
-            if let Some((promised, factor)) = self.step(&normals, damping, &mut schur, &mut step) {
+            if let Some((promised, factor)) = self.step((&state, &normals), damping, &mut schur, &mut step) {
                 let before = std::mem::replace(&mut gain, promised);
                 let cost = normals.cost;
                 if damping == 0.0 && gain <= NOTHING * cost {
@@ -228,3 +237,6 @@ impl Normals {
             + dot(self.point_right.as_flattened(), step.points.as_flattened())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,12 +1,14 @@
 //! Elimination of exterior orientations or object points, one by one, and the way back.
 //!
 //! With `N_ee = L L^T` of an eliminated block and `Y = L^-1 N_ek`: the kept unknowns have `S = N_kk - sum Y^T Y` and `b = g_k - sum Y^T L^-1 g_e`; then
-//! `x_e = L^-T (L^-1 g_e - Y x_k)`.
+//! `x_e = L^-T (L^-1 g_e - Y x_k)`. `Y` is as large as all coupling blocks together: it is made anew where it is needed, member by member.
 
-use super::elimination_order::{Eliminated, Plan};
+use super::Engine;
+use super::elimination_order::{Coupled, Eliminated, Ordered, Plan};
 use super::kernel::{Run, runs, subtract_3, subtract_6};
 use super::reduced::Reduced;
 use super::small_cholesky::{backward, cholesky, forward};
+use super::window::Window;
 use crate::network::Layout;
 use crate::normal::{Normals, Step};
 
@@ -17,13 +19,18 @@ pub(crate) struct Schur {
     pub(crate) factors: Vec<f64>,
     /// `L^-1 g_e`.
     right: Vec<f64>,
-    /// `Y`, D rows each.
-    pub(crate) y: Vec<f64>,
-    /// Of each member: first value of its `Y`, and its columns.
-    pub(crate) place: Vec<(usize, usize)>,
     /// `b`.
     pub(crate) reduced: Vec<f64>,
     runs: Vec<Run>,
+}
+
+/// `Y` of a member, D rows one after the other, and what its columns belong to.
+#[derive(Default)]
+pub(crate) struct Coupling {
+    window: Window,
+    pub(super) coupled: Vec<Coupled>,
+    pub(super) y: Vec<f64>,
+    pub(super) columns: usize,
 }
 
 /// A member whose own unknowns are not determined, the others being known.
@@ -32,14 +39,8 @@ pub(crate) struct Loose(pub(crate) usize);
 
 impl Schur {
     /// Eliminates; diagonals are raised by the share `damping`.
-    pub(crate) fn eliminate(
-        &mut self,
-        plan: &Plan,
-        layout: &Layout,
-        normals: &Normals,
-        damping: f64,
-        into: &mut Reduced,
-    ) -> Result<(), Loose> {
+    pub(crate) fn eliminate(&mut self, of: Ordered, damping: f64, into: &mut Reduced) -> Result<(), Loose> {
+        let Ordered { engine: Engine { plan, layout, .. }, normals, .. } = of;
         keep(plan, layout, normals, damping, into);
         self.reduced.clear();
         self.reduced.resize(plan.size(), 0.0);
@@ -53,15 +54,14 @@ impl Schur {
         }
         self.factors.clear();
         self.right.clear();
-        self.y.clear();
-        self.place.clear();
         match plan.eliminated {
-            Eliminated::Poses => self.members::<6>(plan, normals, damping, into),
-            Eliminated::Points => self.members::<3>(plan, normals, damping, into),
+            Eliminated::Poses => self.members::<6>(of, damping, into),
+            Eliminated::Points => self.members::<3>(of, damping, into),
         }
     }
 
-    fn members<const D: usize>(&mut self, plan: &Plan, normals: &Normals, damping: f64, into: &mut Reduced) -> Result<(), Loose> {
+    fn members<const D: usize>(&mut self, of: Ordered, damping: f64, into: &mut Reduced) -> Result<(), Loose> {
+        let (Ordered { engine: Engine { plan, .. }, normals, .. }, mut coupling) = (of, Coupling::default());
         for (place, &member) in plan.members.iter().enumerate() {
             let (block, right): (&[f64], &[f64]) = match plan.eliminated {
                 Eliminated::Poses => (&normals.pose[member], &normals.pose_right[member]),
@@ -74,44 +74,15 @@ impl Schur {
             forward(&l, &mut z);
             self.factors.extend(l.as_flattened());
             self.right.extend(z);
-            self.couple(plan, normals, place, &l);
-            self.subtract(plan, place, &z, into);
+            coupling.make(of, place, &l);
+            self.subtract(&coupling, &z, into);
         }
         Ok(())
     }
 
-    /// `Y` of a member.
-    fn couple<const D: usize>(&mut self, plan: &Plan, normals: &Normals, place: usize, l: &[[f64; D]; D]) {
-        let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
-        let columns = coupled.iter().map(|coupled| coupled.width).sum();
-        let first = self.y.len();
-        self.place.push((first, columns));
-        self.y.resize(first + D * columns, 0.0);
-        let mut rest = &mut self.y[first..];
-        for i in 0..D {
-            let (row, after) = rest.split_at_mut(columns);
-            let mut column = 0;
-            for coupled in coupled {
-                plan.coupling_row(normals, coupled, i, &mut row[column..column + coupled.width]);
-                column += coupled.width;
-            }
-            rest = after;
-        }
-        let y = &mut self.y[first..];
-        for (i, row) in l.iter().enumerate() {
-            let (above, this) = y.split_at_mut(i * columns);
-            for (k, factor) in row[..i].iter().enumerate() {
-                this[..columns].iter_mut().zip(&above[k * columns..]).for_each(|(y, above)| *y -= factor * above);
-            }
-            this[..columns].iter_mut().for_each(|y| *y /= row[i]);
-        }
-    }
-
     /// Takes `Y^T Y` and `Y^T z` off.
-    fn subtract<const D: usize>(&mut self, plan: &Plan, place: usize, z: &[f64; D], into: &mut Reduced) {
-        let coupled = &plan.coupled[plan.start[place]..plan.start[place + 1]];
-        let (first, columns) = self.place[place];
-        let y = &self.y[first..first + D * columns];
+    fn subtract<const D: usize>(&mut self, Coupling { coupled, y, columns, .. }: &Coupling, z: &[f64; D], into: &mut Reduced) {
+        let columns = *columns;
         let mut down = 0;
         for (i, column) in coupled.iter().enumerate() {
             let stride = runs(coupled, i, down, into, &mut self.runs);
@@ -129,16 +100,17 @@ impl Schur {
     }
 
     /// The step of all unknowns, of which `kept` are known.
-    pub(crate) fn back(&self, plan: &Plan, layout: &Layout, kept: &[f64], step: &mut Step) {
-        self.back_with(plan, layout, kept, &self.right, step);
+    pub(crate) fn back(&self, of: Ordered, kept: &[f64], step: &mut Step) {
+        self.back_with(of, kept, &self.right, step);
     }
 
     /// The change of all unknowns that goes with a change of those that are kept, while no observation asks for any.
-    pub(crate) fn follow(&self, plan: &Plan, layout: &Layout, kept: &[f64], step: &mut Step) {
-        self.back_with(plan, layout, kept, &[], step);
+    pub(crate) fn follow(&self, of: Ordered, kept: &[f64], step: &mut Step) {
+        self.back_with(of, kept, &[], step);
     }
 
-    fn back_with(&self, plan: &Plan, layout: &Layout, kept: &[f64], right: &[f64], step: &mut Step) {
+    fn back_with(&self, of: Ordered, kept: &[f64], right: &[f64], step: &mut Step) {
+        let Engine { plan, layout, .. } = of.engine;
         step.cameras.copy_from_slice(&kept[..layout.width]);
         for (index, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
             let from = &kept[plan.kept[block]..plan.kept[block + 1]];
@@ -147,33 +119,37 @@ impl Schur {
                 Eliminated::Points => step.poses[index].copy_from_slice(from),
             }
         }
+        let mut coupling = Coupling::default();
         for (place, &member) in plan.members.iter().enumerate() {
             match plan.eliminated {
-                Eliminated::Poses => step.poses[member] = self.back_to(plan, place, kept, right),
-                Eliminated::Points => step.points[member] = self.back_to(plan, place, kept, right),
+                Eliminated::Poses => step.poses[member] = self.back_to(of, place, (kept, right), &mut coupling),
+                Eliminated::Points => step.points[member] = self.back_to(of, place, (kept, right), &mut coupling),
             }
         }
     }
 
     /// `L^-T (z - Y x_k)` of a member, where `right` holds all `z` or nothing.
-    fn back_to<const D: usize>(&self, plan: &Plan, place: usize, kept: &[f64], right: &[f64]) -> [f64; D] {
+    fn back_to<const D: usize>(&self, of: Ordered, place: usize, (kept, right): (&[f64], &[f64]), coupling: &mut Coupling) -> [f64; D] {
         let mut x: [f64; D] = std::array::from_fn(|d| right.get(place * D + d).copied().unwrap_or(0.0));
-        let (first, columns) = self.place[place];
+        let l = self.factor::<D>(place);
+        coupling.make(of, place, &l);
+        let Coupling { coupled, y, columns, .. } = &*coupling;
         let mut column = 0;
-        for coupled in &plan.coupled[plan.start[place]..plan.start[place + 1]] {
+        for coupled in coupled {
             let from = &kept[coupled.offset..coupled.offset + coupled.width];
             for (d, x) in x.iter_mut().enumerate() {
-                let y = &self.y[first + d * columns + column..][..coupled.width];
+                let y = &y[d * columns + column..][..coupled.width];
                 *x -= y.iter().zip(from).map(|(y, k)| y * k).sum::<f64>();
             }
             column += coupled.width;
         }
-        backward(&self.factor::<D>(place), &mut x);
+        backward(&l, &mut x);
         x
     }
 
     /// The step that answers to other right sides.
-    pub(crate) fn answer(&self, plan: &Plan, layout: &Layout, right: &Step, solve: impl Fn(&mut [f64])) -> Step {
+    pub(crate) fn answer(&self, of: Ordered, right: &Step, solve: impl Fn(&mut [f64])) -> Step {
+        let (Engine { plan, layout, .. }, mut coupling) = (of.engine, Coupling::default());
         let (mut kept, mut rights) = (vec![0.0; plan.size()], Vec::with_capacity(self.right.len()));
         kept[..layout.width].copy_from_slice(&right.cameras);
         for (index, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
@@ -185,24 +161,32 @@ impl Schur {
         }
         for (place, &member) in plan.members.iter().enumerate() {
             match plan.eliminated {
-                Eliminated::Poses => rights.extend(self.take_off::<6>(plan, place, right.poses[member], &mut kept)),
-                Eliminated::Points => rights.extend(self.take_off::<3>(plan, place, right.points[member], &mut kept)),
+                Eliminated::Poses => rights.extend(self.take_off::<6>(of, place, right.poses[member], (&mut kept, &mut coupling))),
+                Eliminated::Points => rights.extend(self.take_off::<3>(of, place, right.points[member], (&mut kept, &mut coupling))),
             }
         }
         solve(&mut kept);
         let mut step = Step::zero(layout.width, layout.pose_free.len(), layout.point_free.len());
-        self.back_with(plan, layout, &kept, &rights, &mut step);
+        self.back_with(of, &kept, &rights, &mut step);
         step
     }
 
     /// `z = L^-1 g`, after `Y^T z` is taken off the right side of what is kept.
-    fn take_off<const D: usize>(&self, plan: &Plan, place: usize, mut right: [f64; D], kept: &mut [f64]) -> [f64; D] {
-        forward(&self.factor::<D>(place), &mut right);
-        let (first, columns) = self.place[place];
+    fn take_off<const D: usize>(
+        &self,
+        of: Ordered,
+        place: usize,
+        mut right: [f64; D],
+        (kept, coupling): (&mut [f64], &mut Coupling),
+    ) -> [f64; D] {
+        let l = self.factor::<D>(place);
+        forward(&l, &mut right);
+        coupling.make(of, place, &l);
+        let Coupling { coupled, y, columns, .. } = &*coupling;
         let mut column = 0;
-        for coupled in &plan.coupled[plan.start[place]..plan.start[place + 1]] {
+        for coupled in coupled {
             for j in 0..coupled.width {
-                let sum: f64 = (0..D).map(|d| self.y[first + d * columns + column + j] * right[d]).sum();
+                let sum: f64 = (0..D).map(|d| y[d * columns + column + j] * right[d]).sum();
                 kept[coupled.offset + j] -= sum;
             }
             column += coupled.width;
@@ -213,6 +197,35 @@ impl Schur {
     /// `L` of a member.
     pub(crate) fn factor<const D: usize>(&self, place: usize) -> [[f64; D]; D] {
         std::array::from_fn(|i| std::array::from_fn(|j| self.factors[place * D * D + i * D + j]))
+    }
+}
+
+impl Coupling {
+    /// Makes that of the member at `place`, whose own block is `l l^T`.
+    pub(super) fn make<const D: usize>(&mut self, of: Ordered, place: usize, l: &[[f64; D]; D]) {
+        self.window.hold(of, of.engine.plan.members[place]);
+        of.engine.plan.couple(&of.engine.layout, place, &mut self.coupled);
+        let columns = self.coupled.iter().map(|coupled| coupled.width).sum();
+        self.columns = columns;
+        self.y.clear();
+        self.y.resize(D * columns, 0.0);
+        let mut rest = &mut self.y[..];
+        for i in 0..D {
+            let (row, after) = rest.split_at_mut(columns);
+            let mut column = 0;
+            for coupled in &self.coupled {
+                of.coupling_row(&self.window, coupled, i, &mut row[column..column + coupled.width]);
+                column += coupled.width;
+            }
+            rest = after;
+        }
+        for (i, row) in l.iter().enumerate() {
+            let (above, this) = self.y.split_at_mut(i * columns);
+            for (k, factor) in row[..i].iter().enumerate() {
+                this[..columns].iter_mut().zip(&above[k * columns..]).for_each(|(y, above)| *y -= factor * above);
+            }
+            this[..columns].iter_mut().for_each(|y| *y /= row[i]);
+        }
     }
 }
 

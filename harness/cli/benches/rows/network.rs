@@ -65,7 +65,10 @@ impl Network {
         self.points(BufWriter::new(File::create(&points)?))?;
         let mut control = BufWriter::new(File::create(folder.join("control.csv"))?);
         writeln!(control, "target,X,Y,Z,sX,sY,sZ")?;
-        for target in (0..self.targets.len()).step_by((self.targets.len() / CONTROL).max(1)) {
+        let step = (self.targets.len() / CONTROL).max(1);
+        for (place, first) in (0..self.targets.len() / step).map(|place| (place, place * step)) {
+            // Every image sees some.
+            let target = first + place % step.min(IMAGES / SEEN);
             let Point3 { coords, .. } = self.targets[target];
             writeln!(control, "t{target},{},{},{},0.001,0.001,0.001", coords.x, coords.y, coords.z)?;
         }
