@@ -74,6 +74,14 @@ deny:
 perf:
     cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards
 
+# Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
+rows:
+    cargo bench --workspace --bench rows
+
+# Every reader of files against mutated ones: seconds for each reader, and a seed that makes the same files again
+fuzz seconds="60" seed="15":
+    CALIBENCH_FUZZ_SECONDS={{seconds}} CALIBENCH_FUZZ_SEED={{seed}} cargo test {{everything}} --test calibench fuzz::no_reader -- --nocapture
+
 # Write the JSON Schema of scenario files
 schema: build
     {{calibench}} schema scenarios > scenarios/scenario.schema.json.new

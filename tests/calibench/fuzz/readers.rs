@@ -1,0 +1,126 @@
+//! All readers of files, each as a function of bytes.
+
+use std::path::Path;
+
+use calibench_exchange::camera::{ReadOptions, camera_text, format_named, parse_camera};
+use calibench_exchange::control::{parse_control, write_control};
+use calibench_exchange::photo::parse_photo;
+use calibench_exchange::points::parse_points;
+use calibench_exchange::stations::{parse_observed_stations, parse_stations};
+use calibench_exchange::write_points;
+use calibench_gate::{Ceilings, Cells, FigureSums, Kept, PointSums, Verdicts, read_baseline};
+use calibench_measure::Registry;
+use calibench_model::camera::ImageSize;
+use calibench_records::judgement::read_rows;
+use calibench_records::points::read_records;
+
+/// The file's name in errors.
+pub const FILE: &str = "the-file";
+
+/// A reader, and the folder of its seeds.
+pub struct Reader {
+    /// Its name, by which it is asked for alone.
+    pub name: &'static str,
+    /// Below `seeds/`.
+    pub seeds: &'static str,
+    /// Reads the bytes, in `folder` where it takes a path; an error in words. It panics where what was read cannot be written and read again.
+    pub read: fn(&[u8], &Path) -> Result<(), String>,
+}
+
+/// All of them.
+pub const READERS: [Reader; 16] = [
+    Reader { name: "cameras", seeds: "cameras", read: camera },
+    Reader { name: "cameras-sized", seeds: "cameras", read: camera_of_size },
+    Reader { name: "points", seeds: "points", read: points },
+    Reader { name: "control", seeds: "control", read: control },
+    Reader { name: "stations", seeds: "stations", read: |bytes, _| words(parse_stations(FILE, bytes)) },
+    Reader { name: "observed-stations", seeds: "stations", read: |bytes, _| words(parse_observed_stations(FILE, bytes)) },
+    Reader { name: "scenarios", seeds: "scenarios", read: scenario },
+    Reader { name: "records", seeds: "records", read: |bytes, _| words(read_records(bytes, |_, _| ())) },
+    Reader { name: "adjustments", seeds: "adjustments", read: |bytes, _| words(calibench_records::adjustments::read(bytes, |_| ())) },
+    Reader { name: "judgements", seeds: "judgements", read: |bytes, _| words(read_rows(bytes)) },
+    Reader { name: "baselines", seeds: "baselines", read: baseline },
+    Reader { name: "baselines-sums", seeds: "baselines", read: cells::<PointSums> },
+    Reader { name: "baselines-figures", seeds: "baselines", read: cells::<FigureSums> },
+    Reader { name: "baselines-verdicts", seeds: "baselines", read: |bytes, folder| words(Verdicts::read(&file(bytes, folder))) },
+    Reader { name: "ceilings", seeds: "baselines", read: |bytes, _| text(bytes).and_then(|text| words(Ceilings::parse(FILE, text))) },
+    Reader { name: "photographs", seeds: "photographs", read: |bytes, _| words(parse_photo(Path::new(FILE), bytes)) },
+];
+
+const SIZE: ImageSize = ImageSize { width: 640, height: 480 };
+
+fn words<T, E: std::fmt::Display>(result: Result<T, E>) -> Result<(), String> {
+    result.map(drop).map_err(|error| error.to_string())
+}
+
+fn text(bytes: &[u8]) -> Result<&str, String> {
+    std::str::from_utf8(bytes).map_err(|_| format!("{FILE}: expected UTF-8 text"))
+}
+
+fn file(bytes: &[u8], folder: &Path) -> std::path::PathBuf {
+    let path = folder.join(FILE);
+    std::fs::write(&path, bytes).expect("a file");
+    path
+}
+
+/// The scenario that a baseline says it is of.
+fn named(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let name = text.lines().find_map(|line| line.strip_prefix("# scenario = \"")?.strip_suffix('"'));
+    name.unwrap_or_default().to_owned()
+}
+
+fn baseline(bytes: &[u8], folder: &Path) -> Result<(), String> {
+    words(read_baseline(&file(bytes, folder), &named(bytes)))
+}
+
+fn cells<T: Kept>(bytes: &[u8], folder: &Path) -> Result<(), String> {
+    words(Cells::<T>::read(&file(bytes, folder), &named(bytes)))
+}
+
+fn camera(bytes: &[u8], _: &Path) -> Result<(), String> {
+    read_camera(bytes, ReadOptions::default())
+}
+
+fn camera_of_size(bytes: &[u8], _: &Path) -> Result<(), String> {
+    read_camera(bytes, ReadOptions { size: Some(SIZE), fisheye: Some(true) })
+}
+
+/// What a format reads it writes and reads again, or says why not.
+fn read_camera(bytes: &[u8], options: ReadOptions) -> Result<(), String> {
+    let found = parse_camera(FILE, bytes, &options).map_err(|error| error.to_string())?;
+    if let Ok(text) = camera_text(found.format, &found.cameras) {
+        let size = (!found.format.states_size).then(|| calibench_model::camera::CameraModel::size(&found.cameras[0].camera));
+        let again = parse_camera(FILE, text.as_bytes(), &ReadOptions { size, fisheye: options.fisheye });
+        assert!(again.is_ok_and(|again| again.cameras.len() == found.cameras.len()), "{text}");
+    }
+    assert!(format_named(found.format.name).is_some());
+    Ok(())
+}
+
+fn points(bytes: &[u8], _: &Path) -> Result<(), String> {
+    let found = parse_points(FILE, bytes).map_err(|error| error.to_string())?;
+    if !found.points.is_empty() {
+        let mut text = Vec::new();
+        write_points(&mut text, found.points.rows()).expect("a Vec takes all");
+        let again = parse_points(FILE, &text[..]).unwrap_or_else(|error| panic!("{error}\n{}", String::from_utf8_lossy(&text)));
+        let seen = |points: &calibench_exchange::Points| {
+            points.rows().map(|row| (row.image.to_owned(), row.target.to_owned(), row.start.position)).collect::<Vec<_>>()
+        };
+        assert_eq!(seen(&again.points), seen(&found.points));
+    }
+    Ok(())
+}
+
+fn control(bytes: &[u8], _: &Path) -> Result<(), String> {
+    let rows = parse_control(FILE, bytes).map_err(|error| error.to_string())?;
+    let mut text = Vec::new();
+    write_control(&mut text, &rows).expect("a Vec takes all");
+    assert_eq!(parse_control(FILE, &text[..]).unwrap_or_else(|error| panic!("{error}")), rows);
+    Ok(())
+}
+
+fn scenario(bytes: &[u8], folder: &Path) -> Result<(), String> {
+    let path = folder.join(FILE);
+    words(calibench_scenario::parse("f/s", &path.display().to_string(), text(bytes)?, &Registry::builtin()))
+}
