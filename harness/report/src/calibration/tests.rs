@@ -77,7 +77,7 @@ fn wall() -> Prepared {
     let optics =
         Optics { pitch_um: Some(1e3 * PITCH_MM), model: Some("photogrammetric".into()), solve: Some(names.into()), ..Optics::new(SIZE) };
     let settings = Settings { datum: DatumChoice::Control, ..Settings::new(vec![optics]) };
-    prepare(&points, &control.collect::<Vec<_>>(), &settings).unwrap()
+    prepare(points.iter().collect(), &control.collect::<Vec<_>>(), &settings).unwrap()
 }
 
 type Row = HashMap<String, String>;
