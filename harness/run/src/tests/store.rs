@@ -13,7 +13,7 @@ use super::{NAME, SCENARIO, scenario, trials};
 use crate::store::{RecordsFolder, SweepPlan, run, run_sweep};
 use crate::{Plan, RunError};
 
-fn stored(records: &Path, scenario: &Scenario) -> Result<(), RunError> {
+fn stored(records: &Path, scenario: &Scenario) -> Result<u64, RunError> {
     run(&RecordsFolder::open(records, &scenario.name, None)?, &mut Plan::new(scenario, None, PathBuf::new()), "r1", &|| ())
 }
 
@@ -35,7 +35,7 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 #[test]
 fn what_is_stored_is_what_the_run_gave() {
     let (scenario, parent) = (scenario(&[]), tempfile::tempdir().unwrap());
-    stored(parent.path(), &scenario).unwrap();
+    assert_eq!(stored(parent.path(), &scenario).unwrap(), 2 * 4 * 12, "two methods, four views, twelve targets");
     let stored = files(&parent.path().join(NAME));
     assert_eq!(stored["scenario.toml"], SCENARIO.as_bytes());
     let mut again = Vec::new();
