@@ -1,4 +1,4 @@
-//! An example: a camera in four lines, `size W H`, `focal FX FY`, `centre CX CY`, `radial K1 K2`.
+//! An example: a camera in four lines, `size W H`, `focal FX FY`, `centre CX CY`, `distortion K1 K2 P1 P2`.
 
 use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::convert::Target;
@@ -21,7 +21,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
-    models: |_| vec![Model { name: "k1, k2", target: Target::OpenCv { coefficients: 4 } }],
+    models: |_| vec![Model { name: "k1, k2, p1, p2", target: Target::OpenCv { coefficients: 4 } }],
     keeps: Keeps { ..PLAIN.keeps },
     ..PLAIN
 };
@@ -32,7 +32,7 @@ fn line<'a>(source: &Source<'a>, key: &str) -> Result<(usize, &'a str), CameraFi
     found.ok_or_else(|| CameraFileError::new("expected a line of this name").of(key))
 }
 
-fn pair(source: &Source<'_>, key: &str) -> Result<[f64; 2], CameraFileError> {
+fn row<const N: usize>(source: &Source<'_>, key: &str) -> Result<[f64; N], CameraFileError> {
     let (number, text) = line(source, key)?;
     numbers(text).map_err(|error| error.on_line(number).of(key))
 }
@@ -44,26 +44,27 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         return Err(CameraFileError::new("expected two numbers").on_line(number).of("size"));
     };
     let size = options.size_or(Some(ImageSize { width: width?, height: height? }))?;
-    let ([fx, fy], [cx, cy], [k1, k2]) = (pair(source, "focal")?, pair(source, "centre")?, pair(source, "radial")?);
-    let camera = Brown { k: [k1, k2, 0.0, 0.0], ..Brown::plain(size, [positive("focal", fx)?, positive("focal", fy)?, cx, cy]) };
+    let ([fx, fy], [cx, cy], [k1, k2, p1, p2]) = (row(source, "focal")?, row(source, "centre")?, row(source, "distortion")?);
+    let camera = Brown { k: [k1, k2, 0.0, 0.0], p1, p2, ..Brown::plain(size, [positive("focal", fx)?, positive("focal", fy)?, cx, cy]) };
     Ok(vec![NamedCamera::new("", camera.camera())])
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
-    let wrong = || FORMAT.other_model("OpenCV's camera with k1 and k2");
+    let wrong = || FORMAT.other_model("OpenCV's camera with k1, k2, p1, p2");
     let [named] = cameras else { return Err(CameraFileError::new("holds one camera")) };
-    let brown = Brown::of(&named.camera).filter(|b| b.skew == 0.0 && !b.has_tangential() && b.radial() <= 2).ok_or_else(wrong)?;
+    let brown = Brown::of(&named.camera).filter(|b| b.skew == 0.0 && b.radial() <= 2).ok_or_else(wrong)?;
     let ImageSize { width, height } = named.camera.size();
     let two = |a: f64, b: f64| format!("{} {}", shortest(a), shortest(b));
-    let (focal, centre, radial) = (two(brown.fx, brown.fy), two(brown.cx, brown.cy), two(brown.k[0], brown.k[1]));
-    Ok(format!("size {width} {height}\nfocal {focal}\ncentre {centre}\nradial {radial}\n"))
+    let (focal, centre) = (two(brown.fx, brown.fy), two(brown.cx, brown.cy));
+    let (radial, tangential) = (two(brown.k[0], brown.k[1]), two(brown.p1, brown.p2));
+    Ok(format!("size {width} {height}\nfocal {focal}\ncentre {centre}\ndistortion {radial} {tangential}\n"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const TEXT: &str = "size 640 480\nfocal 533.0 533.5\ncentre 342.25 233.875\nradial -0.28 0.055\n";
+    const TEXT: &str = "size 640 480\nfocal 533.0 533.5\ncentre 342.25 233.875\ndistortion -0.28 0.055 0.001 -0.002\n";
 
     #[test]
     fn what_is_written_is_read_again() {

@@ -79,7 +79,7 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
             "background = 0.8",
             "background = 0.8\n[scene.pointing]\nsigma = 1",
             "9:8",
-            &["[scene.pointing] has no `whole_pixels`", "Does the pointer stop"],
+            &["[scene.pointing] has no `whole_pixels`", "Whether the pointer stops"],
         ),
         ("id = \"1\"", "id = \" \"", "16:6", &["the id of a target is a name"]),
         ("window = 11", "colour = \"red\"", "23:1", &["`forstner` has no parameter `colour`"]),

@@ -79,9 +79,11 @@ fn a_large_board_is_shown_in_time() {
 fn what_is_missing_of_a_project_is_named() {
     let project = copy();
     assert!(run(project.path(), &["run", "corners/noise", "--trials", "2", "-q"]).status.success());
-    for (missing, arguments) in
-        [("reference/baselines", vec!["check", "corners/noise"]), ("reference/published", vec!["report"]), ("reference", vec!["check"])]
-    {
+    for (missing, arguments) in [
+        ("reference/baselines", vec!["check", "corners/noise"]),
+        ("reference/cameras", vec!["report", "conventions"]),
+        ("reference", vec!["check"]),
+    ] {
         std::fs::remove_dir_all(project.path().join(missing)).unwrap();
         let output = in_time(project.path(), &arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));

@@ -301,7 +301,7 @@ impl<'a> Row<'a> {
             path: self.sheet.path.clone(),
             line: self.sheet.lines + self.record.position().map_or(0, Position::line),
             column: self.sheet.header.get(column).unwrap_or_default().to_owned(),
-            problem: format!("found `{}`, {expected}", self.text(column)),
+            problem: format!("found `{}`, {expected}", calibench_model::escape::message(self.text(column))),
         }
     }
 }

@@ -178,7 +178,9 @@ fn borders(operator: &dyn Operator, picture: Picture) {
         let found = operator.measure(&image, &Start::at(PixelPoint::new(x, y)));
         assert_eq!(found.unwrap_err(), Rejection::Border, "start ({x}, {y})");
     };
-    for (x, y) in [(-2.0, 45.0), (45.0, last + 2.0), (-1e300, 0.0), (1e18, 1e18), (4e9, 45.0), (f64::MAX, f64::MIN)] {
+    for (x, y) in
+        [(-2.0, 45.0), (45.0, last + 2.0), (-1e300, 0.0), (1e18, 1e18), (4e9, 45.0), (f64::MAX, f64::MIN), (1e300, 45.0), (45.0, f64::MAX)]
+    {
         border(x, y);
     }
     if operator.reads_grey_values() {

@@ -70,7 +70,8 @@ impl Image {
     /// Whether the square of half-width `reach` px around pixel (`x`, `y`) lies inside the image.
     #[inline]
     pub fn holds(&self, x: i64, y: i64, reach: i64) -> bool {
-        x >= reach && y >= reach && x + reach < self.width as i64 && y + reach < self.height as i64
+        // On the side of the size, where nothing overflows: a start may lie anywhere.
+        x >= reach && y >= reach && x < self.width as i64 - reach && y < self.height as i64 - reach
     }
 
     /// The square of half-width `reach` around pixel (`x`, `y`), row by row; `None` if it leaves the image.

@@ -99,7 +99,7 @@ fn rows(theory: &Theory) -> Vec<Row> {
     rows
 }
 
-/// Reads what [`write`] wrote.
+/// Reads what [`write()`] wrote.
 ///
 /// # Errors
 /// A file of another form.

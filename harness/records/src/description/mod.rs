@@ -79,7 +79,7 @@ pub fn write(mut output: impl Write, description: &Description) -> std::io::Resu
     writeln!(output)
 }
 
-/// Reads what [`write`] wrote, every number to its last bit.
+/// Reads what [`write()`] wrote, every number to its last bit.
 ///
 /// # Errors
 /// A text of another form, with its line and column.
