@@ -50,7 +50,9 @@ impl FigureSum {
     /// Whether both are the same but for last bits.
     fn same(&self, other: &Self) -> bool {
         let scale = self.sigma.unwrap_or(0.0).max(self.scatter).max(self.error.unwrap_or(0.0));
-        let agree = |a: f64, b: f64| (a - b).abs() <= SAME * scale + DIGITS * a.abs() || (a.is_nan() && b.is_nan());
+        // Of a value that is the same in all trials the scatter is the rounding of its digits.
+        let digits = DIGITS * self.mean.abs();
+        let agree = |a: f64, b: f64| (a - b).abs() <= SAME * scale + digits || (a.is_nan() && b.is_nan());
         let optional = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) => agree(a, b),
             (None, None) => true,
@@ -214,6 +216,16 @@ mod tests {
         assert_eq!(verdicts(&base, &with(1.0, f64::NAN, Some(0.5))).first(), Some(&(Verdict::Fails, "error")));
         assert_eq!(verdicts(&base, &sums(Group::Iop, &[numbers(1.0, 0.5)])).first(), Some(&(Verdict::Fails, "adjusted")));
         assert_eq!(verdicts(&base, &FigureSums::default()), [(Verdict::Fails, "figure")]);
+    }
+
+    #[test]
+    fn digits_of_a_value_that_stays_the_same_are_no_change() {
+        let with = |value: f64| {
+            let numbers = [Numbers { value, sigma: None, error: None }, Numbers { value: value + 1e-14, sigma: None, error: None }];
+            sums(Group::Check, &numbers)
+        };
+        assert_eq!(verdicts(&with(6.163_170_733), &with(6.163_170_73)), []);
+        assert_eq!(verdicts(&with(6.163_170_733), &with(6.163_171)), [(Verdict::Changed, "figure")]);
     }
 
     #[test]
