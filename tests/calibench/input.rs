@@ -8,7 +8,7 @@ use crate::calibrate::{wall, write};
 use crate::project::{copy, files, program, run, stderr};
 
 /// A command that takes longer hangs.
-const HANGS: Duration = Duration::from_secs(60);
+const HANGS: Duration = Duration::from_mins(1);
 
 /// As [`run`], but stopped with a panic when it hangs.
 fn in_time(folder: &Path, arguments: &[&str]) -> Output {

@@ -105,6 +105,9 @@ impl Form {
     }
 }
 
+/// The largest coordinate, object units: the squares and products of larger ones lose their digits against all others.
+const LARGEST: f64 = 1e12;
+
 struct Cells<'a> {
     file: &'a str,
     places: &'a HashMap<String, usize>,
@@ -120,7 +123,12 @@ impl Cells<'_> {
     fn number(&self, column: &str) -> Result<f64, PointFileError> {
         let text = self.text(column).ok_or_else(|| self.wrong(column, "is empty; expected a number".into()))?;
         let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-        number.ok_or_else(|| self.wrong(column, format!("expected a finite number with a decimal point, found `{text}`")))
+        let number = number.ok_or_else(|| self.wrong(column, format!("expected a finite number with a decimal point, found `{text}`")))?;
+        if number.abs() <= LARGEST {
+            Ok(number)
+        } else {
+            Err(self.wrong(column, format!("is beyond {LARGEST:e}, found `{text}`: no coordinate is")))
+        }
     }
 
     fn wrong(&self, column: &str, problem: String) -> PointFileError {

@@ -107,7 +107,7 @@ fn run(reader: &'static Reader, seed: u64, most: Option<usize>, time: Duration) 
 #[test]
 fn no_reader_panics_or_hangs() {
     let seconds = variable("SECONDS");
-    let (most, time) = seconds.map_or((Some(SHORT), Duration::from_secs(600)), |seconds| (None, Duration::from_secs(seconds)));
+    let (most, time) = seconds.map_or((Some(SHORT), Duration::from_mins(10)), |seconds| (None, Duration::from_secs(seconds)));
     let alone = env::var("CALIBENCH_FUZZ_READER").ok();
     let chosen: Vec<&Reader> = READERS.iter().filter(|reader| alone.as_ref().is_none_or(|name| name == reader.name)).collect();
     let known: Vec<&str> = READERS.iter().map(|reader| reader.name).collect();
@@ -147,7 +147,7 @@ fn every_reader_has_seeds_that_it_reads() {
 /// The same seed, the same files: a fault can be looked for again.
 #[test]
 fn files_are_the_same_again() {
-    let later = Instant::now() + Duration::from_secs(600);
+    let later = Instant::now() + Duration::from_mins(10);
     let all = |seed| files(&READERS[0], seed, Some(200), later).collect::<Vec<_>>();
     assert!(all(1) == all(1) && all(1) != all(2));
 }

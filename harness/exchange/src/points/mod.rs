@@ -96,6 +96,7 @@ pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, Point
     let header = reader.headers().map_err(|error| csv_error(file, &error))?.clone();
     let columns = Columns::new(file, &header)?;
     // A row takes eight bytes at least, as in `a,b,1,2`.
+    #[expect(clippy::naive_bytecount, reason = "a hundredth of what parsing takes")]
     let most = text.iter().filter(|byte| **byte == b'\n').count().min(text.len() / 8);
     let mut found = PointFile { points: Points::with_capacity(most), lost: LostRows::default() };
     let (mut seen, mut record) = (Once::default(), StringRecord::new());
@@ -213,6 +214,9 @@ impl Columns {
     }
 }
 
+/// The largest image coordinate, px: no image is a tenth as wide.
+const FARTHEST: f64 = 1e7;
+
 /// One record, read cell by cell.
 struct Cells<'a> {
     file: &'a str,
@@ -224,7 +228,7 @@ struct Cells<'a> {
 impl<'a> Cells<'a> {
     fn row(&self) -> Result<PointRef<'a>, PointFileError> {
         let kind = self.text(KIND).map(|name| name.parse::<TargetKind>().map_err(|e| self.wrong(KIND, e.to_string()))).transpose()?;
-        let position = PixelPoint::new(self.required_number(X)?, self.required_number(Y)?);
+        let position = PixelPoint::new(self.coordinate(X)?, self.coordinate(Y)?);
         let affine = self.group(AXX)?.map(|[axx, axy, ayx, ayy]| Affine { axx, axy, ayx, ayy });
         let covariance = self.group(SXX)?.map(|[sxx, sxy, syy]| Covariance { sxx, sxy, syy });
         if let Some(impossible) = covariance.filter(|covariance| !covariance.is_valid()) {
@@ -259,6 +263,14 @@ impl<'a> Cells<'a> {
 
     fn required_number(&self, column: usize) -> Result<f64, PointFileError> {
         self.number(column)?.ok_or_else(|| self.wrong(column, "is empty; expected a number".into()))
+    }
+
+    /// An image coordinate, px.
+    fn coordinate(&self, column: usize) -> Result<f64, PointFileError> {
+        let number = self.required_number(column)?;
+        let far =
+            || self.wrong(column, format!("is {number} px; expected an image coordinate, at most {FARTHEST:e} px from the first pixel"));
+        if number.abs() <= FARTHEST { Ok(number) } else { Err(far()) }
     }
 
     /// The numbers of a group of columns, or `None` if all its cells are empty or absent.
