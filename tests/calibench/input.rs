@@ -112,6 +112,7 @@ fn a_full_disk_is_named_and_nothing_half_written_stays() {
         let words = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {words}");
         assert!(words.contains(path) && words.contains("File too large"), "{arguments:?}: {words}");
+        assert!(!words.contains(".calibench-"), "a temporary file is named: {words}");
         let mut after = files(project.path());
         after.retain(|file| !before.contains(file));
         assert!(after.is_empty(), "{arguments:?} leaves {:?}", after.iter().map(|(path, _)| path).collect::<Vec<_>>());

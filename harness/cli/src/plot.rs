@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::{Inputs, OutputFile};
 use calibench_report::sweep;
 use calibench_report::sweep::{Choice, Layout, LoadedSweep, Metric};
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::context::Context;
 use super::output;
@@ -21,8 +22,8 @@ pub struct Plot {
     #[arg(long, value_name = "KEY")]
     x: Option<String>,
     /// The figure
-    #[arg(long, value_enum, default_value_t = Figure::Rmse)]
-    y: Figure,
+    #[arg(long, value_name = "Y", value_parser = metrics(), default_value = "rmse")]
+    y: Metric,
     /// One curve for each value of this key, or for each method
     #[arg(long, value_name = "KEY", default_value = "method", conflicts_with = "map")]
     by: String,
@@ -43,43 +44,16 @@ pub struct Plot {
     output: Option<PathBuf>,
 }
 
-/// What is plotted.
-#[derive(Clone, Copy, ValueEnum)]
-enum Figure {
-    /// `sqrt(mean(dx^2 + dy^2))` of the points that were measured and not lost, px
-    Rmse,
-    /// Length of their mean error, px
-    Bias,
-    /// Mean error in x of all points that were measured, lost ones among them, px
-    MeanX,
-    /// Their 2D deviation about the mean error, px
-    Scatter,
-    /// Root mean squared error in units of the Cramér-Rao bound of each point
-    Ratio,
-    /// Root mean squared error in units of the method's own standard deviation of each point
-    Predicted,
-    /// Share of points measured more than 1 px from the truth, %
-    Lost,
-    /// Share of points that the operator rejected, %
-    Rejected,
-    /// Share of points lost or rejected, %
-    Failed,
+/// The name of a figure on the command line.
+fn word(metric: Metric) -> &'static str {
+    if metric == Metric::MeanX { "mean-x" } else { metric.name().0 }
 }
 
-impl From<Figure> for Metric {
-    fn from(figure: Figure) -> Self {
-        match figure {
-            Figure::Rmse => Self::Rmse,
-            Figure::Bias => Self::Bias,
-            Figure::MeanX => Self::MeanX,
-            Figure::Scatter => Self::Scatter,
-            Figure::Ratio => Self::Ratio,
-            Figure::Predicted => Self::Predicted,
-            Figure::Lost => Self::Lost,
-            Figure::Rejected => Self::Rejected,
-            Figure::Failed => Self::Failed,
-        }
-    }
+/// Figures by their names, with what each one is.
+fn metrics() -> impl TypedValueParser<Value = Metric> {
+    let values = Metric::ALL.map(|metric| PossibleValue::new(word(metric)).help(metric.meaning()));
+    PossibleValuesParser::new(values)
+        .try_map(|text| Metric::ALL.into_iter().find(|metric| word(*metric) == text).ok_or("there is no such figure"))
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {
@@ -98,7 +72,7 @@ impl Plot {
             at: self.at.clone(),
             methods: self.methods.clone(),
         };
-        let layout = Layout::new(&loaded, &choice, self.y.into(), self.map.is_some())?;
+        let layout = Layout::new(&loaded, &choice, self.y, self.map.is_some())?;
         let drawn = if self.map.is_some() { sweep::map(&loaded, &layout) } else { sweep::curves(&loaded, &layout) };
         drawn.write(&picture)?;
         print(&format!("{}\n", path.display()))?;

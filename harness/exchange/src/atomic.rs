@@ -176,13 +176,23 @@ fn replace<E: From<io::Error>>(path: &Path, place: &Path, write: impl FnOnce(&mu
         // As for any other new file; the user's umask still applies.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = Named { inner: BufWriter::new(builder.tempfile_in(folder_of(place)).map_err(|error| at(path, &error))?), path };
-    write(&mut file)?;
-    let file = file.inner.into_inner().map_err(|error| at(path, error.error()))?;
+    let mut file = builder.tempfile_in(folder_of(place)).map_err(|error| at(path, &without_path(error)))?;
+    {
+        // To the file itself: what tempfile says of errors names its own file, not the user's.
+        let mut buffered = Named { inner: BufWriter::new(file.as_file_mut()), path };
+        write(&mut buffered)?;
+        buffered.flush()?;
+    }
     let rights = fs::metadata(place).map_or(Ok(()), |old| keep_rights(file.as_file(), &old));
     rights.and_then(|()| file.as_file().sync_data()).map_err(|error| at(path, &error))?;
     file.persist(place).map_err(|error| at(path, &error.error))?;
     Ok(())
+}
+
+/// What the system says of a temporary file, without the name of that file.
+fn without_path(error: io::Error) -> io::Error {
+    let said = error.get_ref().and_then(|inner| inner.source()).map(ToString::to_string);
+    said.map_or(error, |said| io::Error::other(said))
 }
 
 /// Gives a file the permissions of the one that it replaces, and its owner where that is allowed.

@@ -50,9 +50,8 @@ impl FigureSum {
     /// Whether both are the same but for last bits.
     fn same(&self, other: &Self) -> bool {
         let scale = self.sigma.unwrap_or(0.0).max(self.scatter).max(self.error.unwrap_or(0.0));
-        // Of a value that is the same in all trials the scatter is the rounding of its digits.
-        let digits = DIGITS * self.mean.abs();
-        let agree = |a: f64, b: f64| (a - b).abs() <= SAME * scale + digits || (a.is_nan() && b.is_nan());
+        let agree_within = |digits: f64, a: f64, b: f64| (a - b).abs() <= SAME * scale + digits || (a.is_nan() && b.is_nan());
+        let agree = |a: f64, b: f64| agree_within(DIGITS * a.abs(), a, b);
         let optional = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) => agree(a, b),
             (None, None) => true,
@@ -60,7 +59,8 @@ impl FigureSum {
         };
         self.count == other.count
             && agree(self.mean, other.mean)
-            && agree(self.scatter, other.scatter)
+            // Of a value that is the same in all trials the scatter is the rounding of its digits.
+            && agree_within(DIGITS * self.mean.abs(), self.scatter, other.scatter)
             && optional(self.error, other.error)
             && optional(self.sigma, other.sigma)
     }
@@ -226,6 +226,17 @@ mod tests {
         };
         assert_eq!(verdicts(&with(6.163_170_733), &with(6.163_170_73)), []);
         assert_eq!(verdicts(&with(6.163_170_733), &with(6.163_171)), [(Verdict::Changed, "figure")]);
+    }
+
+    #[test]
+    fn a_large_value_hides_no_change_of_its_error() {
+        // Stations in a national grid, in m, known to a tenth of a millimetre.
+        let with = |error: f64, sigma: f64| sums(Group::Eop, &[Numbers { value: 4e6, sigma: Some(sigma), error: Some(error) }]);
+        let base = with(1e-4, 1e-4);
+        assert_eq!(verdicts(&base, &base), []);
+        assert_eq!(verdicts(&base, &with(1.1e-4, 1e-4)), [(Verdict::Fails, "error"), (Verdict::Fails, "sigma")]);
+        assert_eq!(verdicts(&base, &with(0.99e-4, 1e-4)), [(Verdict::Changed, "figure")]);
+        assert_eq!(verdicts(&base, &with(1e-4, 0.8e-4)), [(Verdict::Fails, "sigma")]);
     }
 
     #[test]

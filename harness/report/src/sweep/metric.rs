@@ -2,26 +2,18 @@
 
 use calibench_records::score::{Pooled, Score, root};
 
-/// What is plotted.
+/// What is plotted; [`Metric::meaning`] says what each one is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "`meaning` says it, for readers of the documentation and of the command line alike")]
 pub enum Metric {
-    /// `sqrt(mean(dx^2 + dy^2))` of the points that were measured and not lost, px.
     Rmse,
-    /// Length of their mean error, px.
     Bias,
-    /// Mean error in x of all points that were measured, lost ones among them, px.
     MeanX,
-    /// Their 2D deviation about the mean error, px.
     Scatter,
-    /// Root mean squared error in units of the Cramér-Rao bound of each point.
     Ratio,
-    /// Root mean squared error in units of the method's own standard deviation of each point.
     Predicted,
-    /// Share of points measured more than 1 px from the truth, %.
     Lost,
-    /// Share of points that the operator rejected, %.
     Rejected,
-    /// Share of points lost or rejected, %.
     Failed,
 }
 
@@ -37,6 +29,34 @@ pub struct Estimate {
 const LEVEL: f64 = 0.95;
 
 impl Metric {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Rmse,
+        Self::Bias,
+        Self::MeanX,
+        Self::Scatter,
+        Self::Ratio,
+        Self::Predicted,
+        Self::Lost,
+        Self::Rejected,
+        Self::Failed,
+    ];
+
+    /// What it is, with its unit, in a line.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Rmse => "`sqrt(mean(dx^2 + dy^2))` of the points that were measured and not lost, px",
+            Self::Bias => "Length of their mean error, px",
+            Self::MeanX => "Mean error in x of all points that were measured, lost ones among them, px",
+            Self::Scatter => "Their 2D deviation about the mean error, px",
+            Self::Ratio => "Root mean squared error in units of the Cramér-Rao bound of each point",
+            Self::Predicted => "Root mean squared error in units of the method's own standard deviation of each point",
+            Self::Lost => "Share of points measured more than 1 px from the truth, %",
+            Self::Rejected => "Share of points that the operator rejected, %",
+            Self::Failed => "Share of points lost or rejected, %",
+        }
+    }
+
     /// Its name and unit, for an axis.
     pub fn title(self) -> &'static str {
         match self {
