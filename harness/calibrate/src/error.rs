@@ -18,6 +18,14 @@ pub enum CalibrationError {
         /// The control point whose name is nearest.
         near: Option<String>,
     },
+    /// No image with points has a station.
+    #[error("no image has a station: points are of `{image}`, stations are of `{station}`")]
+    NoStation {
+        /// The first image.
+        image: String,
+        /// The first station.
+        station: String,
+    },
     /// Images without a pose.
     #[error("no exterior orientation: {}", images.iter().map(|(name, why)| format!("image {name}: {why}")).collect::<Vec<_>>().join("; "))]
     NoPose {

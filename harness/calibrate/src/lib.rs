@@ -8,6 +8,7 @@ mod error;
 mod model;
 mod network;
 mod optics;
+pub mod orientation;
 mod prepared;
 mod prior;
 mod sets;

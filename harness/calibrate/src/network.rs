@@ -20,7 +20,7 @@ pub(super) fn network(
         prior::exterior(Exterior::free(name.clone(), camera, *pose), prior::station(&settings.stations, name))
     };
     let images = survey.images.iter().zip(owners).zip(&starts.poses).map(image).collect();
-    let (mut points, mut place) = (Vec::new(), vec![None; survey.targets()]);
+    let (mut points, mut place) = (Vec::with_capacity(starts.points.iter().flatten().count()), vec![None; survey.targets()]);
     for (target, position) in starts.points.iter().enumerate() {
         if let Ok(position) = position {
             place[target] = Some(points.len());

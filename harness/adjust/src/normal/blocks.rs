@@ -102,7 +102,6 @@ pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scrat
 pub(crate) struct Rows {
     values: Vec<[f64; 2]>,
     residuals: Vec<Residual>,
-    view: View,
     width: usize,
     first: usize,
 }
@@ -119,6 +118,7 @@ impl Rows {
         loss: Loss,
         image: usize,
         range: Range<usize>,
+        Scratch(view): &mut Scratch,
     ) -> Result<(), Lost> {
         let camera = network.images[image].camera;
         let (free, pose, optics) = (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera]));
@@ -128,7 +128,6 @@ impl Rows {
         for chunk in chunks(&range) {
             let sights = &layout.sights[chunk.clone()];
             self.residuals.resize(sights.len(), Residual::default());
-            let view = &mut self.view;
             view.linearise(setting, sights, &state.points, &mut self.residuals).map_err(|Lost(i)| Lost(chunk.start + i))?;
             for (k, sight) in sights.iter().enumerate() {
                 let parameters = (0..free.len()).map(|i| view.at(k, POSE + i));

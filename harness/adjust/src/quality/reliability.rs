@@ -6,7 +6,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::AdjustError;
 use crate::network::{Attitude, Centre, Sight, Status};
-use crate::normal::{Lost, Rows};
+use crate::normal::{Lost, Rows, Scratch};
 use crate::solution::Solution;
 use crate::solve::{Coupling, Eliminated, Engine, Inverse, Member};
 use crate::state::{rotation_vector, rotation_vector_slope};
@@ -82,7 +82,7 @@ impl Reliability {
 }
 
 /// Image points whose equations are in memory at a time.
-const CHUNK: usize = 1 << 14;
+const CHUNK: usize = 1 << 12;
 
 /// A redundancy number below which an observation is not checked at all.
 const UNCHECKED: f64 = 1e-9;
@@ -122,13 +122,13 @@ impl Solution<'_> {
     fn image_by_image(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
         let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
-        let mut rows = Rows::default();
+        let (mut rows, mut scratch) = (Rows::default(), Scratch::default());
         for (image, range) in layout.of_image.iter().enumerate() {
             let place = plan.members.binary_search(&image).ok();
             let member = place.map(|place| inverse.member::<6>(&self.solved, ordered, place, &mut coupling));
             for start in range.clone().step_by(CHUNK) {
                 let chunk = start..(start + CHUNK).min(range.end);
-                rows.fill((*network, layout), &self.end.state, *loss, image, chunk.clone())?;
+                rows.fill((*network, layout), &self.end.state, *loss, image, chunk.clone(), &mut scratch)?;
                 for sight in chunk {
                     let adjusted = self.adjusted(inverse, sight, rows.of(sight), member.as_ref());
                     found.push(self.image_point(sight, adjusted, scale));
@@ -144,7 +144,7 @@ impl Solution<'_> {
         let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
         let (count, mut next) = (layout.point_free.len(), layout.of_image.iter().map(|range| range.start).collect::<Vec<_>>());
         let mut rows: Vec<Rows> = (0..layout.of_image.len()).map(|_| Rows::default()).collect();
-        let mut first = 0;
+        let (mut first, mut scratch) = (0, Scratch::default());
         while first < count {
             let (mut end, mut sights) = (first, 0);
             while end < count && (end == first || sights < CHUNK) {
@@ -155,7 +155,7 @@ impl Solution<'_> {
                 let start = next[image];
                 next[image] += layout.sights[start..range.end].iter().take_while(|sight| sight.point() < end).count();
                 if start < next[image] {
-                    rows[image].fill((*network, layout), &self.end.state, *loss, image, start..next[image])?;
+                    rows[image].fill((*network, layout), &self.end.state, *loss, image, start..next[image], &mut scratch)?;
                 }
             }
             for point in first..end {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::elimination_order::{Eliminated, Ordered};
-use crate::normal::Rows;
+use crate::normal::{Rows, Scratch};
 
 /// Sights whose couplings are made at a time.
 const CHUNK: usize = if cfg!(test) { 64 } else { 1 << 14 };
@@ -20,6 +20,7 @@ pub(crate) struct Window {
     cameras: Vec<f64>,
     first_pair: usize,
     rows: Rows,
+    scratch: Scratch,
 }
 
 impl Window {
@@ -56,7 +57,7 @@ impl Window {
             return;
         }
         // The state pictures all sights: its normal equations are there.
-        let pictured = self.rows.fill((engine.network, layout), of.state, engine.loss, image, sights.clone());
+        let pictured = self.rows.fill((engine.network, layout), of.state, engine.loss, image, sights.clone(), &mut self.scratch);
         debug_assert!(pictured.is_ok());
         let width = layout.cameras[layout.camera_of[image]].free.len();
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];

@@ -1,12 +1,10 @@
 //! `calibench orient`: the relative orientation of two images, and the model that they make; interior orientations fixed.
 
-use std::collections::HashMap;
 use std::path::PathBuf;
 
-use calibench_adjust::approximate::{ApproximateError, RelativeOrientation, Search, Tolerance, orient_relatively};
-use calibench_diagnostics::nearest;
+use calibench_adjust::approximate::{ApproximateError, Tolerance};
+use calibench_calibrate::orientation::{Pair, PairError, Seen, Side};
 use calibench_exchange::{Inputs, Points};
-use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
 use calibench_model::escape;
 use clap::Args;
@@ -18,12 +16,7 @@ use crate::deliver::deliver;
 use crate::failure::Failure;
 use crate::inputs::{camera, read_measured};
 
-mod model;
-mod seen;
 mod words;
-
-use model::Model;
-use seen::Seen;
 
 #[derive(Args)]
 pub struct Orient {
@@ -74,23 +67,21 @@ impl Orient {
         let left = camera(&self.camera, self.size)?;
         let right = self.camera_right.as_deref().map_or(Ok(left), |path| camera(path, self.size))?;
         let seen = self.seen(&read_measured(&self.points)?)?;
-        let found = self.orient([&left, &right], &seen)?;
-        let model = Model::of([&left, &right], &seen, &found, self.base, self.least_angle.to_radians());
+        let pair = self.orient([&left, &right], seen)?;
         if !context.quiet {
-            eprint!("{}", escape::message(&words::summary(&model, [&self.left, &self.right])));
+            eprint!("{}", escape::message(&words::summary(&pair, [&self.left, &self.right])));
         }
-        words::warnings(&model).iter().for_each(|warning| say!("warning: {warning}"));
-        deliver(output.as_ref(), |file| model.write_points(file))?;
+        words::warnings(&pair).iter().for_each(|warning| say!("warning: {warning}"));
+        deliver(output.as_ref(), |file| pair.write_points(file))?;
         match &poses {
-            Some(poses) => deliver(Some(poses), |file| model.write_poses(file, [&self.left, &self.right])),
+            Some(poses) => deliver(Some(poses), |file| pair.write_poses(file, [&self.left, &self.right])),
             None => Ok(()),
         }
     }
 
-    fn orient(&self, cameras: [&Camera; 2], seen: &[Seen]) -> Result<RelativeOrientation, Failure> {
-        let pairs: Vec<[PixelPoint; 2]> = seen.iter().filter_map(Seen::pair).collect();
+    fn orient(&self, cameras: [&Camera; 2], seen: Vec<Seen>) -> Result<Pair, Failure> {
         let tolerance = self.tolerance.map_or(Tolerance::Unknown, Tolerance::Pixels);
-        orient_relatively(cameras, &pairs, &Search { seed: self.seed, tolerance }).map_err(|error| {
+        Pair::orient(cameras, seen, (tolerance, self.seed), self.base, self.least_angle.to_radians()).map_err(|error| {
             Failure::input(match error {
                 ApproximateError::TooFew { needed, found, .. } => format!(
                     "images {} and {} have {found} targets in common: five determine the relative orientation (up to ten solutions), \
@@ -104,25 +95,10 @@ impl Orient {
 
     /// The targets of both images, in the order of the file.
     fn seen(&self, points: &Points) -> Result<Vec<Seen>, Failure> {
-        if self.left == self.right {
-            return Err(Failure::input(format!("--left and --right both name {}: expected two images", self.left)));
-        }
-        for (option, name) in [("left", &self.left), ("right", &self.right)] {
-            if points.images().find(name).is_none() {
-                let near = nearest(name, points.images().iter());
-                let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-                return Err(Failure::input(format!("--{option} {name}: no point is of this image{near}")));
-            }
-        }
-        let (mut seen, mut places) = (Vec::<Seen>::new(), HashMap::new());
-        for row in points.rows() {
-            let Some(side) = [&self.left, &self.right].iter().position(|name| **name == row.image) else { continue };
-            let place = *places.entry(row.target).or_insert_with(|| {
-                seen.push(Seen { target: row.target.to_owned(), at: [None; 2] });
-                seen.len() - 1
-            });
-            seen[place].at[side] = Some(row.start.position);
-        }
-        Ok(seen)
+        Seen::of(points, &self.left, &self.right).map_err(|error| match &error {
+            PairError::Same(image) => Failure::input(format!("--left and --right both name {image}: expected two images")),
+            PairError::NoPoint { side: Side::Left, .. } => Failure::input(format!("--left {error}")),
+            PairError::NoPoint { side: Side::Right, .. } => Failure::input(format!("--right {error}")),
+        })
     }
 }

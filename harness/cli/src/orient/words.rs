@@ -1,10 +1,8 @@
 //! What is said of an oriented pair.
 
+use calibench_calibrate::orientation::Pair;
 use calibench_exchange::station_numbers;
 use calibench_report::plain;
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
-
-use super::model::Model;
 
 /// Thickness of the model, relative to its largest extent, below which it is called a plane.
 const FLAT: f64 = 0.01;
@@ -16,9 +14,9 @@ const ELEMENTS: [&str; 5] =
     ["rotation about x", "rotation about y", "rotation about z", "base across (first axis)", "base across (second axis)"];
 
 /// The elements with their standard deviations, sigma0 and redundancy.
-pub(super) fn summary(model: &Model<'_>, [left, right]: [&str; 2]) -> String {
-    let (found, sigmas) = (model.found, model.sigmas());
-    let numbers = station_numbers(&model.pose(&found.pose));
+pub(super) fn summary(pair: &Pair, [left, right]: [&str; 2]) -> String {
+    let (found, sigmas) = (&pair.found, pair.sigmas());
+    let numbers = station_numbers(&pair.pose(&found.pose));
     let value = |name: &str, i: usize| {
         let sigma = if i < 3 { sigmas[i] } else { sigmas[i].to_degrees() };
         format!("  {name} {:.6}, sigma {}\n", numbers[i], plain(sigma))
@@ -29,7 +27,7 @@ pub(super) fn summary(model: &Model<'_>, [left, right]: [&str; 2]) -> String {
         found.residuals.len(),
         found.redundancy,
         plain(found.sigma0),
-        model.base
+        pair.base
     );
     ["X0", "Y0", "Z0"].iter().enumerate().for_each(|(i, name)| text.push_str(&value(name, i)));
     text.push_str(&format!("  omega {:.6}, phi {:.6}, kappa {:.6} degrees; ", numbers[3], numbers[4], numbers[5]));
@@ -39,39 +37,27 @@ pub(super) fn summary(model: &Model<'_>, [left, right]: [&str; 2]) -> String {
 }
 
 /// What makes the orientation doubtful.
-pub(super) fn warnings(model: &Model<'_>) -> Vec<String> {
-    let found = model.found;
+pub(super) fn warnings(pair: &Pair) -> Vec<String> {
+    let found = &pair.found;
     let mut warnings = Vec::new();
-    let flat = thickness(model).filter(|share| *share < FLAT);
+    let flat = pair.thickness().filter(|share| *share < FLAT);
     if let Some(share) = flat {
         warnings.push(format!("the model is nearly a plane ({} of its extent thick): planes allow two orientations", plain(share)));
     }
     if let Some(rival) = &found.rival {
-        let numbers = station_numbers(&model.pose(rival)).map(|number| format!("{number:.5}")).join(", ");
+        let numbers = station_numbers(&pair.pose(rival)).map(|number| format!("{number:.5}")).join(", ");
         let why = if flat.is_some() { "the points lie in a plane" } else { "the points lie on or near a critical surface, or are few" };
         warnings.push(format!("another orientation fits as well, X0, Y0, Z0, omega, phi, kappa = {numbers}: {why}"));
     }
-    let mut angles: Vec<f64> = model.points().map(|point| point.angle.to_degrees()).collect();
-    angles.sort_by(f64::total_cmp);
-    if let Some(angle) = angles.get(angles.len() / 2).filter(|angle| **angle < SMALL_ANGLE) {
-        warnings.push(format!("rays meet at {} degrees (median): the base is short for the distance, depths are weak", plain(*angle)));
+    if let Some(angle) = pair.median_angle().map(f64::to_degrees).filter(|angle| *angle < SMALL_ANGLE) {
+        warnings.push(format!("rays meet at {} degrees (median): the base is short for the distance, depths are weak", plain(angle)));
     }
-    let rho = |i: usize, j: usize| found.cofactor[(i, j)] / (found.cofactor[(i, i)] * found.cofactor[(j, j)]).sqrt();
-    for (i, j) in (0..5).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|&(i, j)| rho(i, j).abs() > CORRELATED) {
-        warnings.push(format!("{} and {} are hardly told apart: correlation {:.3}", ELEMENTS[j], ELEMENTS[i], rho(i, j)));
+    for (i, j) in (0..5).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|&(i, j)| pair.correlation(i, j).abs() > CORRELATED) {
+        warnings.push(format!("{} and {} are hardly told apart: correlation {:.3}", ELEMENTS[j], ELEMENTS[i], pair.correlation(i, j)));
     }
-    let parallel = model.rows.len() - model.points().count() - found.rejected.len();
+    let parallel = pair.targets.len() - pair.points().count() - found.rejected.len();
     if !found.rejected.is_empty() || parallel > 0 {
         warnings.push(format!("{} targets were rejected, {parallel} take no part: the point table says why", found.rejected.len()));
     }
     warnings
-}
-
-/// The smallest extent of the model's points relative to the largest.
-fn thickness(model: &Model<'_>) -> Option<f64> {
-    let points: Vec<Vector3<f64>> = model.points().map(|point| point.position.coords).collect();
-    let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
-    let spread: Matrix3<f64> = points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum();
-    let squares = SymmetricEigen::new(spread).eigenvalues;
-    (squares.max() > 0.0).then(|| (squares.min().max(0.0) / squares.max()).sqrt())
 }

@@ -1,0 +1,141 @@
+//! Object points from oriented images.
+
+use std::collections::HashMap;
+use std::io;
+
+use calibench_adjust::approximate::{ApproximateError, Intersection, Search, Sight as Ray, Tolerance, intersect};
+use calibench_exchange::{StationRow, write_table};
+use calibench_model::Pose;
+use calibench_model::camera::Camera;
+use rayon::prelude::*;
+
+use crate::{CalibrationError, Survey};
+
+const COLUMNS: [&str; 13] =
+    ["target", "X", "Y", "Z", "sX", "sY", "sZ", "images", "angle_deg", "sigma0_px", "redundancy", "rejected", "note"];
+
+/// Targets whose failure is kept one by one.
+pub const TOLD: usize = 100;
+/// Targets that are intersected before their rows are kept.
+const BATCH: usize = 1 << 14;
+
+/// The object points of a survey.
+#[derive(Clone, Debug, Default)]
+pub struct ObjectPoints {
+    found: Vec<Found>,
+    /// How many targets have no point.
+    pub failed: usize,
+    /// The first [`TOLD`] of them, by index, and why.
+    pub first_failures: Vec<(usize, ApproximateError)>,
+}
+
+/// A point, small: there may be millions.
+#[derive(Clone, Debug)]
+struct Found {
+    target: u32,
+    images: u32,
+    point: [f64; 3],
+    /// Not numbers without redundancy.
+    sigma: [f64; 3],
+    angle: f64,
+    sigma0: f64,
+    redundancy: u32,
+    /// Images whose sights did not fit.
+    rejected: Vec<u32>,
+}
+
+impl ObjectPoints {
+    /// Intersects every target of `survey`. Of each image its camera, and its pose if it has one; rays that meet at less than `least_angle` (rad) are
+    /// parallel; with `tolerance_px` residuals that are longer are left out.
+    pub fn of(survey: &Survey, cameras: &[Camera], poses: &[Option<Pose>], least_angle: f64, tolerance_px: Option<f64>) -> Self {
+        let against = tolerance_px.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
+        let one = |target: usize| {
+            let seen = survey.of_target(target).map(|index| survey.sight(index));
+            let oriented = seen.filter_map(|sight| poses[sight.image].as_ref().map(|pose| (sight, pose)));
+            let images: Vec<usize> = oriented.clone().map(|(sight, _)| sight.image).collect();
+            let rays: Vec<Ray<'_>> =
+                oriented.map(|(sight, pose)| Ray { camera: &cameras[sight.image], pose, image: sight.position }).collect();
+            intersect(&rays, least_angle, against.as_ref()).map(|found| Found::of(target, &images, &found))
+        };
+        let mut all = Self::default();
+        for first in (0..survey.targets()).step_by(BATCH) {
+            let batch: Vec<_> = (first..(first + BATCH).min(survey.targets())).into_par_iter().map(one).collect();
+            for (target, found) in (first..).zip(batch) {
+                match found {
+                    Ok(found) => all.found.push(found),
+                    Err(why) => {
+                        all.failed += 1;
+                        if all.first_failures.len() < TOLD {
+                            all.first_failures.push((target, why));
+                        }
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// How many points there are.
+    pub fn len(&self) -> usize {
+        self.found.len()
+    }
+
+    /// No target has a point.
+    pub fn is_empty(&self) -> bool {
+        self.found.is_empty()
+    }
+
+    /// Writes a control file: coordinates and standard deviations in object units, angles in degrees, sigma0 in px.
+    ///
+    /// # Errors
+    /// What `file` returns.
+    pub fn write(&self, survey: &Survey, file: impl io::Write) -> io::Result<()> {
+        write_table(file, &COLUMNS, self.found.iter().map(|row| row.cells(survey)))
+    }
+}
+
+/// The pose of each image of `survey` by its name, or else by its name without ending: `render` names stations, photographs have an ending.
+///
+/// # Errors
+/// [`CalibrationError::NoStation`] where no image has one.
+pub fn poses_of(survey: &Survey, stations: &[StationRow]) -> Result<Vec<Option<Pose>>, CalibrationError> {
+    let stem = |name: &str| name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned();
+    let named: HashMap<&str, &StationRow> = stations.iter().map(|row| (row.image.as_str(), row)).collect();
+    let of = |image: &String| named.get(image.as_str()).or_else(|| named.get(stem(image).as_str())).map(|row| row.pose);
+    let poses: Vec<Option<Pose>> = survey.images.iter().map(of).collect();
+    if poses.iter().all(Option::is_none) {
+        let first = |names: Option<&String>| names.cloned().unwrap_or_default();
+        let (image, station) = (first(survey.images.first()), first(stations.first().map(|row| &row.image)));
+        return Err(CalibrationError::NoStation { image, station });
+    }
+    Ok(poses)
+}
+
+impl Found {
+    fn of(target: usize, images: &[usize], found: &Intersection) -> Self {
+        let checked = found.redundancy > 0;
+        let sigma = |i: usize| if checked { found.sigma0 * found.cofactor[(i, i)].sqrt() } else { f64::NAN };
+        Self {
+            target: target as u32,
+            images: images.len() as u32,
+            point: found.point.into(),
+            sigma: [sigma(0), sigma(1), sigma(2)],
+            angle: found.angle,
+            sigma0: found.sigma0,
+            redundancy: found.redundancy as u32,
+            rejected: found.rejected.iter().map(|&i| images[i] as u32).collect(),
+        }
+    }
+
+    /// A point with standard deviations from its residuals; without redundancy there are none.
+    fn cells(&self, survey: &Survey) -> Vec<String> {
+        let checked = self.redundancy > 0;
+        let mut row = vec![survey.target(self.target as usize).to_owned()];
+        row.extend(self.point.iter().map(f64::to_string));
+        row.extend(self.sigma.iter().map(|sigma| if checked { sigma.to_string() } else { String::new() }));
+        row.extend([self.images.to_string(), self.angle.to_degrees().to_string(), self.sigma0.to_string(), self.redundancy.to_string()]);
+        let rejected: Vec<&str> = self.rejected.iter().map(|&image| survey.images[image as usize].as_str()).collect();
+        row.extend([rejected.join(" "), if checked { String::new() } else { "not checked".into() }]);
+        row
+    }
+}
