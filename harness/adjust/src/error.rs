@@ -29,9 +29,9 @@ pub enum AdjustError {
     NotConverged {
         /// Iterations done.
         iterations: usize,
-        /// What the next step promises.
+        /// What the next step promises to take off the weighted sum of squares.
         gain: f64,
-        /// Weighted sum of squares reached.
+        /// Weighted sum of squares reached, a number.
         cost: f64,
     },
     /// A result was asked for that this solution does not have.

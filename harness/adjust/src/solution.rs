@@ -116,7 +116,7 @@ impl<'n> Solution<'n> {
         &self.end.state.poses
     }
 
-    /// Object points.
+    /// Object points, object units, in the order of the network's.
     pub fn points(&self) -> &[Point3<f64>] {
         &self.end.state.points
     }
@@ -136,12 +136,14 @@ impl<'n> Solution<'n> {
         self.end.iterations
     }
 
-    /// Weighted sum of squared residuals, `v^T P v` with an a-priori variance factor of 1, of all observations in use; under Huber's loss, its value.
+    /// Weighted sum of squared residuals, `v^T P v` with an a-priori variance factor of 1, of all observations in use, a number; under Huber's loss,
+    /// its value.
     pub fn cost(&self) -> f64 {
         self.end.normals.cost
     }
 
-    /// The estimated standard deviation of unit weight, `sqrt(v^T P v / redundancy)`; `None` without redundancy.
+    /// The estimated standard deviation of unit weight, `sqrt(v^T P v / redundancy)`, a number: 1 if those given are right; `None` without
+    /// redundancy.
     pub fn sigma0(&self) -> Option<f64> {
         let redundancy = self.counts().redundancy();
         (redundancy > 0).then(|| (self.cost() / redundancy as f64).sqrt())

@@ -8,7 +8,7 @@ use calibench_model::Pose;
 use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
 
-/// The columns of a pose in a station file.
+/// The columns of a pose in a station file: X0, Y0, Z0 in object units, omega, phi, kappa in degrees.
 pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "kappa_deg"];
 /// The columns of its standard deviations: of X0, Y0, Z0 in object units, of small rotations about the camera's axes in degrees.
 pub const POSE_SIGMA_COLUMNS: [&str; 6] = ["sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg"];
@@ -95,7 +95,7 @@ pub fn parse_stations(file: &str, input: impl Read) -> Result<Vec<StationRow>, P
     FORM.parse(file, input, |_, row| Ok(station(&row)))
 }
 
-/// The numbers of a pose as a station file has them: X0, Y0, Z0 and omega, phi, kappa in degrees.
+/// The numbers of a pose as a station file has them: X0, Y0, Z0 in object units and omega, phi, kappa in degrees.
 pub fn station_numbers(pose: &Pose) -> [f64; 6] {
     let [omega, phi, kappa] = pose.angles().map(f64::to_degrees);
     [pose.centre.x, pose.centre.y, pose.centre.z, omega, phi, kappa]

@@ -12,9 +12,9 @@ use super::entry::{Entry, Found, rounded};
 pub struct Numbers {
     /// The value, in the figure's unit.
     pub value: f64,
-    /// Its reported standard deviation.
+    /// Its reported standard deviation, in the same unit.
     pub sigma: Option<f64>,
-    /// Value less truth.
+    /// Value less truth, in the same unit.
     pub error: Option<f64>,
 }
 

@@ -19,9 +19,9 @@ use super::table::{MethodTable, Table};
 pub enum CeilingMetric {
     /// `sqrt(mean(dx^2 + dy^2))` over the points that were measured and not lost, px. Lost points have their own metric.
     RmseXy,
-    /// Lost points as a fraction of all.
+    /// Lost points as a fraction of all, 0 to 1.
     LostShare,
-    /// Rejected points as a fraction of all.
+    /// Rejected points as a fraction of all, 0 to 1.
     RejectedShare,
     /// The largest `sqrt(dx^2 + dy^2)` of all measured points, lost ones too, px.
     MaxError,
@@ -87,7 +87,7 @@ impl CeilingMetric {
         }
     }
 
-    /// The figure of a method; `None` when there is none: no point, or no truth.
+    /// The figure of a method, in the metric's unit; `None` when there is none: no point, or no truth.
     pub fn figure(self, coordinates: Coordinates, method: &MethodTable) -> Option<f64> {
         let points = method.points.len();
         let share = |count: usize| (points > 0).then(|| count as f64 / points as f64);

@@ -28,7 +28,7 @@ impl Flips {
         flips
     }
 
-    /// How much more the trials' differences scatter than those of points that flip one by one: at least 1.
+    /// How much more the trials' differences scatter than those of points that flip one by one: a ratio of variances, at least 1.
     pub fn dispersion(&self) -> f64 {
         let trials = self.by_trial.len() as f64;
         let flips: u64 = self.by_trial.iter().map(|(up, down)| up + down).sum();

@@ -68,14 +68,14 @@ impl fmt::Display for Place {
 /// What was measured of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// Its coordinates, px, as the table's [`Coordinates`] say.
+    /// Its coordinates, px, as the table's [`Coordinates`] say; of an adjustment's check points RMSE_XY and RMSE_Z, mm.
     pub at: [f64; 2],
     /// The standard deviation that the method itself reports, px: the square root of the trace of its covariance.
     pub sigma: Option<f64>,
 }
 
 impl Found {
-    /// Coordinates without a standard deviation.
+    /// Coordinates, as in [`Self::at`], without a standard deviation.
     pub const fn bare(at: [f64; 2]) -> Self {
         Self { at, sigma: None }
     }
@@ -141,12 +141,12 @@ impl Entry {
         }
     }
 
-    /// The coordinates, lost or not.
+    /// The coordinates, as in [`Found::at`], lost or not.
     pub fn coordinates(&self) -> Option<[f64; 2]> {
         self.found().map(|found| found.at)
     }
 
-    /// The coordinates of a point that was measured and not lost.
+    /// The coordinates, as in [`Found::at`], of a point that was measured and not lost.
     pub const fn kept(&self) -> Option<[f64; 2]> {
         match self {
             Self::Measured(found) => Some(found.at),

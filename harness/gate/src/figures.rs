@@ -26,11 +26,11 @@ pub(super) struct FigureSum {
     pub count: u64,
     /// The mean value, in the figure's unit.
     pub mean: f64,
-    /// The scatter of the values, divided by their number.
+    /// The scatter of the values about their mean, in the same unit: the root of the mean of their squared deviations.
     pub scatter: f64,
-    /// The root mean square error against the truth, where that is known.
+    /// The root mean square error against the truth, in the same unit, where that is known.
     pub error: Option<f64>,
-    /// The root mean square of the reported standard deviations.
+    /// The root mean square of the reported standard deviations, in the same unit.
     pub sigma: Option<f64>,
 }
 

@@ -44,7 +44,7 @@ pub struct Finding {
     pub baseline: Option<f64>,
     /// The figure now, in the metric's unit.
     pub now: Option<f64>,
-    /// The p-value, adjusted for all tests of its family, where a test was made.
+    /// The p-value (0 to 1), adjusted for all tests of its family, where a test was made.
     pub p: Option<f64>,
     /// In words.
     pub message: String,
@@ -63,7 +63,7 @@ impl Finding {
         Self { target: Some(target.into()), ..self }
     }
 
-    /// The same with both figures.
+    /// The same with both figures, in the metric's unit.
     #[must_use]
     pub fn figures(self, baseline: f64, now: f64) -> Self {
         Self { baseline: Some(baseline), now: Some(now), ..self }
@@ -84,7 +84,7 @@ impl Finding {
         }
     }
 
-    /// The figure now less the baseline's.
+    /// The figure now less the baseline's, in the metric's unit.
     pub fn change(&self) -> Option<f64> {
         Some(self.now? - self.baseline?)
     }

@@ -33,7 +33,7 @@ pub(super) struct Test {
     pub family: Family,
     /// What it is about, with both figures, and what to say when it is better.
     pub finding: Finding,
-    /// The chance of what was seen, or more, if nothing became worse; 1 when nothing did by more than [`TOLERANCE`].
+    /// The chance (0 to 1) of what was seen, or more, if nothing became worse; 1 when nothing did by more than [`TOLERANCE`].
     pub worse: f64,
     /// The same for better.
     pub better: f64,

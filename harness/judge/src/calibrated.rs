@@ -15,7 +15,7 @@ pub struct Calibrated {
     pub camera: Camera,
     /// Its unknown parameters.
     pub names: Vec<&'static str>,
-    /// Their covariance, with the estimated variance factor.
+    /// Their covariance, in the order of `names` and in their units, with the estimated variance factor.
     pub covariance: DMatrix<f64>,
     /// Observations less unknowns.
     pub redundancy: i64,
@@ -70,7 +70,8 @@ impl Calibrated {
         Some(self.network.images[image].pose)
     }
 
-    /// The principal point, px, with its standard deviations: where the axis is pictured. `None` for a camera that does not picture it.
+    /// The principal point, x and y, px as in [`PixelPoint`](calibench_model::PixelPoint), each with its standard deviation: where the axis is
+    /// pictured. `None` for a camera that does not picture it.
     pub fn principal_point(&self) -> Option<[(f64, f64); 2]> {
         let found = self.camera.derivatives(Ray::from_tangent(0.0, 0.0)).ok()?;
         let all = self.camera.parameters();

@@ -39,7 +39,7 @@ impl Frame {
         Some(Self { left, turns })
     }
 
-    /// The variance (2D, px^2) of each place for a covariance of the parameters.
+    /// The variance (2D, px^2) of each place for a covariance of the parameters, in the order of their `names` and in their units.
     pub fn variances(&self, covariance: &DMatrix<f64>) -> Vec<f64> {
         let of = |k: usize| {
             let rows = self.left.rows(2 * k, 2);
@@ -48,13 +48,14 @@ impl Frame {
         (0..self.left.nrows() / 2).map(of).collect()
     }
 
-    /// A difference over the frame (x and y of each place) without what a rotation makes up for.
+    /// A difference over the frame (x and y of each place, px) without what a rotation makes up for, px.
     pub fn without_rotation(&self, difference: &DVector<f64>) -> DVector<f64> {
         difference - &self.turns * self.turns.tr_mul(difference)
     }
 
     /// How a difference compares with a covariance of the parameters: the sum of the squares of its modes, each over its predicted standard deviation,
-    /// and how many modes there are. Chi-square with so many degrees of freedom if the covariance is right.
+    /// and how many modes there are. Chi-square with so many degrees of freedom if the covariance is right. The difference is x and y of each place,
+    /// px.
     pub fn chi_square(&self, difference: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<(f64, usize)> {
         let root = nalgebra::Cholesky::new(covariance.clone())?;
         let svd = (&self.left * root.l()).svd(true, false);

@@ -33,9 +33,9 @@ pub fn halves(views: &[usize], (seed, scenario): (u64, &str), split: u64) -> [Ve
 pub struct Apart {
     /// By place: squared difference and predicted variance, px^2 (2D).
     pub places: Vec<(PixelPoint, f64, f64)>,
-    /// The modes of the difference, squared and over their predicted variances; and their number.
+    /// The modes of the difference, squared and over their predicted variances: the sum, a number; and how many they are.
     pub chi_square: (f64, usize),
-    /// The chance of as large a sum, if the covariances are right.
+    /// The chance (0 to 1) of as large a sum, if the covariances are right.
     pub p: f64,
 }
 
@@ -64,7 +64,7 @@ pub fn apart(first: &Calibrated, second: &Calibrated) -> Result<Apart, String> {
     Ok(Apart { places, chi_square: (sum, modes), p: fisher.sf(sum / modes as f64) })
 }
 
-/// The difference from `first` to `second` over the frame after the best rotation: places, and x and y of each.
+/// The difference from `first` to `second` over the frame after the best rotation: places, and x (right) and y (down) of each one's difference, px.
 ///
 /// # Errors
 /// In words.

@@ -9,7 +9,7 @@ use super::material::Material;
 /// With fewer corners in the half that it is resected from, a view says nothing.
 const FEWEST: usize = 6;
 
-/// Sum of squares, and of how many points.
+/// Sum of squared distances in the image (2D), px^2, and of how many points.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Squares {
     sum: f64,
@@ -27,7 +27,7 @@ impl Squares {
         self.count
     }
 
-    /// The root mean square; `None` of nothing.
+    /// The root mean square (2D), px; `None` of nothing.
     pub fn rms(self) -> Option<f64> {
         (self.count > 0).then(|| (self.sum / self.count as f64).sqrt())
     }

@@ -46,7 +46,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// The corners of a run of photographs.
+    /// The corners of a run of photographs; `side` is that of the board's squares, object units.
     pub fn new(trial: &Trial, methods: &[MethodInfo], board: Board, side: f64, size: ImageSize) -> Self {
         let place: HashMap<String, usize> = (0..board.corners()).map(|index| (board.target(index), index)).collect();
         let mut views: Vec<Arc<str>> = Vec::new();
@@ -83,7 +83,7 @@ impl Material {
         [column as f64 * self.side, -(row as f64 * self.side), 0.0]
     }
 
-    /// The board as control: X along the rows, Y upwards, Z towards the viewer.
+    /// The board as control, object units from the first corner: X along the rows, Y upwards, Z towards the viewer.
     pub fn control(&self) -> Vec<ControlRow> {
         let row = |corner| ControlRow { target: self.board.target(corner), position: self.object(corner), sigmas: None };
         (0..self.board.corners()).map(row).collect()

@@ -27,7 +27,7 @@ pub struct Segmentation {
 /// The pixels of one target in a window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Blob {
-    /// Positions, px, and by how much the grey value is beyond the threshold.
+    /// Positions (x, y), px as in [`PixelPoint`], and by how much the grey value (fraction of full scale) is beyond the threshold.
     pub pixels: Vec<(f64, f64, f64)>,
     /// The area that each stands for, px^2.
     pub cell: f64,
@@ -45,7 +45,7 @@ struct Raster {
 }
 
 impl Segmentation {
-    /// The target at or next to `start` in the window of half-width `half` around pixel `centre`; four neighbours connect.
+    /// The target at or next to `start` in the window of half-width `half` px around pixel `centre` (column, row); four neighbours connect.
     ///
     /// # Errors
     /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when all grey values are on one side of the threshold.

@@ -5,7 +5,7 @@ use calibench_model::{Affine, Image, PixelPoint, Rejection, Start};
 /// The points `position + A (cos t, sin t)` with A symmetric and positive definite: no orientation, and so none that a circle leaves undetermined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
-    /// The centre, px.
+    /// The centre (x, y), px as in [`PixelPoint`].
     pub position: [f64; 2],
     /// `axx, axy, ayy` of A, px: its eigenvalues are the semi-axes.
     pub shape: [f64; 3],

@@ -26,10 +26,10 @@ pub trait Operator: Send + Sync {
     }
 }
 
-/// The whole pixel nearest to a start, around which a window is laid.
+/// The whole pixel (column, row) nearest to a start, around which a window is laid.
 ///
 /// # Errors
-/// [`Rejection::NotFinite`] for a start that is not finite, [`Rejection::Border`] when the square of half-width `reach` leaves the image.
+/// [`Rejection::NotFinite`] for a start that is not finite, [`Rejection::Border`] when the square of half-width `reach` px leaves the image.
 pub fn window_centre(image: &Image, start: &Start, reach: i64) -> Result<(i64, i64), Rejection> {
     let (x, y) = start.position.nearest_pixel().ok_or(Rejection::NotFinite)?;
     if image.holds(x, y, reach) { Ok((x, y)) } else { Err(Rejection::Border) }

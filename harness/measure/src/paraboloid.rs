@@ -5,7 +5,7 @@
 /// Source: Zhu et al. 2007, Eq. 4 (their Fig. 2 has y up: `a2` and `a4` change sign).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paraboloid {
-    /// The coefficients a0 to a5.
+    /// The coefficients a0 to a5: a0, a1, a2 in the unit of f per px^2, a3, a4 in that per px, a5 in that of f.
     pub a: [f64; 6],
 }
 
@@ -32,7 +32,7 @@ impl Weights {
         Self { q, odd: 1.0 / (2.0 + 4.0 * q), even: 2.0 * q / (1.0 + 2.0 * q) }
     }
 
-    /// The least-squares paraboloid for `f[row][column]`.
+    /// The least-squares paraboloid for `f[row][column]`, samples 1 px apart, of any unit.
     ///
     /// Source: Zhu et al. 2007, Eq. 9 to 11, solved in closed form.
     #[inline]

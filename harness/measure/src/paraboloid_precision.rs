@@ -2,7 +2,7 @@
 
 use crate::paraboloid::{Paraboloid, Weights};
 
-/// Covariances of the nine strengths f0 to f8, row by row.
+/// Covariances of the nine strengths f0 to f8, which are counted row by row: 9 x 9, in the squared unit of the strengths.
 pub type SampleCovariance = [[f64; 9]; 9];
 
 /// Which solution is propagated.
@@ -19,9 +19,9 @@ pub enum Form {
 /// Variances of the position of the maximum, px^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
-    /// `sigma_x^2`, Eq. 15.
+    /// `sigma_x^2`, px^2, Eq. 15.
     pub xx: f64,
-    /// `sigma_y^2`, Eq. 16.
+    /// `sigma_y^2`, px^2, Eq. 16.
     pub yy: f64,
 }
 
@@ -35,12 +35,13 @@ impl Precision {
 /// The map from the nine samples to the six coefficients, y up as in the paper's Fig. 2.
 type Map = [[f64; 9]; 6];
 
-/// The covariance of independent samples of one variance.
+/// The covariance of independent samples of one variance, in its unit.
 pub fn white(variance: f64) -> SampleCovariance {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { variance } else { 0.0 }))
 }
 
-/// Variances of the maximum of the paraboloid for strengths `f[row][column]` with covariance `q_ff`; `None` where it has no extremum.
+/// Variances (px^2) of the maximum of the paraboloid for strengths `f[row][column]`, 1 px apart, with covariance `q_ff`; `None` where it has no
+/// extremum.
 ///
 /// Source: Zhu et al. 2007, Eq. 14 to 18; Eq. 11 as `form` says.
 pub fn precision(form: Form, f: &[[f64; 3]; 3], q_ff: &SampleCovariance) -> Option<Precision> {

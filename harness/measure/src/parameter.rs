@@ -68,7 +68,7 @@ pub struct Parameter {
     pub about: &'static str,
     /// What it may be.
     pub domain: Domain,
-    /// What it is when nobody sets it.
+    /// What it is when nobody sets it, in its unit.
     pub default: f64,
     /// It is part of the method's label even at its default.
     pub always_shown: bool,
@@ -81,7 +81,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The defaults of `parameters`, changed by `given`.
+    /// The defaults of `parameters`, changed by `given`: keys, and values in the unit of the parameter.
     ///
     /// # Errors
     /// An unknown key, a key given twice, a value outside its domain.
@@ -105,7 +105,7 @@ impl Settings {
         Ok(Self { values })
     }
 
-    /// The value of parameter `name`.
+    /// The value of parameter `name`, in its unit.
     ///
     /// # Panics
     /// If the method did not declare it: a mistake in the operator's file that its first test finds.
@@ -113,7 +113,7 @@ impl Settings {
         self.values.iter().find(|(key, _)| *key == name).unwrap_or_else(|| panic!("no parameter `{name}` was declared")).1
     }
 
-    /// A window or another whole number.
+    /// A window (px) or another whole number.
     ///
     /// # Panics
     /// As [`Self::get`].
@@ -121,7 +121,7 @@ impl Settings {
         self.get(name) as usize
     }
 
-    /// All values, in the order of their declaration.
+    /// All names and values, in the order of their declaration.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, f64)> + '_ {
         self.values.iter().copied()
     }

@@ -66,7 +66,7 @@ impl Registry {
         &self.methods
     }
 
-    /// The method called `name`, with `given` parameters.
+    /// The method called `name`, with `given` parameters: keys, and values in the unit of the parameter.
     ///
     /// # Errors
     /// An unknown method or parameter, a value outside its domain.

@@ -8,8 +8,8 @@ use crate::paraboloid_precision::SampleCovariance;
 /// Half the step of the differences, fraction of full scale. The strength is of the fourth order in the grey values: the error is of the order of its square.
 const STEP: f32 = 0.005;
 
-/// Covariance of the 3 x 3 strengths around `pixel` for white noise of standard deviation `sigma` of the grey values, to first order: each grey value has its
-/// part in several strengths, which makes neighbours correlated.
+/// Covariance of the 3 x 3 strengths around pixel (`x`, `y`) for white noise of standard deviation `sigma` (fraction of full scale) of the grey
+/// values, to first order: each grey value has its part in several strengths, which makes neighbours correlated.
 ///
 /// # Errors
 /// [`Rejection::Border`], [`Rejection::NotFinite`].

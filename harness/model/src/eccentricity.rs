@@ -12,12 +12,12 @@ pub struct Disc {
     pub centre: Vector3<f64>,
     /// A normal of its plane, of unit length, either way.
     pub normal: Vector3<f64>,
-    /// Object units.
+    /// The radius, object units.
     pub radius: f64,
 }
 
 impl Disc {
-    /// The disc with its centre, a normal of any length but zero, and its radius in object space, as `pose` sees it.
+    /// The disc with its centre, a normal of any length but zero, and its radius, all in object space and object units, as `pose` sees it.
     ///
     /// `None` for a normal of no length, or a radius that is no positive number.
     pub fn seen_from(pose: &Pose, centre: &Point3<f64>, normal: &Vector3<f64>, radius: f64) -> Option<Self> {

@@ -130,11 +130,11 @@ impl Frame {
 /// Covariance of a position in an image, px^2, in the axes of [`PixelPoint`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Covariance {
-    /// Variance of x.
+    /// Variance of x, px^2.
     pub sxx: f64,
-    /// Covariance of x and y.
+    /// Covariance of x and y, px^2.
     pub sxy: f64,
-    /// Variance of y.
+    /// Variance of y, px^2.
     pub syy: f64,
 }
 

@@ -20,36 +20,36 @@ impl Image {
         Self { width, height, grey }
     }
 
-    /// An image whose grey value at (column, row) is `grey(column, row)`.
+    /// An image of `width` x `height` px whose grey value (fraction of full scale) at (column, row) is `grey(column, row)`.
     pub fn from_fn(width: usize, height: usize, mut grey: impl FnMut(usize, usize) -> f32) -> Self {
         let values = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| grey(x, y)).collect();
         Self::new(width, height, values)
     }
 
-    /// Columns.
+    /// Columns, px.
     #[inline]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Rows, px.
     #[inline]
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// All grey values, row by row.
+    /// All grey values, row by row, fractions of full scale.
     #[inline]
     pub fn grey(&self) -> &[f32] {
         &self.grey
     }
 
-    /// All grey values, to be changed.
+    /// All grey values, row by row, fractions of full scale, to be changed.
     pub fn grey_mut(&mut self) -> &mut [f32] {
         &mut self.grey
     }
 
-    /// The grey values of row `y`.
+    /// The grey values of row `y`, fractions of full scale.
     ///
     /// # Panics
     /// If there is no such row.
@@ -58,7 +58,7 @@ impl Image {
         &self.grey[y * self.width..(y + 1) * self.width]
     }
 
-    /// The grey value of pixel (`x`, `y`).
+    /// The grey value of pixel (`x`, `y`), fraction of full scale.
     ///
     /// # Panics
     /// If there is no such pixel.
@@ -74,7 +74,7 @@ impl Image {
         x >= reach && y >= reach && x < self.width as i64 - reach && y < self.height as i64 - reach
     }
 
-    /// The square of half-width `reach` around pixel (`x`, `y`), row by row; `None` if it leaves the image.
+    /// The square of half-width `reach` px around pixel (`x`, `y`): `2 reach + 1` rows of as many grey values; `None` if it leaves the image.
     pub fn rows_around(&self, x: i64, y: i64, reach: i64) -> Option<impl Iterator<Item = &[f32]>> {
         if !self.holds(x, y, reach) {
             return None;
@@ -83,7 +83,7 @@ impl Image {
         Some(((y - reach) as usize..=(y + reach) as usize).map(move |row| &self.row(row)[columns.clone()]))
     }
 
-    /// 8-bit grey values, rounded and clipped. NaN becomes black.
+    /// 8-bit grey values from 0 (black) to 255 (white), row by row, rounded and clipped. NaN becomes black.
     pub fn to_u8(&self) -> Vec<u8> {
         self.grey.iter().map(|&g| (g.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
     }

@@ -9,14 +9,14 @@ use crate::camera::Ray;
 /// The camera's axes are x right, y up, z backwards: it looks along its -z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// `M`: from object to camera axes.
+    /// `M`, 3 x 3: from object to camera axes.
     pub rotation: Matrix3<f64>,
     /// `X0`: the projection centre, object units.
     pub centre: Point3<f64>,
 }
 
 impl Pose {
-    /// The camera at `centre`, turned by `M = M_kappa M_phi M_omega`, radians; elementary rotations are passive.
+    /// The camera at `centre` (object units), turned by `M = M_kappa M_phi M_omega`, radians; elementary rotations are passive.
     ///
     /// Source: Mikhail, Bethel & McGlone 2001, `m31 = sin phi`, `m32 = -sin omega cos phi`, `m33 = cos omega cos phi`.
     pub fn from_angles(centre: Point3<f64>, [omega, phi, kappa]: [f64; 3]) -> Self {
@@ -29,6 +29,8 @@ impl Pose {
 
     /// The camera at `centre` whose axis meets `target`, with the image's y axis as near to `up` as can be and then rolled by `roll` radians:
     /// a positive roll turns the camera to the left, its picture to the right (clockwise).
+    ///
+    /// `centre` and `target` are in object units, `up` is a direction in object axes, of any length.
     ///
     /// `None` if `centre` is `target`, or the line of sight lies along `up`.
     pub fn looking_at(centre: Point3<f64>, target: Point3<f64>, up: Vector3<f64>, roll: f64) -> Option<Self> {
@@ -54,7 +56,7 @@ impl Pose {
         self.rotation * (point - self.centre)
     }
 
-    /// The ray from the projection centre to an object point.
+    /// The ray from the projection centre to an object point (object units), in camera axes.
     pub fn ray(&self, point: &Point3<f64>) -> Ray {
         let n = self.camera_from_world(point);
         Ray { x: n.x, y: n.y, z: n.z }

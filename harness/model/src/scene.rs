@@ -47,9 +47,9 @@ pub struct SceneTarget {
 /// Disjoint polygons on a uniform background.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Columns.
+    /// Columns, px.
     pub width: usize,
-    /// Rows.
+    /// Rows, px.
     pub height: usize,
     /// Grey value between the polygons, fraction of full scale.
     pub background: f64,

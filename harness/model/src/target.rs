@@ -96,13 +96,13 @@ pub struct UnknownKind(pub String);
 /// `x = axx u + axy v`, `y = ayx u + ayy v`, from the target's reference point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
-    /// dx/du.
+    /// dx/du, px per size of the target.
     pub axx: f64,
-    /// dx/dv.
+    /// dx/dv, px per size of the target.
     pub axy: f64,
-    /// dy/du.
+    /// dy/du, px per size of the target.
     pub ayx: f64,
-    /// dy/dv.
+    /// dy/dv, px per size of the target.
     pub ayy: f64,
 }
 

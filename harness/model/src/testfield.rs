@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 
 use crate::TargetKind;
 
-/// A position on a plate, in its own axes, object units.
+/// A position (u, v) on a plate, in its own axes, object units.
 pub type PlatePoint = [f64; 2];
 
 /// A piece of an outline on a plate.
@@ -21,7 +21,7 @@ pub enum Curve {
     Arc {
         /// Its centre.
         centre: PlatePoint,
-        /// Its radius.
+        /// Its radius, in the unit of the centre's coordinates.
         radius: f64,
         /// The angle at which it starts, from u towards v, radians.
         start: f64,
@@ -59,7 +59,7 @@ impl Outline {
         Self::polygon(&[[u0, v0], [u1, v0], [u1, v1], [u0, v1]])
     }
 
-    /// The full circle of `radius` around `centre`, in four arcs.
+    /// The full circle of `radius` (in the unit of `centre`) around `centre`, in four arcs.
     pub fn disc(centre: PlatePoint, radius: f64) -> Self {
         let quarter = std::f64::consts::FRAC_PI_2;
         Self((0..4).map(|i| Curve::Arc { centre, radius, start: f64::from(i) * quarter, sweep: quarter }).collect())
@@ -73,7 +73,7 @@ pub struct Area {
     pub outline: Outline,
     /// Its reflectance, as a fraction of what makes full scale.
     pub level: f64,
-    /// The reflectance of what it is printed on: the plate's, or that of the one area around it.
+    /// The reflectance, likewise, of what it is printed on: the plate's, or that of the one area around it.
     pub ground: f64,
 }
 
@@ -106,27 +106,27 @@ pub struct Plate {
     pub id: String,
     /// Where its (0, 0) is, object units.
     pub origin: Point3<f64>,
-    /// The direction of u, of length 1.
+    /// The direction of u in object space, of length 1.
     pub u: Vector3<f64>,
-    /// The direction of v, of length 1, at a right angle to u. The front looks along `u x v`.
+    /// The direction of v in object space, of length 1, at a right angle to u. The front looks along `u x v`.
     pub v: Vector3<f64>,
     /// Its bend; `None` if it is flat.
     pub bend: Option<Bend>,
     /// Two opposite corners of the sheet, the lower values first.
     pub corners: [PlatePoint; 2],
-    /// Its reflectance where nothing is printed.
+    /// Its reflectance where nothing is printed, as a fraction of what makes full scale.
     pub level: f64,
     /// What is printed: areas lie side by side or one wholly inside another, and may share edges.
     pub areas: Vec<Area>,
 }
 
 impl Plate {
-    /// The normal of the unbent front.
+    /// The normal of the unbent front in object space, of length 1.
     pub fn normal(&self) -> Vector3<f64> {
         self.u.cross(&self.v)
     }
 
-    /// A position on the sheet in object space, bend included.
+    /// A position on the sheet in object space, bend included, object units.
     pub fn point(&self, at: PlatePoint) -> Point3<f64> {
         let flat = self.origin + self.u * at[0] + self.v * at[1];
         match &self.bend {

@@ -65,7 +65,7 @@ impl FromIterator<Corners> for Corners {
 }
 
 impl Chessboard {
-    /// Its inner corners: X along the rows, Y upwards, Z towards the viewer.
+    /// Its inner corners, object units from the first: X along the rows, Y upwards, Z towards the viewer.
     pub fn control(&self) -> Vec<ControlRow> {
         let corner = |index: usize| {
             let (column, row) = (index % self.board.columns, index / self.board.columns);

@@ -116,11 +116,11 @@ pub struct Row {
 /// The numbers of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Numbers {
-    /// The value.
+    /// The value, in the unit that the file's column `unit` gives.
     pub value: f64,
-    /// Its standard deviation.
+    /// Its standard deviation, in the same unit.
     pub sigma: Option<f64>,
-    /// Value less truth.
+    /// Value less truth, in the same unit.
     pub error: Option<f64>,
 }
 

@@ -69,7 +69,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// The error (dx, dy) of a point that was measured and not lost.
+    /// The error (dx, dy), px, of a point that was measured and not lost.
     pub fn kept_error(&self) -> Option<(f64, f64)> {
         match self {
             Self::Measured { error: Some((dx, dy)), .. } if dx.hypot(*dy) <= LOST => Some((*dx, *dy)),
@@ -135,18 +135,18 @@ pub struct Figure {
     pub group: Group,
     /// Its name within the group.
     pub name: Arc<str>,
-    /// Its value.
+    /// Its value, in [`Self::unit`].
     pub value: f64,
-    /// Its standard deviation as the adjustment gives it, with the estimated variance factor.
+    /// Its standard deviation as the adjustment gives it, with the estimated variance factor, in the same unit.
     pub sigma: Option<f64>,
-    /// Value less truth.
+    /// Value less truth, in the same unit.
     pub error: Option<f64>,
     /// The unit of all three.
     pub unit: &'static str,
 }
 
 impl Figure {
-    /// A figure of which neither standard deviation nor error is known.
+    /// A figure of which neither standard deviation nor error is known; `unit` is that of `value`.
     pub fn plain(group: Group, name: impl Into<Arc<str>>, value: f64, unit: &'static str) -> Self {
         Self { group, name: name.into(), value, sigma: None, error: None, unit }
     }

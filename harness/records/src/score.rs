@@ -10,7 +10,8 @@ use crate::results::{Outcome, PointResult, Trial};
 /// A mean over points that come in clusters: the points of one trial share their phase and noise.
 ///
 /// The mean is pooled over all points; its standard error comes from the scatter between trials (the ratio estimator of cluster sampling, Cochran
-/// 1977, Sect. 6.3 and 9A), and is right whatever the correlation within a trial and however many points a trial has.
+/// 1977, Sect. 6.3 and 9A), and is right whatever the correlation within a trial and however many points a trial has. All are in the unit of the
+/// values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pooled {
     trials: u64,
@@ -54,7 +55,7 @@ impl Pooled {
         Some((squares * trials / (trials - 1.0)).sqrt() / self.count)
     }
 
-    /// The two-sided interval of the mean at `level` (0.95), by Student's t; `None` of fewer than two trials.
+    /// The two-sided interval (lower and upper end) of the mean at `level` (0.95), by Student's t; `None` of fewer than two trials.
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         let (mean, error) = (self.mean()?, self.standard_error()?);
         let t = StudentsT::new(0.0, 1.0, (self.trials - 1) as f64).ok()?.inverse_cdf(f64::midpoint(1.0, level));
@@ -74,7 +75,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Adds a trial's errors (dx, dy).
+    /// Adds a trial's errors (dx, dy), px.
     pub fn add(&mut self, errors: &[(f64, f64)]) {
         let of = |value: fn(&(f64, f64)) -> f64| errors.iter().map(value).collect::<Vec<f64>>();
         self.dx.add(&of(|e| e.0));
@@ -87,7 +88,7 @@ impl Errors {
         self.square.mean().map(f64::sqrt)
     }
 
-    /// The 95 % interval of [`Self::rmse`] from the scatter between trials.
+    /// The 95 % interval (lower and upper end, px) of [`Self::rmse`] from the scatter between trials.
     pub fn rmse_interval(&self) -> Option<(f64, f64)> {
         self.square.interval(0.95).map(|(low, high)| (low.max(0.0).sqrt(), high.sqrt()))
     }
@@ -114,15 +115,15 @@ pub struct Score {
     pub whole: Errors,
     /// Errors of the points that every operator measured and none lost.
     pub common: Errors,
-    /// Squared errors of the kept points in units of their squared bound.
+    /// Squared errors of the kept points in units of their squared bound: numbers.
     pub to_bound: Pooled,
-    /// Squared errors of the kept points in units of the variance that the method itself gives.
+    /// Squared errors of the kept points in units of the variance that the method itself gives: numbers.
     pub to_predicted: Pooled,
     /// By target, or by group of targets, in the order in which they come.
     pub targets: Vec<TargetScore>,
 }
 
-/// `sqrt` of a pooled mean of squares with its interval at `level`.
+/// `sqrt` of a pooled mean of squares with its interval at `level` (0.95), lower and upper end, in the root of the unit of the squares.
 pub fn root(squares: &Pooled, level: f64) -> Option<(f64, Option<(f64, f64)>)> {
     let interval = squares.interval(level).map(|(low, high)| (low.max(0.0).sqrt(), high.sqrt()));
     Some((squares.mean()?.sqrt(), interval))

@@ -33,7 +33,7 @@ pub struct Theory {
     pub sigmas: Option<Sigmas>,
 }
 
-/// Harris strengths, grey values as fractions of full scale, to the fourth power per px^4.
+/// Harris strengths, grey values as fractions of full scale, to the fourth power per px^4; scale-adapted ones to the fourth power alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strengths {
     /// The strongest pixel, column and row.
@@ -44,7 +44,7 @@ pub struct Strengths {
     pub maximum: Option<PixelPoint>,
 }
 
-/// Standard deviations by form of propagation, as in [`Theory::sigmas`].
+/// Standard deviations by form of propagation, px per unit of the grey values' standard deviation, as in [`Theory::sigmas`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sigmas {
     /// The six samples of the paper's equation as it is printed.

@@ -28,8 +28,9 @@ enum Chain {
 pub type BySet = BTreeMap<Unknowns, Option<f64>>;
 
 impl TargetBounds {
-    /// For windows of `window` px in pictures of `width` x `height` px; `plain` is the variance of the grey values where no sensor is described. `None` if there is
-    /// nothing that bounds: no noise, or a chain of neighbours that are not independent.
+    /// For windows of `window` x `window` px in pictures of `width` x `height` px; `plain` is the variance of the grey values (fractions of full
+    /// scale, squared) where no sensor is described. `None` if there is nothing that bounds: no noise, or a chain of neighbours that are not
+    /// independent.
     ///
     /// # Errors
     /// Optics that are out of range.
@@ -54,7 +55,7 @@ impl TargetBounds {
         Ok(Some(Self { bounds: Bounds::new(&imaging.optics, width, height, window)?, chain, sets }))
     }
 
-    /// The bounds of the target at `at`.
+    /// The bounds of the target at `at`, px.
     pub fn of(&self, picture: &Picture, at: PixelPoint) -> BySet {
         let covariances = match self.bounds.window(picture, at) {
             Some(window) => window.bounds(&self.sets, |light| self.chain.mean(light), |grey| self.chain.variance(grey)),

@@ -89,8 +89,8 @@ pub struct Window<'a> {
 type Columns = [Vec<Vec<f64>>; 6];
 
 impl Window<'_> {
-    /// The bounds of the position, px^2, beside each of `sets`. `mean` is what the sensor makes of light and `variance` the variance of that grey value,
-    /// `None` where the chain has none.
+    /// The bounds of the position, px^2, beside each of `sets`. `mean` is what the sensor makes of light (fraction of full scale) and `variance` the
+    /// variance of that grey value (fraction of full scale, squared), `None` where the chain has none.
     ///
     /// A bound is `None` also where the window does not determine the position.
     pub fn bounds(

@@ -2,7 +2,8 @@
 
 use calibench_model::Polygon;
 
-/// 1 for every pixel whose centre lies in the polygon and 0 for every other, row by row: how programs draw that know no partial coverage.
+/// 1 for every pixel whose centre lies in the polygon and 0 for every other, row by row, of an image of `width` x `height` px: how programs draw that
+/// know no partial coverage.
 ///
 /// A centre on an edge counts for the polygon to its right or below.
 pub fn covered_centres(polygon: &Polygon, width: usize, height: usize) -> Vec<f64> {

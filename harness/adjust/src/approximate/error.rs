@@ -53,7 +53,7 @@ pub enum ApproximateError {
     /// The rays are parallel within what their measurement tells.
     #[error("the rays are parallel: the largest angle between them is {angle_deg:.2e} degrees")]
     Parallel {
-        /// The largest angle between two rays.
+        /// The largest angle between two rays, degrees.
         angle_deg: f64,
     },
     /// The rays meet behind a camera.

@@ -164,12 +164,12 @@ impl Exterior {
 }
 
 impl ObjectPoint {
-    /// A tie point: unknown but for a start value.
+    /// A tie point: unknown but for a start value, object units.
     pub fn free(name: impl Into<String>, position: Point3<f64>) -> Self {
         Self { name: name.into(), position, coordinates: [Status::Free; 3] }
     }
 
-    /// Fixed control: known without error.
+    /// Fixed control: known without error, object units.
     pub fn fixed(name: impl Into<String>, position: Point3<f64>) -> Self {
         Self { name: name.into(), position, coordinates: [Status::Fixed; 3] }
     }

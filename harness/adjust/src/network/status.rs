@@ -14,7 +14,7 @@ pub enum Status {
     Observed {
         /// What was observed, in the number's own unit.
         value: f64,
-        /// Its standard deviation, a priori.
+        /// Its standard deviation, a priori, in the same unit.
         sigma: f64,
     },
 }
@@ -31,7 +31,7 @@ pub enum Centre {
     Observed {
         /// X0, object units.
         value: Point3<f64>,
-        /// Standard deviations of X0, Y0 and Z0.
+        /// Standard deviations of X0, Y0 and Z0, object units.
         sigma: [f64; 3],
     },
 }
@@ -46,7 +46,7 @@ pub enum Attitude {
     Fixed,
     /// It was observed.
     Observed {
-        /// M.
+        /// M, 3 x 3: from object to camera axes.
         value: Matrix3<f64>,
         /// Standard deviations about the camera's axes x, y and z, radians.
         sigma: [f64; 3],

@@ -23,9 +23,9 @@ pub enum Variance {
 /// Covariances of the unknowns, in blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Covariances {
-    /// The variance factor that they are scaled with.
+    /// The variance factor that they are scaled with, a number.
     pub variance_factor: f64,
-    /// Of all unknown parameters of all cameras together, in the order of `parameters`.
+    /// Of all unknown parameters of all cameras together, in the order of `parameters` and in their units.
     pub interior: DMatrix<f64>,
     /// What the rows of `interior` are: index of the camera, name of the parameter.
     pub parameters: Vec<(usize, &'static str)>,
@@ -41,19 +41,19 @@ pub struct Covariances {
 pub struct Correlation {
     /// Rows of [`Covariances::interior`].
     pub pair: [usize; 2],
-    /// Their correlation.
+    /// Their correlation, -1 to 1.
     pub rho: f64,
 }
 
 impl Covariances {
-    /// The covariance of one camera's unknown parameters, with their names.
+    /// The covariance of one camera's unknown parameters, in their units, with their names in the order of its rows.
     pub fn of_camera(&self, camera: usize) -> (Vec<&'static str>, DMatrix<f64>) {
         let rows: Vec<usize> = (0..self.parameters.len()).filter(|&i| self.parameters[i].0 == camera).collect();
         let matrix = DMatrix::from_fn(rows.len(), rows.len(), |i, j| self.interior[(rows[i], rows[j])]);
         (rows.iter().map(|&i| self.parameters[i].1).collect(), matrix)
     }
 
-    /// Correlations of all interior parameters: ones on the diagonal.
+    /// Correlations of all interior parameters, in the order of `parameters`, -1 to 1: ones on the diagonal.
     pub fn correlations(&self) -> DMatrix<f64> {
         let n = self.interior.nrows();
         DMatrix::from_fn(
@@ -75,7 +75,7 @@ impl Covariances {
 }
 
 impl Solution<'_> {
-    /// The factor of [`Variance`].
+    /// The factor of [`Variance`], a number.
     ///
     /// # Errors
     /// [`AdjustError::NotAvailable`] without redundancy.

@@ -41,7 +41,7 @@ pub enum Defect {
 pub struct Direction {
     /// The unknowns that change together, as in "c of camera", "Z0 of all images".
     pub unknowns: Vec<String>,
-    /// The smaller, the less determined: an eigenvalue of the normal equations scaled to ones on the diagonal.
+    /// The smaller, the less determined: an eigenvalue of the normal equations scaled to ones on the diagonal, a number.
     pub eigenvalue: f64,
 }
 

@@ -24,11 +24,12 @@ pub struct Uncertainty {
     pub covariance: Covariance,
 }
 
-/// The uncertainty of projected points over the frame, on a grid of `columns` x `rows` places, row by row.
+/// The uncertainty of projected points over the frame, on a grid of `columns` x `rows` places from the first pixel's centre to the last's, row by
+/// row.
 ///
-/// `covariance` belongs to the parameters `names` of `camera`, as [`crate::Covariances::of_camera`] returns them. What a change of the exterior
-/// orientation makes up for (in the least-squares sense over the grid) is not the interior orientation's fault and is taken off. Places without a ray are
-/// left out.
+/// `covariance` belongs to the parameters `names` of `camera`, in their units, as [`crate::Covariances::of_camera`] returns them. What a change of
+/// the exterior orientation makes up for (in the least-squares sense over the grid) is not the interior orientation's fault and is taken off. Places
+/// without a ray are left out.
 ///
 /// # Errors
 /// [`AdjustError::NotAvailable`] for a grid of fewer than 3 x 3 places, names that the camera does not have, or a distance that is not positive.

@@ -16,9 +16,9 @@ use super::covariance::Variance;
 /// A test of single observations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Test {
-    /// Probability of rejecting a good observation.
+    /// Probability (0 to 1) of rejecting a good observation.
     pub alpha: f64,
-    /// Probability of rejecting one that is wrong by its minimal detectable bias.
+    /// Probability (0 to 1) of rejecting one that is wrong by its minimal detectable bias.
     pub power: f64,
     /// Whose variance factor counts: Baarda's test takes the a-priori one.
     pub variance: Variance,
@@ -37,7 +37,7 @@ pub struct PointReliability {
     pub observation: usize,
     /// Redundancy numbers of x and y, from 0 (not checked) to 1: diagonal of `Q_vv P`.
     pub redundancy: [f64; 2],
-    /// Normalised residuals of x and y: normal with variance 1 if nothing is wrong; zero where nothing checks.
+    /// Normalised residuals of x and y, numbers: normal with variance 1 if nothing is wrong; zero where nothing checks.
     pub w: [f64; 2],
     /// Minimal detectable biases of x and y, px; infinite where nothing checks.
     pub detectable: [f64; 2],
@@ -50,9 +50,9 @@ pub struct ObservedReliability {
     pub what: String,
     /// Adjusted less observed, in its unit.
     pub v: f64,
-    /// Redundancy number.
+    /// Redundancy number, from 0 (not checked) to 1.
     pub redundancy: f64,
-    /// Normalised residual.
+    /// Normalised residual, a number.
     pub w: f64,
     /// Minimal detectable bias, in its unit.
     pub detectable: f64,
@@ -63,9 +63,9 @@ pub struct ObservedReliability {
 pub struct Reliability {
     /// The test that it was computed for.
     pub test: Test,
-    /// Normalised residuals beyond it are rejected.
+    /// Normalised residuals beyond it, in absolute value, are rejected: a number.
     pub critical: f64,
-    /// Shift of the test's distribution that it detects with the power asked for.
+    /// Shift of the test's distribution that it detects with the power asked for, in standard deviations.
     pub noncentrality: f64,
     /// Image points, in the order given.
     pub points: Vec<PointReliability>,

@@ -10,7 +10,7 @@ use crate::solution::Solution;
 pub enum Use {
     /// With the weight of its standard deviation.
     Full,
-    /// With this share of it (Huber).
+    /// With this share of it, 0 to 1 (Huber).
     Downweighted(f64),
     /// Not at all.
     LeftOut,
@@ -25,7 +25,7 @@ pub struct Residual {
     pub image: usize,
     /// Its point.
     pub point: usize,
-    /// `v`: adjusted less observed, px; `None` if it was left out and the result does not picture it.
+    /// `v` of x and y: adjusted less observed, px; `None` if it was left out and the result does not picture it.
     pub v: Option<[f64; 2]>,
     /// How it took part.
     pub used: Use,

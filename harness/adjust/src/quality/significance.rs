@@ -14,9 +14,9 @@ pub struct Significance {
     pub camera: usize,
     /// Name of the parameter.
     pub parameter: &'static str,
-    /// Its value.
+    /// Its value, in its own unit.
     pub value: f64,
-    /// Its standard deviation, with the estimated variance factor.
+    /// Its standard deviation, in the same unit, with the estimated variance factor.
     pub sigma: f64,
     /// `value / sigma`: Student's distribution with the redundancy's degrees of freedom, if it is zero in truth.
     pub t: f64,

@@ -26,9 +26,9 @@ impl Default for Snooping {
 pub struct Found {
     /// Its index among the observations given.
     pub observation: usize,
-    /// The normalised residual for which it was rejected, the larger of x and y.
+    /// The normalised residual for which it was rejected, the larger of x and y in absolute value: a number.
     pub w: f64,
-    /// What it would have had to exceed.
+    /// What it had to exceed, a number.
     pub critical: f64,
     /// It was left out. `false` if the network needs it, or if as many were left out as may be.
     pub left_out: bool,

@@ -5,7 +5,7 @@ use calibench_model::{CornerPoint, PixelPoint};
 
 use super::CameraFileError;
 
-/// `u = fx x' + skew y' + cx`, `v = fy y' + cy`.
+/// `u = fx x' + skew y' + cx`, `v = fy y' + cy`: fx, fy, skew, cx, cy in px, k1 to k4, p1, p2 numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Brown {
     pub size: ImageSize,
@@ -14,14 +14,14 @@ pub(super) struct Brown {
     pub skew: f64,
     pub cx: f64,
     pub cy: f64,
-    /// k1 to k4.
+    /// k1 to k4, numbers.
     pub k: [f64; 4],
     pub p1: f64,
     pub p2: f64,
 }
 
 impl Brown {
-    /// One without distortion.
+    /// One without distortion; fx, fy, cx, cy in px.
     pub fn plain(size: ImageSize, [fx, fy, cx, cy]: [f64; 4]) -> Self {
         Self { size, fx, fy, skew: 0.0, cx, cy, k: [0.0; 4], p1: 0.0, p2: 0.0 }
     }

@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 pub struct ParameterCovariance {
     /// Names, as in `CameraModel::parameters`.
     pub parameters: Vec<String>,
-    /// Square and symmetric, row by row, in the order of `parameters`.
+    /// Square and symmetric, row by row, in the order of `parameters` and in their units.
     pub values: Vec<f64>,
 }
 
@@ -63,7 +63,7 @@ impl ParameterCovariance {
         Self::new(names, (0..n * n).map(symmetric).collect())
     }
 
-    /// The matrix over all parameters of `camera`, in their order; those that were held fixed have zeros.
+    /// The matrix over all parameters of `camera`, in their order and units; those that were held fixed have zeros.
     ///
     /// # Errors
     /// A parameter that the camera does not have, in words.

@@ -109,7 +109,7 @@ fn fisheye_camera(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera
     Ok(Camera::OpenCvFisheye(camera))
 }
 
-/// What both kinds of FileStorage write of a camera.
+/// What both kinds of FileStorage write of a camera: the camera matrix, 3 x 3, row by row, px, and the coefficients in OpenCV's order.
 pub(super) struct Written {
     pub size: ImageSize,
     pub fisheye: bool,

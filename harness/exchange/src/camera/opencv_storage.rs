@@ -9,7 +9,7 @@ use super::tree::{Entry, Value};
 pub(super) struct Matrix {
     pub rows: usize,
     pub columns: usize,
-    /// Row by row.
+    /// `rows` x `columns` numbers, row by row.
     pub data: Vec<f64>,
 }
 

@@ -5,7 +5,7 @@ use super::CameraFileError;
 /// A camera's position and rotation, with the camera's axes of these tools: x right, y down, z forward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Rotation from the world's axes to the camera's, row by row.
+    /// Rotation from the world's axes to the camera's, 3 x 3, row by row.
     pub camera_from_world: [[f64; 3]; 3],
     /// Projection centre in the world, in its unit.
     pub position: [f64; 3],
@@ -88,7 +88,7 @@ impl Pose {
         Self { camera_from_world: product(self.camera_from_world, other.camera_from_world), position }
     }
 
-    /// The pose of the camera after its own axes were turned: `X' = R X`.
+    /// The pose of the camera after its own axes were turned: `X' = R X`, R 3 x 3, row by row.
     #[must_use]
     pub fn turned_by(&self, r: [[f64; 3]; 3]) -> Self {
         Self { camera_from_world: product(r, self.camera_from_world), ..*self }

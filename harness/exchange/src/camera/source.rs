@@ -21,6 +21,9 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// Checks that `bytes` are text, and reads its tree if it is XML.
+    ///
+    /// # Errors
+    /// Bytes that are not UTF-8, a zero byte, a text without a camera, XML that cannot be parsed; with the line where there is one.
     pub fn new(bytes: &'a [u8]) -> Result<Self, CameraFileError> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let line = 1 + String::from_utf8_lossy(&bytes[..error.valid_up_to()]).matches('\n').count();

@@ -71,6 +71,9 @@ pub(super) fn digest(path: &Path) -> io::Result<String> {
 
 impl Manifest {
     /// That of a folder that calibench has just filled.
+    ///
+    /// # Errors
+    /// A file whose name is no text, and what the file system refuses.
     pub fn of(folder: &Path) -> io::Result<Self> {
         let mut manifest = Self::default();
         for entry in entries(folder)?.into_iter().filter(|entry| entry.kind == Kind::File) {
@@ -119,6 +122,9 @@ impl Manifest {
     }
 
     /// Writes it into `folder`.
+    ///
+    /// # Errors
+    /// What the file system refuses.
     pub fn write(&self, folder: &Path) -> io::Result<()> {
         let path = folder.join(MANIFEST);
         fs::write(&path, self.text()).map_err(|error| at(&path, &error))

@@ -24,6 +24,9 @@ pub(super) struct Place {
 
 impl Place {
     /// The place that `path` means. A link to a folder means that folder.
+    ///
+    /// # Errors
+    /// A link to nothing, a file, a path without a name or with one that is no text, the folder that the process is in; what the file system refuses.
     pub fn of(path: &Path) -> io::Result<Self> {
         let wrong = |why: &str| io::Error::new(io::ErrorKind::InvalidInput, format!("{}: {why}", path.display()));
         let whole = match path.canonicalize() {

@@ -23,6 +23,9 @@ pub(super) struct Scratch {
 
 impl Scratch {
     /// Makes one in `parent` for the folder `name` in it, which the user calls `shown`, after removing those that killed processes left there.
+    ///
+    /// # Errors
+    /// What the file system refuses.
     pub fn new(parent: &Path, name: &str, shown: &Path) -> io::Result<Self> {
         clear(parent)?;
         loop {
@@ -44,6 +47,9 @@ impl Scratch {
     }
 
     /// Puts the new folder to `place`; of the old one, which is as `old` says, the files that are listed are removed.
+    ///
+    /// # Errors
+    /// What the file system refuses.
     pub fn put(self, place: &Path, old: Option<&Manifest>) -> io::Result<()> {
         let new = self.new_folder();
         match fs::metadata(place) {

@@ -57,9 +57,9 @@ pub enum PhotoError {
     TooLarge {
         /// Which file.
         path: PathBuf,
-        /// Columns.
+        /// Columns, px.
         width: u32,
-        /// Rows.
+        /// Rows, px.
         height: u32,
         /// Memory, bytes.
         bytes: u64,

@@ -18,7 +18,7 @@ pub use lost::{LostRow, LostRows};
 pub use names::Names;
 pub use table::{Groups, PointRef, Points};
 
-/// The columns that must be there.
+/// The columns that must be there; `x` and `y` in px, as in [`PixelPoint`].
 pub const REQUIRED: [&str; 4] = ["image", "target", "x", "y"];
 /// The columns of the covariance, px^2: all or none.
 pub const COVARIANCE: [&str; 3] = ["sxx", "sxy", "syy"];

@@ -46,18 +46,18 @@ pub struct Sheet<'a> {
     pub file_stem: String,
     /// What the footer says.
     pub label: String,
-    /// Width and height of the page.
+    /// Width and height of the page, mm.
     pub size: [f64; 2],
-    /// The part of the page that shows the plate: two opposite corners.
+    /// The part of the page that shows the plate: two opposite corners, the lower left first, mm.
     pub window: [[f64; 2]; 2],
-    /// Where the plate's (0, 0) lies on the page.
+    /// Where the plate's (0, 0) lies on the page, mm.
     pub origin: [f64; 2],
     /// Millimetres in an object unit.
     pub scale: f64,
 }
 
 impl Sheet<'_> {
-    /// A position on the plate, on the page.
+    /// A position on the plate (object units), on the page (mm).
     pub fn place(&self, [u, v]: PlatePoint) -> [f64; 2] {
         [self.origin[0] + u * self.scale, self.origin[1] + v * self.scale]
     }
@@ -73,12 +73,12 @@ impl Sheet<'_> {
         areas.into_iter().map(|(area, _)| (area, grey(area.level, range))).collect()
     }
 
-    /// The grey of the sheet itself.
+    /// The grey of the sheet itself, 0 (black) to 1 (white), as a printer takes it (sRGB).
     pub fn ground(&self) -> f64 {
         grey(self.plate.level, self.range())
     }
 
-    /// Marks outside the window's corners: lines from one point to another.
+    /// Marks outside the window's corners: lines from one point of the page to another, mm.
     pub fn marks(&self) -> Vec<[[f64; 2]; 2]> {
         let [low, high] = self.window;
         let mut marks = Vec::new();
@@ -91,7 +91,7 @@ impl Sheet<'_> {
         marks
     }
 
-    /// The left end of the scale bar of 100 mm, at its lower edge.
+    /// The left end of the scale bar of 100 mm, at its lower edge: a point of the page, mm.
     pub fn bar(&self) -> [f64; 2] {
         [MARGIN, MARGIN]
     }

@@ -32,10 +32,10 @@ pub struct PrintOptions {
 /// Why a testfield cannot be printed.
 #[derive(Debug, Error)]
 pub enum PrintError {
-    /// A scale that is none.
+    /// A scale that is none, mm in an object unit.
     #[error("{0} mm in an object unit: expected a number from 0.001 to 1000000")]
     Scale(f64),
-    /// A paper that is none.
+    /// A paper that is none: width and height, mm.
     #[error("paper of {0} x {1} mm: expected at least 140 x 80 and at most 5000 x 5000 mm")]
     Paper(f64, f64),
     /// A testfield without plates.

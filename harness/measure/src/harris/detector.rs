@@ -21,7 +21,7 @@ pub struct HarrisDetector {
 /// An interest point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detection {
-    /// The pixel.
+    /// The pixel, column and row.
     pub pixel: (usize, usize),
     /// Its strength (grey values, fractions of full scale, to the fourth power per px^4).
     pub strength: f64,

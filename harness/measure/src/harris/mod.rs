@@ -15,6 +15,8 @@ use calibench_model::{Image, Rejection};
 use self::kernel::{Recipe, Source};
 
 /// How the strength is computed: `I = det A - alpha tr(A)^2`, `A` the weighted mean of the gradients' products times a factor.
+///
+/// A strength is in grey values (fractions of full scale) to the fourth power per px^4, a scale-adapted one in grey values to the fourth power.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harris {
     alpha: f64,
@@ -34,11 +36,11 @@ pub struct StrengthMap {
     pub rows: usize,
     /// Where the first of them lies, px from the left and from the top.
     pub margin: usize,
-    /// The strengths, row by row.
+    /// The strengths, row by row, `columns` x `rows`, in the unit of [`Harris`].
     pub values: Vec<f32>,
 }
 
-/// Strengths of a square of pixels, row by row.
+/// Strengths of a square of pixels, row by row, in the unit of [`Harris`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Strengths {
     side: usize,
@@ -56,7 +58,7 @@ impl Strengths {
         self.values[row * self.side + column]
     }
 
-    /// The 3 x 3 strengths around (`column`, `row`).
+    /// The 3 x 3 strengths around (`column`, `row`), row by row.
     pub fn around(&self, column: usize, row: usize) -> [[f64; 3]; 3] {
         [row - 1, row, row + 1].map(|y| [column - 1, column, column + 1].map(|x| self.at(x, y)))
     }
@@ -137,7 +139,7 @@ impl Harris {
 }
 
 impl StrengthMap {
-    /// The 3 x 3 strengths around (`column`, `row`) of the map, which is not on its border.
+    /// The 3 x 3 strengths around (`column`, `row`) of the map, which is not on its border, row by row.
     pub fn around(&self, column: usize, row: usize) -> [[f64; 3]; 3] {
         [row - 1, row, row + 1].map(|y| [column - 1, column, column + 1].map(|x| f64::from(self.values[y * self.columns + x])))
     }

@@ -14,13 +14,13 @@ use super::{Harris, smooth};
 pub struct HarrisLaplace {
     /// Integration scale of the finest level, px.
     pub first: f64,
-    /// From one level to the next.
+    /// Integration scale of a level over that of the finer one before it, a number.
     pub ratio: f64,
     /// How many levels.
     pub levels: usize,
     /// Derivation scale over integration scale.
     pub derivation: f64,
-    /// Weight of the squared trace.
+    /// Weight of the squared trace, a number.
     pub alpha: f64,
     /// The least strength, as a fraction of the largest on the same level.
     pub threshold: f64,
@@ -31,7 +31,7 @@ pub struct HarrisLaplace {
 /// An interest point with its scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaledDetection {
-    /// The point and its scale-adapted strength.
+    /// The point and its scale-adapted strength: grey values (fractions of full scale) to the fourth power.
     pub point: Detection,
     /// Its integration scale, px.
     pub scale: f64,

@@ -126,7 +126,7 @@ impl HarrisParaboloid {
         Self::new(settings, Refinement::Paraboloid(Weights::new(settings.get("k"))))
     }
 
-    /// The pixel from which the paraboloid is fitted: the strongest one of the window around `start`.
+    /// The pixel (column, row) from which the paraboloid is fitted: the strongest one of the window around `start`.
     ///
     /// # Errors
     /// As [`Operator::measure`] has them.
@@ -149,7 +149,7 @@ impl HarrisParaboloid {
         1 + self.harris.reach() + self.smoothing()
     }
 
-    /// The strengths of the pixels within `ring` px of a pixel.
+    /// The strengths of the pixels within `ring` px of pixel (`x`, `y`) along each axis.
     ///
     /// # Errors
     /// [`Rejection::Border`], [`Rejection::NotFinite`].

@@ -45,9 +45,9 @@ pub struct Agisoft {
     pub b1: f64,
     /// Shear, px: the older versions' skew.
     pub b2: f64,
-    /// k1 to k4.
+    /// k1 to k4, numbers.
     pub k: [f64; 4],
-    /// p1 to p4, in the version's order.
+    /// p1 to p4, numbers, in the version's order.
     pub p: [f64; 4],
 }
 

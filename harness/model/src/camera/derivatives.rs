@@ -13,7 +13,7 @@ pub struct Derivatives {
     pub point: PixelPoint,
     /// d(x, y) / d(ray), px per unit of the ray's components: rows x, y.
     pub by_ray: [[f64; 3]; 2],
-    /// d(x, y) / d(parameter), in the order of [`super::CameraModel::parameters`].
+    /// d(x, y) / d(parameter), px per unit of the parameter, in the order of [`super::CameraModel::parameters`].
     pub by_parameters: Vec<[f64; 2]>,
 }
 
@@ -35,7 +35,7 @@ impl Default for DerivativeBuffer {
 }
 
 impl DerivativeBuffer {
-    /// d(x, y) / d(parameter), in the order of [`super::CameraModel::parameters`].
+    /// d(x, y) / d(parameter), px per unit of the parameter, in the order of [`super::CameraModel::parameters`].
     #[inline]
     pub fn by_parameters(&self) -> &[[f64; 2]] {
         &self.by_parameters[..self.parameters]
@@ -46,7 +46,7 @@ impl DerivativeBuffer {
         self.parameters = 0;
     }
 
-    /// Adds the derivatives by the next parameters.
+    /// Adds the derivatives (x, y) by the next parameters, px per unit of each.
     ///
     /// # Panics
     /// Beyond [`MOST_PARAMETERS`].

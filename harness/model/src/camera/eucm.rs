@@ -22,9 +22,9 @@ pub struct Eucm {
     pub cx: f64,
     /// Principal point, y, px downwards.
     pub cy: f64,
-    /// 0 to 1.
+    /// A number, 0 to 1.
     pub alpha: f64,
-    /// Above zero.
+    /// A number above zero.
     pub beta: f64,
 }
 

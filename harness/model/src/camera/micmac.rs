@@ -20,15 +20,15 @@ pub struct MicMac {
     pub size: ImageSize,
     /// Focal length, px.
     pub f: f64,
-    /// Principal point PP, px.
+    /// Principal point PP: x, y, px from the centre of the first pixel.
     pub pp: [f64; 2],
-    /// Centre of the distortion from the principal point, px.
+    /// Centre of the distortion from the principal point: x, y, px.
     pub offset: [f64; 2],
     /// k1 to k5: px^-2 to px^-10.
     pub k: [f64; 5],
     /// p1, p2: px^-1, in Brown's order.
     pub p: [f64; 2],
-    /// b1, b2.
+    /// b1, b2, numbers.
     pub b: [f64; 2],
 }
 

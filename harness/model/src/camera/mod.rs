@@ -70,7 +70,7 @@ pub struct CameraParameter {
     pub name: &'static str,
     /// Its unit, as in `mm^-2`; "" for a number.
     pub unit: &'static str,
-    /// Its value.
+    /// Its value, in this unit.
     pub value: f64,
 }
 
@@ -96,7 +96,7 @@ pub trait CameraModel {
     /// Its parameters, in a fixed order.
     fn parameters(&self) -> Vec<CameraParameter>;
 
-    /// The same camera with other values, in the order of [`Self::parameters`].
+    /// The same camera with other values, in the order and the units of [`Self::parameters`].
     #[must_use]
     fn with_parameters(&self, values: &[f64]) -> Self
     where

@@ -12,9 +12,9 @@ use super::{Photogrammetric, photogrammetric};
 /// Source: Moniwa 1972, after Galo et al. 2011, section 3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moniwa {
-    /// Shear.
+    /// Shear A, a number.
     pub a: f64,
-    /// Difference of scale.
+    /// Difference of scale B, a number.
     pub b: f64,
 }
 

@@ -25,9 +25,9 @@ pub struct Omni {
     pub cy: f64,
     /// Distance of the projection centre from the centre of the sphere, in radii.
     pub xi: f64,
-    /// k1, k2.
+    /// k1, k2, numbers.
     pub k: [f64; 2],
-    /// p1, p2 in OpenCV's order.
+    /// p1, p2 in OpenCV's order, numbers.
     pub p: [f64; 2],
 }
 

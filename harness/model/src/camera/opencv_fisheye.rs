@@ -26,7 +26,7 @@ pub struct OpenCvFisheye {
     pub cy: f64,
     /// OpenCV's `alpha`: a number; the camera matrix holds `fx alpha`.
     pub skew: f64,
-    /// k1 to k4: coefficients of theta^3, theta^5, theta^7, theta^9.
+    /// k1 to k4, numbers: coefficients of theta^3, theta^5, theta^7, theta^9 with theta in radians.
     pub k: [f64; 4],
 }
 

@@ -29,7 +29,7 @@ pub struct Photogrammetric {
     pub k: [f64; 3],
     /// Decentring distortion p1, p2 (mm^-1), in Brown's order: p1 multiplies r^2 + 2 x^2.
     pub p: [f64; 2],
-    /// Difference of scale b1 and shear b2.
+    /// Difference of scale b1 and shear b2, numbers.
     pub b: [f64; 2],
 }
 

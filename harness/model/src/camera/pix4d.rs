@@ -26,9 +26,9 @@ pub struct Pix4d {
     pub px: f64,
     /// Principal point, y, px downwards from the outer corner of the first pixel.
     pub py: f64,
-    /// R1, R2, R3.
+    /// R1, R2, R3, numbers.
     pub r: [f64; 3],
-    /// T1, T2.
+    /// T1, T2, numbers.
     pub t: [f64; 2],
     /// Order of T1 and T2: OpenCV's is assumed, not confirmed.
     pub order: TangentialOrder,

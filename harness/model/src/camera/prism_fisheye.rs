@@ -23,11 +23,11 @@ pub struct PrismFisheye {
     pub cx: f64,
     /// Principal point, y, px downwards from the centre of the first pixel.
     pub cy: f64,
-    /// k1 to k4.
+    /// k1 to k4, numbers.
     pub k: [f64; 4],
-    /// p1, p2 in OpenCV's order.
+    /// p1, p2 in OpenCV's order, numbers.
     pub p: [f64; 2],
-    /// Thin prism, along x and y.
+    /// Thin prism s1 along x and s2 along y, numbers.
     pub s: [f64; 2],
 }
 

@@ -22,7 +22,7 @@ impl Ray {
         (self.z < 0.0 && self.x.is_finite() && self.y.is_finite()).then(|| (self.x / -self.z, self.y / -self.z))
     }
 
-    /// d(tangent) / d(ray): rows right, up. Only for rays that point forward.
+    /// d(tangent) / d(ray): rows right, up; columns x, y, z. Only for rays that point forward.
     pub fn tangent_derivatives(self) -> [[f64; 3]; 2] {
         let n = -1.0 / self.z;
         [[n, 0.0, self.x * n * n], [0.0, n, self.y * n * n]]

@@ -18,7 +18,7 @@ use crate::PixelPoint;
 pub struct Splined {
     /// Size of its images.
     pub size: ImageSize,
-    /// fx, fy, cx, cy, px.
+    /// fx, fy, cx, cy, px; the principal point from the centre of the first pixel, y down.
     pub core: [f64; 4],
     /// Order of the splines: 2 or 3.
     pub order: usize,
@@ -28,7 +28,7 @@ pub struct Splined {
     pub rows: usize,
     /// Horizontal field of view that the grid spans, degrees.
     pub fov_x_deg: f64,
-    /// Control points (x, y), row by row.
+    /// Control points (D_x, D_y), x right, y down, numbers as u is; `columns` x `rows` of them, row by row from the top.
     pub control: Vec<[f64; 2]>,
 }
 

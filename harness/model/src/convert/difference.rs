@@ -53,7 +53,7 @@ pub struct Compensated {
     pub spread: Spread,
     /// What is left.
     pub vectors: Vec<Vector>,
-    /// Relative change of the second camera's principal distance.
+    /// Relative change of the second camera's principal distance, a number; 0 for none.
     pub scale: f64,
     /// Change of the second camera's principal point, px: right, down.
     pub shift: [f64; 2],
@@ -62,7 +62,7 @@ pub struct Compensated {
 }
 
 impl Difference {
-    /// What so many px are on an object at a distance, in its unit, across the line of sight: `px * distance / focal_px`.
+    /// What so many px are on an object at a `distance`, in the unit of this, across the line of sight: `px * distance / focal_px`.
     pub fn on_object(&self, px: f64, distance: f64) -> f64 {
         px * distance / self.focal_px
     }

@@ -25,7 +25,7 @@ impl Rotation {
         self.0.scaled_axis().into()
     }
 
-    /// The angle, radians.
+    /// The angle, radians, 0 to pi.
     pub fn angle(&self) -> f64 {
         // From the antisymmetric part as well: the trace alone loses small angles.
         let m = self.0.matrix();

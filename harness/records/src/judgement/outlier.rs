@@ -4,7 +4,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::statistics::holm;
 
-/// The chance that a view is named in photographs that are all alike, over all of their views together.
+/// The chance (0 to 1) that a view is named in photographs that are all alike, over all of their views together.
 pub const ALPHA: f64 = 0.01;
 
 /// From the median absolute deviation to the standard deviation of a normal distribution.
@@ -12,9 +12,10 @@ const MAD: f64 = 1.4826;
 
 /// Of each view the p-value, Holm's, of its RMS residual being that of the others.
 ///
-/// `views` are RMS residuals (2D) and numbers of corners; `parameters` those of the camera, shared by all views. The logarithm of a view's RMS is compared
-/// with the median of all, in units of their median absolute deviation, or of what chance alone makes (`1 / sqrt(2 f)`, f the view's redundancy) where that
-/// is more: views differ in sharpness and tilt, and that alone does not make one of them bad. One-sided, by Student's distribution.
+/// `views` are RMS residuals (2D, of any one unit) and numbers of corners; `parameters` those of the camera, shared by all views. The logarithm of a
+/// view's RMS is compared with the median of all, in units of their median absolute deviation, or of what chance alone makes (`1 / sqrt(2 f)`, f the
+/// view's redundancy) where that is more: views differ in sharpness and tilt, and that alone does not make one of them bad. One-sided, by Student's
+/// distribution.
 ///
 /// Fewer than four views have no outlier. A view without residuals is not one.
 pub fn outliers(views: &[(f64, usize)], parameters: usize) -> Vec<f64> {

@@ -24,13 +24,13 @@ pub struct Row {
     pub measure: Arc<str>,
     /// The view, the split, the place in the frame.
     pub place: Arc<str>,
-    /// Its value.
+    /// Its value, in [`Self::unit`].
     pub value: Option<f64>,
     /// Its predicted standard deviation, or what the value is compared with.
     pub sigma: Option<f64>,
     /// Corners or modes behind it.
     pub count: Option<usize>,
-    /// The unit of both.
+    /// The unit of both, as in `px`; empty for numbers.
     pub unit: Arc<str>,
     /// `found`, or what stood in its way: `rejected`, `missed`, `left out`, `failed`, `unavailable`.
     pub status: Arc<str>,
@@ -39,7 +39,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// A figure in px.
+    /// A figure in px; one that is not finite is none.
     pub fn px(measure: &str, place: &str, value: f64) -> Self {
         if value.is_finite() {
             let found = Self { measure: measure.into(), place: place.into(), unit: "px".into(), status: "found".into(), ..Self::default() };
@@ -59,7 +59,7 @@ impl Row {
         Self { measure: measure.into(), place: place.into(), status: status.into(), reason: reason.into(), ..Self::default() }
     }
 
-    /// The same with what is predicted for it, where that is a number.
+    /// The same with what is predicted for it, in the unit of its value, where that is a number.
     #[must_use]
     pub fn beside(self, sigma: f64) -> Self {
         Self { sigma: Some(sigma).filter(|sigma| sigma.is_finite()), ..self }

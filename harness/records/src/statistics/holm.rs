@@ -1,6 +1,6 @@
 //! Holm's correction for many tests.
 
-/// The p-values adjusted for each other, in the order given: a test is significant at the family-wise level alpha
+/// The p-values (0 to 1) adjusted for each other, in the order given: a test is significant at the family-wise level alpha
 /// when its adjusted value is at most alpha.
 ///
 /// The chance that any true hypothesis is rejected is at most alpha, however the tests depend on each other. A value that is

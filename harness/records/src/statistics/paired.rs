@@ -2,7 +2,7 @@
 
 use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, StudentsT};
 
-/// The p-values of one comparison.
+/// The p-values of one comparison, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PValues {
     /// Of a change in either direction.
@@ -22,7 +22,7 @@ impl PValues {
     }
 }
 
-/// Student's t-test of the mean of `differences` against zero.
+/// Student's t-test of the mean of `differences`, of any one unit, against zero.
 ///
 /// Differences that are all alike and not zero are significant with p = 0. Fewer than two say nothing.
 ///
@@ -64,7 +64,7 @@ pub fn sign_test(grew: u64, fell: u64) -> PValues {
     PValues::from_growth(at_least(grew), at_least(fell))
 }
 
-/// The mean of at least one value.
+/// The mean of at least one value, in the unit of the values.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Mean and scatter of a row of numbers, whatever their count.
+/// Mean and scatter of a row of numbers, whatever their count, in the unit of the numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Running {
     /// How many.
@@ -13,7 +13,7 @@ pub struct Running {
     squares: f64,
 }
 
-/// The 97.5 % quantile of Student's distribution for a scatter that comes from `count` numbers; `None` of fewer than two.
+/// The 97.5 % quantile of Student's distribution, in standard deviations, for a scatter that comes from `count` numbers; `None` of fewer than two.
 pub fn two_sided_95(count: u64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, count.checked_sub(1)? as f64).ok()?.inverse_cdf(0.975))
 }
@@ -53,7 +53,7 @@ pub struct Paired {
 }
 
 impl Paired {
-    /// Adds the errors of a trial.
+    /// Adds the errors of a trial, both in one unit.
     pub fn add(&mut self, own: f64, reference: f64) {
         let (a, b) = (own * own, reference * reference);
         let off = a - self.own.mean;
@@ -62,7 +62,7 @@ impl Paired {
         self.product += off * (b - self.reference.mean);
     }
 
-    /// `sqrt(mean(a^2) / mean(b^2))` and half its 95 % interval by the delta method, the covariance of the two taken into account.
+    /// `sqrt(mean(a^2) / mean(b^2))`, a number, and half its 95 % interval by the delta method, the covariance of the two taken into account.
     pub fn ratio(&self) -> Option<(f64, Option<f64>)> {
         if self.own.count == 0 || self.reference.mean <= 0.0 {
             return None;

@@ -40,7 +40,7 @@ pub struct Calibration {
     pub survey_sigma: f64,
     /// What the adjustment is told of control, object units; 0 for fixed control.
     pub control_sigma: f64,
-    /// Where coordinates are drawn: of each method, in the scenario's order, the standard deviation per axis; `None` for the hand.
+    /// Where coordinates are drawn: of each method, in the scenario's order, the standard deviation per axis, px; `None` for the hand.
     pub drawn: Option<Vec<(String, Option<f64>)>>,
     /// Whether the image points of every trial are kept.
     pub keep_points: bool,

@@ -59,7 +59,7 @@ struct Given {
 pub struct StationPlan {
     /// What makes stations beside the given ones.
     pub generator: Option<Generator>,
-    /// The fraction of the targets that every station must see.
+    /// The fraction of the targets that every station must see, 0 to 1.
     pub sees: f64,
     /// Whether they are drawn anew in each trial.
     pub each_trial: bool,

@@ -25,7 +25,7 @@ pub struct Axis {
 pub struct Value {
     /// As labels show it.
     pub text: String,
-    /// The value, if it is a number.
+    /// The value, if it is a number, in the unit of its key.
     pub number: Option<f64>,
     /// TOML whose key `v` has the value, at its place in the file.
     source: String,

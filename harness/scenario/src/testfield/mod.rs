@@ -41,7 +41,7 @@ impl Unit {
         }
     }
 
-    /// Millimetres in it.
+    /// Millimetres in it: 1 or 1000.
     pub const fn mm(self) -> f64 {
         match self {
             Self::Millimetre => 1.0,

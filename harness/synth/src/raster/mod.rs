@@ -24,9 +24,9 @@ const LONGEST_PIECE: f64 = 24.0;
 /// What is to be rendered: closed outlines over a uniform background.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Columns.
+    /// Columns, px.
     pub width: usize,
-    /// Rows.
+    /// Rows, px.
     pub height: usize,
     /// Grey value outside all outlines, fraction of full scale.
     pub background: f64,
@@ -69,7 +69,8 @@ impl Renderer {
         self.render_with(picture, jitter, |_, _| ())
     }
 
-    /// The image, each strip of rows handed to `finish` with the number of its first row while it is at hand: for what comes after the lens. Strips are finished
+    /// The image, each strip of rows handed to `finish` with the number of its first row while it is at hand: for what comes after the lens. A
+    /// strip's grey values are fractions of full scale, row by row; `jitter` is that of [`Self::render`]. Strips are finished
     /// in any order, on any thread.
     ///
     /// # Panics

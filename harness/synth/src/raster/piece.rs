@@ -15,7 +15,7 @@ pub struct Piece {
 pub(crate) type Quartic = [f64; 5];
 
 impl Piece {
-    /// A straight piece.
+    /// The straight piece from `start` to `end`, (x, y), px; `contrast` as [`Self::contrast`].
     pub fn straight(start: [f64; 2], end: [f64; 2], contrast: f64) -> Self {
         let at = |t: f64| [start[0] + t * (end[0] - start[0]), start[1] + t * (end[1] - start[1])];
         Self { points: [start, at(0.25), at(0.5), at(0.75), end], contrast }

@@ -11,7 +11,7 @@ use super::{SensorError, check};
 pub struct Demosaic {
     /// Which grey.
     pub to: DemosaicTo,
-    /// Factors of red, green and blue before; `None` makes a grey target grey, with the most sensitive colour's as 1.
+    /// Factors of red, green and blue, in this order, before; `None` makes a grey target grey, with the most sensitive colour's as 1.
     pub white_balance: Option<[f64; 3]>,
 }
 

@@ -7,7 +7,7 @@ use super::{SensorError, check};
 pub struct ColourFilter {
     /// Which photosite sees which colour.
     pub pattern: Pattern,
-    /// Signal of a grey target behind the red, green and blue filter, relative to the light before the filter.
+    /// Signal of a grey target behind the red, green and blue filter, in this order, relative to the light before the filter: numbers.
     pub sensitivity: [f64; 3],
 }
 

@@ -52,7 +52,7 @@ pub struct Design {
     pub vignetting: Option<Vignetting>,
     /// The illumination's gradient.
     pub gradient: Option<Gradient>,
-    /// Grey value of reflectance 1, before the filter.
+    /// Grey value (fraction of full scale) of reflectance 1, before the filter.
     pub exposure: f64,
     /// The colour filter.
     pub filter: Option<ColourFilter>,
@@ -118,9 +118,9 @@ pub struct Sensor {
 /// The size of the whole image, px.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Columns.
+    /// Columns, px.
     pub width: usize,
-    /// Rows.
+    /// Rows, px.
     pub height: usize,
 }
 

@@ -28,9 +28,9 @@ pub enum FallOff {
 /// A linear gain over the frame, 1 at its centre: light from one side. Taken at the pixel's centre; below zero is dark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gradient {
-    /// Gain along the row, to the right.
+    /// Gain along the row, to the right: fraction of the light at the frame's centre.
     pub x: f64,
-    /// Gain along the column, downwards.
+    /// Gain along the column, downwards: fraction of the light at the frame's centre.
     pub y: f64,
     /// What `x` and `y` are fractions of light per.
     pub per: Per,

@@ -4,8 +4,9 @@ use super::electrons::top;
 use super::{Noise, Sensor};
 
 impl Sensor {
-    /// The mean grey value of a pixel to which shading leaves `light` (reflectance 1 is 1), where nothing is clipped: exposure, dark signal and black
-    /// level. `None` of a chain whose grey values are not linear in light or differ from photosite to photosite: colour filter or gamma.
+    /// The mean grey value (fraction of full scale) of a pixel to which shading leaves `light` (reflectance 1 is 1), where nothing is clipped:
+    /// exposure, dark signal and black level. `None` of a chain whose grey values are not linear in light or differ from photosite to photosite:
+    /// colour filter or gamma.
     pub fn mean(&self, light: f64) -> Option<f64> {
         let design = &self.design;
         if design.gamma.is_some() || design.filter.is_some() {

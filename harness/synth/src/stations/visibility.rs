@@ -5,7 +5,7 @@ use calibench_model::{ObjectTarget, Pose, Testfield};
 
 use super::{Station, StationError};
 
-/// The fraction of the field's targets whose reference points are inside the frame and on the side of their sheet that faces the camera.
+/// The fraction (0 to 1) of the field's targets whose reference points are inside the frame and on the side of their sheet that faces the camera.
 ///
 /// Sheets that hide each other are not looked at. Zero for a field without targets.
 pub fn sees(camera: &Camera, pose: &Pose, field: &Testfield) -> f64 {
@@ -15,7 +15,7 @@ pub fn sees(camera: &Camera, pose: &Pose, field: &Testfield) -> f64 {
     count(camera, pose, field) as f64 / field.targets.len() as f64
 }
 
-/// Refuses the first station, by name, that sees less than the `least` fraction of the targets, or none.
+/// Refuses the first station, by name, that sees less than the `least` fraction (0 to 1) of the targets, or none.
 ///
 /// # Errors
 /// [`StationError::Unseen`].

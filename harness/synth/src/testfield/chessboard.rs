@@ -28,7 +28,7 @@ pub struct Chessboard {
     pub print_noise: f64,
     /// Reflectances.
     pub levels: Levels,
-    /// The radiance behind the board.
+    /// The radiance behind the board, as a fraction of full scale.
     pub background: f64,
 }
 

@@ -28,9 +28,9 @@ pub struct House {
     pub specks: usize,
     /// The side of these squares, object units; at most a sixteenth of the width.
     pub speck: f64,
-    /// Their reflectance differs from their ground's by up to this, 0 to 0.2.
+    /// Their reflectance (fraction of what makes full scale) differs from their ground's by up to this, 0 to 0.2.
     pub contrast: f64,
-    /// The radiance behind the sheet.
+    /// The radiance behind the sheet, as a fraction of full scale.
     pub background: f64,
 }
 

@@ -32,9 +32,9 @@ pub use zhu::{Figure4, Zhu};
 /// Reflectances of a sheet and of what is printed on it, fractions of what makes full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levels {
-    /// Of the sheet.
+    /// Of the sheet, 0 to 1.
     pub paper: f64,
-    /// Of the ink.
+    /// Of the ink, 0 to 1.
     pub ink: f64,
 }
 
@@ -54,7 +54,7 @@ pub struct SheetBend {
 }
 
 impl SheetBend {
-    /// The bend of the sheet between these two corners.
+    /// The bend of the sheet between these two corners (object units), the lower values first.
     pub fn over(&self, [[u0, v0], [u1, v1]]: [PlatePoint; 2]) -> Bend {
         let (sine, cosine) = self.across.sin_cos();
         let reach = 0.5 * ((u1 - u0) * cosine.abs() + (v1 - v0) * sine.abs());
@@ -111,7 +111,7 @@ pub enum FieldError {
         second: String,
         /// Their plate.
         plate: String,
-        /// Where, in the plate's axes.
+        /// Where, in the plate's axes: x is u, y is v, object units.
         at: PixelPoint,
     },
     /// No room for all targets.

@@ -41,7 +41,8 @@ impl Shape {
         }
     }
 
-    /// The outlines with the reference point at `at`, of `size`, turned by `turn` (radians, from u towards v). They touch in points at most.
+    /// The outlines with the reference point at `at`, of `size` (in the unit of `at`), turned by `turn` (radians, from u towards v). They touch in
+    /// points at most.
     pub fn outlines(self, at: PlatePoint, size: f64, turn: f64) -> Vec<Outline> {
         if self == Self::Disc {
             return vec![Outline::disc(at, 0.5 * size)];
@@ -51,7 +52,7 @@ impl Shape {
         self.polygons().iter().map(|vertices| Outline::polygon(&vertices.iter().map(place).collect::<Vec<_>>())).collect()
     }
 
-    /// The distance from the reference point to the outline's farthest point.
+    /// The distance from the reference point to the outline's farthest point, in the unit of `size`.
     pub fn reach(self, size: f64) -> f64 {
         if self == Self::Disc {
             return 0.5 * size;

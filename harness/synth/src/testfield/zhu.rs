@@ -63,7 +63,7 @@ pub struct Zhu {
     pub stroke: f64,
     /// Grey value of lines and areas, fraction of full scale.
     pub ink: f64,
-    /// Grey value around them.
+    /// Grey value around them, fraction of full scale.
     pub background: f64,
     /// Another angle for line and solid corners, degrees; solid ones then open about +x. `None`: that of the image.
     pub angle: Option<f64>,

@@ -39,7 +39,7 @@ pub enum ViewError {
     /// The mapping is not one to one within the frame or its margin.
     #[error("the distortion folds over {radius_px:.0} px from the principal point, inside the image or within {margin_px:.0} px of it")]
     Fold {
-        /// Where, px from the principal point.
+        /// Where, px from the principal point; of a place of the border that has no ray, px from the centre of the frame.
         radius_px: f64,
         /// How far around the frame light matters, px.
         margin_px: f64,
@@ -79,7 +79,7 @@ impl<'a> View<'a> {
         Ok(Seen { view: *self, frame, sheets })
     }
 
-    /// The outlines in the image: [`Seen::picture`] of [`Self::seen`].
+    /// The outlines in the image: [`Seen::picture`] of [`Self::seen`] with this `margin`, px.
     ///
     /// # Errors
     /// What cannot be pictured, by name.

@@ -30,7 +30,8 @@ pub struct DirectLinear {
     pub sigma0: Option<f64>,
     /// Observations minus eleven.
     pub redundancy: usize,
-    /// Cofactors of c, x0, y0 (mm), b1, b2, a small rotation about the camera's axes (rad) and the projection centre, for 1 px.
+    /// Cofactors of c, x0, y0 (mm), b1, b2 (numbers), a small rotation about the camera's axes (rad) and the projection centre (object units), for 1
+    /// px.
     pub cofactor: SMatrix<f64, 11, 11>,
     /// Computed minus measured for each point, px; `None` where the camera does not picture the point.
     pub residuals: Vec<Option<[f64; 2]>>,

@@ -19,7 +19,7 @@ pub struct Homography {
 }
 
 impl Homography {
-    /// The picture of a point; `None` beyond the horizon.
+    /// The picture `(x', y')` of the point `(x, y)`, in the units of the pairs that the map was found from; `None` beyond the horizon.
     pub fn map(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let p = self.matrix * Vector3::new(x, y, 1.0);
         (p.z > 0.0).then(|| [p.x / p.z, p.y / p.z])
@@ -82,7 +82,7 @@ fn all_but_one_in_line(pairs: &[([f64; 2], [f64; 2])]) -> bool {
 
 /// The homography of least squares in the picture, from an approximate one: the distances of `(x', y')` from the mapped `(x, y)`.
 ///
-/// Returns the homography and the sum of the squared distances, in the unit of `(x', y')`.
+/// Returns the homography and the sum of the squared distances, in the squared unit of `(x', y')`.
 ///
 /// # Errors
 /// As [`homography`]; [`ApproximateError::NoSolution`] when the start does not map every point.

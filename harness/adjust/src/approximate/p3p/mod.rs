@@ -35,7 +35,7 @@ pub fn poses_of_three(camera: &Camera, control: &[Control; 3]) -> Result<Vec<Pos
     Ok(p3p(&[rays[0], rays[1], rays[2]], &points))
 }
 
-/// All poses from which three points lie in the directions `rays` (camera axes, any length): the perspective-three-point problem.
+/// All poses from which three points (object units) lie in the directions `rays` (camera axes, any length): the perspective-three-point problem.
 ///
 /// The ratios of the distances are the common points of two conics. A member of their pencil that splits into two lines is found from a cubic; each line
 /// cuts a conic in two points. The distances are polished by Newton's method. Degenerate points have no poses.

@@ -9,9 +9,9 @@ use super::shape::{FLAT, Shape};
 /// A similarity of space: `X' = s R X + t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Similarity {
-    /// `s`, positive.
+    /// `s`, positive: units of the target per unit of what is transformed.
     pub scale: f64,
-    /// `R`, of determinant +1.
+    /// `R`, 3 x 3, of determinant +1.
     pub rotation: Matrix3<f64>,
     /// `t`, in the units of the target.
     pub translation: Vector3<f64>,
@@ -20,7 +20,7 @@ pub struct Similarity {
 }
 
 impl Similarity {
-    /// The transformed point.
+    /// The transformed point, in the units of the target.
     pub fn apply(&self, point: &Point3<f64>) -> Point3<f64> {
         Point3::from(self.scale * (self.rotation * point.coords) + self.translation)
     }

@@ -31,12 +31,12 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
 pub struct PMatrix {
     /// The image.
     pub name: String,
-    /// Row by row.
+    /// 3 x 4, row by row.
     pub matrix: [[f64; 4]; 3],
 }
 
 impl PMatrix {
-    /// `K [R, -R t]`.
+    /// `K [R, -R t]` of the camera matrix `k`, 3 x 3, row by row, px from the outer corner of the first pixel, and R and t of `pose`.
     pub fn new(name: impl Into<String>, k: &[[f64; 3]; 3], pose: &Pose) -> Self {
         let r = &pose.camera_from_world;
         let kr: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|m| k[i][m] * r[m][j]).sum()));
@@ -47,7 +47,7 @@ impl PMatrix {
         Self { name: name.into(), matrix }
     }
 
-    /// The camera matrix, with 1 at its lower right, and the pose: RQ decomposition of the left 3 x 3. `None` if it is singular.
+    /// The camera matrix (px, row by row), with 1 at its lower right, and the pose: RQ decomposition of the left 3 x 3. `None` if it is singular.
     pub fn decompose(&self) -> Option<([[f64; 3]; 3], Pose)> {
         let m: [[f64; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| self.matrix[i][j]));
         let scale = norm(m[2]);

@@ -6,7 +6,7 @@ pub(super) const LANES: usize = 8;
 /// Object to camera: `N = rotation X + translation`, x right, y up, z backwards, as in [`crate::camera::Ray`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraFromWorld {
-    /// Row by row.
+    /// 3 x 3, row by row.
     pub rotation: [[f64; 3]; 3],
     /// In the unit of the object.
     pub translation: [f64; 3],
@@ -19,8 +19,8 @@ impl CameraFromWorld {
 
 /// Derivatives of many projected points.
 ///
-/// Columns: a small rotation about the camera's axes x, y, z (radians; `N` becomes `N + d x N`), the translation along them, then the parameters of the
-/// model in their order. Kept in blocks of eight points, so that each column of a block is contiguous: what sums of products want.
+/// Columns: a small rotation about the camera's axes x, y, z (radians; `N` becomes `N + d x N`), the translation along them (object units), then the
+/// parameters of the model in their order. Kept in blocks of eight points, so that each column of a block is contiguous: what sums of products want.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Jacobian {
     columns: usize,
@@ -49,7 +49,8 @@ impl Jacobian {
         [self.values[first], self.values[first + LANES]]
     }
 
-    /// Blocks of eight points: for each column eight derivatives of x, then eight of y. The last block is filled up with copies of its last point.
+    /// Blocks of eight points: for each column eight derivatives of x, then eight of y, as [`Self::at`] gives them. The last block is filled up with
+    /// copies of its last point.
     pub fn blocks(&self) -> impl Iterator<Item = &[f64]> {
         self.values.chunks_exact((self.columns * 2 * LANES).max(1))
     }

@@ -37,9 +37,9 @@ pub struct OpenCv {
     pub fy: f64,
     /// Principal point, x, px.
     pub cx: f64,
-    /// Principal point, y, px.
+    /// Principal point, y, px downwards.
     pub cy: f64,
-    /// k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4, tx, ty (radians): OpenCV's order. Unused ones are zero.
+    /// k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 (numbers), tx, ty (radians): OpenCV's order. Unused ones are zero.
     pub distortion: [f64; 14],
     /// How many of them the model has: 4, 5, 8, 12 or 14.
     pub coefficients: usize,

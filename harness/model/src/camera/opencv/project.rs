@@ -27,7 +27,7 @@ struct Job<L> {
 }
 
 impl OpenCv {
-    /// Pixels of object points: [`CameraModel::project`] for many points, vectorised.
+    /// Pixels of object points (X, Y, Z, in the unit of the pose's translation): [`CameraModel::project`] for many points, vectorised.
     ///
     /// A point without an image gives not-a-numbers; [`CameraModel::project`] says why. Any machine gives the same bits.
     ///

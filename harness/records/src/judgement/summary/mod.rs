@@ -19,9 +19,9 @@ const DRAWS: u64 = 2000;
 /// A figure with its 95 % interval over views: photographs drawn again with replacement, the same for every operator and model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// The figure.
+    /// The figure, px.
     pub value: f64,
-    /// The interval.
+    /// The interval, lower and upper end, px.
     pub interval: (f64, f64),
 }
 
@@ -43,7 +43,7 @@ pub struct Split {
     pub difference: f64,
     /// The predicted one, px.
     pub predicted: f64,
-    /// Empirical over predicted standard deviation in the modes of the difference: 1 if the sigmas are right.
+    /// Empirical over predicted standard deviation in the modes of the difference, a number: 1 if the sigmas are right.
     pub modes: f64,
     /// The chance of as large differences if the sigmas are right, at most. Splits of the same photographs depend on each other: twice the median of their
     /// p-values, which holds however they do.
@@ -55,7 +55,7 @@ pub struct Split {
 }
 
 impl Split {
-    /// Empirical over predicted difference over the frame.
+    /// Empirical over predicted difference over the frame, a number.
     pub fn ratio(&self) -> f64 {
         self.difference / self.predicted
     }
@@ -68,7 +68,7 @@ pub struct View {
     pub name: Arc<str>,
     /// RMS residual in the adjustment of all views, px, and of how many corners.
     pub residual: (f64, usize),
-    /// Holm's p-value of its being like the others.
+    /// Holm's p-value of its being like the others, 0 to 1.
     pub p: f64,
 }
 
@@ -96,7 +96,7 @@ pub struct Cell {
     pub views: Vec<View>,
     /// By view: hold-out RMS, px, and of how many corners.
     pub held_out: BTreeMap<Arc<str>, (f64, usize)>,
-    /// By view: the same, one side of the board from the other.
+    /// By view: the same, one side of the board from the other, px.
     pub carried: BTreeMap<Arc<str>, (f64, usize)>,
     /// Over all views, px.
     pub holdout: Option<Estimate>,
@@ -106,7 +106,7 @@ pub struct Cell {
     pub straight: Option<Estimate>,
     /// Halves.
     pub split: Option<Split>,
-    /// Over the frame: x, y, RMS difference of halves and the predicted one, px.
+    /// Over the frame: x, y (from the centre of the first pixel, y down), RMS difference of halves and the predicted one, px.
     pub map: Vec<(f64, f64, f64, f64)>,
     /// Standard deviation of a projected point in the centre and in the worst corner, px.
     pub uncertainty: Option<(f64, f64)>,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::super::{Row, measure};
 
-/// A principal point, px, and its standard deviations: x, y.
+/// A principal point and its standard deviations, px: x, y from the centre of the first pixel, y down.
 pub type Point = [(f64, f64); 2];
 
 /// The principal point from all views and from parts of them.

@@ -7,9 +7,9 @@ use super::{Cell, Summary};
 use crate::statistics::holm;
 use crate::statistics::paired::paired_t;
 
-/// The chance that any of the operators (or models) that are as good is called worse.
+/// The chance (0 to 1) that any of the operators (or models) that are as good is called worse.
 pub const ALPHA: f64 = 0.05;
-/// Sigmas are called too small if chance explains the differences of halves in fewer cases than this.
+/// Sigmas are called too small if chance explains the differences of halves in fewer cases than this (0 to 1).
 pub const HONEST: f64 = 0.01;
 
 /// The verdict.
@@ -74,7 +74,7 @@ fn no_worse<'a>(
 }
 
 impl Trusted<'_> {
-    /// By how much the predicted sigmas must be enlarged: 1 where halves do not say that they are too small.
+    /// The factor by which the predicted sigmas must be enlarged: 1 where halves do not say that they are too small.
     pub fn inflation(&self) -> f64 {
         self.cell.split.filter(|split| split.p < HONEST).map_or(1.0, |split| split.modes.max(split.ratio()).max(1.0))
     }

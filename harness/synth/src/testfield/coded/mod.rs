@@ -41,13 +41,13 @@ pub struct Coded {
     pub sheet: f64,
     /// The sizes of the small targets, in the order of [`SHAPES`], object units.
     pub small: [f64; 4],
-    /// The sizes of the large targets.
+    /// The sizes of the large targets, in the order of [`SHAPES`], object units.
     pub large: [f64; 4],
     /// The sheet's bend.
     pub bend: Option<SheetBend>,
     /// Reflectances.
     pub levels: Levels,
-    /// The radiance behind the sheet.
+    /// The radiance behind the sheet, as a fraction of full scale.
     pub background: f64,
 }
 

@@ -15,9 +15,9 @@ pub struct Sheet {
     pub id: String,
     /// Where its middle was when it was surveyed, object units; (0, 0) of its own axes.
     pub middle: Point3<f64>,
-    /// The direction of its width, to the right as one looks at its front.
+    /// The direction of its width in object axes, of any length, to the right as one looks at its front.
     pub u: Vector3<f64>,
-    /// The direction of its height, upwards, at a right angle to `u`.
+    /// The direction of its height in object axes, of any length, upwards, at a right angle to `u`.
     pub v: Vector3<f64>,
     /// Width and height, object units.
     pub size: [f64; 2],
@@ -59,7 +59,7 @@ pub struct Wall {
     pub fill: Option<Fill>,
     /// Standard deviation of the survey per axis, object units.
     pub survey_sigma: f64,
-    /// The radiance behind the wall.
+    /// The radiance behind the wall, as a fraction of full scale.
     pub background: f64,
 }
 
