@@ -251,4 +251,16 @@ mod tests {
         spread(1_000_000).for_each(|place| met[place % 2000 / 200] += 1);
         assert!(met.iter().all(|&count| count > 40), "{met:?}");
     }
+
+    #[test]
+    fn control_is_flat_below_a_ten_thousandth_of_its_extent() {
+        let field = |height: f64, tilt: f64| -> Vec<Option<Point3<f64>>> {
+            let point = |i: i32| {
+                Point3::new(f64::from(i % 10) + 50.0, f64::from(i / 10) - 70.0, height * f64::from(i % 3) + tilt * f64::from(i % 10))
+            };
+            (0..100).map(point).map(Some).chain([None]).collect()
+        };
+        assert!(is_flat(&field(0.0, 0.0)) && is_flat(&field(0.0, 0.7)) && is_flat(&field(1e-4, 0.7)));
+        assert!(!is_flat(&field(1e-3, 0.0)) && !is_flat(&field(1e-3, 0.7)) && !is_flat(&field(5.0, 0.0)));
+    }
 }

@@ -16,7 +16,7 @@ const MISTAKES: &[(&str, &str, &[&str])] = &[
     (AT, "at = [50, -40, -300]", &["station `front` does not see the field"]),
     (AT, "at = [50, -40, 0]", &["station `front`", "its pose is not determined"]),
     (AT, "at = [50, nan, 300]", &["mine.toml:17:6", "NaN"]),
-    ("k1 = -0.01", "k1 = 0.5", &["station `front`: the distortion folds over 82 px from the principal point"]),
+    ("k1 = -0.01", "k1 = 0.5", &["station `front`: the distortion folds over 82 px from the image of the axis"]),
     ("k1 = -0.01", "k1 = nan", &["mine.toml:8:6", "NaN"]),
     ("c = 3.2", "c = -3.2", &["mine.toml:7:5", "0.001"]),
     ("c = 3.2", "", &["[camera] has no `c`"]),

@@ -30,17 +30,8 @@ const LEVEL: f64 = 0.95;
 
 impl Metric {
     /// All of them.
-    pub const ALL: [Self; 9] = [
-        Self::Rmse,
-        Self::Bias,
-        Self::MeanX,
-        Self::Scatter,
-        Self::Ratio,
-        Self::Predicted,
-        Self::Lost,
-        Self::Rejected,
-        Self::Failed,
-    ];
+    pub const ALL: [Self; 9] =
+        [Self::Rmse, Self::Bias, Self::MeanX, Self::Scatter, Self::Ratio, Self::Predicted, Self::Lost, Self::Rejected, Self::Failed];
 
     /// What it is, with its unit, in a line.
     pub fn meaning(self) -> &'static str {

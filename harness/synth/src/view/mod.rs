@@ -9,8 +9,8 @@ mod tests;
 mod trace;
 mod truth;
 
-use calibench_model::camera::{Camera, CameraModel, NoCounterpart, fold};
-use calibench_model::{Pose, Testfield};
+use calibench_model::camera::{Camera, CameraModel, NoCounterpart, Ray, fold};
+use calibench_model::{PixelPoint, Pose, Testfield};
 use thiserror::Error;
 
 use crate::raster::Picture;
@@ -37,9 +37,9 @@ pub enum ViewError {
     #[error("the testfield lies behind the camera")]
     Behind,
     /// The mapping is not one to one within the frame or its margin.
-    #[error("the distortion folds over {radius_px:.0} px from the principal point, inside the image or within {margin_px:.0} px of it")]
+    #[error("the distortion folds over {radius_px:.0} px from the image of the axis, inside the image or within {margin_px:.0} px of it")]
     Fold {
-        /// Where, px from the principal point; of a place of the border that has no ray, px from the centre of the frame.
+        /// Where, px from the image of the axis: the fold, or a place of the border that has no ray.
         radius_px: f64,
         /// How far around the frame light matters, px.
         margin_px: f64,
@@ -97,8 +97,9 @@ impl<'a> View<'a> {
         let (right, bottom) = (f64::from(size.width) - 0.5 + margin, f64::from(size.height) - 0.5 + margin);
         let sides = [-0.5 - margin, -0.5 - margin, right, bottom];
         let directions = polygon::border(self.camera, sides).map_err(|at| {
-            let middle = ((f64::from(size.width) - 1.0) / 2.0, (f64::from(size.height) - 1.0) / 2.0);
-            ViewError::Fold { radius_px: (at.x - middle.0).hypot(at.y - middle.1), margin_px: margin }
+            let middle = PixelPoint::new((f64::from(size.width) - 1.0) / 2.0, (f64::from(size.height) - 1.0) / 2.0);
+            let axis = self.camera.project(Ray { x: 0.0, y: 0.0, z: -1.0 }).unwrap_or(middle);
+            ViewError::Fold { radius_px: at.distance(axis), margin_px: margin }
         })?;
         Ok(Frame { sides, directions })
     }
