@@ -50,7 +50,7 @@ pub(super) fn network(
     Ok((Network { cameras, images, points, observations, datum }, sights, left_out))
 }
 
-fn interior(optics: &Optics, camera: &Camera) -> Result<Interior, CalibrationError> {
+pub(super) fn interior(optics: &Optics, camera: &Camera) -> Result<Interior, CalibrationError> {
     let names = model::unknowns(camera, optics);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     prior::observed(Interior::fixed(optics.name.clone(), *camera).free(&names)?, &optics.priors)

@@ -3,7 +3,7 @@
 use calibench_adjust::Network;
 use calibench_exchange::{ControlRow, LostRows, Points};
 
-use crate::{CalibrationError, LeftOut, Settings, Survey, network, optics, stages, start};
+use crate::{CalibrationError, LeftOut, Rival, Settings, Survey, network, optics, search, stages, start};
 
 /// A network with its start values.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub struct Prepared {
     pub survey: Survey,
     /// Where the interior orientation of each camera started.
     pub origins: Vec<String>,
+    /// Minima that the observations do not tell from the one that is started near.
+    pub rivals: Vec<Rival>,
     /// What is adjusted.
     pub network: Network,
     /// The sight behind each observation of the network.
@@ -31,8 +33,9 @@ pub struct Prepared {
 pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
     let survey = Survey::new(points, control)?;
     let owners = optics::owners(&settings.cameras, &survey.images)?;
-    let rough = start::starts(&survey, &owners, settings)?;
-    let starts = stages::refined(&survey, &owners, rough, settings)?;
+    let usual = start::starts(&survey, &owners, settings).and_then(|rough| stages::refined(&survey, &owners, rough, settings));
+    let (starts, rivals) = search::better(&survey, &owners, settings, usual)?;
     let (network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
-    Ok(Prepared { settings: settings.clone(), survey, origins: starts.origins, network, sights, left_out, unmeasured: LostRows::default() })
+    let origins = starts.origins;
+    Ok(Prepared { settings: settings.clone(), survey, origins, rivals, network, sights, left_out, unmeasured: LostRows::default() })
 }

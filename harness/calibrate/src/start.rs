@@ -50,11 +50,23 @@ pub(super) fn starts(survey: &Survey, owners: &[usize], settings: &Settings) -> 
     };
     let rough = settings.cameras.iter().enumerate().map(rough).collect::<Result<Vec<_>, _>>()?;
     let (rough, origins): (Vec<Camera>, Vec<String>) = rough.into_iter().unzip();
+    orient_all(survey, owners, settings, rough, origins)
+}
+
+/// Poses of all images and tie points, from cameras.
+pub(super) fn orient_all(
+    survey: &Survey,
+    owners: &[usize],
+    settings: &Settings,
+    cameras: Vec<Camera>,
+    origins: Vec<String>,
+) -> Result<Starts, CalibrationError> {
+    let known: Vec<Option<Point3<f64>>> = (0..survey.targets()).map(|target| survey.known(target)).collect();
     let observed: Vec<Option<Pose>> =
         survey.images.iter().map(|image| prior::station(&settings.stations, image).map(|row| row.station.pose)).collect();
-    let of_image: Vec<Camera> = owners.iter().map(|&owner| rough[owner]).collect();
+    let of_image: Vec<Camera> = owners.iter().map(|&owner| cameras[owner]).collect();
     let (poses, points) = orient(survey, &of_image, known, &observed)?;
-    Ok(Starts { cameras: rough, origins, poses, points })
+    Ok(Starts { cameras, origins, poses, points })
 }
 
 /// A camera to find poses with, and where it comes from.
@@ -76,22 +88,27 @@ fn seen_of<'s>(survey: &'s Survey, known: &'s [Option<Point3<f64>>], image: usiz
     sights.filter_map(move |sight| Some(Control { object: known[sight.target]?, image: sight.position }))
 }
 
-/// As [`control_of`], of many points [`ENOUGH`], spread over their order: start values need no more.
+/// As [`control_of`], of many points [`ENOUGH`]: start values need no more.
 fn some_control_of(survey: &Survey, known: &[Option<Point3<f64>>], image: usize) -> Vec<Control> {
+    spread_control_of(survey, known, image, ENOUGH)
+}
+
+/// As [`control_of`], but `most` points, spread over their order.
+pub(super) fn spread_control_of(survey: &Survey, known: &[Option<Point3<f64>>], image: usize, most: usize) -> Vec<Control> {
     let count = seen_of(survey, known, image).count();
-    if count <= ENOUGH {
+    if count <= most {
         return control_of(survey, known, image);
     }
-    let mut places = spread(count).peekable();
+    let mut places = spread(count, most).peekable();
     seen_of(survey, known, image).enumerate().filter(|(place, _)| places.next_if_eq(place).is_some()).map(|(_, control)| control).collect()
 }
 
-/// [`ENOUGH`] places of `count`, one in each of as many parts, at a different place within each: the points of a grid, whose order has a period, are
-/// not taken from one of its lines.
-fn spread(count: usize) -> impl Iterator<Item = usize> {
+/// `most` places of `count`, one in each of as many parts, at a different place within each: the points of a grid, whose order has a period, are not
+/// taken from one of its lines.
+fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    (0..ENOUGH).map(move |part| {
-        let (first, next) = (part * count / ENOUGH, (part + 1) * count / ENOUGH);
+    (0..most).map(move |part| {
+        let (first, next) = (part * count / most, (part + 1) * count / most);
         first + ((part as f64 * GOLDEN).fract() * (next - first) as f64) as usize
     })
 }
@@ -153,7 +170,7 @@ fn from_depth(views: &[&[Control]], size: ImageSize) -> Result<(Camera, String),
 }
 
 /// The median over the images of the standard deviation of an image coordinate after a resection, px.
-fn misfit(camera: &Camera, views: &[&[Control]]) -> f64 {
+pub(super) fn misfit(camera: &Camera, views: &[&[Control]]) -> f64 {
     let sigma = |view: &&[Control]| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
     let mut sigmas: Vec<f64> = views.iter().filter(|view| view.len() >= 4).map(sigma).collect();
     sigmas.sort_by(f64::total_cmp);
@@ -242,13 +259,13 @@ mod tests {
     #[test]
     fn places_are_spread_and_have_no_period() {
         for count in [501, 1000, 999_983, 1_000_000] {
-            let places: Vec<usize> = spread(count).collect();
+            let places: Vec<usize> = spread(count, ENOUGH).collect();
             assert_eq!(places.len(), ENOUGH);
             assert!(places.is_sorted_by(|a, b| a < b) && places[ENOUGH - 1] < count && places[0] < count / ENOUGH + 1);
         }
         // A grid of 2000 columns and 500 rows, row by row: every column of ten is met.
         let mut met = [0; 10];
-        spread(1_000_000).for_each(|place| met[place % 2000 / 200] += 1);
+        spread(1_000_000, ENOUGH).for_each(|place| met[place % 2000 / 200] += 1);
         assert!(met.iter().all(|&count| count > 40), "{met:?}");
     }
 

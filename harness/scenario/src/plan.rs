@@ -51,11 +51,6 @@ impl Scenario {
         !matches!(self.subject, Subject::Photographs(_))
     }
 
-    /// Whether its points go through an adjustment.
-    pub fn is_adjusted(&self) -> bool {
-        matches!(&self.subject, Subject::Views(views) if views.calibration.is_some())
-    }
-
     /// The pixel pitch of the adjusted camera, um.
     pub fn pitch_um(&self) -> Option<f64> {
         let Subject::Views(views) = &self.subject else { return None };

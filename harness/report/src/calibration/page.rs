@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::io;
 
 use calibench_adjust::{Significance, Use};
-use calibench_calibrate::Calibration;
+use calibench_calibrate::{Calibration, Rival};
 use calibench_exchange::NewFolder;
 use calibench_model::camera::CameraModel;
 use calibench_model::escape;
@@ -159,6 +159,21 @@ fn parameters(calibration: &Calibration<'_>, camera: usize) -> MarkdownTable {
     table
 }
 
+/// A minimum that noise does not tell from the one found.
+fn another(calibration: &Calibration<'_>, rival: &Rival) -> String {
+    let [found, other] = [&rival.found, &rival.other].map(|camera| camera.parameters().first().map_or(0.0, |first| first.value));
+    let apart =
+        rival.distance_px.map_or_else(|| "too far to compare".to_owned(), |px| format!("{} px apart (RMS over the frame)", plain(px)));
+    format!(
+        "another camera{} fits as well, as far as the noise tells: {} of {} in place of {}, {apart}; reached from {}. More images from other directions decide",
+        of(calibration, rival.camera),
+        rival.found.parameters().first().map_or("", |first| first.name),
+        plain(other),
+        plain(found),
+        rival.origin
+    )
+}
+
 /// A value with the digits that its standard deviation leaves, and that with two.
 fn rounded(value: f64, sigma: f64) -> (String, String) {
     if sigma <= 0.0 || !sigma.is_finite() {
@@ -189,6 +204,7 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         let name = calibration.parameter_name(&(test.camera, test.parameter));
         warnings.push(format!("{name} is not told from zero (t {:.1}); a set without it may do", test.t));
     }
+    warnings.extend(calibration.prepared.rivals.iter().map(|rival| another(calibration, rival)));
     warnings.extend(weights(calibration));
     let rejected = calibration.found.iter().filter(|found| found.left_out).count();
     if rejected > 0 {

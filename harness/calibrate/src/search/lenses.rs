@@ -1,0 +1,84 @@
+//! The lenses that a search starts from.
+
+use calibench_adjust::approximate::{Control, interior_from_size};
+use calibench_model::Pose;
+use calibench_model::camera::{Camera, CameraModel, OpenCv, OpenCvFisheye};
+use calibench_model::convert::{ConvertOptions, Region};
+
+use super::kept;
+use super::ladder::{BROWN, EQUIDISTANT, climbed};
+use super::sample::{Arrived, Sample};
+use crate::Optics;
+use crate::model::{self, converted};
+use crate::network::interior;
+use crate::start::misfit;
+
+/// Focal lengths of lenses without distortion, in longer sides.
+const FOCAL: [f64; 7] = [0.3, 0.45, 0.7, 1.1, 1.8, 3.0, 6.0];
+/// Focal lengths of lenses that picture angles, in longer sides.
+const FOCAL_WIDE: [f64; 6] = [0.16, 0.22, 0.32, 0.45, 0.65, 1.0];
+/// Circles over which models are fitted, as shares of the one that holds all image points.
+const CIRCLES: [f64; 4] = [1.0, 0.95, 0.9, 0.8];
+
+/// A lens to start from, with the poses that it gives.
+struct Lens {
+    camera: Camera,
+    poses: Vec<Option<Pose>>,
+    rungs: &'static [&'static [&'static str]],
+    origin: &'static str,
+}
+
+/// The minima of the model asked for: the one that the usual camera leads to, then those that are reached from a lens without distortion and from one that
+/// pictures angles. Images that none of the three orients are left out of the sample.
+pub(super) fn arrived(sample: &mut Sample, optics: &Optics, usual: Option<&(Camera, String)>) -> (Option<Arrived>, Vec<Arrived>) {
+    let lenses = lenses(sample, optics);
+    let of_usual = usual.map(|(camera, _)| sample.poses(camera));
+    let all: Vec<&Vec<Option<Pose>>> = lenses.iter().map(|lens| &lens.poses).chain(&of_usual).collect();
+    // A pose from another camera where the own one gives none.
+    let somehow: Vec<Option<Pose>> = (0..sample.views.len()).map(|view| all.iter().find_map(|poses| poses[view])).collect();
+    let filled = |poses: &[Option<Pose>]| poses.iter().zip(&somehow).filter_map(|(own, other)| own.or(*other)).collect::<Vec<Pose>>();
+    sample.keep(&somehow.iter().map(Option::is_some).collect::<Vec<_>>());
+    let first = usual
+        .zip(of_usual.as_ref())
+        .and_then(|((camera, origin), poses)| sample.adjusted(interior(optics, camera).ok()?, &filled(poses), origin));
+    let others = lenses.iter().filter_map(|lens| {
+        let reached = climbed(sample, &lens.camera, filled(&lens.poses), lens.rungs, lens.origin)?;
+        in_model(sample, optics, &reached)
+    });
+    (first, others.collect())
+}
+
+fn lenses(sample: &Sample, optics: &Optics) -> Vec<Lens> {
+    let Some([cx, cy]) = middle(optics) else { return Vec::new() };
+    let (size, side, few) = (optics.size, f64::from(optics.size.width.max(optics.size.height)), sample.few());
+    let views: Vec<&[Control]> = few.iter().map(Vec::as_slice).collect();
+    let nearest = |cameras: Vec<Camera>| {
+        let tried = cameras.into_iter().map(|camera| (misfit(&camera, &views), camera));
+        tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, camera)| camera)
+    };
+    let pinhole = |f: f64| OpenCv { size, fx: f * side, fy: f * side, cx, cy, distortion: [0.0; 14], coefficients: 5 }.into();
+    let angles = |f: f64| OpenCvFisheye { size, fx: f * side, fy: f * side, cx, cy, skew: 0.0, k: [0.0; 4] }.into();
+    let straight = (nearest(FOCAL.map(pinhole).to_vec()), &BROWN[..], "the best of some focal lengths, distortion term by term");
+    let wide = (nearest(FOCAL_WIDE.map(angles).to_vec()), &EQUIDISTANT[..], "the best of some equidistant lenses, distortion term by term");
+    let lens =
+        |(camera, rungs, origin): (Option<Camera>, _, _)| camera.map(|camera| Lens { camera, poses: sample.poses(&camera), rungs, origin });
+    [straight, wide].into_iter().filter_map(lens).collect()
+}
+
+fn middle(optics: &Optics) -> Option<[f64; 2]> {
+    let guess = interior_from_size(optics.size).ok()?;
+    let named = |name: &str| guess.parameters().iter().find(|p| p.name == name).map(|p| p.value);
+    Some([named("cx")?, named("cy")?])
+}
+
+/// The minimum of the model asked for, from a lens of another one.
+fn in_model(sample: &Sample, optics: &Optics, lens: &Arrived) -> Option<Arrived> {
+    let farthest = sample.farthest(&lens.camera)?;
+    let rest = model::camera(&interior_from_size(optics.size).ok()?, optics).ok()?;
+    CIRCLES.iter().find_map(|share| {
+        let region = Region::Radius { px: share * farthest };
+        let options = ConvertOptions { accept: true, region, ..ConvertOptions::default() };
+        let camera = converted(&lens.camera, optics, &options).ok()?;
+        sample.adjusted(interior(optics, &kept(&camera, optics, &rest)).ok()?, &lens.poses, &lens.origin)
+    })
+}
