@@ -314,4 +314,21 @@ mod tests {
         let cut = read("s,0,v,t,m,1,y,2,px,measured,,0,r\ns,0,v,t,m,1,dx,1,px,measured,,0,r\n").unwrap_err().to_string();
         assert!(cut.contains("the point that ends here has dx and no dy"), "{cut}");
     }
+
+    #[test]
+    fn points_keep_their_own_view() {
+        let measured = |view: &str, x: f64| {
+            PointResult::new(view, "t", 0, Outcome::Measured { position: PixelPoint::new(x, -x), error: Some((x, 0.25)) })
+        };
+        let points = vec![measured("v", 0.5), measured("w", 0.75), measured("w", 1.0), measured("v", 0.125)];
+        let trials = [Trial { points: points.clone(), ..Trial::default() }, Trial { number: 1, points, ..Trial::default() }];
+        let methods = vec![MethodInfo { label: "m".into(), version: "1".into(), unavailable: None }];
+        let mut bytes = Vec::new();
+        let mut writer = RecordWriter::new(&mut bytes, RunInfo { scenario: "s".into(), ..RunInfo::default() }, methods).unwrap();
+        trials.iter().for_each(|trial| writer.trial(trial).unwrap());
+        writer.finish().unwrap();
+        let mut again = Vec::new();
+        read_records(&bytes[..], |trial, _| again.push(trial)).unwrap();
+        assert_eq!(again, trials);
+    }
 }

@@ -150,10 +150,8 @@ fn sigmas_are_enlarged_where_halves_contradict_them() {
 #[test]
 fn models_that_are_alike_are_compared_where_no_corner_was() {
     let mut summary = judged();
-    says(
-        &summary,
-        "agree with `b` to 0.400 px RMS or better where corners were measured, but over the whole frame only to 0.900 px RMS, and 1.25 px at most (`d`).",
-    );
+    let seen = "agree with `b` to 0.400 px RMS or better where corners were measured";
+    says(&summary, &format!("{seen}, but over the whole frame only to 0.900 px RMS, and 1.25 px at most (`d`)."));
     for beside in cell(&mut summary, "m", "b").beside.values_mut() {
         beside.seen = None;
     }
