@@ -83,8 +83,8 @@ mod tests {
         assert_eq!((p[0], p[2], p[3]), (1.0, 1.0, 1.0), "one-sided");
     }
 
-    /// Three of four views alike: nothing scatters but by chance. With 3, 6, 30 and 61 of 100 corners and 10 parameters the redundancies are -0.3 (at least 1),
-    /// 5.4, 51 and 109.9.
+    /// Three of four views alike: nothing scatters but by chance.
+    /// With 3, 6, 30 and 61 of 100 corners and 10 parameters the redundancies are -0.3 (at least 1), 5.4, 51 and 109.9.
     #[test]
     fn views_that_are_alike_are_compared_with_what_chance_makes_of_their_corners() {
         let sharp = [(0.1, 3), (0.1, 6), (0.1, 30), (0.1 * 0.3_f64.exp(), 61)];
