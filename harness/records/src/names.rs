@@ -31,3 +31,22 @@ pub fn kept_image_name(view: &str) -> String {
 pub fn kept_image(folder: &Path, view: &str) -> PathBuf {
     folder.join(kept_image_name(view))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_of_cells_sort_as_they_are_counted() {
+        assert_eq!((cell_name(0), cell_name(1233)), ("cell-0001".into(), "cell-1234".into()));
+        assert_eq!(cell_folder(Path::new("a/b"), 8), PathBuf::from("a/b/cell-0009"));
+        let names: Vec<String> = (0..120).map(cell_name).collect();
+        assert!(names.is_sorted() && names.windows(2).all(|pair| pair[0] != pair[1]));
+    }
+
+    #[test]
+    fn images_of_one_stem_do_not_meet() {
+        assert_eq!((kept_image_name("a.jpg"), kept_image_name("a.png")), ("a.jpg.png".into(), "a.png.png".into()));
+        assert_eq!(kept_image(Path::new("x"), "left"), PathBuf::from("x/left.png"));
+    }
+}

@@ -295,4 +295,40 @@ mod tests {
         read_records(&bytes[..], |trial, _| again.push(trial)).unwrap();
         assert_eq!(again, trials);
     }
+
+    /// The second row must go on with the point of the first: the same view, target and method.
+    #[test]
+    fn a_metric_belongs_to_the_point_above_it() {
+        let read = |row: &str| {
+            let text = format!("{}\ns,0,v,t,m,1,x,1,px,measured,,0,r\n{row}", COLUMNS.join(","));
+            let mut found = Vec::new();
+            read_records(text.as_bytes(), |trial, _| found.extend(trial.points)).map(|_| found)
+        };
+        let own = read("s,0,v,t,m,1,y,2,px,measured,,0,r\n").unwrap();
+        let outcome = Outcome::Measured { position: PixelPoint::new(1.0, 2.0), error: None };
+        assert_eq!(own, [PointResult::new("v", "t", 0, outcome)]);
+        for other in ["s,0,w,t,m,1,y,2,px,measured,,0,r\n", "s,0,v,u,m,1,y,2,px,measured,,0,r\n", "s,0,v,t,n,1,y,2,px,measured,,0,r\n"] {
+            let error = read(other).unwrap_err().to_string();
+            assert!(error.contains("line 3: a metric without its point"), "{other}: {error}");
+        }
+        let cut = read("s,0,v,t,m,1,y,2,px,measured,,0,r\ns,0,v,t,m,1,dx,1,px,measured,,0,r\n").unwrap_err().to_string();
+        assert!(cut.contains("the point that ends here has dx and no dy"), "{cut}");
+    }
+
+    #[test]
+    fn points_keep_their_own_view() {
+        let measured = |view: &str, x: f64| {
+            PointResult::new(view, "t", 0, Outcome::Measured { position: PixelPoint::new(x, -x), error: Some((x, 0.25)) })
+        };
+        let points = vec![measured("v", 0.5), measured("w", 0.75), measured("w", 1.0), measured("v", 0.125)];
+        let trials = [Trial { points: points.clone(), ..Trial::default() }, Trial { number: 1, points, ..Trial::default() }];
+        let methods = vec![MethodInfo { label: "m".into(), version: "1".into(), unavailable: None }];
+        let mut bytes = Vec::new();
+        let mut writer = RecordWriter::new(&mut bytes, RunInfo { scenario: "s".into(), ..RunInfo::default() }, methods).unwrap();
+        trials.iter().for_each(|trial| writer.trial(trial).unwrap());
+        writer.finish().unwrap();
+        let mut again = Vec::new();
+        read_records(&bytes[..], |trial, _| again.push(trial)).unwrap();
+        assert_eq!(again, trials);
+    }
 }

@@ -177,3 +177,49 @@ pub struct Trial {
     /// Adjustments of what was measured, by method and then by set of parameters, where the scenario asks for them.
     pub calibrations: Vec<Calibrated>,
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_model::Covariance;
+
+    use super::*;
+
+    fn off(dx: f64, dy: f64) -> Outcome {
+        Outcome::Measured { position: PixelPoint::new(10.0 + dx, 20.0 + dy), error: Some((dx, dy)) }
+    }
+
+    #[test]
+    fn an_error_is_the_measured_less_the_true_position() {
+        let measured = |covariance| Ok(Measurement { position: PixelPoint::new(10.25, 19.0), covariance });
+        let scored = |result| PointResult::scored("v".into(), "t".into(), 3, PixelPoint::new(10.0, 20.5), result);
+        let found = scored(measured(Some(Covariance { sxx: 0.09, sxy: 0.05, syy: 0.16 })));
+        assert_eq!((&*found.view, &*found.target, found.method, found.bound), ("v", "t", 3, None));
+        assert_eq!(found.outcome, Outcome::Measured { position: PixelPoint::new(10.25, 19.0), error: Some((0.25, -1.5)) });
+        assert!((found.predicted.unwrap() - 0.5).abs() < 1e-15, "sqrt(0.09 + 0.16)");
+        assert_eq!(scored(measured(None)).predicted, None);
+        let rejected = scored(Err(Rejection::Border));
+        assert_eq!((rejected.outcome, rejected.predicted), (Outcome::Rejected(Rejection::Border), None));
+    }
+
+    #[test]
+    fn a_point_is_lost_beyond_one_pixel_in_the_plane() {
+        for (dx, dy, lost) in [(0.6, 0.8, false), (-1.0, 0.0, false), (0.0, -1.001, true), (0.75, -0.75, true), (0.25, -0.5, false)] {
+            let outcome = off(dx, dy);
+            assert_eq!((outcome.is_lost(), outcome.kept_error()), (lost, (!lost).then_some((dx, dy))));
+            assert_eq!(outcome.position(), Some(PixelPoint::new(10.0 + dx, 20.0 + dy)));
+        }
+        let unknown = Outcome::Measured { position: PixelPoint::new(1.0, 2.0), error: None };
+        assert_eq!((unknown.is_lost(), unknown.kept_error(), unknown.position()), (false, None, Some(PixelPoint::new(1.0, 2.0))));
+        let rejected = Outcome::Rejected(Rejection::Border);
+        assert_eq!((rejected.is_lost(), rejected.kept_error(), rejected.position()), (false, None, None));
+    }
+
+    #[test]
+    fn every_group_has_its_own_name() {
+        for (group, name) in Group::ALL {
+            assert_eq!(Group::ALL.iter().filter(|(_, other)| *other == name).count(), 1);
+            assert_eq!(group.name(), name);
+        }
+        assert_eq!((Group::Iop.name(), Group::Check.name()), ("iop", "check"));
+    }
+}

@@ -1,11 +1,14 @@
 //! Files of records to the letter: others read their columns by name and their rows by word.
 
+use std::io::{self, Write};
+
 use calibench_model::{PixelPoint, Rejection};
 
 use crate::adjustments::{self, CalibrationWriter};
 use crate::judgement::{Row, read_rows, write_rows};
 use crate::points::{RecordWriter, RunInfo, read_records};
 use crate::results::{Calibrated, Figure, Group, MethodInfo, Outcome, PointResult, Trial};
+use crate::theory;
 
 fn run() -> RunInfo {
     RunInfo { scenario: "f/s".into(), seed: 9, revision: "abc".into(), detector: Some(("board".into(), "2".into())) }
@@ -101,4 +104,28 @@ fn messages_name_line_and_column() {
         of_judged("s,m,c,holdout,v,1,x,3,px,found,,1,r"),
     ];
     insta::assert_snapshot!(messages.join("\n"));
+}
+
+/// Takes nothing: what a writer says to it at the end must not be lost.
+struct Full;
+
+impl Write for Full {
+    fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+        Err(io::Error::other("no space left"))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Err(io::Error::other("no space left"))
+    }
+}
+
+#[test]
+fn a_full_disk_is_reported() {
+    // Rows are buffered: only the end of a file reaches the disk.
+    let points = RecordWriter::new(Full, run(), methods()).unwrap();
+    assert!(points.finish().is_err());
+    let adjusted = CalibrationWriter::new(Full, run(), methods(), Vec::new()).unwrap();
+    assert!(adjusted.finish().is_err());
+    assert!(write_rows(Full, &run(), &[]).is_err());
+    assert!(theory::write(Full, &run(), &[]).is_err());
 }

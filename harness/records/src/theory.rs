@@ -178,4 +178,37 @@ mod tests {
         let odd = format!("{}\nf/s,m,a,nonsense,,,1,px,r\n", COLUMNS.join(","));
         assert!(read(odd.as_bytes()).unwrap_err().to_string().contains("line 2: column `figure` holds `nonsense`"));
     }
+
+    /// Strengths of a square of seven pixels around column 40 and row 7: the first is that of column 37 and row 4.
+    #[test]
+    fn each_strength_stands_beside_its_pixel() {
+        let values = std::array::from_fn(|row| std::array::from_fn(|column| (10 * row + column) as f64));
+        let strengths = Some(Strengths { pixel: (40, 7), values, maximum: None });
+        let mut bytes = Vec::new();
+        let theory = Theory { method: "m".into(), target: "t".into(), strengths, sigmas: None };
+        write(&mut bytes, &RunInfo { scenario: "f/s".into(), ..RunInfo::default() }, &[theory]).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert_eq!(text.lines().count(), 50);
+        for line in ["f/s,m,t,strength,37,4,0,px^-4,", "f/s,m,t,strength,40,7,33,px^-4,", "f/s,m,t,strength,43,5,16,px^-4,"] {
+            assert!(text.lines().any(|found| found == line), "{line}\n{text}");
+        }
+    }
+
+    #[test]
+    fn methods_and_targets_are_told_apart() {
+        let sigmas = |printed| Some(Sigmas { printed, corrected: 1.0, nine: 2.0, uncorrelated: 3.0 });
+        let of = |method: &str, target: &str, printed| Theory {
+            method: method.into(),
+            target: target.into(),
+            strengths: None,
+            sigmas: sigmas(printed),
+        };
+        let all = vec![of("m", "a", 4.0), of("m", "b", 5.0), of("n", "b", 6.0), of("n", "a", 7.0)];
+        let mut bytes = Vec::new();
+        write(&mut bytes, &RunInfo::default(), &all).unwrap();
+        assert_eq!(read(&bytes[..]).unwrap(), all);
+        // One of four standard deviations is missing: none is taken.
+        let cut: String = String::from_utf8(bytes).unwrap().lines().take(4).map(|line| format!("{line}\n")).collect();
+        assert_eq!(read(cut.as_bytes()).unwrap(), [Theory { sigmas: None, ..of("m", "a", 4.0) }]);
+    }
 }

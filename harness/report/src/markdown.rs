@@ -135,4 +135,40 @@ mod tests {
         assert_eq!(fraction(0.0529), "1/18.9");
         assert_eq!((fraction(0.0), fraction(1.2e-7)), ("exact".to_owned(), "under 1/10000".to_owned()));
     }
+
+    #[test]
+    fn a_bar_is_escaped_unless_it_is_already() {
+        for (cell, expected) in [("a|b", "a\\|b"), ("a\\|b", "a\\|b"), ("a\\\\|b", "a\\\\\\|b"), ("||", "\\|\\|"), ("a\\b", "a\\b")] {
+            assert_eq!(bars(cell), expected, "{cell}");
+        }
+    }
+
+    #[test]
+    fn a_column_is_numeric_where_every_filled_cell_is() {
+        let mut table = MarkdownTable::new(&["1", "some", "none", "mixed", "signs"]);
+        for (first, some, mixed, sign) in [("1", "", "2", "<0.1"), ("2", "7", "x\ny", "\u{2212}1"), ("3", "8", "", "+2")] {
+            table.row([first, some, "", mixed, sign].map(str::to_owned));
+        }
+        table.row(["4".to_owned()]);
+        let lines: Vec<String> = table.render().lines().map(str::to_owned).collect();
+        assert_eq!(lines[1], "| --- | ---: | ---- | ----- | ----: |");
+        assert_eq!(lines[2], "| 1   |      |      | 2     |  <0.1 |");
+        assert_eq!(lines[3], "| 2   |    7 |      | x y   |    \u{2212}1 |");
+        assert_eq!(lines[5], "| 4   |      |      |       |       |");
+    }
+
+    #[test]
+    fn anchors_keep_hyphens_and_underscores() {
+        assert_eq!(anchor("A_b-C (d)"), "a_b-c-d");
+    }
+
+    #[test]
+    fn digits_and_fractions_keep_their_limits() {
+        assert_eq!(
+            (fixed(-0.05, 1), fixed(-10.0, 0), fixed(-0.0, 0), fixed(0.25, 1)),
+            ("-0.1".into(), "-10".into(), "0".into(), "0.2".into())
+        );
+        assert_eq!((signed(2.5, 1), signed(0.0, 2)), ("+2.5".into(), "+0.00".into()));
+        assert_eq!((fraction(1e-4), fraction(0.000_099), fraction(2.0)), ("1/10000.0".into(), "under 1/10000".into(), "1/0.5".into()));
+    }
 }

@@ -188,3 +188,133 @@ fn by_target(loaded: &Loaded) -> String {
     let by = if loaded.scores.groups.is_empty() { "target" } else { "kind of target" };
     format!("By {by}, lost points too, over {trials} trials; in brackets how many points were lost or rejected:\n\n{bias}\n{rmse}")
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use calibench_records::description::{Description, Subject};
+    use calibench_records::points::{RecordHead, RunInfo};
+    use calibench_records::results::{MethodInfo, Trial};
+    use calibench_records::score::{Scores, TargetScore};
+
+    use super::*;
+    use crate::tests::small::row;
+
+    fn pooled(values: &[f64]) -> Pooled {
+        let mut pooled = Pooled::default();
+        values.iter().for_each(|value| pooled.add(&[*value]));
+        pooled
+    }
+
+    fn errors(trials: &[(f64, f64)]) -> Errors {
+        let mut errors = Errors::default();
+        trials.iter().for_each(|error| errors.add(&[*error]));
+        errors
+    }
+
+    /// 1 and 4: mean 2.5, standard error 1.5.
+    #[test]
+    fn means_stand_beside_their_standard_errors() {
+        assert_eq!(with_error(&pooled(&[1.0, 4.0]), 2), "+2.50 \u{b1} 1.50");
+        assert_eq!((with_error(&pooled(&[-1.0]), 1), with_error(&Pooled::default(), 1)), ("-1.0".into(), "none".into()));
+    }
+
+    /// Squares 1 and 4: the root of 2.5 is 1.5811, its standard error 1.5 / (2 * 1.5811) = 0.4743.
+    #[test]
+    fn the_error_of_a_root_is_that_of_the_square_over_twice_the_root() {
+        assert_eq!(rmse_with_error(&errors(&[(1.0, 0.0), (0.0, -2.0)]), 4), "1.5811 \u{b1} 0.4743");
+        assert_eq!(rmse_with_error(&errors(&[(0.0, 0.0), (0.0, 0.0)]), 2), "0.00", "exact");
+        assert_eq!((rmse_with_error(&errors(&[(3.0, 4.0)]), 1), rmse_with_error(&Errors::default(), 1)), ("5.0".into(), "none".into()));
+    }
+
+    /// 1 of 4 is 25 %, with a standard error of sqrt(1/4 * 3/4 / 4).
+    #[test]
+    fn shares_have_the_error_of_the_binomial() {
+        assert_eq!(share(1, 4), "1 (25.0 \u{b1} 21.7 %)");
+        assert_eq!(
+            (share(0, 4), share(0, 0), share(3, 0), share(2, 2)),
+            ("0".into(), "0".into(), "3".into(), "2 (100.0 \u{b1} 0.0 %)".into())
+        );
+    }
+
+    /// The bound: squares 4 and 9, t(0.995, 1) = 63.66: the lower end is cut at 0. Its own sigma: the root of the mean square is 2.5.
+    #[test]
+    fn ratios_are_roots_and_a_hopeful_sigma_is_less_than_one() {
+        let score = |squares: &[f64]| Score { to_bound: pooled(squares), to_predicted: pooled(squares), ..Score::default() };
+        let high = (6.5_f64 + 63.656_741 * 2.5).sqrt();
+        assert_eq!(to_bound(&score(&[4.0, 9.0])), format!("2.550 (0.000 to {high:.3})"));
+        assert_eq!((to_bound(&score(&[6.25])), to_bound(&score(&[]))), ("2.500".into(), String::new()));
+        assert_eq!(
+            (to_predicted(&score(&[6.25])), to_predicted(&score(&[0.0])), to_predicted(&score(&[]))),
+            ("0.400".into(), String::new(), String::new())
+        );
+    }
+
+    #[test]
+    fn ten_common_points_are_a_basis_and_nine_are_none() {
+        let cells = |count: usize| {
+            let common = errors(&vec![(0.3, 0.4); count]);
+            more_cells(&Score { common, ..Score::default() })
+        };
+        assert_eq!(cells(9)[4..], ["too few", "9"]);
+        assert_eq!(cells(10)[4..], ["0.5000 \u{b1} 0.0000", "10"]);
+        assert_eq!(cells(10)[..4], ["none", "none", "none", ""]);
+    }
+
+    #[test]
+    fn points_are_counted_by_what_became_of_them() {
+        let mut score = Score { measured: 6, lost: 1, rejected: [("border", 2), ("flat", 1)].into(), ..Score::default() };
+        score.kept = errors(&[(0.3, 0.4)]);
+        score.whole = errors(&[(3.0, 4.0)]);
+        let expected = ["10", "2 border, 1 flat", "1 (10.0 \u{b1} 9.5 %)", "0.5000", "", "", "5.0000"];
+        assert_eq!(main_cells(&score), expected);
+        assert_eq!(reasons(&Score::default()), "0");
+    }
+
+    /// One method of a scenario by target, over so many trials: the longer list goes down.
+    fn loaded(labels: &[&str], targets: &[&str], trials: u64) -> Loaded {
+        let target = |name: &&str| TargetScore { target: (*name).into(), whole: errors(&[(0.3, 0.4)]), failed: u64::from(*name == "b") };
+        let score = Score { targets: targets.iter().map(target).collect(), ..Score::default() };
+        let info = |label: &&str| MethodInfo { label: (*label).into(), version: "1".into(), unavailable: None };
+        let scenario = Description {
+            why: String::new(),
+            source: String::new(),
+            notes: Vec::new(),
+            seed: 1,
+            trials,
+            bound_window: 11,
+            methods: Vec::new(),
+            defaults: [].into(),
+            subject: Subject::Scene,
+            sweep: None,
+        };
+        Loaded {
+            name: "s".into(),
+            scenario,
+            head: RecordHead { run: RunInfo::default(), methods: labels.iter().map(info).collect() },
+            scores: Scores { methods: vec![score; labels.len()], trials, ..Scores::default() },
+            first: Trial::default(),
+            calibrations: None,
+            folder: PathBuf::new(),
+        }
+    }
+
+    #[test]
+    fn the_longer_of_methods_and_targets_goes_down_the_page() {
+        let text = by_target(&loaded(&["m", "n"], &["a", "b"], 2));
+        assert_eq!(row(&text, &["b", "0.5000 (1)"]), ["b", "0.5000 (1)", "0.5000 (1)"], "as many: targets");
+        assert_eq!(row(&text, &["a"]), ["a", "+0.300; +0.400", "+0.300; +0.400"]);
+        let text = by_target(&loaded(&["m", "n", "k"], &["a", "b"], 2));
+        assert_eq!(row(&text, &["`k`", "0.5000"]), ["`k`", "0.5000", "0.5000 (1)"]);
+        let text = by_target(&loaded(&["m"], &["a", "b"], 2));
+        assert_eq!(row(&text, &["a", "0.5000"]), ["a", "0.5000"]);
+        assert_eq!(by_target(&loaded(&["m"], &["a"], 1)), "", "one trial has no scatter");
+    }
+
+    #[test]
+    fn one_trial_is_said_to_have_no_intervals() {
+        assert!(section(&loaded(&["m"], &["a"], 1)).contains("One trial, without standard errors"));
+        assert!(section(&loaded(&["m"], &["a"], 2)).contains("\n2 trials, seed 0"));
+    }
+}

@@ -125,4 +125,40 @@ mod tests {
         );
         assert!(read(&b"{}"[..]).is_err());
     }
+
+    #[test]
+    fn an_adjusted_scenario_has_views_and_an_adjustment() {
+        let views = |adjustment| Views {
+            size: [4, 3],
+            unit: "mm".into(),
+            extent: None,
+            normal: None,
+            stations: Vec::new(),
+            targets: Vec::new(),
+            adjustment,
+        };
+        let of = |subject| Description {
+            why: String::new(),
+            source: String::new(),
+            notes: Vec::new(),
+            seed: 1,
+            trials: 1,
+            bound_window: 11,
+            methods: Vec::new(),
+            defaults: BTreeMap::new(),
+            subject,
+            sweep: None,
+        };
+        let adjustment = Adjustment { pitch_um: 3.9, drawn: false };
+        let adjusted = of(Subject::Views(Box::new(views(Some(adjustment)))));
+        assert_eq!(adjusted.adjusted(), Some((&views(Some(adjustment)), &adjustment)));
+        for subject in [Subject::Scene, Subject::Photographs { judged: true }, Subject::Views(Box::new(views(None)))] {
+            assert_eq!(of(subject).adjusted(), None);
+        }
+    }
+
+    #[test]
+    fn the_operator_of_a_label_stands_before_its_settings() {
+        assert_eq!(["forstner:window=15,k=a:b", "pixel", ""].map(operator), ["forstner", "pixel", ""]);
+    }
 }

@@ -105,4 +105,20 @@ mod tests {
         assert_eq!(sweep.values(0).iter().map(|value| value.text.as_str()).collect::<Vec<_>>(), ["2", "1"]);
         assert!(sweep.axes[0].is_called("blur") && sweep.axes[0].is_called("optics.blur") && !sweep.axes[0].is_called("optics"));
     }
+
+    #[test]
+    fn a_key_is_called_by_its_path_its_last_part_or_its_name_in_reports() {
+        let axis = Axis { name: "width".into(), ..axis("method.lsm.window") };
+        let called = ["method.lsm.window", "window", "width", "method", "lsm.window", ""].map(|name| axis.is_called(name));
+        assert_eq!(called, [true, true, true, false, false, false]);
+    }
+
+    #[test]
+    fn a_key_of_the_scene_or_of_another_operator_is_no_setting_of_a_method() {
+        let sets = |path: &str, operator: &str, key: &str| axis(path).sets(operator, key);
+        assert!(sets("method.window", "lsm", "window") && sets("method.lsm.window", "lsm", "window"));
+        assert!(!sets("optics.window", "lsm", "window") && !sets("optics.lsm.window", "lsm", "window"));
+        assert!(!sets("method.window", "lsm", "sigma") && !sets("method.forstner.window", "lsm", "window"));
+        assert!(!sets("method.lsm.deep.sigma", "lsm", "window"));
+    }
 }

@@ -61,4 +61,43 @@ mod tests {
         assert_eq!(outliers(&[(0.1, 54), (9.0, 54), (0.1, 54)], 4), [1.0; 3]);
         assert!(outliers(&[(0.0, 54); 6], 4).iter().all(|p| *p > 0.4), "all alike, and exact");
     }
+
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
+    }
+
+    /// The upper tail of Student's distribution in closed form: with three and with four degrees of freedom.
+    fn tails(t: f64) -> (f64, f64) {
+        let (a, b) = (t / 3.0_f64.sqrt(), 1.0 + t * t / 4.0);
+        let three = 0.5 - (a / (1.0 + a * a) + a.atan()) / std::f64::consts::PI;
+        (three, 0.5 - 0.375 * t / b.sqrt() * (1.0 - t * t / b / 12.0))
+    }
+
+    /// Logarithms -1, -0.5, 0, 0.5 and 4: median 0, of the absolute ones 0.5, so that the last is 4 / (1.4826 * 0.5) off.
+    #[test]
+    fn a_view_is_compared_with_the_scatter_of_the_others() {
+        let views = [-0.5_f64, 4.0, 0.0, -1.0, 0.5].map(|log| (0.2 * log.exp(), 54));
+        let p = outliers(&views, 8);
+        close(p[1], 5.0 * tails(4.0 / 0.7413).1);
+        close(p[4], (4.0 * tails(0.5 / 0.7413).1).min(1.0));
+        assert_eq!((p[0], p[2], p[3]), (1.0, 1.0, 1.0), "one-sided");
+    }
+
+    /// Three of four views alike: nothing scatters but by chance.
+    /// With 3, 6, 30 and 61 of 100 corners and 10 parameters the redundancies are -0.3 (at least 1), 5.4, 51 and 109.9.
+    #[test]
+    fn views_that_are_alike_are_compared_with_what_chance_makes_of_their_corners() {
+        let sharp = [(0.1, 3), (0.1, 6), (0.1, 30), (0.1 * 0.3_f64.exp(), 61)];
+        close(outliers(&sharp, 10)[3], 4.0 * tails(0.3 * 219.8_f64.sqrt()).0);
+        let few = [(0.1 * 2.0_f64.exp(), 3), (0.1, 6), (0.1, 30), (0.1, 61)];
+        close(outliers(&few, 10)[0], 4.0 * tails(2.0 * 2.0_f64.sqrt()).0);
+        let some = [(0.1, 3), (0.1 * 1.5_f64.exp(), 6), (0.1, 30), (0.1, 61)];
+        close(outliers(&some, 10)[1], 4.0 * tails(1.5 * 10.8_f64.sqrt()).0);
+        assert_eq!(outliers(&[(0.1, 0), (0.1, 0), (0.1, 0), (99.0, 0)], 10), [1.0; 4], "no corners say nothing");
+    }
+
+    #[test]
+    fn the_median_of_an_even_number_lies_between_the_middle_two() {
+        assert_eq!((median(&[3.0]), median(&[5.0, 1.0]), median(&[9.0, 1.0, 4.0]), median(&[8.0, 1.0, 4.0, 2.0])), (3.0, 3.0, 4.0, 3.0));
+    }
 }

@@ -155,4 +155,108 @@ mod tests {
             assert!(labels[..i].iter().all(|other| !label.overlaps(other)));
         }
     }
+
+    /// A picture of three methods over whole decades: 100 to 10000 points a second, 0.001 to 0.1 px. The first two are the front.
+    fn drawn() -> (image::RgbImage, Plan) {
+        let of = |name: &str, speed, rmse| Spot { name: name.into(), speed, rmse };
+        let spots = [of("slow", 200.0, 0.002), of("fast", 5000.0, 0.05), of("beaten", 1000.0, 0.05)];
+        let mut png = Vec::new();
+        picture(&spots, "title").encode(&mut png).unwrap();
+        (image::load_from_memory(&png).unwrap().to_rgb8(), plan(&spots))
+    }
+
+    fn is(image: &image::RgbImage, (x, y): (u32, u32), colour: RGBColor) -> bool {
+        image.get_pixel(x, y).0 == [colour.0, colour.1, colour.2]
+    }
+
+    /// The box (left, top, right, bottom) of what is darker than grey within the ranges.
+    fn dark(image: &image::RgbImage, x: std::ops::Range<u32>, y: std::ops::Range<u32>) -> Option<[u32; 4]> {
+        let all =
+            y.flat_map(|y| x.clone().map(move |x| (x, y))).filter(|(x, y)| image.get_pixel(*x, *y).0.iter().all(|level| *level < 120));
+        all.fold(None, |found, (x, y)| {
+            let [left, top, right, bottom] = found.unwrap_or([x, y, x, y]);
+            Some([left.min(x), top.min(y), right.max(x), bottom.max(y)])
+        })
+    }
+
+    fn middle([left, top, right, bottom]: [u32; 4]) -> (f64, f64) {
+        (f64::from(left + right) / 2.0, f64::from(top + bottom) / 2.0)
+    }
+
+    /// Two decades of 1150 px and of 760 px: 2 lies log 2 / 2 = 0.1505 of the way, 5 at 0.3495.
+    #[test]
+    fn lines_stand_at_one_two_and_five_of_each_decade() {
+        let (image, _) = drawn();
+        assert_eq!(image.dimensions(), (1270, 890));
+        let grey = RGBColor(225, 225, 225);
+        let columns: Vec<u32> = (0..1270).filter(|x| is(&image, (*x, 300), grey)).collect();
+        assert_eq!(columns, [263, 492, 665, 838, 1067]);
+        let rows: Vec<u32> = (0..890).filter(|y| is(&image, (400, *y), grey)).collect();
+        assert_eq!(rows, [174, 326, 440, 554, 706]);
+        for (x, y) in [(90, 300), (1240, 300), (400, 60), (400, 820)] {
+            assert!(is(&image, (x, y), BLACK), "the frame at {x}, {y}");
+        }
+        assert!(
+            (855..890).all(|y| is(&image, (492, y), WHITE)) && (1242..1270).all(|x| is(&image, (x, 326), WHITE)),
+            "lines end at the frame"
+        );
+    }
+
+    #[test]
+    fn scales_are_lettered_below_and_on_the_left() {
+        let (image, _) = drawn();
+        for (x, width) in [(492, 40), (665, 40), (838, 40)] {
+            let (found, height) = middle(dark(&image, x - width..x + width, 823..855).expect("a number"));
+            assert!((found - f64::from(x)).abs() < 4.0 && (height - 838.0).abs() < 4.0, "{found} {height}");
+        }
+        for y in [326, 440, 554] {
+            let found = dark(&image, 0..89, y - 15..y + 15).expect("a number");
+            assert!((72..=82).contains(&found[2]) && (middle(found).1 - f64::from(y)).abs() < 4.0, "{found:?}");
+        }
+        let below = middle(dark(&image, 300..1200, 856..885).expect("points per second"));
+        assert!((below.0 - 665.0).abs() < 4.0 && (below.1 - 866.0).abs() < 5.0, "{below:?}");
+        let above = dark(&image, 86..600, 35..58).expect("RMSE, px");
+        assert!((89..94).contains(&above[0]) && (middle(above).1 - 46.0).abs() < 5.0, "{above:?}");
+    }
+
+    #[test]
+    fn the_front_is_joined_and_the_others_are_crosses() {
+        let (image, plan) = drawn();
+        let near = |(x, y): (u32, u32), colour| (x - 2..=x + 2).any(|x| (y - 2..=y + 2).any(|y| is(&image, (x, y), colour)));
+        assert!(near((665, 440), COLOURS[0]) && near((464, 573), COLOURS[0]) && near((866, 307), COLOURS[0]), "from end to end");
+        assert!(near((269, 706), COLOURS[0]) && near((1073, 174), COLOURS[0]), "circles");
+        assert!(is(&image, (665, 174), COLOURS[1]) && near((671, 180), COLOURS[1]), "a cross");
+        for label in plan.labels.iter().flatten() {
+            let (left, top) = (label.x.round() as u32, label.y.round() as u32);
+            let found = dark(&image, left..left + label.width as u32 + 40, top..top + 20).expect("a name");
+            assert!((3..8).contains(&(found[0] - left)), "{found:?} in {label:?}");
+            assert!((middle(found).1 - label.y - 10.0).abs() < 5.0, "{found:?} in {label:?}");
+            assert!(f64::from(found[2]) < label.x + label.width, "a name fits: {found:?} in {label:?}");
+            assert!(f64::from(found[2] - found[0]) > label.width / 3.0, "and has no more room than it needs: {found:?} in {label:?}");
+        }
+    }
+
+    #[test]
+    fn labels_stay_within_the_frame() {
+        let crowd = |speed: f64, rmse: f64| (0..30).map(move |_| spot(speed, rmse));
+        let spots: Vec<Spot> = crowd(1.0, 1e-6).chain(crowd(1e9, 1.0)).chain(crowd(1.0, 1.0)).chain(crowd(1e9, 1e-6)).collect();
+        let labels = plan(&spots).labels;
+        assert!(labels.iter().all(Option::is_some), "there is room for all");
+        for label in labels.iter().flatten() {
+            assert!(label.x >= 94.0 && label.x + label.width <= 1236.0 && label.y >= 64.0 && label.y + label.height <= 816.0, "{label:?}");
+        }
+    }
+
+    #[test]
+    fn large_numbers_are_shortened() {
+        let numbers = [1.0, 0.25, 999.0, 1000.0, 1500.0, 12_340.0, 1e6, 2.5e6];
+        assert_eq!(numbers.map(short), ["1", "0.25", "999", "1k", "1.5k", "12.34k", "1M", "2.5M"]);
+    }
+
+    #[test]
+    fn nothing_to_show_is_a_blank_picture() {
+        let mut png = Vec::new();
+        picture(&[], "").encode(&mut png).unwrap();
+        assert!(image::load_from_memory(&png).unwrap().to_rgb8().pixels().all(|pixel| pixel.0 == [255; 3]));
+    }
 }

@@ -71,3 +71,6 @@ pub fn section(summary: &Summary) -> (String, Vec<(String, Canvas)>) {
     text.push_str(&tables::principal(summary, &trusted.cell.model));
     (text, pictures)
 }
+
+#[cfg(test)]
+mod tests;

@@ -139,3 +139,48 @@ impl Summaries {
         self.sets.first().map(|set| Self::parameters(set).collect()).unwrap_or_default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(trial: u64, method: &str, name: &str, figure: Result<(f64, f64, f64), &str>) -> Row {
+        let figure = figure.map(|(value, sigma, error)| Numbers { value, sigma: Some(sigma), error: Some(error) }).map_err(str::to_owned);
+        Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, name: name.into(), figure }
+    }
+
+    fn close(found: Option<f64>, expected: f64) {
+        assert!((found.unwrap() - expected).abs() < 1e-12, "{found:?} is not {expected}");
+    }
+
+    /// The reference has no sigma in the second trial, no value in the third, and failed in the fourth.
+    #[test]
+    fn ratios_leave_out_trials_whose_reference_is_nothing() {
+        let mut reader = Reader::default();
+        let reference = [Ok((2.0, 0.5, 1.0)), Ok((4.0, 0.0, -2.0)), Ok((0.0, 0.25, 2.0)), Err("no convergence")];
+        let own = [(3.0, 1.5, 3.0), (2.0, 7.0, 1.0), (5.0, 0.75, -1.0), (9.0, 9.0, 9.0)];
+        for ((trial, reference), own) in (0..).zip(reference).zip(own) {
+            reader.add(row(trial, "pixel", "c", reference));
+            reader.add(row(trial, "good", "c", Ok(own)));
+        }
+        reader.add(row(3, "good", "c", Err("one")));
+        reader.add(row(4, "good", "c", Err("two")));
+        reader.add(Row { group: Group::Point, ..row(4, "good", "6/left/3/x", Ok((0.5, 0.0, 0.0))) });
+        let found = reader.found;
+        assert_eq!((found.trials, found.methods.len(), found.sets.len(), found.scored()), (5, 2, 1, vec!["c", "b1"]));
+        let c = found.get("good", Group::Iop, "c").unwrap();
+        assert_eq!(c.first, Some(Numbers { value: 3.0, sigma: Some(1.5), error: Some(3.0) }));
+        assert_eq!((c.value.count, c.sigma_ratio.count, c.value_ratio.count), (4, 2, 2));
+        close(c.value.mean(), 19.0 / 4.0);
+        close(c.sigma.mean(), 18.25 / 4.0);
+        close(c.square.mean(), 92.0 / 4.0);
+        close(c.sigma_ratio.mean(), 3.0);
+        close(c.value_ratio.mean(), 1.0);
+        // Squares 9, 1, 1 against 1, 4, 4; values 9, 4, 25 against 4, 16, 0.
+        close(c.errors.ratio().map(|ratio| ratio.0), (11.0_f64 / 9.0).sqrt());
+        close(c.values.ratio().map(|ratio| ratio.0), (38.0_f64 / 20.0).sqrt());
+        let failed = |method: &str| found.failed.get(&(method.to_owned(), "c,b1".to_owned(), Group::Iop)).cloned();
+        assert_eq!((failed("good"), failed("pixel")), (Some((2, "one".into())), Some((1, "no convergence".into()))));
+        assert_eq!(found.residuals, [("good".to_owned(), "6/left/3/x".to_owned(), 0.5)]);
+    }
+}

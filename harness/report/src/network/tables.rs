@@ -128,3 +128,91 @@ fn weakest(found: &Summaries, method: &str, set: &str) -> String {
     let found = additional.filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0));
     found.map_or_else(|| "no additional parameter".to_owned(), |(ratio, name)| format!("{name}: {}", plain(ratio)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::adjustments::FigureKey;
+    use crate::tests::small::row;
+
+    fn figure(method: &str, set: &str, name: &str, trials: &[(f64, f64, f64)]) -> (FigureKey, Summary) {
+        let mut summary = Summary::default();
+        for (value, sigma, error) in trials {
+            summary.value.add(*value);
+            summary.sigma.add(*sigma);
+            summary.square.add(error * error);
+        }
+        ((method.to_owned(), set.to_owned(), Group::Iop, name.to_owned()), summary)
+    }
+
+    const FULL: &str = "c,x0,k1,k2";
+
+    fn summaries() -> Summaries {
+        let failed = |method: &str, set: &str, group, count| ((method.to_owned(), set.to_owned(), group), (count, "no start".to_owned()));
+        Summaries {
+            methods: vec!["pixel".into(), "good".into()],
+            sets: vec![FULL.into(), "c".into()],
+            trials: 9,
+            figures: [
+                figure("pixel", FULL, "c", &[(16.0, 0.025, 0.003), (16.0, 0.05, 0.004)]),
+                figure("pixel", FULL, "x0", &[(0.001, 1.0, 0.0)]),
+                figure("pixel", FULL, "k1", &[(-3.0, 1.0, 0.0), (-5.0, 3.0, 0.0)]),
+                figure("pixel", FULL, "k2", &[(6.0, 2.0, 0.0)]),
+            ]
+            .into(),
+            failed: [
+                failed("pixel", FULL, Group::Network, 2),
+                failed("pixel", FULL, Group::Check, 3),
+                failed("pixel", "c", Group::Network, 4),
+                failed("good", FULL, Group::Network, 6),
+            ]
+            .into(),
+            ..Summaries::default()
+        }
+    }
+
+    /// c: sigmas 25 and 50 um, errors 3 and 4 um. k1 is -4 over 2, k2 6 over 2; c and x0 are not asked for.
+    #[test]
+    fn the_weakest_parameter_is_the_one_nearest_to_nothing() {
+        let found = summaries();
+        let text = sets(&found);
+        let full = format!("`{FULL}`");
+        assert_eq!(row(&text, &[&full, "`pixel`"])[3..], ["37.5", "3.5", "k1: 2.00", "5"]);
+        assert_eq!(row(&text, &["`c`", "`pixel`"])[3..], ["", "", "no additional parameter", "4"]);
+        assert_eq!(row(&text, &[&full, "`good`"])[3..], ["", "", "no additional parameter", "6"]);
+        assert_eq!(row(&text, &["`c`", "`good`"])[6], "0");
+    }
+
+    #[test]
+    fn failures_are_counted_in_the_set_that_is_scored() {
+        let text = methods(&summaries());
+        assert_eq!(row(&text, &["`pixel`"]).last().unwrap(), "5");
+        assert_eq!(row(&text, &["`good`"]).last().unwrap(), "6");
+        let listed: Vec<&str> = text.lines().filter(|line| line.starts_with("- ")).collect();
+        assert_eq!(listed.len(), 3, "{listed:?}");
+        assert!(listed.contains(&"- `pixel`, check: 3 of 9 failed, the first because no start."), "{listed:?}");
+    }
+
+    /// Squares 9 and 16: mean 12.5, half 3.5 t; sigma 2.5: the ratio is sqrt(12.5) / 2.5, its half interval 3.5 t / (2 * 12.5) of it.
+    #[test]
+    fn errors_over_sigmas_have_half_the_relative_interval_of_their_squares() {
+        let (_, summary) = figure("m", "c", "c", &[(1.0, 2.0, 3.0), (1.0, 3.0, 4.0)]);
+        let ratio = 12.5_f64.sqrt() / 2.5;
+        assert_eq!(honesty(&summary), Some(format!("{ratio:.2} ± {:.2}", 3.5 * 12.706_204_736 / 25.0 * ratio)));
+        assert_eq!(honesty(&Summary::default()), None);
+        assert_eq!((with_half(1.0, None, 1), mean(None, 2)), ("1.0".into(), String::new()));
+    }
+
+    #[test]
+    fn a_factor_is_the_mean_over_all_parameters_or_nothing() {
+        let mut found = summaries();
+        found.sets = vec!["k1,k2".into()];
+        for (name, value) in [("k1", 1.0), ("k2", 4.0)] {
+            found.figures.extend([figure("pixel", "k1,k2", name, &[(value, 3.0, 0.0)])]);
+        }
+        let of = |summary: &Summary| Some((summary.value.mean()?, 2.0 * summary.value.mean()?));
+        assert_eq!(average(&found, "pixel", of), "2.500 ± 5.000");
+        assert_eq!(average(&found, "good", of), "");
+        assert_eq!(average(&Summaries::default(), "pixel", of), "");
+    }
+}

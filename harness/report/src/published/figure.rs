@@ -118,4 +118,20 @@ mod tests {
         }
         assert_eq!(of_points(&points, 2, Metric::MeanDx, None, &[]), None);
     }
+
+    /// Values 1, 2 and 6: mean 3, variance 7, t(0.975, 2) = 4.302653.
+    #[test]
+    fn a_figure_in_smaller_units_is_larger_in_all_its_parts() {
+        let mut all = Running::default();
+        [1.0, 2.0, 6.0].into_iter().for_each(|value| all.add(value));
+        let ours = Ours { truth: Some((3.5, Some(0.5))), ..Ours::of(Some(1.0), &all).unwrap() };
+        let half = 4.302_652_73 * (7.0_f64 / 3.0).sqrt();
+        assert!((ours.one - 1.0).abs() < 1e-12 && (ours.mean - 3.0).abs() < 1e-12);
+        assert!((ours.half.unwrap() - half).abs() < 1e-6 && (ours.scatter.unwrap() - 7.0_f64.sqrt()).abs() < 1e-12);
+        let scaled = ours.scaled(4.0);
+        assert!((scaled.one - 4.0).abs() < 1e-12 && (scaled.mean - 12.0).abs() < 1e-12);
+        assert!((scaled.half.unwrap() - 4.0 * half).abs() < 1e-5 && (scaled.scatter.unwrap() - 112.0_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(scaled.truth, Some((14.0, Some(2.0))));
+        assert_eq!((Ours::of(None, &all), Ours::of(Some(1.0), &Running::default())), (None, None));
+    }
 }

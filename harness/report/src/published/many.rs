@@ -119,3 +119,88 @@ fn like(cell: &Cell, value: f64) -> String {
 fn spread(cell: &Cell, value: f64, half: f64) -> String {
     if cell.printed.contains('/') { format!("{:.0}", half / (value * value)) } else { like(cell, half) }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::super::Metric;
+    use super::*;
+
+    fn cell(printed: &str) -> Cell {
+        Cell {
+            row: "r".into(),
+            column: "c".into(),
+            printed: printed.into(),
+            metric: Metric::MeanDx,
+            target: None,
+            except: Vec::new(),
+            plus: 0.0,
+            at: BTreeMap::new(),
+            misprint: None,
+            method: None,
+            of: None,
+            not_comparable: None,
+        }
+    }
+
+    const OURS: Ours = Ours { one: 2.0, mean: 2.5, half: Some(0.25), scatter: Some(0.5), truth: Some((3.0, None)) };
+
+    /// 95 % of single runs of deviation 0.5 lie within 0.98 of 2.5.
+    #[test]
+    fn single_runs_lie_within_two_deviations() {
+        assert_eq!(cells(&cell("1.0"), &OURS), ["2.00", "2.50 \u{b1} 0.25", "1.52 to 3.48", "3.00"]);
+        assert_eq!(cells(&cell("4"), &Ours { half: None, scatter: None, truth: None, ..OURS }), ["2.0", "2.5", "none", ""]);
+        for (printed, expected) in
+            [("1.5", Verdict::Reproduces), ("1.4", Verdict::Differs), ("3.5", Verdict::Reproduces), ("3.6", Verdict::Differs)]
+        {
+            assert_eq!(verdict(&cell(printed), Some(&OURS)), expected, "{printed}");
+        }
+        assert_eq!(verdict(&cell("2.4"), Some(&Ours { scatter: None, ..OURS })), Verdict::Differs, "one run has no range");
+        assert_eq!(verdict(&cell("2.4"), None), Verdict::NotComparable("no record of ours".into()));
+    }
+
+    /// 1/4 px within 0.05: of the denominator that is 0.05 / (1/4)^2 = 0.8.
+    #[test]
+    fn fractions_are_told_by_their_denominators() {
+        let of = cell("1/18.9");
+        assert_eq!(
+            (like(&of, 0.25), like(&of, 0.0), like(&of, -1.0), spread(&of, 0.25, 0.05)),
+            ("1/4".into(), "0".into(), "0".into(), "1".into())
+        );
+        assert_eq!((spread(&of, 0.5, 1.0), spread(&cell("0.30"), 0.5, 0.125)), ("4".into(), "0.125".into()));
+        assert_eq!(
+            (like(&cell("22.520"), 1.0), like(&cell("7"), 1.0), like(&cell("?"), 1.0)),
+            ("1.0000".into(), "1.0".into(), "1.0000".into())
+        );
+    }
+
+    #[test]
+    fn a_cell_that_differs_is_told_how_many_times() {
+        let table = Table {
+            title: String::new(),
+            source: String::new(),
+            unit: String::new(),
+            scenario: "s".into(),
+            method: "m".into(),
+            columns: vec!["c".into()],
+            findings: Vec::new(),
+            beside: Vec::new(),
+            sets: Vec::new(),
+            cells: vec![cell("10"), cell("0.0"), Cell { misprint: Some("read 2".into()), ..cell("2.0") }, cell("9")],
+        };
+        let figures = [Some(OURS), Some(OURS), Some(OURS), None];
+        let (text, tally) = comparison(&table, &figures, 3);
+        let said: Vec<Vec<&str>> = text
+            .lines()
+            .filter(|line| line.starts_with("| r"))
+            .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+            .collect();
+        let last: Vec<&str> = said.iter().filter(|row| row[0] == "r").map(|row| *row.last().unwrap()).collect();
+        assert_eq!(last, ["differs: 0.25 times", "differs", "reproduces (a)", "not comparable (b)"]);
+        assert_eq!((tally, said[1].len()), (Tally { reproduce: 1, differ: 2, not_comparable: 1 }, 8));
+        assert!(text.contains("- (a) misprint: read 2\n- (b) no record of ours\n") && text.contains("the mean of 3 trials"), "{text}");
+        let (text, _) = comparison(&table, &[Some(Ours { truth: None, ..OURS }), None, None, None], 3);
+        assert!(!text.to_lowercase().contains("true errors") && text.contains("| none "), "{text}");
+    }
+}

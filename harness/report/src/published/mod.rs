@@ -247,4 +247,51 @@ mod tests {
         let text = text.replace("column='D'", "colum='C'");
         assert!(parse("t.toml", &text).unwrap_err().to_string().starts_with("t.toml:9:1: unknown field `colum`"));
     }
+
+    #[test]
+    fn tables_are_read_in_the_order_of_their_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let paper = folder.path().join("paper");
+        fs::create_dir(&paper).unwrap();
+        let head = |title: &str| format!("title='{title}'\nsource='s'\nunit='px'\nscenario='a'\nmethod='m'\ncolumns=['C']\n");
+        let text = |title: &str| head(title) + "[[cell]]\nrow='1'\ncolumn='C'\nprinted='2.5'\nmetric='mean_dx'\n";
+        for (name, title) in [("table-2.toml", "second"), ("table-1.toml", "first"), ("notes.txt", "none")] {
+            fs::write(paper.join(name), text(title)).unwrap();
+        }
+        let found = tables(folder.path(), "paper").unwrap();
+        let names: Vec<(&str, &str)> = found.iter().map(|(name, table)| (name.as_str(), table.title.as_str())).collect();
+        assert_eq!(names, [("table-1", "first"), ("table-2", "second")]);
+        assert_eq!(papers(folder.path()), ["paper"]);
+        assert!(tables(folder.path(), "absent").unwrap().is_empty() && papers(&folder.path().join("absent")).is_empty());
+        fs::write(folder.path().join("file"), "").unwrap();
+        assert!(matches!(tables(folder.path(), "file"), Err(PublishedError::File { .. })), "a folder that cannot be read is no empty one");
+        assert_eq!(papers(folder.path()), ["paper"]);
+    }
+
+    #[test]
+    fn cells_that_contradict_their_table_are_refused() {
+        let head = "title='t'\nsource='s'\nunit='px'\nscenario='a'\nmethod='m'\ncolumns=['C', 'D']\n";
+        let cell = |column: &str, printed: &str, rest: &str| format!("[[cell]]\nrow='1'\ncolumn='{column}'\nprinted='{printed}'\n{rest}\n");
+        let read = |cells: &[String]| parse("t.toml", &(head.to_owned() + &cells.concat())).map_err(|problems| problems.to_string());
+        let (mean, one) = ("metric='mean_dx'", "metric='x'\ntarget='7'");
+        let table = read(&[
+            cell("C", "2.5", mean),
+            cell("D", "2.5", one),
+            cell("D", "no", "metric='mean_dx'\nnot_comparable='text'").replace("row='1'", "row='2'"),
+        ]);
+        let table = table.unwrap();
+        assert_eq!((table.rows(), table.is_of_adjustments()), (vec!["1", "2"], false));
+        for (cells, expected) in [
+            (vec![cell("C", "2.5", mean), cell("C", "2.5", mean)], "row `1`, column `C` is given twice"),
+            (vec![cell("E", "2.5", mean)], "which is none of C, D"),
+            (vec![cell("C", "many", mean)], "t.toml:10:10: `many` is no number"),
+            (vec![cell("C", "2.5", "metric='x'")], "figures of one target have a `target`"),
+            (vec![cell("C", "2.5", "metric='mean_dx'\ntarget='7'")], "statistics have none"),
+        ] {
+            let found = read(&cells).unwrap_err();
+            assert!(found.contains(expected), "{found}");
+        }
+        let adjusted = read(&[cell("C", "2.5", mean), cell("D", "1", "metric='iop_value'")]).unwrap();
+        assert!(adjusted.is_of_adjustments());
+    }
 }

@@ -90,3 +90,124 @@ fn figure(score: &Score, metric: Metric) -> Option<f64> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::path::PathBuf;
+
+    use calibench_records::description::{self, Axis, Description, Subject, Sweep, Value};
+    use calibench_records::score::Errors;
+
+    use super::*;
+    use crate::load::sweep::{LoadedCell, LoadedMethod};
+    use crate::tests::small::row;
+
+    /// Measured and missed points of a method in a cell, each with one error a trial.
+    fn score(trials: &[(f64, f64)], lost: u64) -> Score {
+        let mut whole = Errors::default();
+        trials.iter().for_each(|error| whole.add(&[*error]));
+        Score { measured: trials.len() as u64, lost, whole, ..Score::default() }
+    }
+
+    /// Blur 0.5 and 2 by noise 0 and 0.1; nothing was measured in the last cell.
+    fn loaded() -> LoadedSweep {
+        let axis = |path: &str, numbers: [f64; 2]| Axis {
+            path: path.into(),
+            name: path.rsplit('.').next().unwrap().into(),
+            values: numbers.map(|number| Value { text: number.to_string(), number: Some(number) }).to_vec(),
+            log: false,
+        };
+        let cells = [[0, 0], [0, 1], [1, 0], [1, 1]].map(|places| description::Cell { label: String::new(), places: places.to_vec() });
+        let scenario = Description {
+            why: String::new(),
+            source: String::new(),
+            notes: Vec::new(),
+            seed: 1,
+            trials: 2,
+            bound_window: 11,
+            methods: Vec::new(),
+            defaults: BTreeMap::new(),
+            subject: Subject::Scene,
+            sweep: None,
+        };
+        let other = score(&[(9.0, 9.0)], 0);
+        let found = [score(&[(1.0, 2.0), (3.0, 4.0)], 6), score(&[(0.5, 0.0)], 0), score(&[(0.0, -0.25)], 1), Score::default()];
+        let method = |name: &str| LoadedMethod { name: name.into(), unavailable: None };
+        LoadedSweep {
+            name: "s".into(),
+            scenario,
+            sweep: Sweep { axes: vec![axis("optics.blur", [0.5, 2.0]), axis("noise", [0.0, 0.1])], cells: cells.to_vec() },
+            methods: vec![method("other"), method("m")],
+            cells: found.into_iter().map(|score| LoadedCell { scores: vec![other.clone(), score], trials: 2 }).collect(),
+            seed: 1,
+            folder: PathBuf::new(),
+        }
+    }
+
+    fn cell(label: &str, column: &str, printed: &str, metric: Metric, at: [f64; 2]) -> Cell {
+        Cell {
+            row: label.into(),
+            column: column.into(),
+            printed: printed.into(),
+            metric,
+            target: None,
+            except: Vec::new(),
+            plus: 0.0,
+            at: [("blur".to_owned(), at[0]), ("noise".to_owned(), at[1])].into(),
+            misprint: None,
+            method: None,
+            of: None,
+            not_comparable: None,
+        }
+    }
+
+    fn table(method: &str) -> Table {
+        let first = [0.5, 0.0];
+        Table {
+            title: "T".into(),
+            source: "S".into(),
+            unit: "px".into(),
+            scenario: "s".into(),
+            method: method.into(),
+            columns: vec!["C".into(), "D".into()],
+            findings: Vec::new(),
+            beside: Vec::new(),
+            sets: Vec::new(),
+            cells: vec![
+                cell("1", "C", "2.0", Metric::MeanDx, first),
+                cell("1", "D", "3.9", Metric::RmseXy, first),
+                Cell { plus: 0.5, ..cell("2", "C", "3.5", Metric::MeanDy, first) },
+                cell("3", "C", "0.5", Metric::MeanDx, [0.5, 0.1]),
+                cell("3", "D", "0.7", Metric::MeanDy, [2.0, 0.0]),
+                cell("4", "C", "0.7", Metric::MeanDy, [2.0, 0.1]),
+                cell("5", "C", "0.7", Metric::MeanDistance, first),
+                cell("6", "C", "0.7", Metric::MeanDy, [2.0, 0.2]),
+            ],
+        }
+    }
+
+    /// Errors (1, 2) and (3, 4): means 2 and 3, squares 5 and 25 with mean 15 and half 10 t = 127; six of eight points were lost.
+    #[test]
+    fn each_printed_cell_is_compared_with_its_cell_of_the_sweep() {
+        let (table, loaded) = (table("m"), loaded());
+        let words: Vec<&str> = verdicts(&table, &loaded).unwrap().iter().map(Verdict::word).collect();
+        let (yes, no, none) = ("reproduces", "differs", "not comparable");
+        assert_eq!(words, [yes, yes, yes, yes, no, none, none, none]);
+        let Section { text, tally } = section(&table, &loaded);
+        let end = format!("0.000 to {:.3}", (15.0 + 10.0 * 12.706_204_736_f64).sqrt());
+        assert_eq!(row(&text, &["1"]), ["1", "2.0", "2.00", "", "75.0 %", "3.9", "3.87", &end, "75.0 %", yes]);
+        assert_eq!(row(&text, &["2"]), ["2", "3.5", "3.50", "", "75.0 %", "", "", "", "", yes]);
+        assert_eq!(row(&text, &["3"]), ["3", "0.5", "0.50", "", "0.0 %", "0.7", "-0.25", "", "50.0 %", no]);
+        assert_eq!(row(&text, &["4"]), ["4", "0.7", "none", "", "", "", "", "", "", "not comparable (a)"]);
+        assert_eq!(tally, Tally { reproduce: 4, differ: 1, not_comparable: 3 });
+        assert!(text.starts_with("## T\n\nS. Unit: px.\n\n") && text.contains(", 2 trials a cell."), "{text}");
+    }
+
+    #[test]
+    fn a_method_without_records_is_compared_with_nothing() {
+        assert_eq!(verdicts(&table("absent"), &loaded()), None);
+        let Section { text, tally } = section(&table("absent"), &loaded());
+        assert!(text.contains("hold no method `absent`") && tally == Tally::default(), "{text}");
+    }
+}

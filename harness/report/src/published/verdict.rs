@@ -131,3 +131,91 @@ impl Cell {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::super::Metric;
+    use super::*;
+
+    fn cell(printed: &str, metric: Metric) -> Cell {
+        Cell {
+            row: "r".into(),
+            column: "c".into(),
+            printed: printed.into(),
+            metric,
+            target: None,
+            except: Vec::new(),
+            plus: 0.0,
+            at: BTreeMap::new(),
+            misprint: None,
+            method: None,
+            of: None,
+            not_comparable: None,
+        }
+    }
+
+    #[test]
+    fn a_fraction_is_known_to_the_last_digit_of_its_denominator() {
+        let found = Printed::parse("3/0.8").unwrap();
+        assert!((found.value - 3.75).abs() < 1e-12 && (found.unit - (3.0 / 0.7 - 3.75)).abs() < 1e-12, "{found:?}");
+        assert_eq!((Printed::parse("1/1"), Printed::parse("1/-2"), Printed::parse("1/0.1")), (None, None, None), "no denominator is left");
+        assert_eq!(Printed::parse("0.05").unwrap().unit, 0.01);
+    }
+
+    /// A coordinate may be off by half a unit, what is computed by one; 0.3 less 0.2 is a little less than 0.1, 0.8 less 0.7 a little more.
+    #[test]
+    fn the_last_digit_decides_and_not_the_rounding_of_the_text() {
+        for (metric, ours, expected) in [
+            (Metric::MeanDx, 0.8, Verdict::Reproduces),
+            (Metric::MeanDx, 0.6, Verdict::Reproduces),
+            (Metric::MeanDx, 0.8001, Verdict::Differs),
+            (Metric::MeanDx, 0.5999, Verdict::Differs),
+            (Metric::X, 0.75, Verdict::Reproduces),
+            (Metric::X, 0.7501, Verdict::Differs),
+            (Metric::X, 0.6499, Verdict::Differs),
+            (Metric::X, -0.7, Verdict::Differs),
+        ] {
+            assert_eq!(cell("0.7", metric).verdict(Some(ours)), expected, "{metric:?} {ours}");
+        }
+        let said = |verdict| matches!(verdict, Verdict::NotComparable(why) if why.contains("cannot be read"));
+        assert!(said(cell("?", Metric::X).verdict(Some(1.0))) && said(cell("?", Metric::X).verdict_within(1.0, 9.0)));
+        assert_eq!(cell("0.7", Metric::X).verdict(None), Verdict::NotComparable("no record of ours".into()));
+    }
+
+    #[test]
+    fn a_single_run_may_lie_anywhere_in_the_range_of_runs() {
+        let within = |printed: &str, mean, range| cell(printed, Metric::MeanDx).verdict_within(mean, range);
+        assert_eq!(
+            (within("2.0", 1.5, 0.5), within("2.0", 2.5, 0.5), within("2.0", 1.5, 0.25)),
+            (Verdict::Reproduces, Verdict::Reproduces, Verdict::Differs)
+        );
+        // Half a unit of 0.1 more.
+        assert_eq!(
+            (within("2.0", 1.46, 0.5), within("2.0", 1.44, 0.5), within("2.0", 2.56, 0.5)),
+            (Verdict::Reproduces, Verdict::Differs, Verdict::Differs)
+        );
+        assert_eq!(
+            (within("-2.0", 2.0, 0.5), within("2", 2.5, 0.0), within("2", 2.6, 0.0)),
+            (Verdict::Differs, Verdict::Reproduces, Verdict::Differs)
+        );
+        let told = Cell { not_comparable: Some("another axis".into()), ..cell("2.0", Metric::MeanDx) };
+        assert_eq!(told.verdict_within(2.0, 1.0), Verdict::NotComparable("another axis".into()));
+    }
+
+    #[test]
+    fn cells_are_tallied_by_verdict() {
+        let mut tally = Tally::default();
+        let why = || Verdict::NotComparable(String::new());
+        let verdicts = [Verdict::Reproduces, Verdict::Differs, why(), Verdict::Reproduces, why(), Verdict::Reproduces];
+        verdicts.iter().for_each(|verdict| tally.count(verdict));
+        assert_eq!((tally, tally.cells()), (Tally { reproduce: 3, differ: 1, not_comparable: 2 }, 6));
+        tally += Tally { reproduce: 4, differ: 5, not_comparable: 7 };
+        assert_eq!(tally.sentence(), "Of 22 cells, 7 reproduce, 6 differ and 9 are not comparable.");
+        assert_eq!(
+            verdicts.map(|verdict| (verdict.word(), verdict.gravity()))[..3],
+            [("reproduces", 0), ("differs", 2), ("not comparable", 1)]
+        );
+    }
+}

@@ -187,4 +187,102 @@ mod tests {
         assert_eq!(Metric::Lost.of(&Score::default()), None);
         assert_eq!(share(0, 10).unwrap().interval.unwrap().0, 0.0);
     }
+
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
+    }
+
+    fn kept(trials: &[(f64, f64)]) -> Score {
+        let mut kept = Errors::default();
+        trials.iter().for_each(|error| kept.add(&[*error]));
+        Score { kept, ..Score::default() }
+    }
+
+    /// t(0.975, 1) = 12.7062. dx 2 and 4: mean 3, half 12.7062; dy 3.5 and 4.5: mean 4, half 6.3531. Length 5, half (3 * 12.7062 + 4 * 6.3531) / 5.
+    #[test]
+    fn the_interval_of_a_bias_adds_both_axes_by_their_share() {
+        let t: f64 = 12.706_204_736;
+        let score = kept(&[(2.0, 3.5), (4.0, 4.5)]);
+        let bias = Metric::Bias.of(&score).unwrap();
+        let width = (3.0 * t + 4.0 * t / 2.0) / 5.0;
+        close(bias.value, 5.0);
+        assert_eq!(bias.interval.unwrap().0, 0.0, "a length is never less than nothing");
+        close(bias.interval.unwrap().1, 5.0 + width);
+        let small = Metric::Bias.of(&kept(&[(2.99, 4.0), (3.01, 4.0)])).unwrap();
+        close(small.interval.unwrap().0, 5.0 - 0.6 * 0.01 * t);
+        // No bias: the half-widths of both.
+        let none = Metric::Bias.of(&kept(&[(-0.3, 0.4), (0.3, -0.4)])).unwrap();
+        close(none.interval.unwrap().1, 0.5 * t);
+        assert_eq!(Metric::Bias.of(&kept(&[(3.0, 4.0)])), Some(Estimate { value: 5.0, interval: None }));
+    }
+
+    /// The same errors: squares 16.25 and 36.25, mean 26.25, half 10 t; scatter sqrt(26.25 - 25), width 10 t + 2 * 3 * t + 2 * 4 * t / 2.
+    #[test]
+    fn the_interval_of_a_scatter_adds_those_of_three_means() {
+        let t: f64 = 12.706_204_736;
+        let scatter = Metric::Scatter.of(&kept(&[(2.0, 3.5), (4.0, 4.5)])).unwrap();
+        close(scatter.value, 1.25_f64.sqrt());
+        assert_eq!(scatter.interval.unwrap().0, 0.0);
+        close(scatter.interval.unwrap().1, (1.25 + 20.0 * t).sqrt());
+        assert_eq!(Metric::Scatter.of(&kept(&[(3.0, 4.0)])), Some(Estimate { value: 0.0, interval: None }));
+        // Without a bias and of equal squares nothing is left but the widths of both means, which count for nothing.
+        let even = Metric::Scatter.of(&kept(&[(0.3, 0.4), (-0.3, -0.4)])).unwrap();
+        close(even.value, 0.5);
+        close(even.interval.unwrap().0, 0.5);
+    }
+
+    #[test]
+    fn every_figure_is_that_of_its_points() {
+        let (mut whole, mut to_bound, mut to_predicted) = (Errors::default(), Pooled::default(), Pooled::default());
+        whole.add(&[(0.5, 0.0), (2.5, 0.0)]);
+        to_bound.add(&[4.0, 8.5]);
+        to_predicted.add(&[0.25]);
+        let score = Score {
+            measured: 5,
+            lost: 1,
+            rejected: [("border", 3), ("flat", 1)].into(),
+            whole,
+            to_bound,
+            to_predicted,
+            ..kept(&[(0.3, 0.4)])
+        };
+        let of = |metric: Metric| metric.of(&score).unwrap().value;
+        for (metric, expected) in [
+            (Metric::Rmse, 0.5),
+            (Metric::Bias, 0.5),
+            (Metric::MeanX, 1.5),
+            (Metric::Scatter, 0.0),
+            (Metric::Ratio, 2.5),
+            (Metric::Predicted, 0.5),
+            (Metric::Lost, 10.0),
+            (Metric::Rejected, 40.0),
+            (Metric::Failed, 50.0),
+        ] {
+            close(of(metric), expected);
+            assert_eq!(metric.reference(), matches!(metric, Metric::Ratio | Metric::Predicted).then_some(1.0));
+        }
+        let names: std::collections::BTreeSet<_> = Metric::ALL.iter().map(|metric| metric.name().0).collect();
+        let titles: std::collections::BTreeSet<_> = Metric::ALL.iter().flat_map(|metric| [metric.title(), metric.meaning()]).collect();
+        assert_eq!((names.len(), titles.len()), (9, 18));
+        for metric in Metric::ALL {
+            let unit = metric.name().1;
+            assert!(unit.is_empty() || metric.title().ends_with(unit) && metric.meaning().ends_with(unit), "{metric:?}");
+        }
+    }
+
+    /// Wilson's ends are where the share is z standard deviations of theirs away: (p - e)^2 = z^2 e (1 - e) / n.
+    #[test]
+    fn wilsons_ends_solve_his_equation() {
+        for (count, of) in [(1, 10), (3, 17), (9, 10)] {
+            let found = share(count, of).unwrap();
+            let (part, n) = (count as f64 / of as f64, of as f64);
+            close(found.value, 100.0 * part);
+            let (low, high) = found.interval.unwrap();
+            assert!(low < 100.0 * part && 100.0 * part < high);
+            for end in [low / 100.0, high / 100.0] {
+                close((part - end).powi(2), Z * Z * end * (1.0 - end) / n);
+            }
+        }
+        assert_eq!((share(0, 10).unwrap().interval.unwrap().0, share(10, 10).unwrap().interval.unwrap().1), (0.0, 100.0));
+    }
 }

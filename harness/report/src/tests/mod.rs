@@ -1,8 +1,10 @@
 //! A whole report from records of a few points, whose figures are computed by hand.
 
-mod small;
+pub(crate) mod small;
 
 use small::{Family, line, row};
+
+use crate::verdicts;
 
 /// Errors of `centroid`, px: in trial 0 (0.03, 0.04) and (-0.01, 0.02), `c` rejected; in trial 1 (0.05, 0), `b` lost at (3, 4), (0.02, -0.02).
 #[test]
@@ -57,4 +59,61 @@ fn what_is_missing_or_broken_is_named_with_its_path() {
     assert!(message.contains("records.csv: line 1: expected the columns scenario,trial,view"), "{message}");
     std::fs::remove_file(family.records()).unwrap();
     insta::assert_snapshot!(family.message(), @"no records of `small/scene`: run it first with `calibench run small/scene`");
+}
+
+const MORE: &str = r#"
+title = "Table 2: more"
+source = "Nobody 2000, p. 2"
+unit = "px"
+scenario = "small/scene"
+method = "METHOD"
+columns = ["dx"]
+
+[[cell]]
+row = "far"
+column = "dx"
+printed = "0.05"
+metric = "dx"
+target = "a"
+
+[[cell]]
+row = "near"
+column = "dx"
+printed = "0.04"
+metric = "dx"
+target = "a"
+"#;
+
+/// `a` is 0.03 off in the first trial and 0.05 in the second: 0.05 lies among runs around 0.04, and is no rounding of 0.03; 0.04 may be one.
+#[test]
+fn verdicts_are_those_of_the_page() {
+    let family = Family::new();
+    let scene = family.records();
+    let records = scene.ancestors().nth(3).unwrap();
+    let published = records.with_file_name("published");
+    std::fs::write(published.join("small/table-2.toml"), MORE.replace("METHOD", "centroid:window=15")).unwrap();
+    std::fs::write(published.join("small/table-3.toml"), MORE.replace("METHOD", "absent")).unwrap();
+    assert_eq!(verdicts::scenarios(&published).unwrap(), ["small/scene"]);
+    let of = |table: &str| -> Vec<String> {
+        let all = verdicts::verdicts(records, &published).unwrap();
+        all.into_iter().filter(|([name, ..], _)| name == table).map(|([_, row, column], word)| format!("{row} {column} {word}")).collect()
+    };
+    assert_eq!(
+        of("small/table-1"),
+        ["a dx reproduces", "a dy differs", "b dx reproduces", "b dy not comparable", "all dx reproduces", "all dy reproduces"]
+    );
+    assert_eq!(of("small/table-2"), ["far dx reproduces", "near dx reproduces"]);
+    assert_eq!(of("small/table-3"), ["far dx not comparable", "near dx not comparable"]);
+    let page = family.page();
+    assert!(page.contains("where 95 % of single runs lie") && page.contains("hold no method `absent`"), "{page}");
+    // The first trial alone.
+    let text = std::fs::read_to_string(&scene).unwrap();
+    let one: String = text.lines().filter(|line| !line.starts_with("small/scene,1,")).map(|line| format!("{line}\n")).collect();
+    std::fs::write(&scene, one).unwrap();
+    assert_eq!(of("small/table-2"), ["far dx differs", "near dx reproduces"]);
+    let page = family.page();
+    assert!(!page.contains("where 95 % of single runs lie") && page.contains("when ours is within half a unit"), "{page}");
+    assert_eq!(row(&page, &["near", "0.04"]), ["near", "0.04", "0.030", "reproduces"]);
+    std::fs::remove_file(&scene).unwrap();
+    assert_eq!(verdicts::verdicts(records, &published).unwrap(), []);
 }

@@ -38,3 +38,69 @@ pub fn difference(a: f64, b: f64) -> f64 {
     let d = (a - b).rem_euclid(turn);
     if d > 0.5 * turn { d - turn } else { d }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
+
+    use nalgebra::Point3;
+
+    use super::*;
+
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-7 * expected.abs().max(1e-9), "{found} is not {expected}");
+    }
+
+    fn of(angles: [f64; 3], covariance: &Matrix3<f64>) -> Option<[f64; 3]> {
+        sigmas(&Pose::from_angles(Point3::new(1.0, 2.0, 3.0), angles), covariance)
+    }
+
+    /// About the camera's axes 2, 3 and 5 parts in 100000, x and z depending on each other.
+    fn covariance() -> Matrix3<f64> {
+        Matrix3::new(4.0, 0.0, 1.0, 0.0, 9.0, 0.0, 1.0, 0.0, 25.0) * 1e-10
+    }
+
+    /// With phi of 60 degrees a turn about x is half one of omega, and one of kappa by tan phi times as much: 25 + 3 * 4 - 2 tan phi.
+    #[test]
+    fn omega_and_kappa_grow_with_phi() {
+        for omega in [0.0, 0.7, -2.0] {
+            let [o, p, k] = of([omega, FRAC_PI_3, 0.0], &covariance()).unwrap();
+            close(o, 4e-5);
+            close(p, 3e-5);
+            close(k, (37.0 - 2.0 * 3.0_f64.sqrt()).sqrt() * 1e-5);
+        }
+        let level = of([0.3, 0.0, 0.0], &covariance()).unwrap();
+        level.into_iter().zip([2e-5, 3e-5, 5e-5]).for_each(|(found, expected)| close(found, expected));
+    }
+
+    /// A quarter of a turn of kappa: phi turns about x, omega about y.
+    #[test]
+    fn kappa_exchanges_the_axes() {
+        let [o, p, k] = of([0.2, FRAC_PI_3, FRAC_PI_2], &covariance()).unwrap();
+        close(o, 6e-5);
+        close(p, 2e-5);
+        close(k, (25.0 + 3.0 * 9.0_f64).sqrt() * 1e-5);
+    }
+
+    #[test]
+    fn angles_about_one_axis_are_not_determined() {
+        assert_eq!(of([0.2, FRAC_PI_2, 0.0], &covariance()), None);
+        assert!(of([0.2, FRAC_PI_2 - 1e-3, 0.0], &covariance()).is_some());
+    }
+
+    #[test]
+    fn a_small_rotation_is_its_vector() {
+        let found = small(&Matrix3::new(1.0, -0.003, -0.002, 0.003, 1.0, -0.001, 0.002, 0.001, 1.0));
+        assert!((found - Vector3::new(0.001, -0.002, 0.003)).norm() < 1e-15, "{found}");
+    }
+
+    #[test]
+    fn angles_differ_by_at_most_half_a_turn() {
+        for (a, b, expected) in [(0.3, 0.1, 0.2), (0.1, 0.3, -0.2), (PI - 0.1, 0.1 - PI, -0.2), (0.1 - PI, PI - 0.1, 0.2), (7.0, 7.0, 0.0)]
+        {
+            assert!((difference(a, b) - expected).abs() < 1e-12, "{a} {b}");
+        }
+        assert_eq!(difference(PI, 0.0), PI);
+        assert!((difference(0.5 + 6.0 * PI, 0.25) - 0.25).abs() < 1e-12);
+    }
+}

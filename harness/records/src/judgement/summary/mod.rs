@@ -314,3 +314,6 @@ fn twice_median(mut p: Vec<f64>) -> f64 {
     p.sort_by(f64::total_cmp);
     p.get(p.len() / 2).map_or(1.0, |middle| (2.0 * middle).min(1.0))
 }
+
+#[cfg(test)]
+mod tests;

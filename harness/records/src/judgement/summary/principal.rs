@@ -59,3 +59,55 @@ impl Principal {
         (!self.halves.is_empty()).then(|| [of(0), of(1)])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
+    }
+
+    fn without(x: &[f64], y: &[f64]) -> Principal {
+        let without = x.iter().zip(y).map(|(x, y)| [(*x, 0.5), (*y, 0.25)]).collect();
+        Principal { all: [(0.0, 1.0); 2], halves: Vec::new(), without }
+    }
+
+    /// x: mean 3, squares 4 + 1 + 9; y: mean 2, squares 4 + 1 + 1; both times 2/3.
+    #[test]
+    fn leaving_views_out_is_the_jackknife_of_efron() {
+        let [x, y] = without(&[1.0, 2.0, 6.0], &[0.0, 3.0, 3.0]).jackknife().unwrap();
+        close(x, (28.0_f64 / 3.0).sqrt());
+        close(y, 2.0);
+        assert_eq!(without(&[1.0, 2.0], &[0.0, 3.0]).jackknife(), None, "two are too few");
+        assert!(without(&[1.0; 5], &[2.0; 5]).jackknife().unwrap().iter().all(|sigma| *sigma == 0.0));
+    }
+
+    /// Halves 3 and 1 apart in x, 1 and 5 in y: of one half sqrt((9/2 + 1/2) / 2) and sqrt((1/2 + 25/2) / 2).
+    #[test]
+    fn the_scatter_of_a_half_is_that_of_the_difference_by_the_root_of_two() {
+        let halves = vec![[[(1.0, 3.0), (7.0, 1.0)], [(4.0, 4.0), (6.0, 1.0)]], [[(2.0, 1.0), (-2.0, 3.0)], [(1.0, 2.0), (3.0, 6.0)]]];
+        let [x, y] = Principal { halves, ..without(&[], &[]) }.between_halves().unwrap();
+        close(x.0, 2.5_f64.sqrt());
+        close(x.1, 7.5_f64.sqrt());
+        close(y.0, 6.5_f64.sqrt());
+        close(y.1, 11.75_f64.sqrt());
+        assert_eq!(without(&[], &[]).between_halves(), None);
+    }
+
+    #[test]
+    fn points_are_gathered_by_the_set_of_views_they_come_from() {
+        let row = |axis: usize, place: &str, value: f64, sigma: f64| Row::px(measure::PRINCIPAL[axis], place, value).beside(sigma);
+        let places = ["all", "half 1a", "half 1b", "half 2a", "without v1", "without v2"];
+        let mut rows: Vec<Row> = Vec::new();
+        for (number, place) in (0..).zip(places) {
+            let value = f64::from(number);
+            rows.extend([row(0, place, value, 0.5 + value), row(1, place, -value, 10.0 + value)]);
+        }
+        rows.extend([row(0, "without v3", 9.0, 1.0), Row::px("other", "all", 5.0).beside(6.0)]);
+        let principal = Principal::new(&rows.iter().collect::<Vec<_>>()).unwrap();
+        let point = |number: f64| [(number, 0.5 + number), (-number, 10.0 + number)];
+        assert_eq!(principal, Principal { all: point(0.0), halves: vec![[point(1.0), point(2.0)]], without: vec![point(4.0), point(5.0)] });
+        assert_eq!(Principal::new(&rows.iter().skip(1).collect::<Vec<_>>()), None, "not of all views");
+    }
+}

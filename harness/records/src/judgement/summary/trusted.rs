@@ -84,3 +84,104 @@ impl Trusted<'_> {
         self.models.iter().filter(|(_, p)| *p > ALPHA).map(|(cell, _)| *cell)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::{Row, measure};
+    use super::super::Split;
+    use super::*;
+
+    /// The upper tail of Student's distribution with two degrees of freedom, in closed form.
+    fn tail(t: f64) -> f64 {
+        0.5 - t / (2.0 * (2.0 + t * t).sqrt())
+    }
+
+    fn corners(method: &str, found: f64) -> Row {
+        Row::plain(measure::CORNERS, "v1", found).beside(1.0).of(10).by(&method.into(), &"".into())
+    }
+
+    /// One camera: its parameters, its RMS by view held out and from side to side as logarithms of tenths of a pixel.
+    fn camera(method: &str, model: &str, parameters: u8, held_out: &[f64], across: &[f64]) -> Vec<Row> {
+        let mut rows = vec![Row::plain(measure::PARAMETERS, "", f64::from(parameters))];
+        for (name, logs) in [(measure::HOLDOUT, held_out), (measure::ACROSS, across)] {
+            rows.extend(logs.iter().zip(1..).map(|(log, view)| Row::px(name, &format!("v{view}"), 0.1 * log.exp()).of(10)));
+        }
+        rows.into_iter().map(|row| row.by(&method.into(), &model.into())).collect()
+    }
+
+    const ZERO: f64 = f64::NEG_INFINITY;
+
+    /// The fourth view is exact in the hands of the best camera, the fifth in those of the others: their logarithms say nothing.
+    fn judged() -> Summary {
+        let mut rows: Vec<Row> = [("m", 9.0), ("n", 8.0), ("q", 10.0), ("o", 7.0)].map(|(method, found)| corners(method, found)).to_vec();
+        rows.extend(camera("m", "a", 4, &[0.7; 5], &[1.0, 1.1, 0.9]));
+        rows.extend(camera("m", "b", 9, &[0.0, 0.0, 0.0, ZERO, 0.0], &[0.1, 0.3, -0.1]));
+        rows.extend(camera("m", "c", 12, &[0.8; 5], &[0.0; 3]));
+        rows.extend(camera("m", "d", 9, &[0.9; 5], &[0.2, 0.4, 0.0]));
+        rows.extend(camera("n", "a", 4, &[2.0; 5], &[-1.0; 3]));
+        rows.extend(camera("n", "b", 9, &[1.0, 2.0, 3.0, 1.6, ZERO, 1.6], &[-1.0; 3]));
+        rows.extend(camera("q", "b", 9, &[0.1, 0.3, -0.1, 1.6, ZERO], &[]));
+        rows.extend(camera("o", "b", 9, &[-3.0; 5], &[-3.0; 3]));
+        Summary::new(&rows, 1)
+    }
+
+    fn of<'a>(found: &[(&'a Cell, f64)]) -> Vec<(&'a str, &'a str)> {
+        found.iter().map(|(cell, _)| (&*cell.method, &*cell.model)).collect()
+    }
+
+    fn close(found: &[(&Cell, f64)], expected: &[f64]) {
+        assert_eq!(found.len(), expected.len());
+        for ((_, p), expected) in found.iter().zip(expected) {
+            assert!((p - expected).abs() < 1e-9, "{p} is not {expected}");
+        }
+    }
+
+    /// t = mean / (deviation / sqrt(3)) of the logarithms of three ratios: 2 and 1, 0.1 and 0.2, 0.2 and 0.2, 1 and 0.1.
+    #[test]
+    fn operators_and_models_are_told_apart_by_paired_tests() {
+        let summary = judged();
+        let trusted = summary.trusted().unwrap();
+        let name = |cell: &Cell| format!("{} {}", cell.method, cell.model);
+        assert_eq!([trusted.least, trusted.farthest, trusted.cell].map(name), ["m b", "m c", "m b"]);
+        let root = 3.0_f64.sqrt();
+        assert_eq!(of(&trusted.operators), [("q", "b"), ("n", "b")], "by their RMS, without the one that measured 7 of 10");
+        close(&trusted.operators, &[tail(0.5 * root), 2.0 * tail(2.0 * root)]);
+        assert_eq!(of(&trusted.models), [("m", "b"), ("m", "d"), ("m", "a")]);
+        close(&trusted.models, &[tail(0.5 * root).max(2.0 * tail(root)), 2.0 * tail(root), 3.0 * tail(10.0 * root)]);
+        assert_eq!(trusted.equal_models().map(|cell| &*cell.model).collect::<Vec<_>>(), ["b", "d"]);
+    }
+
+    #[test]
+    fn a_model_at_the_level_of_the_test_is_not_as_good() {
+        let summary = judged();
+        let mut trusted = summary.trusted().unwrap();
+        for (model, p) in trusted.models.iter_mut().zip([0.06, ALPHA, 0.04]) {
+            model.1 = p;
+        }
+        assert_eq!(trusted.equal_models().map(|cell| &*cell.model).collect::<Vec<_>>(), ["b"]);
+    }
+
+    #[test]
+    fn four_corners_in_five_are_enough_to_be_compared() {
+        let summary = judged();
+        assert_eq!(["m", "n", "q", "o", "x"].map(|method| summary.is_compared(method)), [true, true, true, false, false]);
+        let nothing = Summary::new(&[corners("m", 9.0)], 1);
+        assert_eq!(nothing.trusted(), None);
+        let few: Vec<Row> = [vec![corners("o", 7.0)], camera("o", "b", 9, &[0.0; 3], &[0.0; 3])].concat();
+        assert_eq!(Summary::new(&few, 1).trusted(), None);
+    }
+
+    #[test]
+    fn sigmas_are_enlarged_by_the_larger_of_two_ratios_where_halves_say_so() {
+        let summary = judged();
+        let mut cell = summary.cell("m", "b").unwrap().clone();
+        assert_eq!(Trusted { cell: &cell, ..summary.trusted().unwrap() }.inflation(), 1.0, "no halves");
+        for (p, modes, difference, expected) in
+            [(0.001, 1.5, 0.5, 2.5), (0.001, 3.0, 0.5, 3.0), (0.001, 0.5, 0.1, 1.0), (HONEST, 3.0, 0.5, 1.0), (0.5, 3.0, 0.5, 1.0)]
+        {
+            cell.split = Some(Split { difference, predicted: 0.2, modes, p, count: 9 });
+            let found = Trusted { cell: &cell, ..summary.trusted().unwrap() }.inflation();
+            assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
+        }
+    }
+}
