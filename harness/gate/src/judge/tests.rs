@@ -213,6 +213,9 @@ fn a_target_that_was_tested_must_be_tested() {
     assert_eq!(lacking(10, 10), []);
     assert_eq!(lacking(10, 9), [(Verdict::Fails, "image/a".to_owned(), 10.0, 9.0)]);
     assert_eq!(lacking(9, 8), [], "it was not tested before");
+    let of = |trial: usize| [measured([0.1; 2], None), if trial < 2 { NO_CORNER } else { measured([0.2; 2], None) }];
+    let message = "no longer tested: the baseline found the point in 10 trials, this run in 8 of them";
+    assert_eq!(tests("f/s", "m", &pairs(&[("a", &of)])).1[0].message, message);
 }
 
 #[test]

@@ -5,6 +5,8 @@ mod check;
 mod files;
 mod findings;
 mod judged;
+mod kept;
+mod points;
 mod printed;
 
 use calibench_model::{PixelPoint, Rejection};
