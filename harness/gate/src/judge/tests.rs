@@ -98,6 +98,10 @@ fn what_differs_by_the_tolerance_does_not_differ() {
     let values: Vec<Figures> = sixteen(2.0 * TOLERANCE).into_iter().zip(sixteen(-TOLERANCE)).collect();
     let found = collected(|all| all.mean(subject("x"), &values));
     assert_eq!(found.tests[0].finding.message, "as far off, elsewhere; not blessed");
+    // Further off there, by the tolerance: neither.
+    let values: Vec<Figures> = sixteen(TOLERANCE).into_iter().zip(sixteen(-2.0 * TOLERANCE)).collect();
+    let found = collected(|all| all.mean(subject("x"), &values));
+    assert!(found.tests[0].worse == 1.0 && found.tests[0].better < 1.0);
 }
 
 #[test]
@@ -239,7 +243,15 @@ fn errors_over_standard_deviations_by_hand() {
     assert_eq!(chances(1.0, 0.5), worse, "too unsure");
     assert_eq!(chances(2.0, 0.9), better);
     assert_eq!(chances(0.4, 1.5), better);
-    assert_eq!(chances(1.0, 1.0 - 0.5e-6), neither, "but for last bits");
+    // The same in every trial: squares that differ by 0.8 and 1.2 millionths, and 4 and 1/4, which are as far from 1.
+    let alike = |old: f64, new: f64| {
+        let of = move |_| [old, new].map(|over| measured([0.5 * over, 0.0], Some(0.5)));
+        let test = collected(|all| all.sigmas(&subject, &pairs(&[("a", &of)]))).tests.pop().unwrap();
+        (test.worse < 1e-9, test.worse == 1.0, test.better < 1e-9, test.better == 1.0)
+    };
+    assert_eq!([alike(1.0, 1.0 - 0.4e-6), alike(1.0, 1.0 + 0.4e-6)], [neither; 2], "but for last bits");
+    assert_eq!([alike(1.0, 1.0 - 0.6e-6), alike(1.0, 1.0 + 0.6e-6)], [worse; 2]);
+    assert_eq!([alike(2.0, 0.5), alike(0.5, 2.0)], [better; 2], "as far off, on the other side");
 }
 
 #[test]

@@ -25,9 +25,9 @@ fn said(findings: &[Finding]) -> Vec<(Verdict, Option<&str>, &str)> {
 
 #[test]
 fn what_is_missing_is_said_once() {
-    let all = || (0..4).flat_map(|trial| ["a", "b", "c"].map(|name| (trial, name, kept(0.1))));
+    let all = || (0..4_u64).flat_map(|trial| ["a", "b", "c"].map(|name| (trial, name, kept(0.1))));
     // Trials 1 and 3 are gone; of the rest, target b, and a in trial 2.
-    let left = all().filter(|(trial, name, _)| trial % 2 == 0 && *name != "b" && (*trial, *name) != (2, "a"));
+    let left = all().filter(|(trial, name, _)| trial.is_multiple_of(2) && *name != "b" && (*trial, *name) != (2, "a"));
     let found = completeness(&errors(all()), &errors(left));
     let expected = [
         (Verdict::Fails, None, "2 of 4 trials are missing, from 1 to 3"),
@@ -238,7 +238,7 @@ fn points_are_paired_by_trial_and_target() {
 #[test]
 fn entries_are_what_the_operator_gave() {
     let of = |error: Option<(f64, f64)>, coordinates| {
-        let outcome = Outcome::Measured { position: PixelPoint::new(10.25, f64::from(20)), error };
+        let outcome = Outcome::Measured { position: PixelPoint::new(10.25, 20.0), error };
         let predicted = Some(0.123_456_78);
         Entry::of(&PointResult { predicted, ..PointResult::new("image", "a", 0, outcome) }, coordinates)
     };

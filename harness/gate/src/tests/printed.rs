@@ -157,11 +157,9 @@ fn findings_fail_by_their_verdict_and_the_rules() {
 #[test]
 fn the_machine_is_named_by_its_architecture() {
     let name = machine();
-    assert!(name.starts_with(std::env::consts::ARCH), "{name}");
-    #[cfg(target_arch = "x86_64")]
-    assert!(["x86_64 AVX-512", "x86_64 AVX2", "x86_64 SSE2"].contains(&name.as_str()), "{name}");
-    #[cfg(target_arch = "x86_64")]
-    assert_eq!(name.ends_with("AVX-512"), is_x86_feature_detected!("avx512f"));
+    let known =
+        if std::env::consts::ARCH == "x86_64" { &["x86_64 AVX-512", "x86_64 AVX2", "x86_64 SSE2"][..] } else { &[std::env::consts::ARCH] };
+    assert!(known.contains(&name.as_str()), "{name}");
 }
 
 #[test]

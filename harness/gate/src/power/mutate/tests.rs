@@ -57,7 +57,7 @@ fn noise_makes_the_scatter_a_tenth_larger() {
     // 2000 trials of two targets with means (0.3, -0.2) and (-0.3, 0.1); each deviates by 0.05 and 0.02, with both signs.
     let sign = |bit: bool| if bit { 1.0 } else { -1.0 };
     let all = (0..2000_u64).flat_map(|trial| {
-        let (dx, dy) = (0.05 * sign(trial % 2 == 0), 0.02 * sign(trial % 4 < 2));
+        let (dx, dy) = (0.05 * sign(trial.is_multiple_of(2)), 0.02 * sign(trial % 4 < 2));
         [(trial, "a", kept(0.3 + dx, -0.2 + dy)), (trial, "b", kept(-0.3 + dx, 0.1 + dy))]
     });
     let old = method(all);
