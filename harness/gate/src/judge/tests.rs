@@ -91,8 +91,9 @@ fn what_differs_by_the_tolerance_does_not_differ() {
     for square in [false, true] {
         assert_eq!(chances("as large", square, [0.0, TOLERANCE]), [1.0, 1.0]);
         assert_eq!(chances("as small", square, [TOLERANCE, 0.0]), [1.0, 1.0]);
-        assert!(chances("larger", square, [0.0, 2.0 * TOLERANCE])[0] < 1.0);
-        assert!(chances("smaller", square, [2.0 * TOLERANCE, 0.0])[1] < 1.0);
+        let ([worse, not_better], [not_worse, better]) =
+            (chances("larger", square, [0.0, 2.0 * TOLERANCE]), chances("smaller", square, [2.0 * TOLERANCE, 0.0]));
+        assert!(worse < 1.0 && better < 1.0 && [not_better, not_worse] == [1.0, 1.0], "{worse} {better}");
     }
     // As far off on the other side, but for the tolerance: a change, and no better.
     let values: Vec<Figures> = sixteen(2.0 * TOLERANCE).into_iter().zip(sixteen(-TOLERANCE)).collect();
