@@ -164,3 +164,6 @@ fn other_version(scenario: &str, label: &str, changes: &Changes<'_>, points: usi
     }
     findings
 }
+
+#[cfg(test)]
+mod tests;

@@ -57,6 +57,57 @@ impl Flips {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::{NO_CORNER, measured, method};
+
+    #[test]
+    fn flips_are_counted_by_trial() {
+        let kept = measured([0.0; 2], None);
+        let of = |marks: [[bool; 3]; 2]| {
+            let entries = marks.into_iter().zip(0..).flat_map(|(trial, number)| {
+                let entry = move |(mark, name): (bool, &'static str)| (number, name, if mark { NO_CORNER } else { kept });
+                trial.into_iter().zip(["a", "b", "c"]).map(entry)
+            });
+            method(entries)
+        };
+        // Trial 0: a becomes rejected, b ceases to be, c stays so. Trial 1: a and b become so, c stays measured.
+        let (old, new) = (of([[false, true, true], [false, false, false]]), of([[true, false, true], [true, true, false]]));
+        let found = Flips::of(&Pairs::of(&old, &new, false), |entry| entry.status() == "rejected");
+        assert_eq!(found, Flips { counts: [2, 4], by_trial: vec![(1, 1), (2, 0)] });
+    }
+
+    #[test]
+    fn two_trials_scatter() {
+        // Differences 15 and 7 with mean 11: squares 16 + 16, times 2/1, over 27 + 5 flips.
+        let found = flips(&[(18, 3), (9, 2)]);
+        assert!((found.dispersion() - 2.0).abs() < 1e-12, "{}", found.dispersion());
+        // Halves 13.5 and 2.5, rounded to the disadvantage of each test: 13 of 16 up for growth; 2 of 16 down for a fall.
+        let p = found.test();
+        let growth = f64::from(560 + 120 + 16 + 1) / 65_536.0;
+        assert!((p.growth / growth - 1.0).abs() < 1e-9 && (p.two_sided / (2.0 * growth) - 1.0).abs() < 1e-9, "{p:?}");
+        assert!((p.fall - f64::from(65_536 - 1 - 16) / 65_536.0).abs() < 1e-9, "{p:?}");
+    }
+
+    #[test]
+    fn three_trials_scatter_about_their_mean() {
+        // Differences 4, -2 and 0 with mean 2/3: squares (100 + 64 + 4)/9, times 3/2, over 6 flips.
+        assert!((flips(&[(4, 0), (0, 2), (0, 0)]).dispersion() - 14.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_nothing_speaks_for_is_chance() {
+        for trials in [&[(0, 0); 5][..], &[(12, 0)], &[]] {
+            assert_eq!(flips(trials).dispersion(), 1.0, "{trials:?}");
+        }
+        // As many up as down: both tails are above a half.
+        let p = flips(&[(1, 0), (0, 1)]).test();
+        assert_eq!(p.two_sided, 1.0);
+    }
+
+    #[test]
+    fn a_fall_is_the_mirror_of_a_growth() {
+        let (up, down) = (flips(&[(18, 3), (9, 2)]).test(), flips(&[(3, 18), (2, 9)]).test());
+        assert_eq!((up.growth, up.fall, up.two_sided), (down.fall, down.growth, down.two_sided));
+    }
 
     fn flips(by_trial: &[(u64, u64)]) -> Flips {
         Flips { counts: [0; 2], by_trial: by_trial.to_vec() }

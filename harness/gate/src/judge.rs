@@ -205,3 +205,6 @@ fn normalised(entry: &Entry) -> Option<f64> {
     let sigma = entry.found()?.sigma.filter(|sigma| *sigma > 0.0)?;
     Some(((dx * dx + dy * dy) / (sigma * sigma)).min(100.0))
 }
+
+#[cfg(test)]
+mod tests;

@@ -106,6 +106,39 @@ mod tests {
     }
 
     #[test]
+    fn covariances_and_counts_by_hand() {
+        let nan = Entry::Lost(Found::bare([f64::NAN, 0.0]));
+        let with = |x: f64, y: f64, sigma| Entry::Measured(Found { at: [x, y], sigma });
+        let [a, b] = [with(1.0, 2.0, Some(f64::INFINITY)), with(3.0, 8.0, Some(2.0))];
+        let lost = Entry::Lost(Found { at: [9.0, 9.0], sigma: Some(100.0) });
+        let rejected = crate::tests::NO_CORNER;
+        let sum = Sum::of(&[&nan, &a, &rejected, &b, &lost, &rejected, &rejected]);
+        // Deviations (-1, -3) and (1, 3).
+        assert_eq!((sum.counts, sum.nans, sum.points()), ([2, 2, 3], 1, 7));
+        assert_eq!((sum.mean, sum.covariance, sum.sigma), ([2.0, 5.0], [1.0, 3.0, 9.0], Some(2.0)));
+        assert_eq!((sum.square(), sum.spread()), ((5.0 + 73.0) / 2.0, 10.0));
+        assert_eq!(Sum::of(&[&rejected]), Sum { counts: [0, 0, 1], ..Sum::default() });
+    }
+
+    #[test]
+    fn a_digest_sees_places_and_reasons() {
+        let place = |trial, view: &str, target: &str| Place { trial, view: view.into(), target: target.into() };
+        let at = |place: Place, entry| digest(&[(place, entry)].into());
+        let point = measured(0.1, 0.2, 1.0);
+        let base = at(place(0, "v", "t"), point);
+        for other in [place(1, "v", "t"), place(0, "w", "t"), place(0, "v", "u"), place(0, "vt", ""), place(0, "", "vt")] {
+            assert_ne!(base, at(other.clone(), point), "{other}");
+        }
+        let [first, second] = [0, 1].map(|which| at(place(0, "v", "t"), Entry::Rejected(calibench_model::Rejection::ALL[which])));
+        assert_ne!(first, second, "another reason");
+        assert_eq!(base, at(place(0, "v", "t"), measured(0.1, 0.2, 9.0)), "standard deviations have their own sum");
+        assert_eq!(base, at(place(0, "v", "t"), measured(0.1, 0.2 - 4e-7, 1.0)));
+        assert_ne!(base, at(place(0, "v", "t"), measured(0.1, 0.2 - 6e-7, 1.0)));
+        let nans = [[f64::NAN, 0.0], [0.0, f64::NAN]].map(|xy| at(place(0, "v", "t"), Entry::Lost(Found::bare(xy))));
+        assert_ne!(nans[0], nans[1]);
+    }
+
+    #[test]
     fn a_digest_sees_every_point() {
         let of = |entries: &[(u64, Entry)]| {
             let place = |trial| Place { trial, view: "v".into(), target: "t".into() };

@@ -142,3 +142,6 @@ impl Pooled {
         (self.spread / self.counts[0].max(1.0)).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -118,3 +118,74 @@ fn one(stored: &[Stored<'_>], number: u64) -> Division {
     let worse = |family| decide(tests.iter().filter(|test| test.family == family).collect()).iter().any(Finding::fails);
     Division { failed: Family::ALL.into_iter().any(worse), lacking, tests: tests.len() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Coordinates;
+    use crate::tests::{NO_CORNER, holding, measured, method};
+
+    /// `trials` trials of two targets, of which the second is found in the first `found` of them.
+    fn points(trials: u64, found: u64) -> MethodTable {
+        let error = |trial: u64, axis: f64| 0.1 * (1.7 * trial as f64 + axis).sin();
+        let entry = move |trial: u64, axis: f64| measured([error(trial, axis), error(trial, axis + 1.0)], None);
+        let both = (0..trials).flat_map(move |trial| [(trial, "a", entry(trial, 0.0)), (trial, "b", entry(trial, 2.0))]);
+        method(both.map(move |(trial, name, entry)| (trial, name, if name == "b" && trial >= found { NO_CORNER } else { entry })))
+    }
+
+    #[test]
+    fn trials_are_stored_in_their_order() {
+        let [x, y, z] = [0.1, 0.2, 0.3].map(|dx| measured([dx, 0.0], None));
+        let table = method([(3, "b", x), (3, "c", y), (8, "a", z), (8, "b", x)]);
+        let stored = Stored::of("f/s", "m", &table);
+        assert_eq!(stored.targets, ["image/b", "image/c", "image/a"]);
+        assert_eq!(stored.trials, [vec![(0, x), (1, y)], vec![(2, z), (0, x)]]);
+    }
+
+    #[test]
+    fn trials_are_paired_in_turn() {
+        let entry = |trial: u64| measured([0.1 * trial as f64, 0.0], None);
+        // Target b is missing in trial 1.
+        let all = (0..5).flat_map(|trial| [(trial, "a", entry(trial)), (trial, "b", entry(trial))]);
+        let table = method(all.filter(|(trial, name, _)| (*trial, *name) != (1, "b")));
+        let pairs = Stored::of("f/s", "m", &table).pairs(&[2, 0, 1, 4, 3]);
+        let items: Vec<_> = pairs.items.iter().map(|item| (item.trial, item.target, item.old, item.new)).collect();
+        let expected = [(0, 0, entry(2), entry(0)), (0, 1, entry(2), entry(0)), (1, 0, entry(1), entry(4))];
+        assert_eq!((pairs.trials, items), (2, expected.to_vec()), "the fifth trial has no partner");
+    }
+
+    #[test]
+    fn divisions_are_counted_with_their_methods_and_tests() {
+        let mut first = holding(Coordinates::Errors, points(20, 20));
+        *first.method_mut(&"n".into(), &"1".into()) = points(19, 19);
+        let second = holding(Coordinates::Errors, points(40, 40));
+        // Lost, rejected, two means of each target and of all, root mean square, scatter: ten tests, twice.
+        let expected = Alarms { divisions: 5, failed: 0, lacking: 0, methods: 2, tests: 20, too_few: 1 };
+        assert_eq!(alarms(&[&first, &second], 5), expected);
+        assert_eq!(alarms(&[], 3), Alarms { divisions: 3, ..Alarms::default() });
+    }
+
+    #[test]
+    fn a_target_that_is_seldom_found_is_lacking() {
+        // Of 40 trials 28: about 14 of 20 pairs have a first one, about 10 have both.
+        let with = |found| alarms(&[&holding(Coordinates::Errors, points(40, found))], 40).lacking;
+        let some = with(28);
+        assert!((1..40).contains(&some), "{some}");
+        assert_eq!([with(40), with(9)], [0, 0], "always and never tested");
+    }
+
+    #[test]
+    fn divisions_differ_and_are_the_same_again() {
+        let stored = points(40, 28);
+        let of = |number| {
+            let division = one(&[Stored::of("f/s", "m", &stored)], number);
+            (division.failed, division.lacking, division.tests)
+        };
+        let all: Vec<_> = (0..40).map(of).collect();
+        assert!(all.iter().eq((0..40).map(of).collect::<Vec<_>>().iter()));
+        let lacking = all.iter().filter(|(_, lacking, _)| *lacking).count();
+        assert_eq!(lacking, alarms(&[&holding(Coordinates::Errors, stored.clone())], 40).lacking);
+        // The two tests of target b are there or are lacking, unless the baseline itself has too few.
+        assert!(all.iter().all(|(failed, lacking, tests)| !failed && (*tests == 8 || (*tests == 10 && !lacking))));
+    }
+}

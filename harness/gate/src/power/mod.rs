@@ -3,6 +3,8 @@
 mod divide;
 mod mutate;
 mod sums;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 

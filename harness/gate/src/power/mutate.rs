@@ -172,3 +172,6 @@ fn nan(points: &mut Points) -> Result<(), &'static str> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

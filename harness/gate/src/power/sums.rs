@@ -118,6 +118,8 @@ fn no_longer_measured(mut sums: Vec<&mut Sum>, count: u64, place: usize) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Coordinates;
+    use crate::tests::{NO_CORNER, holding, measured, method};
 
     fn sums() -> PointSums {
         let sum = Sum { counts: [30, 2, 0], mean: [0.1, 0.0], covariance: [0.04, 0.0, 0.01], ..Sum::default() };
@@ -142,6 +144,57 @@ mod tests {
             assert_ne!(of(mutation).digest, old.digest, "{mutation:?}");
         }
         assert!(faulty(&old, Mutation::CopiedTrial).is_err());
+    }
+
+    #[test]
+    fn points_are_taken_from_those_that_are_measured() {
+        let taken = |measured: [u64; 3], count: u64| {
+            let mut sums = measured.map(|kept| Sum { counts: [kept, 0, 7], ..Sum::default() });
+            no_longer_measured(sums.iter_mut().collect(), count, 1).unwrap();
+            sums.map(|sum| sum.counts)
+        };
+        assert_eq!(taken([2, 0, 5], 4), [[0, 2, 7], [0, 0, 7], [3, 2, 7]]);
+        assert_eq!(taken([2, 0, 5], 0), [[2, 0, 7], [0, 0, 7], [5, 0, 7]]);
+        assert_eq!(taken([1, 0, 2], 9), [[0, 1, 7], [0, 0, 7], [0, 2, 7]], "no more than there are");
+        let sum = |kept| Sum { counts: [kept, 0, 0], covariance: [1.0, 2.0, 3.0], ..Sum::default() };
+        let mut one_of_two = [sum(0), sum(4)];
+        scaled(one_of_two.iter_mut().collect(), 4.0).unwrap();
+        assert_eq!(one_of_two[1].covariance, [4.0, 8.0, 12.0]);
+        assert!(scaled(vec![&mut sum(0)], 4.0).is_err());
+    }
+
+    #[test]
+    fn the_first_target_with_a_measured_point_gets_the_one_that_is_no_number() {
+        let mut old = sums();
+        old.targets.insert("0".into(), Sum { counts: [0, 1, 0], ..Sum::default() });
+        let new = faulty(&old, Mutation::OneNan).unwrap();
+        let counts = |name: &str| (new.targets[name].counts, new.targets[name].nans);
+        assert_eq!([counts("0"), counts("a"), counts("b")], [([0, 1, 0], 0), ([29, 3, 0], 1), ([40, 0, 0], 0)]);
+    }
+
+    #[test]
+    fn faults_in_sweeps_are_counted_by_sweep() {
+        // Two cells of three points; no point is lost, and dx is dy. The third cell has no point that is measured.
+        let with = |kept: bool| {
+            let entry = move |k: f64| if kept { measured([0.1 * k; 2], None) } else { NO_CORNER };
+            holding(Coordinates::Errors, method((0..3).map(move |trial| (trial, "a", entry(trial as f64)))))
+        };
+        let mut cells = Cells::new("f/s", "", 7, Coordinates::Errors);
+        [true, true, false].into_iter().zip(["x", "y", "z"]).for_each(|(kept, label)| cells.add(label, &with(kept)));
+        let all = sweep_power(&[cells]);
+        assert_eq!(all.iter().map(|outcome| outcome.mutation).collect::<Vec<_>>(), Mutation::ALL.map(|(mutation, _)| mutation));
+        let of = |mutation| {
+            let found = all.iter().find(|outcome| outcome.mutation == mutation).unwrap();
+            assert_eq!(found.scenario, "f/s");
+            (found.tried, found.caught, found.untested.clone())
+        };
+        let none = ("no point is measured", 1);
+        assert_eq!(of(Mutation::DoubledNoise), (2, [2, 2], vec![none]));
+        assert_eq!(of(Mutation::OneNan), (2, [2, 2], vec![none]));
+        // One of three is not more than one: a change.
+        assert_eq!(of(Mutation::TenthRejected), (2, [2, 0], vec![none]));
+        assert_eq!(of(Mutation::LostDoubled), (0, [0, 0], vec![("no point is lost", 3)]));
+        assert_eq!(of(Mutation::Swapped), (0, [0, 0], vec![("the results stay the same", 3)]));
     }
 
     #[test]
