@@ -170,7 +170,7 @@ fn from_depth(views: &[&[Control]], size: ImageSize) -> Result<(Camera, String),
 }
 
 /// The median over the images of the standard deviation of an image coordinate after a resection, px.
-pub(super) fn misfit(camera: &Camera, views: &[&[Control]]) -> f64 {
+fn misfit(camera: &Camera, views: &[&[Control]]) -> f64 {
     let sigma = |view: &&[Control]| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
     let mut sigmas: Vec<f64> = views.iter().filter(|view| view.len() >= 4).map(sigma).collect();
     sigmas.sort_by(f64::total_cmp);

@@ -1,22 +1,26 @@
 //! The lenses that a search starts from.
 
 use calibench_adjust::approximate::{Control, interior_from_size};
-use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, OpenCv, OpenCvFisheye};
 use calibench_model::convert::{ConvertOptions, Region};
+use calibench_model::{PixelPoint, Pose};
 
-use super::kept;
 use super::ladder::{BROWN, EQUIDISTANT, climbed};
 use super::sample::{Arrived, Sample};
+use super::{LOWER, kept};
 use crate::Optics;
 use crate::model::{self, converted};
 use crate::network::interior;
-use crate::start::misfit;
+use crate::start::pose_of;
 
 /// Focal lengths of lenses without distortion, in longer sides.
 const FOCAL: [f64; 7] = [0.3, 0.45, 0.7, 1.1, 1.8, 3.0, 6.0];
 /// Focal lengths of lenses that picture angles, in longer sides.
 const FOCAL_WIDE: [f64; 6] = [0.16, 0.22, 0.32, 0.45, 0.65, 1.0];
+/// Half the field of a lens that need not be tried as one that pictures angles, rad.
+const NARROW: f64 = 0.7;
+/// Iterations at most, of the model asked for.
+const ITERATIONS: usize = 100;
 /// Circles over which models are fitted, as shares of the one that holds all image points.
 const CIRCLES: [f64; 4] = [1.0, 0.95, 0.9, 0.8];
 
@@ -40,20 +44,32 @@ pub(super) fn arrived(sample: &mut Sample, optics: &Optics, usual: Option<&(Came
     sample.keep(&somehow.iter().map(Option::is_some).collect::<Vec<_>>());
     let first = usual
         .zip(of_usual.as_ref())
-        .and_then(|((camera, origin), poses)| sample.adjusted(interior(optics, camera).ok()?, &filled(poses), origin));
-    let others = lenses.iter().filter_map(|lens| {
-        let reached = climbed(sample, &lens.camera, filled(&lens.poses), lens.rungs, lens.origin)?;
-        in_model(sample, optics, &reached)
-    });
-    (first, others.collect())
+        .and_then(|((camera, origin), poses)| sample.adjusted(interior(optics, camera).ok()?, &filled(poses), ITERATIONS, origin));
+    let mut others: Vec<Arrived> = Vec::new();
+    for lens in &lenses {
+        // The lens that pictures angles decides of wide fields alone, once two starts agree.
+        let agree = first.as_ref().zip(others.first()).is_some_and(|(a, b)| (a.cost - b.cost).abs() <= LOWER * a.cost);
+        if !(agree && first.as_ref().is_some_and(|first| is_narrow(&first.camera))) {
+            let reached = climbed(sample, &lens.camera, filled(&lens.poses), lens.rungs, lens.origin);
+            others.extend(reached.and_then(|reached| in_model(sample, optics, &reached)));
+        }
+    }
+    (first, others)
+}
+
+/// Whether the corners of the frame are pictured at less than [`NARROW`] from the axis.
+fn is_narrow(camera: &Camera) -> bool {
+    let [right, bottom] = [camera.size().width, camera.size().height].map(|side| f64::from(side) - 1.0);
+    let corners = [(0.0, 0.0), (right, 0.0), (0.0, bottom), (right, bottom)];
+    let angle = |(x, y)| camera.unproject(PixelPoint::new(x, y)).map_or(f64::INFINITY, |ray| ray.x.hypot(ray.y).atan2(-ray.z));
+    corners.into_iter().all(|corner| angle(corner) < NARROW)
 }
 
 fn lenses(sample: &Sample, optics: &Optics) -> Vec<Lens> {
     let Some([cx, cy]) = middle(optics) else { return Vec::new() };
     let (size, side, few) = (optics.size, f64::from(optics.size.width.max(optics.size.height)), sample.few());
-    let views: Vec<&[Control]> = few.iter().map(Vec::as_slice).collect();
     let nearest = |cameras: Vec<Camera>| {
-        let tried = cameras.into_iter().map(|camera| (misfit(&camera, &views), camera));
+        let tried = cameras.into_iter().map(|camera| (misfit(&camera, &few), camera));
         tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, camera)| camera)
     };
     let pinhole = |f: f64| OpenCv { size, fx: f * side, fy: f * side, cx, cy, distortion: [0.0; 14], coefficients: 5 }.into();
@@ -71,14 +87,27 @@ fn middle(optics: &Optics) -> Option<[f64; 2]> {
     Some([named("cx")?, named("cy")?])
 }
 
+/// The median over the images of the mean squared distance after a resection, px^2.
+fn misfit(camera: &Camera, views: &[Vec<Control>]) -> f64 {
+    let square = |pose: &Pose, control: &Control| {
+        camera.project(pose.ray(&control.object)).map_or(f64::INFINITY, |seen| seen.distance(control.image).powi(2))
+    };
+    let of = |view: &Vec<Control>| {
+        let pose = pose_of(camera, view).ok();
+        pose.map_or(f64::INFINITY, |pose| view.iter().map(|control| square(&pose, control)).sum::<f64>() / view.len() as f64)
+    };
+    let mut squares: Vec<f64> = views.iter().map(of).collect();
+    squares.sort_by(f64::total_cmp);
+    squares.get(squares.len() / 2).copied().unwrap_or(f64::INFINITY)
+}
+
 /// The minimum of the model asked for, from a lens of another one.
 fn in_model(sample: &Sample, optics: &Optics, lens: &Arrived) -> Option<Arrived> {
     let farthest = sample.farthest(&lens.camera)?;
     let rest = model::camera(&interior_from_size(optics.size).ok()?, optics).ok()?;
-    CIRCLES.iter().find_map(|share| {
+    let camera = CIRCLES.iter().find_map(|share| {
         let region = Region::Radius { px: share * farthest };
-        let options = ConvertOptions { accept: true, region, ..ConvertOptions::default() };
-        let camera = converted(&lens.camera, optics, &options).ok()?;
-        sample.adjusted(interior(optics, &kept(&camera, optics, &rest)).ok()?, &lens.poses, &lens.origin)
-    })
+        converted(&lens.camera, optics, &ConvertOptions { accept: true, region, ..ConvertOptions::default() }).ok()
+    })?;
+    sample.adjusted(interior(optics, &kept(&camera, optics, &rest)).ok()?, &lens.poses, ITERATIONS, &lens.origin)
 }

@@ -13,13 +13,13 @@ const IMAGES: usize = 24;
 /// Control points of an image at most.
 const POINTS: usize = 60;
 /// Images of which one focal length after another is tried.
-const FEW_IMAGES: usize = 8;
+const FEW_IMAGES: usize = 6;
 /// Points of each of them.
-const FEW_POINTS: usize = 20;
+const FEW_POINTS: usize = 16;
 /// Control points of an image at least.
 const LEAST: usize = 6;
-/// Iterations at most.
-const ITERATIONS: usize = 100;
+/// Iterations of a nested model at most: its minimum need not be exact.
+const ITERATIONS: usize = 20;
 
 /// What some images of a camera see of the control points.
 pub(super) struct Sample {
@@ -69,12 +69,12 @@ impl Sample {
 
     /// The minimum of the named parameters, from a camera and poses.
     pub(super) fn with(&self, camera: &Camera, poses: &[Pose], names: &[&str], origin: &str) -> Option<Arrived> {
-        self.adjusted(Interior::fixed("camera", *camera).free(names).ok()?, poses, origin)
+        self.adjusted(Interior::fixed("camera", *camera).free(names).ok()?, poses, ITERATIONS, origin)
     }
 
-    pub(super) fn adjusted(&self, interior: Interior, poses: &[Pose], origin: &str) -> Option<Arrived> {
+    pub(super) fn adjusted(&self, interior: Interior, poses: &[Pose], most_iterations: usize, origin: &str) -> Option<Arrived> {
         let network = self.network(interior, poses);
-        let options = Options { huber: self.huber, most_iterations: ITERATIONS, ..Options::default() };
+        let options = Options { huber: self.huber, most_iterations, ..Options::default() };
         let solution = adjust(&network, &options).ok()?;
         let camera = solution.cameras()[0];
         Some(Arrived { camera, poses: solution.poses().to_vec(), cost: solution.cost(), origin: origin.to_owned() })
