@@ -2,6 +2,7 @@
 
 use calibench_adjust::Network;
 use calibench_exchange::{ControlRow, LostRows, Points};
+use calibench_model::camera::Camera;
 
 use crate::{CalibrationError, LeftOut, Rival, Settings, Survey, network, optics, search, stages, start};
 
@@ -14,6 +15,8 @@ pub struct Prepared {
     pub survey: Survey,
     /// Where the interior orientation of each camera started.
     pub origins: Vec<String>,
+    /// The cameras of the usual start, without what the search for a lower minimum knows: parameters that a compared set does not solve for keep their values.
+    pub plain: Vec<Camera>,
     /// Minima that the observations do not tell from the one that is started near.
     pub rivals: Vec<Rival>,
     /// What is adjusted.
@@ -34,8 +37,9 @@ pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> R
     let survey = Survey::new(points, control)?;
     let owners = optics::owners(&settings.cameras, &survey.images)?;
     let usual = start::starts(&survey, &owners, settings).and_then(|rough| stages::refined(&survey, &owners, rough, settings));
+    let plain = usual.as_ref().map(|usual| usual.cameras.clone()).ok();
     let (starts, rivals) = search::better(&survey, &owners, settings, usual)?;
     let (network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
-    let origins = starts.origins;
-    Ok(Prepared { settings: settings.clone(), survey, origins, rivals, network, sights, left_out, unmeasured: LostRows::default() })
+    let (plain, origins) = (plain.unwrap_or(starts.cameras), starts.origins);
+    Ok(Prepared { settings: settings.clone(), survey, plain, origins, rivals, network, sights, left_out, unmeasured: LostRows::default() })
 }

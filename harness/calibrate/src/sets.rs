@@ -1,21 +1,20 @@
 //! Several sets of parameters for the same observations: which of them the network supports.
 
 use calibench_adjust::{Comparison, Interior, Network, Options, Solution, Status, adjust, compare};
-use calibench_model::camera::Camera;
+use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::convert::{DifferenceOptions, difference};
 
-use crate::{Calibration, CalibrationError, Compared, ComparedSet, SetResult};
+use crate::{Calibration, CalibrationError, Compared, ComparedSet, Prepared, SetResult};
 
 /// Adjusts the observations of `calibration` once more for every set of parameters, from the same start values and without the image points that it
-/// rejected. What is in no set keeps its start value; observed parameters stay observed in every set.
+/// rejected. What a set does not solve for keeps the value of the usual start; observed parameters stay observed in every set.
 ///
 /// # Errors
 /// A name that the model does not have. A set that the network does not determine is no error: it says so.
 pub fn compare_sets(calibration: &Calibration<'_>, sets: &[Vec<String>]) -> Result<Compared, CalibrationError> {
-    let network = &calibration.prepared.network;
     let left_out = calibration.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
     let options = Options { huber: calibration.prepared.settings.huber, left_out, ..Options::default() };
-    let networks = sets.iter().map(|names| with(network, names)).collect::<Result<Vec<_>, _>>()?;
+    let networks = sets.iter().map(|names| with(calibration.prepared, names)).collect::<Result<Vec<_>, _>>()?;
     let solutions: Vec<Result<Solution<'_>, String>> =
         networks.iter().map(|network| adjust(network, &options).map_err(|error| error.to_string())).collect();
     let set = |index: usize| ComparedSet {
@@ -38,18 +37,23 @@ impl Calibration<'_> {
 }
 
 /// The same network with other parameters solved for, of every camera.
-fn with(network: &Network, names: &[String]) -> Result<Network, CalibrationError> {
+fn with(prepared: &Prepared, names: &[String]) -> Result<Network, CalibrationError> {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let cameras = network.cameras.iter().map(|interior| solving(interior, &names)).collect::<Result<_, _>>()?;
-    Ok(Network { cameras, ..network.clone() })
+    let cameras = prepared.network.cameras.iter().zip(&prepared.plain).map(|(interior, plain)| solving(interior, plain, &names));
+    Ok(Network { cameras: cameras.collect::<Result<_, _>>()?, ..prepared.network.clone() })
 }
 
-fn solving(interior: &Interior, names: &[&str]) -> Result<Interior, CalibrationError> {
+/// What is no longer solved for is as in `plain`.
+fn solving(interior: &Interior, plain: &Camera, names: &[&str]) -> Result<Interior, CalibrationError> {
     let fixed = |status: &Status| if *status == Status::Free { Status::Fixed } else { *status };
     let observed = Interior { parameters: interior.parameters.iter().map(fixed).collect(), ..interior.clone() };
     let known = observed.parameters.clone();
     let mut free = observed.free(names)?;
     free.parameters.iter_mut().zip(known).filter(|(_, known)| known.is_unknown()).for_each(|(status, known)| *status = known);
+    let (own, plain, before) = (interior.camera.parameters(), plain.parameters(), &interior.parameters);
+    let no_longer = |i: usize| before[i] == Status::Free && free.parameters[i] == Status::Fixed;
+    let values: Vec<f64> = (0..own.len()).map(|i| if no_longer(i) { plain[i].value } else { own[i].value }).collect();
+    free.camera = interior.camera.with_parameters(&values);
     Ok(free)
 }
 

@@ -14,6 +14,8 @@ use sample::{Arrived, Sample};
 
 /// A start is another one if it ends this much lower, as a fraction of the sum of squares: more than the last step of an adjustment leaves.
 const LOWER: f64 = 1e-6;
+/// Sums of squares below this, by redundancy, are no more than rounding: residuals of 1e-5 standard deviations.
+const NOTHING: f64 = 1e-10;
 /// A minimum is a rival if its sum of squares is above the least by no more than this many variances of an image coordinate: the 99.9 % point of chi
 /// squared with one degree of freedom.
 const WITHIN: f64 = 10.83;
@@ -70,10 +72,11 @@ fn best(sample: &Sample, optics: &Optics, usual: Option<Arrived>, others: Vec<Ar
     let has_usual = usual.is_some();
     let all: Vec<Arrived> = usual.into_iter().chain(others).collect();
     let least = all.iter().map(|arrived| arrived.cost).fold(f64::INFINITY, f64::min);
-    let stays = has_usual && all[0].cost <= least * (1.0 + LOWER);
+    let redundancy = sample.redundancy(optics, &all.first()?.camera).max(1) as f64;
+    let stays = has_usual && all[0].cost <= least * (1.0 + LOWER) + NOTHING * redundancy;
     let chosen = if stays { 0 } else { all.iter().position(|arrived| arrived.cost == least)? };
     let Arrived { camera, cost, .. } = &all[chosen];
-    let variance = cost / sample.redundancy(optics, camera).max(1) as f64;
+    let variance = cost / redundancy;
     let apart = |other: &&Arrived| distance(camera, &other.camera).is_none_or(|px| px > SAME);
     let near = all.iter().filter(|other| other.cost - cost < WITHIN * variance).filter(apart);
     let rival = near.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|rival| Rival {
