@@ -192,7 +192,7 @@ fn replace<E: From<io::Error>>(path: &Path, place: &Path, write: impl FnOnce(&mu
 /// What the system says of a temporary file, without the name of that file.
 fn without_path(error: io::Error) -> io::Error {
     let said = error.get_ref().and_then(|inner| inner.source()).map(ToString::to_string);
-    said.map_or(error, |said| io::Error::other(said))
+    said.map_or(error, io::Error::other)
 }
 
 /// Gives a file the permissions of the one that it replaces, and its owner where that is allowed.

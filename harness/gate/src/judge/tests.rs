@@ -18,8 +18,11 @@ fn collected(run: impl FnOnce(&mut Collected)) -> Collected {
     all
 }
 
-/// Points of ten trials: old and new entry of each target by trial.
-fn pairs(targets: &[(&'static str, &dyn Fn(usize) -> [Entry; 2])]) -> Pairs {
+/// A target's name, and its old and new entry by trial.
+type Target<'t> = (&'static str, &'t dyn Fn(usize) -> [Entry; 2]);
+
+/// Points of ten trials.
+fn pairs(targets: &[Target<'_>]) -> Pairs {
     let which =
         |index: usize| method((0..10).flat_map(|trial| targets.iter().map(move |(name, of)| (trial as u64, *name, of(trial)[index]))));
     Pairs::of(&which(0), &which(1), false)
