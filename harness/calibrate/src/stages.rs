@@ -5,7 +5,7 @@ use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::convert::{ConvertOptions, Region};
 
 use super::start::Starts;
-use super::{CalibrationError, Optics, Settings, Sight, Survey, model, network};
+use super::{CalibrationError, Optics, Settings, Survey, model, network};
 
 /// Iterations of a simpler model at most: its minimum need not be exact.
 const ITERATIONS: usize = 30;
@@ -37,7 +37,9 @@ fn by_stages(survey: &Survey, owners: &[usize], starts: &Starts, settings: &Sett
     let (mut cameras, mut origins) = (solution.cameras().to_vec(), starts.origins.clone());
     for (index, simple) in simpler.iter().enumerate().filter_map(|(index, simple)| Some((index, simple.as_ref()?))) {
         let own = (0..survey.sights()).map(|index| survey.sight(index)).filter(|sight| owners[sight.image] == index);
-        cameras[index] = converted(own, &cameras[index], &settings.cameras[index])?;
+        let axis = cameras[index].project(Ray { x: 0.0, y: 0.0, z: -1.0 }).ok()?;
+        let farthest = own.map(|sight| sight.position.distance(axis)).fold(1.0, f64::max);
+        cameras[index] = converted(farthest, &cameras[index], &settings.cameras[index])?;
         origins[index] = format!("{}, then an adjustment with {}, converted", origins[index], model::name(simple));
     }
     Some(Starts { cameras, origins, poses: solution.poses().to_vec(), points: points(starts, &solution) })
@@ -53,11 +55,9 @@ fn simpler(optics: &Optics, rough: &Camera) -> Option<Optics> {
     Some(Optics { model: Some(simple.to_owned()), solve: Some(solve), priors: Vec::new(), ..optics.clone() })
 }
 
-/// The camera of `optics` that is nearest to `simple` in the circle about its axis that holds all its image points, since a fit need not suit what was not
-/// seen; in a smaller one if the model pictures no more.
-fn converted(sights: impl Iterator<Item = Sight>, simple: &Camera, optics: &Optics) -> Option<Camera> {
-    let axis = simple.project(Ray { x: 0.0, y: 0.0, z: -1.0 }).ok()?;
-    let farthest = sights.map(|sight| sight.position.distance(axis)).fold(1.0, f64::max);
+/// The camera of `optics` that is nearest to `simple` in the circle about its axis that holds all its image points, `farthest` px wide, since a fit need not
+/// suit what was not seen; in a smaller one if the model pictures no more.
+pub(super) fn converted(farthest: f64, simple: &Camera, optics: &Optics) -> Option<Camera> {
     CIRCLES.iter().find_map(|share| {
         let region = Region::Radius { px: share * farthest };
         model::converted(simple, optics, &ConvertOptions { accept: true, region, ..ConvertOptions::default() }).ok()

@@ -121,12 +121,12 @@ fn is_flat(known: &[Option<Point3<f64>>]) -> bool {
     values.min().max(0.0) <= FLAT * FLAT * values.max()
 }
 
-fn pinhole(size: ImageSize, focal: f64, [cx, cy]: [f64; 2]) -> Camera {
+pub(super) fn pinhole(size: ImageSize, focal: f64, [cx, cy]: [f64; 2]) -> Camera {
     OpenCv { size, fx: focal, fy: focal, cx, cy, distortion: [0.0; 14], coefficients: 5 }.into()
 }
 
 /// Where the principal point of a camera of which nothing is known lies.
-fn middle(size: ImageSize) -> Result<[f64; 2], CalibrationError> {
+pub(super) fn middle(size: ImageSize) -> Result<[f64; 2], CalibrationError> {
     let guess = interior_from_size(size)?;
     let named = |name: &str| guess.parameters().iter().find(|p| p.name == name).map_or(0.0, |p| p.value);
     Ok([named("cx"), named("cy")])

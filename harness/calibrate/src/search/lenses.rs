@@ -1,17 +1,17 @@
 //! The lenses that a search starts from.
 
 use calibench_adjust::approximate::{Control, interior_from_size};
-use calibench_model::camera::{Camera, CameraModel, OpenCv, OpenCvFisheye};
-use calibench_model::convert::{ConvertOptions, Region};
+use calibench_model::camera::{Camera, CameraModel, OpenCvFisheye};
 use calibench_model::{PixelPoint, Pose};
 
 use super::ladder::{BROWN, EQUIDISTANT, climbed};
 use super::sample::{Arrived, Sample};
 use super::{LOWER, kept};
 use crate::Optics;
-use crate::model::{self, converted};
+use crate::model;
 use crate::network::interior;
-use crate::start::pose_of;
+use crate::stages::converted;
+use crate::start::{middle, pinhole, pose_of};
 
 /// Focal lengths of lenses without distortion, in longer sides.
 const FOCAL: [f64; 7] = [0.3, 0.45, 0.7, 1.1, 1.8, 3.0, 6.0];
@@ -21,8 +21,6 @@ const FOCAL_WIDE: [f64; 6] = [0.16, 0.22, 0.32, 0.45, 0.65, 1.0];
 const NARROW: f64 = 0.7;
 /// Iterations at most, of the model asked for.
 const ITERATIONS: usize = 100;
-/// Circles over which models are fitted, as shares of the one that holds all image points.
-const CIRCLES: [f64; 4] = [1.0, 0.95, 0.9, 0.8];
 
 /// A lens to start from, with the poses that it gives.
 struct Lens {
@@ -66,25 +64,19 @@ fn is_narrow(camera: &Camera) -> bool {
 }
 
 fn lenses(sample: &Sample, optics: &Optics) -> Vec<Lens> {
-    let Some([cx, cy]) = middle(optics) else { return Vec::new() };
+    let Ok(centre @ [cx, cy]) = middle(optics.size) else { return Vec::new() };
     let (size, side, few) = (optics.size, f64::from(optics.size.width.max(optics.size.height)), sample.few());
     let nearest = |cameras: Vec<Camera>| {
         let tried = cameras.into_iter().map(|camera| (misfit(&camera, &few), camera));
         tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, camera)| camera)
     };
-    let pinhole = |f: f64| OpenCv { size, fx: f * side, fy: f * side, cx, cy, distortion: [0.0; 14], coefficients: 5 }.into();
+    let straight = |f: f64| pinhole(size, f * side, centre);
     let angles = |f: f64| OpenCvFisheye { size, fx: f * side, fy: f * side, cx, cy, skew: 0.0, k: [0.0; 4] }.into();
-    let straight = (nearest(FOCAL.map(pinhole).to_vec()), &BROWN[..], "the best of some focal lengths, distortion term by term");
+    let straight = (nearest(FOCAL.map(straight).to_vec()), &BROWN[..], "the best of some focal lengths, distortion term by term");
     let wide = (nearest(FOCAL_WIDE.map(angles).to_vec()), &EQUIDISTANT[..], "the best of some equidistant lenses, distortion term by term");
     let lens =
         |(camera, rungs, origin): (Option<Camera>, _, _)| camera.map(|camera| Lens { camera, poses: sample.poses(&camera), rungs, origin });
     [straight, wide].into_iter().filter_map(lens).collect()
-}
-
-fn middle(optics: &Optics) -> Option<[f64; 2]> {
-    let guess = interior_from_size(optics.size).ok()?;
-    let named = |name: &str| guess.parameters().iter().find(|p| p.name == name).map(|p| p.value);
-    Some([named("cx")?, named("cy")?])
 }
 
 /// The median over the images of the mean squared distance after a resection, px^2.
@@ -105,9 +97,6 @@ fn misfit(camera: &Camera, views: &[Vec<Control>]) -> f64 {
 fn in_model(sample: &Sample, optics: &Optics, lens: &Arrived) -> Option<Arrived> {
     let farthest = sample.farthest(&lens.camera)?;
     let rest = model::camera(&interior_from_size(optics.size).ok()?, optics).ok()?;
-    let camera = CIRCLES.iter().find_map(|share| {
-        let region = Region::Radius { px: share * farthest };
-        converted(&lens.camera, optics, &ConvertOptions { accept: true, region, ..ConvertOptions::default() }).ok()
-    })?;
+    let camera = converted(farthest, &lens.camera, optics)?;
     sample.adjusted(interior(optics, &kept(&camera, optics, &rest)).ok()?, &lens.poses, ITERATIONS, &lens.origin)
 }

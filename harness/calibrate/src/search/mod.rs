@@ -35,8 +35,8 @@ pub(super) fn better(
     let (mut cameras, mut rivals) = (Vec::new(), Vec::new());
     for (index, optics) in settings.cameras.iter().enumerate() {
         let usual = starts.as_ref().ok().map(|starts| (starts.cameras[index], starts.origins[index].clone()));
-        let sample = Sample::of(survey, owners, index, settings).filter(|_| optics.start.is_none());
-        let found = sample.and_then(|mut sample| {
+        let sample = || Sample::of(survey, owners, index, settings);
+        let found = optics.start.is_none().then(sample).flatten().and_then(|mut sample| {
             let (first, others) = lenses::arrived(&mut sample, optics, usual.as_ref());
             best(&sample, optics, first, others)
         });
@@ -44,12 +44,13 @@ pub(super) fn better(
         rivals.extend(found.and_then(|found| found.rival).map(|rival| Rival { camera: index, ..rival }));
     }
     let replaced = |starts: &Starts| starts.cameras.iter().zip(&cameras).any(|(old, new)| new.as_ref().is_some_and(|(new, _)| new != old));
-    match starts {
-        Ok(starts) if !replaced(&starts) => Ok((starts, rivals)),
-        Err(error) if cameras.iter().any(Option::is_none) => Err(error),
+    match &starts {
+        Ok(usual) if !replaced(usual) => Ok((starts?, rivals)),
+        Err(_) if cameras.iter().any(Option::is_none) => Ok((starts?, rivals)),
         _ => {
             let (cameras, origins) = cameras.into_iter().flatten().unzip();
-            Ok((orient_all(survey, owners, settings, cameras, origins)?, rivals))
+            // A camera that does not orient every image replaces none that did.
+            Ok((orient_all(survey, owners, settings, cameras, origins).or(starts)?, rivals))
         }
     }
 }
