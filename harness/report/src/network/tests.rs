@@ -42,20 +42,7 @@ fn summaries() -> Summaries {
 }
 
 fn cell(metric: Metric) -> Cell {
-    Cell {
-        row: "r".into(),
-        column: "c".into(),
-        printed: "0.5".into(),
-        metric,
-        target: None,
-        except: Vec::new(),
-        plus: 0.0,
-        at: std::collections::BTreeMap::new(),
-        misprint: None,
-        method: None,
-        of: None,
-        not_comparable: None,
-    }
+    Cell::bare("0.5", metric)
 }
 
 fn close(found: f64, expected: f64) {

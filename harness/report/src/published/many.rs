@@ -122,26 +122,12 @@ fn spread(cell: &Cell, value: f64, half: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
 
     use super::super::Metric;
     use super::*;
 
     fn cell(printed: &str) -> Cell {
-        Cell {
-            row: "r".into(),
-            column: "c".into(),
-            printed: printed.into(),
-            metric: Metric::MeanDx,
-            target: None,
-            except: Vec::new(),
-            plus: 0.0,
-            at: BTreeMap::new(),
-            misprint: None,
-            method: None,
-            of: None,
-            not_comparable: None,
-        }
+        Cell::bare(printed, Metric::MeanDx)
     }
 
     const OURS: Ours = Ours { one: 2.0, mean: 2.5, half: Some(0.25), scatter: Some(0.5), truth: Some((3.0, None)) };

@@ -201,6 +201,27 @@ fn parse(file: &str, text: &str) -> Result<Table, Problems> {
 }
 
 #[cfg(test)]
+impl Cell {
+    /// A cell of nothing but what is printed and what of ours it is compared with.
+    pub(crate) fn bare(printed: &str, metric: Metric) -> Self {
+        Self {
+            row: "r".into(),
+            column: "c".into(),
+            printed: printed.into(),
+            metric,
+            target: None,
+            except: Vec::new(),
+            plus: 0.0,
+            at: BTreeMap::new(),
+            misprint: None,
+            method: None,
+            of: None,
+            not_comparable: None,
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -218,18 +239,9 @@ mod tests {
     #[test]
     fn a_coordinate_reproduces_within_half_a_unit_of_its_last_digit() {
         let cell = |printed: &str, why: Option<&str>| Cell {
-            row: "1".into(),
-            column: "x".into(),
-            printed: printed.into(),
-            metric: Metric::X,
             target: Some("1".into()),
-            except: Vec::new(),
-            plus: 0.0,
-            at: BTreeMap::new(),
-            misprint: None,
-            method: None,
-            of: None,
             not_comparable: why.map(str::to_owned),
+            ..Cell::bare(printed, Metric::X)
         };
         assert_eq!(cell("22.520", None).verdict(Some(22.5205)), Verdict::Reproduces);
         assert_eq!(cell("22.520", None).verdict(Some(22.520_51)), Verdict::Differs);

@@ -87,20 +87,7 @@ mod tests {
 
     #[test]
     fn ours_has_one_digit_more_than_print() {
-        let cell = |printed: &str| Cell {
-            row: "r".into(),
-            column: "c".into(),
-            printed: printed.into(),
-            metric: super::super::Metric::X,
-            target: None,
-            except: Vec::new(),
-            plus: 0.0,
-            at: std::collections::BTreeMap::new(),
-            misprint: None,
-            method: None,
-            of: None,
-            not_comparable: None,
-        };
+        let cell = |printed: &str| Cell::bare(printed, super::super::Metric::X);
         let found = ["22.52", "-7", "1/18.9", "?"].map(|printed| like(&cell(printed), 0.25));
         assert_eq!(found, ["0.250", "0.2", "1/4.0", "0.2500"]);
     }

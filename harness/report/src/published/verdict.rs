@@ -134,26 +134,12 @@ impl Cell {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
 
     use super::super::Metric;
     use super::*;
 
     fn cell(printed: &str, metric: Metric) -> Cell {
-        Cell {
-            row: "r".into(),
-            column: "c".into(),
-            printed: printed.into(),
-            metric,
-            target: None,
-            except: Vec::new(),
-            plus: 0.0,
-            at: BTreeMap::new(),
-            misprint: None,
-            method: None,
-            of: None,
-            not_comparable: None,
-        }
+        Cell::bare(printed, metric)
     }
 
     #[test]
