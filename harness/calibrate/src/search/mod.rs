@@ -72,10 +72,10 @@ struct Best {
 fn best(sample: &Sample, optics: &Optics, usual: Option<Arrived>, others: Vec<Arrived>) -> Option<Best> {
     let has_usual = usual.is_some();
     let all: Vec<Arrived> = usual.into_iter().chain(others).collect();
-    let least = all.iter().map(|arrived| arrived.cost).fold(f64::INFINITY, f64::min);
     let redundancy = sample.redundancy(optics, &all.first()?.camera).max(1) as f64;
-    let stays = has_usual && all[0].cost <= least * (1.0 + LOWER) + NOTHING * redundancy;
-    let chosen = if stays { 0 } else { all.iter().position(|arrived| arrived.cost == least)? };
+    let costs: Vec<f64> = all.iter().map(|arrived| arrived.cost).collect();
+    let chosen = lowest(&costs, redundancy)?;
+    let stays = has_usual && chosen == 0;
     let Arrived { camera, cost, .. } = &all[chosen];
     let variance = cost / redundancy;
     let apart = |other: &&Arrived| distance(camera, &other.camera).is_none_or(|px| px > SAME);
@@ -89,6 +89,12 @@ fn best(sample: &Sample, optics: &Optics, usual: Option<Arrived>, others: Vec<Ar
     });
     // With images beside the sample the minimum orients them better than the rough camera that led to it.
     Some(Best { camera: *camera, origin: all[chosen].origin.clone(), replaces: !stays || sample.is_part, rival })
+}
+
+/// The place of the lowest sum of squares; the first one's, where none is lower by more than steps and rounding leave.
+fn lowest(costs: &[f64], redundancy: f64) -> Option<usize> {
+    let least = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]))?;
+    Some(if costs[0] <= costs[least] * (1.0 + LOWER) + NOTHING * redundancy { 0 } else { least })
 }
 
 fn distance(a: &Camera, b: &Camera) -> Option<f64> {
@@ -105,4 +111,20 @@ fn kept(camera: &Camera, optics: &Optics, rest: &Camera) -> Camera {
         .map(|(own, rest)| if unknown.iter().any(|name| name == own.name) { own.value } else { rest.value })
         .collect();
     camera.with_parameters(&values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_minimum_stays_unless_another_is_lower() {
+        assert_eq!(lowest(&[], 10.0), None);
+        assert_eq!(lowest(&[100.0, 100.0, 99.0], 10.0), Some(2));
+        assert_eq!(lowest(&[99.0, 100.0, 1e9], 10.0), Some(0));
+        assert_eq!(lowest(&[100.0, 100.0 * (1.0 - 5e-7)], 10.0), Some(0));
+        assert_eq!(lowest(&[100.0, 100.0 * (1.0 - 5e-6)], 10.0), Some(1));
+        // Of exact data all sums are rounding.
+        assert_eq!(lowest(&[5e-10, 1e-20], 10.0), Some(0));
+    }
 }
