@@ -21,7 +21,11 @@ impl Counts {
         let mut counts = Self { image_coordinates: 2 * image_points, constraints, ..Self::default() };
         let parameters = network.cameras.iter().flat_map(|camera| &camera.parameters);
         let coordinates = network.points.iter().flat_map(|point| &point.coordinates);
-        parameters.chain(coordinates).for_each(|status| counts.add(status.is_unknown(), matches!(status, Status::Observed { .. }), 1));
+        let shapes = network.surfaces.iter().flat_map(|surface| &surface.statuses);
+        parameters
+            .chain(coordinates)
+            .chain(shapes)
+            .for_each(|status| counts.add(status.is_unknown(), matches!(status, Status::Observed { .. }), 1));
         for image in &network.images {
             counts.add(image.centre != Centre::Fixed, matches!(image.centre, Centre::Observed { .. }), 3);
             counts.add(image.attitude != Attitude::Fixed, matches!(image.attitude, Attitude::Observed { .. }), 3);

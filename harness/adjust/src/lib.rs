@@ -22,7 +22,10 @@ mod state;
 
 pub use counts::Counts;
 pub use error::AdjustError;
-pub use network::{Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, Precision, Status};
+pub use network::{
+    Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, OnSurface, Precision, Status,
+    Surface,
+};
 pub use quality::{
     Comparison, Correlation, Covariances, Defect, Direction, Distance, Found, ObservedReliability, PointReliability, Reason, Reliability,
     Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, compare, frame_uncertainty, snoop,

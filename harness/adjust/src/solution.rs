@@ -118,7 +118,12 @@ impl<'n> Solution<'n> {
 
     /// Object points, object units, in the order of the network's.
     pub fn points(&self) -> &[Point3<f64>] {
-        &self.end.state.points
+        &self.end.state.points[..self.network().points.len()]
+    }
+
+    /// Coefficients of each surface, object units, in the order of the network's.
+    pub fn surfaces(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
+        self.end.state.points[self.network().points.len()..].iter().map(|coefficients| coefficients.coords.into())
     }
 
     /// What defines the frame of the object.

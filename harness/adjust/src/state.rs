@@ -13,16 +13,25 @@ use crate::normal::Step;
 pub(crate) struct State {
     pub(crate) cameras: Vec<Camera>,
     pub(crate) poses: Vec<Pose>,
+    /// Of each triple: where a point is, or the coefficients of a surface.
     pub(crate) points: Vec<Point3<f64>>,
 }
 
 impl State {
     /// The start values.
     pub(crate) fn of(network: &Network) -> Self {
+        let coefficients = network.surfaces.iter().map(|surface| Point3::from(surface.coefficients));
+        let mut points: Vec<Point3<f64>> = network.points.iter().map(|point| point.position).chain(coefficients).collect();
+        for (on, coefficients) in network.surfaces.iter().flat_map(|surface| surface.points.iter().map(|on| (on, surface.coefficients))) {
+            // The network is checked later.
+            if let Some(point) = points.get_mut(on.point) {
+                *point += on.basis * Vector3::from(coefficients);
+            }
+        }
         Self {
             cameras: network.cameras.iter().map(|interior| interior.camera).collect(),
             poses: network.images.iter().map(|image| image.pose).collect(),
-            points: network.points.iter().map(|point| point.position).collect(),
+            points,
         }
     }
 
@@ -39,7 +48,8 @@ impl State {
         let cameras = self.cameras.iter().zip(&layout.cameras).map(camera).collect();
         let pose = |(i, pose): (usize, &Pose)| if layout.is_pose_unknown(i) { turned(pose, &step.poses[i]) } else { *pose };
         let poses = self.poses.iter().enumerate().map(pose).collect();
-        let points = self.points.iter().zip(&step.points).map(|(point, change)| point + Vector3::from(*change)).collect();
+        let mut points: Vec<_> = self.points.iter().zip(&step.points).map(|(point, change)| point + Vector3::from(*change)).collect();
+        layout.triples.carry(&step.points, &mut points);
         Self { cameras, poses, points }
     }
 }

@@ -18,6 +18,12 @@ impl Network {
             finite(of, point.position.iter().copied())?;
             point.coordinates.iter().try_for_each(|status| check_status(of, *status))
         })?;
+        self.surfaces.iter().try_for_each(|surface| {
+            let of = || format!("surface {}", surface.name);
+            finite(of, surface.coefficients)?;
+            surface.statuses.iter().try_for_each(|status| check_status(of, *status))
+        })?;
+        self.check_surfaces()?;
         self.check_observations()?;
         self.check_datum()
     }
@@ -54,11 +60,11 @@ impl Network {
     }
 }
 
-fn within(of: impl Fn() -> String, what: &'static str, index: usize, count: usize) -> Result<(), NetworkError> {
+pub(super) fn within(of: impl Fn() -> String, what: &'static str, index: usize, count: usize) -> Result<(), NetworkError> {
     if index < count { Ok(()) } else { Err(NetworkError::NoSuch { of: of(), what, index, count }) }
 }
 
-fn finite(of: impl Fn() -> String, values: impl IntoIterator<Item = f64>) -> Result<(), NetworkError> {
+pub(super) fn finite(of: impl Fn() -> String, values: impl IntoIterator<Item = f64>) -> Result<(), NetworkError> {
     let all = values.into_iter().all(f64::is_finite);
     if all { Ok(()) } else { Err(NetworkError::NotANumber { of: of(), what: "a number is not finite" }) }
 }

@@ -56,6 +56,14 @@ pub enum NetworkError {
     /// The datum does not fit what is known.
     #[error("the datum does not fit: {0}")]
     Datum(String),
+    /// A surface's points are not what they must be.
+    #[error("surface {name}: {why}")]
+    Surface {
+        /// Its name.
+        name: String,
+        /// What is wrong.
+        why: &'static str,
+    },
     /// There is nothing to adjust.
     #[error("nothing is unknown")]
     NothingUnknown,

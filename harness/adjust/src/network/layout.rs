@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use calibench_model::camera::CameraModel;
 
-use super::{Attitude, Centre, Network, NetworkError, Precision, Status};
+use super::{Attitude, Centre, Network, NetworkError, Precision, Status, Triples};
 use crate::counts::Counts;
 
 /// An image point, ready for the loops.
@@ -14,7 +14,7 @@ pub(crate) struct Sight {
     pub(crate) point: u32,
     /// Place among the observations as given.
     pub(crate) given: u32,
-    /// The pair of its point and its camera; of no meaning for a point that is known or a camera that is.
+    /// The pair of its point's triple and its camera; of no meaning where the triple or the camera is known.
     pub(crate) pair: u32,
     pub(crate) at: [f64; 2],
     /// Lower triangle `[a, b, c]` of the matrix that makes residuals white: `(a x, b x + c y)`.
@@ -44,7 +44,7 @@ pub(crate) struct CameraPlace {
     pub(crate) offset: usize,
 }
 
-/// A point and a camera that pictures it.
+/// A triple and a camera that pictures what it moves.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     pub(crate) camera: usize,
@@ -58,9 +58,9 @@ pub(crate) struct Layout {
     /// By image, then by point.
     pub(crate) sights: Vec<Sight>,
     pub(crate) of_image: Vec<Range<usize>>,
-    /// Sights by point.
-    by_point: Vec<u32>,
-    point_start: Vec<u32>,
+    /// Sights by triple.
+    by_triple: Vec<u32>,
+    triple_start: Vec<u32>,
     pub(crate) cameras: Vec<CameraPlace>,
     /// The camera of each image.
     pub(crate) camera_of: Vec<usize>,
@@ -68,8 +68,10 @@ pub(crate) struct Layout {
     pub(crate) width: usize,
     /// Of each image: whether its rotation and its centre are unknowns.
     pub(crate) pose_free: Vec<[bool; 2]>,
-    /// Of each point: whether X, Y and Z are unknowns.
-    pub(crate) point_free: Vec<[bool; 3]>,
+    /// Which unknowns move which points.
+    pub(crate) triples: Triples,
+    /// Of each triple: which of its numbers are unknowns.
+    pub(crate) triple_free: Vec<[bool; 3]>,
     has_unknown_points: bool,
     /// Whether what couples points with cameras and poses is kept for all sights, and not made anew for some points at a time.
     pub(crate) keeps_couplings: bool,
@@ -84,14 +86,16 @@ impl Layout {
     pub(crate) fn new(network: &Network, held: &[(usize, usize)], left_out: &[usize]) -> Result<Self, NetworkError> {
         let sights = sights(network, left_out);
         let of_image = ranges(network.images.len(), sights.iter().map(Sight::image));
-        let (by_point, point_start) = by_point(network.points.len(), &sights);
-        let mut point_free: Vec<[bool; 3]> = network.points.iter().map(|point| point.coordinates.map(Status::is_unknown)).collect();
+        let triples = Triples::of(network);
+        let known = network.points.iter().map(|point| point.coordinates).chain(network.surfaces.iter().map(|surface| surface.statuses));
+        let mut triple_free: Vec<[bool; 3]> = known.map(|statuses| statuses.map(Status::is_unknown)).collect();
+        let (by_triple, triple_start) = by_triple(triple_free.len(), &sights, &triples);
         for &(point, axis) in held {
             if network.points[point].coordinates[axis] != Status::Free {
                 let (name, axis) = (&network.points[point].name, ["X", "Y", "Z"][axis]);
                 return Err(NetworkError::Datum(format!("{axis} of point {name} is known already")));
             }
-            point_free[point][axis] = false;
+            triple_free[point][axis] = false;
         }
         let (cameras, width) = cameras(network);
         let pose_free =
@@ -100,14 +104,15 @@ impl Layout {
         let mut layout = Self {
             sights,
             of_image,
-            by_point,
-            point_start,
+            by_triple,
+            triple_start,
             cameras,
             camera_of: network.images.iter().map(|image| image.camera).collect(),
             width,
             pose_free,
-            has_unknown_points: point_free.iter().any(|free| *free != [false; 3]),
-            point_free,
+            has_unknown_points: triple_free[..network.points.len()].iter().any(|free| *free != [false; 3]),
+            triples,
+            triple_free,
             keeps_couplings: true,
             pairs: Vec::new(),
             pair_start: vec![0],
@@ -120,11 +125,11 @@ impl Layout {
 
     fn find_pairs(&mut self) {
         let mut seen = Vec::new();
-        for point in 0..self.point_free.len() {
-            let sights = self.point_start[point] as usize..self.point_start[point + 1] as usize;
-            if self.is_point_unknown(point) {
+        for triple in 0..self.triple_free.len() {
+            let sights = self.triple_start[triple] as usize..self.triple_start[triple + 1] as usize;
+            if self.is_triple_unknown(triple) {
                 seen.clear();
-                seen.extend(sights.clone().map(|k| self.camera_of[self.sights[self.by_point[k] as usize].image()]));
+                seen.extend(sights.clone().map(|k| self.camera_of[self.sights[self.by_triple[k] as usize].image()]));
                 seen.sort_unstable();
                 seen.dedup();
                 seen.retain(|&camera| !self.cameras[camera].free.is_empty());
@@ -135,7 +140,7 @@ impl Layout {
                 self.pair_values += 3 * self.cameras[camera].free.len();
             }
             for k in sights {
-                let sight = &mut self.sights[self.by_point[k] as usize];
+                let sight = &mut self.sights[self.by_triple[k] as usize];
                 if let Ok(place) = seen.binary_search(&self.camera_of[sight.image()]) {
                     sight.pair = (first + place) as u32;
                 }
@@ -145,18 +150,18 @@ impl Layout {
         }
     }
 
-    /// Sights of a point.
-    pub(crate) fn of_point(&self, point: usize) -> impl ExactSizeIterator<Item = usize> + Clone + '_ {
-        self.by_point[self.point_start[point] as usize..self.point_start[point + 1] as usize].iter().map(|&sight| sight as usize)
+    /// Sights of the points that a triple moves.
+    pub(crate) fn of_triple(&self, triple: usize) -> impl ExactSizeIterator<Item = usize> + Clone + '_ {
+        self.by_triple[self.triple_start[triple] as usize..self.triple_start[triple + 1] as usize].iter().map(|&sight| sight as usize)
     }
 
-    /// Pairs of a point.
-    pub(crate) fn pairs_of(&self, point: usize) -> Range<usize> {
-        self.pair_start[point]..self.pair_start[point + 1]
+    /// Pairs of a triple.
+    pub(crate) fn pairs_of(&self, triple: usize) -> Range<usize> {
+        self.pair_start[triple]..self.pair_start[triple + 1]
     }
 
-    pub(crate) fn is_point_unknown(&self, point: usize) -> bool {
-        self.point_free[point] != [false; 3]
+    pub(crate) fn is_triple_unknown(&self, triple: usize) -> bool {
+        self.triple_free[triple] != [false; 3]
     }
 
     pub(crate) fn has_unknown_points(&self) -> bool {
@@ -221,14 +226,15 @@ fn ranges(count: usize, keys: impl Iterator<Item = usize>) -> Vec<Range<usize>> 
     sizes.into_iter().map(range).collect()
 }
 
-fn by_point(count: usize, sights: &[Sight]) -> (Vec<u32>, Vec<u32>) {
+fn by_triple(count: usize, sights: &[Sight], triples: &Triples) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0_u32; count + 1];
-    sights.iter().for_each(|sight| start[sight.point() + 1] += 1);
+    sights.iter().for_each(|sight| start[triples.of_point(sight.point()) + 1] += 1);
     (0..count).for_each(|i| start[i + 1] += start[i]);
     let (mut next, mut order) = (start.clone(), vec![0; sights.len()]);
     for (i, sight) in sights.iter().enumerate() {
-        order[next[sight.point()] as usize] = i as u32;
-        next[sight.point()] += 1;
+        let next = &mut next[triples.of_point(sight.point())];
+        order[*next as usize] = i as u32;
+        *next += 1;
     }
     (order, start)
 }

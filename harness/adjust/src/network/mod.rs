@@ -4,6 +4,7 @@ mod check;
 mod error;
 mod layout;
 mod status;
+mod surface;
 
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{Covariance, PixelPoint, Pose};
@@ -14,6 +15,8 @@ use crate::AdjustError;
 pub use error::NetworkError;
 pub(crate) use layout::{CameraPlace, Layout, Sight};
 pub use status::{Attitude, Centre, Status};
+pub(crate) use surface::Triples;
+pub use surface::{OnSurface, Surface};
 
 /// A network of images.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +31,8 @@ pub struct Network {
     pub observations: Vec<ImageObservation>,
     /// What fixes the frame of the object beside what is known of points and images.
     pub datum: Datum,
+    /// Shapes that move control points; none as a rule.
+    pub surfaces: Vec<Surface>,
 }
 
 /// An interior orientation: start values, and what is known of each parameter.

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use nalgebra::Matrix3;
+
 use super::image_equations::{Lost, Residual, Setting, View};
 use super::observed_unknowns;
 use super::projection::{Optics, POSE};
@@ -21,12 +23,15 @@ pub(crate) struct Normals {
     pub(crate) pose_right: Vec<[f64; 6]>,
     /// Of each image: 6 x n of its camera.
     pub(crate) pose_camera: Vec<Vec<f64>>,
+    /// Of each triple.
     pub(crate) point: Vec<[f64; 9]>,
     pub(crate) point_right: Vec<[f64; 3]>,
-    /// Of each pair of a point and a camera: 3 x n, one after the other.
+    /// Of each pair of a triple and a camera: 3 x n, one after the other.
     pub(crate) point_camera: Vec<f64>,
     /// Of each sight: 3 x 6.
     pub(crate) point_pose: Vec<[f64; 18]>,
+    /// Of each image and, within it, each surface: 3 x 6.
+    pub(crate) surface_pose: Vec<[f64; 18]>,
     /// Of each sight.
     pub(crate) residuals: Vec<Residual>,
 }
@@ -132,7 +137,7 @@ impl Rows {
             for (k, sight) in sights.iter().enumerate() {
                 let parameters = (0..free.len()).map(|i| view.at(k, POSE + i));
                 let of_pose = (0..POSE).map(|i| if mask[i] { view.at(k, i) } else { [0.0; 2] });
-                let of_point = view.by_point(k, &pose.rotation, layout.point_free[sight.point()]);
+                let of_point = by_triple(layout, view, (k, sight.point()), &pose.rotation);
                 self.values.extend(parameters.chain(of_pose).chain(of_point));
             }
         }
@@ -169,6 +174,8 @@ impl Normals {
         zero(&mut self.point_camera, if layout.keeps_couplings { layout.pair_values } else { 0 });
         let coupled = if layout.has_unknown_points() && layout.keeps_couplings { layout.sights.len() } else { 0 };
         self.point_pose.resize(coupled, [0.0; 18]);
+        self.surface_pose.clear();
+        self.surface_pose.resize(images * layout.triples.surfaces, [0.0; 18]);
         self.residuals.resize(layout.sights.len(), Residual::default());
     }
 
@@ -201,32 +208,38 @@ impl Normals {
 
     /// What the sights `range` of an image say of their points.
     fn add_points(&mut self, layout: &Layout, state: &State, image: usize, range: Range<usize>, view: &View) {
-        if !layout.has_unknown_points() {
+        if !layout.has_unknown_points() && layout.triples.surfaces == 0 {
             return;
         }
         let width = layout.cameras[layout.camera_of[image]].free.len();
         let m = &state.poses[image].rotation;
         let (pose_mask, is_pose_unknown) = (layout.pose_mask(image), layout.is_pose_unknown(image));
         for (k, sight) in layout.sights[range.clone()].iter().enumerate() {
-            let free = layout.point_free[sight.point()];
-            if free == [false; 3] {
+            let triple = layout.triples.of_point(sight.point());
+            if !layout.is_triple_unknown(triple) {
                 continue;
             }
             let pose: [[f64; 2]; POSE] = std::array::from_fn(|column| view.at(k, column));
-            let by = view.by_point(k, m, free);
+            let by = by_triple(layout, view, (k, sight.point()), m);
             let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
             let misclosure = view.at(k, POSE + width);
             for i in 0..3 {
-                (0..3).for_each(|j| self.point[sight.point()][3 * i + j] += dot(by[i], by[j]));
-                self.point_right[sight.point()][i] += dot(by[i], misclosure);
+                (0..3).for_each(|j| self.point[triple][3 * i + j] += dot(by[i], by[j]));
+                self.point_right[triple][i] += dot(by[i], misclosure);
             }
             if !layout.keeps_couplings {
                 continue;
             }
             if is_pose_unknown {
-                let block = &mut self.point_pose[range.start + k];
-                for (j, (column, free)) in pose.iter().zip(pose_mask).enumerate() {
-                    (0..3).for_each(|i| block[POSE * i + j] = if free { dot(by[i], *column) } else { 0.0 });
+                let block = match layout.triples.surface_of(sight.point()) {
+                    Some((surface, _)) => &mut self.surface_pose[image * layout.triples.surfaces + surface],
+                    None => {
+                        self.point_pose[range.start + k] = [0.0; 18];
+                        &mut self.point_pose[range.start + k]
+                    }
+                };
+                for (j, (column, _)) in pose.iter().zip(pose_mask).enumerate().filter(|(_, (_, free))| *free) {
+                    (0..3).for_each(|i| block[POSE * i + j] += dot(by[i], *column));
                 }
             }
             if width > 0 {
@@ -248,7 +261,7 @@ impl Normals {
                 }
             }
         }
-        for (block, free) in self.point.iter_mut().zip(&layout.point_free) {
+        for (block, free) in self.point.iter_mut().zip(&layout.triple_free) {
             for (i, free) in free.iter().enumerate() {
                 if !free {
                     block[4 * i] = 1.0;
@@ -256,6 +269,16 @@ impl Normals {
             }
         }
     }
+}
+
+/// White derivatives of a sight, by its place in the view and its point, by the triple that moves it; zero along what may not change.
+#[inline]
+fn by_triple(layout: &Layout, view: &View, (sight, point): (usize, usize), rotation: &Matrix3<f64>) -> [[f64; 2]; 3] {
+    let free = layout.triple_free[layout.triples.of_point(point)];
+    let Some((_, basis)) = layout.triples.surface_of(point) else { return view.by_point(sight, rotation, free) };
+    let by = view.by_point(sight, rotation, [true; 3]);
+    let along = |axis: usize, k: usize| (0..3).map(|i| by[i][axis] * basis[(i, k)]).sum();
+    std::array::from_fn(|k| if free[k] { [along(0, k), along(1, k)] } else { [0.0; 2] })
 }
 
 fn zero(values: &mut Vec<f64>, length: usize) {

@@ -21,7 +21,7 @@ pub(crate) struct Step {
     pub(crate) cameras: Vec<f64>,
     /// Of each image: small rotation about the camera's axes, shift along them (`N + d x N + s`).
     pub(crate) poses: Vec<[f64; 6]>,
-    /// Of each point: X, Y, Z.
+    /// Of each triple: X, Y, Z of a point, or the coefficients of a surface.
     pub(crate) points: Vec<[f64; 3]>,
 }
 

@@ -32,8 +32,9 @@ pub(super) fn add(network: &Network, layout: &Layout, state: &State, into: &mut 
             into.add_to_pose(index, 0, &rotation_vector_slope(&off), &-off, sigma);
         }
     }
-    for (index, point) in network.points.iter().enumerate() {
-        for (axis, status) in point.coordinates.iter().enumerate() {
+    let triples = network.points.iter().map(|point| &point.coordinates).chain(network.surfaces.iter().map(|surface| &surface.statuses));
+    for (index, statuses) in triples.enumerate() {
+        for (axis, status) in statuses.iter().enumerate() {
             let Some((p, w)) = equation(*status, state.points[index][axis]) else { continue };
             into.point[index][4 * axis] += p;
             into.point_right[index][axis] += p * w;

@@ -57,7 +57,7 @@ fn network(camera: Camera) -> Network {
 
 /// A step of one unknown, counted over parameters, the pose and the points.
 fn unit(layout: &Layout, k: usize, h: f64) -> Step {
-    let mut step = Step::zero(layout.width, 1, layout.point_free.len());
+    let mut step = Step::zero(layout.width, 1, layout.triple_free.len());
     match k.checked_sub(layout.width) {
         None => step.cameras[k] = h,
         Some(k @ 0..6) => step.poses[0][k] = h,

@@ -34,6 +34,8 @@ pub struct Covariances {
     pub poses: Vec<Matrix6<f64>>,
     /// Of each point: X, Y, Z in object units; zeros for what is fixed.
     pub points: Vec<Matrix3<f64>>,
+    /// Of each surface: its coefficients, object units; zeros for what is fixed.
+    pub surfaces: Vec<Matrix3<f64>>,
 }
 
 /// Two parameters that the network hardly tells apart.
@@ -102,17 +104,19 @@ impl Solution<'_> {
         }
         let poses = poses.iter().enumerate().map(|(image, block)| self.in_object_axes(image, block) * variance_factor).collect();
         points.iter_mut().for_each(|block| *block *= variance_factor);
+        let surfaces = points.split_off(self.network().points.len());
         Ok(Covariances {
             variance_factor,
             interior: self.interior(&inverse) * variance_factor,
             parameters: self.parameters(),
             poses,
             points,
+            surfaces,
         })
     }
 
     /// The covariance of all unknowns, on request: of `n` of them, `n^2` numbers. Rows: the parameters of [`Covariances::interior`], then six for each
-    /// image and three for each point, as in [`Covariances::poses`] and [`Covariances::points`].
+    /// image and three for each point and each surface, as in [`Covariances::poses`], [`Covariances::points`] and [`Covariances::surfaces`].
     ///
     /// # Errors
     /// As [`Self::covariances`]; and in a datum other than that of the adjustment.
@@ -188,7 +192,7 @@ impl Solution<'_> {
     fn blocks(&self, inverse: &Inverse) -> (Vec<Matrix6<f64>>, Vec<Matrix3<f64>>) {
         let (layout, plan) = (&self.engine.layout, &self.engine.plan);
         let mut poses = vec![Matrix6::zeros(); layout.pose_free.len()];
-        let mut points = vec![Matrix3::zeros(); layout.point_free.len()];
+        let mut points = vec![Matrix3::zeros(); layout.triple_free.len()];
         for (kept, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
             let values = inverse.block(plan, block, block);
             match plan.eliminated {
@@ -213,7 +217,7 @@ impl Solution<'_> {
             let free = layout.pose_mask(image);
             block.iter_mut().enumerate().filter(|(k, _)| !(free[k % 6] && free[k / 6])).for_each(|(_, value)| *value = 0.0);
         }
-        for (block, free) in points.iter_mut().zip(&layout.point_free) {
+        for (block, free) in points.iter_mut().zip(&layout.triple_free) {
             block.iter_mut().enumerate().filter(|(k, _)| !(free[k % 3] && free[k / 3])).for_each(|(_, value)| *value = 0.0);
         }
         (poses, points)

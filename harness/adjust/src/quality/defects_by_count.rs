@@ -27,11 +27,11 @@ pub(crate) fn counted(network: &Network, layout: &Layout, held: &[(usize, usize)
 
 fn points(network: &Network, layout: &Layout) -> Option<Defect> {
     let lacking = |&i: &usize| {
-        let known = (0..3).filter(|&axis| !layout.point_free[i][axis] || network.points[i].coordinates[axis] != Status::Free).count();
-        layout.is_point_unknown(i) && 2 * layout.of_point(i).len() + known < 3
+        let known = (0..3).filter(|&axis| !layout.triple_free[i][axis] || network.points[i].coordinates[axis] != Status::Free).count();
+        layout.is_triple_unknown(i) && 2 * layout.of_triple(i).len() + known < 3
     };
     let points: Vec<_> =
-        (0..network.points.len()).filter(lacking).map(|i| (network.points[i].name.clone(), layout.of_point(i).len())).collect();
+        (0..network.points.len()).filter(lacking).map(|i| (network.points[i].name.clone(), layout.of_triple(i).len())).collect();
     (!points.is_empty()).then_some(Defect::Points { points })
 }
 

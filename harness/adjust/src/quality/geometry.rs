@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
 use super::defect::Reason;
-use crate::network::Layout;
+use crate::network::{Layout, Sight};
 use crate::state::State;
 
 /// Extent, relative to the largest, below which points have none in a direction.
@@ -15,7 +15,10 @@ const ROLL: f64 = 0.35;
 /// What holds of the images and points that take part.
 pub(super) fn reasons(layout: &Layout, state: &State) -> Vec<Reason> {
     let images: Vec<usize> = (0..layout.of_image.len()).filter(|&i| !layout.of_image[i].is_empty()).collect();
-    let points: Vec<&Point3<f64>> = (0..state.points.len()).filter(|&i| layout.of_point(i).len() > 0).map(|i| &state.points[i]).collect();
+    let mut measured: Vec<usize> = layout.sights.iter().map(Sight::point).collect();
+    measured.sort_unstable();
+    measured.dedup();
+    let points: Vec<&Point3<f64>> = measured.into_iter().map(|i| &state.points[i]).collect();
     let axes: Vec<Vector3<f64>> = images.iter().map(|&i| state.poses[i].rotation.row(2).transpose()).collect();
     let converges = axes.iter().any(|axis| axis.angle(&axes[0]) > CONVERGENCE);
     let mut reasons = Vec::new();

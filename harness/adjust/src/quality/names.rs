@@ -37,11 +37,13 @@ pub(super) fn participants(network: &Network, layout: &Layout, state: &State, no
     for (k, what) in ["X0", "Y0", "Z0", "rotation"].into_iter().enumerate() {
         found.extend(of_some(&images, |i| takes_part(poses[i][k]), name, what, "image"));
     }
-    let unknown: Vec<usize> = (0..layout.point_free.len()).filter(|&i| layout.is_point_unknown(i)).collect();
+    let unknown: Vec<usize> = (0..network.points.len()).filter(|&i| layout.is_triple_unknown(i)).collect();
     let name = |i: usize| network.points[i].name.as_str();
     for (k, what) in ["X", "Y", "Z"].into_iter().enumerate() {
         found.extend(of_some(&unknown, |i| takes_part(points[i][k]), name, what, "point"));
     }
+    let shapes = network.surfaces.iter().zip(&points[network.points.len()..]);
+    found.extend(shapes.filter(|(_, effects)| effects.iter().any(|effect| takes_part(*effect))).map(|(surface, _)| surface.name.clone()));
     found
 }
 
@@ -96,7 +98,7 @@ fn poses(layout: &Layout, state: &State, normals: &Normals, step: &Step) -> Vec<
 fn points(layout: &Layout, normals: &Normals, step: &Step) -> Vec<[f64; 3]> {
     let of = |i: usize| {
         let along = |k: usize| step.points[i][k].abs() * normals.point[i][4 * k].max(0.0).sqrt();
-        if layout.is_point_unknown(i) { std::array::from_fn(along) } else { [0.0; 3] }
+        if layout.is_triple_unknown(i) { std::array::from_fn(along) } else { [0.0; 3] }
     };
     (0..step.points.len()).map(of).collect()
 }

@@ -142,13 +142,13 @@ impl Solution<'_> {
     fn point_by_point(&self, inverse: &Inverse, scale: [f64; 2], found: &mut Vec<PointReliability>) -> Result<(), Lost> {
         let Engine { network, layout, plan, loss, .. } = &self.engine;
         let (ordered, mut coupling) = (self.engine.ordered(&self.end.state, &self.end.normals), Coupling::default());
-        let (count, mut next) = (layout.point_free.len(), layout.of_image.iter().map(|range| range.start).collect::<Vec<_>>());
+        let (count, mut next) = (layout.triple_free.len(), layout.of_image.iter().map(|range| range.start).collect::<Vec<_>>());
         let mut rows: Vec<Rows> = (0..layout.of_image.len()).map(|_| Rows::default()).collect();
         let (mut first, mut scratch) = (0, Scratch::default());
         while first < count {
             let (mut end, mut sights) = (first, 0);
             while end < count && (end == first || sights < CHUNK) {
-                sights += layout.of_point(end).len();
+                sights += layout.of_triple(end).len();
                 end += 1;
             }
             for (image, range) in layout.of_image.iter().enumerate() {
@@ -161,7 +161,7 @@ impl Solution<'_> {
             for point in first..end {
                 let place = plan.members.binary_search(&point).ok();
                 let member = place.map(|place| inverse.member::<3>(&self.solved, ordered, place, &mut coupling));
-                for sight in layout.of_point(point) {
+                for sight in layout.of_triple(point) {
                     let row = rows[layout.sights[sight].image()].of(sight);
                     let adjusted = self.adjusted(inverse, sight, row, member.as_ref());
                     found.push(self.image_point(sight, adjusted, scale));
@@ -180,7 +180,7 @@ impl Solution<'_> {
         let (of_pose, of_point) = (&row[width..width + 6], &row[width + 6..]);
         let (own, other, kept) = match plan.eliminated {
             Eliminated::Points => (of_point, of_pose, plan.block_of[sight.image()]),
-            Eliminated::Poses => (of_pose, of_point, plan.block_of[sight.point()]),
+            Eliminated::Poses => (of_pose, of_point, plan.block_of[layout.triples.of_point(sight.point())]),
         };
         let parts: Vec<(usize, &[[f64; 2]])> =
             [(camera, &row[..width]), (kept, other)].into_iter().filter(|(block, part)| *block != usize::MAX && !part.is_empty()).collect();
@@ -264,6 +264,14 @@ impl Solution<'_> {
                 if let Status::Observed { value, sigma } = *status {
                     let what = format!("{} of point {}", ["X", "Y", "Z"][k], point.name);
                     add(what, state.points[i][k] - value, sigma, covariances.points[i][(k, k)]);
+                }
+            }
+        }
+        for (i, (surface, values)) in network.surfaces.iter().zip(self.surfaces()).enumerate() {
+            for (k, status) in surface.statuses.iter().enumerate() {
+                if let Status::Observed { value, sigma } = *status {
+                    let what = format!("coefficient {} of surface {}", k + 1, surface.name);
+                    add(what, values[k] - value, sigma, covariances.surfaces[i][(k, k)]);
                 }
             }
         }

@@ -26,6 +26,8 @@ pub(crate) enum Source {
     PointCamera(usize),
     /// A pose with a point: the sight.
     Sight(usize),
+    /// A pose with a surface: its place among all blocks of images and surfaces.
+    Surface(usize),
 }
 
 /// A kept block that an eliminated one is coupled with.
@@ -60,10 +62,11 @@ pub(crate) struct Plan {
 
 impl Plan {
     pub(crate) fn of(layout: &Layout) -> Self {
-        let points = (0..layout.point_free.len()).filter(|&i| layout.is_point_unknown(i)).collect::<Vec<_>>();
+        let points = (0..layout.triple_free.len()).filter(|&i| layout.is_triple_unknown(i)).collect::<Vec<_>>();
         let poses = (0..layout.pose_free.len()).filter(|&i| layout.is_pose_unknown(i)).collect::<Vec<_>>();
-        let (eliminated, members, others, size, count) = if 6 * poses.len() > 3 * points.len() {
-            (Eliminated::Poses, poses, points, 3, layout.point_free.len())
+        // All images see a surface: eliminated, it would couple each with each.
+        let (eliminated, members, others, size, count) = if 6 * poses.len() > 3 * points.len() || layout.triples.surfaces > 0 {
+            (Eliminated::Poses, poses, points, 3, layout.triple_free.len())
         } else {
             (Eliminated::Points, points, poses, 6, layout.pose_free.len())
         };
@@ -92,12 +95,15 @@ impl Plan {
                 for sight in layout.of_image[member].clone() {
                     push(Source::Sight(sight), self.block_of[layout.sights[sight].point()]);
                 }
+                for (surface, triple) in layout.triples.of_surfaces().enumerate() {
+                    push(Source::Surface(member * layout.triples.surfaces + surface), self.block_of[triple]);
+                }
             }
             Eliminated::Points => {
                 for pair in &layout.pairs[layout.pairs_of(member)] {
                     push(Source::PointCamera(pair.offset), pair.camera);
                 }
-                for sight in layout.of_point(member) {
+                for sight in layout.of_triple(member) {
                     push(Source::Sight(sight), self.block_of[layout.sights[sight].image()]);
                 }
             }
@@ -152,6 +158,10 @@ impl Ordered<'_> {
         match (coupled.source, self.engine.plan.eliminated) {
             (Source::PoseCamera(image), _) => into.copy_from_slice(&self.normals.pose_camera[image][own..][..width]),
             (Source::PointCamera(first), _) => into.copy_from_slice(&window.camera(*self, first)[own..][..width]),
+            (Source::Surface(place), _) => {
+                let block = &self.normals.surface_pose[place];
+                (0..3).for_each(|i| into[i] = block[6 * i + d]);
+            }
             (Source::Sight(sight), Eliminated::Points) => into.copy_from_slice(&window.pose(*self, sight)[6 * d..6 * d + 6]),
             (Source::Sight(sight), Eliminated::Poses) => {
                 let block = window.pose(*self, sight);

@@ -150,13 +150,13 @@ impl<'n> Engine<'n> {
             let free = self.layout.pose_mask(image);
             values.iter_mut().zip(free).filter(|(_, free)| !free).for_each(|(value, _)| *value = 0.0);
         }
-        for (values, free) in step.points.iter_mut().zip(&self.layout.point_free) {
+        for (values, free) in step.points.iter_mut().zip(&self.layout.triple_free) {
             values.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(value, _)| *value = 0.0);
         }
     }
 
     pub(crate) fn zero_step(&self) -> Step {
-        Step::zero(self.layout.width, self.layout.pose_free.len(), self.layout.point_free.len())
+        Step::zero(self.layout.width, self.layout.pose_free.len(), self.layout.triple_free.len())
     }
 
     /// The step with `damping`, what it promises and the decomposition behind it; `None` if there is none.

@@ -166,7 +166,7 @@ impl Schur {
             }
         }
         solve(&mut kept);
-        let mut step = Step::zero(layout.width, layout.pose_free.len(), layout.point_free.len());
+        let mut step = Step::zero(layout.width, layout.pose_free.len(), layout.triple_free.len());
         self.back_with(of, &kept, &rights, &mut step);
         step
     }

@@ -5,7 +5,7 @@ use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Point3, Vector3};
 
 use super::*;
-use crate::Datum;
+
 use crate::network::{Exterior, ImageObservation, Interior, ObjectPoint};
 
 /// Six images of sixty points, some of which are known, with wobbling image coordinates.
@@ -30,7 +30,7 @@ fn network() -> Network {
     }
     let images = poses.into_iter().enumerate().map(|(i, pose)| Exterior::free(i.to_string(), 0, pose)).collect();
     let interior = Interior::fixed("camera", camera).free(&["fx", "fy", "cx", "cy", "k1"]).unwrap();
-    Network { cameras: vec![interior], images, points, observations, datum: Datum::Control }
+    Network { cameras: vec![interior], images, points, observations, ..Network::default() }
 }
 
 #[test]

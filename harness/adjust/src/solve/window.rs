@@ -31,8 +31,8 @@ impl Window {
             return;
         }
         let (mut end, mut sights) = (member, 0);
-        while end < layout.point_free.len() && (end == member || sights < CHUNK) {
-            sights += layout.of_point(end).len();
+        while end < layout.triple_free.len() && (end == member || sights < CHUNK) {
+            sights += layout.of_triple(end).len();
             end += 1;
         }
         self.points = member..end;
@@ -40,7 +40,7 @@ impl Window {
         self.poses.clear();
         let offset = |point: usize| layout.pairs.get(layout.pairs_of(point).start).map_or(layout.pair_values, |pair| pair.offset);
         self.first_pair = offset(member);
-        let values = if end < layout.point_free.len() { offset(end) } else { layout.pair_values } - self.first_pair;
+        let values = if end < layout.triple_free.len() { offset(end) } else { layout.pair_values } - self.first_pair;
         self.cameras.clear();
         self.cameras.resize(values, 0.0);
         for (image, range) in layout.of_image.iter().enumerate() {
@@ -65,7 +65,7 @@ impl Window {
             let (row, sight) = (self.rows.of(index), &layout.sights[index]);
             let (by_pose, by_point) = (&row[width..width + 6], &row[width + 6..]);
             self.poses.push(std::array::from_fn(|k| dot(by_point[k / 6], by_pose[k % 6])));
-            if width > 0 && layout.is_point_unknown(sight.point()) {
+            if width > 0 && layout.is_triple_unknown(sight.point()) {
                 let block = &mut self.cameras[layout.pairs[sight.pair as usize].offset - self.first_pair..][..3 * width];
                 for (j, column) in row[..width].iter().enumerate() {
                     (0..3).for_each(|i| block[i * width + j] += dot(by_point[i], *column));

@@ -7,4 +7,5 @@ mod noise_free;
 mod quality;
 mod significance;
 mod standard_deviations;
+mod surfaces;
 mod undetermined;
