@@ -70,6 +70,12 @@ pub enum CalibrationError {
         /// Its name.
         target: String,
     },
+    /// A bent board was asked for, and there is no board.
+    #[error("the board cannot be bent: {why}; expected --board-shape flat")]
+    NoBoard {
+        /// Why there is none.
+        why: &'static str,
+    },
     /// A parameter that is observed twice.
     #[error("parameter {parameter} is observed twice; expected one value with its standard deviation")]
     PriorTwice {

@@ -47,7 +47,7 @@ pub(super) fn network(
     let control =
         |name: &str| survey.target_called(name).filter(|&target| survey.control(target).is_some()).and_then(|target| place[target]);
     let datum = settings.datum.datum(control)?;
-    Ok((Network { cameras, images, points, observations, datum }, sights, left_out))
+    Ok((Network { cameras, images, points, observations, datum, ..Network::default() }, sights, left_out))
 }
 
 pub(super) fn interior(optics: &Optics, camera: &Camera) -> Result<Interior, CalibrationError> {

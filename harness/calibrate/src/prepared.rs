@@ -4,7 +4,9 @@ use calibench_adjust::Network;
 use calibench_exchange::{ControlRow, LostRows, Points};
 use calibench_model::camera::Camera;
 
-use crate::{CalibrationError, LeftOut, Rival, Settings, Survey, network, optics, search, stages, start};
+use crate::{
+    BoardShape, CalibrationError, DatumChoice, LeftOut, Rival, Settings, Shape, Survey, network, optics, search, shape, stages, start,
+};
 
 /// A network with its start values.
 #[derive(Clone, Debug)]
@@ -19,6 +21,8 @@ pub struct Prepared {
     pub plain: Vec<Camera>,
     /// Minima that the observations do not tell from the one that is started near.
     pub rivals: Vec<Rival>,
+    /// What is held of the shape of a planar testfield.
+    pub shape: Shape,
     /// What is adjusted.
     pub network: Network,
     /// The sight behind each observation of the network.
@@ -32,14 +36,42 @@ pub struct Prepared {
 /// Joins points with control and finds start values for everything.
 ///
 /// # Errors
-/// No point in common, an unknown model or parameter, too few control points in an image, a datum of unknown targets.
+/// No point in common, an unknown model or parameter, too few control points in an image, a datum of unknown targets, the shape of a board where there is
+/// none.
 pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> Result<Prepared, CalibrationError> {
+    let settings = &with_shape(settings)?;
     let survey = Survey::new(points, control)?;
     let owners = optics::owners(&settings.cameras, &survey.images)?;
     let usual = start::starts(&survey, &owners, settings).and_then(|rough| stages::refined(&survey, &owners, rough, settings));
     let plain = usual.as_ref().map(|usual| usual.cameras.clone()).ok();
     let (starts, rivals) = search::better(&survey, &owners, settings, usual)?;
-    let (network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
+    let (mut network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
+    let shape = shape::shape(&mut network, settings)?;
     let (plain, origins) = (plain.unwrap_or(starts.cameras), starts.origins);
-    Ok(Prepared { settings: settings.clone(), survey, plain, origins, rivals, network, sights, left_out, unmeasured: LostRows::default() })
+    Ok(Prepared {
+        settings: settings.clone(),
+        survey,
+        plain,
+        origins,
+        rivals,
+        shape,
+        network,
+        sights,
+        left_out,
+        unmeasured: LostRows::default(),
+    })
+}
+
+/// `settings` with the datum that a board's shape asks for: every corner is free in a free network, where the shape is no question of its own.
+fn with_shape(settings: &Settings) -> Result<Settings, CalibrationError> {
+    let (mut settings, is_control) = (settings.clone(), settings.datum == DatumChoice::Control || settings.datum == DatumChoice::Fixed);
+    match settings.shape {
+        BoardShape::Free if is_control => settings.datum = DatumChoice::Free,
+        BoardShape::Tested if !is_control => settings.shape = BoardShape::Free,
+        BoardShape::Bent | BoardShape::BentAxes if !is_control => {
+            return Err(CalibrationError::NoBoard { why: "its points are free in this datum" });
+        }
+        _ => {}
+    }
+    Ok(settings)
 }

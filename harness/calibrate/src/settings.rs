@@ -3,7 +3,7 @@
 use calibench_adjust::Variance;
 use calibench_exchange::ObservedStation;
 
-use crate::{DatumChoice, Optics};
+use crate::{BoardShape, DatumChoice, Optics};
 
 /// How to calibrate.
 #[derive(Clone, Debug)]
@@ -12,6 +12,8 @@ pub struct Settings {
     pub cameras: Vec<Optics>,
     /// What fixes the frame of the object.
     pub datum: DatumChoice,
+    /// What is asked of the shape of a planar testfield.
+    pub shape: BoardShape,
     /// Bound of Huber's weights, in standard deviations.
     pub huber: Option<f64>,
     /// Whether what Baarda's test rejects is left out.
@@ -30,7 +32,16 @@ pub const USUAL_SIGMA: f64 = 0.1;
 impl Settings {
     /// The usual ones for some cameras, at least one.
     pub fn new(cameras: Vec<Optics>) -> Self {
-        Self { cameras, datum: DatumChoice::Control, huber: None, snoop: false, sigma_px: None, covariances: false, stations: Vec::new() }
+        Self {
+            cameras,
+            datum: DatumChoice::Control,
+            shape: BoardShape::Flat,
+            huber: None,
+            snoop: false,
+            sigma_px: None,
+            covariances: false,
+            stations: Vec::new(),
+        }
     }
 
     /// The a-priori standard deviation of an image coordinate, px.

@@ -55,6 +55,14 @@ impl Solution<'_> {
         })
     }
 
+    /// Residuals in use, made white by the a-priori precisions: pairs of numbers of variance 1 but for the redundancy, image by image.
+    pub fn each_white_residual(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.engine.layout.sights.iter().zip(&self.end.normals.residuals).map(|(sight, residual)| {
+            let ([a, b, c], [x, y]) = (sight.whiten, residual.px);
+            [a * x, b * x + c * y]
+        })
+    }
+
     /// The residual of an observation that took no part, where the result pictures it.
     fn left_out(&self, o: &ImageObservation) -> Option<[f64; 2]> {
         let state = &self.end.state;

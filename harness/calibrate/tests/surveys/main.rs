@@ -1,5 +1,6 @@
 //! Calibrations of networks with a known truth.
 
 mod network;
+mod shapes;
 mod starts;
 mod surveys;

@@ -19,6 +19,8 @@ pub struct Scene {
     pub control: usize,
     /// Of the noise of an image coordinate, px.
     pub sigma: f64,
+    /// Of the same.
+    pub seed: u64,
 }
 
 /// A lens with distortion.
@@ -36,7 +38,7 @@ pub fn board(camera: Camera) -> Scene {
     let station = |(i, (x, y)): (usize, (f64, f64))| {
         Pose::looking_at(middle + Vector3::new(x, y, 330.0 + 12.0 * i as f64), middle, Vector3::y(), 0.8 * i as f64).unwrap()
     };
-    Scene { camera, poses: sides.into_iter().enumerate().map(station).collect(), targets, control: 63, sigma: 0.0 }
+    Scene { camera, poses: sides.into_iter().enumerate().map(station).collect(), targets, control: 63, sigma: 0.0, seed: 7 }
 }
 
 /// A wall with depth: 48 targets, mm, from five stations.
@@ -47,7 +49,7 @@ pub fn wall(camera: Camera) -> Scene {
         let centre = middle + Vector3::new(900.0 * (i as f64 - 2.0), 500.0 * (i as f64 * 2.4).sin(), 4200.0 - 150.0 * i as f64);
         Pose::looking_at(centre, middle, Vector3::y(), 1.3 * i as f64).unwrap()
     };
-    Scene { camera, poses: (0..5).map(station).collect(), targets: (0..48).map(target).collect(), control: 48, sigma: 0.0 }
+    Scene { camera, poses: (0..5).map(station).collect(), targets: (0..48).map(target).collect(), control: 48, sigma: 0.0, seed: 7 }
 }
 
 /// Normal noise from sums of uniform numbers of a linear congruence (Knuth): small, and the same everywhere.
@@ -62,7 +64,7 @@ fn noise(state: &mut u64) -> f64 {
 impl Scene {
     /// The image points inside the frame, `image_I.png` of target `tT`.
     pub fn points(&self) -> Points {
-        let (mut text, mut state) = (String::from("image,target,x,y\n"), 7);
+        let (mut text, mut state) = (String::from("image,target,x,y\n"), self.seed);
         for (image, pose) in self.poses.iter().enumerate() {
             for (target, position) in self.targets.iter().enumerate() {
                 let Ok(seen) = self.camera.project(pose.ray(position)) else { continue };

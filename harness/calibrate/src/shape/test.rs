@@ -1,0 +1,80 @@
+//! Whether a board is bent: the network adjusted with a flat one and with a bent one.
+
+use calibench_adjust::{AdjustError, Exterior, Interior, Network, ObjectPoint, Options, Solution, Status, Variance, adjust, compare};
+
+use super::board::Board;
+use super::{BoardShape, surface};
+use crate::Settings;
+
+/// Probability at which a flat board is taken for a bent one: a thousandth, since residuals of real images are not quite independent.
+const ALPHA: f64 = 1e-3;
+/// Huber's bound of both adjustments, in standard deviations that the residuals show: gross errors neither hide a bend nor feign one.
+const BOUND: f64 = 3.0;
+/// The median of the length of a vector of two normal numbers.
+const MEDIAN: f64 = 1.177_41;
+/// Variances of an image coordinate, against the a-priori one, below which residuals are rounding.
+const ROUNDING: f64 = 1e-10;
+/// Iterations at most, as of any adjustment of a calibration.
+const ITERATIONS: usize = 1000;
+
+/// The bend of a board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bend {
+    /// Coefficients, object units: see [`BoardShape::Bent`].
+    pub coefficients: [f64; 3],
+    /// Their standard deviations, object units.
+    pub sigmas: [f64; 3],
+    /// Probability of a fit that improves as much if the board is flat.
+    pub p: f64,
+}
+
+impl Bend {
+    /// Whether the board is bent, at a level of 0.001.
+    pub fn is_significant(&self) -> bool {
+        self.p < ALPHA
+    }
+}
+
+/// The bend that the observations show, and its test; `None` where residuals are rounding.
+pub(super) fn bend(network: &Network, board: &Board, settings: &Settings) -> Result<Option<Bend>, AdjustError> {
+    let plain = Options { huber: settings.huber, most_iterations: ITERATIONS, ..Options::default() };
+    let first = adjust(network, &plain)?;
+    let Some(scale) = scale(&first).filter(|scale| scale * scale > ROUNDING) else { return Ok(None) };
+    let robust = Options { huber: Some(BOUND * scale), ..plain };
+    let flat_start = started(network, &first);
+    let flat = adjust(&flat_start, &robust)?;
+    let mut bent_start = started(network, &flat);
+    bent_start.surfaces = vec![surface(network, board, BoardShape::Bent, [0.0; 3])];
+    let bent = adjust(&bent_start, &robust)?;
+    let covariance = bent.covariances(Variance::Estimated)?.surfaces[0];
+    let p = compare(&flat, &bent)?.p;
+    let coefficients = bent.surfaces().next().unwrap_or_default();
+    Ok(Some(Bend { coefficients, sigmas: std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt()), p }))
+}
+
+/// `network`, from where an adjustment ended.
+fn started(network: &Network, end: &Solution<'_>) -> Network {
+    let interior = |(interior, camera): (&Interior, &calibench_model::camera::Camera)| Interior { camera: *camera, ..interior.clone() };
+    let exterior = |(image, pose): (&Exterior, &calibench_model::Pose)| Exterior { pose: *pose, ..image.clone() };
+    let point = |(point, position): (&ObjectPoint, &nalgebra::Point3<f64>)| match point.coordinates {
+        [Status::Fixed, Status::Fixed, Status::Fixed] => point.clone(),
+        _ => ObjectPoint { position: *position, ..point.clone() },
+    };
+    Network {
+        cameras: network.cameras.iter().zip(end.cameras()).map(interior).collect(),
+        images: network.images.iter().zip(end.poses()).map(exterior).collect(),
+        points: network.points.iter().zip(end.points()).map(point).collect(),
+        ..network.clone()
+    }
+}
+
+/// The standard deviation of an image coordinate against the a-priori one, from the median residual; `None` without residuals.
+fn scale(solution: &Solution<'_>) -> Option<f64> {
+    let mut lengths: Vec<f64> = solution.each_white_residual().map(|[x, y]| x.hypot(y)).collect();
+    let middle = lengths.len() / 2;
+    if lengths.is_empty() {
+        return None;
+    }
+    let (_, median, _) = lengths.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(*median / MEDIAN)
+}
