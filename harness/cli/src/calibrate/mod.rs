@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_calibrate::{Calibration, DatumChoice, Settings, prepare};
+use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Settings, prepare};
 use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
 use calibench_photographs::{Chessboard, Corners, Photo};
 use calibench_report::calibration::{summary, write_report};
@@ -42,6 +42,9 @@ pub struct Calibrate {
     /// What fixes the object's frame: control (weighted where the file gives standard deviations), fixed, free, or minimal:A,B,C,D,E (X and Y of two, Z of three)
     #[arg(long, value_name = "DATUM", default_value = "control")]
     datum: DatumChoice,
+    /// Shape of a board of control points: tested (bent where the points say so), flat, bent (a surface of second order), bent-axes (mrcal's two parameters), or free (every point, as with --datum free)
+    #[arg(long, value_name = "SHAPE", default_value = "tested")]
+    board_shape: BoardShape,
     /// A-priori standard deviation of an image coordinate, px [default: 0.1, and the estimated one in tests]
     #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     sigma: Option<f64>,
@@ -118,6 +121,7 @@ impl Calibrate {
     fn settings(&self, photos: &[Photo]) -> Result<Settings, Failure> {
         Ok(Settings {
             datum: self.datum.clone(),
+            shape: self.board_shape,
             huber: self.huber,
             snoop: self.snoop,
             sigma_px: self.sigma,

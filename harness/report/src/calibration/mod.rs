@@ -2,6 +2,7 @@
 
 mod csv;
 mod limits;
+mod board;
 mod page;
 mod pictures;
 mod sets_page;

@@ -10,7 +10,7 @@ use calibench_model::camera::CameraModel;
 use calibench_model::escape;
 
 use super::limits::{BASIC, CORRELATED, DOUBTFUL};
-use super::{pictures, sets_page, tables};
+use super::{board, pictures, sets_page, tables};
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
@@ -40,7 +40,8 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Re
     text.push_str(&rejected(calibration));
     text.push_str(
         "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
-         targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points).\n",
+         targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), and of a \
+         board `board.csv` (its bend).\n",
     );
     folder.write("README.md", |file| file.write_all(text.as_bytes()))
 }
@@ -110,6 +111,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
         ),
         format!("residuals {} px RMS", plain(calibration.rms_px())),
     ]);
+    lines.extend(board::fact(calibration));
     lines.extend(observed(calibration));
     if let Some(sigma0) = solution.sigma0() {
         let sigma = settings.sigma();
@@ -175,7 +177,7 @@ fn another(calibration: &Calibration<'_>, rival: &Rival) -> String {
 }
 
 /// A value with the digits that its standard deviation leaves, and that with two.
-fn rounded(value: f64, sigma: f64) -> (String, String) {
+pub(super) fn rounded(value: f64, sigma: f64) -> (String, String) {
     if sigma <= 0.0 || !sigma.is_finite() {
         return (value.to_string(), sigma.to_string());
     }
@@ -205,6 +207,7 @@ fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         warnings.push(format!("{name} is not told from zero (t {:.1}); a set without it may do", test.t));
     }
     warnings.extend(calibration.prepared.rivals.iter().map(|rival| another(calibration, rival)));
+    warnings.extend(board::warning(calibration));
     warnings.extend(weights(calibration));
     let rejected = calibration.found.iter().filter(|found| found.left_out).count();
     if rejected > 0 {

@@ -1,5 +1,6 @@
 //! The pictures of a calibration.
 
+mod board;
 mod correlations;
 mod distribution;
 mod frame;
@@ -25,6 +26,10 @@ pub(super) struct Picture {
 /// Draws all pictures into `folder`, camera by camera.
 pub(super) fn draw(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<Vec<Picture>> {
     let mut drawn = Vec::new();
+    if let Some(canvas) = board::picture(calibration) {
+        folder.write("board.png", |output| canvas.encode(output))?;
+        drawn.push(Picture { file: "board.png".into(), caption: board::CAPTION.into() });
+    }
     for camera in 0..calibration.cameras() {
         let (prefix, whose) = match calibration.cameras() {
             1 => (String::new(), String::new()),
