@@ -7,7 +7,7 @@
 //!
 //! From a solution: [`Solution::covariances`] (blocks by selected inversion), [`Solution::full_covariance`], [`Solution::residuals`],
 //! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::significance`] of parameters,
-//! [`Solution::in_datum`] (S-transformation), [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart, [`snoop`] looks for blunders.
+//! [`Solution::in_datum`] (S-transformation), [`Solution::projection_uncertainty`], [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart, [`snoop`] looks for blunders.
 
 pub mod approximate;
 mod counts;
@@ -27,7 +27,7 @@ pub use network::{
     Surface,
 };
 pub use quality::{
-    Comparison, Correlation, Covariances, Defect, Direction, Distance, Found, ObservedReliability, PointReliability, Reason, Reliability,
-    Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, compare, frame_uncertainty, snoop,
+    Comparison, Correlation, Covariances, Defect, Direction, Distance, Found, Held, ObservedReliability, PointReliability, Reason,
+    Reliability, Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, compare, frame_uncertainty, snoop,
 };
 pub use solution::{Options, Solution, adjust};

@@ -167,7 +167,7 @@ impl Solution<'_> {
         self.engine.layout.cameras.iter().enumerate().flat_map(of).collect()
     }
 
-    fn is_transformed(&self) -> bool {
+    pub(super) fn is_transformed(&self) -> bool {
         self.datum != Datum::Control && !(matches!(self.datum, Datum::Minimal { .. }) && self.datum == self.engine.network.datum)
     }
 

@@ -4,6 +4,7 @@ mod counts;
 mod datum;
 mod networks;
 mod noise_free;
+mod projection_uncertainty;
 mod quality;
 mod significance;
 mod standard_deviations;
