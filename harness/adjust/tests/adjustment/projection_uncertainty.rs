@@ -136,3 +136,25 @@ fn a_free_network_is_that_of_fixed_points_when_they_are_many() {
         assert!(inner > fixed && inner < 2.0 * fixed && minimal > inner, "{fixed} {inner} {minimal}");
     }
 }
+
+/// mrcal 2.2-4 of Debian, `projection_uncertainty` (its method is `mean-pcam`), of the same 540 corners with `LENSMODEL_OPENCV5` and without regularisation.
+/// It takes the mean square of all residuals for the variance; ours is over the redundancy: 1080 coordinates less 69 unknowns.
+#[test]
+fn by_images_it_is_that_of_mrcal() {
+    const FAR: [[f64; 3]; 2] = [[1.096_820e-1, 7.495_350e-3, 1.161_223e-1], [2.323_922e2, -1.144_816e2, 5.672_153e1]];
+    const NEAR: [[f64; 3]; 2] = [[1.855_493e-2, 2.000_704e-3, 2.257_406e-2], [2.331_238e2, -1.143_492e2, 5.622_349e1]];
+    let mut network = networks::board(networks::opencv(), 10, 5);
+    networks::shake_pixels(&mut network, 0.3, &mut networks::random(21));
+    network.cameras = network.cameras.into_iter().map(|camera| camera.free(&networks::FIVE).unwrap()).collect();
+    let solution = solved(&network);
+    let places = [PixelPoint::new(640.0, 480.0), PixelPoint::new(1200.0, 200.0)];
+    for (distance, theirs) in [(Distance::Far, FAR), (Distance::Near(300.0), NEAR)] {
+        let ours = solution.projection_uncertainty(0, Variance::Estimated, &places, (distance, Held::ByImages)).unwrap();
+        for (ours, theirs) in ours.iter().zip(theirs) {
+            let c = ours.covariance;
+            for (ours, theirs) in [c.sxx, c.sxy, c.syy].into_iter().zip(theirs) {
+                assert!((ours / (theirs * 1080.0 / 1011.0) - 1.0).abs() < 2e-5, "{distance:?}: {ours} for {theirs}");
+            }
+        }
+    }
+}

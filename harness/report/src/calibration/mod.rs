@@ -1,12 +1,14 @@
 //! A calibration as a page with pictures and tables, and as a summary for a terminal.
 
-mod csv;
-mod limits;
 mod board;
+mod csv;
+mod hull;
+mod limits;
 mod page;
 mod pictures;
 mod sets_page;
 mod tables;
+mod uncertainty;
 
 use calibench_calibrate::Calibration;
 

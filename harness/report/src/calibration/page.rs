@@ -40,8 +40,8 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Re
     text.push_str(&rejected(calibration));
     text.push_str(
         "\n## Tables\n\n`residuals.csv` (every image point given, with redundancy numbers, normalised residuals and minimal detectable biases; \
-         targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), and of a \
-         board `board.csv` (its bend).\n",
+         targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), of a \
+         board `board.csv` (its bend); `uncertainty.csv` (the maps' numbers, px).\n",
     );
     folder.write("README.md", |file| file.write_all(text.as_bytes()))
 }

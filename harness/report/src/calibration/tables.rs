@@ -20,6 +20,7 @@ pub(super) fn write(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Re
     correlations(calibration, folder)?;
     stations(calibration, folder)?;
     super::board::table(calibration, folder)?;
+    super::uncertainty::write(calibration, folder)?;
     let rows = object_points(calibration);
     folder.write("points.csv", |file| write_control(file, &rows))
 }

@@ -11,7 +11,8 @@ use crate::field::{Area, BOTTOM, LEFT, MAP, RIGHT, TOP, shade, write};
 use crate::ticks::linear;
 use crate::{Canvas, plain};
 
-pub(super) const CAPTION: &str = "Height of the board over its lowest place, towards the camera: what the control file does not say. Dots are control points.";
+pub(super) const CAPTION: &str =
+    "Height of the board over its lowest place, towards the camera: what the control file does not say. Dots are control points.";
 
 /// Places along either side.
 const PLACES: usize = 41;
@@ -37,7 +38,8 @@ pub(super) fn picture(calibration: &Calibration<'_>) -> Option<Canvas> {
         scale(area, extent, &levels, highest);
     });
     let sigma = sigmas.iter().copied().fold(0.0, f64::max);
-    let said = format!("{} from the lowest to the highest place; standard deviation of a coefficient {} at most", plain(highest), plain(sigma));
+    let said =
+        format!("{} from the lowest to the highest place; standard deviation of a coefficient {} at most", plain(highest), plain(sigma));
     canvas.text(&said, 16, (LEFT, TOP + extent.1 + BOTTOM - 20));
     Some(canvas)
 }

@@ -1,83 +1,75 @@
 //! What the uncertainty of the interior orientation means in the image, over the frame.
 
-use calibench_adjust::{Distance, Uncertainty, frame_uncertainty};
+use calibench_adjust::Distance;
 use calibench_calibrate::Calibration;
-use calibench_model::camera::CameraModel;
+use calibench_model::camera::{CameraModel, ImageSize};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
+use super::super::uncertainty::{UncertaintyMap, maps};
 use super::frame::Map;
 use super::levels::{Scale, contour};
 use crate::field::{Area, BOTTOM, LEFT, TOP, shade, write};
 use crate::{Canvas, plain};
 
-/// Places along the longer side of the frame.
-const PLACES: usize = 48;
 /// Room that a line's value needs on all sides, px of the picture.
 const LABEL: f64 = 24.0;
 
 /// Maps for points far away and near: file, caption, picture. None if the interior orientation is fixed.
 pub(super) fn pictures(calibration: &Calibration<'_>, camera: usize) -> Vec<(&'static str, String, Canvas)> {
-    let near = working_distance(calibration, camera);
-    let title = |what: &str| format!("Standard deviation of a projected point, {what}");
-    let caption = |what: &str| {
-        format!(
-            "Standard deviation (2D) of the image of a point {what} that stems from the interior orientation, after what the exterior makes up for."
-        )
+    let picture = |map: UncertaintyMap| {
+        let file = if map.distance == Distance::Far { "uncertainty-far.png" } else { "uncertainty-near.png" };
+        let caption = format!(
+            "Standard deviation (2D) of the image of a point {}, from the covariance of camera and poses together, the poses held by what was measured. \
+             The dashed line surrounds the image points: outside nothing was measured, and the model's word is all there is.",
+            map.whose()
+        );
+        Some((file, caption, draw(&map, calibration.camera(camera).size())?))
     };
-    let far = map((calibration, camera), Distance::Far, &title("far away"));
-    let far = far.map(|canvas| ("uncertainty-far.png", caption("far away"), canvas));
-    let distance = plain(near);
-    let near = map((calibration, camera), Distance::Near(near), &title(&format!("at {distance} object units")));
-    let near =
-        near.map(|canvas| ("uncertainty-near.png", caption(&format!("at the distance of the object ({distance} object units)")), canvas));
-    far.into_iter().chain(near).collect()
+    maps(calibration, camera).into_iter().filter_map(picture).collect()
 }
 
-/// The median distance of what a camera sees, along its axis.
-fn working_distance(calibration: &Calibration<'_>, camera: usize) -> f64 {
-    let (poses, points) = (calibration.solution.poses(), calibration.solution.points());
-    let depth = |o: &calibench_adjust::ImageObservation| -poses[o.image].ray(&points[o.point]).z;
-    let observations = calibration.prepared.network.observations.iter().filter(|o| calibration.owner(o.image) == camera);
-    let mut depths: Vec<f64> = observations.map(depth).collect();
-    depths.sort_by(f64::total_cmp);
-    depths.get(depths.len() / 2).copied().unwrap_or(1.0)
-}
-
-fn map((calibration, index): (&Calibration<'_>, usize), distance: Distance, title: &str) -> Option<Canvas> {
-    let camera = calibration.camera(index);
-    let (names, covariance) = calibration.covariances.of_camera(index);
-    if names.is_empty() {
-        return None;
-    }
-    let size = camera.size();
-    let step = f64::from(size.width.max(size.height)) / PLACES as f64;
-    let grid = [size.width, size.height].map(|length| ((f64::from(length) / step).round() as usize).max(3));
-    let found = frame_uncertainty(camera, (&names, &covariance), (grid[0], grid[1]), distance).ok()?;
-    let sigma = |u: &Uncertainty| (u.covariance.sxx + u.covariance.syy).max(0.0).sqrt();
-    let (map, mut canvas) = Map::alone(size, title);
-    let index = |value: f64, length: u32, n: usize| (value / f64::from(length - 1) * (n - 1) as f64).round() as usize;
-    let mut values = vec![f64::NAN; grid[0] * grid[1]];
-    for place in &found {
-        values[index(place.at.y, size.height, grid[1]) * grid[0] + index(place.at.x, size.width, grid[0])] = sigma(place);
-    }
+fn draw(found: &UncertaintyMap, size: ImageSize) -> Option<Canvas> {
+    let (map, mut canvas) = Map::alone(size, &format!("Standard deviation of a projected point, {}", found.whose()));
+    let (grid, values) = (found.grid, found.sigmas());
     let scale = Scale::of(&values)?;
     canvas.paint(|area| {
         for (k, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
-            let corners = map.cell((k % grid[0], k / grid[0]), (grid[0], grid[1]));
+            let corners = map.cell((k % grid.0, k / grid.0), grid);
             area.draw(&Rectangle::new(corners, shade(scale.part(*value)).filled())).ok();
         }
-        contours(area, &map, &values, (grid[0], grid[1]), &scale);
+        contours(area, &map, &values, grid, &scale);
+        found.measured.sides().for_each(|side| dashed(area, side.map(|end| map.place(end))));
         map.axes(area);
         bar(area, map.extent, &scale);
     });
-    let mut sigmas: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
-    sigmas.sort_by(f64::total_cmp);
-    let mean = (sigmas.iter().map(|sigma| sigma * sigma).sum::<f64>() / sigmas.len().max(1) as f64).sqrt();
-    let [most, median] = [sigmas.len().saturating_sub(1), sigmas.len() / 2].map(|i| sigmas.get(i).copied().unwrap_or(0.0));
-    let said = format!("{} px at most, {} px RMS, median {} px over the frame", plain(most), plain(mean), plain(median));
-    canvas.text(&said, 16, (LEFT, TOP + map.extent.1 + BOTTOM - 20));
+    let inside = found.places.iter().map(|place| place.as_ref().is_some_and(|place| found.measured.holds(place.at)));
+    let of =
+        |wanted: bool| said(values.iter().zip(inside.clone()).filter(|(_, inside)| *inside == wanted).map(|(value, _)| *value).collect());
+    let text = format!("px, inside the dashed line: {}; outside: {}", of(true), of(false));
+    canvas.text(&text, 16, (LEFT, TOP + map.extent.1 + BOTTOM - 20));
     Some(canvas)
+}
+
+/// The middle and the most of some values, and their root mean square.
+fn said(mut sigmas: Vec<f64>) -> String {
+    sigmas.retain(|sigma| sigma.is_finite());
+    sigmas.sort_by(f64::total_cmp);
+    let Some(most) = sigmas.last() else { return "nothing".into() };
+    let mean = (sigmas.iter().map(|sigma| sigma * sigma).sum::<f64>() / sigmas.len() as f64).sqrt();
+    format!("median {}, RMS {}, at most {}", plain(sigmas[sigmas.len() / 2]), plain(mean), plain(*most))
+}
+
+/// A dashed line, black on white: seen on every colour of the map.
+fn dashed(area: &Area<'_>, [from, to]: [(i32, i32); 2]) {
+    let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
+    let length = dx.hypot(dy);
+    let at = |along: f64| (from.0 + (dx * along / length).round() as i32, from.1 + (dy * along / length).round() as i32);
+    area.draw(&PathElement::new(vec![from, to], WHITE.stroke_width(4))).ok();
+    for dash in (0..length as u32).step_by(12) {
+        let ends = vec![at(f64::from(dash)), at(f64::from(dash + 7).min(length))];
+        area.draw(&PathElement::new(ends, BLACK.stroke_width(2))).ok();
+    }
 }
 
 /// Lines of equal standard deviation, each with its value where there is most room.
