@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use calibench_calibrate::Survey;
 use calibench_calibrate::orientation::{ObjectPoints, poses_of};
 use calibench_exchange::{Inputs, read_stations};
+use calibench_report::plain;
 use clap::Args;
 
 use super::camera_files::CameraFiles;
@@ -30,6 +31,9 @@ pub struct Intersect {
     /// Search for gross errors: residuals longer than this are left out, px
     #[arg(long, value_name = "PX", value_parser = super::convert::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
+    /// Standard deviation of an image coordinate, px [default: that of the residuals of all targets together]
+    #[arg(long, value_name = "PX", value_parser = super::convert::positive, allow_negative_numbers = true)]
+    sigma: Option<f64>,
     /// The points: a control file with quality and status [default: standard output]
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
@@ -45,7 +49,7 @@ impl Intersect {
         for (image, _) in survey.images.iter().zip(&poses).filter(|(_, pose)| pose.is_none()) {
             say!("image {image}: has no station; its points are left out");
         }
-        let points = ObjectPoints::of(&survey, &cameras, &poses, self.least_angle.to_radians(), self.tolerance);
+        let points = ObjectPoints::of(&survey, &cameras, &poses, self.least_angle.to_radians(), (self.tolerance, self.sigma));
         points.first_failures.iter().for_each(|(target, error)| say!("target {}: {error}", survey.target(*target)));
         let untold = points.failed - points.first_failures.len();
         if untold > 0 {
@@ -56,6 +60,16 @@ impl Intersect {
         }
         if !context.quiet {
             say!("intersect: {} of {} targets, {} without a result", points.len(), survey.targets(), points.failed);
+            if let Some(pooled) = points.pooled() {
+                say!("residuals of all targets together: {} px for an image coordinate", plain(pooled));
+            }
+        }
+        if self.sigma.is_some_and(|sigma| !points.agrees_with(sigma)) {
+            say!("warning: the residuals do not agree with --sigma (chi squared at 0.001)");
+        }
+        let misfits = points.misfits();
+        if misfits > 0 {
+            say!("warning: {misfits} of {} targets do not fit (chi squared at 0.001 of each; the table's notes say which)", points.len());
         }
         deliver(output.as_ref(), |file| points.write(&survey, file))
     }

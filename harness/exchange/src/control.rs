@@ -7,7 +7,17 @@ use crate::csv_named_rows::{Form, Row, wrong};
 use crate::points::PointFileError;
 use crate::table::write_row;
 
-const FORM: Form = Form { what: "control file", key: "target", required: &["X", "Y", "Z"], optional: &["sX", "sY", "sZ"], others: false };
+/// The columns of a table of intersected points beside those of a control file: how good each point is.
+pub const POINT_QUALITY_COLUMNS: [&str; 6] = ["images", "angle_deg", "sigma0_px", "redundancy", "rejected", "note"];
+
+const FORM: Form = Form {
+    what: "control file",
+    key: "target",
+    required: &["X", "Y", "Z"],
+    optional: &["sX", "sY", "sZ"],
+    others: false,
+    passed_over: &POINT_QUALITY_COLUMNS,
+};
 
 /// A point of known object coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +30,8 @@ pub struct ControlRow {
     pub sigmas: Option<[f64; 3]>,
 }
 
-/// Reads a control file: header `target,X,Y,Z`, optionally `sX,sY,sZ`, in any order; rows may leave their standard deviations empty.
+/// Reads a control file: header `target,X,Y,Z`, optionally `sX,sY,sZ`, in any order; rows may leave their standard deviations empty. The columns that
+/// `intersect` writes beside them are passed over.
 ///
 /// # Errors
 /// The first mistake, with line and column: a missing or unknown column, a number that is none, a standard deviation that is not positive, a target given
@@ -84,6 +95,13 @@ mod tests {
         let mut text = Vec::new();
         write_control(&mut text, &rows[1..]).unwrap();
         assert_eq!(String::from_utf8(text).unwrap(), "target,X,Y,Z\n\"b,c\",4,5,6\n");
+    }
+
+    #[test]
+    fn a_table_of_intersected_points_is_a_control_file() {
+        let header = format!("target,X,Y,Z,sX,sY,sZ,{}", POINT_QUALITY_COLUMNS.join(","));
+        let rows = parse_control("c", format!("{header}\na,1,2,3,0.1,0.2,0.3,2,11.5,0.3,1,,does not fit\n").as_bytes()).unwrap();
+        assert_eq!(rows, [ControlRow { target: "a".into(), position: [1.0, 2.0, 3.0], sigmas: Some([0.1, 0.2, 0.3]) }]);
     }
 
     #[test]

@@ -22,6 +22,8 @@ pub(crate) struct Form {
     pub(crate) optional: &'static [&'static str],
     /// Columns of other names are read over.
     pub(crate) others: bool,
+    /// Columns that are passed over, since this program's own tables have them.
+    pub(crate) passed_over: &'static [&'static str],
 }
 
 /// A row: its name, its numbers, and those of the optional columns if it has them.
@@ -76,7 +78,7 @@ impl Form {
         let known = [&self.columns()[..], self.optional].concat();
         let mut places = HashMap::new();
         for (index, name) in header.iter().enumerate() {
-            if !known.contains(&name) && !self.others {
+            if !known.contains(&name) && !self.others && !self.passed_over.contains(&name) {
                 return Err(wrong(file, Some(1), Some(name), format!("unknown; {} has {}", self.what, known.join(", "))));
             }
             if places.insert(name.to_owned(), index).is_some() {

@@ -4,18 +4,20 @@ use std::collections::HashMap;
 use std::io;
 
 use calibench_adjust::approximate::{ApproximateError, Intersection, Search, Sight as Ray, Tolerance, intersect};
-use calibench_exchange::{StationRow, write_table};
+use calibench_exchange::{POINT_QUALITY_COLUMNS, StationRow, write_table};
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
 use rayon::prelude::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::{CalibrationError, Survey};
 
-const COLUMNS: [&str; 13] =
-    ["target", "X", "Y", "Z", "sX", "sY", "sZ", "images", "angle_deg", "sigma0_px", "redundancy", "rejected", "note"];
+const COLUMNS: [&str; 7] = ["target", "X", "Y", "Z", "sX", "sY", "sZ"];
 
 /// Targets whose failure is kept one by one.
 pub const TOLD: usize = 100;
+/// Probability below which residuals do not fit.
+const MISFIT: f64 = 1e-3;
 /// Targets that are intersected before their rows are kept.
 const BATCH: usize = 1 << 14;
 
@@ -27,6 +29,8 @@ pub struct ObjectPoints {
     pub failed: usize,
     /// The first [`TOLD`] of them, by index, and why.
     pub first_failures: Vec<(usize, ApproximateError)>,
+    /// The standard deviation of an image coordinate that the points' own come from, px: stated, or that of all residuals together.
+    pub sigma_px: Option<f64>,
 }
 
 /// A point, small: there may be millions.
@@ -35,8 +39,8 @@ struct Found {
     target: u32,
     images: u32,
     point: [f64; 3],
-    /// Not numbers without redundancy.
-    sigma: [f64; 3],
+    /// Roots of the cofactors, object units for 1 px.
+    spread: [f64; 3],
     angle: f64,
     sigma0: f64,
     redundancy: u32,
@@ -46,8 +50,15 @@ struct Found {
 
 impl ObjectPoints {
     /// Intersects every target of `survey`. Of each image its camera, and its pose if it has one; rays that meet at less than `least_angle` (rad) are
-    /// parallel; with `tolerance_px` residuals that are longer are left out.
-    pub fn of(survey: &Survey, cameras: &[Camera], poses: &[Option<Pose>], least_angle: f64, tolerance_px: Option<f64>) -> Self {
+    /// parallel; with `tolerance_px` residuals that are longer are left out. `sigma_px` is that of an image coordinate; without it, that of the residuals
+    /// of all targets together: a target alone has too few.
+    pub fn of(
+        survey: &Survey,
+        cameras: &[Camera],
+        poses: &[Option<Pose>],
+        least_angle: f64,
+        (tolerance_px, sigma_px): (Option<f64>, Option<f64>),
+    ) -> Self {
         let against = tolerance_px.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
         let one = |target: usize| {
             let seen = survey.of_target(target).map(|index| survey.sight(index));
@@ -72,7 +83,28 @@ impl ObjectPoints {
                 }
             }
         }
+        all.sigma_px = sigma_px.or_else(|| all.pooled());
         all
+    }
+
+    /// The standard deviation of an image coordinate from the residuals of all targets, px; `None` without redundancy.
+    pub fn pooled(&self) -> Option<f64> {
+        let squares: f64 = self.found.iter().map(|found| found.sigma0 * found.sigma0 * f64::from(found.redundancy)).sum();
+        let redundancy: f64 = self.found.iter().map(|found| f64::from(found.redundancy)).sum();
+        (redundancy > 0.0).then(|| (squares / redundancy).sqrt())
+    }
+
+    /// Whether residuals say of image coordinates what `sigma_px` does: chi squared, both sides, at a thousandth.
+    pub fn agrees_with(&self, sigma_px: f64) -> bool {
+        let freedom: f64 = self.found.iter().map(|found| f64::from(found.redundancy)).sum();
+        let (Some(pooled), Ok(chi)) = (self.pooled(), ChiSquared::new(freedom)) else { return true };
+        let p = chi.cdf(freedom * (pooled / sigma_px).powi(2));
+        (0.5 * MISFIT..=1.0 - 0.5 * MISFIT).contains(&p)
+    }
+
+    /// Targets whose residuals are larger than the common standard deviation lets expect once in a thousand.
+    pub fn misfits(&self) -> usize {
+        self.found.iter().filter(|found| found.misfits(self.sigma_px)).count()
     }
 
     /// How many points there are.
@@ -85,12 +117,12 @@ impl ObjectPoints {
         self.found.is_empty()
     }
 
-    /// Writes a control file: coordinates and standard deviations in object units, angles in degrees, sigma0 in px.
+    /// Writes a control file: coordinates and standard deviations in object units, angles in degrees; sigma0, of the target's own residuals, in px.
     ///
     /// # Errors
     /// What `file` returns.
     pub fn write(&self, survey: &Survey, file: impl io::Write) -> io::Result<()> {
-        write_table(file, &COLUMNS, self.found.iter().map(|row| row.cells(survey)))
+        write_table(file, &[&COLUMNS[..], &POINT_QUALITY_COLUMNS].concat(), self.found.iter().map(|row| row.cells(survey, self.sigma_px)))
     }
 }
 
@@ -113,13 +145,12 @@ pub fn poses_of(survey: &Survey, stations: &[StationRow]) -> Result<Vec<Option<P
 
 impl Found {
     fn of(target: usize, images: &[usize], found: &Intersection) -> Self {
-        let checked = found.redundancy > 0;
-        let sigma = |i: usize| if checked { found.sigma0 * found.cofactor[(i, i)].sqrt() } else { f64::NAN };
+        let spread = |i: usize| found.cofactor[(i, i)].sqrt();
         Self {
             target: target as u32,
             images: images.len() as u32,
             point: found.point.into(),
-            sigma: [sigma(0), sigma(1), sigma(2)],
+            spread: [spread(0), spread(1), spread(2)],
             angle: found.angle,
             sigma0: found.sigma0,
             redundancy: found.redundancy as u32,
@@ -127,15 +158,27 @@ impl Found {
         }
     }
 
-    /// A point with standard deviations from its residuals; without redundancy there are none.
-    fn cells(&self, survey: &Survey) -> Vec<String> {
+    /// Whether its residuals are too large for a standard deviation of image coordinates: chi squared at a thousandth.
+    fn misfits(&self, sigma_px: Option<f64>) -> bool {
+        let Some(sigma) = sigma_px.filter(|sigma| *sigma > 0.0 && self.redundancy > 0) else { return false };
+        let freedom = f64::from(self.redundancy);
+        ChiSquared::new(freedom).is_ok_and(|chi| chi.sf(freedom * (self.sigma0 / sigma).powi(2)) < MISFIT)
+    }
+
+    /// A point with standard deviations from the common one of image coordinates; where there is none, without.
+    fn cells(&self, survey: &Survey, sigma_px: Option<f64>) -> Vec<String> {
         let checked = self.redundancy > 0;
         let mut row = vec![survey.target(self.target as usize).to_owned()];
         row.extend(self.point.iter().map(f64::to_string));
-        row.extend(self.sigma.iter().map(|sigma| if checked { sigma.to_string() } else { String::new() }));
+        row.extend(self.spread.iter().map(|spread| sigma_px.map_or_else(String::new, |sigma| (sigma * spread).to_string())));
         row.extend([self.images.to_string(), self.angle.to_degrees().to_string(), self.sigma0.to_string(), self.redundancy.to_string()]);
         let rejected: Vec<&str> = self.rejected.iter().map(|&image| survey.images[image as usize].as_str()).collect();
-        row.extend([rejected.join(" "), if checked { String::new() } else { "not checked".into() }]);
+        let note = match (checked, self.misfits(sigma_px)) {
+            (false, _) => "not checked",
+            (true, true) => "does not fit",
+            (true, false) => "",
+        };
+        row.extend([rejected.join(" "), note.to_owned()]);
         row
     }
 }

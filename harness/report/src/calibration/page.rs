@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::io;
 
-use calibench_adjust::{Significance, Use};
+use calibench_adjust::{Precision, Significance, Use};
 use calibench_calibrate::{Calibration, Rival};
 use calibench_exchange::NewFolder;
 use calibench_model::camera::CameraModel;
@@ -114,15 +114,31 @@ fn facts(calibration: &Calibration<'_>) -> String {
     lines.extend(board::fact(calibration));
     lines.extend(observed(calibration));
     if let Some(sigma0) = solution.sigma0() {
-        let sigma = settings.sigma();
-        let known = if settings.sigma_px.is_some() { "given" } else { "assumed" };
-        lines.push(format!(
-            "sigma0 {} for a standard deviation of {sigma} px ({known}): {} px for an image coordinate",
-            plain(sigma0),
-            plain(sigma0 * sigma)
-        ));
+        lines.push(unit_weight(calibration, sigma0));
     }
     lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+/// What sigma0 says of the precision of image coordinates.
+fn unit_weight(calibration: &Calibration<'_>, sigma0: f64) -> String {
+    let settings = &calibration.prepared.settings;
+    let sigma = settings.sigma();
+    let known = if settings.sigma_px.is_some() { "given" } else { "assumed" };
+    let observations = &calibration.prepared.network.observations;
+    let own = observations.iter().filter(|o| matches!(o.precision, Precision::Covariance(_))).count();
+    if own > 0 {
+        let rest = observations.len() - own;
+        let rest = if rest > 0 { format!(", and for {sigma} px ({known}) of the {rest} others") } else { String::new() };
+        return format!(
+            "sigma0 {0} for the covariances of {own} image points{rest}: they are {0} times as imprecise as stated",
+            plain(sigma0)
+        );
+    }
+    format!(
+        "sigma0 {} for a standard deviation of {sigma} px ({known}): {} px for an image coordinate",
+        plain(sigma0),
+        plain(sigma0 * sigma)
+    )
 }
 
 /// What was observed beside image points and control.
