@@ -5,10 +5,10 @@ use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
-use crate::{CalibrationError, Compared, Prepared};
+use crate::{CalibrationError, Compared, Prepared, Resampled};
 
 /// Iterations at most: parameters that do nearly the same, as xi and k1 of an omnidirectional camera, approach their minimum slowly.
-const ITERATIONS: usize = 1000;
+pub(crate) const ITERATIONS: usize = 1000;
 
 /// A calibration and its quality.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub struct Calibration<'n> {
     pub reliability: Option<Reliability>,
     /// The same observations with other sets of parameters; `None` until [`Calibration::compare`].
     pub compared: Option<Compared>,
+    /// Standard deviations from leaving images out, or why there are none; `None` until [`Calibration::resample`].
+    pub resampled: Option<Result<Resampled, String>>,
 }
 
 impl Prepared {
@@ -43,7 +45,7 @@ impl Prepared {
         let checked = solution.counts().redundancy() > 0;
         let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
         let reliability = if checked { Some(solution.reliability(test)?) } else { None };
-        Ok(Calibration { prepared: self, solution, found, covariances, reliability, compared: None })
+        Ok(Calibration { prepared: self, solution, found, covariances, reliability, compared: None, resampled: None })
     }
 }
 

@@ -5,6 +5,7 @@ use calibench_adjust::{AdjustError, Exterior, Interior, Network, ObjectPoint, Op
 use super::board::Board;
 use super::{BoardShape, surface};
 use crate::Settings;
+use crate::calibration::ITERATIONS;
 
 /// Probability at which a flat board is taken for a bent one: a thousandth, since residuals of real images are not quite independent.
 const ALPHA: f64 = 1e-3;
@@ -14,8 +15,6 @@ const BOUND: f64 = 3.0;
 const MEDIAN: f64 = 1.177_41;
 /// Variances of an image coordinate, against the a-priori one, below which residuals are rounding.
 const ROUNDING: f64 = 1e-10;
-/// Iterations at most, as of any adjustment of a calibration.
-const ITERATIONS: usize = 1000;
 
 /// The bend of a board.
 #[derive(Clone, Copy, Debug, PartialEq)]

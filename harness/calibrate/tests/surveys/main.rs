@@ -2,6 +2,7 @@
 
 mod network;
 mod points;
+mod resampled;
 mod shapes;
 mod starts;
 mod surveys;

@@ -96,6 +96,7 @@ impl Calibrate {
         prepared.unmeasured = lost;
         drop(control);
         let mut calibration = prepared.adjust()?;
+        calibration.resample();
         if !self.compare.is_empty() {
             calibration.compare(&sets(&self.compare)?)?;
         }

@@ -9,6 +9,7 @@ mod pictures;
 mod sets_page;
 mod tables;
 mod uncertainty;
+mod warnings;
 
 use calibench_calibrate::Calibration;
 
@@ -20,6 +21,11 @@ fn points_by_image(calibration: &Calibration<'_>) -> Vec<usize> {
     let mut counts = vec![0; network.images.len()];
     network.observations.iter().for_each(|o| counts[o.image] += 1);
     counts
+}
+
+/// Whose something is, where there are several cameras.
+fn of(calibration: &Calibration<'_>, camera: usize) -> String {
+    if calibration.cameras() > 1 { format!(" of {}", calibration.name_of(camera)) } else { String::new() }
 }
 
 #[cfg(test)]

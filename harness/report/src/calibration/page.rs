@@ -3,14 +3,14 @@
 use std::fmt::Write;
 use std::io;
 
-use calibench_adjust::{Precision, Significance, Use};
-use calibench_calibrate::{Calibration, Rival};
+use calibench_adjust::Precision;
+use calibench_calibrate::Calibration;
 use calibench_exchange::NewFolder;
 use calibench_model::camera::CameraModel;
 use calibench_model::escape;
 
-use super::limits::{BASIC, CORRELATED, DOUBTFUL};
-use super::{board, pictures, sets_page, tables};
+use super::warnings::warnings;
+use super::{board, of, pictures, sets_page, tables};
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
@@ -28,7 +28,7 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Re
         let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, of(calibration, camera));
         text.push_str(&parameters(calibration, camera).render());
     }
-    text.push_str(&format!("\nStandard deviations {}.\n", scaled(calibration)));
+    text.push_str(&format!("\nStandard deviations {}; {}.\n", scaled(calibration), by_images(calibration)));
     text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{warning}**\n")).collect::<String>());
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
@@ -65,16 +65,20 @@ pub fn summary(calibration: &Calibration<'_>) -> String {
     text
 }
 
-/// Whose something is, where there are several cameras.
-fn of(calibration: &Calibration<'_>, camera: usize) -> String {
-    if calibration.cameras() > 1 { format!(" of {}", calibration.name_of(camera)) } else { String::new() }
-}
-
 fn scaled(calibration: &Calibration<'_>) -> &'static str {
     if calibration.solution.counts().redundancy() > 0 {
         "with the estimated variance factor"
     } else {
         "with the a-priori variance factor: there is no redundancy"
+    }
+}
+
+/// What the column of standard deviations by images is.
+fn by_images(calibration: &Calibration<'_>) -> String {
+    match &calibration.resampled {
+        Some(Ok(found)) => format!("`by images` from leaving out each of {} groups of images (jackknife)", found.groups),
+        Some(Err(why)) => format!("none from leaving images out: {why}"),
+        None => "none from leaving images out".into(),
     }
 }
 
@@ -162,7 +166,8 @@ fn observed(calibration: &Calibration<'_>) -> Option<String> {
 fn parameters(calibration: &Calibration<'_>, camera: usize) -> MarkdownTable {
     let (names, covariance) = calibration.covariances.of_camera(camera);
     let tests = calibration.solution.significance().unwrap_or_default();
-    let mut table = MarkdownTable::new(&["parameter", "value", "sigma", "unit", "t", "p"]);
+    let resampled = calibration.resampled.as_ref().and_then(|resampled| resampled.as_ref().ok());
+    let mut table = MarkdownTable::new(&["parameter", "value", "sigma", "by images", "unit", "t", "p"]);
     for parameter in calibration.camera(camera).parameters() {
         let solved = names.iter().position(|name| *name == parameter.name);
         let (value, sigma) = match solved {
@@ -172,24 +177,11 @@ fn parameters(calibration: &Calibration<'_>, camera: usize) -> MarkdownTable {
         let test = tests.iter().find(|test| test.camera == camera && test.parameter == parameter.name);
         let test = test.map_or_else(|| [String::new(), String::new()], |test| [format!("{:.1}", test.t), format!("{:.3}", test.p)]);
         let [t, p] = test;
-        table.row([parameter.name.to_owned(), value, sigma, parameter.unit.to_owned(), t, p]);
+        let row = calibration.covariances.parameters.iter().position(|known| *known == (camera, parameter.name));
+        let by_images = row.and_then(|row| resampled?.sigmas.get(row)).map_or(String::new(), |own| rounded(0.0, *own).1);
+        table.row([parameter.name.to_owned(), value, sigma, by_images, parameter.unit.to_owned(), t, p]);
     }
     table
-}
-
-/// A minimum that noise does not tell from the one found.
-fn another(calibration: &Calibration<'_>, rival: &Rival) -> String {
-    let [found, other] = [&rival.found, &rival.other].map(|camera| camera.parameters().first().map_or(0.0, |first| first.value));
-    let apart =
-        rival.distance_px.map_or_else(|| "too far to compare".to_owned(), |px| format!("{} px apart (RMS over the frame)", plain(px)));
-    format!(
-        "another camera{} fits as well, as far as the noise tells: {} of {} in place of {}, {apart}; reached from {}. More images from other directions decide",
-        of(calibration, rival.camera),
-        rival.found.parameters().first().map_or("", |first| first.name),
-        plain(other),
-        plain(found),
-        rival.origin
-    )
 }
 
 /// A value with the digits that its standard deviation leaves, and that with two.
@@ -204,58 +196,6 @@ pub(super) fn rounded(value: f64, sigma: f64) -> (String, String) {
     }
     let more = if value == 0.0 { 1 } else { (value.abs().log10().floor() - sigma.log10().floor()) as i32 + 1 };
     (format!("{value:.*e}", more.clamp(0, 16) as usize), format!("{sigma:.1e}"))
-}
-
-/// What a user must know.
-fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
-    let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
-    let correlated = calibration.covariances.correlated(CORRELATED);
-    let mut warnings: Vec<String> = correlated
-        .iter()
-        .map(|found| format!("{} and {} are hardly told apart: correlation {:.3}", names[found.pair[0]], names[found.pair[1]], found.rho))
-        .collect();
-    let tests = calibration.solution.significance().unwrap_or_default();
-    let observed = |test: &Significance| {
-        calibration.prepared.settings.cameras[test.camera].priors.iter().any(|prior| prior.parameter == test.parameter)
-    };
-    for test in tests.iter().filter(|test| !observed(test) && test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
-        let name = calibration.parameter_name(&(test.camera, test.parameter));
-        warnings.push(format!("{name} is not told from zero (t {:.1}); a set without it may do", test.t));
-    }
-    warnings.extend(calibration.prepared.rivals.iter().map(|rival| another(calibration, rival)));
-    warnings.extend(board::warning(calibration));
-    warnings.extend(weights(calibration));
-    let rejected = calibration.found.iter().filter(|found| found.left_out).count();
-    if rejected > 0 {
-        warnings.push(format!("{rejected} image points were rejected and left out"));
-    }
-    let kept = calibration.found.len() - rejected;
-    if kept > 0 {
-        warnings.push(format!("{kept} image points were rejected and kept: the network needs them, or too many were left out"));
-    }
-    let weighted = calibration.solution.each_residual().filter(|r| matches!(r.used, Use::Downweighted(_))).count();
-    if weighted > 0 {
-        warnings.push(format!("{weighted} image points have less weight (Huber)"));
-    }
-    let lost = calibration.prepared.unmeasured.len();
-    if lost > 0 {
-        warnings.push(format!("{lost} targets were not measured: the method rejected them, or their board was not found"));
-    }
-    let absent = calibration.prepared.left_out.len();
-    if absent > 0 {
-        warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
-    }
-    warnings
-}
-
-/// Image points and weighted control share one variance factor: an assumed standard deviation must be about right.
-fn weights(calibration: &Calibration<'_>) -> Option<String> {
-    let settings = &calibration.prepared.settings;
-    let weighted = calibration.solution.counts().observed > 0;
-    let sigma0 = calibration.solution.sigma0().filter(|sigma0| *sigma0 > 0.0 && !(0.67..=1.5).contains(sigma0))?;
-    let sigma = settings.sigma();
-    (weighted && settings.sigma_px.is_none())
-        .then(|| format!("control is weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
 }
 
 fn images(calibration: &Calibration<'_>) -> String {

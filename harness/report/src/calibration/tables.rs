@@ -105,7 +105,7 @@ fn parameters(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<(
         let name = calibration.name_of(camera);
         rows.into_iter().map(move |row| [vec![name.to_owned()], row].concat())
     };
-    let columns = ["camera", "parameter", "unit", "value", "sigma", "t", "p", "status"];
+    let columns = ["camera", "parameter", "unit", "value", "sigma", "sigma_by_images", "t", "p", "status"];
     table(folder, "parameters.csv", &columns, (0..calibration.cameras()).flat_map(of_camera))
 }
 
@@ -117,6 +117,9 @@ fn of_camera(calibration: &Calibration<'_>, tests: &[Significance], camera: usiz
         let test = tests.iter().find(|test| test.camera == camera && test.parameter == parameter.name);
         let mut row = vec![parameter.name.to_owned(), parameter.unit.to_owned(), parameter.value.to_string()];
         row.extend(texts(sigma.map(|sigma| [sigma])));
+        let resampled = calibration.resampled.as_ref().and_then(|found| found.as_ref().ok());
+        let place = calibration.covariances.parameters.iter().position(|known| *known == (camera, parameter.name));
+        row.extend(texts(resampled.zip(place).map(|(found, place)| [found.sigmas[place]])));
         row.extend(texts(test.map(|test| [test.t, test.p])));
         let observed = priors.iter().any(|prior| prior.parameter == parameter.name);
         row.push(

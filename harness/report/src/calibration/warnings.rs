@@ -1,0 +1,90 @@
+//! What a user must know of a calibration.
+
+use calibench_adjust::{Significance, Use};
+use calibench_calibrate::{Calibration, Rival};
+use calibench_model::camera::CameraModel;
+
+use super::limits::{BASIC, CORRELATED, DOUBTFUL};
+use super::{board, of};
+use crate::plain;
+
+/// Times that the images may disagree with the standard deviations: from twenty groups a ratio is known to a sixth.
+const OPTIMISTIC: f64 = 1.5;
+
+/// What a user must know.
+pub(super) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
+    let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
+    let correlated = calibration.covariances.correlated(CORRELATED);
+    let mut warnings: Vec<String> = correlated
+        .iter()
+        .map(|found| format!("{} and {} are hardly told apart: correlation {:.3}", names[found.pair[0]], names[found.pair[1]], found.rho))
+        .collect();
+    let tests = calibration.solution.significance().unwrap_or_default();
+    let observed = |test: &Significance| {
+        calibration.prepared.settings.cameras[test.camera].priors.iter().any(|prior| prior.parameter == test.parameter)
+    };
+    for test in tests.iter().filter(|test| !observed(test) && test.p > DOUBTFUL && !BASIC.contains(&test.parameter)) {
+        let name = calibration.parameter_name(&(test.camera, test.parameter));
+        warnings.push(format!("{name} is not told from zero (t {:.1}); a set without it may do", test.t));
+    }
+    warnings.extend(calibration.prepared.rivals.iter().map(|rival| another(calibration, rival)));
+    warnings.extend(board::warning(calibration));
+    warnings.extend(optimistic(calibration));
+    warnings.extend(weights(calibration));
+    let rejected = calibration.found.iter().filter(|found| found.left_out).count();
+    if rejected > 0 {
+        warnings.push(format!("{rejected} image points were rejected and left out"));
+    }
+    let kept = calibration.found.len() - rejected;
+    if kept > 0 {
+        warnings.push(format!("{kept} image points were rejected and kept: the network needs them, or too many were left out"));
+    }
+    let weighted = calibration.solution.each_residual().filter(|r| matches!(r.used, Use::Downweighted(_))).count();
+    if weighted > 0 {
+        warnings.push(format!("{weighted} image points have less weight (Huber)"));
+    }
+    let lost = calibration.prepared.unmeasured.len();
+    if lost > 0 {
+        warnings.push(format!("{lost} targets were not measured: the method rejected them, or their board was not found"));
+    }
+    let absent = calibration.prepared.left_out.len();
+    if absent > 0 {
+        warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
+    }
+    warnings
+}
+
+/// Standard deviations that the images do not confirm.
+fn optimistic(calibration: &Calibration<'_>) -> Option<String> {
+    let found = calibration.resampled.as_ref()?.as_ref().ok()?;
+    let interior = &calibration.covariances.interior;
+    let ratio = found.ratio((0..interior.nrows()).map(|i| interior[(i, i)].sqrt())).filter(|ratio| *ratio > OPTIMISTIC)?;
+    Some(format!(
+        "leaving images out changes the parameters {ratio:.1} times as much as the standard deviations say (median): residuals within an image belong together"
+    ))
+}
+
+/// Image points and weighted control share one variance factor: an assumed standard deviation must be about right.
+fn weights(calibration: &Calibration<'_>) -> Option<String> {
+    let settings = &calibration.prepared.settings;
+    let weighted = calibration.solution.counts().observed > 0;
+    let sigma0 = calibration.solution.sigma0().filter(|sigma0| *sigma0 > 0.0 && !(0.67..=1.5).contains(sigma0))?;
+    let sigma = settings.sigma();
+    (weighted && settings.sigma_px.is_none())
+        .then(|| format!("control is weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
+}
+
+/// A minimum that noise does not tell from the one found.
+fn another(calibration: &Calibration<'_>, rival: &Rival) -> String {
+    let [found, other] = [&rival.found, &rival.other].map(|camera| camera.parameters().first().map_or(0.0, |first| first.value));
+    let apart =
+        rival.distance_px.map_or_else(|| "too far to compare".to_owned(), |px| format!("{} px apart (RMS over the frame)", plain(px)));
+    format!(
+        "another camera{} fits as well, as far as the noise tells: {} of {} in place of {}, {apart}; reached from {}. More images from other directions decide",
+        of(calibration, rival.camera),
+        rival.found.parameters().first().map_or("", |first| first.name),
+        plain(other),
+        plain(found),
+        rival.origin
+    )
+}
