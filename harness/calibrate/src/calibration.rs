@@ -5,7 +5,7 @@ use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
-use crate::{CalibrationError, Compared, Prepared, Resampled};
+use crate::{CalibrationError, Checked, Compared, Prepared, Resampled};
 
 /// Iterations at most: parameters that do nearly the same, as xi and k1 of an omnidirectional camera, approach their minimum slowly.
 pub(crate) const ITERATIONS: usize = 1000;
@@ -27,6 +27,8 @@ pub struct Calibration<'n> {
     pub compared: Option<Compared>,
     /// Standard deviations from leaving images out, or why there are none; `None` until [`Calibration::resample`].
     pub resampled: Option<Result<Resampled, String>>,
+    /// What the model may leave out; empty until [`Calibration::examine`].
+    pub checked: Vec<Checked>,
 }
 
 impl Prepared {
@@ -45,7 +47,7 @@ impl Prepared {
         let checked = solution.counts().redundancy() > 0;
         let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
         let reliability = if checked { Some(solution.reliability(test)?) } else { None };
-        Ok(Calibration { prepared: self, solution, found, covariances, reliability, compared: None, resampled: None })
+        Ok(Calibration { prepared: self, solution, found, covariances, reliability, compared: None, resampled: None, checked: Vec::new() })
     }
 }
 

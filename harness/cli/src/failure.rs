@@ -10,6 +10,8 @@ use calibench_scenario::catalogue::CatalogueError;
 pub enum Failure {
     /// A gate failed and has said why: exit code 1.
     Gate,
+    /// A result that is doubtful, and says why: exit code 3.
+    Doubt,
     /// Bad input, or output that cannot be written: exit code 2.
     Input(String),
     /// The same, as a picture with colours.

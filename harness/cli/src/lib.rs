@@ -128,6 +128,7 @@ pub fn main(toolbox: &Toolbox) -> ExitCode {
     match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Gate) => ExitCode::from(1),
+        Err(Failure::Doubt) => ExitCode::from(3),
         Err(Failure::Picture(picture)) => {
             eprintln!("error: {picture}");
             ExitCode::from(2)

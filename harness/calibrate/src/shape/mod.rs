@@ -10,6 +10,7 @@ use thiserror::Error;
 
 pub use board::Board;
 pub use test::Bend;
+pub(crate) use test::scale;
 
 use crate::{CalibrationError, Settings};
 

@@ -68,7 +68,7 @@ fn started(network: &Network, end: &Solution<'_>) -> Network {
 }
 
 /// The standard deviation of an image coordinate against the a-priori one, from the median residual; `None` without residuals.
-fn scale(solution: &Solution<'_>) -> Option<f64> {
+pub(crate) fn scale(solution: &Solution<'_>) -> Option<f64> {
     let mut lengths: Vec<f64> = solution.each_white_residual().map(|[x, y]| x.hypot(y)).collect();
     let middle = lengths.len() / 2;
     if lengths.is_empty() {

@@ -1,5 +1,6 @@
 //! Calibrations of networks with a known truth.
 
+mod doubts;
 mod network;
 mod points;
 mod resampled;

@@ -97,11 +97,13 @@ impl Calibrate {
         drop(control);
         let mut calibration = prepared.adjust()?;
         calibration.resample();
+        calibration.examine();
         if !self.compare.is_empty() {
             calibration.compare(&sets(&self.compare)?)?;
         }
         self.deliver(&calibration, output.as_ref(), report.as_ref())?;
-        print(&summary(&calibration))
+        print(&summary(&calibration))?;
+        if calibration.doubts().is_empty() { Ok(()) } else { Err(Failure::Doubt) }
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {

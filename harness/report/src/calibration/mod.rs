@@ -1,6 +1,7 @@
 //! A calibration as a page with pictures and tables, and as a summary for a terminal.
 
 mod board;
+mod checks;
 mod csv;
 mod hull;
 mod limits;

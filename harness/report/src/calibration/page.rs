@@ -10,7 +10,7 @@ use calibench_model::camera::CameraModel;
 use calibench_model::escape;
 
 use super::warnings::warnings;
-use super::{board, of, pictures, sets_page, tables};
+use super::{board, checks, of, pictures, sets_page, tables};
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
@@ -23,13 +23,15 @@ const MOST: usize = 200;
 /// What the file system refuses.
 pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     tables::write(calibration, folder)?;
-    let mut text = format!("# Calibration\n\n{}\n", facts(calibration));
+    let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("**{headline}**\n\n"));
+    let mut text = format!("# Calibration\n\n{headline}{}\n", facts(calibration));
     for camera in 0..calibration.cameras() {
         let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, of(calibration, camera));
         text.push_str(&parameters(calibration, camera).render());
     }
     text.push_str(&format!("\nStandard deviations {}; {}.\n", scaled(calibration), by_images(calibration)));
     text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{warning}**\n")).collect::<String>());
+    text.push_str(&checks::section(calibration));
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
     }
@@ -48,7 +50,8 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Re
 
 /// What a user reads first: the parameters with their standard deviations and what is wrong with them.
 pub fn summary(calibration: &Calibration<'_>) -> String {
-    let mut text = facts(calibration).replace("- ", "");
+    let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("{headline}\n\n"));
+    let mut text = headline + &facts(calibration).replace("- ", "");
     for camera in 0..calibration.cameras() {
         let name = of(calibration, camera);
         let _ = write!(
@@ -120,6 +123,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
     if let Some(sigma0) = solution.sigma0() {
         lines.push(unit_weight(calibration, sigma0));
     }
+    lines.extend(checks::fact(calibration));
     lines.iter().map(|line| format!("- {line}\n")).collect()
 }
 

@@ -1,0 +1,137 @@
+//! Whether control points are where their file says.
+
+use calibench_adjust::{Datum, Network, ObjectPoint, Solution, Status, Variance, adjust};
+use nalgebra::{Matrix3, Point3, Vector3};
+
+use super::{ALPHA, Verdict, gross};
+use crate::Calibration;
+use crate::datum::DatumChoice;
+
+/// Control points at most, up to which all are freed.
+const MOST: usize = 20_000;
+/// Standard deviations beyond which a point is off.
+const OFF: f64 = 6.0;
+/// Points that are named one by one.
+const NAMED: usize = 3;
+/// Share of the squares of all shifts that a cause must explain.
+const PART: f64 = 0.6;
+
+/// The same observations with every control point free, in a free network; and whether no image point is in gross error there.
+pub(super) fn check(calibration: &Calibration<'_>) -> (Verdict, bool) {
+    let untested = |why: &str| (Verdict::Untested(why.into()), false);
+    let whole = &calibration.prepared.network;
+    if !matches!(calibration.prepared.settings.datum, DatumChoice::Control | DatumChoice::Fixed) {
+        return untested("they are free already");
+    }
+    if whole.points.iter().any(|point| point.coordinates != [Status::Fixed; 3]) {
+        return untested("they are weighted, or some points are none");
+    }
+    if whole.points.len() > MOST {
+        return untested("there are too many");
+    }
+    let network = freed(calibration);
+    let Ok(free) = adjust(&network, &calibration.options()) else {
+        return untested("without them the network is not determined");
+    };
+    // Seven of all coordinates are the frame's.
+    let verdict = calibration.judged(&free, 3 * network.points.len() - 7, || cause(&network, &free));
+    (verdict, gross::found(&free).is_none_or(|found| found.p > ALPHA))
+}
+
+/// Every point free; those that too few images see stay out with what was measured of them.
+fn freed(calibration: &Calibration<'_>) -> Network {
+    let ended = calibration.ended();
+    let points =
+        ended.points.iter().zip(calibration.solution.points()).map(|(point, position)| ObjectPoint::free(point.name.clone(), *position));
+    Network { points: points.collect(), surfaces: Vec::new(), datum: Datum::Inner, ..ended }
+}
+
+/// What the shifts of the points look like.
+fn cause(network: &Network, free: &Solution<'_>) -> String {
+    let shifts: Vec<Vector3<f64>> = network.points.iter().zip(free.points()).map(|(point, found)| found - point.position).collect();
+    let off = off(free, &shifts);
+    if let Some([a, b]) = swapped(network, free, &off) {
+        return format!("the names of control points {a} and {b} are swapped");
+    }
+    if (1..=NAMED).contains(&off.len()) {
+        let names: Vec<&str> = off.iter().map(|&i| network.points[i].name.as_str()).collect();
+        let most = off.iter().map(|&i| shifts[i].norm()).fold(0.0, f64::max);
+        return format!("control point {} moved, by {most:.3} object units", names.join(", "));
+    }
+    if let Some(stretch) = stretched(network, &shifts) {
+        return stretch;
+    }
+    if is_along_normal(network, &shifts) {
+        return "the board is bent; try --board-shape bent or free".into();
+    }
+    let worst = (0..shifts.len()).max_by(|&a, &b| shifts[a].norm().total_cmp(&shifts[b].norm())).unwrap_or(0);
+    format!(
+        "the coordinates of control points are not as their file says: {} is {:.3} object units off, the most; try --board-shape free",
+        network.points[worst].name,
+        shifts[worst].norm()
+    )
+}
+
+/// The points whose shift is not to be explained by their standard deviations and those of the others.
+fn off(free: &Solution<'_>, shifts: &[Vector3<f64>]) -> Vec<usize> {
+    let mut lengths: Vec<f64> = shifts.iter().map(Vector3::norm).collect();
+    lengths.sort_by(f64::total_cmp);
+    let usual = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
+    let Ok(covariances) = free.covariances(Variance::Estimated) else { return Vec::new() };
+    let is_off = |i: &usize| shifts[*i].norm() > OFF * usual.max(covariances.points[*i].trace().max(0.0).sqrt());
+    (0..shifts.len()).filter(is_off).collect()
+}
+
+/// Two points of which each is where the other should be.
+fn swapped<'n>(network: &'n Network, free: &Solution<'_>, off: &[usize]) -> Option<[&'n str; 2]> {
+    let near = |a: usize, b: usize| {
+        let apart = (network.points[a].position - network.points[b].position).norm();
+        (free.points()[a] - network.points[b].position).norm() < 0.2 * apart
+    };
+    let pairs = off.iter().enumerate().flat_map(|(k, &a)| off[k + 1..].iter().map(move |&b| (a, b)));
+    let found = pairs.into_iter().find(|&(a, b)| near(a, b) && near(b, a));
+    found.map(|(a, b)| [network.points[a].name.as_str(), network.points[b].name.as_str()])
+}
+
+/// One direction that is too long against another: of squares that are none.
+fn stretched(network: &Network, shifts: &[Vector3<f64>]) -> Option<String> {
+    let middle = network.points.iter().map(|point| point.position.coords).sum::<Vector3<f64>>() / network.points.len() as f64;
+    let from: Vec<Vector3<f64>> = network.points.iter().map(|point| point.position.coords - middle).collect();
+    let (spread, moved) = from.iter().zip(shifts).fold((Matrix3::zeros(), Matrix3::zeros()), |(spread, moved), (from, shift)| {
+        (spread + from * from.transpose(), moved + shift * from.transpose())
+    });
+    // Of a plane the third direction has no extent.
+    let inverse = spread.pseudo_inverse(1e-9 * spread.trace()).ok()?;
+    let affine = moved * inverse;
+    let strain = 0.5 * (affine + affine.transpose());
+    let explained: f64 = from.iter().map(|from| (strain * from).norm_squared()).sum();
+    let all: f64 = shifts.iter().map(Vector3::norm_squared).sum();
+    if explained < PART * all {
+        return None;
+    }
+    let eigen = strain.symmetric_eigen();
+    let (low, high) = (eigen.eigenvalues.imin(), eigen.eigenvalues.imax());
+    let along = |k: usize| {
+        let axis = eigen.eigenvectors.column(k);
+        ["X", "Y", "Z"][axis.iamax()]
+    };
+    let percent = 100.0 * (eigen.eigenvalues[high] - eigen.eigenvalues[low]);
+    Some(format!(
+        "the testfield is {percent:.2} % longer along {} against {} than its file says: is the size of a square right?",
+        along(high),
+        along(low)
+    ))
+}
+
+/// Whether the shifts are along the normal of a plane.
+fn is_along_normal(network: &Network, shifts: &[Vector3<f64>]) -> bool {
+    let points: Vec<Point3<f64>> = network.points.iter().map(|point| point.position).collect();
+    let middle = points.iter().map(|point| point.coords).sum::<Vector3<f64>>() / points.len() as f64;
+    let spread: Matrix3<f64> = points.iter().map(|point| (point.coords - middle) * (point.coords - middle).transpose()).sum();
+    let eigen = spread.symmetric_eigen();
+    let (low, high) = (eigen.eigenvalues.imin(), eigen.eigenvalues.imax());
+    let normal = eigen.eigenvectors.column(low).into_owned();
+    let along: f64 = shifts.iter().map(|shift| shift.dot(&normal).powi(2)).sum();
+    let all: f64 = shifts.iter().map(Vector3::norm_squared).sum();
+    eigen.eigenvalues[low] < 1e-3 * eigen.eigenvalues[high] && along > PART * all
+}

@@ -1,0 +1,28 @@
+//! Whether residuals are as large as was stated.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::{ALPHA, Finding, Verdict, has_redundancy};
+use crate::Calibration;
+
+/// Times that residuals may exceed what was stated: standard deviations that come from the residuals are right up to there and beyond.
+const BEYOND: f64 = 1.5;
+
+/// Chi squared of the sum of squares, where a standard deviation or covariances were stated.
+pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
+    let settings = &calibration.prepared.settings;
+    if settings.sigma_px.is_none() && !settings.covariances {
+        return Verdict::Untested("none was stated (--sigma, --covariances)".into());
+    }
+    let redundancy = calibration.solution.counts().redundancy() as f64;
+    let (true, Ok(chi)) = (has_redundancy(calibration), ChiSquared::new(redundancy)) else {
+        return Verdict::Untested("there is no redundancy".into());
+    };
+    let sigma0 = calibration.solution.sigma0().unwrap_or(1.0);
+    let finding = Finding { p: chi.sf(calibration.solution.cost()), moves: None };
+    if finding.p < ALPHA && sigma0 > BEYOND {
+        let cause = format!("image points are {sigma0:.1} times as imprecise as stated: the statement, the points or the model are wrong");
+        return Verdict::Doubt(finding, cause);
+    }
+    Verdict::Sound(finding)
+}

@@ -1,0 +1,62 @@
+//! What the model may leave out: the checks of a calibration, for the page and the terminal.
+
+use calibench_calibrate::{Calibration, Checked, Finding, SHARE, Verdict};
+
+use crate::markdown::MarkdownTable;
+use crate::plain;
+
+/// What stands first if there is doubt: the most likely cause.
+pub(super) fn headline(calibration: &Calibration<'_>) -> Option<String> {
+    let doubts = calibration.doubts();
+    (!doubts.is_empty()).then(|| format!("doubtful: {}", doubts.join("; ")))
+}
+
+/// What was looked for, in a line.
+pub(super) fn fact(calibration: &Calibration<'_>) -> Option<String> {
+    let one = |checked: &Checked| match &checked.verdict {
+        Verdict::Untested(_) => format!("{} not tested", checked.what),
+        Verdict::Sound(_) => format!("{} sound", checked.what),
+        Verdict::Slight(..) => format!("{} not sound, but it hardly moves the camera", checked.what),
+        Verdict::Doubt(..) => format!("{} DOUBTFUL", checked.what),
+    };
+    let all: Vec<String> = calibration.checked.iter().map(one).collect();
+    (!all.is_empty()).then(|| format!("checks: {}", all.join(", ")))
+}
+
+/// What was found and does not matter.
+pub(super) fn slight<'c>(calibration: &'c Calibration<'_>) -> impl Iterator<Item = String> + 'c {
+    calibration.checked.iter().filter_map(|checked| match &checked.verdict {
+        Verdict::Slight(finding, cause) => {
+            Some(format!("{cause}; the camera moves by {} of its standard deviations", finding.moves.map_or_else(String::new, plain)))
+        }
+        _ => None,
+    })
+}
+
+/// The section of the page.
+pub(super) fn section(calibration: &Calibration<'_>) -> String {
+    if calibration.checked.is_empty() {
+        return String::new();
+    }
+    let mut table = MarkdownTable::new(&["looked for", "p", "moves the camera by", "verdict"]);
+    for checked in &calibration.checked {
+        let (finding, verdict) = match &checked.verdict {
+            Verdict::Untested(why) => (None, format!("not tested: {why}")),
+            Verdict::Sound(finding) => (Some(finding), "sound".to_owned()),
+            Verdict::Slight(finding, cause) => (Some(finding), format!("{cause}; it hardly moves the camera")),
+            Verdict::Doubt(finding, cause) => (Some(finding), format!("**{cause}**")),
+        };
+        let (p, moves) = finding.map_or_else(Default::default, cells);
+        table.row([checked.what.to_owned(), p, moves, verdict]);
+    }
+    format!(
+        "\n## What the model may leave out\n\n{}\np: the probability of residuals as uneven by chance. The camera moves by so many of its standard deviations over the \
+         frame (RMS, after the best rotation) when what was looked for is allowed for; it counts beyond {SHARE}.\n",
+        table.render()
+    )
+}
+
+fn cells(finding: &Finding) -> (String, String) {
+    let p = if finding.p < 1e-4 { "< 0.0001".to_owned() } else { format!("{:.4}", finding.p) };
+    (p, finding.moves.map_or(String::new(), plain))
+}
