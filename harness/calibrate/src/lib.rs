@@ -5,6 +5,7 @@ pub mod choice;
 mod compared;
 mod datum;
 mod doubt;
+mod ended;
 mod error;
 mod model;
 mod network;

@@ -1,11 +1,12 @@
 //! Whether control points are where their file says.
 
-use calibench_adjust::{Datum, Network, ObjectPoint, Solution, Status, Variance, adjust};
+use calibench_adjust::{Datum, Network, ObjectPoint, Options, Solution, Status, Variance, adjust};
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::{ALPHA, Verdict, gross};
 use crate::Calibration;
 use crate::datum::DatumChoice;
+use crate::resampled::NEAR;
 
 /// Control points at most, up to which all are freed.
 const MOST: usize = 20_000;
@@ -30,7 +31,7 @@ pub(super) fn check(calibration: &Calibration<'_>) -> (Verdict, bool) {
         return untested("there are too many");
     }
     let network = freed(calibration);
-    let Ok(free) = adjust(&network, &calibration.options()) else {
+    let Ok(free) = adjust(&network, &Options { most_iterations: NEAR, ..calibration.options() }) else {
         return untested("without them the network is not determined");
     };
     // Seven of all coordinates are the frame's.
@@ -100,8 +101,8 @@ fn stretched(network: &Network, shifts: &[Vector3<f64>]) -> Option<String> {
     let (spread, moved) = from.iter().zip(shifts).fold((Matrix3::zeros(), Matrix3::zeros()), |(spread, moved), (from, shift)| {
         (spread + from * from.transpose(), moved + shift * from.transpose())
     });
-    // Of a plane the third direction has no extent.
-    let inverse = spread.pseudo_inverse(1e-9 * spread.trace()).ok()?;
+    // Across a board there is no extent to speak of.
+    let inverse = spread.pseudo_inverse(1e-3 * spread.trace()).ok()?;
     let affine = moved * inverse;
     let strain = 0.5 * (affine + affine.transpose());
     let explained: f64 = from.iter().map(|from| (strain * from).norm_squared()).sum();

@@ -5,6 +5,7 @@ use statrs::distribution::{Binomial, DiscreteCDF};
 
 use super::{ALPHA, Finding, Verdict};
 use crate::Calibration;
+use crate::resampled::NEAR;
 use crate::shape::scale;
 
 /// Residuals (as vectors) beyond so many of their standard deviations are counted: of normal ones `exp(-8)`.
@@ -39,7 +40,7 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
         return Verdict::Untested("the residuals are no more than rounding".into());
     };
     let network = calibration.ended();
-    let options = Options { huber: Some(BOUND * scale), ..calibration.options() };
+    let options = Options { huber: Some(BOUND * scale), most_iterations: NEAR, ..calibration.options() };
     let moves = adjust(&network, &options).ok().and_then(|robust| calibration.moves(robust.cameras(), scale));
     let finding = Finding { p, moves };
     if p >= ALPHA {

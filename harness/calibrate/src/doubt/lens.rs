@@ -5,11 +5,10 @@ use calibench_model::camera::{Camera, CameraModel, OpenCv};
 
 use super::Verdict;
 use crate::Calibration;
+use crate::resampled::NEAR;
 
 /// Standard deviation of the coefficients of a denominator about zero: they may take any value that lenses have, and stay where observations do not say.
 const WEAK: f64 = 1.0;
-/// Iterations at most: near a minimum it takes few.
-const ITERATIONS: usize = 50;
 
 /// The same observations with every parameter of the model free, or with OpenCV's rational model where that was so.
 pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
@@ -22,7 +21,7 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
     if more == 0 {
         return Verdict::Untested("there is no richer model of this kind".into());
     }
-    match adjust(&network, &Options { most_iterations: ITERATIONS, ..calibration.options() }) {
+    match adjust(&network, &Options { most_iterations: NEAR, ..calibration.options() }) {
         Ok(solution) => calibration.judged(&solution, more, || cause(&network)),
         Err(_) => Verdict::Untested("a richer model is not determined".into()),
     }

@@ -3,7 +3,6 @@
 mod control;
 mod gross;
 mod lens;
-mod network;
 mod precision;
 
 use calibench_adjust::{Distance, Solution, Variance, frame_uncertainty};
@@ -11,7 +10,8 @@ use calibench_model::camera::Camera;
 use calibench_model::convert::{DifferenceOptions, difference};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use crate::Calibration;
+use crate::ended::ended;
+use crate::{Calibration, Resampled};
 
 /// Probability below which a structure is no chance. Four tests together: once in 2500 sound calibrations, if residuals are independent.
 const ALPHA: f64 = 1e-4;
@@ -112,10 +112,27 @@ impl Calibration<'_> {
         let gain = (self.solution.cost() - richer.cost()).max(0.0) / more as f64;
         let p = fisher.sf(gain / (richer.cost() / redundancy).max(f64::MIN_POSITIVE));
         let sigma0 = (richer.cost() / redundancy).sqrt();
-        let finding = Finding { p, moves: self.moves(richer.cameras(), sigma0) };
+        let mut finding = Finding { p, moves: self.moves(richer.cameras(), sigma0) };
         // Residuals that are rounding are no structure.
         let is_rounding = self.solution.sigma0().is_none_or(|sigma0| sigma0 < 1e-5);
-        if p < ALPHA && !is_rounding { finding.weighed(cause()) } else { Verdict::Sound(finding) }
+        if p >= ALPHA || is_rounding {
+            return Verdict::Sound(finding);
+        }
+        if finding.moves.is_none_or(|moves| moves > SHARE) {
+            finding.moves = finding.moves.map(|moves| moves / self.optimism(richer));
+        }
+        finding.weighed(cause())
+    }
+
+    /// How many times too small the formal standard deviations are when a structure is allowed for, as leaving images out shows: 1 at least.
+    fn optimism(&self, richer: &Solution<'_>) -> f64 {
+        let network = ended(richer);
+        let formal = richer.covariances(Variance::Estimated);
+        let ratio = formal.ok().and_then(|formal| {
+            let resampled = Resampled::of(&network, &self.options(), &formal.parameters).ok()?;
+            resampled.ratio((0..formal.interior.nrows()).map(|i| formal.interior[(i, i)].sqrt()))
+        });
+        ratio.unwrap_or(1.0).max(1.0)
     }
 
     /// By how many of their standard deviations over the frame the cameras differ from others: the most of any camera. A structure raises the residuals

@@ -5,8 +5,10 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::{ALPHA, Finding, Verdict, has_redundancy};
 use crate::Calibration;
 
-/// Times that residuals may exceed what was stated: standard deviations that come from the residuals are right up to there and beyond.
-const BEYOND: f64 = 1.5;
+/// Times that residuals may exceed a standard deviation that a user stated.
+const STATED: f64 = 1.5;
+/// Times that they may exceed the covariances of an operator, which knows nothing but the noise of grey values.
+const OPERATOR: f64 = 10.0;
 
 /// Chi squared of the sum of squares, where a standard deviation or covariances were stated.
 pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
@@ -20,9 +22,10 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
     };
     let sigma0 = calibration.solution.sigma0().unwrap_or(1.0);
     let finding = Finding { p: chi.sf(calibration.solution.cost()), moves: None };
-    if finding.p < ALPHA && sigma0 > BEYOND {
-        let cause = format!("image points are {sigma0:.1} times as imprecise as stated: the statement, the points or the model are wrong");
-        return Verdict::Doubt(finding, cause);
+    if finding.p >= ALPHA || sigma0 < STATED {
+        return Verdict::Sound(finding);
     }
-    Verdict::Sound(finding)
+    let cause = format!("image points are {sigma0:.1} times as imprecise as stated: the statement, the points or the model are wrong");
+    let bound = if settings.covariances { OPERATOR } else { STATED };
+    if sigma0 > bound { Verdict::Doubt(finding, cause) } else { Verdict::Slight(finding, cause) }
 }

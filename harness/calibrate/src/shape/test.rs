@@ -1,11 +1,12 @@
 //! Whether a board is bent: the network adjusted with a flat one and with a bent one.
 
-use calibench_adjust::{AdjustError, Exterior, Interior, Network, ObjectPoint, Options, Solution, Status, Variance, adjust, compare};
+use calibench_adjust::{AdjustError, Network, Options, Solution, Variance, adjust, compare};
 
 use super::board::Board;
 use super::{BoardShape, surface};
 use crate::Settings;
 use crate::calibration::ITERATIONS;
+use crate::ended::ended;
 
 /// Probability at which a flat board is taken for a bent one: a thousandth, since residuals of real images are not quite independent.
 const ALPHA: f64 = 1e-3;
@@ -40,31 +41,15 @@ pub(super) fn bend(network: &Network, board: &Board, settings: &Settings) -> Res
     let first = adjust(network, &plain)?;
     let Some(scale) = scale(&first).filter(|scale| scale * scale > ROUNDING) else { return Ok(None) };
     let robust = Options { huber: Some(BOUND * scale), ..plain };
-    let flat_start = started(network, &first);
+    let flat_start = ended(&first);
     let flat = adjust(&flat_start, &robust)?;
-    let mut bent_start = started(network, &flat);
+    let mut bent_start = ended(&flat);
     bent_start.surfaces = vec![surface(network, board, BoardShape::Bent, [0.0; 3])];
     let bent = adjust(&bent_start, &robust)?;
     let covariance = bent.covariances(Variance::Estimated)?.surfaces[0];
     let p = compare(&flat, &bent)?.p;
     let coefficients = bent.surfaces().next().unwrap_or_default();
     Ok(Some(Bend { coefficients, sigmas: std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt()), p }))
-}
-
-/// `network`, from where an adjustment ended.
-fn started(network: &Network, end: &Solution<'_>) -> Network {
-    let interior = |(interior, camera): (&Interior, &calibench_model::camera::Camera)| Interior { camera: *camera, ..interior.clone() };
-    let exterior = |(image, pose): (&Exterior, &calibench_model::Pose)| Exterior { pose: *pose, ..image.clone() };
-    let point = |(point, position): (&ObjectPoint, &nalgebra::Point3<f64>)| match point.coordinates {
-        [Status::Fixed, Status::Fixed, Status::Fixed] => point.clone(),
-        _ => ObjectPoint { position: *position, ..point.clone() },
-    };
-    Network {
-        cameras: network.cameras.iter().zip(end.cameras()).map(interior).collect(),
-        images: network.images.iter().zip(end.poses()).map(exterior).collect(),
-        points: network.points.iter().zip(end.points()).map(point).collect(),
-        ..network.clone()
-    }
 }
 
 /// The standard deviation of an image coordinate against the a-priori one, from the median residual; `None` without residuals.

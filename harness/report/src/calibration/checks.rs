@@ -16,7 +16,7 @@ pub(super) fn fact(calibration: &Calibration<'_>) -> Option<String> {
     let one = |checked: &Checked| match &checked.verdict {
         Verdict::Untested(_) => format!("{} not tested", checked.what),
         Verdict::Sound(_) => format!("{} sound", checked.what),
-        Verdict::Slight(..) => format!("{} not sound, but it hardly moves the camera", checked.what),
+        Verdict::Slight(..) => format!("{} not quite sound", checked.what),
         Verdict::Doubt(..) => format!("{} DOUBTFUL", checked.what),
     };
     let all: Vec<String> = calibration.checked.iter().map(one).collect();
@@ -27,7 +27,10 @@ pub(super) fn fact(calibration: &Calibration<'_>) -> Option<String> {
 pub(super) fn slight<'c>(calibration: &'c Calibration<'_>) -> impl Iterator<Item = String> + 'c {
     calibration.checked.iter().filter_map(|checked| match &checked.verdict {
         Verdict::Slight(finding, cause) => {
-            Some(format!("{cause}; the camera moves by {} of its standard deviations", finding.moves.map_or_else(String::new, plain)))
+            let moves = finding
+                .moves
+                .map_or_else(String::new, |moves| format!("; the camera moves by {} of its standard deviations", plain(moves)));
+            Some(format!("{cause}{moves}"))
         }
         _ => None,
     })
@@ -43,7 +46,7 @@ pub(super) fn section(calibration: &Calibration<'_>) -> String {
         let (finding, verdict) = match &checked.verdict {
             Verdict::Untested(why) => (None, format!("not tested: {why}")),
             Verdict::Sound(finding) => (Some(finding), "sound".to_owned()),
-            Verdict::Slight(finding, cause) => (Some(finding), format!("{cause}; it hardly moves the camera")),
+            Verdict::Slight(finding, cause) => (Some(finding), format!("{cause}; it does not count")),
             Verdict::Doubt(finding, cause) => (Some(finding), format!("**{cause}**")),
         };
         let (p, moves) = finding.map_or_else(Default::default, cells);
