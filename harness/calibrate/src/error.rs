@@ -100,3 +100,10 @@ pub enum CalibrationError {
     #[error(transparent)]
     Adjust(#[from] AdjustError),
 }
+
+impl CalibrationError {
+    /// Whether the observations leave unknowns open, or nearly so: what is known of a parameter would help.
+    pub fn is_undetermined(&self) -> bool {
+        matches!(self, Self::Adjust(AdjustError::Undetermined(_) | AdjustError::NotConverged { .. }))
+    }
+}

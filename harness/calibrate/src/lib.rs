@@ -22,6 +22,7 @@ mod shape;
 mod stages;
 mod start;
 mod survey;
+mod weak;
 
 pub use calibration::Calibration;
 pub use compared::{Compared, ComparedSet, SetResult};

@@ -141,3 +141,27 @@ pub(super) fn unknowns(camera: &Camera, optics: &Optics) -> Vec<String> {
     };
     camera.parameters().iter().map(|parameter| parameter.name.to_owned()).filter(|name| !rarely.contains(&name.as_str())).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibench_model::camera::ImageSize;
+
+    const SIZE: ImageSize = ImageSize { width: 1600, height: 1200 };
+
+    #[test]
+    fn a_sphere_that_is_one_stays_and_a_pinhole_is_put_half_way() {
+        let sphere = |xi: f64, alpha: f64| DoubleSphere { size: SIZE, fx: 500.0, fy: 500.0, cx: 800.0, cy: 600.0, xi, alpha };
+        let values = |camera: Camera| camera.parameters().iter().map(|parameter| parameter.value).collect::<Vec<_>>();
+        for (before, after) in [((-0.2, 0.6), (-0.2, 0.6)), ((-0.2, 0.5), (-0.2, 0.5)), ((-0.2, 0.4), (0.0, 0.5))] {
+            assert_eq!(values(regular(sphere(before.0, before.1).into())), values(sphere(after.0, after.1).into()), "{before:?}");
+        }
+    }
+
+    #[test]
+    fn the_outer_points_of_ebners_grid_lie_at_four_tenths_of_the_width() {
+        let optics = Optics { pitch_um: Some(5.0), model: Some("ebner".into()), ..Optics::new(SIZE) };
+        let Target::Ebner { pitch_um, b_mm } = target("ebner", &optics).unwrap() else { panic!("another model") };
+        assert!((b_mm - 3.2).abs() < 1e-12 && pitch_um == 5.0, "{b_mm}");
+    }
+}

@@ -9,6 +9,7 @@ mod camera;
 mod camera_files;
 mod check;
 mod context;
+mod control;
 mod convert;
 mod deliver;
 mod detect;
@@ -96,6 +97,8 @@ enum Command {
     Measure(measure::Measure),
     /// Find a chessboard's corners in photographs: approximate positions for `measure`
     Detect(detect::Detect),
+    /// Write the control file of a chessboard, for `calibrate` and `resect`
+    Control(control::Control),
     /// Calibrate a camera from measured points and control, or from photographs of a chessboard
     Calibrate(Box<calibrate::Calibrate>),
     /// Say which operator and which camera model to trust on photographs of a chessboard, and how far; without truth
@@ -157,6 +160,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Speed(speed) => speed.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
+        Command::Control(control) => control.run(),
         Command::Calibrate(calibrate) => calibrate.run(&context),
         Command::Judge(judge) => judge.run(&context),
         Command::Resect(resect) => resect.run(&context),

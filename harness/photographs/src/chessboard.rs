@@ -69,7 +69,8 @@ impl Chessboard {
     pub fn control(&self) -> Vec<ControlRow> {
         let corner = |index: usize| {
             let (column, row) = (index % self.board.columns, index / self.board.columns);
-            let position = [column as f64 * self.side, -(row as f64 * self.side), 0.0];
+            // Plus zero: a zero without a sign.
+            let position = [column as f64 * self.side, -(row as f64 * self.side) + 0.0, 0.0];
             ControlRow { target: self.board.target(index), position, sigmas: None }
         };
         (0..self.board.corners()).map(corner).collect()

@@ -12,11 +12,13 @@ use crate::project::{files, run, stderr};
 struct FileWriter {
     writer: Writer,
     ending: &'static str,
-    input: &'static str,
+    /// What it reads, if anything.
+    input: Option<&'static str>,
 }
 
 fn writers() -> Vec<FileWriter> {
-    let new = |command: &[&'static str], option, ending, input| FileWriter { writer: Writer::new(command, option), ending, input };
+    let new =
+        |command: &[&'static str], option, ending, input| FileWriter { writer: Writer::new(command, option), ending, input: Some(input) };
     let points = ["--points", "points.csv"];
     let camera = ["--camera", "wall/camera.toml"];
     let pair = [&["orient", "-q", "--left", "s01-r1.png", "--right", "s04-r1.png"][..], &points, &camera].concat();
@@ -36,6 +38,7 @@ fn writers() -> Vec<FileWriter> {
         new(&["convert", "wall/camera.toml", "-q", "--to", "photogrammetric"], "-o", "toml", "wall/camera.toml"),
         new(&["convert", "wall/camera.toml", "-q", "--to", "photogrammetric"], "--plot", "png", "wall/camera.toml"),
         new(&["diff", "wall/camera.toml", "found.toml"], "--plot", "png", "found.toml"),
+        FileWriter { writer: Writer::new(&["control", "9x6:25"], "-o"), ending: "csv", input: None },
     ]
 }
 
@@ -59,9 +62,11 @@ fn a_file_of_ones_own_is_replaced_and_nothing_else_is() {
         refused(folder.path(), &arguments, &[&name, "write-protected"]);
         protect(&at(&name), false);
         fs::remove_file(at(&name)).unwrap();
-        fs::hard_link(at(input), at(&name)).unwrap();
-        refused(folder.path(), &arguments, &[&name, "the command reads"]);
-        fs::remove_file(at(&name)).unwrap();
+        if let Some(input) = input {
+            fs::hard_link(at(input), at(&name)).unwrap();
+            refused(folder.path(), &arguments, &[&name, "the command reads"]);
+            fs::remove_file(at(&name)).unwrap();
+        }
         fs::create_dir(at(&name)).unwrap();
         refused(folder.path(), &arguments, &[&name, "is a folder"]);
         fs::remove_dir(at(&name)).unwrap();

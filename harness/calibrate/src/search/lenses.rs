@@ -100,3 +100,17 @@ fn in_model(sample: &Sample, optics: &Optics, lens: &Arrived) -> Option<Arrived>
     let camera = converted(farthest, &lens.camera, optics)?;
     sample.adjusted(interior(optics, &kept(&camera, optics, &rest)).ok()?, &lens.poses, ITERATIONS, &lens.origin)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibench_model::camera::ImageSize;
+
+    #[test]
+    fn a_field_is_narrow_by_the_corner_of_its_frame() {
+        let size = ImageSize { width: 1601, height: 1201 };
+        let pinhole = |f: f64| super::pinhole(size, f, [800.0, 600.0]);
+        // The corner is 1000 px from the middle: tan 0.7 = 0.842.
+        assert!(is_narrow(&pinhole(1200.0)) && !is_narrow(&pinhole(1180.0)));
+    }
+}

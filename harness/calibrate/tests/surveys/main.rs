@@ -2,6 +2,7 @@
 
 mod doubts;
 mod network;
+mod pairs;
 mod points;
 mod resampled;
 mod shapes;

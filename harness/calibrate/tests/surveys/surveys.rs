@@ -4,6 +4,7 @@ use calibench_adjust::{Status, Variance};
 use calibench_calibrate::choice::ModelChoice;
 use calibench_calibrate::{CalibrationError, DatumChoice, Optics, Prior, Settings, parameters};
 use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::convert::{DifferenceOptions, difference};
 use glob::Pattern;
 
 use crate::network::{SIZE, Scene, agrees, board, lens, optics, settings, wall};
@@ -187,4 +188,20 @@ fn points_without_known_targets_are_named() {
     known[0].target = "t0a".into();
     let error = calibench_calibrate::prepare(points, &known, &settings("opencv5")).unwrap_err().to_string();
     assert!(error.contains("`t0` was measured, `t0a` is known; is it `t0a`?"), "{error}");
+}
+
+/// The change of the camera that a set makes is that between two calibrations.
+#[test]
+fn the_change_of_a_set_is_the_difference_of_two_cameras() {
+    let scene = noisy(board(lens()), 0.3);
+    let few = names(&["fx", "fy", "cx", "cy", "k1"]);
+    let whole = scene.prepared(&settings("opencv5")).unwrap();
+    let mut whole = whole.adjust().unwrap();
+    whole.compare(std::slice::from_ref(&few)).unwrap();
+    let change = whole.compared.as_ref().unwrap().sets[0].result.as_ref().unwrap().change_px.unwrap();
+    let solve = Settings { cameras: vec![Optics { solve: Some(few), ..optics("opencv5") }], ..settings("opencv5") };
+    let part = scene.prepared(&solve).unwrap();
+    let part = part.adjust().unwrap();
+    let apart = difference(whole.camera(0), part.camera(0), &DifferenceOptions::default()).unwrap().spread;
+    assert!((change[0] / apart.rms_px - 1.0).abs() < 1e-3 && (change[1] / apart.max_px - 1.0).abs() < 1e-3, "{change:?} {apart:?}");
 }

@@ -219,7 +219,7 @@ mod tests {
         let line = Line::try_parse_from(line).map_err(|error| error.to_string())?;
         line.cameras.optics(photos).map_err(|failure| match failure {
             Failure::Input(text) | Failure::Picture(text) => text,
-            Failure::Gate => "gate".into(),
+            Failure::Gate | Failure::Doubt => "gate".into(),
         })
     }
 

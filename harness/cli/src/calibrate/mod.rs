@@ -29,7 +29,7 @@ pub struct Calibrate {
     #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos")]
     chessboard: Option<Chessboard>,
     /// The method that measures the chessboard's corners
-    #[arg(short, long, value_name = "METHOD", default_value = "forstner", requires = "photos")]
+    #[arg(short, long, value_name = "METHOD", default_value = "parametric_corner", requires = "photos")]
     method: String,
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
     #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
@@ -95,7 +95,14 @@ impl Calibrate {
         let mut prepared = prepare(points, &control, &settings)?;
         prepared.unmeasured = lost;
         drop(control);
-        let mut calibration = prepared.adjust()?;
+        let held;
+        let mut calibration = match prepared.adjust() {
+            Err(error) if error.is_undetermined() => {
+                held = prepared.held_weakly().ok_or(error)?;
+                held.adjust()?
+            }
+            found => found?,
+        };
         calibration.resample();
         calibration.examine();
         if !self.compare.is_empty() {

@@ -42,12 +42,13 @@ fn significance(bend: &Bend) -> String {
 }
 
 fn coefficients(values: [f64; 3], sigmas: [f64; 3]) -> String {
-    let one = |k: usize| match sigmas[k] > 0.0 {
-        true => {
+    let one = |k: usize| {
+        if sigmas[k] > 0.0 {
             let (value, sigma) = super::page::rounded(values[k], sigmas[k]);
             format!("{value} \u{b1} {sigma} {}", NAMES[k])
+        } else {
+            format!("{} {} (fixed)", values[k], NAMES[k])
         }
-        false => format!("{} {} (fixed)", values[k], NAMES[k]),
     };
     [0, 1, 2].map(one).join(", ")
 }
