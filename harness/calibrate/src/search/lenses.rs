@@ -109,8 +109,8 @@ mod tests {
     #[test]
     fn a_field_is_narrow_by_the_corner_of_its_frame() {
         let size = ImageSize { width: 1601, height: 1201 };
-        let pinhole = |f: f64| super::pinhole(size, f, [800.0, 600.0]);
+        let lens = |f: f64| pinhole(size, f, [800.0, 600.0]);
         // The corner is 1000 px from the middle: tan 0.7 = 0.842.
-        assert!(is_narrow(&pinhole(1200.0)) && !is_narrow(&pinhole(1180.0)));
+        assert!(is_narrow(&lens(1200.0)) && !is_narrow(&lens(1180.0)));
     }
 }
