@@ -10,6 +10,7 @@ mod cli;
 mod covariance;
 mod determinism;
 mod diagnostics;
+mod doubts;
 mod fuzz;
 mod galo;
 mod gate;

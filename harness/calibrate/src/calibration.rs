@@ -1,14 +1,14 @@
 //! The adjustment of a network, and its quality.
 
-use calibench_adjust::{Covariances, Found, Options, Reliability, Snooping, Solution, Test, Variance, adjust, snoop};
+use std::collections::HashSet;
+
+use calibench_adjust::{Covariances, Found, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust, snoop};
 use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
+use crate::ended::{ITERATIONS, ended};
 use crate::{CalibrationError, Checked, Compared, Prepared, Resampled};
-
-/// Iterations at most: parameters that do nearly the same, as xi and k1 of an omnidirectional camera, approach their minimum slowly.
-pub(crate) const ITERATIONS: usize = 1000;
 
 /// A calibration and its quality.
 #[derive(Clone, Debug)]
@@ -95,5 +95,32 @@ impl Calibration<'_> {
         let used = self.solution.each_residual().filter(|r| r.used != calibench_adjust::Use::LeftOut).filter_map(|r| r.v);
         let (sum, count) = used.fold((0.0, 0), |(sum, count), [x, y]| (sum + x * x + y * y, count + 1));
         (sum / f64::from(count.max(1))).sqrt()
+    }
+
+    /// Adjusts once more without each of some groups of images, and keeps the scatter in [`Self::resampled`]: `Err` with the reason where that cannot be.
+    /// Systematic errors that an image shares with itself alone, as of its own focus or of corners that lie off together, show here and not in the
+    /// covariances.
+    ///
+    /// Source: Efron & Tibshirani 1993, chapter 11.
+    pub fn resample(&mut self) {
+        let has_unknown_points = self.prepared.network.points.iter().any(|point| point.coordinates != [Status::Fixed; 3]);
+        self.resampled = Some(if has_unknown_points {
+            Err("object points are unknown too".into())
+        } else {
+            Resampled::of(&self.ended(), &self.options(), &self.covariances.parameters)
+        });
+    }
+
+    /// The same network with the end of the adjustment as its start.
+    pub(crate) fn ended(&self) -> Network {
+        ended(&self.solution)
+    }
+
+    /// How it was adjusted, without what was rejected.
+    pub(crate) fn options(&self) -> Options {
+        let rejected: HashSet<usize> = self.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
+        let mut left_out: Vec<usize> = rejected.into_iter().collect();
+        left_out.sort_unstable();
+        Options { huber: self.prepared.settings.huber, most_iterations: ITERATIONS, left_out }
     }
 }

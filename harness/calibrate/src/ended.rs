@@ -1,11 +1,9 @@
-//! The network of a calibration, from where its adjustment ended.
+//! A network from where its adjustment ended.
 
-use std::collections::HashSet;
+use calibench_adjust::{Exterior, Interior, Network, ObjectPoint, Solution, Status, Surface};
 
-use calibench_adjust::{Exterior, Interior, Network, ObjectPoint, Options, Solution, Status, Surface};
-
-use crate::Calibration;
-use crate::calibration::ITERATIONS;
+/// Iterations at most: parameters that do nearly the same, as xi and k1 of an omnidirectional camera, approach their minimum slowly.
+pub(crate) const ITERATIONS: usize = 1000;
 
 /// The network of a solution, with its end as the start.
 pub(crate) fn ended(solution: &Solution<'_>) -> Network {
@@ -25,20 +23,5 @@ pub(crate) fn ended(solution: &Solution<'_>) -> Network {
         surfaces: surfaces.collect(),
         observations: whole.observations.clone(),
         datum: whole.datum.clone(),
-    }
-}
-
-impl Calibration<'_> {
-    /// The same network with the end of the adjustment as its start.
-    pub(crate) fn ended(&self) -> Network {
-        ended(&self.solution)
-    }
-
-    /// How it was adjusted, without what was rejected.
-    pub(crate) fn options(&self) -> Options {
-        let rejected: HashSet<usize> = self.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
-        let mut left_out: Vec<usize> = rejected.into_iter().collect();
-        left_out.sort_unstable();
-        Options { huber: self.prepared.settings.huber, most_iterations: ITERATIONS, left_out }
     }
 }

@@ -1,6 +1,8 @@
 //! From measured points to a calibrated camera, for users: start values without truth, the adjustment, and what is to be said of it.
 
+mod board_shape;
 mod calibration;
+mod checked;
 pub mod choice;
 mod compared;
 mod datum;
@@ -24,10 +26,11 @@ mod start;
 mod survey;
 mod weak;
 
+pub use board_shape::{BoardShape, NoShape};
 pub use calibration::Calibration;
+pub use checked::{Checked, Finding, SHARE, Verdict};
 pub use compared::{Compared, ComparedSet, SetResult};
 pub use datum::{DatumChoice, NoDatum};
-pub use doubt::{Checked, Finding, SHARE, Verdict};
 pub use error::CalibrationError;
 pub use model::{MODELS, parameters};
 pub use optics::Optics;
@@ -37,6 +40,6 @@ pub use resampled::Resampled;
 pub use rival::Rival;
 pub use sets::compare_sets;
 pub use settings::{Settings, USUAL_SIGMA};
-pub use shape::{Bend, Board, BoardShape, NoShape, Shape};
+pub use shape::{Bend, Board, Shape};
 pub use start::{control_of, pose_of};
 pub use survey::{Known, LeftOut, Sight, Survey};

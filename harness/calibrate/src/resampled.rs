@@ -1,17 +1,15 @@
 //! Standard deviations that the images themselves show: from leaving some of them out.
 
-use calibench_adjust::{Exterior, ImageObservation, Network, Options, Status, adjust};
+use calibench_adjust::{Exterior, ImageObservation, Network, Options, adjust};
 use calibench_model::camera::CameraModel;
 use rayon::prelude::*;
-
-use crate::Calibration;
 
 /// Groups of images at most: a standard deviation from so many is known to a sixth.
 const GROUPS: usize = 20;
 /// Images at least.
 const LEAST: usize = 6;
 /// Image points up to which all is adjusted so many times again.
-const MOST: usize = 100_000;
+pub(crate) const MOST: usize = 100_000;
 /// Iterations at most: all starts are near their minima.
 pub(crate) const NEAR: usize = 50;
 
@@ -54,22 +52,6 @@ impl Resampled {
             (squares * (groups as f64 - 1.0) / groups as f64).sqrt()
         };
         Ok(Self { groups, sigmas: (0..names.len()).map(sigma).collect() })
-    }
-}
-
-impl Calibration<'_> {
-    /// Adjusts once more without each of some groups of images, and keeps the scatter in [`Self::resampled`]: `Err` with the reason where that cannot be.
-    /// Systematic errors that an image shares with itself alone, as of its own focus or of corners that lie off together, show here and not in the
-    /// covariances.
-    ///
-    /// Source: Efron & Tibshirani 1993, chapter 11.
-    pub fn resample(&mut self) {
-        let has_unknown_points = self.prepared.network.points.iter().any(|point| point.coordinates != [Status::Fixed; 3]);
-        self.resampled = Some(if has_unknown_points {
-            Err("object points are unknown too".into())
-        } else {
-            Resampled::of(&self.ended(), &self.options(), &self.covariances.parameters)
-        });
     }
 }
 

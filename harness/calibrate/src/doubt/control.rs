@@ -3,10 +3,10 @@
 use calibench_adjust::{Datum, Network, ObjectPoint, Options, Solution, Status, Variance, adjust};
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::{ALPHA, Verdict, gross};
-use crate::Calibration;
+use super::{ALPHA, gross};
 use crate::datum::DatumChoice;
 use crate::resampled::NEAR;
+use crate::{Calibration, Verdict};
 
 /// Control points at most, up to which all are freed.
 const MOST: usize = 20_000;

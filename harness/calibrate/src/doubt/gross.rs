@@ -3,10 +3,10 @@
 use calibench_adjust::{Options, Solution, adjust};
 use statrs::distribution::{Binomial, DiscreteCDF};
 
-use super::{ALPHA, Finding, Verdict};
-use crate::Calibration;
+use super::ALPHA;
 use crate::resampled::NEAR;
 use crate::shape::scale;
+use crate::{Calibration, Finding, Verdict};
 
 /// Residuals (as vectors) beyond so many of their standard deviations are counted: of normal ones `exp(-8)`.
 const BEYOND: f64 = 4.0;

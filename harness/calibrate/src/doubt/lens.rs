@@ -3,9 +3,8 @@
 use calibench_adjust::{Network, Options, Status, adjust};
 use calibench_model::camera::{Camera, CameraModel, OpenCv};
 
-use super::Verdict;
-use crate::Calibration;
 use crate::resampled::NEAR;
+use crate::{Calibration, Verdict};
 
 /// Standard deviation of the coefficients of a denominator about zero: they may take any value that lenses have, and stay where observations do not say.
 const WEAK: f64 = 1.0;

@@ -11,62 +11,13 @@ use calibench_model::convert::{DifferenceOptions, difference};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::ended::ended;
-use crate::{Calibration, Resampled};
+use crate::resampled::MOST;
+use crate::{Calibration, Checked, Finding, Resampled, SHARE, Verdict};
 
 /// Probability below which a structure is no chance. Four tests together: once in 2500 sound calibrations, if residuals are independent.
 const ALPHA: f64 = 1e-4;
-/// Times the standard deviation of the camera over the frame (RMS, after the best rotation) by which a structure must move it to count.
-pub const SHARE: f64 = 3.0;
 /// Places of the grid over the frame.
 const GRID: (usize, usize) = (15, 11);
-
-/// What was looked for, and with what result.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Checked {
-    /// What was looked for, in words.
-    pub what: &'static str,
-    /// What was found.
-    pub verdict: Verdict,
-}
-
-/// What a check found.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
-    /// It could not be made, in words.
-    Untested(String),
-    /// No structure.
-    Sound(Finding),
-    /// A structure that moves the camera too little to matter, and its most likely cause in words.
-    Slight(Finding, String),
-    /// A structure that moves the camera, and its most likely cause in words.
-    Doubt(Finding, String),
-}
-
-/// How strong a structure is, and what it does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finding {
-    /// Probability of residuals as uneven by chance.
-    pub p: f64,
-    /// By how many of its standard deviations over the frame the camera moves when the structure is allowed for; `None` if that cannot be said.
-    pub moves: Option<f64>,
-}
-
-impl Finding {
-    /// Whether a structure that is no chance moves the camera.
-    fn weighed(self, cause: String) -> Verdict {
-        if self.moves.is_none_or(|moves| moves > SHARE) { Verdict::Doubt(self, cause) } else { Verdict::Slight(self, cause) }
-    }
-}
-
-impl Checked {
-    /// The most likely cause of a doubt.
-    pub fn doubt(&self) -> Option<&str> {
-        match &self.verdict {
-            Verdict::Doubt(_, cause) => Some(cause),
-            _ => None,
-        }
-    }
-}
 
 impl Calibration<'_> {
     /// Looks for what the model leaves out, and keeps the result in [`Self::checked`]: the precision that was stated, gross errors, coordinates of control,
@@ -74,8 +25,7 @@ impl Calibration<'_> {
     ///
     /// Each allows for one more kind of unknown, and asks by an F test whether that is no chance, and how far the camera moves.
     pub fn examine(&mut self) {
-        let (mut gross, (mut control, is_clean)) = (gross::check(self), control::check(self));
-        let mut lens = lens::check(self);
+        let (mut gross, (mut control, is_clean), mut lens) = self.allowed_for();
         if let Verdict::Doubt(finding, _) | Verdict::Slight(finding, _) = gross {
             let untested = || Verdict::Untested("image points are in gross error".into());
             if matches!(control, Verdict::Doubt(..) | Verdict::Slight(..)) && is_clean {
@@ -92,6 +42,15 @@ impl Calibration<'_> {
             ("the lens", lens),
         ];
         self.checked = all.map(|(what, verdict)| Checked { what, verdict }).into();
+    }
+
+    /// The checks that adjust again; of many image points none, which would take as long and as much memory once more.
+    fn allowed_for(&self) -> (Verdict, (Verdict, bool), Verdict) {
+        if self.prepared.network.observations.len() > MOST {
+            let untested = || Verdict::Untested(format!("more than {MOST} image points"));
+            return (untested(), (untested(), false), untested());
+        }
+        (gross::check(self), control::check(self), lens::check(self))
     }
 
     /// The most likely causes of doubt, the strongest first.

@@ -2,8 +2,9 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::{ALPHA, Finding, Verdict, has_redundancy};
-use crate::Calibration;
+use super::{ALPHA, has_redundancy};
+use crate::shape::scale;
+use crate::{Calibration, Finding, Verdict};
 
 /// Times that residuals may exceed a standard deviation that a user stated.
 const STATED: f64 = 1.5;
@@ -20,8 +21,10 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
     let (true, Ok(chi)) = (has_redundancy(calibration), ChiSquared::new(redundancy)) else {
         return Verdict::Untested("there is no redundancy".into());
     };
-    let sigma0 = calibration.solution.sigma0().unwrap_or(1.0);
-    let finding = Finding { p: chi.sf(calibration.solution.cost()), moves: None };
+    // Gross errors that Huber's weights hold back say nothing of the others.
+    let robust = settings.huber.and_then(|_| scale(&calibration.solution));
+    let sigma0 = robust.or(calibration.solution.sigma0()).unwrap_or(1.0);
+    let finding = Finding { p: chi.sf(redundancy * sigma0 * sigma0), moves: None };
     if finding.p >= ALPHA || sigma0 < STATED {
         return Verdict::Sound(finding);
     }

@@ -3,10 +3,9 @@
 use calibench_adjust::{AdjustError, Network, Options, Solution, Variance, adjust, compare};
 
 use super::board::Board;
-use super::{BoardShape, surface};
-use crate::Settings;
-use crate::calibration::ITERATIONS;
-use crate::ended::ended;
+use super::surface;
+use crate::ended::{ITERATIONS, ended};
+use crate::{BoardShape, Settings};
 
 /// Probability at which a flat board is taken for a bent one: a thousandth, since residuals of real images are not quite independent.
 const ALPHA: f64 = 1e-3;

@@ -44,7 +44,7 @@ fn significance(bend: &Bend) -> String {
 fn coefficients(values: [f64; 3], sigmas: [f64; 3]) -> String {
     let one = |k: usize| {
         if sigmas[k] > 0.0 {
-            let (value, sigma) = super::page::rounded(values[k], sigmas[k]);
+            let (value, sigma) = super::digits::rounded(values[k], sigmas[k]);
             format!("{value} \u{b1} {sigma} {}", NAMES[k])
         } else {
             format!("{} {} (fixed)", values[k], NAMES[k])

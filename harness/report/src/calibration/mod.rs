@@ -3,6 +3,7 @@
 mod board;
 mod checks;
 mod csv;
+mod digits;
 mod hull;
 mod limits;
 mod page;

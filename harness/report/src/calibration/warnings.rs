@@ -1,6 +1,6 @@
 //! What a user must know of a calibration.
 
-use calibench_adjust::{Significance, Use};
+use calibench_adjust::{ImageObservation, Significance, Use};
 use calibench_calibrate::{Calibration, Rival};
 use calibench_model::camera::CameraModel;
 
@@ -29,6 +29,9 @@ pub(super) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     }
     warnings.extend(calibration.prepared.rivals.iter().map(|rival| another(calibration, rival)));
     warnings.extend(board::warning(calibration));
+    warnings.extend(held(calibration));
+    warnings.extend(outside(calibration));
+    warnings.extend(half(calibration));
     warnings.extend(checks::slight(calibration));
     warnings.extend(optimistic(calibration));
     warnings.extend(weights(calibration));
@@ -53,6 +56,42 @@ pub(super) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         warnings.push(format!("{absent} image points take no part: they are of targets that are no control and cannot be intersected"));
     }
     warnings
+}
+
+/// Coefficients that are held because nothing else does.
+fn held(calibration: &Calibration<'_>) -> Option<String> {
+    let prepared = calibration.prepared;
+    let names = || prepared.settings.cameras.iter().flat_map(|optics| optics.priors.iter().map(|prior| prior.parameter.as_str()));
+    prepared.is_held_weakly.then(|| {
+        format!(
+            "the images do not determine {}: they are held near zero by weak priors (above); a model with fewer parameters, or --prior, decides otherwise",
+            names().collect::<Vec<_>>().join(", ")
+        )
+    })
+}
+
+/// Image points outside the frame: of another size, or swapped coordinates.
+fn outside(calibration: &Calibration<'_>) -> Option<String> {
+    let is_outside = |o: &&ImageObservation| {
+        let (size, at) = (calibration.camera(calibration.owner(o.image)).size(), o.position.to_corner());
+        !((0.0..=f64::from(size.width)).contains(&at.x) && (0.0..=f64::from(size.height)).contains(&at.y))
+    };
+    let count = calibration.prepared.network.observations.iter().filter(is_outside).count();
+    (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
+}
+
+/// Photographs without a board.
+fn half(calibration: &Calibration<'_>) -> Option<String> {
+    let seen = &calibration.prepared.survey.images;
+    let lost: std::collections::BTreeSet<&str> = calibration.prepared.unmeasured.iter().map(|[image, ..]| image).collect();
+    let none = lost.iter().filter(|image| !seen.iter().any(|seen| seen == *image)).count();
+    (none > seen.len()).then(|| {
+        format!(
+            "the board was found in fewer than half of the photographs, {} of {}: is its size right (--chessboard)?",
+            seen.len(),
+            seen.len() + none
+        )
+    })
 }
 
 /// Standard deviations that the images do not confirm.

@@ -1,0 +1,52 @@
+//! What was looked for in the residuals, and what was found.
+
+/// Times the standard deviation of the camera over the frame (RMS, after the best rotation) by which a structure must move it to count.
+pub const SHARE: f64 = 3.0;
+
+/// What was looked for, and with what result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// What was looked for, in words.
+    pub what: &'static str,
+    /// What was found.
+    pub verdict: Verdict,
+}
+
+/// What a check found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// It could not be made, in words.
+    Untested(String),
+    /// No structure.
+    Sound(Finding),
+    /// A structure that moves the camera too little to matter, and its most likely cause in words.
+    Slight(Finding, String),
+    /// A structure that moves the camera, and its most likely cause in words.
+    Doubt(Finding, String),
+}
+
+/// How strong a structure is, and what it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finding {
+    /// Probability of residuals as uneven by chance.
+    pub p: f64,
+    /// By how many of its standard deviations over the frame the camera moves when the structure is allowed for; `None` if that cannot be said.
+    pub moves: Option<f64>,
+}
+
+impl Finding {
+    /// Whether a structure that is no chance moves the camera.
+    pub(crate) fn weighed(self, cause: String) -> Verdict {
+        if self.moves.is_none_or(|moves| moves > SHARE) { Verdict::Doubt(self, cause) } else { Verdict::Slight(self, cause) }
+    }
+}
+
+impl Checked {
+    /// The most likely cause of a doubt.
+    pub fn doubt(&self) -> Option<&str> {
+        match &self.verdict {
+            Verdict::Doubt(_, cause) => Some(cause),
+            _ => None,
+        }
+    }
+}

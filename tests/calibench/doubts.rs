@@ -1,0 +1,123 @@
+//! What `calibrate` says of boards that are bent and of points that do not fit: image points by a pinhole written out here.
+
+use std::path::Path;
+
+use calibench_exchange::read_control;
+use nalgebra::{Rotation3, Vector3};
+
+use crate::calibrate::{number, table, write};
+use crate::project::{run, stderr, stdout};
+
+/// mm towards the camera: along the rows, along the columns, twist.
+const BEND: [f64; 3] = [1.0, -0.4, 0.2];
+const CALIBRATE: [&str; 10] =
+    ["calibrate", "--points", "points.csv", "--control", "control.csv", "--size", "1600x1200", "--report", "report", "-o"];
+
+/// Roughly normal: twelve numbers of a linear congruential generator (Knuth's MMIX) less six.
+fn noise(state: &mut u64) -> f64 {
+    let mut uniform = || {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
+/// `control.csv` of a board as the program writes it, and `points.csv` of nine views of it, bent, with 0.1 px of noise.
+fn board([a, b, c]: [f64; 3]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["control", "9x6:25", "-o", "control.csv"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let control = read_control(&folder.path().join("control.csv")).unwrap();
+    assert_eq!((control.len(), control[9].target.as_str(), control[9].position), (54, "r2c1", [0.0, -25.0, 0.0]));
+    let (mut text, mut state) = (String::from("image,target,x,y\n"), 11);
+    for view in 0..9 {
+        let angle = 0.7 * f64::from(view);
+        let turn = Rotation3::from_euler_angles(0.45 * angle.cos(), 0.45 * angle.sin(), 0.9 * angle);
+        // The camera's axes: x right, y down, z ahead; at the board's middle, `away` from it.
+        let axes = turn * Rotation3::from_euler_angles(std::f64::consts::PI, 0.0, 0.0);
+        let away = Vector3::new(12.0 * angle.sin(), -9.0 * angle.cos(), 310.0 + 8.0 * f64::from(view));
+        for row in &control {
+            let [x, y, z] = row.position;
+            let (u, v) = (x / 100.0 - 1.0, y / 62.5 + 1.0);
+            let lift = a * (1.0 - u * u) + b * (1.0 - v * v) + c * u * v;
+            let p = axes * Vector3::new(x - 100.0, y + 62.5, z + lift) + away;
+            let (x, y) = (1400.0 * p.x / p.z + 790.0, 1400.0 * p.y / p.z + 605.0);
+            assert!((0.0..1600.0).contains(&x) && (0.0..1200.0).contains(&y), "{} in {view}: {x} {y}", row.target);
+            text += &format!("v{view}.png,{},{},{}\n", row.target, x + 0.1 * noise(&mut state), y + 0.1 * noise(&mut state));
+        }
+    }
+    write(folder.path(), "points.csv", &text);
+    folder
+}
+
+fn page(folder: &Path) -> String {
+    std::fs::read_to_string(folder.join("report/README.md")).unwrap()
+}
+
+#[test]
+fn a_bent_board_is_found_and_reported() {
+    let folder = board(BEND);
+    let output = run(folder.path(), &[&CALIBRATE[..], &["camera.yaml"]].concat());
+    assert!(output.status.success(), "{}{}", stdout(&output), stderr(&output));
+    assert!(stdout(&output).contains("board: bent (p < 0.0001) by ") && stdout(&output).contains("warning: the board is bent by "));
+    let report = folder.path().join("report");
+    let rows = table(&report.join("board.csv"));
+    assert_eq!(rows.len(), 3);
+    for (row, truth) in rows.iter().zip(BEND) {
+        let (off, sigma) = (number(row, "value") - truth, number(row, "sigma"));
+        assert!(off.abs() < 4.0 * sigma && sigma < 0.1 && row["status"] == "bent", "{row:?}");
+    }
+    assert!(page(folder.path()).contains("(board.png)") && report.join("board.png").is_file());
+    // The middle of the bent board, in the table of points, is where it is.
+    let points = read_control(&report.join("points.csv")).unwrap();
+    let middle = points.iter().find(|row| row.target == "r3c5").unwrap().position;
+    let lift = BEND[0] + BEND[1] * (1.0 - 0.04) + 0.0;
+    assert!((middle[2] - lift).abs() < 0.1, "{middle:?} for {lift}");
+}
+
+#[test]
+fn uncertainty_is_a_table_that_says_what_is_extrapolated() {
+    let folder = board([0.0; 3]);
+    let output = run(folder.path(), &[&CALIBRATE[..], &["camera.yaml"]].concat());
+    assert!(output.status.success(), "{}{}", stdout(&output), stderr(&output));
+    assert!(stdout(&output).contains("board: flat, as far as these images tell"), "{}", stdout(&output));
+    assert!(stdout(&output).contains("gross errors of image points sound, the coordinates of control points sound"), "{}", stdout(&output));
+    let rows = table(&folder.path().join("report/uncertainty.csv"));
+    let [far, near] = [0, 1].map(|which| rows.iter().filter(|row| (row["distance"] == "far") == (which == 0)).collect::<Vec<_>>());
+    assert_eq!((far.len(), near.len()), (48 * 36, 48 * 36));
+    for row in &rows {
+        let sum = number(row, "sxx") + number(row, "syy");
+        assert!((number(row, "sigma") - sum.sqrt()).abs() < 1e-9 * sum.sqrt() && sum > 0.0, "{row:?}");
+    }
+    let nearest = |x: f64, y: f64| near.iter().min_by_key(|row| (number(row, "x") - x).hypot(number(row, "y") - y) as i64).unwrap();
+    let (middle, corner) = (nearest(800.0, 600.0), nearest(0.0, 0.0));
+    assert_eq!((middle["measured"].as_str(), corner["measured"].as_str()), ("inside", "outside"));
+    assert!(number(corner, "sigma") > 5.0 * number(middle, "sigma"), "{middle:?} {corner:?}");
+    // Standard deviations by images are of the size of the formal ones where noise is all there is.
+    let parameters = table(&folder.path().join("report/parameters.csv"));
+    let ratio = number(&parameters[0], "sigma_by_images") / number(&parameters[0], "sigma");
+    assert!((0.3..3.0).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn swapped_names_end_with_exit_code_3_and_everything_written() {
+    let folder = board([0.0; 3]);
+    let control = std::fs::read_to_string(folder.path().join("control.csv")).unwrap();
+    let swapped = control.replace("r2c3,", "?,").replace("r4c5,", "r2c3,").replace("?,", "r4c5,");
+    write(folder.path(), "control.csv", &swapped);
+    let output = run(folder.path(), &[&CALIBRATE[..], &["camera.yaml"]].concat());
+    assert_eq!(output.status.code(), Some(3), "{}{}", stdout(&output), stderr(&output));
+    let headline = "doubtful: the names of control points r2c3 and r4c5 are swapped";
+    assert!(stdout(&output).starts_with(headline), "{}", stdout(&output));
+    assert!(page(folder.path()).starts_with(&format!("# Calibration\n\n**{headline}")), "{}", &page(folder.path())[..400]);
+    assert!(page(folder.path()).contains("## What the model may leave out"));
+    assert!(folder.path().join("camera.yaml").is_file());
+}
+
+#[test]
+fn points_outside_the_images_are_said() {
+    let folder = board([0.0; 3]);
+    let arguments = CALIBRATE.map(|argument| if argument == "1600x1200" { "1000x800" } else { argument });
+    let output = run(folder.path(), &[&arguments[..], &["camera.yaml"]].concat());
+    assert!(stdout(&output).contains("image points lie outside the images: is their size right (--size)"), "{}", stdout(&output));
+}
