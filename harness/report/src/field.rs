@@ -145,8 +145,8 @@ pub(crate) fn shade(part: f64) -> RGBColor {
     RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
-/// The scale of colours beside a map of a size, from 0 to `top` px.
-pub(crate) fn colour_bar(area: &Area<'_>, map: (u32, u32), top: f64) {
+/// All colours of [`shade`] beside a map of a size, from the bottom up: where they stand, x and the rows of both ends.
+pub(crate) fn shades_beside(area: &Area<'_>, map: (u32, u32)) -> (i32, i32, i32) {
     let x = (LEFT + map.0) as i32 + 20;
     let (up, down) = (TOP as i32, (TOP + map.1) as i32);
     for y in up..down {
@@ -154,6 +154,12 @@ pub(crate) fn colour_bar(area: &Area<'_>, map: (u32, u32), top: f64) {
         area.draw(&PathElement::new([(x, y), (x + 20, y)], shade(part))).ok();
     }
     area.draw(&Rectangle::new([(x, up), (x + 20, down)], BLACK)).ok();
+    (x, up, down)
+}
+
+/// The scale of colours beside a map of a size, from 0 to `top` px.
+pub(crate) fn colour_bar(area: &Area<'_>, map: (u32, u32), top: f64) {
+    let (x, up, down) = shades_beside(area, map);
     for i in 0..=4 {
         let part = f64::from(i) / 4.0;
         let y = down - (part * f64::from(down - up)) as i32;

@@ -34,8 +34,9 @@ pub(super) fn check(calibration: &Calibration<'_>) -> (Verdict, bool) {
     let Ok(free) = adjust(&network, &Options { most_iterations: NEAR, ..calibration.options() }) else {
         return untested("without them the network is not determined");
     };
-    // Seven of all coordinates are the frame's.
-    let verdict = calibration.judged(&free, 3 * network.points.len() - 7, || cause(&network, &free));
+    // Seven of all coordinates are the frame's, and a bend is a part of them.
+    let bends = whole.surfaces.iter().flat_map(|surface| surface.statuses).filter(|status| status.is_unknown()).count();
+    let verdict = calibration.judged(&free, 3 * network.points.len() - 7 - bends, || cause(&network, &free));
     (verdict, gross::found(&free).is_none_or(|found| found.p > ALPHA))
 }
 

@@ -7,7 +7,7 @@ use plotters::style::text_anchor::HPos;
 
 use super::super::board::adjusted;
 use super::levels::contour;
-use crate::field::{Area, BOTTOM, LEFT, MAP, RIGHT, TOP, shade, write};
+use crate::field::{Area, BOTTOM, LEFT, MAP, RIGHT, TOP, shade, shades_beside, write};
 use crate::ticks::linear;
 use crate::{Canvas, plain};
 
@@ -110,14 +110,8 @@ fn direction(board: &Board, axis: usize) -> String {
     )
 }
 
-fn scale(area: &Area<'_>, (width, height): (u32, u32), levels: &[f64], highest: f64) {
-    let x = (LEFT + width) as i32 + 20;
-    let (up, down) = (TOP as i32, (TOP + height) as i32);
-    for y in up..down {
-        let part = f64::from(down - y) / f64::from(down - up);
-        area.draw(&PathElement::new([(x, y), (x + 20, y)], shade(part))).ok();
-    }
-    area.draw(&Rectangle::new([(x, up), (x + 20, down)], BLACK)).ok();
+fn scale(area: &Area<'_>, extent: (u32, u32), levels: &[f64], highest: f64) {
+    let (x, up, down) = shades_beside(area, extent);
     for level in levels {
         let y = down - (level / highest * f64::from(down - up)).round() as i32;
         area.draw(&PathElement::new([(x + 20, y), (x + 25, y)], BLACK)).ok();

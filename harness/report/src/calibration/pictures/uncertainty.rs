@@ -9,7 +9,7 @@ use plotters::style::text_anchor::HPos;
 use super::super::uncertainty::{UncertaintyMap, maps};
 use super::frame::Map;
 use super::levels::{Scale, contour};
-use crate::field::{Area, BOTTOM, LEFT, TOP, shade, write};
+use crate::field::{Area, BOTTOM, LEFT, TOP, shade, shades_beside, write};
 use crate::{Canvas, plain};
 
 /// Room that a line's value needs on all sides, px of the picture.
@@ -104,14 +104,8 @@ fn plain_level(level: f64) -> String {
 }
 
 /// The scale of colours, logarithmic, with its levels.
-fn bar(area: &Area<'_>, (width, height): (u32, u32), scale: &Scale) {
-    let x = (LEFT + width) as i32 + 20;
-    let (up, down) = (TOP as i32, (TOP + height) as i32);
-    for y in up..down {
-        let part = f64::from(down - y) / f64::from(down - up);
-        area.draw(&PathElement::new([(x, y), (x + 20, y)], shade(part))).ok();
-    }
-    area.draw(&Rectangle::new([(x, up), (x + 20, down)], BLACK)).ok();
+fn bar(area: &Area<'_>, extent: (u32, u32), scale: &Scale) {
+    let (x, up, down) = shades_beside(area, extent);
     for level in scale.levels() {
         let y = down - (scale.part(level) * f64::from(down - up)).round() as i32;
         area.draw(&PathElement::new([(x + 20, y), (x + 25, y)], BLACK)).ok();
