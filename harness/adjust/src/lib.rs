@@ -7,7 +7,8 @@
 //!
 //! From a solution: [`Solution::covariances`] (blocks by selected inversion), [`Solution::full_covariance`], [`Solution::residuals`],
 //! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::significance`] of parameters,
-//! [`Solution::in_datum`] (S-transformation), [`Solution::projection_uncertainty`], [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart, [`snoop`] looks for blunders.
+//! [`Solution::in_datum`] (S-transformation), [`Solution::projection_uncertainty`], [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart,
+//! [`snoop`] looks for blunders.
 
 pub mod approximate;
 mod counts;

@@ -1,7 +1,5 @@
 //! The adjustment of a network, and its quality.
 
-use std::collections::HashSet;
-
 use calibench_adjust::{Covariances, Found, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust, snoop};
 use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
@@ -118,9 +116,7 @@ impl Calibration<'_> {
 
     /// How it was adjusted, without what was rejected.
     pub(crate) fn options(&self) -> Options {
-        let rejected: HashSet<usize> = self.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
-        let mut left_out: Vec<usize> = rejected.into_iter().collect();
-        left_out.sort_unstable();
+        let left_out = self.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
         Options { huber: self.prepared.settings.huber, most_iterations: ITERATIONS, left_out }
     }
 }

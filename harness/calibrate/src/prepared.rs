@@ -23,8 +23,8 @@ pub struct Prepared {
     pub rivals: Vec<Rival>,
     /// What is held of the shape of a planar testfield.
     pub shape: Shape,
-    /// Whether coefficients that the images do not determine are held by priors that nobody asked for: [`Prepared::held_weakly`].
-    pub is_held_weakly: bool,
+    /// Coefficients that the images do not determine, held by priors that nobody asked for: [`Prepared::held_weakly`].
+    pub held: Vec<String>,
     /// What is adjusted.
     pub network: Network,
     /// The sight behind each observation of the network.
@@ -57,7 +57,7 @@ pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> R
         origins,
         rivals,
         shape,
-        is_held_weakly: false,
+        held: Vec::new(),
         network,
         sights,
         left_out,

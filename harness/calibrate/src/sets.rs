@@ -12,8 +12,7 @@ use crate::{Calibration, CalibrationError, Compared, ComparedSet, Prepared, SetR
 /// # Errors
 /// A name that the model does not have. A set that the network does not determine is no error: it says so.
 pub fn compare_sets(calibration: &Calibration<'_>, sets: &[Vec<String>]) -> Result<Compared, CalibrationError> {
-    let left_out = calibration.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
-    let options = Options { huber: calibration.prepared.settings.huber, left_out, ..Options::default() };
+    let options = Options { most_iterations: Options::default().most_iterations, ..calibration.options() };
     let networks = sets.iter().map(|names| with(calibration.prepared, names)).collect::<Result<Vec<_>, _>>()?;
     let solutions: Vec<Result<Solution<'_>, String>> =
         networks.iter().map(|network| adjust(network, &options).map_err(|error| error.to_string())).collect();

@@ -40,7 +40,7 @@ pub(super) fn check(calibration: &Calibration<'_>) -> (Verdict, bool) {
     (verdict, gross::found(&free).is_none_or(|found| found.p > ALPHA))
 }
 
-/// Every point free; those that too few images see stay out with what was measured of them.
+/// Every point free: where too few images see one, the network is not determined.
 fn freed(calibration: &Calibration<'_>) -> Network {
     let ended = calibration.ended();
     let points =

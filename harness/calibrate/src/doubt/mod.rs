@@ -111,8 +111,3 @@ impl Calibration<'_> {
         (0..self.cameras()).map(of).try_fold(0.0, |most: f64, moves| Some(most.max(moves?)))
     }
 }
-
-/// Whether standard deviations can be had at all.
-pub(crate) fn has_redundancy(calibration: &Calibration<'_>) -> bool {
-    calibration.solution.counts().redundancy() > 0 && calibration.solution.variance_factor(Variance::Estimated).is_ok()
-}

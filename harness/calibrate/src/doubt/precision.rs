@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::{ALPHA, has_redundancy};
+use super::ALPHA;
 use crate::shape::scale;
 use crate::{Calibration, Finding, Verdict};
 
@@ -18,7 +18,7 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
         return Verdict::Untested("none was stated (--sigma, --covariances)".into());
     }
     let redundancy = calibration.solution.counts().redundancy() as f64;
-    let (true, Ok(chi)) = (has_redundancy(calibration), ChiSquared::new(redundancy)) else {
+    let Ok(chi) = ChiSquared::new(redundancy) else {
         return Verdict::Untested("there is no redundancy".into());
     };
     // Gross errors that Huber's weights hold back say nothing of the others.

@@ -205,3 +205,22 @@ fn the_change_of_a_set_is_the_difference_of_two_cameras() {
     let apart = difference(whole.camera(0), part.camera(0), &DifferenceOptions::default()).unwrap().spread;
     assert!((change[0] / apart.rms_px - 1.0).abs() < 1e-3 && (change[1] / apart.max_px - 1.0).abs() < 1e-3, "{change:?} {apart:?}");
 }
+
+/// A rational model on an ordinary board: what the images leave open is held near zero, named, and fits no worse than the model nested in it.
+#[test]
+fn what_a_rich_model_leaves_open_is_held_weakly() {
+    let scene = noisy(board(lens()), 0.1);
+    let user = Prior { parameter: "fx".into(), value: 1450.0, sigma: 50.0 };
+    let cameras = vec![Optics { priors: vec![user], ..optics("opencv8") }];
+    let prepared = scene.prepared(&Settings { cameras, ..settings("opencv8") }).unwrap();
+    assert!(prepared.adjust().is_err_and(|error| error.is_undetermined()));
+    let held = prepared.held_weakly().unwrap();
+    assert_eq!(held.held, ["k4", "k5", "k6"]);
+    let (rich, poor) = (held.adjust().unwrap(), scene.prepared(&settings("opencv5")).unwrap());
+    let poor = poor.adjust().unwrap();
+    assert!(rich.rms_px() < poor.rms_px() * (1.0 + 1e-6), "{} {}", rich.rms_px(), poor.rms_px());
+    // A model without them has nothing to hold, nor has a fisheye, whose k4 is another.
+    for model in ["opencv5", "opencv-fisheye"] {
+        assert!(scene.prepared(&settings(model)).unwrap().held_weakly().is_none(), "{model}");
+    }
+}

@@ -2,10 +2,12 @@
 
 use calibench_calibrate::{Calibration, Checked, Finding, SHARE, Verdict};
 
+use calibench_model::escape;
+
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
-/// What stands first if there is doubt: the most likely cause.
+/// What stands first if there is doubt: the most likely cause. It holds names as their files have them.
 pub(super) fn headline(calibration: &Calibration<'_>) -> Option<String> {
     let doubts = calibration.doubts();
     (!doubts.is_empty()).then(|| format!("doubtful: {}", doubts.join("; ")))
@@ -46,8 +48,8 @@ pub(super) fn section(calibration: &Calibration<'_>) -> String {
         let (finding, verdict) = match &checked.verdict {
             Verdict::Untested(why) => (None, format!("not tested: {why}")),
             Verdict::Sound(finding) => (Some(finding), "sound".to_owned()),
-            Verdict::Slight(finding, cause) => (Some(finding), format!("{cause}; it does not count")),
-            Verdict::Doubt(finding, cause) => (Some(finding), format!("**{cause}**")),
+            Verdict::Slight(finding, cause) => (Some(finding), format!("{}; it does not count", escape::markdown(cause))),
+            Verdict::Doubt(finding, cause) => (Some(finding), format!("**{}**", escape::markdown(cause))),
         };
         let (p, moves) = finding.map_or_else(Default::default, cells);
         table.row([checked.what.to_owned(), p, moves, verdict]);

@@ -24,14 +24,14 @@ const MOST: usize = 200;
 /// What the file system refuses.
 pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     tables::write(calibration, folder)?;
-    let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("**{headline}**\n\n"));
+    let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("**{}**\n\n", escape::markdown(&headline)));
     let mut text = format!("# Calibration\n\n{headline}{}\n", facts(calibration));
     for camera in 0..calibration.cameras() {
         let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, of(calibration, camera));
         text.push_str(&parameters(calibration, camera).render());
     }
     text.push_str(&format!("\nStandard deviations {}; {}.\n", scaled(calibration), by_images(calibration)));
-    text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{warning}**\n")).collect::<String>());
+    text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{}**\n", escape::markdown(warning))).collect::<String>());
     text.push_str(&checks::section(calibration));
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));

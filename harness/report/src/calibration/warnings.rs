@@ -60,12 +60,11 @@ pub(super) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
 
 /// Coefficients that are held because nothing else does.
 fn held(calibration: &Calibration<'_>) -> Option<String> {
-    let prepared = calibration.prepared;
-    let names = || prepared.settings.cameras.iter().flat_map(|optics| optics.priors.iter().map(|prior| prior.parameter.as_str()));
-    prepared.is_held_weakly.then(|| {
+    let held = &calibration.prepared.held;
+    (!held.is_empty()).then(|| {
         format!(
             "the images do not determine {}: they are held near zero by weak priors (above); a model with fewer parameters, or --prior, decides otherwise",
-            names().collect::<Vec<_>>().join(", ")
+            held.join(", ")
         )
     })
 }
