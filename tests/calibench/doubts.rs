@@ -115,6 +115,22 @@ fn swapped_names_end_with_exit_code_3_and_everything_written() {
 }
 
 #[test]
+fn names_in_a_cause_are_no_markup() {
+    let folder = board([0.0; 3]);
+    for file in ["points.csv", "control.csv"] {
+        let text = std::fs::read_to_string(folder.path().join(file)).unwrap();
+        let text = text.replace("r2c3,", "<i>|r2c3,");
+        let text =
+            if file == "control.csv" { text.replace("<i>|r2c3,", "?,").replace("r4c5,", "<i>|r2c3,").replace("?,", "r4c5,") } else { text };
+        write(folder.path(), file, &text);
+    }
+    let output = run(folder.path(), &[&CALIBRATE[..], &["camera.yaml"]].concat());
+    assert_eq!(output.status.code(), Some(3), "{}{}", stdout(&output), stderr(&output));
+    let page = page(folder.path());
+    assert!(page.contains("are swapped") && !page.contains("<i>") && !page.contains("i>|r2c3"), "{}", &page[..400]);
+}
+
+#[test]
 fn points_outside_the_images_are_said() {
     let folder = board([0.0; 3]);
     let arguments = CALIBRATE.map(|argument| if argument == "1600x1200" { "1000x800" } else { argument });
