@@ -160,7 +160,8 @@ impl Found {
 
     /// Whether its residuals are too large for a standard deviation of image coordinates: chi squared at a thousandth.
     fn misfits(&self, sigma_px: Option<f64>) -> bool {
-        let Some(sigma) = sigma_px.filter(|sigma| *sigma > 0.0 && self.redundancy > 0) else { return false };
+        // Chi squared below its mean is never that rare: most of a million targets need no distribution.
+        let Some(sigma) = sigma_px.filter(|sigma| *sigma > 0.0 && self.redundancy > 0 && self.sigma0 > *sigma) else { return false };
         let freedom = f64::from(self.redundancy);
         ChiSquared::new(freedom).is_ok_and(|chi| chi.sf(freedom * (self.sigma0 / sigma).powi(2)) < MISFIT)
     }
