@@ -74,10 +74,7 @@ fn slopes(camera: &Camera, seen: &[(PixelPoint, Ray)], places: &[usize], shift: 
     let mut exterior = DMatrix::zeros(2 * seen.len(), if shift.is_some() { 6 } else { 3 });
     let mut buffer = DerivativeBuffer::default();
     for (k, (_, ray)) in seen.iter().enumerate() {
-        // In the plane at the distance, where that can be.
-        let length = (ray.x * ray.x + ray.y * ray.y + ray.z * ray.z).sqrt();
-        let scale = shift.map_or(1.0 / length, |distance| if ray.z < -0.1 * length { distance / -ray.z } else { distance / length });
-        let ray = Ray { x: ray.x * scale, y: ray.y * scale, z: ray.z * scale };
+        let ray = at_depth(*ray, shift);
         if camera.derivatives_into(ray, &mut buffer).is_err() {
             continue;
         }
@@ -85,14 +82,27 @@ fn slopes(camera: &Camera, seen: &[(PixelPoint, Ray)], places: &[usize], shift: 
             let row = 2 * k + axis;
             places.iter().enumerate().for_each(|(j, &place)| interior[(row, j)] = buffer.by_parameters()[place][axis]);
             let [gx, gy, gz] = buffer.by_ray[axis];
-            let turn = [ray.y * gz - ray.z * gy, ray.z * gx - ray.x * gz, ray.x * gy - ray.y * gx];
             let scale = shift.unwrap_or(1.0);
-            for (j, by) in turn.into_iter().chain([gx * scale, gy * scale, gz * scale]).take(exterior.ncols()).enumerate() {
+            for (j, by) in
+                by_turn([gx, gy, gz], ray).into_iter().chain([gx * scale, gy * scale, gz * scale]).take(exterior.ncols()).enumerate()
+            {
                 exterior[(row, j)] = by;
             }
         }
     }
     (interior, exterior)
+}
+
+/// The point of a ray in a plane before the camera, where that can be, or else at that distance; at infinity its direction.
+pub(super) fn at_depth(ray: Ray, depth: Option<f64>) -> Ray {
+    let length = (ray.x * ray.x + ray.y * ray.y + ray.z * ray.z).sqrt();
+    let scale = depth.map_or(1.0 / length, |depth| if ray.z < -0.1 * length { depth / -ray.z } else { depth / length });
+    Ray { x: ray.x * scale, y: ray.y * scale, z: ray.z * scale }
+}
+
+/// Derivatives of a pixel's coordinate by a small rotation of the camera about its axes, from those by the ray.
+pub(super) fn by_turn([gx, gy, gz]: [f64; 3], ray: Ray) -> [f64; 3] {
+    [ray.y * gz - ray.z * gy, ray.z * gx - ray.x * gz, ray.x * gy - ray.y * gx]
 }
 
 #[cfg(test)]

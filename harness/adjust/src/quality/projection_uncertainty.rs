@@ -6,7 +6,7 @@ use calibench_model::camera::{CameraModel, DerivativeBuffer, Ray};
 use nalgebra::{DMatrix, Matrix2xX, Matrix6};
 
 use super::covariance::Variance;
-use super::frame_uncertainty::{Distance, Uncertainty};
+use super::frame_uncertainty::{Distance, Uncertainty, at_depth, by_turn};
 use crate::AdjustError;
 use crate::datum::STransformation;
 use crate::normal::Step;
@@ -121,23 +121,14 @@ fn dot(a: &Step, b: &Step) -> f64 {
         + sum(a.points.as_flattened(), b.points.as_flattened())
 }
 
-/// The point of a ray in a plane before the camera, where that can be, or else at that distance; at infinity its direction.
-fn at_depth(ray: Ray, depth: Option<f64>) -> Ray {
-    let length = (ray.x * ray.x + ray.y * ray.y + ray.z * ray.z).sqrt();
-    let scale = depth.map_or(1.0 / length, |depth| if ray.z < -0.1 * length { depth / -ray.z } else { depth / length });
-    Ray { x: ray.x * scale, y: ray.y * scale, z: ray.z * scale }
-}
-
 /// Derivatives of a pixel by the unknown parameters, by a rotation of the camera and by a shift, which at infinity does nothing.
 fn slope(buffer: &DerivativeBuffer, ray: Ray, free: &[usize], near: bool) -> Matrix2xX<f64> {
     let by = |axis: usize, column: usize| {
         if let Some(&parameter) = free.get(column) {
             return buffer.by_parameters()[parameter][axis];
         }
-        let [gx, gy, gz] = buffer.by_ray[axis];
-        let turn = [ray.y * gz - ray.z * gy, ray.z * gx - ray.x * gz, ray.x * gy - ray.y * gx];
-        let shift = if near { [gx, gy, gz] } else { [0.0; 3] };
-        turn.into_iter().chain(shift).nth(column - free.len()).unwrap_or(0.0)
+        let shift = if near { buffer.by_ray[axis] } else { [0.0; 3] };
+        by_turn(buffer.by_ray[axis], ray).into_iter().chain(shift).nth(column - free.len()).unwrap_or(0.0)
     };
     Matrix2xX::from_fn(free.len() + 6, by)
 }
