@@ -56,6 +56,47 @@ fn the_page_names_operator_and_model_and_is_the_same_on_any_number_of_threads() 
 }
 
 #[test]
+fn a_calibration_in_use_holds_has_moved_or_cannot_be_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let images = board(folder.path());
+    let mut arguments = vec!["calibrate", "-q", "--chessboard", "9x6:25", "--model", "opencv4", "-o", "camera.yaml"];
+    arguments.extend(images.iter().map(String::as_str));
+    let output = run(folder.path(), &arguments);
+    assert!(folder.path().join("camera.yaml").is_file(), "{}", stderr(&output));
+    let text = std::fs::read_to_string(folder.path().join("camera.yaml")).unwrap();
+    let output = run(folder.path(), &["camera", "camera.yaml"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let models = ["--model", "opencv4:fx,fy,cx,cy", "--model", "opencv4", "--splits", "3"];
+    let ended = |camera: &str, margin: &str| {
+        let output = judge(folder.path(), &images, &[&models[..], &["--camera", camera, "--margin", margin, "--report", "page"]].concat());
+        let page = std::fs::read_to_string(folder.path().join("page/README.md")).unwrap();
+        let first = stdout(&output).lines().next().unwrap_or_default().to_owned();
+        assert!(page.contains(first.trim_start_matches("- ")), "{first}\n{page}");
+        (output.status.code(), first)
+    };
+    let (code, says) = ended("camera.yaml", "2");
+    assert!(code == Some(0) && says.starts_with("- **holds**: the camera in use differs from the one of these photographs by "), "{says}");
+    let (code, says) = ended("camera.yaml", "0.0001");
+    assert!(code == Some(3) && says.starts_with("- **cannot tell**: "), "{says}");
+    // The longer side two per cent off: over the frame several pixels.
+    let moved = moved(&text);
+    std::fs::write(folder.path().join("moved.yaml"), moved).unwrap();
+    let (code, says) = ended("moved.yaml", "0.5");
+    assert!(code == Some(1) && says.starts_with("- **has moved**: ") && says.ends_with("it holds up to 0.5 px."), "{says}");
+    let output = judge(folder.path(), &images, &["--margin", "2"]);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("--camera"), "{}", stderr(&output));
+}
+
+/// An OpenCV file with its first focal length 2 % longer.
+fn moved(text: &str) -> String {
+    let data = text.find("data:").unwrap() + "data:".len();
+    let first = data + text[data..].find('[').unwrap() + 1;
+    let end = first + text[first..].find(',').unwrap();
+    let focal: f64 = text[first..end].trim().parse().unwrap();
+    format!("{}{}{}", &text[..first], 1.02 * focal, &text[end..])
+}
+
+#[test]
 fn mistakes_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let images = board(folder.path());

@@ -4,12 +4,14 @@ use calibench_diagnostics::nearest;
 use calibench_model::camera::ImageSize;
 use thiserror::Error;
 
-use crate::{CalibrationError, Optics, Settings, parameters};
+use crate::{BoardShape, CalibrationError, Optics, Settings, parameters};
 
 /// Photographs from which a camera is calibrated by themselves, at least: a half of those that judge has as many.
 pub const HALF: usize = 3;
 /// Pixel pitch of models in mm where none is known, um. No figure in px depends on it.
 pub const NOMINAL_PITCH: f64 = 10.0;
+/// What follows a model that is calibrated on a board that may be bent.
+const BENT: &str = "+bent";
 
 /// A camera model, and which of its parameters are solved for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,6 +20,7 @@ pub struct ModelChoice {
     pub label: String,
     name: String,
     solve: Option<Vec<String>>,
+    shape: BoardShape,
 }
 
 /// A model that cannot be compared.
@@ -44,16 +47,18 @@ pub enum ModelError {
 }
 
 impl ModelChoice {
-    /// A model by name, with the parameters that it usually needs; or `NAME:PARAMETER,...` with those that are named, the others at rest.
+    /// A model by name, with the parameters that it usually needs; or `NAME:PARAMETER,...` with those that are named, the others at rest. With `+bent` after it
+    /// the bend of the board is solved for too ([`BoardShape::Bent`]).
     ///
     /// # Errors
     /// A model or parameter that is not known.
     pub fn parse(text: &str) -> Result<Self, ModelError> {
-        let (name, solve) = match text.split_once(':') {
+        let (lens, shape) = text.strip_suffix(BENT).map_or((text, BoardShape::Flat), |lens| (lens, BoardShape::Bent));
+        let (name, solve) = match lens.split_once(':') {
             Some((name, list)) => (name, Some(list.split(',').map(|name| name.trim().to_owned()).collect::<Vec<_>>())),
-            None => (text, None),
+            None => (lens, None),
         };
-        let choice = Self { label: text.to_owned(), name: name.to_owned(), solve };
+        let choice = Self { label: text.to_owned(), name: name.to_owned(), solve, shape };
         let size = ImageSize { width: 640, height: 480 };
         let known = parameters(&Optics { solve: None, ..choice.optics(size, None) })?;
         match choice.solve.iter().flatten().find(|name| !known.contains(&name.as_str())) {
@@ -85,7 +90,7 @@ impl ModelChoice {
 
     /// How it is calibrated.
     pub fn settings(&self, size: ImageSize, pitch_um: Option<f64>) -> Settings {
-        Settings::new(vec![self.optics(size, pitch_um)])
+        Settings { shape: self.shape, ..Settings::new(vec![self.optics(size, pitch_um)]) }
     }
 
     fn optics(&self, size: ImageSize, pitch_um: Option<f64>) -> Optics {
@@ -100,9 +105,19 @@ mod tests {
 
     #[test]
     fn models_are_known_by_name_and_parameters() {
-        for good in ["opencv5", "opencv4:fx,fy,cx,cy", "photogrammetric:c,x0,y0,k1", "metashape", "photogrammetric"] {
+        for good in [
+            "opencv5",
+            "opencv4:fx,fy,cx,cy",
+            "photogrammetric:c,x0,y0,k1",
+            "metashape",
+            "photogrammetric",
+            "opencv5+bent",
+            "opencv4:fx,fy,cx,cy+bent",
+        ] {
             assert_eq!(ModelChoice::parse(good).unwrap().label, good);
         }
+        let shape = |text: &str| ModelChoice::parse(text).unwrap().settings(ImageSize { width: 640, height: 480 }, None).shape;
+        assert_eq!(["opencv5", "opencv5+bent"].map(shape), [BoardShape::Flat, BoardShape::Bent]);
         let message = |text: &str| ModelChoice::parse(text).unwrap_err().to_string();
         assert!(message("opncv5").contains("did you mean `opencv5`?"), "{}", message("opncv5"));
         assert!(message("opencv5:fx,k9").contains("no parameter k9; expected some of fx,fy,"), "{}", message("opencv5:fx,k9"));

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use calibench_calibrate::choice::{HALF, ModelChoice};
 use calibench_exchange::{Inputs, NewFolder, read_photo};
-use calibench_judge::{JudgementError, Material, Options, judge, published_camera};
+use calibench_judge::{JudgementError, Material, Options, judge, published_camera, stated_sigma};
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::camera::ImageSize;
 use calibench_photographs::names::{names, once};
 use calibench_photographs::{Chessboard, measured_board};
-use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
+use calibench_records::judgement::{InUse, JUDGEMENT, Row, StillHolds, Summary, Trusted, write_rows};
 use calibench_records::points::RunInfo;
 use calibench_records::results::{MethodInfo, Trial};
-use calibench_report::judgement::{section, verdict};
+use calibench_report::judgement::{in_use as in_words, section, verdict};
 use clap::Args;
 use rayon::prelude::*;
 
@@ -37,15 +37,24 @@ const METHODS: [&str; 9] = [
     "chess_corners",
 ];
 
-/// From too poor to too rich.
-const MODELS: [&str; 7] = [
+/// What measures when a calibration in use is checked.
+const OF_CAMERA: &str = "parametric_corner:window=15";
+
+/// From too poor to too rich, on a flat board and on one that may be bent.
+const MODELS: [&str; 13] = [
     "opencv4:fx,fy,cx,cy",
-    "photogrammetric:c,x0,y0,k1",
-    "photogrammetric:c,x0,y0,k1,k2",
-    "photogrammetric",
+    "opencv4:fx,fy,cx,cy,k1",
+    "opencv4:fx,fy,cx,cy,k1,k2",
+    "opencv5:fx,fy,cx,cy,k1,k2,k3",
     "opencv4",
     "opencv5",
     "opencv8",
+    "opencv-fisheye",
+    "photogrammetric",
+    "opencv4+bent",
+    "opencv5+bent",
+    "opencv8+bent",
+    "opencv-fisheye+bent",
 ];
 
 #[derive(Args)]
@@ -56,10 +65,11 @@ pub struct Judge {
     /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
     #[arg(long, value_name = "COLUMNSxROWS:SIDE")]
     chessboard: Chessboard,
-    /// Methods to compare, as in forstner:window=15 [default: all that make sense on chess corners]
+    /// Methods to compare, as in forstner:window=15 [default: all that make sense on chess corners; with --camera parametric_corner:window=15]
     #[arg(short, long = "method", value_name = "METHOD")]
     methods: Vec<String>,
-    /// Camera models to compare, as in opencv5 or, with some of its parameters only, opencv4:fx,fy,cx,cy [default: seven from too poor to too rich]
+    /// Camera models to compare, as in opencv5, opencv4:fx,fy,cx,cy with some of its parameters only, or opencv5+bent on a board that may be bent [default: thirteen
+    /// from too poor to too rich]
     #[arg(long = "model", value_name = "MODEL")]
     models: Vec<String>,
     /// Pixel pitch, um, for models in mm; no figure in px depends on it [default: 10]
@@ -68,6 +78,12 @@ pub struct Judge {
     /// A camera file to compare with: a calibration that somebody made before
     #[arg(long, value_name = "FILE")]
     published: Option<PathBuf>,
+    /// A camera file in use: does it still hold on these photographs? Exit code 0 if it holds, 1 if it has moved, 3 if they cannot tell
+    #[arg(long, value_name = "FILE", conflicts_with = "published")]
+    camera: Option<PathBuf>,
+    /// Difference over the frame, px RMS, up to which --camera holds
+    #[arg(long, value_name = "PX", default_value_t = 1.0, requires = "camera", value_parser = positive, allow_negative_numbers = true)]
+    margin: f64,
     /// How often the photographs are split into halves
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
     splits: u64,
@@ -88,24 +104,46 @@ impl Judge {
             return Err(JudgementError::TooFewViews { found: self.photos.len(), needed }.into());
         }
         once(&self.photos)?;
-        let inputs = Inputs::new(self.photos.iter().chain(&self.published));
+        let inputs = Inputs::new(self.photos.iter().chain(&self.published).chain(&self.camera));
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
         let (trial, size) = self.measure(context, &methods)?;
         let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
         let material = Material::new(&trial, &infos, self.chessboard.board, self.chessboard.side, size);
+        let published = self.camera.as_deref().or(self.published.as_deref());
         let published =
-            self.published.as_deref().map(|path| published_camera(path, &path.display().to_string(), size).map_err(Failure::input));
-        let published = published.transpose()?;
-        let options = Options { models, pitch_um: self.pitch, splits: self.splits, seed: self.seed, name: "judge".into(), published };
+            published.map(|path| published_camera(path, &path.display().to_string(), size).map_err(Failure::input)).transpose()?;
+        let options = Options {
+            models,
+            pitch_um: self.pitch,
+            splits: self.splits,
+            seed: self.seed,
+            name: "judge".into(),
+            published: published.as_ref().map(|named| named.camera),
+            published_sigma: published.as_ref().and_then(stated_sigma),
+        };
         let rows = judge(&material, &options)?;
         let summary = Summary::new(&rows, self.seed);
         if let Some(folder) = folder {
             folder.replace(|folder| self.write(folder, &rows, &summary))?;
         }
-        match summary.trusted() {
-            Some(trusted) => print(&verdict(&summary, &trusted)),
-            None => Err(Failure::input(section(&summary).0)),
+        let Some(trusted) = summary.trusted() else { return Err(Failure::input(section(&summary).0)) };
+        let in_use = self.in_use(&trusted);
+        in_use.iter().try_for_each(|found| print(&format!("- {}\n", in_words(found))))?;
+        print(&verdict(&summary, &trusted))?;
+        match in_use.map(|found| found.verdict) {
+            Some(StillHolds::Holds) => Ok(()),
+            Some(StillHolds::Moved) => Err(Failure::Gate),
+            Some(StillHolds::CannotTell) => Err(Failure::Doubt),
+            None if trusted.doubt().is_some() => Err(Failure::Doubt),
+            None => Ok(()),
         }
+    }
+
+    fn in_use(&self, trusted: &Trusted<'_>) -> Option<InUse> {
+        self.camera.as_ref()?;
+        // Where the two cannot be compared over the frame the photographs cannot tell.
+        let unknown = InUse { verdict: StillHolds::CannotTell, apart: f64::NAN, error: f64::INFINITY, margin: self.margin };
+        Some(trusted.in_use(self.margin).unwrap_or(unknown))
     }
 
     fn models(&self) -> Result<Vec<ModelChoice>, Failure> {
@@ -114,7 +152,11 @@ impl Judge {
     }
 
     fn methods(&self, context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
-        let texts: Vec<String> = if self.methods.is_empty() { METHODS.map(str::to_owned).to_vec() } else { self.methods.clone() };
+        let texts: Vec<String> = match (self.methods.is_empty(), &self.camera) {
+            (false, _) => self.methods.clone(),
+            (true, Some(_)) => vec![OF_CAMERA.to_owned()],
+            (true, None) => METHODS.map(str::to_owned).to_vec(),
+        };
         let methods = texts.iter().map(|text| context.method(text)).collect::<Result<Vec<_>, _>>()?;
         let twice = methods.iter().enumerate().find(|(i, method)| methods[..*i].iter().any(|earlier| earlier.label == method.label));
         match twice {
@@ -160,13 +202,15 @@ impl Judge {
         let info = RunInfo { scenario: "judge".into(), seed: self.seed, revision: env!("CARGO_PKG_VERSION").into(), detector: None };
         folder.write(JUDGEMENT, |file| write_rows(file, &info, rows))?;
         let (text, pictures) = section(summary);
+        let in_use = summary.trusted().and_then(|trusted| self.in_use(&trusted));
+        let in_use = in_use.map_or_else(String::new, |found| format!("{}\n\n", in_words(&found)));
         for (name, picture) in &pictures {
             folder.write(name, |file| picture.encode(file))?;
         }
         let (board, side) = (self.chessboard.board, self.chessboard.side);
         let text = format!(
             "# Which operator and which model to trust on these photographs\n\nMade by `calibench judge` from {} photographs of a chessboard of {} x {} inner \
-             corners, squares of {side}. Everything here is in `{JUDGEMENT}`, a row for each figure.\n\n{}\n",
+             corners, squares of {side}. Everything here is in `{JUDGEMENT}`, a row for each figure.\n\n{in_use}{}\n",
             self.photos.len(),
             board.columns,
             board.rows,

@@ -1,11 +1,12 @@
 //! One calibration of many: the camera and its covariance, no report.
 
 use calibench_adjust::{ImageObservation, Network, Options, Variance, adjust};
-use calibench_calibrate::{CalibrationError, Settings, prepare};
+use calibench_calibrate::{CalibrationError, Prepared, Settings, Shape, prepare};
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, Ray};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
+use super::bend::Bend;
 use super::material::Material;
 
 /// A camera calibrated from some of the views.
@@ -23,6 +24,10 @@ pub struct Calibrated {
     pub views: Vec<usize>,
     /// RMS of the residuals of each view, px (2D), and how many corners it has.
     pub residuals: Vec<(f64, usize)>,
+    /// How the board is bent; flat if that was not asked.
+    pub bend: Bend,
+    /// Coefficients that the corners do not determine, held near zero by weak priors.
+    pub held: Vec<String>,
     /// What was adjusted, its start values those of the result: where parts of it start.
     network: Network,
 }
@@ -33,20 +38,34 @@ pub struct Calibrated {
 /// As [`prepare`] and [`adjust`]: what cannot be determined, by name.
 pub fn calibrate(material: &Material, operator: usize, views: &[usize], settings: &Settings) -> Result<Calibrated, CalibrationError> {
     let prepared = prepare(material.points(operator, views), &material.control(), settings)?;
-    Calibrated::of(prepared.network, views.to_vec())
+    match Calibrated::of(&prepared, views) {
+        Err(error) if error.is_undetermined() => Calibrated::of(&prepared.held_weakly().ok_or(error)?, views),
+        found => found,
+    }
 }
 
 impl Calibrated {
-    fn of(mut network: Network, views: Vec<usize>) -> Result<Self, CalibrationError> {
+    fn of(prepared: &Prepared, views: &[usize]) -> Result<Self, CalibrationError> {
+        let bend = match &prepared.shape {
+            Shape::Bent { board, .. } => Bend::of(board.clone()),
+            _ => Bend::default(),
+        };
+        Self::adjusted(prepared.network.clone(), views.to_vec(), (bend, prepared.held.clone()))
+    }
+
+    fn adjusted(mut network: Network, views: Vec<usize>, (bend, held): (Bend, Vec<String>)) -> Result<Self, CalibrationError> {
         let solution = adjust(&network, &Options::default())?;
         let (names, covariance) = solution.covariances(Variance::Estimated)?.of_camera(0);
         let mut counts = vec![0; views.len()];
         network.observations.iter().for_each(|observation| counts[observation.image] += 1);
         let residuals = solution.rms_by_image().into_iter().map(Option::unwrap_or_default).zip(counts).collect();
         let (camera, poses, redundancy) = (solution.cameras()[0], solution.poses().to_vec(), solution.counts().redundancy());
+        let coefficients = solution.surfaces().next();
         network.cameras[0].camera = camera;
         network.images.iter_mut().zip(poses).for_each(|(image, pose)| image.pose = pose);
-        Ok(Self { camera, names, covariance, redundancy, views, residuals, network })
+        network.surfaces.iter_mut().zip(coefficients).for_each(|(surface, found)| surface.coefficients = found);
+        let bend = bend.with(coefficients.unwrap_or_default());
+        Ok(Self { camera, names, covariance, redundancy, views, residuals, bend, held, network })
     }
 
     /// The same from some of the views only. The result of all is where it starts, and no more than that.
@@ -61,7 +80,15 @@ impl Calibrated {
         let observations = self.network.observations.iter();
         let observations = observations.filter_map(|o| Some(ImageObservation { image: renumbered(o.image)?, ..*o })).collect();
         let network = Network { images, observations, ..self.network.clone() };
-        Self::of(network, taken.iter().map(|&image| self.views[image]).collect())
+        let views = taken.iter().map(|&image| self.views[image]).collect();
+        Self::adjusted(network, views, (self.bend.clone(), self.held.clone()))
+    }
+
+    /// The values of its unknown parameters, in the order of `names` and in their units.
+    pub fn values(&self) -> DVector<f64> {
+        let all = self.camera.parameters();
+        let value = |name: &&str| all.iter().find(|parameter| parameter.name == *name).map_or(f64::NAN, |parameter| parameter.value);
+        DVector::from_iterator(self.names.len(), self.names.iter().map(value))
     }
 
     /// The pose of a view.
@@ -78,7 +105,7 @@ impl Calibrated {
         let place = |name: &&str| all.iter().position(|parameter| parameter.name == *name);
         let by: Vec<[f64; 2]> = self.names.iter().filter_map(place).map(|place| found.by_parameters[place]).collect();
         let sigma = |axis: usize| {
-            let slope = nalgebra::DVector::from_iterator(by.len(), by.iter().map(|by| by[axis]));
+            let slope = DVector::from_iterator(by.len(), by.iter().map(|by| by[axis]));
             (slope.transpose() * &self.covariance * &slope)[0].max(0.0).sqrt()
         };
         Some([(found.point.x, sigma(0)), (found.point.y, sigma(1))])

@@ -48,6 +48,19 @@ impl Frame {
         (0..self.left.nrows() / 2).map(of).collect()
     }
 
+    /// The mean variance (2D, px^2) over the places, and in how many modes it varies: `(sum l)^2 / sum l^2` of the variances l of all.
+    pub fn spread(&self, covariance: &DMatrix<f64>) -> (f64, f64) {
+        let places = self.left.nrows() as f64 / 2.0;
+        let modes = covariance * self.left.tr_mul(&self.left);
+        let (sum, squares) = (modes.trace(), (&modes * &modes).trace());
+        (sum.max(0.0) / places, if squares > 0.0 { sum * sum / squares } else { 1.0 })
+    }
+
+    /// What a change of the parameters, in the order of their `names` and in their units, does over the frame: x and y of each place, px.
+    pub fn moved(&self, change: &DVector<f64>) -> DVector<f64> {
+        &self.left * change
+    }
+
     /// A difference over the frame (x and y of each place, px) without what a rotation makes up for, px.
     pub fn without_rotation(&self, difference: &DVector<f64>) -> DVector<f64> {
         difference - &self.turns * self.turns.tr_mul(difference)

@@ -75,6 +75,20 @@ pub fn vectors(first: &Camera, second: &Camera) -> Result<(Vec<PixelPoint>, DVec
     Ok((at, DVector::from_iterator(2 * found.vectors.len(), found.vectors.iter().flat_map(|vector| [vector.dx, vector.dy]))))
 }
 
+/// The places over the frame at which cameras are compared.
+///
+/// # Errors
+/// In words: a camera that does not picture all of them.
+pub fn places(camera: &Camera) -> Result<Vec<PixelPoint>, String> {
+    let options = DifferenceOptions { columns: COLUMNS, rotation: false, ..DifferenceOptions::default() };
+    let found = difference(camera, camera, &options).map_err(|error| error.to_string())?;
+    if found.not_comparable > 0.0 {
+        Err("parts of the frame have no rays".into())
+    } else {
+        Ok(found.vectors.iter().map(|vector| vector.at).collect())
+    }
+}
+
 /// Differences of several splits, place by place.
 #[derive(Clone, Debug, Default)]
 pub struct Map(BTreeMap<[u64; 2], (f64, f64, usize)>);

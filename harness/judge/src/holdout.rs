@@ -4,6 +4,7 @@ use calibench_adjust::approximate::{Control, fit_pose};
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel};
 
+use super::bend::Bend;
 use super::material::Material;
 
 /// With fewer corners in the half that it is resected from, a view says nothing.
@@ -44,6 +45,8 @@ pub struct Unseen<'a> {
     pub view: usize,
     /// The camera, which is held.
     pub camera: &'a Camera,
+    /// How the board is bent.
+    pub bend: &'a Bend,
     /// A pose to start from.
     pub near: &'a Pose,
 }
@@ -58,8 +61,8 @@ impl Unseen<'_> {
                 let (column, row) = self.material.place(corner);
                 part(column, row)
             };
-            let known = self.material.seen(self.operator, self.view, &|corner| chosen[corner] && inside(corner));
-            let others = self.material.seen(self.operator, self.view, &|corner| chosen[corner] && !inside(corner));
+            let known = self.material.seen(self.operator, self.view, self.bend, &|corner| chosen[corner] && inside(corner));
+            let others = self.material.seen(self.operator, self.view, self.bend, &|corner| chosen[corner] && !inside(corner));
             if known.len() < FEWEST || others.is_empty() {
                 return Err(format!("{} corners to resect from, at least {FEWEST} are needed", known.len()));
             }
@@ -99,7 +102,7 @@ impl Unseen<'_> {
     /// # Errors
     /// As [`Self::interleaved`].
     pub fn resected(&self) -> Result<Squares, String> {
-        let (all, mut squares) = (self.material.seen(self.operator, self.view, &|_| true), Squares::default());
+        let (all, mut squares) = (self.material.seen(self.operator, self.view, self.bend, &|_| true), Squares::default());
         self.add(&all, &all, &mut squares)?;
         Ok(squares)
     }

@@ -3,6 +3,7 @@
 //! Every operator with every model is calibrated from all views, from all but those left out, and from halves of them. What comes of it are [`Row`]s:
 //! measure, place, value and what is predicted for it. [`Summary`](calibench_records::judgement::Summary) makes figures and a verdict of them, and nothing else does.
 
+mod bend;
 mod calibrated;
 mod camera_difference;
 mod frame;
@@ -26,7 +27,7 @@ use thiserror::Error;
 
 pub use material::{Corners, Material};
 pub use options::Options;
-pub use published::published_camera;
+pub use published::{published_camera, stated_sigma};
 
 /// Why nothing can be judged.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]

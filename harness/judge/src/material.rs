@@ -12,6 +12,8 @@ use calibench_records::judgement::COMPARABLE;
 use calibench_records::results::{MethodInfo, Outcome, Trial};
 use nalgebra::Point3;
 
+use super::bend::Bend;
+
 /// A view with fewer corners of an operator does not take part in its calibration.
 const FEWEST: usize = 12;
 
@@ -101,11 +103,11 @@ impl Material {
     }
 
     /// The corners of an operator in a view among those of `chosen`, as control of a resection.
-    pub fn seen(&self, operator: usize, view: usize, chosen: &dyn Fn(usize) -> bool) -> Vec<Control> {
+    pub fn seen(&self, operator: usize, view: usize, bend: &Bend, chosen: &dyn Fn(usize) -> bool) -> Vec<Control> {
         let corners = self.operators[operator].at[view].iter().enumerate();
         corners
             .filter(|(corner, _)| chosen(*corner))
-            .filter_map(|(c, at)| Some(Control { object: Point3::from(self.object(c)), image: (*at)? }))
+            .filter_map(|(c, at)| Some(Control { object: bend.at(Point3::from(self.object(c))), image: (*at)? }))
             .collect()
     }
 

@@ -7,10 +7,11 @@ use calibench_calibrate::choice::{HALF, ModelChoice};
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
 use calibench_records::judgement::{Row, measure};
+use nalgebra::DVector;
 
 use super::calibrated::{Calibrated, calibrate};
 use super::frame::Frame;
-use super::halves::{Map, apart, halves, vectors};
+use super::halves::{Map, apart, halves, places, vectors};
 use super::holdout::{Squares, Unseen};
 use super::material::Material;
 use super::{Options, lines};
@@ -63,7 +64,8 @@ impl Job<'_> {
                 return (rows, None);
             }
         };
-        rows.push(Row::plain(measure::PARAMETERS, "", all.names.len() as f64));
+        let of_board = if all.bend.deflection().is_some() { 3 } else { 0 };
+        rows.push(Row::plain(measure::PARAMETERS, "", (all.names.len() + of_board) as f64));
         let residuals = all.views.iter().zip(&all.residuals);
         rows.extend(residuals.map(|(view, (rms, count))| Row::px(measure::RESIDUALS, &self.material.views[*view], *rms).of(*count)));
         rows.extend(principal(&all, "all"));
@@ -76,15 +78,16 @@ impl Job<'_> {
 
     /// Each fold of the views left out in turn: predictions, straight lines, principal point.
     fn left_out(&self, all: &Calibrated) -> Vec<Row> {
-        let mut rows = Vec::new();
+        let (mut rows, mut without) = (Vec::new(), Vec::new());
         for fold in folds(&self.views) {
             let name = |view: &usize| &self.material.views[*view];
             let others: Vec<usize> = self.views.iter().copied().filter(|view| !fold.contains(view)).collect();
-            let camera = match all.part(&others) {
+            let found = match all.part(&others) {
                 Ok(found) => {
-                    let without: Vec<&str> = fold.iter().map(|view| &**name(view)).collect();
-                    rows.extend(principal(&found, &format!("without {}", without.join(", "))));
-                    found.camera
+                    let names: Vec<&str> = fold.iter().map(|view| &**name(view)).collect();
+                    rows.extend(principal(&found, &format!("without {}", names.join(", "))));
+                    without.push(found.values());
+                    found
                 }
                 Err(error) => {
                     let why = format!("without this view: {error}");
@@ -93,22 +96,25 @@ impl Job<'_> {
                 }
             };
             for view in &fold {
-                rows.extend(all.pose(*view).into_iter().flat_map(|near| self.predicted(&camera, *view, &near)));
+                rows.extend(all.pose(*view).into_iter().flat_map(|near| self.predicted(&found, *view, &near)));
             }
         }
+        let of_all = without.len() == folds(&self.views).len();
+        rows.extend(over_frame(all, if of_all { &without } else { &[] }));
         rows
     }
 
-    fn predicted(&self, camera: &Camera, view: usize, near: &Pose) -> [Row; 3] {
+    fn predicted(&self, found: &Calibrated, view: usize, near: &Pose) -> [Row; 4] {
         let (name, chosen) = (&self.material.views[view], &self.common[view][..]);
         let row = |measure: &str, found: Result<(f64, usize), String>| match found {
             Ok((value, count)) => Row::px(measure, name, value).of(count),
             Err(why) => Row::without(measure, name, "failed", &why),
         };
         let rms = |found: Result<Squares, String>| found.map(|squares| (squares.rms().unwrap_or(f64::NAN), squares.count()));
-        let (material, operator) = (self.material, self.operator);
-        let unseen = Unseen { material, operator, view, camera, near };
+        let (material, operator, camera, bend) = (self.material, self.operator, &found.camera, &found.bend);
+        let unseen = Unseen { material, operator, view, camera, bend, near };
         [
+            row(measure::UNSEEN, rms(unseen.resected())),
             row(measure::HOLDOUT, rms(unseen.interleaved(chosen))),
             row(measure::ACROSS, rms(unseen.across(chosen))),
             row(measure::STRAIGHT, lines::straightness(material, operator, view, camera, chosen)),
@@ -172,13 +178,14 @@ impl Job<'_> {
                 rows.push(Row::px(measure::PUBLISHED_MOST, "", lengths.iter().copied().fold(0.0, f64::max)));
             }
         }
+        rows.extend(self.options.published_sigma.map(|sigma| Row::px(measure::PUBLISHED_SIGMA, "", sigma)));
         let corners = self.material.positions(self.operator);
         rows.extend(
             beside(&all.camera, published, &corners).ok().and_then(|found| Some(Row::px(measure::PUBLISHED_SEEN, "", found.seen?))),
         );
         for (&view, near) in self.views.iter().filter_map(|view| Some((view, all.pose(*view)?))) {
             let name = &self.material.views[view];
-            let unseen = Unseen { material: self.material, operator: self.operator, view, camera: published, near: &near };
+            let unseen = Unseen { material: self.material, operator: self.operator, view, camera: published, bend: &all.bend, near: &near };
             rows.push(match unseen.resected() {
                 Ok(squares) => Row::px(measure::PUBLISHED_VIEW, name, squares.rms().unwrap_or(f64::NAN)).of(squares.count()),
                 Err(why) => Row::without(measure::PUBLISHED_VIEW, name, "failed", &why),
@@ -186,6 +193,28 @@ impl Job<'_> {
         }
         rows
     }
+}
+
+/// The predicted standard deviation of the camera over the frame, and the one that `without` shows: the parameters without each group of photographs.
+fn over_frame(all: &Calibrated, without: &[DVector<f64>]) -> Vec<Row> {
+    let frame = places(&all.camera)
+        .and_then(|at| Frame::new(&all.camera, &all.names, &at).ok_or_else(|| "a place of the frame has no ray".to_owned()));
+    let frame = match frame {
+        Ok(frame) => frame,
+        Err(why) => return vec![Row::without(measure::FRAME, "", "failed", &why)],
+    };
+    let (mean, modes) = frame.spread(&all.covariance);
+    let by_views = jackknife(&frame, without).map_or(f64::NAN, f64::sqrt);
+    vec![Row::px(measure::FRAME, "", mean.sqrt()).beside(by_views), Row::plain(measure::FRAME_MODES, "", modes)]
+}
+
+/// The mean variance (2D, px^2) over the frame that groups show which were left out in turn.
+fn jackknife(frame: &Frame, without: &[DVector<f64>]) -> Option<f64> {
+    let (groups, first) = (without.len() as f64, without.first()?);
+    let mean = without.iter().sum::<DVector<f64>>() / groups;
+    let moved = |values: &DVector<f64>| frame.moved(&(values - &mean));
+    let places = moved(first).len() as f64 / 2.0;
+    Some((groups - 1.0) / groups * without.iter().map(|values| moved(values).norm_squared()).sum::<f64>() / places)
 }
 
 fn principal(found: &Calibrated, place: &str) -> Vec<Row> {

@@ -18,4 +18,6 @@ pub struct Options {
     pub name: String,
     /// A calibration that somebody published of these photographs.
     pub published: Option<Camera>,
+    /// The standard deviation (2D) that its file states of it, RMS over the frame, px.
+    pub published_sigma: Option<f64>,
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibench_exchange::NewFolder;
-use calibench_judge::{Material, Options, judge, published_camera};
+use calibench_judge::{Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
 use calibench_records::names::kept_image;
@@ -45,7 +45,8 @@ fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -
         splits: wanted.splits,
         seed: plan.seed,
         name: plan.scenario.name.clone(),
-        published: published.as_ref().and_then(|camera| camera.as_ref().ok().copied()),
+        published: published.as_ref().and_then(|camera| Some(camera.as_ref().ok()?.camera)),
+        published_sigma: published.as_ref().and_then(|camera| stated_sigma(camera.as_ref().ok()?)),
     };
     let mut rows = judge(&material, &options).map_err(|error| error.to_string())?;
     if let Some(Err(why)) = published {

@@ -68,7 +68,7 @@ fn material(scenario: &str, trial: u64, count: usize, sigmas: &[f64]) -> Materia
 
 fn options(models: &[&str], splits: u64) -> Options {
     let models = models.iter().map(|model| ModelChoice::parse(model).unwrap()).collect();
-    Options { models, pitch_um: None, splits, seed: 11, name: "test".into(), published: None }
+    Options { models, pitch_um: None, splits, seed: 11, name: "test".into(), published: None, published_sigma: None }
 }
 
 fn judged(material: &Material, options: &Options) -> (Vec<Row>, Summary) {

@@ -19,7 +19,9 @@ fn a_model_that_is_too_poor_and_an_operator_that_is_noisier_are_worse() {
     let p = |others: &[(&calibench_records::judgement::Cell, f64)], name: &str| {
         others.iter().find(|(cell, _)| &*cell.model == name || &*cell.method == name).map(|(_, p)| *p).unwrap()
     };
-    assert!(p(&trusted.models, POOR) < 1e-3);
+    let standing = |name: &str| trusted.models.iter().find(|standing| &*standing.cell.model == name).unwrap();
+    assert_eq!(standing(POOR).share, 0.0);
+    assert!(standing(POOR).loss.unwrap() > 10.0 * standing("opencv4").loss.unwrap().max(0.01));
     assert!(p(&trusted.operators, "operator-2") < 1e-3);
     let cell = |model: &str| summary.cell("operator-1", model).unwrap();
     for (poor, right) in [

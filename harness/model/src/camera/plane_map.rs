@@ -118,6 +118,25 @@ pub(super) fn is_one_to_one(radius: f64, radial: &[f64], tangential: &[f64], lin
     sum + rest < 1.0 || (rest < 1.0 && stays_above(rest, r2, radial, |_| 1.0) && stays_above(rest, r2, radial, |i| (2 * i + 3) as f64))
 }
 
+/// The same for a quotient of two such polynomials as the factor; `false` too where the denominator may vanish.
+///
+/// With the factor `n / d` the two derivatives are `n / d` and `(n d + 2 s (n' d - n d')) / d^2`, s the squared radius: times the positive denominators both
+/// are polynomials.
+pub(super) fn is_quotient_one_to_one(radius: f64, [above, below]: [[f64; 3]; 2], tangential: &[f64]) -> bool {
+    let end = radius * radius;
+    let rest = 8.0 * radius * tangential.iter().map(|p| p.abs()).sum::<f64>();
+    let [n, d] = [above, below].map(|k| [1.0, k[0], k[1], k[2]]);
+    let mut along = [0.0; 7];
+    for (i, n_i) in n.iter().enumerate() {
+        for (j, d_j) in d.iter().enumerate() {
+            along[i + j] += (1.0 + 2.0 * (i as f64 - j as f64)) * n_i * d_j - rest * d[i] * d_j;
+        }
+    }
+    let across: [f64; 3] = std::array::from_fn(|i| above[i] - rest * below[i]);
+    let stays = |bound: f64, polynomial: &[f64]| stays_above(bound, end, polynomial, |_| 1.0);
+    rest < 1.0 && stays(0.0, &below) && stays(rest, &across) && stays(rest, &along[1..])
+}
+
 /// Whether `1 + sum weight(i) k_i s^(i+1)` is above `bound` for all s from 0 to `end`: by the middle of each of some pieces and a bound of the slope there.
 fn stays_above(bound: f64, end: f64, radial: &[f64], weight: impl Fn(usize) -> f64) -> bool {
     const PIECES: usize = 24;
@@ -148,6 +167,27 @@ mod tests {
                 is_one_to_one(0.9 * fold, &radial, &[0.2], 0.0),
                 margin < 1.0 && (0..=900).all(|i| slope(1e-3 * f64::from(i) * fold) > margin)
             );
+        }
+    }
+
+    #[test]
+    fn what_is_surely_one_to_one_of_a_quotient_has_no_fold() {
+        for (above, below) in [
+            ([-0.28, 0.09, -0.012], [0.0; 3]),
+            ([0.3, 0.02, 0.001], [0.6, 0.11, 0.004]),
+            ([0.1, -0.05, 0.0], [0.4, 0.1, 0.02]),
+            ([-0.3, 0.0, 0.0], [-0.2, -0.05, 0.0]),
+        ] {
+            let polynomial = |k: [f64; 3], s: f64| 1.0 + s * (k[0] + s * (k[1] + s * k[2]));
+            let radius = |r: f64| r * polynomial(above, r * r) / polynomial(below, r * r);
+            // By differences; a pole is where the denominator changes its sign.
+            let slope = |r: f64| if polynomial(below, r * r) > 0.0 { (radius(r + 1e-6) - radius(r - 1e-6)) / 2e-6 } else { -1.0 };
+            let fold = first_fold(slope, 3.0, 3000).unwrap_or(3.0);
+            let sure = |radius: f64, p: f64| is_quotient_one_to_one(radius, [above, below], &[p]);
+            assert!(!sure(1.001 * fold, 0.0) || fold == 3.0, "{above:?} over {below:?} folds at {fold}");
+            assert!(sure(0.8 * fold, 0.0), "{above:?} over {below:?} is safe up to {fold}");
+            let least = (0..=800).map(|i| slope(1e-3 * f64::from(i) * fold)).fold(f64::INFINITY, f64::min);
+            assert!(!sure(0.8 * fold, 1.05 * least / (8.0 * 0.8 * fold)), "decentring as steep as the radial terms");
         }
     }
 }

@@ -10,6 +10,8 @@ pub const PARAMETERS: &str = "parameters";
 pub const RESIDUALS: &str = "residuals";
 /// By view: RMS error of the half of its corners predicted from the other half, the camera calibrated without the view.
 pub const HOLDOUT: &str = "holdout";
+/// By view: RMS residual of all its corners after its resection, the camera calibrated without the view.
+pub const UNSEEN: &str = "unseen";
 /// By view: the same, one side of the board from the other.
 pub const ACROSS: &str = "across";
 /// By view: how far rows and columns are from straight, the camera calibrated without the view.
@@ -22,6 +24,10 @@ pub const SPLIT_TEST: &str = "split_test";
 pub const MAP: &str = "map";
 /// The principal point, by set of views; beside it the predicted standard deviation.
 pub const PRINCIPAL: [&str; 2] = ["principal_x", "principal_y"];
+/// Predicted standard deviation (2D) of the camera over the frame, RMS; beside it the one that leaving photographs out shows.
+pub const FRAME: &str = "frame";
+/// In how many modes, of equal weight, the camera is uncertain over the frame.
+pub const FRAME_MODES: &str = "frame_modes";
 /// Standard deviation (2D) of a projected point far away: `centre`, and `corner`, the worst of four.
 pub const UNCERTAINTY: &str = "uncertainty";
 /// By another model: RMS difference of the cameras of all views over the frame; beside it the largest.
@@ -30,6 +36,8 @@ pub const BESIDE: &str = "beside";
 pub const BESIDE_SEEN: &str = "beside_seen";
 /// RMS difference from the published camera over the frame; beside it the predicted standard deviation of ours.
 pub const PUBLISHED: &str = "published";
+/// Standard deviation (2D) over the frame that the published camera states of itself, RMS.
+pub const PUBLISHED_SIGMA: &str = "published_sigma";
 /// The largest such difference.
 pub const PUBLISHED_MOST: &str = "published_most";
 /// The RMS difference from the published camera where corners were measured.

@@ -11,7 +11,7 @@ use calibench_records::judgement::Summary;
 
 use super::canvas::Canvas;
 
-pub use verdict::verdict;
+pub use verdict::{in_use, verdict};
 
 /// The operator and the model to trust, and how far, in a sentence or two; `None` where nothing could be judged.
 pub fn answer(summary: &Summary) -> Option<String> {

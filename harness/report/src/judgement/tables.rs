@@ -62,7 +62,7 @@ pub fn cells(summary: &Summary) -> String {
         ]);
     }
     let mut text = format!(
-        "`across` predicts one side of the board from the other, left, right, top and bottom: errors of the camera are carried on, and noise with them; models are judged by it. \
+        "`across` predicts one side of the board from the other, left, right, top and bottom: errors of the camera are carried on, and noise with them; that shows what a pose makes up for. \
          `straight` is how far undistorted rows and columns are from straight lines (standard deviation of a coordinate; the camera calibrated without the \
          photograph; no pose takes part). `residuals` are those of the adjustment of all photographs. `free`: how many parameters of the camera are solved for. All \
          but `straight` are 2D.\n\n{}\n",

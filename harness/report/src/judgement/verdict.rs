@@ -1,7 +1,9 @@
 //! The verdict in words, every one of them derived from the records.
 
 use calibench_model::escape;
-use calibench_records::judgement::{ALPHA, Beside, Cell, Estimate, HONEST, OUTLIER_ALPHA, Published, Summary, Trusted};
+use calibench_records::judgement::{
+    ALPHA, Beside, Cell, Estimate, HONEST, InUse, MARGIN_PX, OUTLIER_ALPHA, Published, Standing, StillHolds, Summary, Trusted,
+};
 
 use crate::markdown::fixed;
 use crate::plain;
@@ -15,43 +17,43 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
         cell.model,
         cell.holdout.map_or_else(String::new, |holdout| interval(&holdout))
     )];
+    lines.extend(trusted.doubt().map(|why| format!("**In doubt**: {why}. Its limits do not hold.")));
     lines.push(format!(
-        "**Operators**, with `{}`: {}",
+        "**Operators**, with `{}`: {}{}",
         least.model,
-        ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout))
+        ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout)),
+        without(" Not judged with it: ", &trusted.unjudged, |cell| &cell.method)
     ));
-    let farthest = trusted.farthest;
-    let mut models = format!(
-        "**Models**, with `{}`, by predicting one side of the board from the other (where a pose cannot make up for what a model lacks): {}",
-        least.method,
-        ranking(&trusted.models, &farthest.model, |cell| (&cell.model, cell.across))
-    );
-    if cell.model != farthest.model {
-        models.push_str(&format!(
-            " `{}` is the simplest of these, with {} parameters in place of {}.",
-            cell.model, cell.parameters, farthest.parameters
-        ));
-    }
-    let failed: Vec<String> = summary
-        .cells
-        .iter()
-        .filter(|other| other.method == least.method && other.holdout.is_none())
-        .map(|other| format!("`{}`", other.model))
-        .collect();
-    if !failed.is_empty() {
-        models.push_str(&format!(" These photographs do not determine {}.", listed(&failed)));
-    }
-    lines.push(models);
+    lines.push(models(trusted));
     lines.extend(how_far(trusted));
     lines.extend(beyond(summary, trusted));
     lines.push(outlying(cell));
     lines.extend(published(trusted));
     lines.push(
         "**What cannot be seen here**: an error that a camera of the same model can imitate, or that all photographs share with the board (corners displaced \
-         alike, a board that is not flat or not of the size given), predicts itself. The pose of a photograph is resected from the other half of its corners."
+         alike, a board that is not of the size given), predicts itself. The pose of a photograph is resected from the other half of its corners."
             .into(),
     );
     lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+/// Whether a camera in use still holds, in a sentence.
+pub fn in_use(found: &InUse) -> String {
+    let InUse { verdict, apart, error, margin } = found;
+    let says = match verdict {
+        StillHolds::Holds => "holds",
+        StillHolds::Moved => "has moved",
+        StillHolds::CannotTell => "cannot tell",
+    };
+    let known = if error.is_finite() {
+        format!("which these photographs know to {} px in 99 of 100 cases", plain(*error))
+    } else {
+        "which these photographs cannot know: they are in doubt themselves".into()
+    };
+    format!(
+        "**{says}**: the camera in use differs from the one of these photographs by {} px RMS over the frame after the best rotation, {known}; it holds up to {margin} px.",
+        plain(*apart)
+    )
 }
 
 /// A figure with its interval.
@@ -93,12 +95,50 @@ fn ranking(others: &[(&Cell, f64)], best: &str, of: impl Fn(&Cell) -> (&str, Opt
     text
 }
 
+/// Which models predict best, and what is lost with the one that is trusted.
+fn models(trusted: &Trusted<'_>) -> String {
+    let mut by_share: Vec<&Standing<'_>> = trusted.models.iter().filter(|standing| standing.share > 0.0).collect();
+    by_share.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let share = |share: f64| if share < 0.01 { "below 1 %".into() } else { format!("{:.0} %", 100.0 * share) };
+    let best: Vec<String> = by_share.iter().map(|standing| format!("`{}` in {}", standing.cell.model, share(standing.share))).collect();
+    let own = trusted.models.iter().find(|standing| standing.cell == trusted.cell);
+    let loss = own.and_then(|own| own.loss).map_or_else(String::new, |loss| {
+        format!(" With `{}` {} px RMS over the frame are to be expected from that.", trusted.cell.model, plain(loss))
+    });
+    let simpler = match own {
+        Some(own) if own.share < by_share.first().map_or(0.0, |best| best.share) => {
+            format!(" It is chosen since least is lost with it, or for being simpler and the same within {MARGIN_PX} px.")
+        }
+        _ => String::new(),
+    };
+    format!(
+        "**Models**, with `{}`: of photographs drawn again those not seen are predicted best, parameters allowed for, by {}.{loss}{simpler}{}",
+        trusted.cell.method,
+        listed(&best),
+        without(" Not judged: ", &trusted.left_out, |cell| &cell.model)
+    )
+}
+
+/// Cameras that could not be judged, and why.
+fn without(before: &str, cells: &[&Cell], name: impl Fn(&Cell) -> &str) -> String {
+    let why = |cell: &Cell| cell.trouble.as_deref().unwrap_or("not all photographs are predicted").to_owned();
+    let each: Vec<String> = cells.iter().map(|cell| format!("`{}` ({})", name(cell), escape::markdown(&why(cell)))).collect();
+    if each.is_empty() { String::new() } else { format!("{before}{}.", listed(&each)) }
+}
+
 fn how_far(trusted: &Trusted<'_>) -> Option<String> {
     let cell = trusted.cell;
     let (centre, corner) = cell.uncertainty?;
+    let over = trusted.limit.zip(cell.predicted).map_or_else(String::new, |(limit, predicted)| {
+        let by_views = predicted.by_views.map_or_else(String::new, |by_views| format!(", {} px by leaving photographs out", plain(by_views)));
+        format!(
+            " over the whole frame the camera is within {} px RMS of the truth in 95 of 100 cases, after the best rotation (standard deviation {} px{by_views});",
+            plain(limit),
+            plain(predicted.formal)
+        )
+    });
     let mut text = format!(
-        "**How far**: the adjustment predicts the image of a point far away with a standard deviation of {} px in the centre of the frame and {} px in its \
-         worst corner.",
+        "**How far**:{over} the image of a point far away has a standard deviation of {} px in the centre of the frame and {} px in its worst corner.",
         plain(centre),
         plain(corner)
     );
@@ -124,18 +164,17 @@ fn how_far(trusted: &Trusted<'_>) -> Option<String> {
     Some(text)
 }
 
-/// What models that cannot be told apart say where no corner was.
+/// What the other models that predict best in some draws say where no corner was.
 fn beyond(summary: &Summary, trusted: &Trusted<'_>) -> Option<String> {
-    let (cell, farthest) = (trusted.cell, trusted.farthest);
-    let alike = trusted.equal_models().chain([farthest]).filter(|other| other.model != cell.model);
+    let cell = trusted.cell;
     let found: Vec<(&Cell, Beside)> =
-        alike.filter_map(|other| Some((other, summary.beside(&cell.method, [&cell.model, &other.model])?))).collect();
+        trusted.rivals().filter_map(|rival| Some((rival.cell, summary.beside(&cell.method, [&cell.model, &rival.cell.model])?))).collect();
     let (worst, apart) = found.iter().max_by(|a, b| a.1.frame.total_cmp(&b.1.frame))?;
     let seen = found.iter().filter_map(|(_, apart)| apart.seen).reduce(f64::max)?;
     Some(format!(
-        "**Beyond the corners** nobody checked: the models that cannot be told apart agree with `{}` to {} px RMS or better where corners were measured, but over \
-         the whole frame only to {} px RMS, and {} px at most (`{}`). What was photographed decides there, and not the model: see to boards in every corner of \
-         the frame.",
+        "**Beyond the corners** nobody checked: the models that predict best in some of the draws agree with `{}` to {} px RMS or better where corners were \
+         measured, but over the whole frame only to {} px RMS, and {} px at most (`{}`). What was photographed decides there, and not the model: see to boards \
+         in every corner of the frame.",
         cell.model,
         plain(seen),
         plain(apart.frame),
@@ -165,7 +204,7 @@ fn outlying(cell: &Cell) -> String {
 }
 
 fn published(trusted: &Trusted<'_>) -> Option<String> {
-    let Published { beside: Beside { frame, most, seen }, predicted } = trusted.cell.published?;
+    let Published { beside: Beside { frame, most, seen }, predicted, .. } = trusted.cell.published?;
     let factor = trusted.inflation();
     let told = if frame <= 2.0 * factor * predicted { "within twice" } else { "more than twice" };
     let enlarged = if factor > 1.0 { format!(", enlarged {} px", plain(factor * predicted)) } else { String::new() };

@@ -10,7 +10,7 @@ mod undistort;
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
-use super::plane_map::is_one_to_one;
+use super::plane_map::{is_one_to_one, is_quotient_one_to_one};
 use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::PixelPoint;
 
@@ -185,7 +185,12 @@ impl Pinhole for OpenCv {
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         let d = &self.distortion;
-        d[5..].iter().all(|&more| more == 0.0) && is_one_to_one(radius, &[d[0], d[1], d[4]], &d[2..4], 0.0)
+        let (above, below) = ([d[0], d[1], d[4]], [d[5], d[6], d[7]]);
+        let by_polynomials = || match below {
+            [0.0, 0.0, 0.0] => is_one_to_one(radius, &above, &d[2..4], 0.0),
+            _ => is_quotient_one_to_one(radius, [above, below], &d[2..4]),
+        };
+        d[8..].iter().all(|&more| more == 0.0) && by_polynomials()
     }
 }
 

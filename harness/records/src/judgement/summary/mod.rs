@@ -1,5 +1,8 @@
 //! From rows to figures and a verdict: a pure function of the records.
 
+mod in_use;
+mod limit;
+mod models;
 mod principal;
 mod trusted;
 
@@ -10,6 +13,9 @@ use calibench_random::{Key, Purpose, stream};
 use rand::RngExt;
 
 use super::{Row, measure, outliers};
+pub use in_use::{InUse, StillHolds};
+pub use limit::Predicted;
+pub use models::{MARGIN_PX, Standing};
 pub use principal::{Point, Principal};
 pub use trusted::{ALPHA, HONEST, Trusted};
 
@@ -79,6 +85,8 @@ pub struct Published {
     pub beside: Beside,
     /// The predicted standard deviation of ours, RMS over the frame, px.
     pub predicted: f64,
+    /// The one that the published camera states of itself, RMS over the frame, px.
+    pub stated: Option<f64>,
 }
 
 /// An operator with a model.
@@ -110,6 +118,8 @@ pub struct Cell {
     pub map: Vec<(f64, f64, f64, f64)>,
     /// Standard deviation of a projected point in the centre and in the worst corner, px.
     pub uncertainty: Option<(f64, f64)>,
+    /// What is predicted of its error over the whole frame.
+    pub predicted: Option<Predicted>,
     /// The principal point.
     pub principal: Option<Principal>,
     /// Its camera beside those of models that come after it.
@@ -152,6 +162,8 @@ pub struct Summary {
     pub cells: Vec<Cell>,
     /// Why nothing was judged, if so.
     pub unavailable: Option<Arc<str>>,
+    /// The seed with which photographs are drawn again.
+    pub seed: u64,
 }
 
 impl Summary {
@@ -193,7 +205,7 @@ impl Summary {
         }
         let unavailable = rows.iter().find(|row| row.method.is_empty() && &*row.status == "unavailable").map(|row| row.reason.clone());
         let cells = by_cell(rows).into_iter().map(|rows| cell(&rows, seed)).collect();
-        Self { methods, models, views, missed, common, cells, unavailable }
+        Self { methods, models, views, missed, common, cells, unavailable, seed }
     }
 
     /// The cell of an operator and a model.
@@ -251,11 +263,16 @@ fn cell(rows: &[&Row], seed: u64) -> Cell {
         split: split(rows),
         map: of(measure::MAP).filter_map(|row| place(row)).collect(),
         uncertainty: value(measure::UNCERTAINTY, "centre").zip(value(measure::UNCERTAINTY, "corner")),
+        predicted: of(measure::FRAME).find_map(|row| {
+            let modes = value(measure::FRAME_MODES, "")?;
+            Some(Predicted { formal: row.value?, by_views: row.sigma, modes })
+        }),
         principal: Principal::new(rows),
         beside: of(measure::BESIDE).filter_map(|row| Some((row.place.clone(), beside(rows, row)?))).collect(),
         published: of(measure::PUBLISHED).find_map(|row| {
             let (most, seen) = (value(measure::PUBLISHED_MOST, "")?, value(measure::PUBLISHED_SEEN, ""));
-            Some(Published { beside: Beside { frame: row.value?, most, seen }, predicted: row.sigma? })
+            let stated = value(measure::PUBLISHED_SIGMA, "");
+            Some(Published { beside: Beside { frame: row.value?, most, seen }, predicted: row.sigma?, stated })
         }),
         published_views: by_view(measure::PUBLISHED_VIEW).into_iter().map(|(view, (rms, _))| (view, rms)).collect(),
     }

@@ -36,11 +36,14 @@ fn rows() -> Vec<Row> {
         Row::px(measure::MAP, "nowhere", 0.5).beside(0.25),
         Row::px(measure::UNCERTAINTY, "centre", 0.02),
         Row::px(measure::UNCERTAINTY, "corner", 0.08),
+        Row::px(measure::FRAME, "", 0.11).beside(0.13),
+        Row::plain(measure::FRAME_MODES, "", 1.75),
         Row::px(measure::BESIDE, "b", 0.7).beside(1.5),
         Row::px(measure::BESIDE, "c", 0.9).beside(2.5),
         Row::px(measure::BESIDE_SEEN, "c", 0.6),
         Row::px(measure::BESIDE_SEEN, "b", 0.4),
         Row::px(measure::PUBLISHED, "", 0.8).beside(0.35),
+        Row::px(measure::PUBLISHED_SIGMA, "", 0.15),
         Row::px(measure::PUBLISHED_MOST, "", 1.9),
         Row::px(measure::PUBLISHED_SEEN, "", 0.65),
         Row::px(measure::PUBLISHED_VIEW, "v1", 0.21).of(54),
@@ -62,8 +65,9 @@ fn every_figure_of_a_camera_comes_from_its_rows() {
     close(cell.straight.unwrap().value, 0.05);
     assert_eq!(cell.map, [(10.5, -20.0, 0.5, 0.25)]);
     assert_eq!(cell.uncertainty, Some((0.02, 0.08)));
+    assert_eq!(cell.predicted, Some(Predicted { formal: 0.11, by_views: Some(0.13), modes: 1.75 }));
     assert_eq!(cell.principal, None);
-    let published = Published { beside: Beside { frame: 0.8, most: 1.9, seen: Some(0.65) }, predicted: 0.35 };
+    let published = Published { beside: Beside { frame: 0.8, most: 1.9, seen: Some(0.65) }, predicted: 0.35, stated: Some(0.15) };
     assert_eq!(cell.published, Some(published));
     assert_eq!(cell.published_views, [("v1".into(), 0.21)].into());
 }
