@@ -31,12 +31,12 @@ fn the_page_names_operator_and_model_and_is_the_same_on_any_number_of_threads() 
     let folder = tempfile::tempdir().unwrap();
     let images = board(folder.path());
     assert!(images.len() >= 6, "{images:?}");
-    let more = ["-m", "pixel", "-m", "parametric_corner", "--model", "opencv4:fx,fy,cx,cy", "--model", "opencv4", "--splits", "3"];
+    let more = ["-m", "pixel", "-m", "parametric_corner", "--model", "opencv4:fx,fy,cx,cy", "--model", "opencv4+bent", "--splits", "3"];
     let page = |name: &str, threads: &str| {
         let with: Vec<&str> = more.into_iter().chain(["--report", name, "--threads", threads]).collect();
         let output = judge(folder.path(), &images, &with);
         assert!(output.status.success(), "{}", stderr(&output));
-        assert!(stdout(&output).contains("trust `parametric_corner:window=15` with the model `opencv4`"), "{}", stdout(&output));
+        assert!(stdout(&output).contains("trust `parametric_corner:window=15` with the model `opencv4+bent`"), "{}", stdout(&output));
         let files = crate::project::files(&folder.path().join(name));
         files.into_iter().map(|(path, bytes)| (path.file_name().unwrap().to_owned(), bytes)).collect::<Vec<_>>()
     };
@@ -66,7 +66,7 @@ fn a_calibration_in_use_holds_has_moved_or_cannot_be_told() {
     let text = std::fs::read_to_string(folder.path().join("camera.yaml")).unwrap();
     let output = run(folder.path(), &["camera", "camera.yaml"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    let models = ["--model", "opencv4:fx,fy,cx,cy", "--model", "opencv4", "--splits", "3"];
+    let models = ["--model", "opencv4+bent", "--splits", "3"];
     let ended = |camera: &str, margin: &str| {
         let output = judge(folder.path(), &images, &[&models[..], &["--camera", camera, "--margin", margin, "--report", "page"]].concat());
         let page = std::fs::read_to_string(folder.path().join("page/README.md")).unwrap();

@@ -40,6 +40,19 @@ fn detect_feeds_measure() {
 }
 
 #[test]
+#[cfg_attr(not(webcam), ignore = "the photographs webcam/img0.png to img13.png are absent")]
+fn a_board_among_many_quadrangles_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let photos: Vec<String> = (0..14).map(|i| data().join(format!("webcam/img{i}.png")).to_str().unwrap().to_owned()).collect();
+    let arguments =
+        [&["detect", "--chessboard", "10x10", "-q", "-o", "corners.csv"][..], &photos.iter().map(String::as_str).collect::<Vec<_>>()];
+    let output = run(folder.path(), &arguments.concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let found = std::fs::read_to_string(folder.path().join("corners.csv")).unwrap();
+    assert_eq!(found.lines().count(), 1 + 14 * 100, "{}", stderr(&output));
+}
+
+#[test]
 fn without_photographs_the_scenario_is_unavailable_visibly() {
     let project = copy();
     let empty = tempfile::tempdir().unwrap();

@@ -7,6 +7,7 @@ use calibench_adjust::approximate::{
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye};
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+use rayon::prelude::*;
 
 use super::{CalibrationError, Optics, Settings, Survey, model, prior};
 
@@ -172,7 +173,7 @@ fn from_depth(views: &[&[Control]], size: ImageSize) -> Result<(Camera, String),
 /// The median over the images of the standard deviation of an image coordinate after a resection, px.
 fn misfit(camera: &Camera, views: &[&[Control]]) -> f64 {
     let sigma = |view: &&[Control]| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
-    let mut sigmas: Vec<f64> = views.iter().filter(|view| view.len() >= 4).map(sigma).collect();
+    let mut sigmas: Vec<f64> = views.par_iter().filter(|view| view.len() >= 4).map(sigma).collect();
     sigmas.sort_by(f64::total_cmp);
     sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
@@ -215,18 +216,22 @@ fn orient(
     let mut poses: Vec<Result<Pose, String>> = vec![Err(String::new()); survey.images.len()];
     let mut why = vec![String::new(); known.len()];
     for round in 0..ROUNDS {
-        let mut new = false;
-        for (image, pose) in poses.iter_mut().enumerate().filter(|(_, pose)| pose.is_err()) {
+        let lost: Vec<usize> = (0..poses.len()).filter(|&image| poses[image].is_err()).collect();
+        let pose = |&image: &usize| {
             let found = pose_of(&cameras[image], &some_control_of(survey, &known, image));
-            *pose = found.or_else(|why| observed[image].ok_or(why));
-            new |= pose.is_ok();
-        }
+            found.or_else(|why| observed[image].ok_or(why))
+        };
+        let found: Vec<Result<Pose, String>> = lost.par_iter().map(pose).collect();
+        let new = found.iter().any(Result::is_ok);
+        lost.into_iter().zip(found).for_each(|(image, pose)| poses[image] = pose);
         if round > 0 && !new {
             // Tie points would come out as they are.
             break;
         }
-        for target in (0..known.len()).filter(|&target| survey.control(target).is_none()) {
-            match tie_point(survey, cameras, &poses, target) {
+        let ties: Vec<usize> = (0..known.len()).filter(|&target| survey.control(target).is_none()).collect();
+        let found: Vec<Result<Point3<f64>, String>> = ties.par_iter().map(|&target| tie_point(survey, cameras, &poses, target)).collect();
+        for (target, found) in ties.into_iter().zip(found) {
+            match found {
                 Ok(point) => known[target] = Some(point),
                 Err(reason) => why[target] = reason,
             }

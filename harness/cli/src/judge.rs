@@ -131,11 +131,10 @@ impl Judge {
         in_use.iter().try_for_each(|found| print(&format!("- {}\n", in_words(found))))?;
         print(&verdict(&summary, &trusted))?;
         match in_use.map(|found| found.verdict) {
-            Some(StillHolds::Holds) => Ok(()),
             Some(StillHolds::Moved) => Err(Failure::Gate),
             Some(StillHolds::CannotTell) => Err(Failure::Doubt),
             None if trusted.doubt().is_some() => Err(Failure::Doubt),
-            None => Ok(()),
+            Some(StillHolds::Holds) | None => Ok(()),
         }
     }
 

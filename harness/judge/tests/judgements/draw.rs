@@ -107,7 +107,7 @@ impl Drawn {
             let camera = lens(&mut chance, class.lens, size);
             let board: Vec<Point3<f64>> = (0..BOARD.corners()).map(|corner| lifted(corner, bend)).collect();
             if let Some(seen) = views(&mut chance, &camera, &board, (count, reach), class.fault) {
-                let material = material(&mut chance, size, seen, sigma);
+                let material = material(&mut chance, size, &seen, sigma);
                 return Self { camera, material };
             }
         }
@@ -121,7 +121,7 @@ fn lifted(corner: usize, [a, b, c]: [f64; 3]) -> Point3<f64> {
     Point3::new(column * SIDE, -row * SIDE, a * (1.0 - u * u) + b * (1.0 - v * v) + c * u * v)
 }
 
-fn material(chance: &mut Chance, size: ImageSize, seen: Vec<Vec<PixelPoint>>, sigma: f64) -> Material {
+fn material(chance: &mut Chance, size: ImageSize, seen: &[Vec<PixelPoint>], sigma: f64) -> Material {
     let views: Vec<Arc<str>> = (1..=seen.len()).map(|view| format!("v{view:02}").into()).collect();
     let mut measured = |at: &PixelPoint| Some(PixelPoint::new(at.x + sigma * chance.normal(), at.y + sigma * chance.normal()));
     let at = seen.iter().map(|view| view.iter().map(&mut measured).collect()).collect();

@@ -20,12 +20,13 @@ const LARGEST: f64 = 30.0;
 ///
 /// OpenCV's search has no bound of its own: the time grows with the third power of the quadrangles seen, and the noise of an empty frame of
 /// 12 megapixels holds tens of thousands. So the image is reduced to longer sides of 320 to 1280 px, and a level is searched only if OpenCV's
-/// checkChessboard sees black and white quadrangles of one size and the quadrangles are not too many for the board in question.
+/// checkChessboard sees black and white quadrangles of one size, those that touch are not too many for the board in question, and a budget for the
+/// frame allows it.
 /// Corners are then refined by cornerSubPix in the full image, with a window of half-width at most a third of a square.
 ///
-/// Where that fails, the level is searched once more in black and white, which faint noise does not survive.
+/// Where that fails, all levels are searched once more in black and white, which faint noise does not survive.
 ///
-/// A board whose squares are smaller than about 8 px in a frame reduced to 1280 px is not seen, nor is one among many more quadrangles than its own. The order is OpenCV's: along the rows, from a corner that is ambiguous when the board is symmetric.
+/// A board whose squares are smaller than about 8 px in a frame reduced to 1280 px is not seen, nor is one among many more quadrangles than its own. How much is searched depends on what is counted, never on time. The order is OpenCV's: along the rows, from a corner that is ambiguous when the board is symmetric.
 ///
 /// Source: OpenCV, findChessboardCorners (V. Vezhnevets), checkChessboard, cornerSubPix.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,11 +50,17 @@ impl BoardDetector for ChessboardDetector {
 fn detect(image: &Image, board: Board) -> opencv::Result<Option<Vec<PixelPoint>>> {
     let full = to_8_bit(image)?;
     let longer = longer_side(&full);
+    let mut budget = load::BUDGET;
     let own = (longer <= LEVELS[LEVELS.len() - 1]).then_some(longer);
-    for level in LEVELS.into_iter().filter(|&level| level < longer).chain(own) {
-        let reduced = reduce(&full, level)?;
-        if let Some(corners) = search(&reduced, board)? {
-            return descend(&full, reduced, board, corners.iter().map(pixel).collect()).map(Some);
+    let levels = LEVELS.into_iter().filter(|&level| level < longer).chain(own).map(|level| reduce(&full, level));
+    let levels = levels.collect::<opencv::Result<Vec<Mat>>>()?;
+    for two_greys in [false, true] {
+        for reduced in &levels {
+            let found =
+                if two_greys { search(&black_and_white(reduced)?, board, &mut budget)? } else { search(reduced, board, &mut budget)? };
+            if let Some(corners) = found {
+                return descend(&full, reduced.clone(), board, corners.iter().map(pixel).collect()).map(Some);
+            }
         }
     }
     Ok(None)
@@ -93,19 +100,15 @@ fn reduce(full: &Mat, longer: i32) -> opencv::Result<Mat> {
     Ok(reduced)
 }
 
-/// The corners in the reduced image as it is, or in black and white.
-fn search(reduced: &Mat, board: Board) -> opencv::Result<Option<Vector<Point2f>>> {
-    match search_one(reduced, board)? {
-        Some(corners) => Ok(Some(corners)),
-        None => search_one(&black_and_white(reduced)?, board),
-    }
-}
-
-/// The corners in an image, if it is worth a search and that finds them.
-fn search_one(image: &Mat, board: Board) -> opencv::Result<Option<Vector<Point2f>>> {
+/// The corners in an image, if it is worth a search that the budget allows, and that finds them.
+fn search(image: &Mat, board: Board, budget: &mut usize) -> opencv::Result<Option<Vector<Point2f>>> {
     let size = Size::new(board.columns as i32, board.rows as i32);
-    if !check_chessboard(image, size)? || !load::is_bearable(image, board)? {
+    if !check_chessboard(image, size)? {
         return Ok(None);
+    }
+    match load::cost(image, board)?.and_then(|cost| budget.checked_sub(cost)) {
+        Some(rest) => *budget = rest,
+        None => return Ok(None),
     }
     let mut corners = Vector::<Point2f>::new();
     let found = find_chessboard_corners(image, size, &mut corners, CALIB_CB_ADAPTIVE_THRESH | CALIB_CB_NORMALIZE_IMAGE)?;

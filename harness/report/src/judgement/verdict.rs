@@ -86,6 +86,7 @@ fn ranking(others: &[(&Cell, f64)], best: &str, of: impl Fn(&Cell) -> (&str, Opt
         .collect();
     let mut text = format!("`{best}` has the least RMS.");
     text.push_str(&match alike.len() {
+        0 if worse.is_empty() => String::new(),
         0 => " None of the others is as good.".to_owned(),
         _ => format!(" Not to be told from it: {}.", listed(&alike)),
     });

@@ -36,9 +36,10 @@ impl Trusted<'_> {
     pub fn in_use(&self, margin: f64) -> Option<InUse> {
         let published = self.cell.published?;
         let apart = published.beside.frame;
-        let loss = self.models.iter().find(|standing| standing.cell == self.cell).and_then(|standing| standing.loss);
-        let error =
-            loss.zip(self.cell.predicted).and_then(|(loss, predicted)| predicted.within(SURE, loss.hypot(published.stated.unwrap_or(0.0))));
+        let doubt = self.models.iter().find(|standing| standing.cell == self.cell).and_then(|standing| standing.doubt);
+        let error = doubt
+            .zip(self.cell.predicted)
+            .and_then(|(doubt, predicted)| predicted.within(SURE, doubt.hypot(published.stated.unwrap_or(0.0))));
         let error = error.filter(|_| self.doubt().is_none()).unwrap_or(f64::INFINITY);
         let verdict = match () {
             () if apart + error <= margin => StillHolds::Holds,

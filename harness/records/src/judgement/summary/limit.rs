@@ -18,17 +18,17 @@ pub struct Predicted {
 
 impl Predicted {
     /// The RMS over the frame below which the camera's error is in 95 of 100 cases, px: the quantile of chi-square with as many degrees of freedom as there are
-    /// modes, of the formal variance and of the squared `loss` (px) for want of knowing the right model.
+    /// modes, of the formal variance and of the squared `doubt` (px) for want of knowing the right model.
     ///
     /// Source: the distribution of a sum of squares by its first two moments (Satterthwaite 1946).
-    pub fn limit(&self, loss: f64) -> Option<f64> {
-        self.within(SURE, loss)
+    pub fn limit(&self, doubt: f64) -> Option<f64> {
+        self.within(SURE, doubt)
     }
 
     /// The same for another chance than 95 of 100, 0 to 1.
-    pub(super) fn within(&self, chance: f64, loss: f64) -> Option<f64> {
+    pub(super) fn within(&self, chance: f64, doubt: f64) -> Option<f64> {
         let chi = ChiSquared::new(self.modes).ok()?;
-        Some((self.formal.powi(2) + loss.powi(2)).sqrt() * (chi.inverse_cdf(chance) / self.modes).sqrt())
+        Some((self.formal.powi(2) + doubt.powi(2)).sqrt() * (chi.inverse_cdf(chance) / self.modes).sqrt())
     }
 }
 

@@ -24,6 +24,8 @@ pub struct Standing<'a> {
     pub share: f64,
     /// How far its camera is expected to be from the one that predicts best: RMS over the frame and the draws, px. `None` where cameras cannot be compared.
     pub loss: Option<f64>,
+    /// The same where parameters are not allowed for: how far a richer model might be right, px.
+    pub doubt: Option<f64>,
 }
 
 /// The models of an operator that predict every photograph that any of them predicts, by what is lost with them, and those that do not.
@@ -38,15 +40,18 @@ pub(super) fn standings<'a>(summary: &'a Summary, method: &str, seed: u64) -> (V
     let (compared, left_out): (Vec<&Cell>, Vec<&Cell>) =
         cells.into_iter().partition(|cell| !cell.held_out.is_empty() && cell.held_out.len() == views.len());
     let shares = shares(&compared, seed);
-    let loss = |cell: &Cell| {
+    let loss = |cell: &Cell, of: fn(&Share) -> f64| {
         let apart = |other: &Cell| {
             if other.model == cell.model { Some(0.0) } else { Some(summary.beside(method, [&cell.model, &other.model])?.frame) }
         };
-        let drawn = compared.iter().zip(&shares).filter(|(_, share)| **share > 0.0);
-        drawn.map(|(other, share)| Some(share * apart(other)?.powi(2))).sum::<Option<f64>>().map(f64::sqrt)
+        let drawn = compared.iter().zip(&shares).filter(|(_, share)| of(share) > 0.0);
+        drawn.map(|(other, share)| Some(of(share) * apart(other)?.powi(2))).sum::<Option<f64>>().map(f64::sqrt)
     };
-    let mut found: Vec<Standing<'a>> =
-        compared.iter().zip(&shares).map(|(cell, share)| Standing { cell, share: *share, loss: loss(cell) }).collect();
+    let standing = |(cell, share): (&&'a Cell, &Share)| {
+        let (loss, doubt) = (loss(cell, |share| share.allowed), loss(cell, |share| share.plain));
+        Standing { cell, share: share.allowed, loss, doubt }
+    };
+    let mut found: Vec<Standing<'a>> = compared.iter().zip(&shares).map(standing).collect();
     found.sort_by(|a, b| far(a).total_cmp(&far(b)).then(b.share.total_cmp(&a.share)));
     (found, left_out)
 }
@@ -55,8 +60,17 @@ fn far(standing: &Standing<'_>) -> f64 {
     standing.loss.unwrap_or(f64::INFINITY)
 }
 
+/// How often a camera predicts best, 0 to 1.
+#[derive(Clone, Copy, Debug, Default)]
+struct Share {
+    /// Parameters allowed for.
+    allowed: f64,
+    /// As predicted.
+    plain: f64,
+}
+
 /// How often each of some cameras predicts best.
-fn shares(cells: &[&Cell], seed: u64) -> Vec<f64> {
+fn shares(cells: &[&Cell], seed: u64) -> Vec<Share> {
     let Some(first) = cells.first() else { return Vec::new() };
     let views: Vec<&Arc<str>> = first.held_out.keys().collect();
     let squares = |cell: &Cell| -> Vec<(f64, f64)> {
@@ -73,17 +87,21 @@ fn shares(cells: &[&Cell], seed: u64) -> Vec<f64> {
     };
     let allowances: Vec<f64> = cells.iter().map(|cell| allowance(cell)).collect();
     let mut rng = stream(Key { seed, scenario: "models by views", trial: 0, view: "", target: "" }, Purpose::Split);
-    let mut wins = vec![0_u64; cells.len()];
+    let mut found = vec![Share::default(); cells.len()];
     for _ in 0..DRAWS {
         let drawn: Vec<usize> = (0..views.len()).map(|_| rng.random_range(0..views.len())).collect();
-        let loss = |model: usize| {
+        let mean = |model: usize| {
             let (sum, count) = drawn.iter().map(|&view| squares[model][view]).fold((0.0, 0.0), |(s, n), (square, k)| (s + square, n + k));
-            allowances[model] * sum / count
+            sum / count
         };
-        let best = (0..cells.len()).min_by(|&a, &b| loss(a).total_cmp(&loss(b)).then(cells[a].parameters.cmp(&cells[b].parameters)));
-        best.into_iter().for_each(|best| wins[best] += 1);
+        let means: Vec<f64> = (0..cells.len()).map(mean).collect();
+        let best = |loss: &dyn Fn(usize) -> f64| {
+            (0..cells.len()).min_by(|&a, &b| loss(a).total_cmp(&loss(b)).then(cells[a].parameters.cmp(&cells[b].parameters)))
+        };
+        best(&|model| allowances[model] * means[model]).into_iter().for_each(|best| found[best].allowed += 1.0 / DRAWS as f64);
+        best(&|model| means[model]).into_iter().for_each(|best| found[best].plain += 1.0 / DRAWS as f64);
     }
-    wins.into_iter().map(|wins| wins as f64 / DRAWS as f64).collect()
+    found
 }
 
 /// The model to trust: of those that predict best often enough the one with which least is lost, or a simpler one whose camera is the same within
@@ -130,6 +148,7 @@ mod tests {
         for (own, other) in [(0, 1), (1, 0)] {
             let expected = 0.5 * found[other].share.sqrt();
             assert!((found[own].loss.unwrap() - expected).abs() < 1e-12, "{found:?}");
+            assert_eq!(found[own].doubt, found[own].loss, "of as many parameters nothing is to be allowed for");
         }
         assert!(left_out.is_empty() && &*trusted(&summary, &found).unwrap().cell.model == "b");
     }
@@ -138,9 +157,12 @@ mod tests {
     #[test]
     fn a_parameter_must_pay_for_itself() {
         for (gain, best) in [(1.10_f64, "a"), (1.12, "b")] {
-            let summary = summary(&[model("a", 5, &[0.1, 0.1]), model("b", 9, &[0.1 / gain.sqrt(), 0.1 / gain.sqrt()])]);
+            let a = [model("a", 5, &[0.1, 0.1]), vec![beside("a", "b", 0.5)]].concat();
+            let summary = summary(&[a, model("b", 9, &[0.1 / gain.sqrt(), 0.1 / gain.sqrt()])]);
             let (found, _) = standings(&summary, "m", 7);
-            assert_eq!((&*found[0].cell.model, found[0].share), (best, 1.0), "{gain}");
+            assert!(&*found[0].cell.model == best && (found[0].share - 1.0).abs() < 1e-9, "{gain}: {found:?}");
+            let simple = found.iter().find(|standing| &*standing.cell.model == "a").unwrap();
+            assert!((simple.doubt.unwrap() - 0.5).abs() < 1e-9, "without allowance the richer one is best: {found:?}");
         }
     }
 
@@ -165,7 +187,7 @@ mod tests {
         failed.push(Row::without(measure::HOLDOUT, "v2", "failed", "no pose").by(&"m".into(), &"b".into()));
         let summary = summary(&[model("a", 4, &[0.2, 0.2]), failed]);
         let (found, left_out) = standings(&summary, "m", 7);
-        assert_eq!((found.len(), &*found[0].cell.model, found[0].loss), (1, "a", Some(0.0)));
+        assert_eq!((found.len(), &*found[0].cell.model, found[0].loss, found[0].doubt), (1, "a", Some(0.0), Some(0.0)));
         assert_eq!(left_out.iter().map(|cell| cell.trouble.as_deref()).collect::<Vec<_>>(), [Some("no pose")]);
         let nothing = Summary::new(&[], 7);
         assert!(trusted(&nothing, &standings(&nothing, "m", 7).0).is_none());

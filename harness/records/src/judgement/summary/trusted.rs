@@ -48,7 +48,7 @@ impl Summary {
         let unjudged = with().filter(|cell| cell.holdout.is_none()).collect();
         let (models, left_out) = standings(self, &least.method, self.seed);
         let chosen = trusted(self, &models)?;
-        let limit = chosen.cell.predicted.and_then(|predicted| predicted.limit(chosen.loss?));
+        let limit = chosen.cell.predicted.and_then(|predicted| predicted.limit(chosen.doubt?));
         Some(Trusted { cell: chosen.cell, least, operators, unjudged, models, left_out, limit })
     }
 
