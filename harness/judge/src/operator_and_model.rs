@@ -104,7 +104,7 @@ impl Job<'_> {
         rows
     }
 
-    fn predicted(&self, found: &Calibrated, view: usize, near: &Pose) -> [Row; 4] {
+    fn predicted(&self, found: &Calibrated, view: usize, near: &Pose) -> [Row; 3] {
         let (name, chosen) = (&self.material.views[view], &self.common[view][..]);
         let row = |measure: &str, found: Result<(f64, usize), String>| match found {
             Ok((value, count)) => Row::px(measure, name, value).of(count),
@@ -114,7 +114,6 @@ impl Job<'_> {
         let (material, operator, camera, bend) = (self.material, self.operator, &found.camera, &found.bend);
         let unseen = Unseen { material, operator, view, camera, bend, near };
         [
-            row(measure::UNSEEN, rms(unseen.resected())),
             row(measure::HOLDOUT, rms(unseen.interleaved(chosen))),
             row(measure::ACROSS, rms(unseen.across(chosen))),
             row(measure::STRAIGHT, lines::straightness(material, operator, view, camera, chosen)),

@@ -1,10 +1,12 @@
 //! Which operator and model come out best, and what is said when nothing can.
 
+use calibench_exchange::camera::{NamedCamera, ParameterCovariance};
 use calibench_records::judgement::{measure, write_rows};
 use calibench_records::points::RunInfo;
 
 use super::*;
-use crate::JudgementError;
+use crate::calibrated::calibrate;
+use crate::{JudgementError, stated_sigma};
 
 const POOR: &str = "opencv4:fx,fy,cx,cy";
 
@@ -66,6 +68,22 @@ fn the_true_camera_is_within_the_uncertainty() {
     }
     // A mean of 40 squares; if one mode rules each, its standard deviation is sqrt(2 / 40) = 0.22: 0.8 is 3.6 of them.
     assert!((squares / predicted - 1.0).abs() < 0.8, "{}", squares / predicted);
+}
+
+/// What a file states of a camera is what the adjustment predicted of it.
+#[test]
+fn the_uncertainty_of_a_file_is_the_one_of_its_covariance() {
+    let material = material("stated", 0, 8, &[0.1]);
+    let options = options(&["opencv4"], 1);
+    let found = calibrate(&material, 0, &material.usable(0), &options.models[0].settings(SIZE, None)).unwrap();
+    let names = found.names.iter().map(|name| (*name).to_owned()).collect();
+    let covariance = Some(ParameterCovariance::named(names, &found.covariance).unwrap());
+    let named = NamedCamera { covariance, ..NamedCamera::new("", found.camera) };
+    let (_, summary) = judged(&material, &options);
+    let formal = summary.cells[0].predicted.unwrap().formal;
+    let stated = stated_sigma(&named).unwrap();
+    assert!((stated / formal - 1.0).abs() < 1e-9, "{stated} is not {formal}");
+    assert_eq!(stated_sigma(&NamedCamera { covariance: None, ..named }), None);
 }
 
 #[test]

@@ -10,8 +10,6 @@ pub const PARAMETERS: &str = "parameters";
 pub const RESIDUALS: &str = "residuals";
 /// By view: RMS error of the half of its corners predicted from the other half, the camera calibrated without the view.
 pub const HOLDOUT: &str = "holdout";
-/// By view: RMS residual of all its corners after its resection, the camera calibrated without the view.
-pub const UNSEEN: &str = "unseen";
 /// By view: the same, one side of the board from the other.
 pub const ACROSS: &str = "across";
 /// By view: how far rows and columns are from straight, the camera calibrated without the view.

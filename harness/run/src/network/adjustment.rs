@@ -91,7 +91,7 @@ fn network(job: &Job<'_>, observed: &Observed, method: usize, interior: Interior
 }
 
 /// Control as the scenario tells the adjustment: weighted, or fixed.
-pub(super) fn control_point(job: &Job<'_>, name: &str, at: Point3<f64>) -> ObjectPoint {
+pub(crate) fn control_point(job: &Job<'_>, name: &str, at: Point3<f64>) -> ObjectPoint {
     let sigma = job.calibration.control_sigma;
     if sigma > 0.0 { ObjectPoint::observed(name, at, [sigma; 3]) } else { ObjectPoint::fixed(name, at) }
 }

@@ -12,6 +12,8 @@ use calibench_model::Pose;
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, PointResult};
 
+#[cfg(test)]
+pub(crate) use adjustment::control_point;
 pub use adjustment::{Adjusted, Wanted, adjusted, resections};
 pub use job::Job;
 pub use observe::{ImagePoint, Observed, draw, observe};

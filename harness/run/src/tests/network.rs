@@ -1,12 +1,14 @@
 //! Adjustments within a run: closed forms, and errors that are put in.
 
+use calibench_adjust::ObjectPoint;
 use calibench_model::{PixelPoint, Pose};
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, Figure, Group, PointResult};
+use calibench_scenario::Calibration;
 use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::{EXACT, NAME, scenario, trials, views};
-use crate::network::{Job, Observed, Wanted, adjusted, angles, check, draw, observe, resections};
+use crate::network::{Job, Observed, Wanted, adjusted, angles, check, control_point, draw, observe, resections};
 
 const KEY: Key<'_> = Key { seed: 3, scenario: NAME, trial: 0, view: "", target: "" };
 
@@ -198,6 +200,17 @@ fn what_is_observed_is_what_was_measured_with_the_errors_of_the_scenario() {
         assert!((rms / sigma - 1.0).abs() < 4.0 / (2.0 * n).sqrt(), "{rms} of {n} is not {sigma}");
         assert!((values.iter().sum::<f64>() / n).abs() < 4.0 * sigma / n.sqrt());
     }
+}
+
+#[test]
+fn control_without_a_standard_deviation_is_fixed_and_other_control_is_weighted() {
+    with_job(|job, _| {
+        let at = Point3::new(1.0, 2.0, 3.0);
+        assert_eq!(control_point(job, "a", at), ObjectPoint::observed("a", at, [0.0005; 3]));
+        let calibration = Calibration { control_sigma: 0.0, ..job.calibration.clone() };
+        let job = Job { calibration: &calibration, ..*job };
+        assert_eq!(control_point(&job, "a", at), ObjectPoint::fixed("a", at));
+    });
 }
 
 #[test]

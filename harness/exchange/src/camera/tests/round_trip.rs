@@ -183,6 +183,14 @@ fn every_written_format_is_round_tripped() {
 }
 
 #[test]
+fn the_convention_of_every_format_is_listed() {
+    let listed = |name: &str| calibench_model::camera::conventions().iter().any(|convention| convention.name == name);
+    let of = super::super::FORMATS.iter().filter_map(|format| Some((format.name, format.convention?.name)));
+    let missing: Vec<(&str, &str)> = of.filter(|(_, convention)| !listed(convention)).collect();
+    assert_eq!(missing, [], "`conventions()` of the model's dispatch.rs lacks them");
+}
+
+#[test]
 fn names_that_would_break_a_file_are_escaped() {
     let camera = NamedCamera::new(
         "a\"<&>'\\",
