@@ -8,6 +8,7 @@ use crate::calibrate::WALL;
 use crate::project::{files, program, run, stderr};
 
 fn writers() -> Vec<Writer> {
+    // The board is printed on bent paper: with a flat one the verdict is in doubt.
     let judge = [
         "judge",
         "-q",
@@ -16,11 +17,11 @@ fn writers() -> Vec<Writer> {
         "-m",
         "pixel",
         "-m",
-        "forstner",
+        "parametric_corner",
         "--model",
         "opencv4:fx,fy,cx,cy",
         "--model",
-        "opencv4",
+        "opencv4+bent",
         "--splits",
         "1",
     ];
