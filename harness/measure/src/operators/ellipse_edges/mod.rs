@@ -57,8 +57,8 @@ impl Operator for EllipseEdges {
         let ([left, top], last) = (window.first, window.side as f64 - 1.0);
         let ([x, y], [a, b, c]) = (ellipse.position, ellipse.shape);
         let start = SVector::from([x - left, y - top, a, b, c, VARIANCE, outside, inside - outside]);
-        let rough = search(&mut window, start, ROUGHLY).ok_or(Rejection::NotConverged)?;
-        let found = search(&mut window, rough.x, NEARLY).ok_or(Rejection::NotConverged)?;
+        let rough = search(&mut window, start, ROUGHLY)?;
+        let found = search(&mut window, rough.x, NEARLY)?;
         let (x, y) = (found.x[0], found.x[1]);
         if !(0.0..=last).contains(&x) || !(0.0..=last).contains(&y) {
             return Err(Rejection::LeftWindow);

@@ -1,12 +1,14 @@
 //! Searches edge and ellipse in turn, until the ellipse stands.
 
+use calibench_model::Rejection;
 use nalgebra::SVector;
 
 use super::conic::{self, UNKNOWNS};
 use super::sectors::{Disc, Window};
 use crate::blurred_ellipse::{SHARPEST, is_pictured};
 use crate::ellipse::Ellipse;
-use crate::marquardt::{Normal, STILL, Scaled, Solution, decompose};
+use crate::marquardt::descent::{Damping, Descent, Gone, descend};
+use crate::marquardt::{Normal, STILL, Scaled, Solution};
 
 const BLUR: usize = 5;
 /// In one step the blur's variance changes at most by this factor.
@@ -18,9 +20,7 @@ const BETTER: f64 = 0.97;
 const SEARCHES: usize = 60;
 /// From so many searches on only the position need stand: a small, soft disc hardly tells its size from its blur and contrast.
 const PATIENCE: usize = 6;
-/// Marquardt's damping, when there is some: the least and the most.
-const DAMPING: f64 = 1e-3;
-const STRONGEST: f64 = 1e3;
+const DAMPING: Damping = Damping { first: 0.0, again: 1e-3, least: 5e-4, rest: 0.0, most: 1e3 };
 
 /// Centre, shape, variance of the blur, grey value outside and contrast.
 type Unknowns = SVector<f64, UNKNOWNS>;
@@ -32,40 +32,55 @@ struct Step {
     factor: Scaled<UNKNOWNS>,
 }
 
-/// Steps until one moves the position by less than `short` standard deviations; it is still taken. `None` when that takes too long or comes to a place of no meaning.
+/// Steps until one moves the position by less than `short` standard deviations; it is still taken.
 ///
 /// Which pixels make a sector is decided at the start. A step is damped until what is left to go is less than it was: the residuals
 /// themselves need not become smaller each time, as the ellipse goes through the edge points and not through the grey values.
 ///
 /// Source: Deuflhard 2004, Sect. 3.3 (natural monotonicity test).
-pub(super) fn search(window: &mut Window, start: Unknowns, short: f64) -> Option<Solution<UNKNOWNS>> {
-    let mut x = start;
-    let mut normal = normal(window, &x, true)?;
-    let mut damping = 0.0;
-    let mut step = Step::new(&normal, &x, damping)?;
-    for search in 0..SEARCHES {
-        if step.by[0].hypot(step.by[1]) < STILL || stands(&step, &normal, window.redundancy(), short, search) {
-            return Some(Solution { x: bounded(&x, &(x + step.by)), normal });
-        }
-        let next = bounded(&x, &(x + step.by));
-        let tried = self::normal(window, &next, false);
-        let left = tried.as_ref().map_or(f64::INFINITY, |normal| step.left(normal, &next));
-        match tried {
-            Some(better) if left <= step.square * LESS || better.omega <= normal.omega * BETTER => {
-                (x, normal, damping) = (next, better, if damping > DAMPING { 0.1 * damping } else { 0.0 });
-            }
-            _ if damping > STRONGEST => return None,
-            _ => damping = (10.0 * damping).max(DAMPING),
-        }
-        step = Step::new(&normal, &x, damping)?;
-    }
-    None
+///
+/// # Errors
+/// [`Rejection::NotConverged`] when that takes too long or comes to a place of no meaning.
+pub(super) fn search(window: &mut Window, start: Unknowns, short: f64) -> Result<Solution<UNKNOWNS>, Rejection> {
+    let normal = normal(window, &start, true).ok_or(Rejection::NotConverged)?;
+    descend(&mut Search { window, x: start, normal, short }, &DAMPING, SEARCHES)
 }
 
-/// Whether the step is short against its standard deviation, and that of the position shorter than the `short`th part.
-fn stands(step: &Step, normal: &Normal<UNKNOWNS>, redundancy: f64, short: f64, search: usize) -> bool {
-    let variance = normal.omega / redundancy;
-    (step.square <= variance || search >= PATIENCE) && normal.position_rests(&step.by, short * short * variance)
+struct Search<'a> {
+    window: &'a mut Window,
+    x: Unknowns,
+    normal: Normal<UNKNOWNS>,
+    short: f64,
+}
+
+impl Descent for Search<'_> {
+    type Step = Step;
+    type Found = Solution<UNKNOWNS>;
+
+    fn step(&self, damping: f64) -> Result<Step, Rejection> {
+        let (factor, by, square) = self.normal.step(damping, |i, b| is_pressed(i, b, &self.x))?;
+        Ok(Step { by, square, factor })
+    }
+
+    /// The step is short against its standard deviation, and that of the position shorter than the `short`th part.
+    fn found(&self, step: &Step, _: bool, trial: usize) -> Result<Option<Self::Found>, Rejection> {
+        let variance = self.normal.omega / self.window.redundancy();
+        let stands =
+            || (step.square <= variance || trial >= PATIENCE) && self.normal.position_rests(&step.by, self.short * self.short * variance);
+        let found = || Solution { x: bounded(&self.x, &(self.x + step.by)), normal: self.normal.clone() };
+        Ok((step.by[0].hypot(step.by[1]) < STILL || stands()).then(found))
+    }
+
+    fn go(&mut self, step: Step, _: bool) -> Result<Gone<Self::Found>, Rejection> {
+        let next = bounded(&self.x, &(self.x + step.by));
+        Ok(match normal(self.window, &next, false) {
+            Some(there) if step.left(&there, &next) <= step.square * LESS || there.omega <= self.normal.omega * BETTER => {
+                (self.x, self.normal) = (next, there);
+                Gone::Down
+            }
+            _ => Gone::Up,
+        })
+    }
 }
 
 fn normal(window: &mut Window, x: &Unknowns, part: bool) -> Option<Normal<UNKNOWNS>> {
@@ -88,32 +103,16 @@ fn bounded(from: &Unknowns, to: &Unknowns) -> Unknowns {
     to
 }
 
-/// Whether the blur presses against its bound.
-fn pressed(b: &Unknowns, x: &Unknowns) -> bool {
-    x[BLUR] <= SHARPEST && b[BLUR] <= 0.0
+/// Whether an unknown is the blur and presses against its bound.
+fn is_pressed(unknown: usize, b: f64, x: &Unknowns) -> bool {
+    unknown == BLUR && x[BLUR] <= SHARPEST && b <= 0.0
 }
 
 impl Step {
-    fn new(normal: &Normal<UNKNOWNS>, x: &Unknowns, damping: f64) -> Option<Self> {
-        let (mut n, mut b) = (normal.n, normal.b);
-        for i in 0..UNKNOWNS {
-            n[(i, i)] *= 1.0 + damping;
-        }
-        if pressed(&b, x) {
-            n.row_mut(BLUR).fill(0.0);
-            n.column_mut(BLUR).fill(0.0);
-            (n[(BLUR, BLUR)], b[BLUR]) = (1.0, 0.0);
-        }
-        let factor = decompose(&n)?;
-        let by = factor.solve(&b);
-        let square = by.dot(&b);
-        square.is_finite().then_some(Self { by, square, factor })
-    }
-
     /// The squared length of the same way's next step, from `x`.
     fn left(&self, normal: &Normal<UNKNOWNS>, x: &Unknowns) -> f64 {
         let mut b = normal.b;
-        if pressed(&b, x) {
+        if is_pressed(BLUR, b[BLUR], x) {
             b[BLUR] = 0.0;
         }
         self.factor.solve(&b).dot(&b)

@@ -7,6 +7,7 @@ use super::mask::{Mask, Rule};
 use super::planes::{BLUR, COVERAGE, Derivatives, GROUND, Planes, Pose, UNKNOWNS};
 use super::profile::Profile;
 use crate::cholesky::{self, Factor};
+use crate::marquardt::descent::{Damping, Descent, Gone, descend};
 
 /// The blur that is sought, px.
 const BLURS: (f64, f64) = (0.15, 5.0);
@@ -16,8 +17,7 @@ const SHAPE: f64 = 3.0;
 /// By what share a sum of squares may be off: that of a coarse drawing, and that of single precision.
 const COARSE: f64 = 1e-2;
 const EXACT: f64 = 1e-6;
-/// Damping from which a step tells nothing of convergence, and at which there is no way down.
-const DAMPED: (f64, f64) = (1e-3, 1e6);
+const DAMPING: Damping = Damping { first: 0.0, again: 1e-2, least: 5e-4, rest: 0.0, most: 1e5 };
 
 /// All parameters. Positions count from the window's first pixel.
 #[derive(Clone, Copy, Debug)]
@@ -95,33 +95,13 @@ impl Work {
     /// [`Rejection::NoCorner`] for a window in which the parameters cannot be told apart, [`Rejection::LeftWindow`], [`Rejection::NotConverged`].
     pub(super) fn fit(&mut self, mask: &Mask, start: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
         let all = if limits.blur { Derivatives::PoseAndBlur } else { Derivatives::Pose };
-        let mut now = start;
+        let mut at = start;
         // The first drawing only leads to the next: no result comes of it.
-        self.draw(mask, &now, (all, Rule::Coarse));
-        (now.ground, now.contrast) = self.planes.levels().ok_or(Rejection::NoCorner)?;
-        let mut omega = self.planes.compare(now.ground, now.contrast);
-        let mut system = self.system(mask, &now, limits.blur)?;
-        let (mut damping, mut slack) = (0.0, COARSE);
-        for _ in 0..limits.iterations {
-            let step = system.step(damping).ok_or(Rejection::NoCorner)?;
-            let next = now.moved(&step).ok_or(Rejection::NotConverged)?;
-            if slack < COARSE && damping <= DAMPED.0 && step.is_small(mask, limits.epsilon) {
-                return self.conclude(next, &system, omega);
-            }
-            self.draw(mask, &next, (all, Rule::Exact));
-            let there = self.planes.compare(next.ground, next.contrast);
-            if there.is_finite() && there <= omega * (1.0 + slack) {
-                (now, omega, slack) = (next, there, EXACT);
-                damping = if damping <= DAMPED.0 { 0.0 } else { damping / 10.0 };
-                system = self.system(mask, &now, limits.blur)?;
-            } else {
-                damping = if damping == 0.0 { 1e-2 } else { damping * 10.0 };
-                if damping > DAMPED.1 {
-                    return Err(Rejection::NotConverged);
-                }
-            }
-        }
-        Err(Rejection::NotConverged)
+        self.draw(mask, &at, (all, Rule::Coarse));
+        (at.ground, at.contrast) = self.planes.levels().ok_or(Rejection::NoCorner)?;
+        let omega = self.planes.compare(at.ground, at.contrast);
+        let system = self.system(mask, &at, limits.blur)?;
+        descend(&mut Fit { work: self, mask, limits, at, omega, slack: COARSE, system }, &DAMPING, limits.iterations)
     }
 
     fn conclude(&self, parameters: Parameters, system: &System, omega: f64) -> Result<Fitted, Rejection> {
@@ -131,6 +111,51 @@ impl Work {
         }
         let variance = omega / (self.planes.count() - system.columns.count) as f64;
         Ok(Fitted { parameters, covariance: system.covariance(variance) })
+    }
+}
+
+/// A fit on its way.
+struct Fit<'a> {
+    work: &'a mut Work,
+    mask: &'a Mask,
+    limits: Limits,
+    at: Parameters,
+    omega: f64,
+    /// By what share `omega` may be off.
+    slack: f64,
+    system: System,
+}
+
+impl Descent for Fit<'_> {
+    type Step = Step;
+    type Found = Fitted;
+
+    #[inline(always)]
+    fn step(&self, damping: f64) -> Result<Step, Rejection> {
+        self.system.step(damping).ok_or(Rejection::NoCorner)
+    }
+
+    #[inline(always)]
+    fn found(&self, step: &Step, weak: bool, _: usize) -> Result<Option<Fitted>, Rejection> {
+        if self.slack == COARSE || !weak || !step.is_small(self.mask, self.limits.epsilon) {
+            return Ok(None);
+        }
+        let last = self.at.moved(step).ok_or(Rejection::NotConverged)?;
+        self.work.conclude(last, &self.system, self.omega).map(Some)
+    }
+
+    #[inline(always)]
+    fn go(&mut self, step: Step, _: bool) -> Result<Gone<Fitted>, Rejection> {
+        let next = self.at.moved(&step).ok_or(Rejection::NotConverged)?;
+        let all = if self.limits.blur { Derivatives::PoseAndBlur } else { Derivatives::Pose };
+        self.work.draw(self.mask, &next, (all, Rule::Exact));
+        let omega = self.work.planes.compare(next.ground, next.contrast);
+        if !(omega.is_finite() && omega <= self.omega * (1.0 + self.slack)) {
+            return Ok(Gone::Up);
+        }
+        (self.at, self.omega, self.slack) = (next, omega, EXACT);
+        self.system = self.work.system(self.mask, &next, self.limits.blur)?;
+        Ok(Gone::Down)
     }
 }
 

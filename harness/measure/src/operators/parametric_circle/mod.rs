@@ -66,7 +66,7 @@ impl Operator for ParametricCircle {
         let mut disc = Disc::new(image, centre, half)?;
         let (at, [a, b, c]) = (disc.in_window(ellipse.position), ellipse.shape);
         let start = SVector::from([at[0], at[1], a, b, c, VARIANCE, outside, inside - outside]);
-        let found = minimise(&mut disc, start, NEARLY).ok_or(Rejection::NotConverged)?;
+        let found = minimise(&mut disc, start, NEARLY)?;
         let side = disc.planes.side as f64 - 1.0;
         if !(0.0..=side).contains(&found.x[0]) || !(0.0..=side).contains(&found.x[1]) {
             return Err(Rejection::LeftWindow);

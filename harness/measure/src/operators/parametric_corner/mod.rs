@@ -145,11 +145,11 @@ impl ParametricCorner {
             }
             window.centre_on((centre[0], centre[1]));
             (x[0], x[1]) = (at[0] - centre[0] as f64, at[1] - centre[1] as f64);
-            x = minimise(&mut window, x, ROUGHLY).ok_or(Rejection::NotConverged)?.x;
+            x = minimise(&mut window, x, ROUGHLY)?.x;
             let off = |x: &SVector<f64, P>| x[0].abs().max(x[1].abs());
             let mut normal = None;
             if off(&x) <= follow {
-                let found = refined(&mut window, x).ok_or(Rejection::NotConverged)?;
+                let found = refined(&mut window, x)?;
                 (x, normal) = (found.x, Some(found.normal));
             }
             if off(&x) > half as f64 {
@@ -169,10 +169,10 @@ impl ParametricCorner {
 fn refined<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     window: &mut Window<'_, P, GRADIENT, CURVED>,
     mut x: SVector<f64, P>,
-) -> Option<Solution<P>> {
+) -> Result<Solution<P>, Rejection> {
     let redundancy = window.redundancy();
     for correction in 0..CORRECTIONS {
-        window.correct(&x)?;
+        window.correct(&x).ok_or(Rejection::NotConverged)?;
         let found = minimise(window, x, NEARLY)?;
         let moved = found.x - x;
         x = found.x;
@@ -180,10 +180,10 @@ fn refined<const P: usize, const GRADIENT: u8, const CURVED: bool>(
         let short = SETTLED * SETTLED * found.normal.omega / redundancy;
         let rests = || correction >= FEW && found.normal.position_rests(&moved, short);
         if square <= short || moved[0].hypot(moved[1]) < STANDS || rests() {
-            return Some(found);
+            return Ok(found);
         }
     }
-    None
+    Err(Rejection::NotConverged)
 }
 
 impl Operator for ParametricCorner {

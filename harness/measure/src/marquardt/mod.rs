@@ -1,6 +1,9 @@
 //! Least squares for a handful of unknowns: Gauss-Newton, with Marquardt's damping while it is needed.
 
-use calibench_model::Covariance;
+pub(crate) mod descent;
+
+use calibench_model::{Covariance, Rejection};
+use descent::{Damping, Descent, Gone, descend};
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
 use crate::lanes::{LANES, Lanes};
@@ -43,59 +46,59 @@ pub(crate) const STILL: f64 = 1e-9;
 const EVALUATIONS: usize = 60;
 /// From so many evaluations on it is enough that the position stands, for where a target hardly tells its size from its blur and contrast.
 const PATIENCE: usize = 10;
-const DAMPING: f64 = 1e-3;
+const DAMPING: Damping = Damping { first: 1e-3, again: 1e-3, least: 1e-9, rest: 1e-9, most: 1e8 };
 
-/// Minimises, until a step is shorter than `short` standard deviations; it is still taken. `None` when that takes too long or comes to a place of no meaning.
-pub(crate) fn minimise<const P: usize>(problem: &mut impl Problem<P>, start: SVector<f64, P>, short: f64) -> Option<Solution<P>> {
-    let mut x = start;
-    let mut normal = problem.normal(&x)?;
-    let mut damping = DAMPING;
-    for evaluation in 0..EVALUATIONS {
-        let (step, decrement) = step(problem, &normal, &x, damping)?;
-        let variance = normal.omega / problem.redundancy();
-        let next = bounded(problem, &(x + step));
-        let stands = || {
-            let short = short * short * variance;
-            let rests = || step[0].hypot(step[1]) < STILL || evaluation >= PATIENCE && normal.position_rests(&step, short);
-            decrement <= short || rests()
-        };
-        if damping <= DAMPING && stands() {
-            return Some(Solution { x: next, normal });
-        }
-        match problem.normal(&next) {
-            Some(better) if better.omega <= normal.omega => {
-                (x, normal) = (next, better);
-                damping = (damping * 0.1).max(1e-9);
-            }
-            // The residuals differ by rounding only: there is nothing left to gain.
-            Some(same) if damping <= DAMPING && same.omega <= problem.same(normal.omega) => return Some(Solution { x, normal }),
-            _ if damping > 1e8 => return None,
-            _ => damping = (damping * 10.0).max(DAMPING),
-        }
-    }
-    None
+/// Minimises, until a step is shorter than `short` standard deviations; it is still taken.
+///
+/// # Errors
+/// [`Rejection::NotConverged`] when that takes too long or comes to a place of no meaning.
+pub(crate) fn minimise<const P: usize>(
+    problem: &mut impl Problem<P>,
+    start: SVector<f64, P>,
+    short: f64,
+) -> Result<Solution<P>, Rejection> {
+    let normal = problem.normal(&start).ok_or(Rejection::NotConverged)?;
+    descend(&mut Minimisation { problem, x: start, normal, short }, &DAMPING, EVALUATIONS)
 }
 
-/// The step and how much it is to gain. Unknowns that press against their bound stay there.
-fn step<const P: usize>(
-    problem: &impl Problem<P>,
-    normal: &Normal<P>,
-    x: &SVector<f64, P>,
-    damping: f64,
-) -> Option<(SVector<f64, P>, f64)> {
-    let (mut n, mut b) = (normal.n, normal.b);
-    for i in 0..P {
-        n[(i, i)] *= 1.0 + damping;
-        if x[i] <= problem.lowest(i) && b[i] <= 0.0 {
-            n.row_mut(i).fill(0.0);
-            n.column_mut(i).fill(0.0);
-            n[(i, i)] = 1.0;
-            b[i] = 0.0;
-        }
+struct Minimisation<'a, const P: usize, Q> {
+    problem: &'a mut Q,
+    x: SVector<f64, P>,
+    normal: Normal<P>,
+    short: f64,
+}
+
+impl<const P: usize, Q: Problem<P>> Descent for Minimisation<'_, P, Q> {
+    /// The step and how much it is to gain.
+    type Step = (SVector<f64, P>, f64);
+    type Found = Solution<P>;
+
+    /// Unknowns that press against their bound stay there.
+    fn step(&self, damping: f64) -> Result<Self::Step, Rejection> {
+        let x = &self.x;
+        self.normal.step(damping, |i, b| x[i] <= self.problem.lowest(i) && b <= 0.0).map(|(_, step, gain)| (step, gain))
     }
-    let step = decompose(&n)?.solve(&b);
-    let decrement = step.dot(&b);
-    decrement.is_finite().then_some((step, decrement))
+
+    fn found(&self, (step, gain): &Self::Step, weak: bool, trial: usize) -> Result<Option<Solution<P>>, Rejection> {
+        let short = self.short * self.short * self.normal.omega / self.problem.redundancy();
+        let rests = || step[0].hypot(step[1]) < STILL || trial >= PATIENCE && self.normal.position_rests(step, short);
+        let found = || Solution { x: bounded(self.problem, &(self.x + step)), normal: self.normal.clone() };
+        Ok((weak && (*gain <= short || rests())).then(found))
+    }
+
+    fn go(&mut self, (step, _): Self::Step, weak: bool) -> Result<Gone<Solution<P>>, Rejection> {
+        let next = bounded(self.problem, &(self.x + step));
+        Ok(match self.problem.normal(&next) {
+            Some(better) if better.omega <= self.normal.omega => {
+                (self.x, self.normal) = (next, better);
+                Gone::Down
+            }
+            Some(same) if weak && same.omega <= self.problem.same(self.normal.omega) => {
+                Gone::Level(Solution { x: self.x, normal: self.normal.clone() })
+            }
+            _ => Gone::Up,
+        })
+    }
 }
 
 fn bounded<const P: usize>(problem: &impl Problem<P>, x: &SVector<f64, P>) -> SVector<f64, P> {
@@ -126,6 +129,26 @@ impl<const P: usize> Scaled<P> {
 }
 
 impl<const P: usize> Normal<P> {
+    /// The factor of the damped normal matrix, the step and its squared length; unknowns that are `held`, by number and right-hand side, stay.
+    ///
+    /// # Errors
+    /// [`Rejection::NotConverged`] where the matrix is singular.
+    pub(crate) fn step(&self, damping: f64, held: impl Fn(usize, f64) -> bool) -> Result<(Scaled<P>, SVector<f64, P>, f64), Rejection> {
+        let (mut n, mut b) = (self.n, self.b);
+        for i in 0..P {
+            n[(i, i)] *= 1.0 + damping;
+            if held(i, b[i]) {
+                n.row_mut(i).fill(0.0);
+                n.column_mut(i).fill(0.0);
+                (n[(i, i)], b[i]) = (1.0, 0.0);
+            }
+        }
+        let factor = decompose(&n).ok_or(Rejection::NotConverged)?;
+        let step = factor.solve(&b);
+        let square = step.dot(&b);
+        if square.is_finite() { Ok((factor, step, square)) } else { Err(Rejection::NotConverged) }
+    }
+
     /// Whether the step of the position is short against its standard deviation; `square` is the squared fraction times the variance of unit weight.
     pub(crate) fn position_rests(&self, step: &SVector<f64, P>, square: f64) -> bool {
         self.cofactors().is_some_and(|q| step[0].powi(2) + step[1].powi(2) <= square * (q[(0, 0)] + q[(1, 1)]))
