@@ -8,7 +8,7 @@
 //! From a solution: [`Solution::covariances`] (blocks by selected inversion), [`Solution::full_covariance`], [`Solution::residuals`],
 //! [`Solution::reliability`] (redundancy numbers, normalised residuals, minimal detectable biases), [`Solution::significance`] of parameters,
 //! [`Solution::in_datum`] (S-transformation), [`Solution::projection_uncertainty`], [`frame_uncertainty`]; [`compare`] tells two sets of parameters apart,
-//! [`snoop`] looks for blunders.
+//! [`snoop`] looks for blunders, [`adjust_robustly`] holds them back.
 
 pub mod approximate;
 mod counts;
@@ -29,6 +29,7 @@ pub use network::{
 };
 pub use quality::{
     Comparison, Correlation, Covariances, Defect, Direction, Distance, Found, Held, ObservedReliability, PointReliability, Reason,
-    Reliability, Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, compare, frame_uncertainty, snoop,
+    Reliability, Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, scale_of,
+    snoop,
 };
 pub use solution::{Options, Solution, adjust};

@@ -1,6 +1,8 @@
 //! The adjustment of a network, and its quality.
 
-use calibench_adjust::{Covariances, Found, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust, snoop};
+use calibench_adjust::{
+    Covariances, Found, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust, adjust_robustly, snoop,
+};
 use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
@@ -17,6 +19,8 @@ pub struct Calibration<'n> {
     pub solution: Solution<'n>,
     /// Image points that were rejected, if they were looked for.
     pub found: Vec<Found>,
+    /// Bound of Huber's weights, in a-priori standard deviations of an image point, if there was one: that of the settings, times what residuals show.
+    pub huber: Option<f64>,
     /// Covariances, with the estimated variance factor where there is redundancy.
     pub covariances: Covariances,
     /// Redundancy numbers and tests of the image points; `None` if the test cannot be made for want of redundancy.
@@ -35,17 +39,36 @@ impl Prepared {
     /// # Errors
     /// What the network does not determine, by name; what else [`adjust`] refuses.
     pub fn adjust(&self) -> Result<Calibration<'_>, CalibrationError> {
-        let options = Options { huber: self.settings.huber, most_iterations: ITERATIONS, ..Options::default() };
+        let options = Options { most_iterations: ITERATIONS, ..Options::default() };
         let test = Test { variance: self.settings.tested(), ..Test::default() };
-        let (solution, found) = if self.settings.snoop {
-            snoop(&self.network, &options, Snooping { test, ..Snooping::default() })?
-        } else {
-            (adjust(&self.network, &options)?, Vec::new())
+        let (mut found, mut huber) = (Vec::new(), None);
+        let solution = match self.settings.huber {
+            Some(bound) => {
+                let (solution, scaled) = adjust_robustly(&self.network, &options, bound)?;
+                huber = Some(scaled);
+                solution
+            }
+            None if self.settings.snoop => {
+                let (solution, rejected) = snoop(&self.network, &options, Snooping { test, ..Snooping::default() })?;
+                found = rejected;
+                solution
+            }
+            None => adjust(&self.network, &options)?,
         };
         let checked = solution.counts().redundancy() > 0;
         let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
         let reliability = if checked { Some(solution.reliability(test)?) } else { None };
-        Ok(Calibration { prepared: self, solution, found, covariances, reliability, compared: None, resampled: None, checked: Vec::new() })
+        Ok(Calibration {
+            prepared: self,
+            solution,
+            found,
+            huber,
+            covariances,
+            reliability,
+            compared: None,
+            resampled: None,
+            checked: Vec::new(),
+        })
     }
 }
 
@@ -117,6 +140,6 @@ impl Calibration<'_> {
     /// How it was adjusted, without what was rejected.
     pub(crate) fn options(&self) -> Options {
         let left_out = self.found.iter().filter(|found| found.left_out).map(|found| found.observation).collect();
-        Options { huber: self.prepared.settings.huber, most_iterations: ITERATIONS, left_out }
+        Options { huber: self.huber, most_iterations: ITERATIONS, left_out }
     }
 }

@@ -5,7 +5,7 @@ use calibench_model::camera::CameraModel;
 use rayon::prelude::*;
 
 /// Groups of images at most: a standard deviation from so many is known to a sixth.
-const GROUPS: usize = 20;
+pub(crate) const GROUPS: usize = 20;
 /// Images at least.
 const LEAST: usize = 6;
 /// Image points up to which all is adjusted so many times again.
@@ -46,13 +46,21 @@ impl Resampled {
         let groups = images.min(GROUPS);
         let found = (0..groups).into_par_iter().map(|group| without(network, options, names, (group, groups))).collect::<Option<Vec<_>>>();
         let found = found.ok_or("without some of the images the camera is not determined")?;
-        let sigma = |k: usize| {
-            let mean = found.iter().map(|values| values[k]).sum::<f64>() / groups as f64;
-            let squares: f64 = found.iter().map(|values| (values[k] - mean).powi(2)).sum();
-            (squares * (groups as f64 - 1.0) / groups as f64).sqrt()
-        };
-        Ok(Self { groups, sigmas: (0..names.len()).map(sigma).collect() })
+        Ok(Self { groups, sigmas: jackknife(&found) })
     }
+}
+
+/// Standard deviations of estimates from what they are when one group after the other is left out.
+///
+/// Source: Efron & Tibshirani 1993, chapter 11.
+pub(crate) fn jackknife(without: &[Vec<f64>]) -> Vec<f64> {
+    let groups = without.len() as f64;
+    let sigma = |k: usize| {
+        let mean = without.iter().map(|values| values[k]).sum::<f64>() / groups;
+        let squares: f64 = without.iter().map(|values| (values[k] - mean).powi(2)).sum();
+        (squares * (groups - 1.0) / groups).sqrt()
+    };
+    (0..without.first().map_or(0, Vec::len)).map(sigma).collect()
 }
 
 /// The unknown parameters without one of `groups` of images; `None` if they are not determined.
@@ -85,4 +93,21 @@ fn part(whole: &Network, left_out: &[usize], keeps: impl Fn(usize) -> bool) -> (
     }
     let (cameras, points) = (whole.cameras.clone(), whole.points.clone());
     (Network { cameras, images, points, observations, datum: whole.datum.clone(), surfaces: whole.surfaces.clone() }, left_out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a mean it is what a sample says of its mean: `s / sqrt(n)`.
+    #[test]
+    fn the_jackknife_of_a_mean_is_its_standard_deviation() {
+        let sample = [1.0, 2.0, 4.0, 7.0, 11.0];
+        let sum: f64 = sample.iter().sum();
+        let without: Vec<Vec<f64>> = sample.iter().map(|left_out| vec![(sum - left_out) / 4.0, 3.0]).collect();
+        let sigmas = jackknife(&without);
+        let squares: f64 = sample.iter().map(|value| (value - sum / 5.0).powi(2)).sum();
+        assert!((sigmas[0] - (squares / 4.0 / 5.0).sqrt()).abs() < 1e-12, "{sigmas:?}");
+        assert_eq!(sigmas[1], 0.0);
+    }
 }

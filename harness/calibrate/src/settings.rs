@@ -14,7 +14,7 @@ pub struct Settings {
     pub datum: DatumChoice,
     /// What is asked of the shape of a planar testfield.
     pub shape: BoardShape,
-    /// Bound of Huber's weights, in standard deviations.
+    /// Bound of Huber's weights, in standard deviations of an image point as the residuals show them.
     pub huber: Option<f64>,
     /// Whether what Baarda's test rejects is left out.
     pub snoop: bool,
@@ -28,6 +28,9 @@ pub struct Settings {
 
 /// The a-priori standard deviation of an image coordinate where none is given, px.
 pub const USUAL_SIGMA: f64 = 0.1;
+
+/// Huber's bound of start values where image points are left out later.
+const SNOOPED: f64 = 2.0;
 
 impl Settings {
     /// The usual ones for some cameras, at least one.
@@ -47,6 +50,11 @@ impl Settings {
     /// The a-priori standard deviation of an image coordinate, px.
     pub fn sigma(&self) -> f64 {
         self.sigma_px.unwrap_or(USUAL_SIGMA)
+    }
+
+    /// Bound of Huber's weights on the way to start values, in a-priori standard deviations: where gross errors are looked for they must not lead it astray.
+    pub(crate) fn start_huber(&self) -> Option<f64> {
+        self.huber.or(self.snoop.then_some(SNOOPED))
     }
 
     /// Whose variance factor tests and standard deviations take: the a-priori one means something only if the user stated it.

@@ -66,7 +66,7 @@ pub(super) fn orient_all(
     let observed: Vec<Option<Pose>> =
         survey.images.iter().map(|image| prior::station(&settings.stations, image).map(|row| row.station.pose)).collect();
     let of_image: Vec<Camera> = owners.iter().map(|&owner| cameras[owner]).collect();
-    let (poses, points) = orient(survey, &of_image, known, &observed)?;
+    let (poses, points) = orient(survey, &of_image, known, &observed, pose_finder(settings))?;
     Ok(Starts { cameras, origins, poses, points })
 }
 
@@ -204,6 +204,19 @@ pub fn pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, String> {
     found.map(|found| found.pose).map_err(|error| error.to_string())
 }
 
+/// As [`pose_of`], against gross errors in the first place.
+pub(super) fn robust_pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, String> {
+    let against = Search { seed: 1, tolerance: Tolerance::Unknown };
+    resect(camera, control, Some(&against)).map(|found| found.pose).or_else(|_| pose_of(camera, control))
+}
+
+/// How poses are found: where gross errors are looked for, against them in the first place.
+pub(super) fn pose_finder(settings: &Settings) -> PoseFinder {
+    if settings.start_huber().is_some() { robust_pose_of } else { pose_of }
+}
+
+pub(super) type PoseFinder = fn(&Camera, &[Control]) -> Result<Pose, String>;
+
 type Points = Vec<Result<Point3<f64>, String>>;
 
 /// Poses from known points, or else as observed, and tie points from oriented images, in turn.
@@ -212,13 +225,14 @@ fn orient(
     cameras: &[Camera],
     mut known: Vec<Option<Point3<f64>>>,
     observed: &[Option<Pose>],
+    finder: PoseFinder,
 ) -> Result<(Vec<Pose>, Points), CalibrationError> {
     let mut poses: Vec<Result<Pose, String>> = vec![Err(String::new()); survey.images.len()];
     let mut why = vec![String::new(); known.len()];
     for round in 0..ROUNDS {
         let lost: Vec<usize> = (0..poses.len()).filter(|&image| poses[image].is_err()).collect();
         let pose = |&image: &usize| {
-            let found = pose_of(&cameras[image], &some_control_of(survey, &known, image));
+            let found = finder(&cameras[image], &some_control_of(survey, &known, image));
             found.or_else(|why| observed[image].ok_or(why))
         };
         let found: Vec<Result<Pose, String>> = lost.par_iter().map(pose).collect();

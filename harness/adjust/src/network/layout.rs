@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use calibench_model::camera::CameraModel;
 
-use super::{Attitude, Centre, Network, NetworkError, Precision, Status, Triples};
+use super::{Attitude, Centre, Network, NetworkError, Status, Triples};
 use crate::counts::Counts;
 
 /// An image point, ready for the loops.
@@ -193,25 +193,12 @@ fn sights(network: &Network, left_out: &[usize]) -> Vec<Sight> {
         .filter(|(given, _)| takes_part[*given])
         .map(|(given, o)| {
             let at = [o.position.x, o.position.y];
-            Sight { image: o.image as u32, point: o.point as u32, given: given as u32, pair: u32::MAX, at, whiten: whiten(o.precision) }
+            Sight { image: o.image as u32, point: o.point as u32, given: given as u32, pair: u32::MAX, at, whiten: o.precision.whitening() }
         })
         .collect();
     // A point is measured once in an image: the order is the same, stable or not.
     sights.sort_unstable_by_key(|sight| (sight.image, sight.point));
     sights
-}
-
-/// The inverse of the covariance's Cholesky factor.
-fn whiten(precision: Precision) -> [f64; 3] {
-    match precision {
-        Precision::Sigma(sigma) => [1.0 / sigma, 0.0, 1.0 / sigma],
-        Precision::Covariance(c) => {
-            let first = c.sxx.sqrt();
-            let lean = c.sxy / first;
-            let second = (c.syy - lean * lean).sqrt();
-            [1.0 / first, -lean / (first * second), 1.0 / second]
-        }
-    }
 }
 
 /// Ranges of equal keys, of sorted keys below `count`.

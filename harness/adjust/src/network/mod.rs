@@ -94,6 +94,27 @@ pub enum Precision {
     Covariance(Covariance),
 }
 
+impl Precision {
+    /// A residual (x, y), px, made white: two numbers of variance 1.
+    pub fn whitened(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [a, b, c] = self.whitening();
+        [a * x, b * x + c * y]
+    }
+
+    /// The inverse of the covariance's Cholesky factor, row by row, 1/px.
+    pub(crate) fn whitening(self) -> [f64; 3] {
+        match self {
+            Self::Sigma(sigma) => [1.0 / sigma, 0.0, 1.0 / sigma],
+            Self::Covariance(c) => {
+                let first = c.sxx.sqrt();
+                let lean = c.sxy / first;
+                let second = (c.syy - lean * lean).sqrt();
+                [1.0 / first, -lean / (first * second), 1.0 / second]
+            }
+        }
+    }
+}
+
 /// What fixes origin, axes and scale of the object's frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Datum {

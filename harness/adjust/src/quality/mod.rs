@@ -10,6 +10,7 @@ mod names;
 mod projection_uncertainty;
 mod reliability;
 mod residuals;
+mod robust;
 mod significance;
 mod snooping;
 
@@ -21,5 +22,6 @@ pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty};
 pub use projection_uncertainty::Held;
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
 pub use residuals::{Residual, Use};
+pub use robust::{adjust_robustly, scale_of};
 pub use significance::{Comparison, Significance, compare};
 pub use snooping::{Found, Snooping, snoop};

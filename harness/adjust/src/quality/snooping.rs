@@ -1,6 +1,7 @@
 //! Data snooping: one suspect after the other.
 
 use super::reliability::Test;
+use super::robust::without_gross;
 use crate::AdjustError;
 use crate::network::Network;
 use crate::solution::{Options, Solution, adjust_from};
@@ -11,7 +12,7 @@ use crate::state::State;
 pub struct Snooping {
     /// The test.
     pub test: Test,
-    /// Image points that may be left out at most.
+    /// Image points that may be left out one after the other, at most.
     pub most: usize,
 }
 
@@ -26,7 +27,7 @@ impl Default for Snooping {
 pub struct Found {
     /// Its index among the observations given.
     pub observation: usize,
-    /// The normalised residual for which it was rejected, the larger of x and y in absolute value: a number.
+    /// The normalised residual for which it was rejected, the larger of x and y in absolute value, or its length where it was left out with others: a number.
     pub w: f64,
     /// What it had to exceed, a number.
     pub critical: f64,
@@ -36,6 +37,9 @@ pub struct Found {
 
 /// Adjusts, leaves out the image point with the largest normalised residual beyond the critical value, adjusts again, until none is left.
 ///
+/// Where more than a hundredth of the image points are gross they hide one another: then all of them that a robust adjustment shows are left out
+/// first, together.
+///
 /// Returns the last solution and every image point that was rejected, in that order; none disappears: [`Solution::residuals`] lists them as left out.
 ///
 /// # Errors
@@ -44,8 +48,12 @@ pub struct Found {
 /// Source: Baarda 1968.
 pub fn snoop<'n>(network: &'n Network, options: &Options, snooping: Snooping) -> Result<(Solution<'n>, Vec<Found>), AdjustError> {
     let mut options = options.clone();
-    let mut solution = adjust_from(network, &options, State::of(network))?;
-    let mut found: Vec<Found> = Vec::new();
+    let (mut solution, mut found) = match without_gross(network, &options)? {
+        Some(found) => found,
+        None => (adjust_from(network, &options, State::of(network))?, Vec::new()),
+    };
+    options.left_out.extend(found.iter().map(|found| found.observation));
+    let together = found.len();
     loop {
         let reliability = solution.reliability(snooping.test)?;
         let refused = |observation: usize| found.iter().any(|found| found.observation == observation);
@@ -53,7 +61,7 @@ pub fn snoop<'n>(network: &'n Network, options: &Options, snooping: Snooping) ->
         let worst = reliability.points.iter().filter(|point| !refused(point.observation)).max_by(|a, b| size(a.w).total_cmp(&size(b.w)));
         let Some(worst) = worst.filter(|worst| size(worst.w) > reliability.critical) else { return Ok((solution, found)) };
         let mut suspect = Found { observation: worst.observation, w: size(worst.w), critical: reliability.critical, left_out: false };
-        if found.iter().filter(|found| found.left_out).count() < snooping.most {
+        if found[together..].iter().filter(|found| found.left_out).count() < snooping.most {
             options.left_out.push(suspect.observation);
             match adjust_from(network, &options, solution.end.state.clone()) {
                 Ok(better) => (solution, suspect.left_out) = (better, true),

@@ -3,10 +3,10 @@
 use calibench_adjust::{Datum, Network, ObjectPoint, Options, Solution, Status, Variance, adjust};
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::{ALPHA, gross};
+use super::Allowed;
+use crate::Calibration;
 use crate::datum::DatumChoice;
 use crate::resampled::NEAR;
-use crate::{Calibration, Verdict};
 
 /// Control points at most, up to which all are freed.
 const MOST: usize = 20_000;
@@ -17,27 +17,25 @@ const NAMED: usize = 3;
 /// Share of the squares of all shifts that a cause must explain.
 const PART: f64 = 0.6;
 
-/// The same observations with every control point free, in a free network; and whether no image point is in gross error there.
-pub(super) fn check(calibration: &Calibration<'_>) -> (Verdict, bool) {
-    let untested = |why: &str| (Verdict::Untested(why.into()), false);
+/// The same observations with every control point free, in a free network.
+pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
     let whole = &calibration.prepared.network;
     if !matches!(calibration.prepared.settings.datum, DatumChoice::Control | DatumChoice::Fixed) {
-        return untested("they are free already");
+        return Allowed::untested("they are free already");
     }
     if whole.points.iter().any(|point| point.coordinates != [Status::Fixed; 3]) {
-        return untested("they are weighted, or some points are none");
+        return Allowed::untested("they are weighted, or some points are none");
     }
     if whole.points.len() > MOST {
-        return untested("there are too many");
+        return Allowed::untested("there are too many");
     }
     let network = freed(calibration);
     let Ok(free) = adjust(&network, &Options { most_iterations: NEAR, ..calibration.options() }) else {
-        return untested("without them the network is not determined");
+        return Allowed::untested("without them the network is not determined");
     };
     // Seven of all coordinates are the frame's, and a bend is a part of them.
     let bends = whole.surfaces.iter().flat_map(|surface| surface.statuses).filter(|status| status.is_unknown()).count();
-    let verdict = calibration.judged(&free, 3 * network.points.len() - 7 - bends, || cause(&network, &free));
-    (verdict, gross::found(&free).is_none_or(|found| found.p > ALPHA))
+    calibration.adjusted(&free, 3 * network.points.len() - 7 - bends, || cause(&network, &free))
 }
 
 /// Every point free: where too few images see one, the network is not determined.

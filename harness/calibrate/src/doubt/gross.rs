@@ -1,11 +1,10 @@
 //! Gross errors of image points.
 
-use calibench_adjust::{Options, Solution, adjust};
+use calibench_adjust::{Options, Solution, adjust, scale_of};
 use statrs::distribution::{Binomial, DiscreteCDF};
 
-use super::ALPHA;
+use super::{ALPHA, Cameras};
 use crate::resampled::NEAR;
-use crate::shape::scale;
 use crate::{Calibration, Finding, Verdict};
 
 /// Residuals (as vectors) beyond so many of their standard deviations are counted: of normal ones `exp(-8)`.
@@ -15,34 +14,56 @@ const BOUND: f64 = 2.0;
 /// Image points in gross error, as a share, beyond which no estimate is to be trusted.
 const MOST: f64 = 0.2;
 
+/// Share of the image points that may be left out.
+const LEFT_OUT: f64 = 0.4;
+
 /// Image points whose residuals are too long.
-pub(super) struct Found {
+struct Found {
     /// The standard deviation of an image coordinate against the a-priori one from the median residual: gross errors do not change it.
     scale: f64,
     beyond: u64,
-    of: usize,
+    of: u64,
     /// Probability of as many by chance.
-    pub(super) p: f64,
+    p: f64,
 }
 
-/// `None` where residuals are rounding, or there are none.
-pub(super) fn found(solution: &Solution<'_>) -> Option<Found> {
-    let scale = scale(solution).filter(|scale| *scale > 1e-5)?;
-    let lengths: Vec<f64> = solution.each_white_residual().map(|[x, y]| x.hypot(y) / scale).collect();
-    let beyond = lengths.iter().filter(|length| **length > BEYOND).count() as u64;
-    let chance = Binomial::new((-0.5 * BEYOND * BEYOND).exp(), lengths.len() as u64).ok()?;
-    Some(Found { scale, beyond, of: lengths.len(), p: if beyond == 0 { 1.0 } else { chance.sf(beyond - 1) } })
+/// Of white residuals; `None` where these are rounding, or there are none.
+fn found(white: impl Iterator<Item = [f64; 2]> + Clone) -> Option<Found> {
+    let scale = scale_of(white.clone()).filter(|scale| *scale > 1e-5)?;
+    let (beyond, of) = white.fold((0, 0), |(beyond, of), [x, y]| (beyond + u64::from(x.hypot(y) > BEYOND * scale), of + 1));
+    let chance = Binomial::new((-0.5 * BEYOND * BEYOND).exp(), of).ok()?;
+    Some(Found { scale, beyond, of, p: if beyond == 0 { 1.0 } else { chance.sf(beyond - 1) } })
+}
+
+/// Whether of white residuals no more are long than chance makes.
+pub(super) fn is_clean(white: &[[f64; 2]]) -> bool {
+    found(white.iter().copied()).is_none_or(|found| found.p > ALPHA)
+}
+
+fn white(solution: &Solution<'_>) -> Vec<[f64; 2]> {
+    solution.each_white_residual().collect()
+}
+
+/// More image points were left out than an estimate can bear.
+fn too_many(calibration: &Calibration<'_>) -> Option<Verdict> {
+    let left_out = calibration.found.iter().filter(|found| found.left_out).count();
+    let all = calibration.prepared.network.observations.len();
+    let cause = || format!("gross errors: {left_out} of {all} image points were left out, and what is left need not be the right part");
+    (left_out as f64 > LEFT_OUT * all as f64).then(|| Verdict::Doubt(Finding { p: 0.0, moves: None, explains: 0.0 }, cause()))
 }
 
 /// More residuals are long than chance makes, and the camera is another where they have less weight.
 pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
-    let Some(Found { scale, beyond, of, p }) = found(&calibration.solution) else {
+    if let Some(verdict) = too_many(calibration) {
+        return verdict;
+    }
+    let Some(Found { scale, beyond, of, p }) = found(white(&calibration.solution).into_iter()) else {
         return Verdict::Untested("the residuals are no more than rounding".into());
     };
     let network = calibration.ended();
     let options = Options { huber: Some(BOUND * scale), most_iterations: NEAR, ..calibration.options() };
-    let moves = adjust(&network, &options).ok().and_then(|robust| calibration.moves(robust.cameras(), scale));
-    let finding = Finding { p, moves };
+    let moves = adjust(&network, &options).ok().and_then(|robust| calibration.moves(&Cameras::Others(robust.cameras().to_vec()), scale));
+    let finding = Finding { p, moves, explains: 0.0 };
     if p >= ALPHA {
         return Verdict::Sound(finding);
     }

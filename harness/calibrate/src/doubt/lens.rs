@@ -3,14 +3,15 @@
 use calibench_adjust::{Network, Options, Status, adjust};
 use calibench_model::camera::{Camera, CameraModel, OpenCv};
 
+use super::Allowed;
+use crate::Calibration;
 use crate::resampled::NEAR;
-use crate::{Calibration, Verdict};
 
 /// Standard deviation of the coefficients of a denominator about zero: they may take any value that lenses have, and stay where observations do not say.
 const WEAK: f64 = 1.0;
 
 /// The same observations with every parameter of the model free, or with OpenCV's rational model where that was so.
-pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
+pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
     let mut network = calibration.ended();
     let before: usize = unknowns(&network);
     for interior in &mut network.cameras {
@@ -18,11 +19,11 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Verdict {
     }
     let more = unknowns(&network) - before;
     if more == 0 {
-        return Verdict::Untested("there is no richer model of this kind".into());
+        return Allowed::untested("there is no richer model of this kind");
     }
     match adjust(&network, &Options { most_iterations: NEAR, ..calibration.options() }) {
-        Ok(solution) => calibration.judged(&solution, more, || cause(&network)),
-        Err(_) => Verdict::Untested("a richer model is not determined".into()),
+        Ok(solution) => calibration.adjusted(&solution, more, || cause(&network)),
+        Err(_) => Allowed::untested("a richer model is not determined"),
     }
 }
 

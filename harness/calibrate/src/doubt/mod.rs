@@ -3,110 +3,201 @@
 mod control;
 mod gross;
 mod lens;
+mod motion;
 mod precision;
+mod shutter;
 
 use calibench_adjust::{Distance, Solution, Variance, frame_uncertainty};
 use calibench_model::camera::Camera;
 use calibench_model::convert::{DifferenceOptions, difference};
+use nalgebra::{DMatrix, DVector};
+use rayon::join;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::ended::ended;
 use crate::resampled::MOST;
 use crate::{Calibration, Checked, Finding, Resampled, SHARE, Verdict};
 
-/// Probability below which a structure is no chance. Four tests together: once in 2500 sound calibrations, if residuals are independent.
+/// Probability below which a structure is no chance. Five tests together: once in 2000 sound calibrations, if residuals are independent.
 const ALPHA: f64 = 1e-4;
+/// Share of the variance that a structure must explain to be no shadow of gross errors.
+const EXPLAINED: f64 = 0.5;
+/// A structure that explains less than this share of what another one does may be a shadow of it.
+const HIDDEN: f64 = 0.8;
 /// Places of the grid over the frame.
 const GRID: (usize, usize) = (15, 11);
 
+/// A solution that allows for more.
+struct Richer {
+    /// Weighted sum of squares.
+    cost: f64,
+    /// Unknowns beside those that there were.
+    more: usize,
+    cameras: Cameras,
+    /// White residuals.
+    white: Vec<[f64; 2]>,
+}
+
+/// The cameras of another solution.
+enum Cameras {
+    Others(Vec<Camera>),
+    /// By so much, to first order, in their unknown parameters: of each camera those of [`calibench_adjust::Covariances::of_camera`].
+    Changed(Vec<DVector<f64>>),
+}
+
+/// What comes of allowing for one more kind of unknown.
+struct Allowed {
+    verdict: Verdict,
+    /// No image point is in gross error then.
+    is_clean: bool,
+}
+
+impl Allowed {
+    fn untested(why: &str) -> Self {
+        Self { verdict: Verdict::Untested(why.into()), is_clean: false }
+    }
+
+    fn is_structure(&self) -> bool {
+        matches!(self.verdict, Verdict::Doubt(..) | Verdict::Slight(..))
+    }
+
+    /// Whatever was found is no structure.
+    fn sound(self) -> Self {
+        let verdict = match self.verdict {
+            Verdict::Doubt(finding, _) | Verdict::Slight(finding, _) => Verdict::Sound(finding),
+            other => other,
+        };
+        Self { verdict, ..self }
+    }
+
+    fn explains(&self) -> f64 {
+        match self.verdict {
+            Verdict::Doubt(Finding { explains, .. }, _) | Verdict::Slight(Finding { explains, .. }, _) => explains,
+            _ => 0.0,
+        }
+    }
+}
+
 impl Calibration<'_> {
     /// Looks for what the model leaves out, and keeps the result in [`Self::checked`]: the precision that was stated, gross errors, coordinates of control,
-    /// the lens. Where image points are in gross error the others are not judged: they would find those.
+    /// the lens, the shutter. Where image points are in gross error the others are not judged: they would find those.
     ///
     /// Each allows for one more kind of unknown, and asks by an F test whether that is no chance, and how far the camera moves.
     pub fn examine(&mut self) {
-        let (mut gross, (mut control, is_clean), mut lens) = self.allowed_for();
-        if let Verdict::Doubt(finding, _) | Verdict::Slight(finding, _) = gross {
-            let untested = || Verdict::Untested("image points are in gross error".into());
-            if matches!(control, Verdict::Doubt(..) | Verdict::Slight(..)) && is_clean {
-                // Image points of a control point that is not there are off together, and not for themselves.
-                gross = Verdict::Sound(finding);
-            } else if matches!(gross, Verdict::Doubt(..)) {
-                (control, lens) = (untested(), untested());
+        let (mut gross, [control, lens, shutter]) = self.allowed_for();
+        let mut structures = [control, lens, shutter];
+        let most = structures.iter().map(Allowed::explains).fold(0.0, f64::max);
+        let is_clean = structures.iter().any(|allowed| allowed.is_structure() && allowed.is_clean);
+        gross = match gross {
+            // Image points are off together, and not for themselves.
+            Verdict::Doubt(finding, _) | Verdict::Slight(finding, _) if is_clean => Verdict::Sound(finding),
+            Verdict::Doubt(finding, cause) if most > EXPLAINED => Verdict::Slight(finding, cause),
+            Verdict::Doubt(..) => {
+                structures = [(); 3].map(|()| Allowed::untested("image points are in gross error"));
+                gross
             }
-        }
+            other => other,
+        };
+        let is_doubt = |allowed: &Allowed| matches!(allowed.verdict, Verdict::Doubt(..));
+        let strongest_counts = structures.iter().any(|allowed| is_doubt(allowed) && allowed.explains() >= most);
+        let beside = |allowed: Allowed| {
+            let is_shadow = allowed.is_structure() && allowed.explains() < HIDDEN * most && (strongest_counts || !is_doubt(&allowed));
+            if is_shadow { Verdict::Untested("another structure explains more of the residuals".into()) } else { allowed.verdict }
+        };
+        let [control, lens, shutter] = structures.map(beside);
         let all = [
             ("the precision of image points", precision::check(self)),
             ("gross errors of image points", gross),
             ("the coordinates of control points", control),
             ("the lens", lens),
+            ("one pose for all rows of an image", shutter),
         ];
         self.checked = all.map(|(what, verdict)| Checked { what, verdict }).into();
     }
 
     /// The checks that adjust again; of many image points none, which would take as long and as much memory once more.
-    fn allowed_for(&self) -> (Verdict, (Verdict, bool), Verdict) {
+    fn allowed_for(&self) -> (Verdict, [Allowed; 3]) {
         if self.prepared.network.observations.len() > MOST {
-            let untested = || Verdict::Untested(format!("more than {MOST} image points"));
-            return (untested(), (untested(), false), untested());
+            let why = format!("more than {MOST} image points");
+            return (Verdict::Untested(why.clone()), [(); 3].map(|()| Allowed::untested(&why)));
         }
-        (gross::check(self), control::check(self), lens::check(self))
+        let ((gross, control), (lens, shutter)) =
+            join(|| join(|| gross::check(self), || control::check(self)), || join(|| lens::check(self), || shutter::check(self)));
+        (gross, [control, lens, shutter])
     }
 
-    /// The most likely causes of doubt, the strongest first.
+    /// The most likely causes of doubt, first the one that explains most.
     pub fn doubts(&self) -> Vec<&str> {
-        let moves = |checked: &&Checked| match checked.verdict {
-            Verdict::Doubt(Finding { moves, .. }, _) => moves.unwrap_or(f64::INFINITY),
+        let explains = |checked: &&Checked| match checked.verdict {
+            Verdict::Doubt(Finding { explains, .. }, _) => explains,
             _ => 0.0,
         };
         let mut doubts: Vec<&Checked> = self.checked.iter().filter(|checked| checked.doubt().is_some()).collect();
-        doubts.sort_by(|a, b| moves(b).total_cmp(&moves(a)));
+        doubts.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
         doubts.into_iter().filter_map(Checked::doubt).collect()
     }
 
-    /// The verdict on a network that allows for `more` unknowns.
-    fn judged(&self, richer: &Solution<'_>, more: usize, cause: impl FnOnce() -> String) -> Verdict {
-        let redundancy = self.solution.counts().redundancy() as f64 - more as f64;
-        let Ok(fisher) = FisherSnedecor::new(more as f64, redundancy) else { return Verdict::Untested("there is no redundancy".into()) };
-        let gain = (self.solution.cost() - richer.cost()).max(0.0) / more as f64;
-        let p = fisher.sf(gain / (richer.cost() / redundancy).max(f64::MIN_POSITIVE));
-        let sigma0 = (richer.cost() / redundancy).sqrt();
-        let mut finding = Finding { p, moves: self.moves(richer.cameras(), sigma0) };
+    /// The verdict on a network that is adjusted with `more` unknowns.
+    fn adjusted(&self, richer: &Solution<'_>, more: usize, cause: impl FnOnce() -> String) -> Allowed {
+        let (cost, cameras) = (richer.cost(), Cameras::Others(richer.cameras().to_vec()));
+        let found = Richer { cost, more, cameras, white: richer.each_white_residual().collect() };
+        self.judged(&found, || self.optimism(richer), cause)
+    }
+
+    /// The verdict on a solution that allows for more. `optimism`: how many times too small its formal standard deviations are, as leaving images out shows.
+    fn judged(&self, richer: &Richer, optimism: impl FnOnce() -> Option<f64>, cause: impl FnOnce() -> String) -> Allowed {
+        let verdict = self.verdict(richer, optimism, cause);
+        Allowed { verdict, is_clean: gross::is_clean(&richer.white) }
+    }
+
+    fn verdict(&self, richer: &Richer, optimism: impl FnOnce() -> Option<f64>, cause: impl FnOnce() -> String) -> Verdict {
+        let more = richer.more as f64;
+        let redundancy = self.solution.counts().redundancy() as f64 - more;
+        let Ok(fisher) = FisherSnedecor::new(more, redundancy) else { return Verdict::Untested("there is no redundancy".into()) };
+        let gain = (self.solution.cost() - richer.cost).max(0.0) / more;
+        let p = fisher.sf(gain / (richer.cost / redundancy).max(f64::MIN_POSITIVE));
+        let sigma0 = (richer.cost / redundancy).sqrt();
+        let explains = (1.0 - (sigma0 / self.solution.sigma0().unwrap_or(f64::INFINITY)).powi(2)).max(0.0);
+        let mut finding = Finding { p, moves: self.moves(&richer.cameras, sigma0), explains };
         // Residuals that are rounding are no structure.
         let is_rounding = self.solution.sigma0().is_none_or(|sigma0| sigma0 < 1e-5);
         if p >= ALPHA || is_rounding {
             return Verdict::Sound(finding);
         }
         if finding.moves.is_none_or(|moves| moves > SHARE) {
-            finding.moves = finding.moves.map(|moves| moves / self.optimism(richer));
+            let optimism = optimism().unwrap_or(1.0).max(1.0);
+            finding.moves = finding.moves.map(|moves| moves / optimism);
         }
         finding.weighed(cause())
     }
 
-    /// How many times too small the formal standard deviations are when a structure is allowed for, as leaving images out shows: 1 at least.
-    fn optimism(&self, richer: &Solution<'_>) -> f64 {
+    fn optimism(&self, richer: &Solution<'_>) -> Option<f64> {
         let network = ended(richer);
-        let formal = richer.covariances(Variance::Estimated);
-        let ratio = formal.ok().and_then(|formal| {
-            let resampled = Resampled::of(&network, &self.options(), &formal.parameters).ok()?;
-            resampled.ratio((0..formal.interior.nrows()).map(|i| formal.interior[(i, i)].sqrt()))
-        });
-        ratio.unwrap_or(1.0).max(1.0)
+        let formal = richer.covariances(Variance::Estimated).ok()?;
+        let resampled = Resampled::of(&network, &self.options(), &formal.parameters).ok()?;
+        resampled.ratio((0..formal.interior.nrows()).map(|i| formal.interior[(i, i)].sqrt()))
     }
 
-    /// By how many of their standard deviations over the frame the cameras differ from others: the most of any camera. A structure raises the residuals
-    /// and with them the standard deviations behind which it hides: `sigma0` is what is left without it.
-    fn moves(&self, others: &[Camera], sigma0: f64) -> Option<f64> {
+    /// By how many of their standard deviations over the frame the cameras move: the most of any camera. A structure raises the residuals and with them the
+    /// standard deviations behind which it hides: `sigma0` is what is left without it.
+    fn moves(&self, to: &Cameras, sigma0: f64) -> Option<f64> {
         let factor = sigma0 / self.covariances.variance_factor.sqrt().max(f64::MIN_POSITIVE);
         let of = |index: usize| {
             let (names, covariance) = self.covariances.of_camera(index);
             if names.is_empty() {
                 return Some(0.0);
             }
-            let map = frame_uncertainty(self.camera(index), (&names, &covariance), GRID, Distance::Far).ok()?;
-            let mean = map.iter().map(|place| place.covariance.sxx + place.covariance.syy).sum::<f64>() / map.len().max(1) as f64;
-            let apart = difference(self.camera(index), &others[index], &DifferenceOptions::default()).ok()?.spread.rms_px;
-            Some(apart / (factor * mean.sqrt()).max(f64::MIN_POSITIVE))
+            let over_frame = |covariance: &DMatrix<f64>| {
+                let map = frame_uncertainty(self.camera(index), (&names, covariance), GRID, Distance::Far).ok()?;
+                Some((map.iter().map(|place| place.covariance.sxx + place.covariance.syy).sum::<f64>() / map.len().max(1) as f64).sqrt())
+            };
+            let apart = match to {
+                Cameras::Others(others) => {
+                    difference(self.camera(index), &others[index], &DifferenceOptions::default()).ok()?.spread.rms_px
+                }
+                Cameras::Changed(changes) => over_frame(&(&changes[index] * changes[index].transpose()))?,
+            };
+            Some(apart / (factor * over_frame(&covariance)?).max(f64::MIN_POSITIVE))
         };
         (0..self.cameras()).map(of).try_fold(0.0, |most: f64, moves| Some(most.max(moves?)))
     }

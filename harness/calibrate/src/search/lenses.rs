@@ -4,6 +4,7 @@ use calibench_adjust::approximate::{Control, interior_from_size};
 use calibench_model::camera::{Camera, CameraModel, OpenCvFisheye};
 use calibench_model::{PixelPoint, Pose};
 
+use super::clean::without_gross;
 use super::ladder::{BROWN, EQUIDISTANT, climbed};
 use super::sample::{Arrived, Sample};
 use super::{LOWER, kept};
@@ -33,6 +34,10 @@ struct Lens {
 /// The minima of the model asked for: the one that the usual camera leads to, then those that are reached from a lens without distortion and from one that
 /// pictures angles. Images that none of the three orients are left out of the sample.
 pub(super) fn arrived(sample: &mut Sample, optics: &Optics, usual: Option<&(Camera, String)>) -> (Option<Arrived>, Vec<Arrived>) {
+    if sample.is_robust() {
+        let cameras = usual.map(|(camera, _)| *camera).into_iter().chain(undistorted(optics).into_iter().flatten()).collect::<Vec<_>>();
+        sample.views = without_gross(std::mem::take(&mut sample.views), &cameras);
+    }
     let lenses = lenses(sample, optics);
     let of_usual = usual.map(|(camera, _)| sample.poses(camera));
     let all: Vec<&Vec<Option<Pose>>> = lenses.iter().map(|lens| &lens.poses).chain(&of_usual).collect();
@@ -63,17 +68,24 @@ fn is_narrow(camera: &Camera) -> bool {
     corners.into_iter().all(|corner| angle(corner) < NARROW)
 }
 
+/// Lenses without distortion, and ones that picture angles.
+fn undistorted(optics: &Optics) -> [Vec<Camera>; 2] {
+    let Ok(centre @ [cx, cy]) = middle(optics.size) else { return Default::default() };
+    let (size, side) = (optics.size, f64::from(optics.size.width.max(optics.size.height)));
+    let straight = |f: f64| pinhole(size, f * side, centre);
+    let angles = |f: f64| OpenCvFisheye { size, fx: f * side, fy: f * side, cx, cy, skew: 0.0, k: [0.0; 4] }.into();
+    [FOCAL.map(straight).to_vec(), FOCAL_WIDE.map(angles).to_vec()]
+}
+
 fn lenses(sample: &Sample, optics: &Optics) -> Vec<Lens> {
-    let Ok(centre @ [cx, cy]) = middle(optics.size) else { return Vec::new() };
-    let (size, side, few) = (optics.size, f64::from(optics.size.width.max(optics.size.height)), sample.few());
+    let few = sample.few();
     let nearest = |cameras: Vec<Camera>| {
         let tried = cameras.into_iter().map(|camera| (misfit(&camera, &few), camera));
         tried.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, camera)| camera)
     };
-    let straight = |f: f64| pinhole(size, f * side, centre);
-    let angles = |f: f64| OpenCvFisheye { size, fx: f * side, fy: f * side, cx, cy, skew: 0.0, k: [0.0; 4] }.into();
-    let straight = (nearest(FOCAL.map(straight).to_vec()), &BROWN[..], "the best of some focal lengths, distortion term by term");
-    let wide = (nearest(FOCAL_WIDE.map(angles).to_vec()), &EQUIDISTANT[..], "the best of some equidistant lenses, distortion term by term");
+    let [straight, angles] = undistorted(optics);
+    let straight = (nearest(straight), &BROWN[..], "the best of some focal lengths, distortion term by term");
+    let wide = (nearest(angles), &EQUIDISTANT[..], "the best of some equidistant lenses, distortion term by term");
     let lens =
         |(camera, rungs, origin): (Option<Camera>, _, _)| camera.map(|camera| Lens { camera, poses: sample.poses(&camera), rungs, origin });
     [straight, wide].into_iter().filter_map(lens).collect()

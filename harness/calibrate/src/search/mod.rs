@@ -1,6 +1,7 @@
 //! Whether another start arrives lower: on some of the images and points, cameras from several starts are adjusted by nested models, parameter by
 //! parameter, against the start that the usual way found.
 
+mod clean;
 mod ladder;
 mod lenses;
 mod sample;

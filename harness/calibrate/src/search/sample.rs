@@ -5,7 +5,7 @@ use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoin
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel};
 
-use crate::start::{pose_of, spread_control_of};
+use crate::start::{PoseFinder, pose_finder, spread_control_of};
 use crate::{Optics, Settings, Survey, model};
 
 /// Images at most.
@@ -28,6 +28,7 @@ pub(super) struct Sample {
     pub(super) is_part: bool,
     sigma: f64,
     huber: Option<f64>,
+    finder: PoseFinder,
 }
 
 /// Where an adjustment of the sample ended.
@@ -53,12 +54,23 @@ impl Sample {
         let all: usize =
             own.iter().map(|&image| survey.of_image(image).filter(|&sight| known[survey.sight(sight).target].is_some()).count()).sum();
         let is_part = taken < all;
-        (!views.is_empty()).then(|| Self { views, is_part, sigma: settings.sigma(), huber: settings.huber })
+        (!views.is_empty()).then(|| Self {
+            views,
+            is_part,
+            sigma: settings.sigma(),
+            huber: settings.start_huber(),
+            finder: pose_finder(settings),
+        })
     }
 
     /// Poses of the images with a camera; `None` where there is none.
     pub(super) fn poses(&self, camera: &Camera) -> Vec<Option<Pose>> {
-        self.views.iter().map(|view| pose_of(camera, view).ok()).collect()
+        self.views.iter().map(|view| (self.finder)(camera, view).ok()).collect()
+    }
+
+    /// Whether gross errors are to be expected.
+    pub(super) fn is_robust(&self) -> bool {
+        self.huber.is_some()
     }
 
     /// Leaves out images that `keep` is false of.

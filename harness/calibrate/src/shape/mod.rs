@@ -7,7 +7,6 @@ use calibench_adjust::{AdjustError, Network, Status, Surface};
 
 pub use board::Board;
 pub use test::Bend;
-pub(crate) use test::scale;
 
 use crate::{BoardShape, CalibrationError, Settings};
 

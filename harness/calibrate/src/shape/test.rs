@@ -1,6 +1,6 @@
 //! Whether a board is bent: the network adjusted with a flat one and with a bent one.
 
-use calibench_adjust::{AdjustError, Network, Options, Solution, Variance, adjust, compare};
+use calibench_adjust::{AdjustError, Network, Options, Variance, adjust, compare};
 
 use super::board::Board;
 use super::surface;
@@ -11,8 +11,6 @@ use crate::{BoardShape, Settings};
 const ALPHA: f64 = 1e-3;
 /// Huber's bound of both adjustments, in standard deviations that the residuals show: gross errors neither hide a bend nor feign one.
 const BOUND: f64 = 3.0;
-/// The median of the length of a vector of two normal numbers.
-const MEDIAN: f64 = 1.177_41;
 /// Variances of an image coordinate, against the a-priori one, below which residuals are rounding.
 const ROUNDING: f64 = 1e-10;
 
@@ -38,7 +36,7 @@ impl Bend {
 pub(super) fn bend(network: &Network, board: &Board, settings: &Settings) -> Result<Option<Bend>, AdjustError> {
     let plain = Options { huber: settings.huber, most_iterations: ITERATIONS, ..Options::default() };
     let first = adjust(network, &plain)?;
-    let Some(scale) = scale(&first).filter(|scale| scale * scale > ROUNDING) else { return Ok(None) };
+    let Some(scale) = first.scale().filter(|scale| scale * scale > ROUNDING) else { return Ok(None) };
     let robust = Options { huber: Some(BOUND * scale), ..plain };
     let flat_start = ended(&first);
     let flat = adjust(&flat_start, &robust)?;
@@ -49,15 +47,4 @@ pub(super) fn bend(network: &Network, board: &Board, settings: &Settings) -> Res
     let p = compare(&flat, &bent)?.p;
     let coefficients = bent.surfaces().next().unwrap_or_default();
     Ok(Some(Bend { coefficients, sigmas: std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt()), p }))
-}
-
-/// The standard deviation of an image coordinate against the a-priori one, from the median residual; `None` without residuals.
-pub(crate) fn scale(solution: &Solution<'_>) -> Option<f64> {
-    let mut lengths: Vec<f64> = solution.each_white_residual().map(|[x, y]| x.hypot(y)).collect();
-    let middle = lengths.len() / 2;
-    if lengths.is_empty() {
-        return None;
-    }
-    let (_, median, _) = lengths.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(*median / MEDIAN)
 }

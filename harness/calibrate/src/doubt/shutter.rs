@@ -1,0 +1,46 @@
+//! Whether an image has one pose, or its rows were exposed one after the other.
+
+use calibench_adjust::{Attitude, Centre, Status};
+use calibench_model::PixelPoint;
+
+use super::motion::Moving;
+use super::{Allowed, Cameras, Richer};
+use crate::Calibration;
+use crate::resampled::GROUPS;
+
+/// A motion from row to row that explains so many times as much as one from column to column is of the shutter.
+const BY_ROWS: f64 = 1.2;
+/// Share of the variance that both must explain to be more than residuals of neighbours that belong together, as those of real corners do.
+const MUCH: f64 = 0.5;
+
+/// The same observations with a pose that changes evenly from the first row of an image to the last.
+pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
+    let solution = &calibration.solution;
+    let network = solution.network();
+    if network.images.iter().any(|image| image.centre != Centre::Free || image.attitude != Attitude::Free) {
+        return Allowed::untested("something is known of the poses");
+    }
+    if network.points.iter().flat_map(|point| point.coordinates).any(Status::is_unknown) {
+        return Allowed::untested("object points are unknown too");
+    }
+    let Some(moving) = Moving::of(solution, |at| at.y) else {
+        return Allowed::untested("a pose that changes is not determined");
+    };
+    let redundancy = solution.counts().redundancy().saturating_sub(moving.more as _).max(1) as f64;
+    let richer =
+        Richer { cost: moving.cost, more: moving.more, cameras: Cameras::Changed(moving.changes()), white: moving.white().collect() };
+    let gain = |moving: &Moving<'_, '_>| solution.cost() - moving.cost;
+    let columns = Moving::of(solution, |at: &PixelPoint| at.x);
+    let is_by_rows = columns.is_none_or(|columns| gain(&moving) > BY_ROWS * gain(&columns));
+    let allowed = calibration.judged(&richer, || moving.optimism(GROUPS, redundancy), || cause(is_by_rows).into());
+    if is_by_rows || allowed.explains() > MUCH { allowed } else { allowed.sound() }
+}
+
+/// A turn along rows and one along columns picture nearly the same, and so does a sheet that bends.
+fn cause(is_by_rows: bool) -> &'static str {
+    if is_by_rows {
+        "a rolling shutter: rows of an image were exposed one after the other while camera or testfield moved; hold both still"
+    } else {
+        "something differs within each image: a rolling shutter with a camera or testfield that moved, or a testfield that bends from image to image"
+    }
+}
