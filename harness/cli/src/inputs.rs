@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use calibench_exchange::{PointFile, Points, ReadOptions, read_camera_with, read_points};
+use calibench_exchange::points::{Check, read_points_checked};
+use calibench_exchange::{PointFile, Points, ReadOptions, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize};
 
 use crate::failure::Failure;
@@ -14,7 +15,12 @@ pub fn read_measured(path: &Path) -> Result<Points, Failure> {
 
 /// The same, with the rows of points that a method could not measure.
 pub fn measured(path: &Path) -> Result<PointFile, Failure> {
-    let file = read_points(path)?;
+    checked(path, &|_| Ok(()))
+}
+
+/// The same, of rows that pass `check`.
+pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
+    let file = read_points_checked(path, check)?;
     if !file.lost.is_empty() {
         say!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.lost.len());
     }

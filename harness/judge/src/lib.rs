@@ -13,6 +13,7 @@ mod lines;
 mod material;
 mod operator_and_model;
 mod options;
+mod point_files;
 mod published;
 
 #[cfg(test)]
@@ -25,8 +26,9 @@ use calibench_records::judgement::{Row, measure};
 use rayon::prelude::*;
 use thiserror::Error;
 
-pub use material::{Corners, Material};
+pub use material::{Corners, FEWEST, Material};
 pub use options::Options;
+pub use point_files::Expected;
 pub use published::{published_camera, stated_sigma};
 
 /// Why nothing can be judged.
@@ -60,8 +62,8 @@ pub fn judge(material: &Material, options: &Options) -> Result<Vec<Row>, Judgeme
         let first = material.operators.first().and_then(|operator| operator.unavailable.clone());
         return Err(JudgementError::NoOperator(first.unwrap_or_else(|| "none was asked for".into())));
     }
-    let common = material.common();
-    let mut rows: Vec<Row> = (0..material.operators.len()).flat_map(|operator| corners(material, operator, &common)).collect();
+    let (common, tried) = (material.common(), material.tried());
+    let mut rows: Vec<Row> = (0..material.operators.len()).flat_map(|operator| corners(material, operator, &common, &tried)).collect();
     let available = (0..material.operators.len()).filter(|&operator| material.operators[operator].unavailable.is_none());
     let jobs: Vec<(usize, &ModelChoice)> =
         available.flat_map(|operator| options.models.iter().map(move |model| (operator, model))).collect();
@@ -80,7 +82,7 @@ pub fn judge(material: &Material, options: &Options) -> Result<Vec<Row>, Judgeme
 }
 
 /// What an operator measured, view by view, and each corner that it rejected.
-fn corners(material: &Material, operator: usize, common: &[Vec<bool>]) -> Vec<Row> {
+fn corners(material: &Material, operator: usize, common: &[Vec<bool>], tried: &[usize]) -> Vec<Row> {
     let corners = &material.operators[operator];
     if let Some(why) = &corners.unavailable {
         return vec![Row { method: corners.method.clone(), ..Row::without(measure::CORNERS, "", "unavailable", why) }];
@@ -90,7 +92,7 @@ fn corners(material: &Material, operator: usize, common: &[Vec<bool>]) -> Vec<Ro
         let shared = common[view].iter().filter(|common| **common).count();
         Row { unit: "corners".into(), ..Row::plain(measure::CORNERS, name, count as f64) }
             .beside(shared as f64)
-            .of(material.board.corners())
+            .of(tried[view])
     };
     let missed = material.missed.iter().map(|(name, why)| Row::without(measure::CORNERS, name, "missed", why));
     let rejected = corners.rejected.iter().map(|(view, corner, why)| {

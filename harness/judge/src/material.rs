@@ -1,4 +1,4 @@
-//! What was measured: a chessboard's corners in photographs, in the hands of several operators.
+//! What was measured: a chessboard's corners in photographs, by several operators.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -14,8 +14,8 @@ use nalgebra::Point3;
 
 use super::bend::Bend;
 
-/// A view with fewer corners of an operator does not take part in its calibration.
-const FEWEST: usize = 12;
+/// A view with fewer corners of an operator does not take part in its calibration; of a board with fewer, all are needed.
+pub const FEWEST: usize = 12;
 
 /// Corners of one operator.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub struct Corners {
     /// By view, by corner along the rows of the board.
     pub at: Vec<Vec<Option<PixelPoint>>>,
     /// View, corner and reason of what it rejected.
-    pub rejected: Vec<(usize, usize, &'static str)>,
+    pub rejected: Vec<(usize, usize, Arc<str>)>,
 }
 
 /// All corners.
@@ -69,7 +69,7 @@ impl Material {
             let (Some(view), Some(&corner)) = (view, place.get(&*point.target)) else { continue };
             match point.outcome {
                 Outcome::Measured { position, .. } => operators[point.method].at[view][corner] = Some(position),
-                Outcome::Rejected(why) => operators[point.method].rejected.push((view, corner, why.name())),
+                Outcome::Rejected(why) => operators[point.method].rejected.push((view, corner, why.name().into())),
             }
         }
         Self { board, side, size, views, missed: trial.missed_views.clone(), operators }
@@ -127,9 +127,21 @@ impl Material {
         self.operators[operator].at.iter().flatten().flatten().count()
     }
 
+    /// By view: how many corners at least one operator measured or rejected. In photographs these are the whole board, in a file what the detector saw of it.
+    pub fn tried(&self) -> Vec<usize> {
+        let mut tried = vec![vec![false; self.board.corners()]; self.views.len()];
+        for operator in &self.operators {
+            operator.rejected.iter().for_each(|&(view, corner, _)| tried[view][corner] = true);
+            for (tried, at) in tried.iter_mut().zip(&operator.at) {
+                tried.iter_mut().zip(at).for_each(|(tried, at)| *tried |= at.is_some());
+            }
+        }
+        tried.iter().map(|view| view.iter().filter(|tried| **tried).count()).collect()
+    }
+
     /// By view and corner: did every operator that measured enough of them measure this one? Operators are compared on these.
     pub fn common(&self) -> Vec<Vec<bool>> {
-        let all = self.views.len() * self.board.corners();
+        let all: usize = self.tried().iter().sum();
         let enough: Vec<&Corners> = (0..self.operators.len())
             .filter(|&operator| self.measured(operator) as f64 >= COMPARABLE * all as f64)
             .map(|operator| &self.operators[operator])

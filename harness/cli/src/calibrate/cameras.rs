@@ -27,7 +27,7 @@ pub struct Cameras {
     #[arg(long, value_name = "[CAMERA=]UM", value_parser = |text: &str| For::parse(text, positive), allow_hyphen_values = true)]
     pitch: Vec<For<f64>>,
     /// Camera model: photogrammetric, opencv5, metashape and others [default: photogrammetric with --pitch, or else opencv5]
-    #[arg(long, value_name = "[CAMERA=]MODEL", value_parser = |text: &str| For::parse(text, word))]
+    #[arg(long, value_name = "[CAMERA=]MODEL", value_parser = |text: &str| For::parse(text, model))]
     model: Vec<For<String>>,
     /// Parameters to solve for, as in c,x0,y0,k1; the others keep their start values [default: what the model usually needs]
     #[arg(long, value_name = "[CAMERA=]NAMES", value_parser = |text: &str| For::parse(text, names))]
@@ -59,6 +59,14 @@ impl<T> For<T> {
 #[expect(clippy::unnecessary_wraps, reason = "as the other parsers")]
 fn word(text: &str) -> Result<String, String> {
     Ok(text.to_owned())
+}
+
+/// A model's name without a board: `judge` names both in one word.
+fn model(text: &str) -> Result<String, String> {
+    match text.strip_suffix("+bent") {
+        Some(lens) => Err(format!("the board is no part of the model here: expected --model {lens} and --board-shape bent")),
+        None => Ok(text.to_owned()),
+    }
 }
 
 fn names(text: &str) -> Result<Vec<String>, String> {
@@ -263,7 +271,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_named() {
-        let wrong: [(&[&str], &str); 9] = [
+        let wrong: [(&[&str], &str); 10] = [
             (&["--size", "640x480", "--model", "left=opencv5"], "--model: no camera is called `left`: none is given"),
             (&["--camera", "left=*", "--size", "right=640x480"], "--size: no camera is called `right`: there are left"),
             (&["--camera", "left=*", "--size", "640x480", "--prior", "right.k1=0:1"], "--prior: no camera is called `right`"),
@@ -272,6 +280,7 @@ mod tests {
             (&["--size", "640x480", "--size", "640x480"], "--size: given twice; expected one value"),
             (&["--camera", "a/b=*", "--size", "640x480"], "`a/b` is no name of a camera"),
             (&["--camera", "left", "--size", "640x480"], "`left` is no camera"),
+            (&["--size", "640x480", "--model", "left=opencv5+bent"], "expected --model opencv5 and --board-shape bent"),
             (&["--camera", "left=[", "--size", "640x480"], "`[` names no images"),
         ];
         for (arguments, expected) in wrong {

@@ -79,16 +79,31 @@ fn place(line: Option<u64>, column: Option<&str>) -> String {
 /// The first mistake, with line and column: a missing or unknown column, a row of another length, a number that is none or not finite, an impossible covariance, an
 /// unknown kind, a point given twice, no point at all.
 pub fn read_points(path: &Path) -> Result<PointFile, PointFileError> {
+    read_points_checked(path, &|_| Ok(()))
+}
+
+/// What a reader of a point file asks of each row with a position: `Ok`, or the column that is wrong and what was expected there.
+pub type Check<'c> = &'c dyn Fn(&PointRef<'_>) -> Result<(), (&'static str, String)>;
+
+/// As [`read_points`], of rows that pass `check`.
+///
+/// # Errors
+/// As [`read_points`]; the first row that `check` refuses, with line and column.
+pub fn read_points_checked(path: &Path, check: Check<'_>) -> Result<PointFile, PointFileError> {
     let name = path.display().to_string();
     let file = File::open(path).map_err(|e| PointFileError { file: name.clone(), line: None, column: None, problem: e.to_string() })?;
-    parse_points(&name, file)
+    parse_checked(&name, file, check)
 }
 
 /// As [`read_points`], from anything that can be read; `file` is its name in errors.
 ///
 /// # Errors
 /// As [`read_points`].
-pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, PointFileError> {
+pub fn parse_points(file: &str, input: impl Read) -> Result<PointFile, PointFileError> {
+    parse_checked(file, input, &|_| Ok(()))
+}
+
+fn parse_checked(file: &str, mut input: impl Read, check: Check<'_>) -> Result<PointFile, PointFileError> {
     let mut text = Vec::new();
     let unreadable = |e: std::io::Error| PointFileError { file: file.to_owned(), line: None, column: None, problem: e.to_string() };
     input.read_to_end(&mut text).map_err(unreadable)?;
@@ -107,7 +122,9 @@ pub fn parse_points(file: &str, mut input: impl Read) -> Result<PointFile, Point
             found.lost.push([name(IMAGE), name(TARGET), status, cells.text(REASON).unwrap_or_default()]);
             continue;
         }
-        let PointRef { image, target, start } = cells.row()?;
+        let row = cells.row()?;
+        check(&row).map_err(|(column, problem)| cells.wrong(KNOWN.iter().position(|known| *known == column).unwrap_or(TARGET), problem))?;
+        let PointRef { image, target, start } = row;
         found.points.push(image, target, start);
         if let Some(earlier) = seen.add(&found.points) {
             let earlier = line_of_row(&text, &columns, earlier);

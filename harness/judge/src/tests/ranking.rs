@@ -91,7 +91,7 @@ fn corners_that_one_operator_lacks_are_counted_and_not_compared() {
     let mut material = material("lacking", 0, 8, &[0.05, 0.05, 0.05]);
     for corner in 0..9 {
         material.operators[0].at[2][corner] = None;
-        material.operators[0].rejected.push((2, corner, "border"));
+        material.operators[0].rejected.push((2, corner, "border".into()));
     }
     // The second misses every other view: it does not decide what the others are compared on.
     for view in (0..8).step_by(2) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use calibench_model::escape::{code, markdown};
-use calibench_records::judgement::{COMPARABLE, Cell, Summary, Trusted};
+use calibench_records::judgement::{COMPARABLE, Cell, Measured, Summary, Trusted};
 
 use super::verdict::listed;
 use crate::markdown::{MarkdownTable, fixed};
@@ -25,15 +25,7 @@ pub fn about_holdout(summary: &Summary) -> String {
         if let Some(why) = &method.unavailable {
             text.push_str(&format!(" `{}` is unavailable: {why}.", method.method));
         } else if method.found < method.of {
-            let reasons: Vec<String> = method.rejected.iter().map(|(why, count)| format!("{count} {why}")).collect();
-            text.push_str(&format!(
-                " `{}` rejected {} of {} corners ({} %: {}).",
-                method.method,
-                method.of - method.found,
-                method.of,
-                fixed(100.0 * (method.of - method.found) as f64 / method.of as f64, 1),
-                listed(&reasons)
-            ));
+            text.push_str(&lacking(method));
             if !summary.is_compared(&method.method) {
                 text.push_str(&format!(" With less than {} % of the corners it is not compared with the others.", 100.0 * COMPARABLE));
             }
@@ -43,6 +35,20 @@ pub fn about_holdout(summary: &Summary) -> String {
         text.push_str(&format!(" {}: {}.", code(view), markdown(why)));
     }
     text
+}
+
+/// The corners that an operator rejected, or that its file has no word of.
+fn lacking(method: &Measured) -> String {
+    let missing = method.of - method.found;
+    let reasons: Vec<String> = method.rejected.iter().map(|(why, count)| format!("{count} {}", markdown(why))).collect();
+    let share = fixed(100.0 * missing as f64 / method.of as f64, 1);
+    if reasons.is_empty() {
+        format!(" `{}` lacks {missing} of {} corners ({share} %).", method.method, method.of)
+    } else if method.rejected.values().sum::<usize>() < missing {
+        format!(" `{}` lacks {missing} of {} corners ({share} %), among them {} rejected.", method.method, method.of, listed(&reasons))
+    } else {
+        format!(" `{}` rejected {missing} of {} corners ({share} %: {}).", method.method, method.of, listed(&reasons))
+    }
 }
 
 /// Every operator with every model.

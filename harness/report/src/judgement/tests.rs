@@ -100,7 +100,11 @@ fn operators_and_models_are_ranked_in_words() {
     let best = format!("parameters allowed for, by `b` in {:.0} % and `c` in {:.0} %.", 100.0 * b.share, 100.0 * c.share);
     says(
         &summary,
-        &format!("{best} With `b` {} px RMS over the frame are to be expected from that. Not judged: `z` (", plain(b.loss.unwrap())),
+        &format!(
+            "{best} The camera with `b` differs from that of the best model of each draw by {} px (RMS over the whole frame and all draws): so large an error is to be \
+             expected for not knowing the true model. Not judged: `z` (",
+            plain(b.loss.unwrap())
+        ),
     );
     says(&summary, "`z` (two views are too few).\n");
     is_silent(&summary, "It is chosen since");
@@ -119,7 +123,7 @@ fn chances_are_told_by_three_digits_and_the_level_itself_is_worse() {
     assert!(text.contains(" px, p = 0.001) and `n` (") && text.contains(" px, p < 0.001)."), "{text}");
     trusted.operators.clear();
     let text = verdict(&summary, &trusted);
-    assert!(text.contains("`m` has the least RMS.\n"), "{text}");
+    assert!(text.contains("`m` has no other beside it.\n"), "{text}");
     assert_eq!(text.matches("Worse").count(), 0, "{text}");
 }
 
@@ -127,7 +131,7 @@ fn chances_are_told_by_three_digits_and_the_level_itself_is_worse() {
 fn a_model_alone_has_no_rivals() {
     let mut summary = judged();
     summary.cells.retain(|cell| &*cell.model == "b");
-    says(&summary, "by `b` in 100 %. With `b` 0 px RMS");
+    says(&summary, "by `b` in 100 %. The camera with `b` differs from that of the best model of each draw by 0 px (");
     is_silent(&summary, "Not judged");
     is_silent(&summary, "Beyond the corners");
 }

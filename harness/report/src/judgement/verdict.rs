@@ -84,9 +84,11 @@ fn ranking(others: &[(&Cell, f64)], best: &str, of: impl Fn(&Cell) -> (&str, Opt
         .filter(|(_, p)| *p <= ALPHA)
         .map(|(cell, p)| format!("`{}` ({} px, {})", name(cell), rms(cell), chance(*p)))
         .collect();
+    if others.is_empty() {
+        return format!("`{best}` has no other beside it.");
+    }
     let mut text = format!("`{best}` has the least RMS.");
     text.push_str(&match alike.len() {
-        0 if worse.is_empty() => String::new(),
         0 => " None of the others is as good.".to_owned(),
         _ => format!(" Not to be told from it: {}.", listed(&alike)),
     });
@@ -104,7 +106,12 @@ fn models(trusted: &Trusted<'_>) -> String {
     let best: Vec<String> = by_share.iter().map(|standing| format!("`{}` in {}", standing.cell.model, share(standing.share))).collect();
     let own = trusted.models.iter().find(|standing| standing.cell == trusted.cell);
     let loss = own.and_then(|own| own.loss).map_or_else(String::new, |loss| {
-        format!(" With `{}` {} px RMS over the frame are to be expected from that.", trusted.cell.model, plain(loss))
+        format!(
+            " The camera with `{}` differs from that of the best model of each draw by {} px (RMS over the whole frame and all draws): so large an error is to be \
+             expected for not knowing the true model.",
+            trusted.cell.model,
+            plain(loss)
+        )
     });
     let simpler = match own {
         Some(own) if own.share < by_share.first().map_or(0.0, |best| best.share) => {

@@ -1,0 +1,144 @@
+//! `calibench judge`: which operator, or which file of measured corners, and which camera model to trust.
+
+use std::path::PathBuf;
+
+use calibench_calibrate::choice::ModelChoice;
+use calibench_exchange::Inputs;
+use calibench_judge::{Material, Options, judge, published_camera, stated_sigma};
+use calibench_model::camera::ImageSize;
+use calibench_photographs::Chessboard;
+use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
+use calibench_report::judgement::{in_use as in_words, section, verdict};
+use clap::Args;
+
+use super::context::Context;
+use super::convert::positive;
+use super::{output, reading};
+use crate::deliver::print;
+use crate::failure::Failure;
+
+mod files;
+mod page;
+mod photographs;
+
+use files::CornerFile;
+
+/// From too poor to too rich, on a flat board and on one that may be bent.
+const MODELS: [&str; 13] = [
+    "opencv4:fx,fy,cx,cy",
+    "opencv4:fx,fy,cx,cy,k1",
+    "opencv4:fx,fy,cx,cy,k1,k2",
+    "opencv5:fx,fy,cx,cy,k1,k2,k3",
+    "opencv4",
+    "opencv5",
+    "opencv8",
+    "opencv-fisheye",
+    "photogrammetric",
+    "opencv4+bent",
+    "opencv5+bent",
+    "opencv8+bent",
+    "opencv-fisheye+bent",
+];
+
+#[derive(Args)]
+pub struct Judge {
+    /// Photographs of a chessboard, all by one camera: at least six
+    #[arg(value_name = "PHOTO", required_unless_present = "points")]
+    photos: Vec<PathBuf>,
+    /// Corners that were measured beforehand, in place of photographs: CSV with image,target,x,y and targets r1c1, r1c2, ... as `detect` and `control` name them. Each file
+    /// stands for an operator, called as the file without its ending, or NAME; may be repeated, to compare files of the same images. Covariances are not used
+    #[arg(long, value_name = "[NAME=]CSV", conflicts_with = "photos", requires = "size")]
+    points: Vec<CornerFile>,
+    /// Size of the images that --points are of, px
+    #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "points", conflicts_with = "photos")]
+    size: Option<ImageSize>,
+    /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
+    #[arg(long, value_name = "COLUMNSxROWS:SIDE")]
+    chessboard: Chessboard,
+    /// Methods to compare, as in forstner:window=15 [default: all that make sense on chess corners; with --camera parametric_corner:window=15]
+    #[arg(short, long = "method", value_name = "METHOD", conflicts_with = "points")]
+    methods: Vec<String>,
+    /// Camera models to compare, as in opencv5, opencv4:fx,fy,cx,cy with some of its parameters only, or opencv5+bent on a board that may be bent [default: thirteen
+    /// from too poor to too rich]
+    #[arg(long = "model", value_name = "MODEL")]
+    models: Vec<String>,
+    /// Pixel pitch, um, for models in mm; no figure in px depends on it [default: 10]
+    #[arg(long, value_name = "UM", value_parser = positive, allow_negative_numbers = true)]
+    pitch: Option<f64>,
+    /// A camera file to compare with: a calibration that somebody made before
+    #[arg(long, value_name = "FILE")]
+    published: Option<PathBuf>,
+    /// A camera file in use: does it still hold on these photographs or points? Exit code 0 if it holds, 1 if it has moved, 3 if they cannot tell
+    #[arg(long, value_name = "FILE", conflicts_with = "published")]
+    camera: Option<PathBuf>,
+    /// Difference over the frame, px RMS, up to which --camera holds
+    #[arg(long, value_name = "PX", default_value_t = 1.0, requires = "camera", value_parser = positive, allow_negative_numbers = true)]
+    margin: f64,
+    /// How often the photographs are split into halves
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    splits: u64,
+    /// Seed of the splits
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: u64,
+    /// Folder for the page with its pictures and its numbers as CSV; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+}
+
+impl Judge {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let models = self.models()?;
+        let files = self.points.iter().map(|file| &file.path);
+        let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera));
+        let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
+        let material = self.material(context)?;
+        let size = material.size;
+        let published = self.camera.as_deref().or(self.published.as_deref());
+        let published =
+            published.map(|path| published_camera(path, &path.display().to_string(), size).map_err(Failure::input)).transpose()?;
+        let options = Options {
+            models,
+            pitch_um: self.pitch,
+            splits: self.splits,
+            seed: self.seed,
+            name: "judge".into(),
+            published: published.as_ref().map(|named| named.camera),
+            published_sigma: published.as_ref().and_then(stated_sigma),
+        };
+        let rows = judge(&material, &options)?;
+        let summary = Summary::new(&rows, self.seed);
+        if let Some(folder) = folder {
+            folder.replace(|folder| self.write(folder, &material, &rows, &summary))?;
+        }
+        let Some(trusted) = summary.trusted() else { return Err(Failure::input(section(&summary).0)) };
+        let in_use = self.in_use(&trusted);
+        in_use.iter().try_for_each(|found| print(&format!("- {}\n", in_words(found))))?;
+        print(&verdict(&summary, &trusted))?;
+        match in_use.map(|found| found.verdict) {
+            Some(StillHolds::Moved) => Err(Failure::Gate),
+            Some(StillHolds::CannotTell) => Err(Failure::Doubt),
+            None if trusted.doubt().is_some() => Err(Failure::Doubt),
+            Some(StillHolds::Holds) | None => Ok(()),
+        }
+    }
+
+    fn in_use(&self, trusted: &Trusted<'_>) -> Option<InUse> {
+        self.camera.as_ref()?;
+        // Where the two cannot be compared over the frame the photographs cannot tell.
+        let unknown = InUse { verdict: StillHolds::CannotTell, apart: f64::NAN, error: f64::INFINITY, margin: self.margin };
+        Some(trusted.in_use(self.margin).unwrap_or(unknown))
+    }
+
+    fn models(&self) -> Result<Vec<ModelChoice>, Failure> {
+        let texts: Vec<String> = if self.models.is_empty() { MODELS.map(str::to_owned).to_vec() } else { self.models.clone() };
+        ModelChoice::parse_all(&texts).map_err(|(place, error)| Failure::input(format!("--model {}: {error}", texts[place])))
+    }
+
+    /// The corners to judge by: measured here, or read.
+    fn material(&self, context: &Context<'_>) -> Result<Material, Failure> {
+        match self.size {
+            Some(size) => files::material(&self.points, self.chessboard, size),
+            None => self.measured(context),
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The page of a judgement, its pictures and its numbers.
+
+use calibench_exchange::NewFolder;
+use calibench_judge::Material;
+use calibench_model::escape::code;
+use calibench_photographs::Chessboard;
+use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
+use calibench_records::points::RunInfo;
+use calibench_report::judgement::{in_use as in_words, section};
+
+use super::Judge;
+use super::files::CornerFile;
+
+impl Judge {
+    pub fn write(&self, folder: &NewFolder, material: &Material, rows: &[Row], summary: &Summary) -> std::io::Result<()> {
+        let info = RunInfo { scenario: "judge".into(), seed: self.seed, revision: env!("CARGO_PKG_VERSION").into(), detector: None };
+        folder.write(JUDGEMENT, |file| write_rows(file, &info, rows))?;
+        let (text, pictures) = section(summary);
+        let in_use = summary.trusted().and_then(|trusted| self.in_use(&trusted));
+        let in_use = in_use.map_or_else(String::new, |found| format!("{}\n\n", in_words(&found)));
+        for (name, picture) in &pictures {
+            folder.write(name, |file| picture.encode(file))?;
+        }
+        let text = format!(
+            "{} Everything here is in `{JUDGEMENT}`, a row for each figure.\n\n{in_use}{}\n",
+            if self.points.is_empty() { self.from_photographs() } else { self.from_files(material) },
+            text.trim_end()
+        );
+        folder.write("README.md", |file| file.write_all(text.as_bytes()))
+    }
+
+    fn from_photographs(&self) -> String {
+        format!(
+            "# Which operator and which model to trust on these photographs\n\nMade by `calibench judge` from {} photographs of a chessboard of {}.",
+            self.photos.len(),
+            self.board()
+        )
+    }
+
+    fn from_files(&self, material: &Material) -> String {
+        let file = |(operator, file): (usize, &CornerFile)| {
+            format!("- {}: {}, {} corners\n", code(&file.name), code(&file.path.display().to_string()), material.measured(operator))
+        };
+        let files: String = self.points.iter().enumerate().map(file).collect();
+        format!(
+            "# Which file of corners and which model to trust\n\nMade by `calibench judge` from corners that were measured beforehand, of a chessboard of {}, in {} \
+             photographs of {} x {} px. Each file stands for an operator:\n\n{files}\nCovariances in the files are not used. `Rejected` is what a file says of corners without a position.",
+            self.board(),
+            material.views.len(),
+            material.size.width,
+            material.size.height
+        )
+    }
+
+    fn board(&self) -> String {
+        let Chessboard { board, side } = self.chessboard;
+        format!("{} x {} inner corners, squares of {side}", board.columns, board.rows)
+    }
+}
+
