@@ -16,6 +16,7 @@ mod galo;
 mod gate;
 mod input;
 mod judge;
+mod judge_points;
 mod killed;
 mod measure;
 mod messages;

@@ -90,9 +90,7 @@ fn corners(material: &Material, operator: usize, common: &[Vec<bool>], tried: &[
     let view = |(view, name): (usize, &Arc<str>)| {
         let count = corners.at[view].iter().flatten().count();
         let shared = common[view].iter().filter(|common| **common).count();
-        Row { unit: "corners".into(), ..Row::plain(measure::CORNERS, name, count as f64) }
-            .beside(shared as f64)
-            .of(tried[view])
+        Row { unit: "corners".into(), ..Row::plain(measure::CORNERS, name, count as f64) }.beside(shared as f64).of(tried[view])
     };
     let missed = material.missed.iter().map(|(name, why)| Row::without(measure::CORNERS, name, "missed", why));
     let rejected = corners.rejected.iter().map(|(view, corner, why)| {

@@ -34,7 +34,10 @@ impl FromStr for CornerFile {
         };
         let plain = !name.is_empty() && !name.contains('`') && escape::name(&name) == name && escape::cell(&name) == name;
         if !plain {
-            return Err(format!("`{}` is no name of an operator: expected NAME=FILE with a plain name, as in left=corners.csv", escape::name(&name)));
+            return Err(format!(
+                "`{}` is no name of an operator: expected NAME=FILE with a plain name, as in left=corners.csv",
+                escape::name(&name)
+            ));
         }
         Ok(Self { name: name.into(), path: path.to_owned() })
     }

@@ -44,7 +44,7 @@ impl Judge {
         let files: String = self.points.iter().enumerate().map(file).collect();
         format!(
             "# Which file of corners and which model to trust\n\nMade by `calibench judge` from corners that were measured beforehand, of a chessboard of {}, in {} \
-             photographs of {} x {} px. Each file stands for an operator:\n\n{files}\nCovariances in the files are not used. `Rejected` is what a file says of corners without a position.",
+             photographs of {} x {} px. Each file stands for an operator:\n\n{files}\nCovariances in the files are not used.",
             self.board(),
             material.views.len(),
             material.size.width,
@@ -57,4 +57,3 @@ impl Judge {
         format!("{} x {} inner corners, squares of {side}", board.columns, board.rows)
     }
 }
-

@@ -89,3 +89,13 @@ proptest! {
         let _ = parse(&format!("image,target,x,y\n{text}"));
     }
 }
+
+#[test]
+fn a_reader_may_ask_more_of_a_row_and_is_told_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.csv");
+    std::fs::write(&path, "target,y,x,image\n1,2,3,i\n\n2,9,3,i\n").unwrap();
+    let below = |row: &PointRef<'_>| if row.start.position.y < 5.0 { Ok(()) } else { Err(("y", "too low".to_owned())) };
+    let error = read_points_checked(&path, &below).unwrap_err();
+    assert_eq!((error.line, error.column.as_deref(), error.problem.as_str()), (Some(4), Some("y"), "too low"));
+}

@@ -2,6 +2,7 @@
 
 mod honest;
 mod outliers;
+mod point_files;
 mod ranking;
 
 use std::sync::Arc;

@@ -1,9 +1,10 @@
 //! The tables behind the verdict.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use calibench_model::escape::{code, markdown};
-use calibench_records::judgement::{COMPARABLE, Cell, Measured, Summary, Trusted};
+use calibench_records::judgement::{COMPARABLE, Cell, Summary, Trusted};
 
 use super::verdict::listed;
 use crate::markdown::{MarkdownTable, fixed};
@@ -25,7 +26,7 @@ pub fn about_holdout(summary: &Summary) -> String {
         if let Some(why) = &method.unavailable {
             text.push_str(&format!(" `{}` is unavailable: {why}.", method.method));
         } else if method.found < method.of {
-            text.push_str(&lacking(method));
+            text.push_str(&lacking(&method.method, [method.found, method.of], &method.rejected));
             if !summary.is_compared(&method.method) {
                 text.push_str(&format!(" With less than {} % of the corners it is not compared with the others.", 100.0 * COMPARABLE));
             }
@@ -38,16 +39,16 @@ pub fn about_holdout(summary: &Summary) -> String {
 }
 
 /// The corners that an operator rejected, or that its file has no word of.
-fn lacking(method: &Measured) -> String {
-    let missing = method.of - method.found;
-    let reasons: Vec<String> = method.rejected.iter().map(|(why, count)| format!("{count} {}", markdown(why))).collect();
-    let share = fixed(100.0 * missing as f64 / method.of as f64, 1);
+fn lacking(method: &str, [found, of]: [usize; 2], rejected: &BTreeMap<Arc<str>, usize>) -> String {
+    let missing = of - found;
+    let reasons: Vec<String> = rejected.iter().map(|(why, count)| format!("{count} {}", markdown(why))).collect();
+    let share = fixed(100.0 * missing as f64 / of as f64, 1);
     if reasons.is_empty() {
-        format!(" `{}` lacks {missing} of {} corners ({share} %).", method.method, method.of)
-    } else if method.rejected.values().sum::<usize>() < missing {
-        format!(" `{}` lacks {missing} of {} corners ({share} %), among them {} rejected.", method.method, method.of, listed(&reasons))
+        format!(" `{method}` lacks {missing} of {of} corners ({share} %).")
+    } else if rejected.values().sum::<usize>() < missing {
+        format!(" `{method}` lacks {missing} of {of} corners ({share} %), among them {} rejected.", listed(&reasons))
     } else {
-        format!(" `{}` rejected {missing} of {} corners ({share} %: {}).", method.method, method.of, listed(&reasons))
+        format!(" `{method}` rejected {missing} of {of} corners ({share} %: {}).", listed(&reasons))
     }
 }
 

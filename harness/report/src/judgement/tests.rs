@@ -131,7 +131,8 @@ fn chances_are_told_by_three_digits_and_the_level_itself_is_worse() {
 fn a_model_alone_has_no_rivals() {
     let mut summary = judged();
     summary.cells.retain(|cell| &*cell.model == "b");
-    says(&summary, "by `b` in 100 %. The camera with `b` differs from that of the best model of each draw by 0 px (");
+    says(&summary, "by `b` in 100 %.\n");
+    is_silent(&summary, "of each draw");
     is_silent(&summary, "Not judged");
     is_silent(&summary, "Beyond the corners");
 }
@@ -238,6 +239,16 @@ fn what_operators_rejected_is_told_with_its_share() {
         assert!(text.contains(expected), "not said: {expected}\n{text}");
     }
     assert!(!text.contains("`n` rejected") && !text.contains("`q`"), "nothing was rejected: {text}");
+}
+
+#[test]
+fn corners_of_which_a_file_says_nothing_are_lacking() {
+    let mut summary = judged();
+    let m = summary.methods.iter().position(|method| &*method.method == "m").unwrap();
+    (summary.methods[m].found, summary.methods[m].of) = (17, 20);
+    assert!(tables::about_holdout(&summary).contains(" `m` lacks 3 of 20 corners (15.0 %), among them 1 border rejected."));
+    summary.methods[m].rejected.clear();
+    assert!(tables::about_holdout(&summary).contains(" `m` lacks 3 of 20 corners (15.0 %). "));
 }
 
 /// Residuals 0.3 px of 4 corners and 0.6 px of 12: sqrt((0.36 + 4.32) / 16).

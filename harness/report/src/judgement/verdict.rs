@@ -105,7 +105,7 @@ fn models(trusted: &Trusted<'_>) -> String {
     let share = |share: f64| if share < 0.01 { "below 1 %".into() } else { format!("{:.0} %", 100.0 * share) };
     let best: Vec<String> = by_share.iter().map(|standing| format!("`{}` in {}", standing.cell.model, share(standing.share))).collect();
     let own = trusted.models.iter().find(|standing| standing.cell == trusted.cell);
-    let loss = own.and_then(|own| own.loss).map_or_else(String::new, |loss| {
+    let loss = own.and_then(|own| own.loss).filter(|loss| *loss > 0.0).map_or_else(String::new, |loss| {
         format!(
             " The camera with `{}` differs from that of the best model of each draw by {} px (RMS over the whole frame and all draws): so large an error is to be \
              expected for not knowing the true model.",
