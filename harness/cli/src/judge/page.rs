@@ -23,13 +23,13 @@ impl Judge {
         }
         let text = format!(
             "{} Everything here is in `{JUDGEMENT}`, a row for each figure.\n\n{in_use}{}\n",
-            if self.points.is_empty() { self.from_photographs() } else { self.from_files(material) },
+            if self.points.is_empty() { self.of_photographs() } else { self.of_files(material) },
             text.trim_end()
         );
         folder.write("README.md", |file| file.write_all(text.as_bytes()))
     }
 
-    fn from_photographs(&self) -> String {
+    fn of_photographs(&self) -> String {
         format!(
             "# Which operator and which model to trust on these photographs\n\nMade by `calibench judge` from {} photographs of a chessboard of {}.",
             self.photos.len(),
@@ -37,7 +37,7 @@ impl Judge {
         )
     }
 
-    fn from_files(&self, material: &Material) -> String {
+    fn of_files(&self, material: &Material) -> String {
         let file = |(operator, file): (usize, &CornerFile)| {
             format!("- {}: {}, {} corners\n", code(&file.name), code(&file.path.display().to_string()), material.measured(operator))
         };
