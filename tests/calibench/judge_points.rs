@@ -88,8 +88,11 @@ fn files_are_judged_exactly_as_the_photographs_they_were_measured_in() {
 fn files_measured_in_real_photographs_are_judged_as_these() {
     let folder = tempfile::tempdir().unwrap();
     let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from).join("opencv-left");
-    let photos: Vec<String> =
-        files(&data).into_iter().map(|(name, _)| data.join(name).display().to_string()).filter(|name| name.ends_with(".jpg")).collect();
+    let photos: Vec<String> = files(&data)
+        .into_iter()
+        .map(|(name, _)| data.join(name).display().to_string())
+        .filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "jpg"))
+        .collect();
     let says = agree(folder.path(), &photos);
     assert!(says.contains("trust `chess_corners` with"), "{says}");
     let page = std::fs::read_to_string(folder.path().join("files/README.md")).unwrap();
@@ -171,6 +174,20 @@ fn mistakes_in_files_are_named_with_their_lines() {
         "two files are called `good`: good.csv and x/good.csv; give them names, as in --points first=good.csv",
     );
     refused(&["good.csv", "a=good.csv"], "good.csv: given twice");
+    refused(&["good.csv", "a=x/../good.csv"], "x/../good.csv: given twice");
+    write("half.csv", &grid(|image, corner| (corner % 9 < 5).then(|| line(image, corner))));
+    refused(
+        &["good.csv", "half.csv"],
+        "half.csv: has 180 of the 324 corners that the files have together; operators are compared where each has 80 %",
+    );
+    write(
+        "rejected.csv",
+        &format!(
+            "{}i0,P7,,,rejected,no_corner\n",
+            good.replace("x,y\n", "x,y,status,reason\n").replace(['\n'], ",,\n").replace("reason,,", "reason")
+        ),
+    );
+    refused(&["rejected.csv"], "rejected.csv: `P7` is no inner corner of a board of 9 x 6");
     refused(&["good.csv", "other.csv"], "other.csv: has no image in common with good.csv: it names `j0`, the other `i0`");
     refused(&["=good.csv"], "is no name of an operator: expected NAME=FILE");
     for (arguments, why) in [

@@ -30,9 +30,7 @@ impl Expected {
     /// # Errors
     /// The column that is wrong, what was expected there and what to do.
     pub fn check(&self, point: &PointRef<'_>) -> Result<(), (&'static str, String)> {
-        if !self.places.contains_key(point.target) {
-            return Err(("target", self.stranger(point.target)));
-        }
+        self.name(point.target).map_err(|why| ("target", why))?;
         let PixelPoint { x, y } = point.start.position;
         let beyond = |at: f64, extent: u32| !(-0.5..=f64::from(extent) - 0.5).contains(&at);
         let (column, at, extent) = match (beyond(x, self.size.width), beyond(y, self.size.height)) {
@@ -48,6 +46,14 @@ impl Expected {
                 f64::from(extent) - 0.5
             ),
         ))
+    }
+
+    /// Whether `target` is a corner of the board.
+    ///
+    /// # Errors
+    /// What was expected and what to do.
+    pub fn name(&self, target: &str) -> Result<(), String> {
+        if self.places.contains_key(target) { Ok(()) } else { Err(self.stranger(target)) }
     }
 
     fn stranger(&self, target: &str) -> String {

@@ -10,6 +10,7 @@ use calibench_judge::{Expected, FEWEST, Material};
 use calibench_model::camera::ImageSize;
 use calibench_model::escape;
 use calibench_photographs::Chessboard;
+use calibench_records::judgement::COMPARABLE;
 
 use crate::failure::Failure;
 use crate::inputs::checked;
@@ -53,9 +54,11 @@ pub fn material(files: &[CornerFile], chessboard: Chessboard, size: ImageSize) -
     let expected = Expected::new(chessboard.board, size);
     let read = |file: &CornerFile| Ok((file.name.clone(), checked(&file.path, &|point| expected.check(point))?));
     let read = files.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
+    files.iter().zip(&read).try_for_each(|(file, (_, read))| of_board(&expected, file, read))?;
     same_images(files, &read)?;
     let material = Material::of_files(&read, chessboard.board, chessboard.side, size);
     files.iter().enumerate().try_for_each(|(operator, file)| enough(&material, operator, file))?;
+    files.iter().enumerate().try_for_each(|(operator, file)| comparable(&material, operator, file))?;
     Ok(material)
 }
 
@@ -63,7 +66,11 @@ pub fn material(files: &[CornerFile], chessboard: Chessboard, size: ImageSize) -
 fn told_apart(files: &[CornerFile]) -> Result<(), Failure> {
     for (index, file) in files.iter().enumerate() {
         let (path, name) = (file.path.display(), &file.name);
-        if files[..index].iter().any(|earlier| earlier.path == file.path) {
+        let same = |earlier: &CornerFile| match (earlier.path.canonicalize(), file.path.canonicalize()) {
+            (Ok(earlier), Ok(path)) => earlier == path,
+            _ => earlier.path == file.path,
+        };
+        if files[..index].iter().any(same) {
             return Err(Failure::input(format!("--points {path}: given twice; expected each file once")));
         }
         if let Some(earlier) = files[..index].iter().find(|earlier| earlier.name == *name) {
@@ -92,6 +99,28 @@ fn same_images(files: &[CornerFile], read: &[(Arc<str>, PointFile)]) -> Result<(
         }
     }
     Ok(())
+}
+
+/// Rows without a position name corners of the board as well.
+fn of_board(expected: &Expected, file: &CornerFile, read: &PointFile) -> Result<(), Failure> {
+    read.lost
+        .iter()
+        .try_for_each(|[_, target, ..]| expected.name(target))
+        .map_err(|why| Failure::input(format!("{}: {why}", file.path.display())))
+}
+
+/// As many corners as a comparison with the other files takes.
+fn comparable(material: &Material, operator: usize, file: &CornerFile) -> Result<(), Failure> {
+    let (found, all) = (material.measured(operator), material.tried().iter().sum::<usize>());
+    if found as f64 >= COMPARABLE * all as f64 {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{}: has {found} of the {all} corners that the files have together; operators are compared where each has {:.0} % of them; give files of the same \
+         images and corners, or judge each alone",
+        file.path.display(),
+        100.0 * COMPARABLE
+    )))
 }
 
 /// As many images as two halves take.
