@@ -20,8 +20,8 @@ const STANDS: f64 = 0.01;
 const ROUNDS: usize = 12;
 /// Huber's bound of the adjustment that shows gross errors, in standard deviations.
 const BOUND: f64 = 1.5;
-/// Residuals (as vectors) beyond so many standard deviations are gross: of normal ones `exp(-8)`.
-const GROSS: f64 = 4.0;
+/// Residuals (as vectors) beyond so many standard deviations are gross: what an operator scatters now and then is left to Baarda's test.
+const GROSS: f64 = 10.0;
 /// Share of the image points beyond, and their number, up to which they are left to be looked at one after the other.
 const FEW: (f64, usize) = (0.01, 3);
 

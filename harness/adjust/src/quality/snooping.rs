@@ -37,7 +37,7 @@ pub struct Found {
 
 /// Adjusts, leaves out the image point with the largest normalised residual beyond the critical value, adjusts again, until none is left.
 ///
-/// Where more than a hundredth of the image points are gross they hide one another: then all of them that a robust adjustment shows are left out
+/// Where more than a hundredth of the image points are beyond ten standard deviations they hide one another: then all of them that a robust adjustment shows are left out
 /// first, together.
 ///
 /// Returns the last solution and every image point that was rejected, in that order; none disappears: [`Solution::residuals`] lists them as left out.
