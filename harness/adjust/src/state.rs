@@ -1,11 +1,11 @@
 //! Values of all unknowns, and how a step changes them.
 
-use calibench_model::Pose;
 use calibench_model::camera::opencv::CameraFromWorld;
 use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 
-use crate::network::{Layout, Network};
+use crate::network::{ImageObservation, Layout, Network};
 use crate::normal::Step;
 
 /// Values of all unknowns.
@@ -33,6 +33,12 @@ impl State {
             poses: network.images.iter().map(|image| image.pose).collect(),
             points,
         }
+    }
+
+    /// Where an observation of a checked network is pictured, if it is.
+    pub(crate) fn pixel(&self, network: &Network, o: &ImageObservation) -> Option<PixelPoint> {
+        let ray = self.poses[o.image].ray(&self.points[o.point]);
+        self.cameras[network.images[o.image].camera].project(ray).ok()
     }
 
     /// After a step.

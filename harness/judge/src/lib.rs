@@ -27,7 +27,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 pub use material::{Corners, FEWEST, Material};
-pub use options::Options;
+pub use options::{MODELS, Options};
 pub use point_files::Expected;
 pub use published::{published_camera, stated_sigma};
 

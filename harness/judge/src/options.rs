@@ -3,6 +3,23 @@
 use calibench_calibrate::choice::ModelChoice;
 use calibench_model::camera::Camera;
 
+/// The camera models that are compared unless others are asked for: from too poor to too rich, on a flat board and on one that may be bent.
+pub const MODELS: [&str; 13] = [
+    "opencv4:fx,fy,cx,cy",
+    "opencv4:fx,fy,cx,cy,k1",
+    "opencv4:fx,fy,cx,cy,k1,k2",
+    "opencv5:fx,fy,cx,cy,k1,k2,k3",
+    "opencv4",
+    "opencv5",
+    "opencv8",
+    "opencv-fisheye",
+    "photogrammetric",
+    "opencv4+bent",
+    "opencv5+bent",
+    "opencv8+bent",
+    "opencv-fisheye+bent",
+];
+
 /// How to judge.
 #[derive(Clone, Debug)]
 pub struct Options {

@@ -1,7 +1,5 @@
 //! Residuals, of every observation that was given.
 
-use calibench_model::camera::CameraModel;
-
 use crate::network::ImageObservation;
 use crate::solution::Solution;
 
@@ -65,9 +63,7 @@ impl Solution<'_> {
 
     /// The residual of an observation that took no part, where the result pictures it.
     fn left_out(&self, o: &ImageObservation) -> Option<[f64; 2]> {
-        let state = &self.end.state;
-        let ray = state.poses[o.image].ray(&state.points[o.point]);
-        let pixel = state.cameras[self.engine.network.images[o.image].camera].project(ray).ok()?;
+        let pixel = self.end.state.pixel(self.engine.network, o)?;
         Some([pixel.x - o.position.x, pixel.y - o.position.y])
     }
 

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use calibench_model::camera::CameraModel;
-
 use super::snooping::Found;
 use crate::AdjustError;
 use crate::network::Network;
@@ -67,58 +65,47 @@ pub fn scale_of(pairs: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
 ///
 /// Source: Huber 1981, chapter 7.
 pub fn adjust_robustly<'n>(network: &'n Network, options: &Options, bound: f64) -> Result<(Solution<'n>, f64), AdjustError> {
-    let mut options = Options { huber: Some(bound), ..options.clone() };
-    let mut solution = adjust_from(network, &options, State::of(network))?;
+    let at = |scaled: f64| Options { huber: Some(scaled), ..options.clone() };
+    let mut scaled = bound;
+    let mut solution = adjust_from(network, &at(scaled), State::of(network))?;
     for _ in 0..ROUNDS {
-        let last = options.huber.unwrap_or(bound);
-        let Some(next) = solution.scale().filter(|scale| *scale > ROUNDING).map(|scale| bound * scale) else { break };
-        if (next / last - 1.0).abs() < STANDS {
+        let Some(scale) = solution.scale().filter(|scale| *scale > ROUNDING) else { break };
+        if (bound * scale / scaled - 1.0).abs() < STANDS {
             break;
         }
-        options.huber = Some(next);
-        solution = adjust_from(network, &options, solution.end.state.clone())?;
+        scaled = bound * scale;
+        solution = adjust_from(network, &at(scaled), solution.end.state.clone())?;
     }
-    let bound = options.huber.unwrap_or(bound);
-    Ok((solution, bound))
+    Ok((solution, scaled))
 }
 
-/// Least squares without all that is gross, where that is much: left out together, by a robust adjustment, and taken in again where they fit. `None` where
-/// it is little, or where the others do not determine the network.
-///
-/// # Errors
-/// As [`adjust`](crate::adjust).
-pub(super) fn without_gross<'n>(network: &'n Network, options: &Options) -> Result<Option<(Solution<'n>, Vec<Found>)>, AdjustError> {
-    let mut pictured = options.clone();
-    pictured.left_out.extend(not_pictured(network));
-    let (mut solution, _) = adjust_robustly(network, &pictured, BOUND)?;
+/// Least squares of a checked network without all that is gross, where that is much: left out together, by a robust adjustment, and taken in again where it
+/// fits. `None` where it is little, or where this does not come to an end.
+pub(super) fn without_gross<'n>(network: &'n Network, options: &Options) -> Option<(Solution<'n>, Vec<Found>)> {
+    let left_out = |more: &mut dyn Iterator<Item = usize>| Options {
+        left_out: options.left_out.iter().copied().chain(more).collect(),
+        ..options.clone()
+    };
+    let start = State::of(network);
+    let mut not_pictured = (0..network.observations.len()).filter(|&i| start.pixel(network, &network.observations[i]).is_none());
+    let (mut solution, _) = adjust_robustly(network, &left_out(&mut not_pictured), BOUND).ok()?;
     let never: BTreeSet<usize> = options.left_out.iter().copied().collect();
+    let few = FEW.1.max((FEW.0 * network.observations.len() as f64) as usize);
     let mut gross: Vec<(usize, f64)> = Vec::new();
     for _ in 0..ROUNDS {
-        let Some(scale) = solution.scale().filter(|scale| *scale > ROUNDING) else { return Ok(None) };
+        let scale = solution.scale().filter(|scale| *scale > ROUNDING)?;
         let found = solution.gross(scale, &never);
         let same = found.iter().map(|(index, _)| index).eq(gross.iter().map(|(index, _)| index));
         gross = found;
-        if gross.len() <= FEW.1.max((FEW.0 * network.observations.len() as f64) as usize) {
-            return Ok(None);
+        if gross.len() <= few {
+            return None;
         }
         if same {
             break;
         }
-        let left_out = options.left_out.iter().copied().chain(gross.iter().map(|(index, _)| *index)).collect();
-        let without = Options { left_out, ..options.clone() };
-        let Ok(next) = adjust_from(network, &without, solution.end.state.clone()) else { return Ok(None) };
-        solution = next;
+        let without = left_out(&mut gross.iter().map(|(index, _)| *index));
+        solution = adjust_from(network, &without, solution.end.state.clone()).ok()?;
     }
     let found = gross.into_iter().map(|(observation, w)| Found { observation, w, critical: GROSS, left_out: true });
-    Ok(Some((solution, found.collect())))
-}
-
-/// Observations that the start values do not picture.
-fn not_pictured(network: &Network) -> impl Iterator<Item = usize> + '_ {
-    let state = State::of(network);
-    (0..network.observations.len()).filter(move |&index| {
-        let o = &network.observations[index];
-        let ray = state.poses[o.image].ray(&state.points[o.point]);
-        state.cameras[network.images[o.image].camera].project(ray).is_err()
-    })
+    Some((solution, found.collect()))
 }

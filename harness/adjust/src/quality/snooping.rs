@@ -48,7 +48,8 @@ pub struct Found {
 /// Source: Baarda 1968.
 pub fn snoop<'n>(network: &'n Network, options: &Options, snooping: Snooping) -> Result<(Solution<'n>, Vec<Found>), AdjustError> {
     let mut options = options.clone();
-    let (mut solution, mut found) = match without_gross(network, &options)? {
+    network.check()?;
+    let (mut solution, mut found) = match without_gross(network, &options) {
         Some(found) => found,
         None => (adjust_from(network, &options, State::of(network))?, Vec::new()),
     };

@@ -132,6 +132,13 @@ fn blunders_are_found_and_none_disappears() {
 }
 
 #[test]
+fn an_observation_of_no_image_is_refused_by_snooping_too() {
+    let mut network = bundle();
+    network.observations[5].image = network.images.len();
+    assert!(snoop(&network, &Options::default(), Snooping::default()).is_err());
+}
+
+#[test]
 fn huber_s_weights_hold_a_blunder_back() {
     let clean = bundle();
     let mut network = clean.clone();

@@ -6,6 +6,7 @@ use calibench_model::camera::{CameraModel, DerivativeBuffer};
 use nalgebra::{DMatrix, DVector, SMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
+use crate::Resampled;
 use crate::resampled::jackknife;
 
 /// Of a pose: a small rotation about the camera's axes, a shift along them.
@@ -104,16 +105,12 @@ impl<'s, 'n> Moving<'s, 'n> {
         let normal = self.images.iter().fold(self.prior.0.clone(), |sum, image| sum + &image.normal);
         let cofactors = normal.cholesky()?.inverse();
         let formal = (0..self.unknowns.len()).map(|k| (cofactors[(k, k)] * self.cost / redundancy).sqrt());
-        let mut ratios: Vec<f64> = jackknife(&found).into_iter().zip(formal).map(|(own, formal)| own / formal).collect();
-        ratios.sort_by(f64::total_cmp);
-        ratios.get(ratios.len() / 2).copied()
+        Resampled { groups, sigmas: jackknife(&found) }.ratio(formal)
     }
 }
 
-fn solve(mut normal: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let scale = normal.diagonal().map(|value| 1.0 / value.sqrt());
-    (0..normal.ncols()).for_each(|i| (0..normal.nrows()).for_each(|k| normal[(k, i)] *= scale[k] * scale[i]));
-    let change = normal.cholesky()?.solve(&right.component_mul(&scale)).component_mul(&scale);
+fn solve(normal: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    let change = normal.cholesky()?.solve(right);
     change.iter().all(|value| value.is_finite()).then_some(change)
 }
 

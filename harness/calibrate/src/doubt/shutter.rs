@@ -29,10 +29,14 @@ pub(super) fn check(calibration: &Calibration<'_>) -> Allowed {
     let redundancy = solution.counts().redundancy().saturating_sub(moving.more as _).max(1) as f64;
     let richer =
         Richer { cost: moving.cost, more: moving.more, cameras: Cameras::Changed(moving.changes()), white: moving.white().collect() };
-    let gain = |moving: &Moving<'_, '_>| solution.cost() - moving.cost;
-    let columns = Moving::of(solution, |at: &PixelPoint| at.x);
-    let is_by_rows = columns.is_none_or(|columns| gain(&moving) > BY_ROWS * gain(&columns));
-    let allowed = calibration.judged(&richer, || moving.optimism(GROUPS, redundancy), || cause(is_by_rows).into());
+    let mut is_by_rows = false;
+    let words = || {
+        let gain = |moving: &Moving<'_, '_>| solution.cost() - moving.cost;
+        let columns = Moving::of(solution, |at: &PixelPoint| at.x);
+        is_by_rows = columns.is_none_or(|columns| gain(&moving) > BY_ROWS * gain(&columns));
+        cause(is_by_rows).into()
+    };
+    let allowed = calibration.judged(&richer, || moving.optimism(GROUPS, redundancy), words);
     if is_by_rows || allowed.explains() > MUCH { allowed } else { allowed.sound() }
 }
 

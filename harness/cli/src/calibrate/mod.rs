@@ -51,10 +51,10 @@ pub struct Calibrate {
     /// Weigh image points by the covariances of the point file
     #[arg(long)]
     covariances: bool,
-    /// Robust weights: bound in standard deviations of an image point, as in 2
+    /// Robust weights: bound in standard deviations of an image point, as the residuals show them, as in 2
     #[arg(long, value_name = "K", value_parser = positive, allow_negative_numbers = true)]
     huber: Option<f64>,
-    /// Leave out image points that Baarda's test rejects, one after the other
+    /// Leave out image points that Baarda's test rejects, one after the other; many gross errors, which hide one another, first and together
     #[arg(long, conflicts_with = "huber")]
     snoop: bool,
     /// Observed poses: a station file with sX0,sY0,sZ0 (object units) or sx_deg,sy_deg,sz_deg (about the camera's axes) or both

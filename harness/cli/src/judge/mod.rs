@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_exchange::Inputs;
-use calibench_judge::{Material, Options, judge, published_camera, stated_sigma};
+use calibench_judge::{MODELS, Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_photographs::Chessboard;
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
@@ -22,23 +22,6 @@ mod page;
 mod photographs;
 
 use files::CornerFile;
-
-/// From too poor to too rich, on a flat board and on one that may be bent.
-const MODELS: [&str; 13] = [
-    "opencv4:fx,fy,cx,cy",
-    "opencv4:fx,fy,cx,cy,k1",
-    "opencv4:fx,fy,cx,cy,k1,k2",
-    "opencv5:fx,fy,cx,cy,k1,k2,k3",
-    "opencv4",
-    "opencv5",
-    "opencv8",
-    "opencv-fisheye",
-    "photogrammetric",
-    "opencv4+bent",
-    "opencv5+bent",
-    "opencv8+bent",
-    "opencv-fisheye+bent",
-];
 
 #[derive(Args)]
 pub struct Judge {

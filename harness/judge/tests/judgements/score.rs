@@ -1,27 +1,10 @@
 //! What comes of a drawn set.
 
 use calibench_calibrate::choice::ModelChoice;
-use calibench_judge::{Options, judge};
+use calibench_judge::{MODELS, Options, judge};
 use calibench_records::judgement::{StillHolds, Summary};
 
 use super::draw::{Class, Drawn, Fault, Lens};
-
-/// As `calibench judge` compares.
-pub const MODELS: [&str; 13] = [
-    "opencv4:fx,fy,cx,cy",
-    "opencv4:fx,fy,cx,cy,k1",
-    "opencv4:fx,fy,cx,cy,k1,k2",
-    "opencv5:fx,fy,cx,cy,k1,k2,k3",
-    "opencv4",
-    "opencv5",
-    "opencv8",
-    "opencv-fisheye",
-    "photogrammetric",
-    "opencv4+bent",
-    "opencv5+bent",
-    "opencv8+bent",
-    "opencv-fisheye+bent",
-];
 
 /// The model of the truth.
 pub fn truth(class: Class) -> &'static str {
