@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
+use crate::defect::Defect;
 use crate::network::NetworkError;
-use crate::quality::Defect;
 
 /// Why an adjustment has no result.
 #[derive(Clone, Debug, Error, PartialEq)]

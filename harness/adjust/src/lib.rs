@@ -11,8 +11,8 @@
 //! [`snoop`] looks for blunders, [`adjust_robustly`] holds them back.
 
 pub mod approximate;
-mod counts;
 mod datum;
+mod defect;
 mod error;
 mod network;
 mod normal;
@@ -20,16 +20,16 @@ mod quality;
 mod solution;
 mod solve;
 mod state;
+mod undetermined;
 
-pub use counts::Counts;
+pub use defect::{Defect, Direction, Reason};
 pub use error::AdjustError;
 pub use network::{
-    Attitude, Centre, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, OnSurface, Precision, Status,
-    Surface,
+    Attitude, Centre, Counts, Datum, Exterior, ImageObservation, Interior, Network, NetworkError, ObjectPoint, OnSurface, Precision,
+    Status, Surface,
 };
 pub use quality::{
-    Comparison, Correlation, Covariances, Defect, Direction, Distance, Found, Held, ObservedReliability, PointReliability, Reason,
-    Reliability, Residual, Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, scale_of,
-    snoop,
+    Comparison, Correlation, Covariances, Distance, Found, Held, ObservedReliability, PointReliability, Reliability, Residual,
+    Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, scale_of, snoop,
 };
 pub use solution::{Options, Solution, adjust};

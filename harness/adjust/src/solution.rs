@@ -5,13 +5,12 @@ use calibench_model::camera::Camera;
 use nalgebra::Point3;
 
 use crate::AdjustError;
-use crate::counts::Counts;
 use crate::datum::{hold, transformed};
-use crate::network::{Datum, Layout, Network, NetworkError};
+use crate::network::{Counts, Datum, Layout, Network, NetworkError};
 use crate::normal::{Loss, Scratch};
-use crate::quality::{counted, directions};
 use crate::solve::{End, Engine, Solved};
 use crate::state::State;
+use crate::undetermined::{counted, directions};
 
 /// A pivot below which the normal equations are looked at more closely.
 const SUSPECT: f64 = 1e-8;

@@ -1,7 +1,7 @@
 //! Why there is no calibration.
 
-use calibench_adjust::AdjustError;
 use calibench_adjust::approximate::ApproximateError;
+use calibench_adjust::{AdjustError, NetworkError};
 use calibench_model::convert::ConvertError;
 use thiserror::Error;
 
@@ -99,6 +99,12 @@ pub enum CalibrationError {
     /// No adjustment.
     #[error(transparent)]
     Adjust(#[from] AdjustError),
+}
+
+impl From<NetworkError> for CalibrationError {
+    fn from(error: NetworkError) -> Self {
+        Self::Adjust(error.into())
+    }
 }
 
 impl CalibrationError {

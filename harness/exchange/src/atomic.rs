@@ -4,7 +4,6 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::folder::{at, named};
 use crate::photograph::is_photograph;
 
 /// What stands at the path of an output.
@@ -222,6 +221,16 @@ impl<W: Write> Write for Named<'_, W> {
     fn flush(&mut self) -> io::Result<()> {
         self.inner.flush().map_err(|error| named(self.path, error))
     }
+}
+
+/// An error of the file system with the path that it is about.
+pub(crate) fn at(path: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
+}
+
+/// The same while a file is written, which tries again after an interrupt.
+pub(crate) fn named(path: &Path, error: io::Error) -> io::Error {
+    if error.kind() == io::ErrorKind::Interrupted { error } else { at(path, &error) }
 }
 
 #[cfg(test)]

@@ -58,7 +58,11 @@ fn a_circle_between_folders_is_seen_and_one_within_is_not() {
     write("a/two.rs", "use super::one::Thing; #[cfg(test)] mod tests { use crate::b::B; }");
     assert_eq!(Modules::of(folder.path()).circles(), Vec::<String>::new());
     write("a/one.rs", "pub struct Thing(crate::b::B);");
-    assert_eq!(Modules::of(folder.path()).circles(), ["a/one -> b -> a/one", "b -> a/one -> b"]);
+    assert_eq!(Modules::of(folder.path()).circles(), ["a/one -> b -> a/one", "b -> a/one -> b", "a -> b -> a", "b -> a -> b"]);
+    // No circle of files, but one of a folder and a file beside it.
+    write("a/one.rs", "pub struct Thing;");
+    write("a/two.rs", "use crate::b::B;");
+    assert_eq!(Modules::of(folder.path()).circles(), ["a -> b -> a", "b -> a -> b"]);
 }
 
 #[test]

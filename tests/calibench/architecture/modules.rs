@@ -10,11 +10,14 @@ use syn::{Attribute, ItemMod, ItemUse, UseTree, Visibility};
 /// A module: its names from the crate's root.
 type Module = Vec<String>;
 
+/// Which modules each names.
+type Arrows = BTreeMap<Module, BTreeSet<Module>>;
+
 /// The modules of a crate but for those of tests.
 pub struct Modules {
     files: BTreeMap<Module, PathBuf>,
     /// What each names, besides itself and what it hands on.
-    needs: BTreeMap<Module, BTreeSet<Module>>,
+    needs: Arrows,
 }
 
 impl Modules {
@@ -35,34 +38,55 @@ impl Modules {
         Self { files, needs }
     }
 
-    /// The circles with files of more than one folder, each from an arrow between folders on and back to where it begins.
+    /// The circles with files of more than one folder, and those that close when a folder counts as one; each from an arrow that leaves a folder on
+    /// and back to where it begins.
     pub fn circles(&self) -> Vec<String> {
-        let arrows = self.needs.iter().flat_map(|(from, others)| others.iter().map(move |to| (from, to)));
-        let leaves = arrows.filter(|(from, to)| self.files[*from].parent() != self.files[*to].parent());
-        let circle = |(from, to): (&Module, &Module)| {
-            let back = self.way(to, from)?;
-            Some([from].into_iter().chain(&back).map(|module| module.join("/")).collect::<Vec<_>>().join(" -> "))
-        };
-        leaves.filter_map(circle).collect()
+        let of_files = circles(&self.needs, |from, to| self.files[from].parent() != self.files[to].parent());
+        let is_folder = |module: &Module| self.files.keys().any(|file| file.len() > module.len() && file.starts_with(module));
+        let of_folders = circles(&self.between_siblings(), |from, to| is_folder(from) || is_folder(to));
+        [of_files, of_folders].concat()
     }
 
-    /// The shortest way along the arrows.
-    fn way(&self, from: &Module, to: &Module) -> Option<Vec<Module>> {
-        let mut waiting = VecDeque::from([vec![from.clone()]]);
-        let mut seen = BTreeSet::from([from.clone()]);
-        while let Some(way) = waiting.pop_front() {
-            let last = way.last()?;
-            if last == to {
-                return Some(way);
-            }
-            for next in self.needs.get(last).into_iter().flatten() {
-                if seen.insert(next.clone()) {
-                    waiting.push_back([&way[..], std::slice::from_ref(next)].concat());
-                }
+    /// The arrows between files and folders of one folder: what a folder holds counts as the folder.
+    fn between_siblings(&self) -> Arrows {
+        let mut siblings = Arrows::new();
+        for (from, to) in self.needs.iter().flat_map(|(from, others)| others.iter().map(move |to| (from, to))) {
+            let common = from.iter().zip(to).take_while(|(a, b)| a == b).count();
+            // Nothing of a folder leaves it by naming its `mod.rs`, nor that by naming what it holds.
+            if let (Some(a), Some(b)) = (from.get(..=common), to.get(..=common)) {
+                siblings.entry(a.to_vec()).or_default().insert(b.to_vec());
             }
         }
-        None
+        siblings
     }
+}
+
+/// Every circle that goes through an arrow for which `counts`.
+fn circles(arrows: &Arrows, counts: impl Fn(&Module, &Module) -> bool) -> Vec<String> {
+    let all = arrows.iter().flat_map(|(from, others)| others.iter().map(move |to| (from, to)));
+    let circle = |(from, to): (&Module, &Module)| {
+        let back = way(arrows, to, from)?;
+        Some([from].into_iter().chain(&back).map(|module| module.join("/")).collect::<Vec<_>>().join(" -> "))
+    };
+    all.filter(|(from, to)| counts(from, to)).filter_map(circle).collect()
+}
+
+/// The shortest way along the arrows.
+fn way(arrows: &Arrows, from: &Module, to: &Module) -> Option<Vec<Module>> {
+    let mut waiting = VecDeque::from([vec![from.clone()]]);
+    let mut seen = BTreeSet::from([from.clone()]);
+    while let Some(way) = waiting.pop_front() {
+        let last = way.last()?;
+        if last == to {
+            return Some(way);
+        }
+        for next in arrows.get(last).into_iter().flatten() {
+            if seen.insert(next.clone()) {
+                waiting.push_back([&way[..], std::slice::from_ref(next)].concat());
+            }
+        }
+    }
+    None
 }
 
 /// The module of a file below `src`.

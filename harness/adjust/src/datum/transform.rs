@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, DVector};
 use super::held_coordinates::constraints;
 use super::similarity::{COUNT, Similarity};
 use crate::network::{Datum, Network};
-use crate::normal::Step;
 use crate::state::State;
+use crate::state::Step;
 
 const MOST_STEPS: usize = 100;
 

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use calibench_model::camera::CameraModel;
 
-use super::{Attitude, Centre, Network, NetworkError, Status, Triples};
-use crate::counts::Counts;
+use super::{Attitude, Centre, Counts, Network, NetworkError, Status, Triples};
 
 /// An image point, ready for the loops.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! What is adjusted: cameras, images, object points and image coordinates, with start values and what is known of each.
 
 mod check;
+mod counts;
 mod error;
 mod layout;
 mod status;
@@ -10,8 +11,7 @@ use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{Covariance, PixelPoint, Pose};
 use nalgebra::Point3;
 
-use crate::AdjustError;
-
+pub use counts::Counts;
 pub use error::NetworkError;
 pub(crate) use layout::{CameraPlace, Layout, Sight};
 pub use status::{Attitude, Centre, Status};
@@ -149,7 +149,7 @@ impl Interior {
     ///
     /// # Errors
     /// [`NetworkError::NoSuchParameter`].
-    pub fn free(mut self, names: &[&str]) -> Result<Self, AdjustError> {
+    pub fn free(mut self, names: &[&str]) -> Result<Self, NetworkError> {
         for name in names {
             let place = self.place(name)?;
             self.parameters[place] = Status::Free;
@@ -161,18 +161,18 @@ impl Interior {
     ///
     /// # Errors
     /// [`NetworkError::NoSuchParameter`].
-    pub fn observed(mut self, name: &str, value: f64, sigma: f64) -> Result<Self, AdjustError> {
+    pub fn observed(mut self, name: &str, value: f64, sigma: f64) -> Result<Self, NetworkError> {
         let place = self.place(name)?;
         self.parameters[place] = Status::Observed { value, sigma };
         Ok(self)
     }
 
-    fn place(&self, name: &str) -> Result<usize, AdjustError> {
+    fn place(&self, name: &str) -> Result<usize, NetworkError> {
         let all = self.camera.parameters();
         let found = all.iter().position(|parameter| parameter.name == name);
         found.ok_or_else(|| {
             let known = all.iter().map(|parameter| parameter.name).collect::<Vec<_>>().join(", ");
-            NetworkError::NoSuchParameter { camera: self.name.clone(), name: name.into(), known }.into()
+            NetworkError::NoSuchParameter { camera: self.name.clone(), name: name.into(), known }
         })
     }
 }

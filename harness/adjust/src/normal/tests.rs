@@ -6,9 +6,9 @@ use calibench_model::camera::{
 use calibench_model::{Covariance, PixelPoint, Pose};
 use nalgebra::{Point3, Rotation3, Vector3};
 
-use super::{Loss, Normals, Rows, Scratch, Step, linearise};
+use super::{Loss, Normals, Rows, Scratch, linearise};
 use crate::network::{Attitude, Centre, Exterior, ImageObservation, Interior, Layout, Network, ObjectPoint, Precision, Status};
-use crate::state::State;
+use crate::state::{State, Step};
 
 fn cameras() -> Vec<Camera> {
     let size = ImageSize { width: 1280, height: 960 };

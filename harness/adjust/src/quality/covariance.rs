@@ -6,9 +6,9 @@ use nalgebra::{DMatrix, Matrix3, Matrix6};
 use crate::AdjustError;
 use crate::datum::STransformation;
 use crate::network::Datum;
-use crate::normal::Step;
 use crate::solution::Solution;
 use crate::solve::{Coupling, Eliminated, Inverse};
+use crate::state::Step;
 
 /// The variance factor that covariances are scaled with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

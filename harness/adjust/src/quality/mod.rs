@@ -1,12 +1,7 @@
 //! What the result is worth.
 
 mod covariance;
-mod defect;
-mod defects_by_count;
-mod directions;
 mod frame_uncertainty;
-mod geometry;
-mod names;
 mod projection_uncertainty;
 mod reliability;
 mod residuals;
@@ -15,9 +10,6 @@ mod significance;
 mod snooping;
 
 pub use covariance::{Correlation, Covariances, Variance};
-pub use defect::{Defect, Direction, Reason};
-pub(crate) use defects_by_count::counted;
-pub(crate) use directions::directions;
 pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty};
 pub use projection_uncertainty::Held;
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};

@@ -9,8 +9,8 @@ use super::covariance::Variance;
 use super::frame_uncertainty::{Distance, Uncertainty, at_depth, by_turn};
 use crate::AdjustError;
 use crate::datum::STransformation;
-use crate::normal::Step;
 use crate::solution::Solution;
+use crate::state::Step;
 
 /// How the errors of all poses of a camera make one of its frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -12,8 +12,8 @@ mod window;
 
 use crate::AdjustError;
 use crate::network::{Layout, Network};
-use crate::normal::{Loss, Lost, Normals, Scratch, Step, linearise, residuals};
-use crate::state::State;
+use crate::normal::{Loss, Lost, Normals, Scratch, linearise, residuals};
+use crate::state::{State, Step};
 pub(crate) use elimination_order::{Eliminated, Ordered, Plan};
 use factor::{Factor, Structure};
 pub(crate) use inverse::{Inverse, Member};

@@ -10,7 +10,8 @@ use super::reduced::Reduced;
 use super::small_cholesky::{backward, cholesky, forward};
 use super::window::Window;
 use crate::network::Layout;
-use crate::normal::{Normals, Step};
+use crate::normal::Normals;
+use crate::state::Step;
 
 /// What the elimination leaves for the way back. `D` unknowns of each eliminated block.
 #[derive(Clone, Debug, Default)]

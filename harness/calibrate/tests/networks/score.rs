@@ -40,18 +40,26 @@ fn from_truth(drawn: &Drawn, network: &Network) -> Option<f64> {
     (sigma < 0.05 * fx && rms < 2.0).then(|| solution.cost())
 }
 
+/// How a calibration ended, and the least sum of squares, px^2 in units of the noise: that of the adjustment from the truth, if it determines the camera.
+#[derive(Clone, Debug)]
+pub struct Ended {
+    pub end: End,
+    pub least: Option<f64>,
+}
+
 /// Calibrates a network from nothing and compares.
-pub fn ended(class: Class, drawn: &Drawn) -> End {
+pub fn ended(class: Class, drawn: &Drawn) -> Ended {
     let optics = Optics { model: Some(class.model.into()), ..Optics::new(drawn.camera.size()) };
     let settings = Settings { sigma_px: Some(drawn.sigma), ..Settings::new(vec![optics]) };
     let prepared = match prepare(drawn.points.clone(), &drawn.control, &settings) {
         Ok(prepared) => prepared,
-        Err(error) => return End::Stopped(error.to_string()),
+        Err(error) => return Ended { end: End::Stopped(error.to_string()), least: None },
     };
-    let Some(least) = from_truth(drawn, &prepared.network) else { return End::Undetermined };
-    match adjust(&prepared.network, &Options { most_iterations: 1000, ..Options::default() }) {
+    let Some(least) = from_truth(drawn, &prepared.network) else { return Ended { end: End::Undetermined, least: None } };
+    let end = match adjust(&prepared.network, &Options { most_iterations: 1000, ..Options::default() }) {
         Ok(solution) if solution.cost() <= least * (1.0 + REACHED) => End::Reached,
         Ok(solution) => End::Above { ratio: solution.cost() / least, warned: !prepared.rivals.is_empty() },
         Err(error) => End::Stopped(error.to_string()),
-    }
+    };
+    Ended { end, least: Some(least) }
 }

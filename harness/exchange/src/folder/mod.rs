@@ -13,6 +13,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::atomic::{at, named};
 pub use beside::write_beside;
 pub use manifest::MANIFEST;
 use manifest::Manifest;
@@ -81,16 +82,6 @@ impl Drop for MadeFolders {
             fs::remove_dir(folder).ok();
         }
     }
-}
-
-/// An error of the file system with the path that it is about.
-pub(crate) fn at(path: &Path, error: &io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
-}
-
-/// The same while a file is written, which tries again after an interrupt.
-pub(crate) fn named(path: &Path, error: io::Error) -> io::Error {
-    if error.kind() == io::ErrorKind::Interrupted { error } else { at(path, &error) }
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@ use calibench_model::camera::CameraModel;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::network::{Layout, Network};
-use crate::normal::{Normals, Step};
-use crate::state::State;
+use crate::normal::Normals;
+use crate::state::{State, Step};
 
 /// Part of the largest effect that an unknown must have to be named.
 const PART: f64 = 0.05;

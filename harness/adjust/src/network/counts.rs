@@ -1,6 +1,6 @@
 //! The bookkeeping: how many observations, unknowns, constraints.
 
-use crate::network::{Attitude, Centre, Network, Status};
+use super::{Attitude, Centre, Network, Status};
 
 /// How many observations and unknowns an adjustment has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

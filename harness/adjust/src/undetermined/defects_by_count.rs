@@ -1,8 +1,8 @@
 //! Defects that counting finds before anything is computed.
 
-use super::defect::{Defect, Reason};
 use super::geometry::reasons;
 use crate::datum::undetermined;
+use crate::defect::{Defect, Reason};
 use crate::network::{Attitude, Centre, Layout, Network, Status};
 use crate::state::State;
 

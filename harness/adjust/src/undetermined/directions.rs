@@ -3,12 +3,12 @@
 use calibench_model::camera::CameraModel;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
-use super::defect::{Defect, Direction};
 use super::geometry::reasons;
 use super::names::{cameras, participants};
-use crate::normal::{Normals, Step};
+use crate::defect::{Defect, Direction};
+use crate::normal::Normals;
 use crate::solve::{Eliminated, Engine, Schur};
-use crate::state::State;
+use crate::state::{State, Step};
 
 /// An eigenvalue of the scaled normal equations that is rounding.
 const SINGULAR: f64 = 1e-11;

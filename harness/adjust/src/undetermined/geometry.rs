@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
-use super::defect::Reason;
+use crate::defect::Reason;
 use crate::network::{Layout, Sight};
 use crate::state::State;
 
