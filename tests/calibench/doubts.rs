@@ -137,3 +137,36 @@ fn points_outside_the_images_are_said() {
     let output = run(folder.path(), &[&arguments[..], &["camera.yaml"]].concat());
     assert!(stdout(&output).contains("image points lie outside the images: is their size right (--size)"), "{}", stdout(&output));
 }
+
+#[test]
+fn figures_in_another_unit_are_said() {
+    let folder = board([0.0; 3]);
+    let calibrated = |more: &[&str]| {
+        let output = run(folder.path(), &[&CALIBRATE[..], &["camera.toml"], more].concat());
+        assert!(output.status.success(), "{more:?}: {}{}", stdout(&output), stderr(&output));
+        stdout(&output)
+    };
+    let sound = calibrated(&["--pitch", "5.15"]);
+    for word in ["is --pitch in", "principal distance of the camera", "neighbours of the board"] {
+        assert!(!sound.contains(word), "{sound}");
+    }
+    // In nm.
+    let said = calibrated(&["--pitch", "5150"]);
+    assert!(said.contains("warning: a pixel pitch of 5150 um makes a sensor of 8240 mm: is --pitch in micrometres?"), "{said}");
+    assert!(page(folder.path()).contains("makes a sensor of 8240 mm"));
+    // In um.
+    let control = read_control(&folder.path().join("control.csv")).unwrap();
+    let rows = control.iter().map(|row| format!("{},{},{},0\n", row.target, 1e3 * row.position[0], 1e3 * row.position[1]));
+    write(folder.path(), "control.csv", &format!("target,X,Y,Z\n{}", rows.collect::<String>()));
+    let said = calibrated(&[]);
+    assert!(said.contains("warning: neighbours of the board are 25000 object units apart"), "{said}");
+    // In mm, for 140 px.
+    let rows = "rows: 3\n   cols: 3\n   dt: d\n   data: [ 140., 0., 790., 0., 140., 605., 0., 0., 1. ]";
+    let distortion = "rows: 1\n   cols: 5\n   dt: d\n   data: [ 0., 0., 0., 0., 0. ]";
+    let start = format!(
+        "%YAML:1.0\n---\nimage_width: 1600\nimage_height: 1200\ncamera_matrix: !!opencv-matrix\n   {rows}\ndistortion_coefficients: !!opencv-matrix\n   {distortion}\n"
+    );
+    write(folder.path(), "start.yaml", &start);
+    let said = calibrated(&["--start", "start.yaml"]);
+    assert!(said.contains("warning: the principal distance of the camera started at 140 px and ended at "), "{said}");
+}

@@ -17,7 +17,7 @@ fn the_report_compares_all_operators_on_all_photographs() {
     let page = std::fs::read_to_string(folder.join("README.md")).unwrap();
     assert!(page.contains("The board was found in 13 of 13 photographs, 702 corners in all."), "{page}");
     assert!(page.contains("| `forstner:window=11` and `opencv_subpix:window=11` "), "{page}");
-    assert!(page.contains("**Of these photographs trust `"), "{page}");
+    assert!(page.contains("**Of these images trust `"), "{page}");
     assert!(page.contains("**The published calibration** differs by "), "{page}");
     for picture in ["furthest.png", "usual.png", "holdout.png", "halves.png", "views.png", "principal-point.png"] {
         assert!(page.contains(&format!("({picture})")));

@@ -23,4 +23,4 @@ pub use photo::{Photo, PhotoError, Turn, encode_png, parse_photo, read_photo, tu
 pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, PointRef, PointRow, Points, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use stations::{ObservedStation, POSE_COLUMNS, POSE_SIGMA_COLUMNS, StationRow, read_observed_stations, read_stations, station_numbers};
-pub use table::write_table;
+pub use table::{Row, write_rows, write_table};

@@ -3,6 +3,16 @@
 use std::io::{self, Write};
 
 use calibench_model::escape;
+use rayon::prelude::*;
+
+pub use row::Row;
+
+mod row;
+
+/// Rows that one thread writes at a time.
+const PIECE: usize = 1 << 12;
+/// Pieces that wait in memory.
+const BATCH: usize = 16;
 
 /// Writes a header and rows, each with as many cells, names as [`escape::cell`] has them.
 ///
@@ -24,6 +34,32 @@ pub(crate) fn write_row<W: Write>(writer: &mut csv::Writer<W>, cells: impl IntoI
     writer.write_record(None::<&[u8]>)
 }
 
+/// Writes a header and `count` rows, made on all threads; the bytes do not depend on how many there are. They are those of [`write_table`].
+///
+/// # Errors
+/// What the output refuses; a row with another number of cells than the header.
+pub fn write_rows(mut output: impl Write, columns: &[&str], count: usize, row: impl Fn(usize, &mut Row) + Sync) -> io::Result<()> {
+    let piece = |first: usize| {
+        let mut piece = Row::default();
+        for index in first..(first + PIECE).min(count) {
+            row(index, &mut piece);
+            piece.end(columns.len())?;
+        }
+        Ok(piece)
+    };
+    let mut header = Row::default();
+    columns.iter().for_each(|column| header.text(column));
+    header.end(columns.len())?;
+    output.write_all(header.bytes())?;
+    for batch in (0..count).step_by(PIECE * BATCH) {
+        let firsts = (batch..count.min(batch + PIECE * BATCH)).into_par_iter().step_by(PIECE);
+        for piece in firsts.map(piece).collect::<io::Result<Vec<_>>>()? {
+            output.write_all(piece.bytes())?;
+        }
+    }
+    output.flush()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -37,5 +73,28 @@ mod tests {
         write_table(&mut text, &["a", "b"], [["=cmd", "-1.5"]]).unwrap();
         assert_eq!(text, b"a,b\n'=cmd,-1.5\n");
         assert!(write_table(&mut text, &["a", "b"], [["1"]]).is_err());
+    }
+
+    #[test]
+    fn rows_made_on_all_threads_are_the_same_bytes() {
+        let columns = ["name", "number", "count", "empty"];
+        let name = |i: usize| ["a", "=b", "c,d", "e\"f", "", "g h", "two\nlines", "\u{e9}"][i % 8];
+        let number = |i: usize| f64::from_bits((i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let count = 3 * PIECE * BATCH / 2 + 7;
+        let (mut together, mut one) = (Vec::new(), Vec::new());
+        let row = |i: usize, row: &mut Row| {
+            row.text(name(i));
+            row.number(number(i));
+            row.whole(i);
+            row.text("");
+        };
+        write_rows(&mut together, &columns, count, row).unwrap();
+        let cells = (0..count).map(|i| [name(i).to_owned(), number(i).to_string(), i.to_string(), String::new()]);
+        write_table(&mut one, &columns, cells).unwrap();
+        let lines = |text: &[u8]| String::from_utf8(text.to_vec()).unwrap().lines().map(str::to_owned).collect::<Vec<_>>();
+        let apart = lines(&together).into_iter().zip(lines(&one)).find(|(a, b)| a != b);
+        assert!(together == one, "{apart:?}");
+        let short = write_rows(&mut together, &columns, 1, |_, row| row.whole(1)).unwrap_err();
+        assert!(short.to_string().contains("1 cells"), "{short}");
     }
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::io;
 
 use calibench_adjust::approximate::{ApproximateError, Intersection, Search, Sight as Ray, Tolerance, intersect};
-use calibench_exchange::{POINT_QUALITY_COLUMNS, StationRow, write_table};
+use calibench_exchange::{POINT_QUALITY_COLUMNS, Row, StationRow, write_rows};
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
 use rayon::prelude::*;
@@ -122,7 +122,8 @@ impl ObjectPoints {
     /// # Errors
     /// What `file` returns.
     pub fn write(&self, survey: &Survey, file: impl io::Write) -> io::Result<()> {
-        write_table(file, &[&COLUMNS[..], &POINT_QUALITY_COLUMNS].concat(), self.found.iter().map(|row| row.cells(survey, self.sigma_px)))
+        let columns = [&COLUMNS[..], &POINT_QUALITY_COLUMNS].concat();
+        write_rows(file, &columns, self.found.len(), |index, row| self.found[index].write(survey, self.sigma_px, row))
     }
 }
 
@@ -167,19 +168,25 @@ impl Found {
     }
 
     /// A point with standard deviations from the common one of image coordinates; where there is none, without.
-    fn cells(&self, survey: &Survey, sigma_px: Option<f64>) -> Vec<String> {
-        let checked = self.redundancy > 0;
-        let mut row = vec![survey.target(self.target as usize).to_owned()];
-        row.extend(self.point.iter().map(f64::to_string));
-        row.extend(self.spread.iter().map(|spread| sigma_px.map_or_else(String::new, |sigma| (sigma * spread).to_string())));
-        row.extend([self.images.to_string(), self.angle.to_degrees().to_string(), self.sigma0.to_string(), self.redundancy.to_string()]);
+    fn write(&self, survey: &Survey, sigma_px: Option<f64>, row: &mut Row) {
+        row.text(survey.target(self.target as usize));
+        self.point.iter().for_each(|coordinate| row.number(*coordinate));
+        for spread in self.spread {
+            match sigma_px {
+                Some(sigma) => row.number(sigma * spread),
+                None => row.text(""),
+            }
+        }
+        row.whole(self.images as usize);
+        row.number(self.angle.to_degrees());
+        row.number(self.sigma0);
+        row.whole(self.redundancy as usize);
         let rejected: Vec<&str> = self.rejected.iter().map(|&image| survey.images[image as usize].as_str()).collect();
-        let note = match (checked, self.misfits(sigma_px)) {
+        row.text(&rejected.join(" "));
+        row.text(match (self.redundancy > 0, self.misfits(sigma_px)) {
             (false, _) => "not checked",
             (true, true) => "does not fit",
             (true, false) => "",
-        };
-        row.extend([rejected.join(" "), note.to_owned()]);
-        row
+        });
     }
 }

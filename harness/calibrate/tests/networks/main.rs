@@ -6,7 +6,7 @@ mod score;
 
 use draw::{CLASSES, Drawn};
 use rayon::prelude::*;
-use score::{End, ended};
+use score::{End, Ended, ended};
 
 /// Networks of a class. `cargo bench --bench networks` draws more, by another seed.
 const COUNT: u64 = 29;
@@ -14,11 +14,11 @@ const COUNT: u64 = 29;
 #[test]
 fn networks_of_every_class_arrive_at_the_minimum() {
     for class in CLASSES {
-        let ends: Vec<End> = (0..COUNT).into_par_iter().map(|number| ended(class, &Drawn::network(class, 1, number)).end).collect();
-        let determined = ends.iter().filter(|end| **end != End::Undetermined).count();
+        let ends: Vec<Ended> = (0..COUNT).into_par_iter().map(|number| ended(class, &Drawn::network(class, 1, number))).collect();
+        let determined = ends.iter().filter(|ended| ended.least.is_some()).count();
         assert!(determined > 5, "{class:?}: {determined} of {COUNT} determined");
-        let missed: Vec<(usize, &End)> =
-            ends.iter().enumerate().filter(|(_, end)| !matches!(end, End::Reached | End::Undetermined)).collect();
+        let missed: Vec<(usize, &Ended)> =
+            ends.iter().enumerate().filter(|(_, ended)| !matches!(ended.end, End::Reached | End::Undetermined)).collect();
         assert!(missed.is_empty(), "{class:?}: {missed:#?}");
     }
 }

@@ -2,16 +2,15 @@
 
 mod lost;
 mod names;
+mod parallel;
 mod table;
 
 use std::fs::File;
-use std::hash::{BuildHasher, RandomState};
 use std::io::Read;
 use std::path::Path;
 
 use calibench_model::{Affine, Covariance, PixelPoint, Start, TargetKind, escape};
 use csv::StringRecord;
-use hashbrown::HashTable;
 use thiserror::Error;
 
 pub use lost::{LostRow, LostRows};
@@ -83,7 +82,7 @@ pub fn read_points(path: &Path) -> Result<PointFile, PointFileError> {
 }
 
 /// What a reader of a point file asks of each row with a position: `Ok`, or the column that is wrong and what was expected there.
-pub type Check<'c> = &'c dyn Fn(&PointRef<'_>) -> Result<(), (&'static str, String)>;
+pub type Check<'c> = &'c (dyn Fn(&PointRef<'_>) -> Result<(), (&'static str, String)> + Sync);
 
 /// As [`read_points`], of rows that pass `check`.
 ///
@@ -105,18 +104,52 @@ pub fn parse_points(file: &str, input: impl Read) -> Result<PointFile, PointFile
 
 fn parse_checked(file: &str, mut input: impl Read, check: Check<'_>) -> Result<PointFile, PointFileError> {
     let mut text = Vec::new();
-    let unreadable = |e: std::io::Error| PointFileError { file: file.to_owned(), line: None, column: None, problem: e.to_string() };
-    input.read_to_end(&mut text).map_err(unreadable)?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(&text[..]);
-    let header = reader.headers().map_err(|error| csv_error(file, &error))?.clone();
-    let columns = Columns::new(file, &header)?;
-    // A row takes eight bytes at least, as in `a,b,1,2`.
-    #[expect(clippy::naive_bytecount, reason = "a hundredth of what parsing takes")]
-    let most = text.iter().filter(|byte| **byte == b'\n').count().min(text.len() / 8);
-    let mut found = PointFile { points: Points::with_capacity(most), lost: LostRows::default() };
-    let (mut seen, mut record) = (Once::default(), StringRecord::new());
+    let whole = |problem: String| PointFileError { file: file.to_owned(), line: None, column: None, problem };
+    input.read_to_end(&mut text).map_err(|error| whole(error.to_string()))?;
+    let found = match parallel::parse(file, &text, check) {
+        Some(found) => found,
+        // Whatever is wrong is said with its line.
+        None => in_turn(file, &text, check)?,
+    };
+    if found.points.is_empty() && found.lost.is_empty() {
+        return Err(whole("holds no point; expected one row a point below the header".to_owned()));
+    }
+    Ok(found)
+}
+
+/// Reads row by row up to the first mistake.
+fn in_turn(file: &str, text: &[u8], check: Check<'_>) -> Result<PointFile, PointFileError> {
+    let mut found = PointFile { points: Points::with_capacity(most_rows(text)), lost: LostRows::default() };
+    let end = read_rows(file, text, text, check, &mut found);
+    if let Some((earlier, later)) = found.points.twice() {
+        let mut reader = reader(text);
+        let columns = Columns::new(file, reader.headers().map_err(|error| csv_error(file, &error))?)?;
+        let [earlier_line, line] = [earlier, later].map(|index| line_of_row(text, &columns, index));
+        let PointRef { image, target, .. } = found.points.row(later);
+        let several = if columns.0[METHOD].is_some() { " (the file holds the results of several methods: keep those of one)" } else { "" };
+        let problem = format!("target `{target}` of image `{image}` is already on line {earlier_line}; expected each once{several}");
+        return Err(PointFileError { file: file.to_owned(), line: Some(line), column: None, problem });
+    }
+    end.map(|()| found)
+}
+
+/// A row takes eight bytes at least, as in `a,b,1,2`.
+#[expect(clippy::naive_bytecount, reason = "a hundredth of what parsing takes")]
+fn most_rows(text: &[u8]) -> usize {
+    text.iter().filter(|byte| **byte == b'\n').count().min(text.len() / 8)
+}
+
+fn reader<R: Read>(input: R) -> csv::Reader<R> {
+    csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(input)
+}
+
+/// Adds the rows below the header of `input` to `found`; `text` is the file as a whole, in which lines are counted.
+fn read_rows(file: &str, input: impl Read, text: &[u8], check: Check<'_>, found: &mut PointFile) -> Result<(), PointFileError> {
+    let mut reader = reader(input);
+    let columns = Columns::new(file, reader.headers().map_err(|error| csv_error(file, &error))?)?;
+    let mut record = StringRecord::new();
     while reader.read_record(&mut record).map_err(|error| csv_error(file, &error))? {
-        let cells = Cells { file, columns: &columns, record: &record, text: &text };
+        let cells = Cells { file, columns: &columns, record: &record, text };
         if let Some(status @ ("rejected" | "unavailable")) = cells.text(STATUS) {
             let name = |column: usize| escape::from_cell(cells.text(column).unwrap_or_default());
             found.lost.push([name(IMAGE), name(TARGET), status, cells.text(REASON).unwrap_or_default()]);
@@ -124,41 +157,9 @@ fn parse_checked(file: &str, mut input: impl Read, check: Check<'_>) -> Result<P
         }
         let row = cells.row()?;
         check(&row).map_err(|(column, problem)| cells.wrong(KNOWN.iter().position(|known| *known == column).unwrap_or(TARGET), problem))?;
-        let PointRef { image, target, start } = row;
-        found.points.push(image, target, start);
-        if let Some(earlier) = seen.add(&found.points) {
-            let earlier = line_of_row(&text, &columns, earlier);
-            let problem =
-                format!("target `{target}` of image `{image}` is already on line {earlier}; expected each once{}", cells.several());
-            return Err(PointFileError { file: file.to_owned(), line: Some(cells.line()), column: None, problem });
-        }
+        found.points.push(row.image, row.target, row.start);
     }
-    if found.points.is_empty() && found.lost.is_empty() {
-        let problem = "holds no point; expected one row a point below the header".to_owned();
-        return Err(PointFileError { file: file.to_owned(), line: None, column: None, problem });
-    }
-    Ok(found)
-}
-
-/// The pairs of image and target that were there.
-#[derive(Default)]
-struct Once {
-    points: HashTable<u32>,
-    hasher: RandomState,
-}
-
-impl Once {
-    /// Adds the last of `points`; the earlier one of the same image and target, if there is one.
-    fn add(&mut self, points: &Points) -> Option<usize> {
-        let key = |index: usize| (points.image_of(index), points.target_of(index));
-        let (last, hasher) = (points.len() - 1, &self.hasher);
-        let hash = hasher.hash_one(key(last));
-        if let Some(&earlier) = self.points.find(hash, |&other| key(other as usize) == key(last)) {
-            return Some(earlier as usize);
-        }
-        self.points.insert_unique(hash, last as u32, |&other| hasher.hash_one(key(other as usize)));
-        None
-    }
+    Ok(())
 }
 
 /// The line of the point `index` of a text that was read up to there.
@@ -255,11 +256,6 @@ impl<'a> Cells<'a> {
         }
         let start = Start { position, kind, affine, covariance };
         Ok(PointRef { image: self.required_name(IMAGE)?, target: self.required_name(TARGET)?, start })
-    }
-
-    /// What to do about a point that stands twice because several methods measured it.
-    fn several(&self) -> &'static str {
-        if self.text(METHOD).is_some() { " (the file holds the results of several methods: keep those of one)" } else { "" }
     }
 
     fn text(&self, column: usize) -> Option<&'a str> {

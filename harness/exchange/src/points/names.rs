@@ -1,9 +1,9 @@
 //! Names, each kept once.
 
 use std::fmt;
-use std::hash::{BuildHasher, RandomState};
+use std::hash::BuildHasher;
 
-use hashbrown::HashTable;
+use hashbrown::{DefaultHashBuilder, HashTable};
 
 /// Different names in the order in which they came, each with its place.
 #[derive(Clone, Default)]
@@ -13,7 +13,7 @@ pub struct Names {
     /// Where each ends.
     ends: Vec<usize>,
     places: HashTable<u32>,
-    hasher: RandomState,
+    hasher: DefaultHashBuilder,
 }
 
 impl Names {

@@ -52,13 +52,51 @@ impl Points {
     pub fn push(&mut self, image: &str, target: &str, start: Start) {
         let index = self.len();
         u32::try_from(index).expect("fewer than 2^32 points");
-        self.image.push(self.images.place(image) as u32);
+        // Files go image by image.
+        let same = self.image.last().copied().filter(|&last| self.images.get(last as usize) == image);
+        self.image.push(same.unwrap_or_else(|| self.images.place(image) as u32));
         self.target.push(self.targets.place(target) as u32);
         self.position.push(start.position);
         let room = self.position.capacity();
         self.kind.push(index, room, start.kind);
         self.affine.push(index, room, start.affine);
         self.covariance.push(index, room, start.covariance);
+    }
+
+    /// Adds all points of another table.
+    ///
+    /// # Panics
+    /// Beyond 2^32 points.
+    pub fn append(&mut self, other: &Self) {
+        u32::try_from(self.len() + other.len()).expect("fewer than 2^32 points");
+        let images: Vec<u32> = other.images.iter().map(|name| self.images.place(name) as u32).collect();
+        let targets: Vec<u32> = other.targets.iter().map(|name| self.targets.place(name) as u32).collect();
+        let (first, room) = (self.len(), self.position.capacity());
+        self.image.extend(other.image.iter().map(|&image| images[image as usize]));
+        self.target.extend(other.target.iter().map(|&target| targets[target as usize]));
+        self.position.extend_from_slice(&other.position);
+        for index in 0..other.len() {
+            self.kind.push(first + index, room, other.kind.get(index));
+            self.affine.push(first + index, room, other.affine.get(index));
+            self.covariance.push(first + index, room, other.covariance.get(index));
+        }
+    }
+
+    /// The first point whose image and target an earlier one has: that one, and itself.
+    pub fn twice(&self) -> Option<(usize, usize)> {
+        let groups = self.by_image();
+        let mut last: Vec<Option<u32>> = vec![None; self.targets.len()];
+        let mut found = None::<(usize, usize)>;
+        for image in 0..self.images.len() {
+            for index in groups.of_group(image) {
+                if last[self.target_of(index)].replace(image as u32) == Some(image as u32) && found.is_none_or(|(_, first)| index < first) {
+                    let earlier = groups.of_group(image).find(|&earlier| self.target[earlier] == self.target[index]);
+                    found = earlier.map(|earlier| (earlier, index));
+                    break;
+                }
+            }
+        }
+        found
     }
 
     /// How many points there are.

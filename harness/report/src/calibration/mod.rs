@@ -8,6 +8,7 @@ mod hull;
 mod limits;
 mod page;
 mod pictures;
+mod scale;
 mod sets_page;
 mod tables;
 mod uncertainty;

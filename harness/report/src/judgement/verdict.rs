@@ -12,7 +12,7 @@ use crate::plain;
 pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     let (cell, least) = (trusted.cell, trusted.least);
     let mut lines = vec![format!(
-        "**Of these photographs trust `{}` with the model `{}`.** It predicts corners of photographs that took no part in the calibration to {}.",
+        "**Of these images trust `{}` with the model `{}`.** It predicts corners of photographs that took no part in the calibration to {}.",
         cell.method,
         cell.model,
         cell.holdout.map_or_else(String::new, |holdout| interval(&holdout))
