@@ -77,6 +77,7 @@ pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: St
     let engine = Engine::new(network, layout, options.huber.map_or(Loss::Squares, Loss::Huber));
     let mut end = engine.descend(start, options.most_iterations)?;
     let solved = determined(&engine, &mut end)?;
+    end.normals.release();
     let solution = Solution { engine, end, solved, datum: network.datum.clone() };
     if network.datum == Datum::Inner { solution.in_datum(&Datum::Inner) } else { Ok(solution) }
 }
@@ -171,6 +172,7 @@ impl<'n> Solution<'n> {
         let lost = |_| refuse("the transformed network does not picture its points");
         self.engine.linearise(&end.state, &mut Scratch::default(), &mut end.normals).map_err(lost)?;
         let solved = self.engine.decompose((&end.state, &end.normals), 0.0).ok_or_else(|| refuse("the coordinates held do not suffice"))?;
+        end.normals.release();
         Ok(Self { engine: self.engine.clone(), end, solved, datum: datum.clone() })
     }
 }

@@ -15,9 +15,13 @@ pub struct Survey {
     points: Points,
     by_image: Groups,
     by_target: Groups,
-    /// Of each target; `None` for a tie point.
-    control: Vec<Option<Known>>,
+    /// Of each target: its place in `control`, or [`TIE`].
+    known: Vec<u32>,
+    control: Vec<Known>,
 }
+
+/// No place: of a tie point.
+const TIE: u32 = u32::MAX;
 
 /// What is known of a target, object units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +61,7 @@ impl Survey {
     /// [`CalibrationError::NothingInCommon`].
     pub fn new(points: Points, control: &[ControlRow]) -> Result<Self, CalibrationError> {
         let survey = Self::join(points, control);
-        if survey.control.iter().all(Option::is_none) {
+        if survey.control.is_empty() {
             let measured = survey.points.targets().iter().next().unwrap_or_default().to_owned();
             let near = nearest(&measured, control.iter().map(|row| row.target.as_str())).map(str::to_owned);
             let control = control.first().map_or_else(String::new, |row| row.target.clone());
@@ -72,20 +76,26 @@ impl Survey {
     }
 
     fn join(points: Points, rows: &[ControlRow]) -> Self {
-        let mut control = vec![None; points.targets().len()];
+        let (mut known, mut control) = (vec![TIE; points.targets().len()], Vec::new());
         for row in rows {
-            if let Some(target) = points.targets().find(&row.target) {
-                control[target] = Some(Known { position: row.position.into(), sigmas: row.sigmas });
+            let Some(target) = points.targets().find(&row.target) else { continue };
+            let new = Known { position: row.position.into(), sigmas: row.sigmas };
+            match control.get_mut(known[target] as usize) {
+                Some(earlier) => *earlier = new,
+                None => {
+                    known[target] = control.len() as u32;
+                    control.push(new);
+                }
             }
         }
         let images = points.images().iter().map(str::to_owned).collect();
         let (by_image, by_target) = (points.by_image(), points.by_target());
-        Self { images, points, by_image, by_target, control }
+        Self { images, points, by_image, by_target, known, control }
     }
 
     /// How many targets were measured.
     pub fn targets(&self) -> usize {
-        self.control.len()
+        self.known.len()
     }
 
     /// The name of a target.
@@ -100,12 +110,12 @@ impl Survey {
 
     /// What is known of a target; `None` for a tie point.
     pub fn control(&self, target: usize) -> Option<&Known> {
-        self.control[target].as_ref()
+        self.control.get(self.known[target] as usize)
     }
 
     /// How many of the targets are control points.
     pub fn control_points(&self) -> usize {
-        self.control.iter().flatten().count()
+        self.control.len()
     }
 
     /// Known coordinates of a target.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use calibench_model::camera::CameraModel;
 
-use super::{Attitude, Centre, Counts, Network, NetworkError, Status, Triples};
+use super::{Attitude, Centre, Counts, ImageObservation, Network, NetworkError, Status, Triples};
 
 /// An image point, ready for the loops.
 #[derive(Clone, Copy, Debug)]
@@ -15,9 +15,6 @@ pub(crate) struct Sight {
     pub(crate) given: u32,
     /// The pair of its point's triple and its camera; of no meaning where the triple or the camera is known.
     pub(crate) pair: u32,
-    pub(crate) at: [f64; 2],
-    /// Lower triangle `[a, b, c]` of the matrix that makes residuals white: `(a x, b x + c y)`.
-    pub(crate) whiten: [f64; 3],
 }
 
 impl Sight {
@@ -31,6 +28,12 @@ impl Sight {
     #[inline]
     pub(crate) const fn point(&self) -> usize {
         self.point as usize
+    }
+
+    /// What was measured, among the observations as given: of millions a copy here would be the larger part of the layout.
+    #[inline]
+    pub(crate) const fn observed<'o>(&self, given: &'o [ImageObservation]) -> &'o ImageObservation {
+        &given[self.given as usize]
     }
 }
 
@@ -190,10 +193,7 @@ fn sights(network: &Network, left_out: &[usize]) -> Vec<Sight> {
         .iter()
         .enumerate()
         .filter(|(given, _)| takes_part[*given])
-        .map(|(given, o)| {
-            let at = [o.position.x, o.position.y];
-            Sight { image: o.image as u32, point: o.point as u32, given: given as u32, pair: u32::MAX, at, whiten: o.precision.whitening() }
-        })
+        .map(|(given, o)| Sight { image: o.image as u32, point: o.point as u32, given: given as u32, pair: u32::MAX })
         .collect();
     // A point is measured once in an image: the order is the same, stable or not.
     sights.sort_unstable_by_key(|sight| (sight.image, sight.point));

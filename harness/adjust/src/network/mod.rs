@@ -101,7 +101,8 @@ impl Precision {
         [a * x, b * x + c * y]
     }
 
-    /// The inverse of the covariance's Cholesky factor, row by row, 1/px.
+    /// The inverse of the covariance's Cholesky factor, row by row, 1/px: `[a, b, c]` makes a residual white as `(a x, b x + c y)`.
+    #[inline]
     pub(crate) fn whitening(self) -> [f64; 3] {
         match self {
             Self::Sigma(sigma) => [1.0 / sigma, 0.0, 1.0 / sigma],

@@ -67,7 +67,7 @@ pub(crate) fn linearise(
     for (image, range) in layout.of_image.iter().enumerate() {
         let camera = network.images[image].camera;
         let free = &layout.cameras[camera].free;
-        let setting = Setting { optics: &optics[camera], pose: &state.poses[image], free, loss };
+        let setting = Setting { optics: &optics[camera], pose: &state.poses[image], free, loss, observations: &network.observations };
         for chunk in chunks(range) {
             let sights = &layout.sights[chunk.clone()];
             let residuals = &mut into.residuals[chunk.clone()];
@@ -95,7 +95,7 @@ pub(crate) fn residuals(network: &Network, layout: &Layout, state: &State, scrat
             let sights = &layout.sights[chunk.clone()];
             let found = scratch.0.picture(optics, &state.poses[image], sights, &state.points);
             found.map_err(|Lost(i)| Lost(chunk.start + i))?;
-            scratch.0.subtract(sights, &mut into.residuals[chunk]);
+            scratch.0.subtract(sights, &network.observations, &mut into.residuals[chunk]);
         }
     }
     Ok(())
@@ -127,7 +127,8 @@ impl Rows {
     ) -> Result<(), Lost> {
         let camera = network.images[image].camera;
         let (free, pose, optics) = (&layout.cameras[camera].free, &state.poses[image], Optics::of(&state.cameras[camera]));
-        let (setting, mask) = (Setting { optics: &optics, pose, free, loss }, layout.pose_mask(image));
+        let setting = Setting { optics: &optics, pose, free, loss, observations: &network.observations };
+        let mask = layout.pose_mask(image);
         (self.width, self.first) = (free.len() + POSE + 3, range.start);
         self.values.clear();
         for chunk in chunks(&range) {
@@ -151,6 +152,11 @@ impl Rows {
 }
 
 impl Normals {
+    /// Gives back what nothing asks for once the equations are solved: the points' own blocks.
+    pub(crate) fn release(&mut self) {
+        (self.point, self.point_right) = (Vec::new(), Vec::new());
+    }
+
     fn reset(&mut self, layout: &Layout, state: &State) {
         let (images, points) = (state.poses.len(), state.points.len());
         self.cost = 0.0;

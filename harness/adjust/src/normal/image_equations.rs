@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use super::gram::{BLOCK, LANES, Tile, gram};
 use super::projection::{Optics, POSE, Pictured};
 use super::robust::Loss;
-use crate::network::Sight;
+use crate::network::{ImageObservation, Sight};
 
 /// An image point that the values do not picture: its place among the sights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,8 @@ pub(super) struct Setting<'a> {
     /// Unknown parameters.
     pub(super) free: &'a [usize],
     pub(super) loss: Loss,
+    /// As given.
+    pub(super) observations: &'a [ImageObservation],
 }
 
 /// Of what a sight is made here: its residuals (computed - observed, px) and its robust weight.
@@ -63,7 +65,7 @@ impl View {
         let pixels = self.pictured.pixels.chunks(LANES);
         let blocks = self.rows.chunks_exact_mut(self.columns * BLOCK).zip(self.pictured.blocks());
         for ((((rows, from), pixels), sights), residuals) in blocks.zip(pixels).zip(sights.chunks(LANES)).zip(residuals.chunks_mut(LANES)) {
-            let misclosed = misclosures(setting.loss, sights, pixels, residuals);
+            let misclosed = misclosures(setting, sights, pixels, residuals);
             self.cost += misclosed.cost;
             whiten(&misclosed, &self.places, from, rows);
         }
@@ -79,9 +81,10 @@ impl View {
     }
 
     /// Residuals of what was pictured last; their weights stay.
-    pub(super) fn subtract(&self, sights: &[Sight], residuals: &mut [Residual]) {
+    pub(super) fn subtract(&self, sights: &[Sight], observations: &[ImageObservation], residuals: &mut [Residual]) {
         for ((residual, sight), pixel) in residuals.iter_mut().zip(sights).zip(&self.pictured.pixels) {
-            residual.px = [pixel.x - sight.at[0], pixel.y - sight.at[1]];
+            let observed = sight.observed(observations).position;
+            residual.px = [pixel.x - observed.x, pixel.y - observed.y];
         }
     }
 
@@ -124,11 +127,17 @@ struct Misclosed {
 }
 
 #[inline]
-fn misclosures(loss: Loss, sights: &[Sight], pixels: &[PixelPoint], residuals: &mut [Residual]) -> Misclosed {
+fn misclosures(
+    Setting { loss, observations, .. }: Setting,
+    sights: &[Sight],
+    pixels: &[PixelPoint],
+    residuals: &mut [Residual],
+) -> Misclosed {
     let (mut white, mut misclosures, mut cost) = ([[0.0; LANES]; 3], [[0.0; LANES]; 2], 0.0);
     for (lane, ((sight, pixel), residual)) in sights.iter().zip(pixels).zip(residuals).enumerate().take(LANES) {
-        let px = [pixel.x - sight.at[0], pixel.y - sight.at[1]];
-        let [a, b, c] = sight.whiten;
+        let ImageObservation { position, precision, .. } = sight.observed(observations);
+        let px = [pixel.x - position.x, pixel.y - position.y];
+        let [a, b, c] = precision.whitening();
         let v = [a * px[0], b * px[0] + c * px[1]];
         let square = v[0] * v[0] + v[1] * v[1];
         let (mut weight, mut root) = (1.0, 1.0);

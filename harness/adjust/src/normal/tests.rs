@@ -96,7 +96,7 @@ fn image_coordinates_by_every_unknown_of_every_model() {
             let h = 0.01 / size.max(1.0);
             let moved = STEPS.map(|step| normals(&network, &layout, &state.moved(&layout, &unit(&layout, k, step * h))).residuals);
             for (sight, place) in layout.sights.iter().enumerate() {
-                let [a, b, c] = place.whiten;
+                let [a, b, c] = place.observed(&network.observations).precision.whitening();
                 let white = |v: [f64; 2]| [a * v[0], b * v[0] + c * v[1]];
                 for axis in 0..2 {
                     let expected = difference([0, 1, 2, 3].map(|i| white(moved[i][sight].px)[axis]), h);

@@ -102,10 +102,11 @@ impl Solution<'_> {
         let critical = Normal::standard().inverse_cdf(1.0 - 0.5 * test.alpha);
         let noncentrality = critical + Normal::standard().inverse_cdf(test.power);
         let scale = [self.variance_factor(test.variance)?.sqrt(), noncentrality];
+        // First, so that the covariances that it takes are gone when the list of all image points is there.
+        let observed = self.observed(scale)?;
         let inverse = self.engine.inverse(&self.solved);
         let mut points = self.image_points(&inverse, scale)?;
         points.sort_unstable_by_key(|point| point.observation);
-        let observed = self.observed(scale)?;
         Ok(Reliability { test, critical, noncentrality, points, observed })
     }
 
@@ -215,7 +216,7 @@ impl Solution<'_> {
 
     fn image_point(&self, index: usize, adjusted: Matrix2<f64>, [sigma0, noncentrality]: [f64; 2]) -> PointReliability {
         let (sight, residual): (&Sight, _) = (&self.engine.layout.sights[index], &self.end.normals.residuals[index]);
-        let [a, b, c] = sight.whiten.map(|w| w * residual.weight.sqrt());
+        let [a, b, c] = sight.observed(&self.engine.network.observations).precision.whitening().map(|w| w * residual.weight.sqrt());
         let white = Matrix2::new(a, 0.0, b, c);
         let rest = Matrix2::identity() - adjusted;
         // Q_vv P = W^-1 (1 - A Q A^T) W and P Q_vv P = W^T (1 - A Q A^T) W, with P = W^T W.

@@ -55,10 +55,9 @@ impl Solution<'_> {
 
     /// Residuals in use, made white by the a-priori precisions: pairs of numbers of variance 1 but for the redundancy, image by image.
     pub fn each_white_residual(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.engine.layout.sights.iter().zip(&self.end.normals.residuals).map(|(sight, residual)| {
-            let ([a, b, c], [x, y]) = (sight.whiten, residual.px);
-            [a * x, b * x + c * y]
-        })
+        let given = &self.engine.network.observations;
+        let sights = self.engine.layout.sights.iter();
+        sights.zip(&self.end.normals.residuals).map(|(sight, residual)| sight.observed(given).precision.whitened(residual.px))
     }
 
     /// The residual of an observation that took no part, where the result pictures it.

@@ -11,7 +11,7 @@ mod small_cholesky;
 mod window;
 
 use crate::AdjustError;
-use crate::network::{Layout, Network};
+use crate::network::{ImageObservation, Layout, Network, Sight};
 use crate::normal::{Loss, Lost, Normals, Scratch, linearise, residuals};
 use crate::state::{State, Step};
 pub(crate) use elimination_order::{Eliminated, Ordered, Plan};
@@ -78,7 +78,12 @@ impl<'n> Engine<'n> {
         let blank = Reduced::new(&plan.kept, || plan.pattern(&layout));
         let structure = Structure::of(&blank);
         let rounding = |at: f64, whiten: f64| (4.0 * f64::EPSILON * at.abs().max(1.0) * whiten).powi(2);
-        let floor = layout.sights.iter().map(|s| rounding(s.at[0], s.whiten[0]) + rounding(s.at[1], s.whiten[2])).sum();
+        let floor = |sight: &Sight| {
+            let ImageObservation { position, precision, .. } = sight.observed(&network.observations);
+            let [a, _, c] = precision.whitening();
+            rounding(position.x, a) + rounding(position.y, c)
+        };
+        let floor = layout.sights.iter().map(floor).sum();
         Self { network, layout, plan, loss, structure, blank, floor }
     }
 
@@ -96,7 +101,7 @@ impl<'n> Engine<'n> {
         let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
         schur.eliminate(self.ordered(state, normals), damping, &mut reduced).ok()?;
         let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;
-        Some(Solved { schur, factor })
+        Some(Solved { schur: schur.solved(), factor })
     }
 
     /// Eigenvalues and eigenvectors of the reduced matrix, scaled to ones on the diagonal of the normal equations, from the smallest on: all of a small
@@ -187,7 +192,7 @@ impl<'n> Engine<'n> {
                 if damping == 0.0 && gain <= NOTHING * cost {
                     let moved = state.moved(&self.layout, &step);
                     if residuals(self.network, &self.layout, &moved, &mut scratch, &mut normals).is_ok() {
-                        let solved = Some(Solved { schur, factor });
+                        let solved = Some(Solved { schur: schur.solved(), factor });
                         return Ok(End { state: moved, normals, iterations, gain, converged: true, solved });
                     }
                 }

@@ -61,6 +61,11 @@ impl Schur {
         }
     }
 
+    /// Without the right side, once the step is known.
+    pub(crate) fn solved(self) -> Self {
+        Self { right: Vec::new(), ..self }
+    }
+
     fn members<const D: usize>(&mut self, of: Ordered, damping: f64, into: &mut Reduced) -> Result<(), Loose> {
         let (Ordered { engine: Engine { plan, .. }, normals, .. }, mut coupling) = (of, Coupling::default());
         for (place, &member) in plan.members.iter().enumerate() {
@@ -151,7 +156,7 @@ impl Schur {
     /// The step that answers to other right sides.
     pub(crate) fn answer(&self, of: Ordered, right: &Step, solve: impl Fn(&mut [f64])) -> Step {
         let (Engine { plan, layout, .. }, mut coupling) = (of.engine, Coupling::default());
-        let (mut kept, mut rights) = (vec![0.0; plan.size()], Vec::with_capacity(self.right.len()));
+        let (mut kept, mut rights) = (vec![0.0; plan.size()], Vec::with_capacity(plan.members.len() * plan.depth()));
         kept[..layout.width].copy_from_slice(&right.cameras);
         for (index, &block) in plan.block_of.iter().enumerate().filter(|(_, block)| **block != usize::MAX) {
             let into = &mut kept[plan.kept[block]..plan.kept[block + 1]];
