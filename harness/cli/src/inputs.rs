@@ -22,7 +22,7 @@ pub fn measured(path: &Path) -> Result<PointFile, Failure> {
 pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
     let file = read_points_checked(path, check)?;
     if !file.lost.is_empty() {
-        say!("{}: {} rows without a position (rejected or unavailable) are left out", path.display(), file.lost.len());
+        say!("{}: {} rows without a position (rejected or unavailable) are no points", path.display(), file.lost.len());
     }
     if file.points.is_empty() {
         return Err(Failure::input(format!("{}: no row has a position", path.display())));
