@@ -8,7 +8,7 @@ use draw::{CLASSES, Drawn};
 use rayon::prelude::*;
 use score::{End, Ended, ended};
 
-/// Networks of a class. `cargo bench --bench networks` draws more, by another seed.
+/// Networks of a class. `cargo bench --workspace --bench networks` draws more, by another seed.
 const COUNT: u64 = 29;
 
 #[test]

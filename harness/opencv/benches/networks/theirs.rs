@@ -1,7 +1,7 @@
 //! OpenCV on a drawn network: `calibrateCamera`, and `fisheye::calibrate` for equidistant lenses.
 //!
-//! It gets 100 iterations where its default is 30. Before objects with depth it asks for a start: the longer side of the image as focal length, and the
-//! image's centre. Coordinates go in as f32, so that its sum of squares may exceed the least by 1e-3 where ours may by 1e-4.
+//! It gets 100 iterations where its default is 30. Before objects with depth `calibrateCamera` asks for a start: the longer side of the image as focal
+//! length, and the image's centre; `fisheye::calibrate` starts its poses from a homography, so that an equidistant lens before a wall is outside its method. Coordinates go in as f32, so that its sum of squares may exceed the least by 1e-3 where ours may by 1e-4.
 
 use std::collections::BTreeMap;
 
