@@ -26,6 +26,13 @@ mod start;
 mod survey;
 mod weak;
 
+#[cfg(test)]
+extern crate self as calibench_calibrate;
+#[cfg(test)]
+#[allow(dead_code, reason = "the tests beside the crate use the rest")]
+#[path = "../tests/surveys/network.rs"]
+mod scenes;
+
 pub use board_shape::{BoardShape, NoShape};
 pub use calibration::Calibration;
 pub use checked::{Checked, Finding, SHARE, Verdict};

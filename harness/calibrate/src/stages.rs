@@ -73,3 +73,35 @@ fn points(starts: &Starts, solution: &Solution<'_>) -> Vec<Result<nalgebra::Poin
     };
     starts.points.iter().map(new).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_model::camera::OpenCvFisheye;
+    use calibench_model::convert::{DifferenceOptions, difference};
+
+    use super::*;
+    use crate::scenes::{SIZE, board, settings};
+    use crate::start::starts;
+
+    #[test]
+    fn a_wide_lens_is_adjusted_as_one_that_pictures_angles_and_then_converted() {
+        let k = [0.02, -0.01, 0.0, 0.0];
+        let truth: Camera = OpenCvFisheye { size: SIZE, fx: 700.0, fy: 700.0, cx: 790.0, cy: 610.0, skew: 0.0, k }.into();
+        let (scene, settings) = (board(truth), settings("prism-fisheye"));
+        let survey = Survey::new(scene.points(), &scene.known()).unwrap();
+        let owners = vec![0; survey.images.len()];
+        let rough = starts(&survey, &owners, &settings).unwrap();
+        let found = by_stages(&survey, &owners, &rough, &settings).unwrap();
+        assert!(found.origins[0].ends_with("then an adjustment with opencv-fisheye, converted"), "{:?}", found.origins);
+        let apart = |camera: &Camera| difference(&truth, camera, &DifferenceOptions::default()).unwrap().spread.rms_px;
+        assert!(
+            apart(&found.cameras[0]) < 0.1 && apart(&rough.cameras[0]) > 5.0,
+            "{} {}",
+            apart(&found.cameras[0]),
+            apart(&rough.cameras[0])
+        );
+        for (found, truth) in found.poses.iter().zip(&scene.poses) {
+            assert!((found.centre - truth.centre).norm() < 0.1, "{found:?} for {truth:?}");
+        }
+    }
+}

@@ -98,6 +98,10 @@ mod tests {
         let apart = |(a, b): &(&String, &String)| a != b && (a.len() != b.len() || number(a).is_none() || number(a) != number(b));
         assert_eq!(together.iter().zip(&one).find(apart), None);
         assert_eq!(together.len(), one.len());
+        let (mut together, mut one) = (Vec::new(), Vec::new());
+        write_rows(&mut together, &["name"], 3, |i, row| row.text(["", "a", ""][i])).unwrap();
+        write_table(&mut one, &["name"], [[""], ["a"], [""]]).unwrap();
+        assert_eq!((together.as_slice(), one.as_slice()), (&b"name\n\"\"\na\n\"\"\n"[..], &b"name\n\"\"\na\n\"\"\n"[..]));
         let short = write_rows(Vec::new(), &columns, 1, |_, row| row.whole(1)).unwrap_err();
         assert!(short.to_string().contains("1 cells"), "{short}");
     }

@@ -135,3 +135,32 @@ fn is_along_normal(network: &Network, shifts: &[Vector3<f64>]) -> bool {
     let all: f64 = shifts.iter().map(Vector3::norm_squared).sum();
     eigen.eigenvalues[low] < 1e-3 * eigen.eigenvalues[high] && along > PART * all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::{board, lens, settings};
+
+    #[test]
+    fn a_testfield_that_is_too_long_one_way_is_said() {
+        let network = board(lens()).prepared(&settings("opencv5")).unwrap().network;
+        let shifts = |strain: f64, other: f64| -> Vec<Vector3<f64>> {
+            let one = |(i, point): (usize, &ObjectPoint)| {
+                let at = point.position.coords;
+                Vector3::new(strain * (at.x - 120.0), -strain * (at.y - 90.0), 0.0) + other * Vector3::new((7.0 * i as f64).sin(), 0.0, 1.0)
+            };
+            network.points.iter().enumerate().map(one).collect()
+        };
+        for strain in [0.000_5, 0.0025, 0.02] {
+            let said = stretched(&network, &shifts(strain, 0.0)).unwrap();
+            let expected = format!("{:.2} % longer along X against Y", 200.0 * strain);
+            assert!(said.contains(&expected), "{strain}: {said}");
+        }
+        let said = stretched(&network, &shifts(-0.01, 0.1)).unwrap();
+        assert!(said.contains("longer along Y against X"), "{said}");
+        // Shifts of which a strain explains less than six tenths.
+        for (strain, other) in [(0.0, 0.1), (0.001, 0.1), (0.0, 3.0), (0.02, 3.0)] {
+            assert_eq!(stretched(&network, &shifts(strain, other)), None, "{strain} {other}");
+        }
+    }
+}

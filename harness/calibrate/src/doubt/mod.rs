@@ -4,6 +4,7 @@ mod control;
 mod gross;
 mod lens;
 mod motion;
+mod overlap;
 mod precision;
 mod shutter;
 
@@ -20,10 +21,6 @@ use crate::{Calibration, Checked, Finding, Resampled, SHARE, Verdict};
 
 /// Probability below which a structure is no chance. Five tests together: once in 2000 sound calibrations, if residuals are independent.
 const ALPHA: f64 = 1e-4;
-/// Share of the variance that a structure must explain to be no shadow of gross errors.
-const EXPLAINED: f64 = 0.5;
-/// A structure that explains less than this share of what another one does may be a shadow of it.
-const HIDDEN: f64 = 0.8;
 /// Places of the grid over the frame.
 const GRID: (usize, usize) = (15, 11);
 
@@ -84,27 +81,8 @@ impl Calibration<'_> {
     ///
     /// Each allows for one more kind of unknown, and asks by an F test whether that is no chance, and how far the camera moves.
     pub fn examine(&mut self) {
-        let (mut gross, [control, lens, shutter]) = self.allowed_for();
-        let mut structures = [control, lens, shutter];
-        let most = structures.iter().map(Allowed::explains).fold(0.0, f64::max);
-        let is_clean = structures.iter().any(|allowed| allowed.is_structure() && allowed.is_clean);
-        gross = match gross {
-            // Image points are off together, and not for themselves.
-            Verdict::Doubt(finding, _) | Verdict::Slight(finding, _) if is_clean => Verdict::Sound(finding),
-            Verdict::Doubt(finding, cause) if most > EXPLAINED => Verdict::Slight(finding, cause),
-            Verdict::Doubt(..) => {
-                structures = [(); 3].map(|()| Allowed::untested("image points are in gross error"));
-                gross
-            }
-            other => other,
-        };
-        let is_doubt = |allowed: &Allowed| matches!(allowed.verdict, Verdict::Doubt(..));
-        let strongest_counts = structures.iter().any(|allowed| is_doubt(allowed) && allowed.explains() >= most);
-        let beside = |allowed: Allowed| {
-            let is_shadow = allowed.is_structure() && allowed.explains() < HIDDEN * most && (strongest_counts || !is_doubt(&allowed));
-            if is_shadow { Verdict::Untested("another structure explains more of the residuals".into()) } else { allowed.verdict }
-        };
-        let [control, lens, shutter] = structures.map(beside);
+        let (gross, structures) = self.allowed_for();
+        let (gross, [control, lens, shutter]) = overlap::settled(gross, structures);
         let all = [
             ("the precision of image points", precision::check(self)),
             ("gross errors of image points", gross),

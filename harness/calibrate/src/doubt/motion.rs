@@ -187,3 +187,56 @@ fn orthonormal(columns: &DMatrix<f64>) -> DMatrix<f64> {
     let basis = DMatrix::from_fn(MOVING, kept.len(), |i, k| eigen.eigenvectors[(i, kept[k])] / eigen.eigenvalues[kept[k]].sqrt());
     scaled * basis
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_adjust::{Options, adjust};
+
+    use super::*;
+    use crate::scenes::{Scene, board, lens, settings};
+    use crate::{Prior, Settings};
+
+    fn prepared(settings: &Settings) -> crate::Prepared {
+        Scene { sigma: 0.1, ..board(lens()) }.prepared(settings).unwrap()
+    }
+
+    #[test]
+    fn the_sum_of_squares_is_that_of_the_white_residuals() {
+        let prepared = prepared(&settings("opencv5"));
+        let solution = adjust(&prepared.network, &Options::default()).unwrap();
+        let moving = Moving::of(&solution, |at| at.y).unwrap();
+        let squares: f64 = moving.white().map(|[x, y]| x * x + y * y).sum();
+        assert!((squares / moving.cost - 1.0).abs() < 1e-9 && moving.cost < solution.cost(), "{squares} for {}", moving.cost);
+        // Six velocities of each of seven images.
+        assert_eq!(moving.more, 42);
+    }
+
+    #[test]
+    fn leaving_images_out_of_pure_noise_shows_what_the_covariances_say() {
+        let prepared = prepared(&settings("opencv5"));
+        let solution = adjust(&prepared.network, &Options::default()).unwrap();
+        let moving = Moving::of(&solution, |at| at.y).unwrap();
+        let redundancy = (solution.counts().redundancy() - 42) as f64;
+        for groups in [7, 20] {
+            let found = moving.optimism(groups, redundancy).unwrap();
+            assert!((0.4..2.5).contains(&found), "{groups}: {found}");
+        }
+    }
+
+    #[test]
+    fn what_was_observed_of_a_parameter_counts_as_an_observation() {
+        let mut settings = settings("opencv5");
+        settings.cameras[0].priors = vec![Prior { parameter: "k1".into(), value: -0.1, sigma: 0.01 }];
+        let prepared = prepared(&settings);
+        let solution = adjust(&prepared.network, &Options::default()).unwrap();
+        let names = solution.cameras()[0].parameters();
+        let place = names.iter().position(|parameter| parameter.name == "k1").unwrap();
+        let (normal, right, squares) = prior(&solution, &prepared.network, &[(0, 0), (0, place)]);
+        let off = -0.1 - names[place].value;
+        assert!(off.abs() > 1e-3, "{off}");
+        assert_eq!((normal[(0, 0)], normal[(0, 1)], right[0]), (0.0, 0.0, 0.0));
+        for (found, expected) in [(normal[(1, 1)], 1e4), (right[1], off * 1e4), (squares, off * off * 1e4)] {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} for {expected}");
+        }
+    }
+}

@@ -167,7 +167,7 @@ impl Pair {
     pub fn thickness(&self) -> Option<f64> {
         let points: Vec<Vector3<f64>> = self.points().map(|point| point.position.coords).collect();
         let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
-        let spread: Matrix3<f64> = points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum();
+        let spread: Matrix3<f64> = points.iter().map(|point| point - middle).map(|from| from * from.transpose()).sum();
         let squares = SymmetricEigen::new(spread).eigenvalues;
         (squares.max() > 0.0).then(|| (squares.min().max(0.0) / squares.max()).sqrt())
     }

@@ -116,7 +116,46 @@ fn in_model(sample: &Sample, optics: &Optics, lens: &Arrived) -> Option<Arrived>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenes::{board, lens};
     use calibench_model::camera::ImageSize;
+
+    #[test]
+    fn focal_lengths_are_in_longer_sides() {
+        let [straight, angles] = undistorted(&Optics::new(ImageSize { width: 1201, height: 1601 }));
+        for (lenses, shares) in [(straight, &FOCAL[..]), (angles, &FOCAL_WIDE)] {
+            assert_eq!(lenses.len(), shares.len());
+            for (lens, share) in lenses.iter().zip(shares) {
+                let found = lens.parameters();
+                assert!(found[..2].iter().all(|f| (f.value - share * 1601.0).abs() < 1e-9), "{found:?}");
+                assert_eq!([found[2].value, found[3].value], [600.0, 800.0]);
+            }
+        }
+    }
+
+    /// Of the lens that took them images are resected without a misfit; of another one with so much, whatever one image of three says.
+    #[test]
+    fn a_misfit_is_the_median_over_the_images() {
+        let scene = board(lens());
+        let controls = |pose: &Pose, off: f64| -> Vec<Control> {
+            let one = |(i, object): (usize, &nalgebra::Point3<f64>)| {
+                let seen = scene.camera.project(pose.ray(object)).unwrap();
+                let sign = if i % 2 == 0 { off } else { -off };
+                Control { object: *object, image: PixelPoint::new(seen.x + sign, seen.y) }
+            };
+            scene.targets.iter().enumerate().map(one).collect()
+        };
+        let views: Vec<Vec<Control>> = scene.poses[..3].iter().map(|pose| controls(pose, 0.0)).collect();
+        assert!(misfit(&scene.camera, &views) < 1e-12);
+        let mut one_bad = views.clone();
+        one_bad[1] = controls(&scene.poses[1], 10.0);
+        assert!(misfit(&scene.camera, &one_bad) < 1e-12);
+        // The pose makes up for next to nothing of what alternates: 10 px, squared.
+        one_bad[2] = controls(&scene.poses[2], 10.0);
+        let found = misfit(&scene.camera, &one_bad);
+        assert!((80.0..=100.0).contains(&found), "{found}");
+        assert!(misfit(&pinhole(scene.camera.size(), 800.0, [800.0, 600.0]), &views) > 1.0);
+        assert_eq!(misfit(&scene.camera, &[]), f64::INFINITY);
+    }
 
     #[test]
     fn a_field_is_narrow_by_the_corner_of_its_frame() {

@@ -118,6 +118,19 @@ fn kept(camera: &Camera, optics: &Optics, rest: &Camera) -> Camera {
 mod tests {
     use super::*;
 
+    /// A scale that is off by e moves an image point by e of its distance from the middle: over the frame the root of (w^2 + h^2) / 12, which no rotation
+    /// makes up for.
+    #[test]
+    fn cameras_are_apart_by_pixels_over_the_frame() {
+        let size = calibench_model::camera::ImageSize { width: 1600, height: 1200 };
+        let lens = |f: f64| crate::start::pinhole(size, f, [799.5, 599.5]);
+        assert!(distance(&lens(1500.0), &lens(1500.0)).unwrap() < 1e-9);
+        for e in [1e-4, 1e-3] {
+            let found = distance(&lens(1500.0), &lens(1500.0 * (1.0 + e))).unwrap();
+            assert!((found / (e * 2000.0 / 12_f64.sqrt()) - 1.0).abs() < 0.1, "{found}");
+        }
+    }
+
     #[test]
     fn the_first_minimum_stays_unless_another_is_lower() {
         assert_eq!(lowest(&[], 10.0), None);

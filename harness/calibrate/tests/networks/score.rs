@@ -2,7 +2,7 @@
 
 use calibench_adjust::{Distance, Network, Options, Solution, adjust, frame_uncertainty};
 use calibench_calibrate::{Optics, Settings, prepare};
-use calibench_model::camera::CameraModel;
+use calibench_model::camera::{Camera, CameraModel};
 
 use crate::draw::{Class, Drawn};
 
@@ -47,19 +47,43 @@ pub struct Ended {
     pub least: Option<f64>,
 }
 
-/// Calibrates a network from nothing and compares.
-pub fn ended(class: Class, drawn: &Drawn) -> Ended {
-    let optics = Optics { model: Some(class.model.into()), ..Optics::new(drawn.camera.size()) };
-    let settings = Settings { sigma_px: Some(drawn.sigma), ..Settings::new(vec![optics]) };
-    let prepared = match prepare(drawn.points.clone(), &drawn.control, &settings) {
-        Ok(prepared) => prepared,
-        Err(error) => return Ended { end: End::Stopped(error.to_string()), least: None },
+/// What a calibration from nothing gives.
+pub struct Calibrated {
+    network: Network,
+    /// Sum of squares, px^2 in units of the noise.
+    cost: Result<f64, String>,
+    warned: bool,
+}
+
+fn settings(class: Class, drawn: &Drawn, start: Option<Camera>) -> Settings {
+    let optics = Optics { model: Some(class.model.into()), start, ..Optics::new(drawn.camera.size()) };
+    Settings { sigma_px: Some(drawn.sigma), ..Settings::new(vec![optics]) }
+}
+
+/// Calibrates a network from nothing; an error where nothing can be adjusted.
+pub fn calibrated(class: Class, drawn: &Drawn) -> Result<Calibrated, String> {
+    let prepared = prepare(drawn.points.clone(), &drawn.control, &settings(class, drawn, None)).map_err(|error| error.to_string())?;
+    let adjusted = adjust(&prepared.network, &Options { most_iterations: 1000, ..Options::default() });
+    let cost = adjusted.map(|solution| solution.cost()).map_err(|error| error.to_string());
+    Ok(Calibrated { cost, warned: !prepared.rivals.is_empty(), network: prepared.network })
+}
+
+/// Compares a calibration with the adjustment from the truth. Where nothing could be adjusted that one has the camera as its start; where not even then,
+/// nobody can say whether the network determines the camera, and it counts as if it did.
+pub fn ended(class: Class, drawn: &Drawn, calibrated: Result<Calibrated, String>) -> Ended {
+    let calibrated = match calibrated {
+        Ok(calibrated) => calibrated,
+        Err(error) => {
+            let prepared = prepare(drawn.points.clone(), &drawn.control, &settings(class, drawn, Some(drawn.camera)));
+            let least = prepared.map_or(Some(f64::NAN), |prepared| from_truth(drawn, &prepared.network));
+            return Ended { end: if least.is_some() { End::Stopped(error) } else { End::Undetermined }, least };
+        }
     };
-    let Some(least) = from_truth(drawn, &prepared.network) else { return Ended { end: End::Undetermined, least: None } };
-    let end = match adjust(&prepared.network, &Options { most_iterations: 1000, ..Options::default() }) {
-        Ok(solution) if solution.cost() <= least * (1.0 + REACHED) => End::Reached,
-        Ok(solution) => End::Above { ratio: solution.cost() / least, warned: !prepared.rivals.is_empty() },
-        Err(error) => End::Stopped(error.to_string()),
+    let Some(least) = from_truth(drawn, &calibrated.network) else { return Ended { end: End::Undetermined, least: None } };
+    let end = match calibrated.cost {
+        Ok(cost) if cost <= least * (1.0 + REACHED) => End::Reached,
+        Ok(cost) => End::Above { ratio: cost / least, warned: calibrated.warned },
+        Err(error) => End::Stopped(error),
     };
     Ended { end, least: Some(least) }
 }

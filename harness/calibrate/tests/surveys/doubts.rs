@@ -51,7 +51,7 @@ fn sound_calibrations_are_not_doubted() {
         .collect();
     let alarms: Vec<&Checked> = all.iter().flatten().filter(|checked| checked.doubt().is_some()).collect();
     assert!(alarms.len() <= 2, "{alarms:#?}");
-    for check in 2..5 {
+    for check in [0, 2, 3, 4] {
         let p = all.iter().filter_map(|checked| match &checked[check].verdict {
             Verdict::Sound(finding) | Verdict::Slight(finding, _) | Verdict::Doubt(finding, _) => Some(finding.p),
             Verdict::Untested(_) => None,

@@ -67,6 +67,12 @@ fn what_does_not_fit_is_counted_and_noted() {
     let poses: Vec<Option<Pose>> = exact.poses.iter().copied().map(Some).collect();
     let found = ObjectPoints::of(&survey, &[exact.camera; 2], &poses, 1e-3, (None, Some(NOISE)));
     assert_eq!(found.misfits(), 1);
+    let both = (0..survey.targets()).filter(|&target| survey.of_target(target).count() == 2).count();
+    assert!(
+        both > 30 && (found.len(), found.failed, found.is_empty()) == (both, survey.targets() - both, false),
+        "{} of {both}",
+        found.len()
+    );
     assert!(!found.agrees_with(NOISE));
     let mut text = Vec::new();
     found.write(&survey, &mut text).unwrap();

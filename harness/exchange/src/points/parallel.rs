@@ -19,6 +19,9 @@ pub(super) fn parse(file: &str, text: &[u8], check: Check<'_>) -> Option<PointFi
         return None;
     }
     let (header, body) = text.split_at(below_header(text)?);
+    if body.is_empty() {
+        return None;
+    }
     let mut all = PointFile { points: Points::with_capacity(most_rows(text)), lost: LostRows::default() };
     let one = |piece: &&[u8]| {
         let mut found = PointFile { points: Points::with_capacity(most_rows(piece)), lost: LostRows::default() };
@@ -85,6 +88,29 @@ mod tests {
         assert!(together.points == one.points && together.lost == one.lost && !one.lost.is_empty());
         let names = |file: &PointFile| [file.points.images().clone(), file.points.targets().clone()];
         assert_eq!(names(&together), names(&one));
+    }
+
+    #[test]
+    fn whatever_ends_lines_the_same_is_read() {
+        let plain: String = (0..120_000).map(|i| format!("i,t{i},{i}.5,2\n")).collect();
+        let plain = format!("image,target,x,y\n{plain}");
+        let expected = in_turn("p.csv", plain.as_bytes(), &|_| Ok(())).unwrap();
+        for (name, text, together) in [
+            ("as written", plain.clone(), true),
+            ("byte order mark", format!("\u{feff}{plain}"), true),
+            ("CR LF", plain.replace('\n', "\r\n"), true),
+            ("CR", plain.replace('\n', "\r"), false),
+            ("CR in the rows alone", plain.replace('\n', "\r").replacen('\r', "\n", 1), true),
+            ("no end of the last line", plain.trim_end().to_owned(), true),
+            ("empty lines", plain.replace('\n', "\n\n"), true),
+        ] {
+            let found = parse("p.csv", text.as_bytes(), &|_| Ok(()));
+            assert_eq!(found.is_some(), together, "{name}");
+            let found = found.map_or_else(|| parse_points("p.csv", text.as_bytes()).unwrap().points, |found| found.points);
+            assert!(found == expected.points, "{name}");
+        }
+        let header = format!("{}\n", ["x"; PIECE].join(","));
+        assert!(header.len() >= 2 * PIECE && parse("p.csv", header.as_bytes(), &|_| Ok(())).is_none());
     }
 
     #[test]

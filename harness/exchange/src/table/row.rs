@@ -51,6 +51,10 @@ impl Row {
 
     pub(super) fn end(&mut self, expected: usize) -> io::Result<()> {
         let cells = std::mem::take(&mut self.cells);
+        // A lone empty cell would be an empty line, which readers pass over.
+        if cells == 1 && self.bytes.last().is_none_or(|byte| *byte == b'\n') {
+            self.bytes.extend_from_slice(b"\"\"");
+        }
         self.bytes.push(b'\n');
         let wrong = || io::Error::new(io::ErrorKind::InvalidData, format!("a row of {cells} cells below a header of {expected}"));
         if cells == expected { Ok(()) } else { Err(wrong()) }

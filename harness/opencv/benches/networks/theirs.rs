@@ -1,7 +1,8 @@
 //! OpenCV on a drawn network: `calibrateCamera`, and `fisheye::calibrate` for equidistant lenses.
 //!
 //! It gets 100 iterations where its default is 30. Before objects with depth `calibrateCamera` asks for a start: the longer side of the image as focal
-//! length, and the image's centre; `fisheye::calibrate` starts its poses from a homography, so that an equidistant lens before a wall is outside its method. Coordinates go in as f32, so that its sum of squares may exceed the least by 1e-3 where ours may by 1e-4.
+//! length, and the image's centre; `fisheye::calibrate` starts its poses from a homography, so that an equidistant lens before a wall is outside its
+//! method. Coordinates go in as f32, so that its sum of squares may exceed the least by 1e-3 where ours may by 1e-4.
 
 use std::collections::BTreeMap;
 
@@ -19,6 +20,11 @@ const REACHED: f64 = 1e-3;
 
 /// A view: object points, and where they were measured, px.
 type View = Vec<([f64; 3], [f64; 2])>;
+
+/// Whether the class is one that OpenCV's methods are made for.
+pub fn can(class: Class) -> bool {
+    !(class.model == "opencv-fisheye" && matches!(class.object, Object::Wall | Object::Mixed))
+}
 
 /// Whether OpenCV arrives at the sum of squares `least`, in units of the noise; not where the network determines no camera.
 pub fn reached(class: Class, drawn: &Drawn, least: Option<f64>) -> bool {
