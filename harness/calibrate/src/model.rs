@@ -110,7 +110,7 @@ fn regular(camera: Camera) -> Camera {
     }
 }
 
-/// Is the model known, and what it needs given? Asked before start values are looked for.
+/// Refuses an unknown model, and one in mm without a pixel pitch, before start values are looked for.
 pub(super) fn check(optics: &Optics) -> Result<(), CalibrationError> {
     if optics.model.is_none() && optics.pitch_um.is_none() && optics.solve.iter().flatten().any(|name| name == "c") {
         return Err(CalibrationError::NoPitch { what: "c, x0 and y0 are".into() });

@@ -80,7 +80,7 @@ mod tests {
     use calibench_model::convert::{DifferenceOptions, difference};
 
     use super::*;
-    use crate::scenes::{SIZE, board, settings};
+    use crate::scenes::{SIZE, board, lens, optics, settings};
     use crate::start::starts;
 
     #[test]
@@ -103,5 +103,23 @@ mod tests {
         for (found, truth) in found.poses.iter().zip(&scene.poses) {
             assert!((found.centre - truth.centre).norm() < 0.1, "{found:?} for {truth:?}");
         }
+    }
+
+    /// Where one camera needs stages the others have their own models meanwhile.
+    #[test]
+    fn a_camera_beside_one_in_stages_has_its_own_model() {
+        let of = |name: &str, images: &str, model: &str| Optics {
+            name: name.into(),
+            images: vec![glob::Pattern::new(images).unwrap()],
+            ..optics(model)
+        };
+        let settings = Settings::new(vec![of("left", "image_[0-2]*", "photogrammetric"), of("right", "image_*", "opencv8")]);
+        let scene = board(lens());
+        let survey = Survey::new(scene.points(), &scene.known()).unwrap();
+        let owners = crate::optics::owners(&settings.cameras, &survey.images).unwrap();
+        let rough = starts(&survey, &owners, &settings).unwrap();
+        let found = by_stages(&survey, &owners, &rough, &settings).unwrap();
+        assert!(matches!(found.cameras[..], [Camera::Photogrammetric(_), Camera::OpenCv(_)]), "{:?}", found.cameras);
+        assert_eq!(found.origins[0], rough.origins[0]);
     }
 }

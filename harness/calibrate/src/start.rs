@@ -21,6 +21,8 @@ const FOCAL_WIDE: [f64; 4] = [0.22, 0.32, 0.45, 0.65];
 const ROUNDS: usize = 3;
 /// Control points of an image that start values are found from, at most: their cost then grows with the images alone.
 const ENOUGH: usize = 500;
+/// Images of which one lens after another is tried, at most, and points of each.
+const FEW: (usize, usize) = (24, 60);
 /// Rays that meet at less are parallel, rad.
 const PARALLEL: f64 = 1e-3;
 
@@ -154,25 +156,39 @@ fn from_depth(views: &[&[Control]], size: ImageSize) -> Result<(Camera, String),
     let side = f64::from(size.width.max(size.height));
     let centre = middle(size)?;
     let mut focal: Vec<(f64, &str)> = FOCAL.iter().map(|f| (f * side, "the best of some usual focal lengths")).collect();
+    let some = some(views);
     let mut linear: Vec<f64> =
-        views.iter().filter_map(|view| direct_linear(view, size, 1000.0, None).ok()).map(|dlt| dlt.camera.c).collect();
+        some.par_iter().filter_map(|view| direct_linear(view, size, 1000.0, None).ok()).map(|dlt| dlt.camera.c).collect();
     linear.retain(|f| *f > 0.2 * side && *f < 20.0 * side);
     linear.sort_by(f64::total_cmp);
     if let Some(median) = linear.get(linear.len() / 2) {
         focal.push((*median, "the direct linear transformation (median of the images)"));
     }
+    let few = few(&some);
     let tried = focal.into_iter().map(|(focal, origin)| {
         let camera = pinhole(size, focal, centre);
-        (misfit(&camera, views), camera, origin)
+        (misfit(&camera, &few), camera, origin)
     });
     let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
     let (camera, origin) = best.map_or_else(|| (pinhole(size, side, centre), "a guess"), |(_, camera, origin)| (camera, origin));
     Ok((camera, origin.to_owned()))
 }
 
+/// Some of many views, spread over their order.
+fn some<'v>(views: &[&'v [Control]]) -> Vec<&'v [Control]> {
+    if views.len() <= FEW.0 { views.to_vec() } else { spread(views.len(), FEW.0).map(|place| views[place]).collect() }
+}
+
+/// Some of the many points of views.
+fn few(views: &[&[Control]]) -> Vec<Vec<Control>> {
+    let of =
+        |view: &[Control]| if view.len() <= FEW.1 { view.to_vec() } else { spread(view.len(), FEW.1).map(|place| view[place]).collect() };
+    views.iter().map(|view| of(view)).collect()
+}
+
 /// The median over the images of the standard deviation of an image coordinate after a resection, px.
-fn misfit(camera: &Camera, views: &[&[Control]]) -> f64 {
-    let sigma = |view: &&[Control]| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
+fn misfit(camera: &Camera, views: &[Vec<Control>]) -> f64 {
+    let sigma = |view: &Vec<Control>| resect(camera, view, None).map_or(f64::INFINITY, |found| found.sigma0);
     let mut sigmas: Vec<f64> = views.par_iter().filter(|view| view.len() >= 4).map(sigma).collect();
     sigmas.sort_by(f64::total_cmp);
     sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::INFINITY)
@@ -183,8 +199,9 @@ fn widest(views: &[&[Control]], size: ImageSize, usual: (Camera, String)) -> Res
     let side = f64::from(size.width.max(size.height));
     let [cx, cy] = middle(size)?;
     let equidistant = |f: f64| OpenCvFisheye { size, fx: f * side, fy: f * side, cx, cy, skew: 0.0, k: [0.0; 4] }.into();
-    let tried = FOCAL_WIDE.map(equidistant).into_iter().map(|camera| (misfit(&camera, views), camera));
-    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(misfits, _)| *misfits < misfit(&usual.0, views));
+    let views = few(&some(views));
+    let tried = FOCAL_WIDE.map(equidistant).into_iter().map(|camera| (misfit(&camera, &views), camera));
+    let best = tried.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(misfits, _)| *misfits < misfit(&usual.0, &views));
     Ok(best.map_or(usual, |(_, camera)| (camera, "the best of some equidistant lenses".to_owned())))
 }
 

@@ -52,11 +52,18 @@ pub fn write_rows(mut output: impl Write, columns: &[&str], count: usize, row: i
     columns.iter().for_each(|column| header.text(column));
     header.end(columns.len())?;
     output.write_all(header.bytes())?;
+    let made = |batch: usize| {
+        let firsts = (batch.min(count)..count.min(batch + PIECE * BATCH)).into_par_iter().step_by(PIECE);
+        firsts.map(piece).collect::<io::Result<Vec<_>>>()
+    };
+    let mut next = made(0);
     for batch in (0..count).step_by(PIECE * BATCH) {
-        let firsts = (batch..count.min(batch + PIECE * BATCH)).into_par_iter().step_by(PIECE);
-        for piece in firsts.map(piece).collect::<io::Result<Vec<_>>>()? {
-            output.write_all(piece.bytes())?;
-        }
+        let ready = std::mem::replace(&mut next, Ok(Vec::new()))?;
+        // The next rows are made while these are written.
+        rayon::in_place_scope(|scope| {
+            scope.spawn(|_| next = made(batch + PIECE * BATCH));
+            ready.iter().try_for_each(|piece| output.write_all(piece.bytes()))
+        })?;
     }
     output.flush()
 }

@@ -1,4 +1,4 @@
-//! The accuracy gate: are the numbers of a run still those that were blessed?
+//! The accuracy gate: the numbers of a run against those that were blessed.
 //!
 //! With the same seed the numbers are the same, so they are compared, point by point. Only what changed is judged: where nothing is random,
 //! or no truth is known, point by point; elsewhere by tests on the paired differences of the same trials, under one error budget for a check. Sweeps

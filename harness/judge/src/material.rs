@@ -139,7 +139,7 @@ impl Material {
         tried.iter().map(|view| view.iter().filter(|tried| **tried).count()).collect()
     }
 
-    /// By view and corner: did every operator that measured enough of them measure this one? Operators are compared on these.
+    /// By view and corner: whether every operator that measured enough of them measured this one. Operators are compared on these.
     pub fn common(&self) -> Vec<Vec<bool>> {
         let all: usize = self.tried().iter().sum();
         let enough: Vec<&Corners> = (0..self.operators.len())

@@ -43,12 +43,12 @@ enum Derivative {
 #[derive(Clone, Copy, Debug)]
 struct Picturing {
     drawing: Drawing,
-    /// Does the corner lie at a pixel's centre rather than between four?
+    /// Whether the corner lies at a pixel's centre rather than between four.
     at_centre: bool,
     stroke: f64,
     /// Width of the pen that draws the outline, px; 0.02 decides that pixels on it are drawn.
     pen: f64,
-    /// Is one edge along +x rather than the bisector?
+    /// Whether one edge is along +x rather than the bisector.
     edge_along_x: bool,
 }
 

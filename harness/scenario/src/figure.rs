@@ -41,7 +41,7 @@ pub struct FigureWire {
     pub stroke: Option<DrawingLength>,
     /// Width of the round pen that draws the outline beside the filling, px: what is drawn reaches half of it past its geometry. Default 0.
     pub pen: Option<DrawingPen>,
-    /// Does one edge of (b) to (g) run along +x, rather than the bisector? Default false.
+    /// Whether one edge of (b) to (g) runs along +x, rather than the bisector. Default false.
     pub edge_along_x: Option<bool>,
     /// Another angle of a line or solid corner, degrees; it then opens to the right. Default: that of the image.
     #[schemars(with = "Option<DrawingAngle>")]

@@ -31,7 +31,7 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Is there nothing random in it? Its figures are then the same in every trial and for every seed.
+    /// Whether nothing in it is random: its figures are then the same in every trial and for every seed.
     pub fn is_deterministic(&self) -> bool {
         match &self.subject {
             Subject::Scene(scene) => {

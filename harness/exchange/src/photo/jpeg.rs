@@ -1,11 +1,11 @@
-//! Is a JPEG whole? Its segments are walked up to the end mark; nothing is decoded.
+//! JPEGs that end early: segments are walked up to the end mark; nothing is decoded.
 
 use std::io::{self, BufRead, ErrorKind, Read, Seek, SeekFrom};
 
 /// Second byte of the end mark.
 const END_OF_IMAGE: u8 = 0xd9;
 
-/// Does the end mark of the image that starts here follow? Leaves the input where it was.
+/// Whether the end mark of the image that starts here follows. Leaves the input where it was.
 pub(super) fn is_whole(input: &mut (impl BufRead + Seek)) -> io::Result<bool> {
     let start = input.stream_position()?;
     let walked = walk(input);

@@ -27,11 +27,24 @@ pub(super) fn parse(file: &str, text: &[u8], check: Check<'_>) -> Option<PointFi
         let mut found = PointFile { points: Points::with_capacity(most_rows(piece)), lost: LostRows::default() };
         read_rows(file, header.chain(*piece), text, check, &mut found).ok().map(|()| found)
     };
-    for batch in pieces(body).chunks(BATCH) {
-        for found in batch.par_iter().map(one).collect::<Option<Vec<_>>>()? {
-            all.points.append(&found.points);
-            found.lost.iter().for_each(|row| all.lost.push(row));
-        }
+    let pieces = pieces(body);
+    let parsed = |batch: &[&[u8]]| batch.par_iter().map(one).collect::<Option<Vec<_>>>();
+    let mut batches = pieces.chunks(BATCH);
+    let mut ready = parsed(batches.next()?)?;
+    while !ready.is_empty() {
+        let mut next = Some(Vec::new());
+        // The next rows are read while these are joined.
+        rayon::in_place_scope(|scope| {
+            if let Some(batch) = batches.next() {
+                let next = &mut next;
+                scope.spawn(move |_| *next = parsed(batch));
+            }
+            for found in &ready {
+                all.points.append(&found.points);
+                found.lost.iter().for_each(|row| all.lost.push(row));
+            }
+        });
+        ready = next?;
     }
     all.points.twice().is_none().then_some(all)
 }

@@ -1,4 +1,4 @@
-//! Faults put into a run on purpose: does the gate see them?
+//! Faults put into a run on purpose, of which the gate is to see each.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

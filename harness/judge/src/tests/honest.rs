@@ -1,4 +1,4 @@
-//! Are halves a fair test of the sigmas?
+//! Halves as a test of the sigmas: fair to those that are right.
 
 use calibench_records::judgement::HONEST;
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! Is a spoiled view named, and none in clean data?
+//! A spoiled view is named, and none of clean data.
 
 use calibench_records::judgement::OUTLIER_ALPHA;
 use rayon::prelude::*;

@@ -38,7 +38,7 @@ pub struct CalibrationWire {
     /// Standard deviation per axis of each method's image coordinates, px, by its label, `pixel` apart: coordinates are then drawn and no image is rendered.
     #[schemars(with = "Option<BTreeMap<String, Error>>")]
     pub drawn: Option<Spanned<BTreeMap<String, Error>>>,
-    /// Keep the image points of every trial in the records? Default: of the first.
+    /// Whether the records keep the image points of every trial. Default: those of the first.
     pub keep_points: Option<bool>,
 }
 

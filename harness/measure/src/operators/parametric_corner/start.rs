@@ -121,8 +121,8 @@ impl Columns {
     }
 }
 
-/// Are the grey values of the window of half-width `half` around `position` correlated with those opposite it? Around a crossing of edges they are, by 1 less the
-/// noise; beside a straight edge by -1, around the corner of one area of 90 degrees by -1/3. The window is in the image.
+/// Whether the grey values of the window of half-width `half` px around `position` correlate with those opposite it. Around a crossing of edges they do, by 1
+/// less the noise; beside a straight edge by -1, around the corner of one area of 90 degrees by -1/3. The window is in the image.
 pub(super) fn is_like_its_opposite(image: &Image, position: [f64; 2], half: i64) -> bool {
     let [x, y] = position.map(|p| p.round() as i64);
     let [twice_x, twice_y] = position.map(|p| (2.0 * p).round() as i64);

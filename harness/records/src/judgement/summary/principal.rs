@@ -1,4 +1,4 @@
-//! Does the principal point come out the same again?
+//! The principal point from all photographs, from halves of them, and with some left out.
 
 use std::sync::Arc;
 
