@@ -5,7 +5,7 @@ use std::sync::Arc;
 use calibench_model::Rejection;
 use calibench_records::results::{Calibrated, Group};
 
-use super::entry::{Entry, Found, rounded};
+use super::point_entry::{Entry, Found, rounded};
 
 /// Value, standard deviation and error of a figure of an adjustment.
 #[derive(Clone, Copy, Debug, PartialEq)]

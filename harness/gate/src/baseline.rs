@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use calibench_model::Rejection;
 
-use super::entry::{Coordinates, DECIMALS, Entry, Found, Place, SIGMA_DECIMALS};
-use super::sheet::{self, BaselineError, Head, HeadMethod, Kind, Row};
+use super::baseline_file::{self, BaselineError, Head, HeadMethod, Kind, Row};
+use super::point_entry::{Coordinates, DECIMALS, Entry, Found, Place, SIGMA_DECIMALS};
 use super::table::{MethodTable, Table};
 
 /// The columns before the two coordinates.
@@ -49,7 +49,7 @@ pub fn write_baseline(path: &Path, table: &Table) -> Result<String, BaselineErro
     let of_method = |(index, (_, method)): (usize, &(&Arc<str>, &'_ MethodTable))| {
         method.points.iter().map(|(place, entry)| row(index + 1, place, entry)).collect::<Vec<_>>()
     };
-    sheet::write(path, &head, &columns(coordinates), kept.iter().enumerate().flat_map(of_method))
+    baseline_file::write(path, &head, &columns(coordinates), kept.iter().enumerate().flat_map(of_method))
 }
 
 fn row(method: usize, place: &Place, entry: &Entry) -> Vec<String> {
@@ -65,7 +65,7 @@ fn row(method: usize, place: &Place, entry: &Entry) -> Vec<String> {
 /// # Errors
 /// A file that is not to the letter what [`write_baseline`] wrote: cut, edited, of another scenario; with line and column where there is one.
 pub fn read_baseline(path: &Path, scenario: &str) -> Result<Option<(Table, String)>, BaselineError> {
-    let of = |coordinates: Coordinates| sheet::read(path, Kind::Points, &columns(coordinates));
+    let of = |coordinates: Coordinates| baseline_file::read(path, Kind::Points, &columns(coordinates));
     let read = of(Coordinates::Errors).or_else(|first| of(Coordinates::Positions).map_err(|_| first))?;
     let Some(sheet) = read else { return Ok(None) };
     let damaged = |problem: String| BaselineError::Damaged { path: path.to_owned(), problem };

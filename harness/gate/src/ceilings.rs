@@ -9,8 +9,8 @@ use serde::Deserialize;
 use thiserror::Error;
 use toml::Spanned;
 
-use super::entry::{Coordinates, Entry};
 use super::finding::{Finding, Verdict};
+use super::point_entry::{Coordinates, Entry};
 use super::table::{MethodTable, Table};
 
 /// What a ceiling bounds.

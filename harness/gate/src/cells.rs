@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::entry::Coordinates;
+use super::baseline_file::{self, BaselineError, Head, HeadMethod, Kind, Row};
 use super::finding::{Finding, Verdict};
-use super::sheet::{self, BaselineError, Head, HeadMethod, Kind, Row};
+use super::point_entry::Coordinates;
 use super::table::{MethodTable, Table};
 
 /// What a file can keep of a method in a cell.
@@ -114,7 +114,7 @@ impl<T: Kept> Cells<T> {
             rows,
         };
         head.method = self.methods.iter().zip(counts).map(method).collect();
-        sheet::write(path, &head, &Self::columns(), rows.into_iter())
+        baseline_file::write(path, &head, &Self::columns(), rows.into_iter())
     }
 
     /// Reads the file of `scenario` with its checksum; `None` when there is none.
@@ -122,7 +122,7 @@ impl<T: Kept> Cells<T> {
     /// # Errors
     /// A file that is not to the letter what was written.
     pub fn read(path: &Path, scenario: &str) -> Result<Option<(Self, String)>, BaselineError> {
-        let Some(sheet) = sheet::read(path, T::KIND, &Self::columns())? else { return Ok(None) };
+        let Some(sheet) = baseline_file::read(path, T::KIND, &Self::columns())? else { return Ok(None) };
         let (head, damaged) = (&sheet.head, |problem| BaselineError::Damaged { path: path.to_owned(), problem });
         if head.scenario != scenario {
             return Err(damaged(format!("is the baseline of `{}`, expected that of `{scenario}`", head.scenario)));

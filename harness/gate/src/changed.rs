@@ -1,7 +1,7 @@
 //! Two runs of one method, point by point: what is not as it was.
 
 use super::TOLERANCE;
-use super::entry::{Entry, Found, Place};
+use super::point_entry::{Entry, Found, Place};
 use super::table::MethodTable;
 
 /// A point with what was blessed and what is now.

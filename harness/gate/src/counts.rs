@@ -15,7 +15,7 @@ pub(super) struct Flips {
 
 impl Flips {
     /// Counts what `is` true of.
-    pub fn of(pairs: &Pairs, is: impl Fn(&super::entry::Entry) -> bool) -> Self {
+    pub fn of(pairs: &Pairs, is: impl Fn(&super::point_entry::Entry) -> bool) -> Self {
         let mut flips = Self { counts: [0; 2], by_trial: vec![(0, 0); pairs.trials] };
         for item in &pairs.items {
             let (old, new) = (is(&item.old), is(&item.new));

@@ -1,9 +1,9 @@
 //! Fewer trials than a test needs: the figures themselves are compared, within a stated growth. Changed numbers are never left unjudged.
 
-use super::entry::Entry;
 use super::finding::{Finding, Verdict};
 use super::judge::bounded;
 use super::pairs::{Item, Pairs};
+use super::point_entry::Entry;
 
 /// By how much, as a fraction, a root mean square may grow without being worse where no test can tell.
 pub const FEW_GROWTH: f64 = 0.01;

@@ -4,15 +4,15 @@
 //! or no truth is known, point by point; elsewhere by tests on the paired differences of the same trials, under one error budget for a check. Sweeps
 //! and adjustments are kept as digests and sums and judged by these. Ceilings, written by hand, stand beside all of it.
 
+mod accepted_worse;
 mod adjusted;
 mod baseline;
+mod baseline_file;
 mod ceilings;
 mod cells;
 mod changed;
 mod compare;
 mod counts;
-mod entry;
-mod exact;
 mod few;
 mod figures;
 mod finding;
@@ -23,24 +23,25 @@ mod limits;
 mod missing;
 mod moments;
 mod pairs;
+mod point_by_point;
+mod point_entry;
 pub mod power;
 mod render;
-mod sheet;
 mod sums;
 mod sums_judged;
 mod table;
 mod verdicts;
-mod worse;
 
 #[cfg(test)]
 mod tests;
 
+pub use accepted_worse::worse_than;
 pub use adjusted::{FigureKey, Numbers};
 pub use baseline::{baseline_path, figures_path, read_baseline, write_baseline};
+pub use baseline_file::{BaselineError, Kind, machine};
 pub use ceilings::{Ceiling, CeilingError, CeilingMetric, Ceilings};
 pub use cells::{Cells, Kept};
 pub use compare::OTHER_VERSION;
-pub use entry::{Coordinates, DECIMALS, Entry, Found, Place};
 pub use few::FEW_GROWTH;
 pub use figures::{FIGURE_GROWTH, FigureSums};
 pub use finding::{Finding, Rules, Verdict};
@@ -48,12 +49,11 @@ pub use index::{INDEX, Index, IndexError};
 pub use junit::junit;
 pub use limits::{ALPHA, BOUND, LEAST_PAIRS, TOLERANCE};
 pub use moments::PointSums;
+pub use point_entry::{Coordinates, DECIMALS, Entry, Found, Place};
 pub use render::{Tally, json, render};
-pub use sheet::{BaselineError, Kind, machine};
 pub use sums_judged::{CELL_GROWTH, FAILURES, SIGMA_DRIFT, TARGET_GROWTH};
 pub use table::{MethodTable, Table, fingerprint};
 pub use verdicts::Verdicts;
-pub use worse::worse_than;
 
 use calibench_records::statistics::holm;
 use judge::{Family, Test};

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::entry::Place;
 use super::finding::{Finding, Verdict};
+use super::point_entry::Place;
 use super::table::{MethodTable, Table};
 
 /// What the baseline has and the current table lacks fails; what is new is not blessed; another version or other parameters are a change.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::entry::{Entry, Place};
+use super::point_entry::{Entry, Place};
 
 /// The step, px, to which coordinates are rounded for a digest.
 const STEP: f64 = 1e-6;
@@ -86,7 +86,7 @@ pub(super) fn digest(points: &BTreeMap<Place, Entry>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::entry::Found;
+    use crate::point_entry::Found;
 
     fn measured(x: f64, y: f64, sigma: f64) -> Entry {
         Entry::Measured(Found { at: [x, y], sigma: Some(sigma) })

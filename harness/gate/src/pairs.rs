@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::entry::Entry;
+use super::point_entry::Entry;
 use super::table::MethodTable;
 
 /// A point of both runs.

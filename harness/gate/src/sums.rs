@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::baseline_file::{BaselineError, Kind, Row};
 use super::cells::Kept;
-use super::entry::Entry;
 use super::finding::{Finding, Verdict};
 use super::moments::{PointSums, Sum, digest};
-use super::sheet::{BaselineError, Kind, Row};
+use super::point_entry::Entry;
 use super::sums_judged::judged;
 use super::table::MethodTable;
 

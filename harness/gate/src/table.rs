@@ -6,7 +6,7 @@ use std::sync::Arc;
 use calibench_records::results::{MethodInfo, Trial};
 
 use super::adjusted::{self, FigureKey, Numbers};
-use super::entry::{Coordinates, Entry, Place};
+use super::point_entry::{Coordinates, Entry, Place};
 
 /// The points of one method.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::baseline_file::{self, BaselineError, Head, HeadMethod, Kind};
 use super::finding::{Finding, Verdict};
-use super::sheet::{self, BaselineError, Head, HeadMethod, Kind};
 
 /// The name under which the verdicts of all tables stand in the head of their file.
 const NAME: &str = "published tables";
@@ -30,7 +30,7 @@ impl Verdicts {
         let mut head = Head::new(Kind::Verdicts, NAME, "", 0, "", Vec::new());
         let [label, version, settings, library] = [NAME, "", "", ""].map(str::to_owned);
         head.method = vec![HeadMethod { label, version, settings, library, rows: self.0.len() as u64 }];
-        sheet::write(path, &head, &COLUMNS, self.0.iter().map(|(cell, verdict)| cell.iter().chain([verdict]).cloned().collect()))
+        baseline_file::write(path, &head, &COLUMNS, self.0.iter().map(|(cell, verdict)| cell.iter().chain([verdict]).cloned().collect()))
     }
 
     /// Reads the file with its checksum; `None` when there is none.
@@ -38,7 +38,7 @@ impl Verdicts {
     /// # Errors
     /// A file that is not to the letter what was written.
     pub fn read(path: &Path) -> Result<Option<(Self, String)>, BaselineError> {
-        let Some(sheet) = sheet::read(path, Kind::Verdicts, &COLUMNS)? else { return Ok(None) };
+        let Some(sheet) = baseline_file::read(path, Kind::Verdicts, &COLUMNS)? else { return Ok(None) };
         let mut all = Self::default();
         for row in sheet.rows() {
             let cell = [0, 1, 2].map(|column| row.text(column).to_owned());

@@ -5,8 +5,8 @@ mod gross;
 mod lens;
 mod motion;
 mod overlap;
-mod precision;
 mod shutter;
+mod stated_precision;
 
 use calibench_adjust::{Distance, Solution, Variance, frame_uncertainty};
 use calibench_model::camera::Camera;
@@ -84,7 +84,7 @@ impl Calibration<'_> {
         let (gross, structures) = self.allowed_for();
         let (gross, [control, lens, shutter]) = overlap::settled(gross, structures);
         let all = [
-            ("the precision of image points", precision::check(self)),
+            ("the precision of image points", stated_precision::check(self)),
             ("gross errors of image points", gross),
             ("the coordinates of control points", control),
             ("the lens", lens),

@@ -5,6 +5,7 @@
 //! count. Memory is the most that was resident, which Linux alone says.
 
 mod network;
+#[path = "../program.rs"]
 mod program;
 
 use std::error::Error;

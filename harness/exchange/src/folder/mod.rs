@@ -3,7 +3,7 @@
 //! Each folder holds a manifest: the files that calibench wrote there, with their digests. A folder in which anything else is, or in
 //! which a file was changed since, is refused. A new one is filled beside the old one and exchanged with it at once.
 
-mod beside;
+mod foreign_folder;
 mod manifest;
 mod new;
 mod place;
@@ -14,7 +14,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::atomic::{at, named};
-pub use beside::write_beside;
+pub use foreign_folder::write_beside;
 pub use manifest::MANIFEST;
 use manifest::Manifest;
 pub use new::{NewFile, NewFolder};

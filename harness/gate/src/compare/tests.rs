@@ -1,7 +1,7 @@
 //! What a comparison names, counts and lets pass.
 
 use super::*;
-use crate::entry::Entry;
+use crate::point_entry::Entry;
 use crate::tests::{NO_CORNER, holding, lost, measured, method};
 
 fn kept(dx: f64) -> Entry {

@@ -1,7 +1,7 @@
 //! The tests of a method, each against means and differences by hand.
 
 use super::*;
-use crate::entry::Found;
+use crate::point_entry::Found;
 use crate::tests::{NO_CORNER, lost, measured, method};
 
 /// +1 and -1 in turn: ten of them have mean 0 and mean square 1.

@@ -7,10 +7,10 @@ use calibench_random::{Key, Purpose, stream};
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
 
-use crate::entry::Entry;
 use crate::finding::Finding;
 use crate::judge::{self, Family, Test};
 use crate::pairs::{Item, Pairs};
+use crate::point_entry::Entry;
 use crate::table::{MethodTable, Table};
 use crate::{LEAST_PAIRS, decide};
 

@@ -2,10 +2,10 @@
 
 use super::{NO_CORNER, at, holding, info, lost, measured, method, point, rejected, table};
 use crate::changed::{Changes, agree, distance};
-use crate::exact::{exact, worse_status};
 use crate::few::few;
 use crate::missing::completeness;
 use crate::pairs::Pairs;
+use crate::point_by_point::{exact, worse_status};
 use crate::{Coordinates, Entry, Finding, Found, MethodTable, Place, Table, Verdict};
 use calibench_model::PixelPoint;
 use calibench_records::results::{Outcome, PointResult};

@@ -32,7 +32,7 @@ fn main() -> opencv::Result<()> {
         "{:<24} {:>10} {:>8} {:>13} {:>15} {:>8} {:>8} {:>15} {:>10}",
         "object, model", "determined", "reached", "above, warned", "above, unwarned", "stopped", "s, all", "OpenCV: reached", "s, all"
     );
-    let words: Vec<&String> = arguments.iter().filter(|word| word.chars().all(char::is_alphabetic)).collect();
+    let words: Vec<&String> = arguments.iter().filter(|word| !word.starts_with('-') && word.parse::<u64>().is_err()).collect();
     let name = |class: &Class| format!("{:?} {}", class.object, class.model).to_lowercase();
     let asked = CLASSES.into_iter().filter(|class| words.iter().all(|word| name(class).contains(&word.to_lowercase())));
     asked.for_each(|class| row(class, count, seed));

@@ -4,8 +4,8 @@
 mod bias;
 mod close;
 mod part;
-mod precision;
 mod surface;
+mod theoretical_precision;
 
 use super::canvas::Canvas;
 use super::load::{LoadError, Loaded};
@@ -22,7 +22,8 @@ pub fn section(plain: &[&Loaded], swept: &[&LoadedSweep]) -> Result<(String, Vec
     let scene = |name: &str| plain.iter().find(|loaded| loaded.name == format!("{FAMILY}/{name}")).copied();
     let sweep = |name: &str| swept.iter().find(|loaded| loaded.name == format!("{FAMILY}/{name}")).copied();
     let peak = scene("table-1-rendered").map(surface::section).transpose()?;
-    let precise = scene("table-1").zip(sweep("table-2")).map(|(images, noisy)| precision::section(images, noisy)).transpose()?;
+    let precise =
+        scene("table-1").zip(sweep("table-2")).map(|(images, noisy)| theoretical_precision::section(images, noisy)).transpose()?;
     let parts = [peak.flatten(), scene("table-1").and_then(close::section), sweep("bias").and_then(bias::section), precise.flatten()];
     let (mut text, mut pictures) = (String::new(), Vec::new());
     for (part, picture) in parts.into_iter().flatten() {

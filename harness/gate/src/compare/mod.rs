@@ -1,13 +1,13 @@
 //! A run beside its baseline: what is missing, what changed, and whether what changed is worse.
 
 use super::changed::{Changes, distance};
-use super::entry::Coordinates;
-use super::exact::{exact, status, worse_status};
 use super::few::few;
 use super::finding::{Finding, Verdict};
 use super::judge::{self, Test};
 use super::missing;
 use super::pairs::Pairs;
+use super::point_by_point::{exact, status, worse_status};
+use super::point_entry::Coordinates;
 use super::table::{MethodTable, Table};
 use super::{LEAST_PAIRS, TOLERANCE};
 

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use calibench_records::results::Group;
 
 use super::adjusted::{FigureKey, Numbers};
+use super::baseline_file::{BaselineError, Kind, Row};
 use super::cells::Kept;
 use super::finding::{Finding, Verdict};
-use super::sheet::{BaselineError, Kind, Row};
 use super::table::MethodTable;
 
 /// What is no change of a figure, as a fraction of its standard deviation or scatter: last bits, carried through an adjustment.

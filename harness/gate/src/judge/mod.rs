@@ -3,9 +3,9 @@
 use calibench_records::statistics::paired::{PValues, mean, paired_t};
 
 use super::counts::Flips;
-use super::entry::Entry;
 use super::finding::{Finding, Verdict};
 use super::pairs::Pairs;
+use super::point_entry::Entry;
 use super::{BOUND, LEAST_PAIRS, TOLERANCE};
 
 /// Tests that share one part of the error budget.

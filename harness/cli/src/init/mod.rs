@@ -12,10 +12,10 @@ use crate::failure::Failure;
 
 /// What is written, by its path in the project.
 const FILES: [(&str, &str); 4] = [
-    ("README.md", include_str!("init/README.md")),
+    ("README.md", include_str!("README.md")),
     (".gitignore", "/records/\n"),
-    ("scenarios/first/corners.toml", include_str!("init/corners.toml")),
-    ("reference/baselines/ceilings.toml", include_str!("init/ceilings.toml")),
+    ("scenarios/first/corners.toml", include_str!("corners.toml")),
+    ("reference/baselines/ceilings.toml", include_str!("ceilings.toml")),
 ];
 
 #[derive(Args)]

@@ -9,7 +9,7 @@ use calibench_records::results::LOST;
 use rand::seq::SliceRandom;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::entry::{Entry, Found, Place, rounded};
+use crate::point_entry::{Entry, Found, Place, rounded};
 use crate::table::MethodTable;
 
 /// A fault in the results of one method.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use calibench_records::statistics::paired::mean;
 
 use super::ceilings::CeilingMetric;
-use super::entry::Coordinates;
+use super::point_entry::Coordinates;
 use super::table::{MethodTable, Table};
 use super::{TOLERANCE, missing};
 

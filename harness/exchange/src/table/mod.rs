@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use calibench_model::escape;
 use rayon::prelude::*;
 
-pub use row::Row;
+pub use csv_row::Row;
 
-mod row;
+mod csv_row;
 
 /// Rows that one thread writes at a time.
 const PIECE: usize = 1 << 12;

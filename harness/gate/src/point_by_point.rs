@@ -2,8 +2,8 @@
 
 use super::TOLERANCE;
 use super::changed::{Changes, Pair, agree};
-use super::entry::Coordinates;
 use super::finding::{Finding, Verdict};
+use super::point_entry::Coordinates;
 use super::table::{MethodTable, Table};
 
 /// A finding for every point that changed. What is worse fails, and what no truth can judge; what is better or as far off elsewhere changed.
