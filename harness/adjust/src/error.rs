@@ -18,7 +18,7 @@ pub enum AdjustError {
         image: String,
         /// Name of the point.
         point: String,
-        /// Why.
+        /// The reason.
         why: calibench_model::camera::NoCounterpart,
     },
     /// The observations do not determine all unknowns.

@@ -8,7 +8,7 @@ pub const SHARE: f64 = 3.0;
 pub struct Checked {
     /// What was looked for, in words.
     pub what: &'static str,
-    /// What was found.
+    /// The result.
     pub verdict: Verdict,
 }
 

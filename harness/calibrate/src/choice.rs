@@ -36,7 +36,7 @@ pub enum ModelError {
         model: String,
         /// What was asked for.
         name: String,
-        /// What there is.
+        /// The names that there are.
         known: String,
         /// The nearest.
         near: Option<String>,

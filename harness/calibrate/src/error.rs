@@ -37,7 +37,7 @@ pub enum CalibrationError {
     UnknownModel {
         /// What was asked for.
         name: String,
-        /// What there is.
+        /// The names that there are.
         known: String,
         /// The nearest.
         near: Option<String>,

@@ -25,6 +25,7 @@ mod stages;
 mod start;
 mod survey;
 mod weak;
+mod whole;
 
 #[cfg(test)]
 extern crate self as calibench_calibrate;
@@ -50,3 +51,4 @@ pub use settings::{Settings, USUAL_SIGMA};
 pub use shape::{Bend, Board, Shape};
 pub use start::{control_of, pose_of};
 pub use survey::{Known, LeftOut, Sight, Survey};
+pub use whole::calibrate;

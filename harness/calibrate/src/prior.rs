@@ -16,7 +16,7 @@ pub struct Prior {
     pub parameter: String,
     /// What was observed, in its unit.
     pub value: f64,
-    /// Its standard deviation.
+    /// Its standard deviation, in the same unit.
     pub sigma: f64,
 }
 

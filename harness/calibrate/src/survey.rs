@@ -26,9 +26,9 @@ const TIE: u32 = u32::MAX;
 /// What is known of a target, object units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
-    /// X, Y, Z.
+    /// X, Y, Z in the frame of the control file, object units.
     pub position: Point3<f64>,
-    /// Their standard deviations; `None` where the file gives none.
+    /// Their standard deviations, object units; `None` where the file gives none.
     pub sigmas: Option<[f64; 3]>,
 }
 
@@ -39,7 +39,7 @@ pub struct Sight {
     pub image: usize,
     /// Index of its target.
     pub target: usize,
-    /// Where it was measured.
+    /// Where it was measured, px; 0 is the centre of the first pixel, y down.
     pub position: PixelPoint,
     /// How well, as its operator estimates it, px^2.
     pub covariance: Option<Covariance>,
@@ -50,7 +50,7 @@ pub struct Sight {
 pub struct LeftOut {
     /// Index of the sight.
     pub sight: usize,
-    /// Why.
+    /// The reason.
     pub why: String,
 }
 

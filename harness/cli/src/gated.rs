@@ -14,7 +14,7 @@ use super::progress::Progress;
 use super::recorded::stored;
 use crate::failure::{Failure, scenario_failure};
 
-/// A scenario and what became of it.
+/// A scenario and its result.
 pub struct Gated {
     pub scenario: Scenario,
     pub outcome: Outcome,

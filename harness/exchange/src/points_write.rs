@@ -14,11 +14,11 @@ pub struct MeasuredRow<'a> {
     pub given: PointRef<'a>,
     /// The method's label.
     pub method: &'a str,
-    /// What became of it.
+    /// Measured, rejected or unavailable.
     pub outcome: Outcome,
 }
 
-/// What became of a point.
+/// The status of a point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// Measured.

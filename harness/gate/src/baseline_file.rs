@@ -22,7 +22,7 @@ pub enum BaselineError {
     /// It cannot be read or written.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
@@ -30,7 +30,7 @@ pub enum BaselineError {
     /// It is not as it was written.
     #[error("{}: {problem}", path.display())]
     Damaged {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What was found and what was expected.
         problem: String,
@@ -38,7 +38,7 @@ pub enum BaselineError {
     /// A place in it that means nothing.
     #[error("{}: line {line}, column `{column}`: {problem}", path.display())]
     Row {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// Counted from 1, the head's lines among them.
         line: u64,

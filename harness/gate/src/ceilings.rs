@@ -59,7 +59,7 @@ pub enum CeilingError {
     /// It cannot be read.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: io::Error,

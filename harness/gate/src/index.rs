@@ -30,7 +30,7 @@ pub enum IndexError {
     /// It cannot be read or written.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
@@ -38,9 +38,9 @@ pub enum IndexError {
     /// Its text means nothing.
     #[error("{}: {problem}; restore it, or bless anew", path.display())]
     Text {
-        /// Which.
+        /// The file.
         path: PathBuf,
-        /// What was found.
+        /// The fault.
         problem: String,
     },
 }

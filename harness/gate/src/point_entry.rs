@@ -86,7 +86,7 @@ impl Found {
     }
 }
 
-/// What became of a point.
+/// Whether a point was measured, and where.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Entry {
     /// Measured.

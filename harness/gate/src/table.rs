@@ -89,7 +89,7 @@ impl Table {
         }
     }
 
-    /// Adds what became of the adjustments of a trial, in place of its points: the camera over the frame (px, 0), the check points
+    /// Adds the results of the adjustments of a trial, in place of its points: the camera over the frame (px, 0), the check points
     /// (RMSE_XY, RMSE_Z in mm), and every figure with its standard deviation.
     fn add_adjusted(&mut self, trial: &Trial) {
         for adjusted in &trial.calibrations {

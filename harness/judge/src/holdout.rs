@@ -23,7 +23,7 @@ impl Squares {
         self.count += 1;
     }
 
-    /// How many.
+    /// The number of points.
     pub fn count(self) -> usize {
         self.count
     }
@@ -39,7 +39,7 @@ impl Squares {
 pub struct Unseen<'a> {
     /// All corners.
     pub material: &'a Material,
-    /// Whose.
+    /// The place of the operator that measured them.
     pub operator: usize,
     /// The view.
     pub view: usize,
@@ -47,7 +47,7 @@ pub struct Unseen<'a> {
     pub camera: &'a Camera,
     /// How the board is bent.
     pub bend: &'a Bend,
-    /// A pose to start from.
+    /// A pose to start from, in the board's frame.
     pub near: &'a Pose,
 }
 

@@ -6,6 +6,7 @@
 mod bend;
 mod calibrated;
 mod camera_difference;
+mod corner_files;
 mod frame;
 mod halves;
 mod holdout;
@@ -26,8 +27,9 @@ use calibench_records::judgement::{Row, measure};
 use rayon::prelude::*;
 use thiserror::Error;
 
+pub use corner_files::{CornerFile, CornerFilesError};
 pub use material::{Corners, FEWEST, Material};
-pub use options::{MODELS, Options};
+pub use options::{METHODS, MODELS, OF_CAMERA, Options};
 pub use point_files::Expected;
 pub use published::{published_camera, stated_sigma};
 

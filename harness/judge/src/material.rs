@@ -24,7 +24,7 @@ pub struct Corners {
     pub method: Arc<str>,
     /// Why it measured nothing, if so.
     pub unavailable: Option<String>,
-    /// By view, by corner along the rows of the board.
+    /// By view, by corner along the rows of the board: image coordinates, px; `None` where it measured none.
     pub at: Vec<Vec<Option<PixelPoint>>>,
     /// View, corner and reason of what it rejected.
     pub rejected: Vec<(usize, usize, Arc<str>)>,

@@ -3,6 +3,22 @@
 use calibench_calibrate::choice::ModelChoice;
 use calibench_model::camera::Camera;
 
+/// The methods that measure a chessboard's corners unless others are asked for.
+pub const METHODS: [&str; 9] = [
+    "pixel",
+    "forstner:window=11",
+    "forstner:window=11,iterations=20",
+    "saddle:window=7",
+    "harris_paraboloid:window=11",
+    "opencv_subpix:window=11",
+    "parametric_corner:window=15",
+    "lsm:window=15,shape=2,sharpness=1",
+    "chess_corners",
+];
+
+/// What measures when a calibration in use is checked.
+pub const OF_CAMERA: &str = "parametric_corner:window=15";
+
 /// The camera models that are compared unless others are asked for: from too poor to too rich, on a flat board and on one that may be bent.
 pub const MODELS: [&str; 13] = [
     "opencv4:fx,fy,cx,cy",

@@ -74,15 +74,15 @@ impl Material {
     /// units, `size` that of the images, px.
     ///
     /// Images stand in the order in which the files name them. Rows that a method rejected count as rejected; covariances are not used.
-    pub fn of_files(files: &[(Arc<str>, PointFile)], board: Board, side: f64, size: ImageSize) -> Self {
+    pub fn of_files(files: &[(&Arc<str>, &PointFile)], board: Board, side: f64, size: ImageSize) -> Self {
         let places = Expected::new(board, size).places;
         let mut views = Views::default();
         let operators: Vec<Read> = files.iter().map(|(_, file)| Read::new(file, &places, &mut views)).collect();
         let missed = missed(files, &views);
-        let corners = |((name, _), read): (&(Arc<str>, PointFile), Read)| {
+        let corners = |((name, _), read): (&(&Arc<str>, &PointFile), Read)| {
             let mut at = vec![vec![None; board.corners()]; views.names.len()];
             read.found.into_iter().for_each(|(view, corner, position)| at[view][corner] = Some(position));
-            Corners { method: name.clone(), unavailable: None, at, rejected: read.rejected }
+            Corners { method: Arc::clone(name), unavailable: None, at, rejected: read.rejected }
         };
         let operators = files.iter().zip(operators).map(corners).collect();
         Self { board, side, size, views: views.names, missed, operators }
@@ -127,7 +127,7 @@ impl Read {
 }
 
 /// Images without any corner of which a file says why, each once.
-fn missed(files: &[(Arc<str>, PointFile)], views: &Views) -> Vec<(Arc<str>, String)> {
+fn missed(files: &[(&Arc<str>, &PointFile)], views: &Views) -> Vec<(Arc<str>, String)> {
     let mut missed: Vec<(Arc<str>, String)> = Vec::new();
     for [image, _, _, reason] in files.iter().flat_map(|(_, file)| file.lost.iter()) {
         if !views.places.contains_key(image) && !missed.iter().any(|(name, _)| &**name == image) {

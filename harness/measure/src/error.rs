@@ -10,7 +10,7 @@ pub enum MethodError {
     UnknownMethod {
         /// What was asked for.
         name: String,
-        /// What there is.
+        /// The names that there are.
         known: Vec<String>,
     },
     /// The method has no such parameter.
@@ -20,7 +20,7 @@ pub enum MethodError {
         method: String,
         /// What was asked for.
         key: String,
-        /// What there is.
+        /// The names that there are.
         known: Vec<String>,
     },
     /// A value outside its domain.
@@ -30,9 +30,9 @@ pub enum MethodError {
         method: String,
         /// The parameter.
         key: String,
-        /// What it may be.
+        /// Values that are allowed.
         expected: String,
-        /// What it is.
+        /// The value that was given.
         found: String,
     },
     /// A parameter given twice.
@@ -46,7 +46,7 @@ pub enum MethodError {
     /// Not of the form `name:key=value,key=value`.
     #[error("`{text}` is no method: expected `name` or `name:key=value,key=value`, as in `forstner:window=11`")]
     Form {
-        /// What was found.
+        /// The text that was given.
         text: String,
     },
 }

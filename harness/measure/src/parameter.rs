@@ -66,7 +66,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// What it means, with its unit.
     pub about: &'static str,
-    /// What it may be.
+    /// Values that are allowed.
     pub domain: Domain,
     /// What it is when nobody sets it, in its unit.
     pub default: f64,

@@ -38,7 +38,7 @@ impl Polygon {
 pub struct SceneTarget {
     /// Its name in records and tables.
     pub id: String,
-    /// What it is.
+    /// The kind of target.
     pub kind: TargetKind,
     /// Its true position.
     pub at: PixelPoint,

@@ -146,7 +146,7 @@ impl Plate {
 pub struct ObjectTarget {
     /// Its name in records and tables.
     pub id: String,
-    /// What it is.
+    /// The kind of target.
     pub kind: TargetKind,
     /// The plate that it is on: an index into [`Testfield::plates`].
     pub plate: usize,

@@ -1,12 +1,6 @@
 //! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them, and a chessboard detector.
 
-#[cfg(test)]
-mod camera_files;
-#[cfg(test)]
-mod cameras;
 pub mod chessboard;
-#[cfg(test)]
-mod optimum;
 pub mod subpix;
 
 use calibench_measure::{BoardDetector, Registry};

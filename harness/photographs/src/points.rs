@@ -15,7 +15,7 @@ use crate::names::{ambiguous, names, once};
 /// Points that are handed to a method at a time: bounds the memory, whatever the number of points.
 const CHUNK: usize = 1 << 16;
 
-/// What became of points in the hands of several methods: 41 bytes a point and method.
+/// The results of several methods at the same points: 41 bytes a point and method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     points: usize,
@@ -58,7 +58,7 @@ impl Measured {
         }
     }
 
-    /// What became of a point in the hands of a method, counted among those that are available; `None` if its photograph was not given.
+    /// The result of a method at a point, counted among those that are available; `None` if its photograph was not given.
     pub fn outcome(&self, method: usize, point: usize) -> Option<Outcome> {
         let of = self.methods.get(method)?;
         match of.state[point] {

@@ -17,7 +17,7 @@ pub enum RecordError {
     Row {
         /// Counted from 1.
         line: u64,
-        /// What is wrong.
+        /// The fault.
         problem: String,
     },
 }

@@ -18,7 +18,7 @@ pub struct MethodInfo {
     pub unavailable: Option<String>,
 }
 
-/// What became of one point in the hands of one method.
+/// The result of one method at one point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointResult {
     /// The image.
@@ -59,7 +59,7 @@ impl PointResult {
 pub enum Outcome {
     /// Measured.
     Measured {
-        /// Where.
+        /// Image coordinates, px.
         position: PixelPoint,
         /// Measured less true position (dx, dy), px, where the truth is known.
         error: Option<(f64, f64)>,
@@ -152,7 +152,7 @@ impl Figure {
     }
 }
 
-/// What became of one set of parameters with one method's points in one trial.
+/// The adjustment of one set of parameters to one method's points of one trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibrated {
     /// The method's place in the list of methods.

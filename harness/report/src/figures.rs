@@ -53,7 +53,7 @@ const USUAL: [&str; 4] = ["forstner", "", "harris_paraboloid", "opencv_subpix"];
 pub struct MarkAt {
     /// Index of the layer.
     pub layer: usize,
-    /// Position in the image.
+    /// Position in the image, px, y down.
     pub at: PixelPoint,
 }
 

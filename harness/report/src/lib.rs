@@ -3,6 +3,7 @@
 mod answer;
 pub mod atlas;
 pub mod calibration;
+mod camera_card;
 mod canvas;
 pub mod conventions;
 mod family;
@@ -13,6 +14,7 @@ pub mod judgement;
 pub mod load;
 pub(crate) mod markdown;
 mod network;
+pub mod orientation;
 mod page;
 mod photographs;
 mod places;
@@ -25,6 +27,7 @@ pub(crate) mod ticks;
 pub mod verdicts;
 mod zhu;
 
+pub use camera_card::camera_card;
 pub use canvas::Canvas;
 pub use family::write;
 pub use field::{Field, plain};

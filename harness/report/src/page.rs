@@ -53,6 +53,10 @@ impl Page {
         name.split_once('/').map_or(name, |(_, rest)| rest).replace('/', "-")
     }
 
+    /// Adds the section of a sweep.
+    ///
+    /// # Errors
+    /// Records that do not belong together.
     pub fn sweep(&mut self, loaded: &sweep::LoadedSweep, printed: &[(String, f64)]) -> Result<(), LoadError> {
         // The points of adjusted scenarios are those of the first trial: how many there were is in their tables.
         let deviations = if loaded.scenario.adjusted().is_some() { String::new() } else { sweep::deviations(loaded) };
@@ -101,6 +105,10 @@ impl Page {
         }
     }
 
+    /// Writes the page and its pictures.
+    ///
+    /// # Errors
+    /// What the folder refuses.
     pub fn write(&self, folder: &NewFolder) -> io::Result<()> {
         for (name, picture) in &self.pictures {
             folder.write(name, |file| picture.encode(file))?;

@@ -48,7 +48,7 @@ pub enum ReportError {
     Output(#[from] io::Error),
 }
 
-/// What became of a report, and the path of its page.
+/// Whether a report was written, and the path of its page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Written {
     /// It was made anew.

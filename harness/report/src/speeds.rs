@@ -20,11 +20,11 @@ pub struct Speed {
     pub method: String,
     /// Its version.
     pub version: String,
-    /// The median over the rounds.
+    /// The median over the rounds, points per second.
     pub points_per_second: f64,
-    /// The lower quartile.
+    /// The lower quartile, points per second.
     pub low: f64,
-    /// The upper quartile.
+    /// The upper quartile, points per second.
     pub high: f64,
     /// Points in the image.
     pub points: usize,
@@ -49,7 +49,7 @@ pub enum SpeedsError {
     /// It cannot be opened or read.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
@@ -57,7 +57,7 @@ pub enum SpeedsError {
     /// It is not such a file.
     #[error("{}: {source}; `calibench speed` writes it anew", path.display())]
     Csv {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// Line and mistake.
         source: csv::Error,
@@ -65,7 +65,7 @@ pub enum SpeedsError {
     /// A figure that no measurement gives.
     #[error("{}: `{method}` on `{scenario}` has {value} points a second; expected a number above 0. `calibench speed` writes the file anew", path.display())]
     Value {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// The scenario of the row.
         scenario: String,

@@ -21,7 +21,7 @@ pub enum RunError {
     NoStation {
         /// What was asked for.
         name: String,
-        /// What there is.
+        /// The names that there are.
         known: String,
     },
     /// A view that cannot be pictured.
@@ -29,7 +29,7 @@ pub enum RunError {
     View {
         /// From where.
         station: String,
-        /// Why.
+        /// The reason.
         source: ViewError,
     },
     /// Stations of a trial that see too little.

@@ -36,7 +36,7 @@ pub enum CatalogueError {
     /// A file or folder that cannot be read.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: io::Error,

@@ -12,7 +12,7 @@ use crate::sensor::SensorSetup;
 pub struct Imaging {
     /// How light is spread.
     pub optics: Optics,
-    /// What becomes of it; `None` leaves it as it is.
+    /// How it is processed; `None` leaves it as it is.
     pub sensor: Option<SensorSetup>,
 }
 

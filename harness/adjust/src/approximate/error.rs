@@ -10,7 +10,7 @@ pub enum ApproximateError {
     TooFew {
         /// What was to be determined.
         task: &'static str,
-        /// What is counted.
+        /// What is counted, as in "sights".
         of: &'static str,
         /// How many it takes.
         needed: usize,
@@ -78,7 +78,7 @@ pub enum ApproximateError {
         agreeing: usize,
         /// How many there are.
         found: usize,
-        /// How many must.
+        /// How many must agree.
         needed: usize,
     },
     /// A size or a number of a data sheet that cannot be.

@@ -12,17 +12,17 @@ pub enum NetworkError {
         camera: String,
         /// What was asked for.
         name: String,
-        /// What there is.
+        /// The names that there are.
         known: String,
     },
     /// An index leads nowhere.
     #[error("{of} refers to {what} {index}, of which there are {count}")]
     NoSuch {
-        /// Who refers.
+        /// The part of the network that it stands in.
         of: String,
         /// To what.
         what: &'static str,
-        /// Which.
+        /// Its index.
         index: usize,
         /// How many there are.
         count: usize,
@@ -30,9 +30,9 @@ pub enum NetworkError {
     /// A number is not finite, or a standard deviation is not positive.
     #[error("{of}: {what}")]
     NotANumber {
-        /// Whose.
+        /// The part of the network that it stands in.
         of: String,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// A camera has more or fewer statuses than parameters.
@@ -61,7 +61,7 @@ pub enum NetworkError {
     Surface {
         /// Its name.
         name: String,
-        /// What is wrong.
+        /// The reason.
         why: &'static str,
     },
     /// There is nothing to adjust.

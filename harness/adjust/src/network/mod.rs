@@ -81,7 +81,7 @@ pub struct ImageObservation {
     pub point: usize,
     /// What was measured.
     pub position: PixelPoint,
-    /// How well.
+    /// Its precision.
     pub precision: Precision,
 }
 
@@ -184,7 +184,7 @@ impl Exterior {
         Self { name: name.into(), camera, pose, centre: Centre::Free, attitude: Attitude::Free }
     }
 
-    /// An image whose exterior orientation is known.
+    /// An image whose exterior orientation is known, in the object's frame.
     pub fn fixed(name: impl Into<String>, camera: usize, pose: Pose) -> Self {
         Self { name: name.into(), camera, pose, centre: Centre::Fixed, attitude: Attitude::Fixed }
     }

@@ -35,7 +35,7 @@ pub struct Comparison {
     pub p: f64,
     /// Akaike's criterion of the first, `n ln(W / n) + 2 u`: the variance factor is unknown.
     pub first_aic: f64,
-    /// That of the second: the smaller is the better.
+    /// That of the second, a number: the smaller is the better.
     pub second_aic: f64,
 }
 

@@ -42,7 +42,7 @@ enum Cameras {
     Changed(Vec<DVector<f64>>),
 }
 
-/// What comes of allowing for one more kind of unknown.
+/// The verdict after allowing for one more kind of unknown.
 struct Allowed {
     verdict: Verdict,
     /// No image point is in gross error then.

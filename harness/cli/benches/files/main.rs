@@ -48,18 +48,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         let fx = read_camera(&folder.path().join("found.yaml"))?.cameras[0].camera.parameters()[0].value;
         match theirs(folder.path())? {
             None => println!("{views:>8} {ours:>12.3} {peak:>6.0} {:>12} {:>8} {:>12}   no OpenCV for Python", "-", "-", "-"),
-            Some((seconds, version, other)) => {
-                println!(
-                    "{views:>8} {ours:>12.3} {seconds:>12.3} {:>8.1} {:>12.1e}   OpenCV {version}",
-                    seconds / ours,
-                    (fx - other).abs()
-                );
+            Some(Peer { seconds, version, fx: other }) => {
+                let (times, apart) = (seconds / ours, (fx - other).abs());
+                println!("{views:>8} {ours:>12.3} {peak:>6.0} {seconds:>12.3} {times:>8.1} {apart:>12.1e}   OpenCV {version}");
             }
         }
     }
     Ok(())
 }
 
+/// The program.
 fn ours(folder: &Path) -> Result<program::Spent, Box<dyn Error>> {
     let size = format!("{}x{}", SIZE.width, SIZE.height);
     let words = [
@@ -79,10 +77,19 @@ fn ours(folder: &Path) -> Result<program::Spent, Box<dyn Error>> {
     program::run(&words.map(str::to_owned), folder)
 }
 
-/// Seconds of the peer, its version and its fx, px; `None` where there is none.
-fn theirs(folder: &Path) -> Result<Option<(f64, String, f64)>, Box<dyn Error>> {
+/// What the peer took and found.
+struct Peer {
+    seconds: f64,
+    /// Of OpenCV.
+    version: String,
+    /// px.
+    fx: f64,
+}
+
+/// The fastest run of the peer; `None` where there is none.
+fn theirs(folder: &Path) -> Result<Option<Peer>, Box<dyn Error>> {
     let python = std::env::var("CALIBENCH_PYTHON").unwrap_or_else(|_| "python3".into());
-    let mut best = None;
+    let mut best: Option<Peer> = None;
     for _ in 0..ROUNDS {
         let started = Instant::now();
         let arguments = [SIZE.width.to_string(), SIZE.height.to_string()];
@@ -97,7 +104,7 @@ fn theirs(folder: &Path) -> Result<Option<(f64, String, f64)>, Box<dyn Error>> {
         let said = String::from_utf8(output.stdout)?;
         let mut words = said.split_whitespace();
         let (version, fx) = (words.next().unwrap_or_default().to_owned(), words.nth(1).unwrap_or_default().parse()?);
-        best = Some(best.filter(|(least, ..): &(f64, String, f64)| *least <= seconds).unwrap_or((seconds, version, fx)));
+        best = Some(best.filter(|best| best.seconds <= seconds).unwrap_or(Peer { seconds, version, fx }));
     }
     Ok(best)
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Settings, prepare};
+use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Settings, calibrate, prepare};
 use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
 use calibench_photographs::{Chessboard, Corners, Photo};
 use calibench_report::calibration::{summary, write_report};
@@ -95,22 +95,11 @@ impl Calibrate {
         let mut prepared = prepare(points, &control, &settings)?;
         prepared.unmeasured = lost;
         drop(control);
-        let held;
-        let mut calibration = match prepared.adjust() {
-            Err(error) if error.is_undetermined() => {
-                held = prepared.held_weakly().ok_or(error)?;
-                held.adjust()?
-            }
-            found => found?,
-        };
-        calibration.resample();
-        calibration.examine();
-        if !self.compare.is_empty() {
-            calibration.compare(&sets(&self.compare)?)?;
-        }
-        self.deliver(&calibration, output.as_ref(), report.as_ref())?;
-        print(&summary(&calibration))?;
-        if calibration.doubts().is_empty() { Ok(()) } else { Err(Failure::Doubt) }
+        calibrate(&prepared, &sets(&self.compare)?, |calibration| {
+            self.deliver(calibration, output.as_ref(), report.as_ref())?;
+            print(&summary(calibration))?;
+            if calibration.doubts().is_empty() { Ok(()) } else { Err(Failure::Doubt) }
+        })?
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_exchange::Inputs;
-use calibench_judge::{MODELS, Material, Options, judge, published_camera, stated_sigma};
+use calibench_judge::{CornerFile, MODELS, Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_photographs::Chessboard;
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
@@ -21,7 +21,7 @@ mod files;
 mod page;
 mod photographs;
 
-use files::CornerFile;
+use files::corner_file;
 
 #[derive(Args)]
 pub struct Judge {
@@ -30,7 +30,7 @@ pub struct Judge {
     photos: Vec<PathBuf>,
     /// Corners that were measured beforehand, in place of photographs: CSV with image,target,x,y and targets r1c1, r1c2, ... as `detect` and `control` name them. Each file
     /// stands for an operator, called as the file without its ending, or NAME; may be repeated, to compare files of the same images. Covariances are not used
-    #[arg(long, value_name = "[NAME=]CSV", conflicts_with = "photos", requires = "size")]
+    #[arg(long, value_name = "[NAME=]CSV", value_parser = corner_file, conflicts_with = "photos", requires = "size")]
     points: Vec<CornerFile>,
     /// Size of the images that --points are of, px
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "points", conflicts_with = "photos")]

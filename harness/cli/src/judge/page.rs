@@ -1,7 +1,7 @@
 //! The page of a judgement, its pictures and its numbers.
 
 use calibench_exchange::NewFolder;
-use calibench_judge::Material;
+use calibench_judge::{CornerFile, Material};
 use calibench_model::escape::code;
 use calibench_photographs::Chessboard;
 use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
@@ -9,7 +9,6 @@ use calibench_records::points::RunInfo;
 use calibench_report::judgement::{in_use as in_words, section};
 
 use super::Judge;
-use super::files::CornerFile;
 
 impl Judge {
     pub fn write(&self, folder: &NewFolder, material: &Material, rows: &[Row], summary: &Summary) -> std::io::Result<()> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_calibrate::choice::HALF;
 use calibench_exchange::read_photo;
-use calibench_judge::{JudgementError, Material};
+use calibench_judge::{JudgementError, METHODS, Material, OF_CAMERA};
 use calibench_measure::{BoardDetector, Configured};
 use calibench_model::camera::ImageSize;
 use calibench_photographs::measured_board;
@@ -17,22 +17,6 @@ use super::super::photos::{one_size, say_turns};
 use super::super::progress::Progress;
 use super::Judge;
 use crate::failure::Failure;
-
-/// What makes sense on a chessboard's corners.
-const METHODS: [&str; 9] = [
-    "pixel",
-    "forstner:window=11",
-    "forstner:window=11,iterations=20",
-    "saddle:window=7",
-    "harris_paraboloid:window=11",
-    "opencv_subpix:window=11",
-    "parametric_corner:window=15",
-    "lsm:window=15,shape=2,sharpness=1",
-    "chess_corners",
-];
-
-/// What measures when a calibration in use is checked.
-const OF_CAMERA: &str = "parametric_corner:window=15";
 
 impl Judge {
     /// All corners of all photographs in the hands of all methods.

@@ -7,6 +7,7 @@ use calibench_calibrate::orientation::{Pair, PairError, Seen, Side};
 use calibench_exchange::{Inputs, Points};
 use calibench_model::camera::Camera;
 use calibench_model::escape;
+use calibench_report::orientation;
 use clap::Args;
 
 use super::context::Context;
@@ -15,8 +16,6 @@ use super::output;
 use crate::deliver::deliver;
 use crate::failure::Failure;
 use crate::inputs::{camera, read_measured};
-
-mod words;
 
 #[derive(Args)]
 pub struct Orient {
@@ -69,9 +68,9 @@ impl Orient {
         let seen = self.seen(&read_measured(&self.points)?)?;
         let pair = self.orient([&left, &right], seen)?;
         if !context.quiet {
-            eprint!("{}", escape::message(&words::summary(&pair, [&self.left, &self.right])));
+            eprint!("{}", escape::message(&orientation::summary(&pair, [&self.left, &self.right])));
         }
-        words::warnings(&pair).iter().for_each(|warning| say!("warning: {warning}"));
+        orientation::warnings(&pair).iter().for_each(|warning| say!("warning: {warning}"));
         deliver(output.as_ref(), |file| pair.write_points(file))?;
         match &poses {
             Some(poses) => deliver(Some(poses), |file| pair.write_poses(file, [&self.left, &self.right])),

@@ -12,7 +12,7 @@ use super::{NamedCamera, ParameterCovariance, PoseFrame};
 pub struct Model {
     /// Its name in the tool.
     pub name: &'static str,
-    /// What it is here.
+    /// Its model here.
     pub target: Target,
 }
 
@@ -67,7 +67,7 @@ pub enum FitError {
         format: &'static str,
         /// What was asked for.
         model: String,
-        /// What there is.
+        /// The names that there are.
         known: String,
     },
     /// None of the models can be fitted.

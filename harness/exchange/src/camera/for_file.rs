@@ -36,7 +36,7 @@ pub enum FileCameraError {
     Conversion {
         /// The convention.
         to: String,
-        /// Why.
+        /// The reason.
         error: Box<ConversionError>,
     },
 }

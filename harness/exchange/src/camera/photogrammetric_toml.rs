@@ -9,7 +9,7 @@ pub(super) struct Head {
     pub version: u32,
 }
 
-/// Which model.
+/// The models that the file can hold.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Model {

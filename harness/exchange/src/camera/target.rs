@@ -75,7 +75,7 @@ pub enum TargetError {
     Unknown {
         /// What was asked for.
         name: String,
-        /// What there is.
+        /// The names that there are.
         known: Vec<&'static str>,
     },
 }

@@ -27,7 +27,7 @@ pub enum PhotoError {
     /// The file itself.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
@@ -38,7 +38,7 @@ pub enum PhotoError {
     /// Its content.
     #[error("{}: not an image that can be read: {source} (expected PNG, JPEG, TIFF or PNM)", path.display())]
     Content {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// What the decoder says.
         source: ImageError,
@@ -46,7 +46,7 @@ pub enum PhotoError {
     /// A part of the image is missing.
     #[error("{}: is cut short: the end mark of the JPEG is missing; expected a whole image, copy it again", path.display())]
     Truncated {
-        /// Which file.
+        /// The file.
         path: PathBuf,
     },
     /// More than the memory that photographs may take while they are read.
@@ -55,7 +55,7 @@ pub enum PhotoError {
         path.display(), bytes >> 20, MOST_BYTES >> 20
     )]
     TooLarge {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// Columns, px.
         width: u32,

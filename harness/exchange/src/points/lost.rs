@@ -9,7 +9,7 @@ pub struct LostRow {
     pub image: String,
     /// The target's name.
     pub target: String,
-    /// What `measure` says became of it: `rejected` or `unavailable`.
+    /// Its status as `measure` writes it: `rejected` or `unavailable`.
     pub status: String,
     /// Why, as `measure` says it.
     pub reason: String,

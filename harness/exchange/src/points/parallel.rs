@@ -122,7 +122,7 @@ mod tests {
             let found = found.map_or_else(|| parse_points("p.csv", text.as_bytes()).unwrap().points, |found| found.points);
             assert!(found == expected.points, "{name}");
         }
-        let header = format!("{}\n", ["x"; PIECE].join(","));
+        let header = format!("{}\n", vec!["x"; PIECE].join(","));
         assert!(header.len() >= 2 * PIECE && parse("p.csv", header.as_bytes(), &|_| Ok(())).is_none());
     }
 

@@ -19,7 +19,7 @@ use crate::finding::{Finding, Rules};
 use crate::table::Table;
 use crate::{ALPHA, LEAST_PAIRS, compare};
 
-/// What became of one fault in one method of one scenario.
+/// How the gate judged one fault in one method of one scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
     /// The scenario.
@@ -121,14 +121,19 @@ fn by_scenario(outcomes: &[Outcome]) -> String {
 }
 
 fn untested(outcomes: &[Outcome]) -> String {
-    let mut reasons: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
+    let mut reasons: BTreeMap<(&str, &str), BTreeMap<&str, Vec<String>>> = BTreeMap::new();
     for outcome in outcomes {
         if let Err(why) = outcome.caught {
-            reasons.entry((name(outcome.mutation), why)).or_default().push(format!("`{}` of `{}`", outcome.method, outcome.scenario));
+            let methods = reasons.entry((name(outcome.mutation), why)).or_default().entry(outcome.scenario.as_str()).or_default();
+            methods.push(format!("`{}`", outcome.method));
         }
     }
-    let line = |((name, why), of): (&(&str, &str), &Vec<String>)| format!("- {name}: {why} ({}): {}\n", of.len(), of.join(", "));
-    if reasons.is_empty() { "None.\n".to_owned() } else { reasons.iter().map(line).collect() }
+    let scenario = |(scenario, methods): (&&str, &Vec<String>)| format!("  - `{scenario}`: {}\n", methods.join(", "));
+    let reason = |((name, why), scenarios): (&(&str, &str), &BTreeMap<&str, Vec<String>>)| {
+        let count: usize = scenarios.values().map(Vec::len).sum();
+        format!("- {name}: {why} ({count})\n{}", scenarios.iter().map(scenario).collect::<String>())
+    };
+    if reasons.is_empty() { "None.\n".to_owned() } else { reasons.iter().map(reason).collect() }
 }
 
 fn false_alarms(alarms: &Alarms) -> String {

@@ -8,7 +8,7 @@ use crate::finding::{Finding, Rules, Verdict};
 use crate::moments::{PointSums, Sum};
 use crate::sums_judged::judged;
 
-/// What became of one kind of fault in all methods of all cells of a sweep.
+/// How the gate judged one kind of fault in all methods of all cells of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SweepOutcome {
     /// The scenario.

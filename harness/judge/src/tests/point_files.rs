@@ -18,7 +18,9 @@ fn files(material: &Material) -> Vec<(Arc<str>, calibench_exchange::PointFile)> 
 }
 
 fn read(material: &Material) -> Material {
-    Material::of_files(&files(material), material.board, material.side, material.size)
+    let files = files(material);
+    let named: Vec<_> = files.iter().map(|(name, file)| (name, file)).collect();
+    Material::of_files(&named, material.board, material.side, material.size)
 }
 
 #[test]
@@ -50,7 +52,7 @@ fn what_a_file_says_of_lost_corners_is_kept() {
     let text = "image,target,x,y,method,status,reason\na,r1c1,1,2,m,measured,\na,r1c2,,,m,rejected,border\na,r1c3,,,m,unavailable,no\n\
                 b,,,,m,rejected,no board\na,x,,,m,rejected,border\n";
     let file = parse_points("p.csv", text.as_bytes()).unwrap();
-    let material = Material::of_files(&[("p".into(), file)], BOARD, SIDE, SIZE);
+    let material = Material::of_files(&[(&"p".into(), &file)], BOARD, SIDE, SIZE);
     assert_eq!(material.operators[0].rejected, [(0, 1, "border".into())]);
     assert_eq!(material.tried(), [2]);
     assert_eq!(material.missed, [("b".into(), "no board".to_owned())]);

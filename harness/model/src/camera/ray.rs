@@ -3,7 +3,7 @@
 /// A direction in the camera: x right, y up, z towards the viewer. The camera looks along -z; the length does not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// To the right.
+    /// To the right; any unit of length, the same for all three.
     pub x: f64,
     /// Upwards.
     pub y: f64,

@@ -159,7 +159,7 @@ pub enum ConvertError {
     /// The target's shape makes no sense.
     #[error("no such target: {fault}")]
     Target {
-        /// What is wrong.
+        /// The fault.
         fault: &'static str,
     },
     /// The camera is not one of Table 2.

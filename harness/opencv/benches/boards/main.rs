@@ -13,7 +13,7 @@ mod networks;
 mod optima;
 mod peers;
 mod problem;
-#[path = "../../src/optimum/theirs.rs"]
+#[path = "../../tests/beside/optimum/theirs.rs"]
 mod theirs;
 
 use std::error::Error;

@@ -34,7 +34,7 @@ pub struct Row {
     pub unit: Arc<str>,
     /// `found`, or what stood in its way: `rejected`, `missed`, `left out`, `failed`, `unavailable`.
     pub status: Arc<str>,
-    /// Why.
+    /// The reason.
     pub reason: Arc<str>,
 }
 

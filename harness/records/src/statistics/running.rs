@@ -5,7 +5,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// Mean and scatter of a row of numbers, whatever their count, in the unit of the numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Running {
-    /// How many.
+    /// The number of values.
     pub count: u64,
     /// Their mean.
     pub mean: f64,

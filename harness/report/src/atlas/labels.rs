@@ -3,9 +3,9 @@
 /// An upright box, px of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Box2 {
-    /// Left upper corner.
+    /// Left upper corner, px of the picture.
     pub x: f64,
-    /// Left upper corner.
+    /// Left upper corner, px of the picture, down.
     pub y: f64,
     /// Width.
     pub width: f64,

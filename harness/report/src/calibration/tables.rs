@@ -47,7 +47,7 @@ const RESIDUALS: [&str; 15] = [
     "reason",
 ];
 
-/// Every row that was given, and every target that a method could not measure, with what became of it. Residuals are adjusted less observed, px.
+/// Every row that was given, and every target that a method could not measure, with its status. Residuals are adjusted less observed, px.
 fn residuals(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let prepared = calibration.prepared;
     let survey = &prepared.survey;

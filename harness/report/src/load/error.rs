@@ -15,7 +15,7 @@ pub enum LoadError {
     /// A file that cannot be read.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
@@ -23,15 +23,15 @@ pub enum LoadError {
     /// A file that is not what it should be.
     #[error("{}: {source}", path.display())]
     Records {
-        /// Which.
+        /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         source: RecordError,
     },
     /// They do not tell what their scenario is: an older version left them.
     #[error("{}: records without `scenario.json`, of an older version: run `{name}` again", folder.display())]
     Undescribed {
-        /// Where.
+        /// The folder.
         folder: PathBuf,
         /// The scenario.
         name: String,
@@ -39,7 +39,7 @@ pub enum LoadError {
     /// What they tell of their scenario is of another form.
     #[error("{}: {source}\nthese records were not written by this version, run the scenario again", path.display())]
     Description {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// Line and mistake.
         source: serde_json::Error,

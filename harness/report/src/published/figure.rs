@@ -8,7 +8,7 @@ use super::Metric;
 /// A figure in the first run and over all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ours {
-    /// In the first trial.
+    /// In the first trial, in the unit of the printed figure, as all here.
     pub one: f64,
     /// Mean over the trials.
     pub mean: f64,

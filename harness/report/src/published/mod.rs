@@ -135,7 +135,7 @@ pub enum PublishedError {
     /// The file or its folder.
     #[error("{}: {source}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,

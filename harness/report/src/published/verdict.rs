@@ -121,7 +121,7 @@ impl Cell {
         }
     }
 
-    /// Compares a printed figure of a single run with the mean of many: it reproduces within `range` of `mean`, widened by half a unit of its last digit.
+    /// Compares a printed figure of a single run with the mean of many: it reproduces within `range` of `mean`, widened by half a unit of its last digit; both in the unit of the printed figure.
     pub fn verdict_within(&self, mean: f64, range: f64) -> Verdict {
         match (&self.not_comparable, Printed::parse(&self.printed)) {
             (Some(why), _) => Verdict::NotComparable(why.clone()),

@@ -41,7 +41,7 @@ pub enum LayoutError {
         name: String,
         /// What is near.
         proposal: Option<String>,
-        /// What there is.
+        /// The names that there are.
         known: String,
     },
     /// One thing in two places.
@@ -54,7 +54,7 @@ pub enum LayoutError {
         name: String,
         /// What was asked for.
         value: String,
-        /// What there is.
+        /// The names that there are.
         known: String,
     },
     /// More varies than a picture shows.

@@ -60,6 +60,8 @@ pub fn adjusted(
 
 /// The pose of every image from what `method` measured in it, the survey and the data sheet's camera.
 ///
+/// Poses are in the object's frame, object units.
+///
 /// # Errors
 /// In words, the first image without a pose.
 pub fn resections(job: &Job<'_>, observed: &Observed, method: usize) -> Result<Vec<Pose>, String> {

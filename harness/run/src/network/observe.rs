@@ -20,7 +20,7 @@ pub struct ImagePoint {
     pub view: usize,
     /// The target.
     pub target: usize,
-    /// Where.
+    /// Image coordinates, px.
     pub at: PixelPoint,
 }
 

@@ -53,7 +53,7 @@ pub struct BoardWire {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RandomWire {
-    /// How many.
+    /// The number of stations.
     pub count: Count,
     /// The least and the greatest distance from what is looked at, object units.
     pub distance: Tuple<2>,

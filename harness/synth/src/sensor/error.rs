@@ -8,7 +8,7 @@ pub enum SensorError {
     /// A number outside its bounds.
     #[error("{what} is {value}: expected a number from {min} to {max}")]
     OutOfRange {
-        /// Which.
+        /// The parameter.
         what: &'static str,
         /// The number.
         value: f64,
@@ -22,7 +22,7 @@ pub enum SensorError {
     Bits {
         /// Of what.
         what: &'static str,
-        /// How many.
+        /// The bits that were asked for.
         bits: u32,
         /// Which there are.
         expected: &'static str,

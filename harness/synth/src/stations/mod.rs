@@ -37,7 +37,7 @@ pub enum StationError {
         parameter: &'static str,
         /// What it is; angles in degrees.
         value: f64,
-        /// What it may be.
+        /// Values that are allowed.
         expected: String,
     },
     /// A list without elements.

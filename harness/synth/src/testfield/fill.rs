@@ -24,7 +24,7 @@ pub enum Arrangement {
     },
     /// At random, none nearer to another than a distance.
     Random {
-        /// How many.
+        /// The number of targets.
         count: usize,
         /// The least distance of two reference points, object units.
         distance: f64,
@@ -57,7 +57,9 @@ pub struct Fill {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Place {
     pub shape: Shape,
+    /// Reference point on the plate, object units.
     pub at: PlatePoint,
+    /// Counter-clockwise, rad.
     pub turn: f64,
 }
 

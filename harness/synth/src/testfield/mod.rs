@@ -70,9 +70,9 @@ pub enum FieldError {
     Parameter {
         /// Its name in scenarios.
         parameter: &'static str,
-        /// What it is.
+        /// The value that was given.
         value: f64,
-        /// What it may be.
+        /// Values that are allowed.
         expected: String,
     },
     /// Two things of one name.

@@ -19,7 +19,7 @@ pub struct Control {
 /// A pose of least squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedPose {
-    /// The pose.
+    /// The pose, in the object's frame and units.
     pub pose: Pose,
     /// The sum of the squared residuals, px^2.
     pub squares: f64,

@@ -25,7 +25,7 @@ const SAME: f64 = 1e-5;
 /// The pose of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resection {
-    /// The pose.
+    /// The pose, in the object's frame and units.
     pub pose: Pose,
     /// The standard deviation of an image coordinate from the residuals, px.
     pub sigma0: f64,

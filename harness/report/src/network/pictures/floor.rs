@@ -7,7 +7,7 @@ use crate::canvas::{COLOURS, Canvas, METHOD_MARKS, Mark};
 
 /// Circles and crosses over what is swept.
 pub struct Curve {
-    /// What it is.
+    /// Its name.
     pub name: String,
     /// Value of the swept key, reduction factor, half its 95 % interval.
     pub points: Vec<(f64, f64, f64)>,

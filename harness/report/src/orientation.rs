@@ -2,7 +2,8 @@
 
 use calibench_calibrate::orientation::Pair;
 use calibench_exchange::station_numbers;
-use calibench_report::plain;
+
+use crate::plain;
 
 /// Thickness of the model, relative to its largest extent, below which it is called a plane.
 const FLAT: f64 = 0.01;
@@ -14,7 +15,7 @@ const ELEMENTS: [&str; 5] =
     ["rotation about x", "rotation about y", "rotation about z", "base across (first axis)", "base across (second axis)"];
 
 /// The elements with their standard deviations, sigma0 and redundancy.
-pub(super) fn summary(pair: &Pair, [left, right]: [&str; 2]) -> String {
+pub fn summary(pair: &Pair, [left, right]: [&str; 2]) -> String {
     let (found, sigmas) = (&pair.found, pair.sigmas());
     let numbers = station_numbers(&pair.pose(&found.pose));
     let value = |name: &str, i: usize| {
@@ -37,7 +38,7 @@ pub(super) fn summary(pair: &Pair, [left, right]: [&str; 2]) -> String {
 }
 
 /// What makes the orientation doubtful.
-pub(super) fn warnings(pair: &Pair) -> Vec<String> {
+pub fn warnings(pair: &Pair) -> Vec<String> {
     let found = &pair.found;
     let mut warnings = Vec::new();
     let flat = pair.thickness().filter(|share| *share < FLAT);

@@ -24,7 +24,7 @@ fn corners(folder: &Path) -> Vec<Vec<PixelPoint>> {
     let mut photos: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     photos.retain(|path| path.extension().is_some_and(|ending| ending == "jpg"));
     photos.sort();
-    let detect = |path: &std::path::PathBuf| crate::detector().detect(&read_photo(path).unwrap().image, BOARD);
+    let detect = |path: &std::path::PathBuf| calibench_opencv::detector().detect(&read_photo(path).unwrap().image, BOARD);
     photos.iter().filter_map(detect).collect()
 }
 

@@ -1,0 +1,27 @@
+//! The whole of a calibration, from prepared observations to a result that says what is doubtful.
+
+use crate::{Calibration, CalibrationError, Prepared};
+
+/// Adjusts, with weak priors on coefficients that nothing determines; leaves images out, looks for what the model leaves out, and compares sets of
+/// parameters, each by names. `read` gets the result.
+///
+/// # Errors
+/// An adjustment that does not converge or whose unknowns are not determined, by name; sets with unknown parameters.
+pub fn calibrate<T>(prepared: &Prepared, sets: &[Vec<String>], read: impl FnOnce(&Calibration<'_>) -> T) -> Result<T, CalibrationError> {
+    let undetermined = match prepared.adjust() {
+        Ok(calibration) => return examined(calibration, sets).map(|calibration| read(&calibration)),
+        Err(error) if error.is_undetermined() => error,
+        Err(error) => return Err(error),
+    };
+    let held = prepared.held_weakly().ok_or(undetermined)?;
+    examined(held.adjust()?, sets).map(|calibration| read(&calibration))
+}
+
+fn examined<'p>(mut calibration: Calibration<'p>, sets: &[Vec<String>]) -> Result<Calibration<'p>, CalibrationError> {
+    calibration.resample();
+    calibration.examine();
+    if !sets.is_empty() {
+        calibration.compare(sets)?;
+    }
+    Ok(calibration)
+}

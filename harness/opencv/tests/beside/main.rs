@@ -1,0 +1,5 @@
+//! What OpenCV makes of the same cameras, camera files and photographs.
+
+mod camera_files;
+mod cameras;
+mod optimum;
