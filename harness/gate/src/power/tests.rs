@@ -49,7 +49,7 @@ fn faults_are_counted_by_scenario() {
 
 #[test]
 fn what_could_not_be_put_in_is_said_with_its_reason() {
-    assert_eq!(untested(&outcomes()), "- a trial copied: there is one trial (3): `m` of `f/s`, `n` of `f/s`, `m` of `f/t`\n");
+    assert_eq!(untested(&outcomes()), "- a trial copied: there is one trial (3)\n  - `f/s`: `m`, `n`\n  - `f/t`: `m`\n");
     assert_eq!(untested(&[outcome("f/s", "m", Mutation::OneNan, Ok([false; 2]))]), "None.\n");
 }
 
