@@ -44,6 +44,18 @@ fn older_agisoft_files_are_written_and_read_again() {
 }
 
 #[test]
+fn a_difference_is_told_apart_where_points_were_measured() {
+    let folder = folder();
+    good(folder.path(), &["convert", "camera.yml", "--to", "photogrammetric", "--pitch", "4", "-o", "p.toml"]);
+    let row = |i: i32| format!("a.png,t{i},{},{}\n", 300 + 40 * (i % 7), 250 + 40 * (i / 7));
+    std::fs::write(folder.path().join("points.csv"), format!("image,target,x,y\n{}", (0..49).map(row).collect::<String>())).unwrap();
+    let text = good(folder.path(), &["diff", "camera.yml", "p.toml", "--points", "points.csv", "--plot", "d.png"]);
+    let after = |word: &str| -> f64 { text.split(word).nth(1).and_then(|t| t.split_whitespace().next()).unwrap().parse().unwrap() };
+    assert!(text.contains("the best at the points") && after("inside ") < after("outside "), "{text}");
+    assert!(image::open(folder.path().join("d.png")).unwrap().width() > 800);
+}
+
+#[test]
 fn a_fitted_conversion_says_how_far_it_is_off_and_draws_it() {
     let folder = folder();
     let arguments = ["convert", "camera.yml", "--to", "photogrammetric", "--pitch", "4", "-o", "p.toml", "--plot", "p.png"];

@@ -14,7 +14,7 @@ use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,
 };
 use calibench_model::escape;
-use calibench_report::{Field, plain};
+use calibench_report::{Field, Hull, plain};
 use clap::Args;
 
 use super::context::Context;
@@ -162,7 +162,7 @@ impl Convert {
             say!("naive: {} from the source after the best rotation", size_of(&cost.spread));
         }
         if let Some(plot) = plot {
-            field("Naive conversion: from the source to the result", &source.camera, &cost.vectors).write(plot)?;
+            field("Naive conversion: from the source to the result", &source.camera, &cost.vectors, Hull::default()).write(plot)?;
         }
         Ok(camera)
     }
@@ -171,7 +171,7 @@ impl Convert {
 /// The residuals of a conversion as a picture.
 fn drawn(conversion: &Conversion) -> calibench_report::Canvas {
     let title = if conversion.method == Method::Exact { "Exact conversion: no residuals" } else { "Residuals of the fitted conversion" };
-    field(title, &conversion.camera, &conversion.residuals)
+    field(title, &conversion.camera, &conversion.residuals, Hull::default())
 }
 
 /// Where converted cameras go.
@@ -265,7 +265,7 @@ fn summary(conversion: &Conversion) -> String {
 }
 
 /// Vectors on a regular grid as a picture.
-pub fn field(title: &str, camera: &Camera, vectors: &[Vector]) -> calibench_report::Canvas {
+pub fn field(title: &str, camera: &Camera, vectors: &[Vector], measured: Hull) -> calibench_report::Canvas {
     let ImageSize { width, height } = camera.size();
-    Field::of(title, (width, height), vectors.iter().map(|v| (v.at, (v.dx, v.dy)))).picture()
+    Field { measured, ..Field::of(title, (width, height), vectors.iter().map(|v| (v.at, (v.dx, v.dy)))) }.picture()
 }

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::Inputs;
+use calibench_model::PixelPoint;
 use calibench_model::camera::CameraModel;
-use calibench_model::convert::{DifferenceOptions, difference};
-use calibench_report::plain;
+use calibench_model::convert::{DifferenceOptions, Vector, difference, difference_at};
+use calibench_report::{Hull, plain};
 use clap::Args;
 
 use super::convert::{advise, field, positive, region, size_of};
@@ -13,6 +14,7 @@ use super::output;
 use super::reading::Reading;
 use crate::deliver::print;
 use crate::failure::Failure;
+use crate::inputs::read_measured;
 
 #[derive(Args)]
 pub struct Diff {
@@ -26,6 +28,9 @@ pub struct Diff {
     /// Compare without the best rotation
     #[arg(long)]
     no_rotation: bool,
+    /// Measured image points: the rotation is the best at these, where poses make up for the camera, and what lies outside of them is said apart
+    #[arg(long, value_name = "CSV", conflicts_with = "no_rotation")]
+    points: Option<PathBuf>,
     /// Compare only within this radius from the image of the axis, px
     #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     radius: Option<f64>,
@@ -38,7 +43,7 @@ pub struct Diff {
 
 impl Diff {
     pub fn run(&self) -> Result<(), Failure> {
-        let inputs = Inputs::new([&self.first, &self.second]);
+        let inputs = Inputs::new([&self.first, &self.second].into_iter().chain(&self.points));
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let camera = |path: &Path| self.reading.one(path).map(|named| named.camera);
         let (first, second) = (camera(&self.first)?, camera(&self.second)?);
@@ -53,13 +58,24 @@ impl Diff {
             compensation: true,
             ..DifferenceOptions::default()
         };
-        let found = difference(&first, &second, &options).map_err(|error| advise(&error))?;
+        let places = self.points.as_deref().map(places).transpose()?;
+        let found = match &places {
+            Some(places) => difference_at(&first, &second, places, &options),
+            None => difference(&first, &second, &options),
+        };
+        let found = found.map_err(|error| advise(&error))?;
         let after = if self.no_rotation {
             "without a rotation".to_owned()
         } else {
-            format!("after a rotation of {:.6}\u{b0}", found.rotation.angle().to_degrees())
+            let by = if places.is_some() { ", the best at the points" } else { "" };
+            format!("after a rotation of {:.6}\u{b0}{by}", found.rotation.angle().to_degrees())
         };
         let mut text = format!("difference  {}, {after}\n", size_of(&found.spread));
+        let measured = Hull::of(&places.unwrap_or_default());
+        if self.points.is_some() {
+            text.push_str(&format!("inside      {}, where points were measured\n", part(&found.vectors, |at| measured.holds(at))));
+            text.push_str(&format!("outside     {}\n", part(&found.vectors, |at| !measured.holds(at))));
+        }
         if let Some(compensated) = &found.compensated {
             let [dx, dy] = compensated.shift;
             text.push_str(&format!(
@@ -85,8 +101,23 @@ impl Diff {
         print(&text)?;
         let Some(plot) = &plot else { return Ok(()) };
         let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
-        Ok(field(&title, &first, &found.vectors).write(plot)?)
+        Ok(field(&title, &first, &found.vectors, measured).write(plot)?)
     }
+}
+
+/// All measured positions of a point file, px.
+fn places(path: &Path) -> Result<Vec<PixelPoint>, Failure> {
+    Ok(read_measured(path)?.rows().map(|row| row.start.position).collect())
+}
+
+/// The size of the vectors in a part of the frame.
+fn part(vectors: &[Vector], is_part: impl Fn(PixelPoint) -> bool) -> String {
+    let lengths: Vec<f64> = vectors.iter().filter(|vector| is_part(vector.at)).map(Vector::length).collect();
+    if lengths.is_empty() {
+        return "nothing was compared".to_owned();
+    }
+    let rms = (lengths.iter().map(|length| length * length).sum::<f64>() / lengths.len() as f64).sqrt();
+    format!("{} px RMS, {} px at most", plain(rms), plain(lengths.iter().copied().fold(0.0, f64::max)))
 }
 
 fn stem(path: &Path) -> String {

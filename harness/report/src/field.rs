@@ -5,6 +5,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::canvas::Canvas;
+use super::hull::Hull;
 
 /// A regular grid of vectors over an image, row by row.
 pub struct Field {
@@ -16,6 +17,8 @@ pub struct Field {
     pub grid: (usize, usize),
     /// Where each vector stands and what it is, px; `None` where there is none.
     pub vectors: Vec<(PixelPoint, Option<(f64, f64)>)>,
+    /// The part of the frame with image points, which a dashed line surrounds.
+    pub measured: Hull,
 }
 
 /// Width of the picture's map, px of the picture.
@@ -44,7 +47,7 @@ impl Field {
         for (at, vector) in &vectors {
             grid[place(&ys, at.y) * xs.len() + place(&xs, at.x)].1 = Some(*vector);
         }
-        Self { title: title.to_owned(), size, grid: (xs.len().max(1), ys.len().max(1)), vectors: grid }
+        Self { title: title.to_owned(), size, grid: (xs.len().max(1), ys.len().max(1)), vectors: grid, measured: Hull::default() }
     }
 
     /// The longest vector, px.
@@ -65,6 +68,7 @@ impl Field {
             self.map(area, map, top);
             colour_bar(area, map, top);
         });
+        canvas.paint(|area| self.measured.sides().for_each(|side| dashed(area, side.map(|end| self.place(end, map)))));
         let stretch = stretch(width / ARROWS as f64 * 1.2, top);
         if self.vectors.iter().any(|(_, vector)| vector.is_none()) {
             canvas.text("white: not compared", 16, (LEFT + map.0 - 150, TOP + map.1 + 60));
@@ -166,6 +170,18 @@ pub(crate) fn colour_bar(area: &Area<'_>, map: (u32, u32), top: f64) {
         write(area, &plain(part * top), (x + 28, y), HPos::Left);
     }
     write(area, "px", (x, up - 14), HPos::Left);
+}
+
+/// A dashed line, black on white: seen on every colour of the map.
+pub(crate) fn dashed(area: &Area<'_>, [from, to]: [(i32, i32); 2]) {
+    let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
+    let length = dx.hypot(dy);
+    let at = |along: f64| (from.0 + (dx * along / length).round() as i32, from.1 + (dy * along / length).round() as i32);
+    area.draw(&PathElement::new(vec![from, to], WHITE.stroke_width(4))).ok();
+    for dash in (0..length as u32).step_by(12) {
+        let ends = vec![at(f64::from(dash)), at(f64::from(dash + 7).min(length))];
+        area.draw(&PathElement::new(ends, BLACK.stroke_width(2))).ok();
+    }
 }
 
 /// An arrow.

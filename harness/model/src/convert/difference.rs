@@ -1,11 +1,14 @@
 //! How far two cameras differ.
 
 use super::fit::{Problem, State};
-use super::grid::{Region, Sight, Spread, Vector, axis, nodes_in, normalise, spread};
+use super::grid::{Node, Region, Sight, Spread, Vector, axis, nodes_in, normalise, spread};
 use super::rotation::between;
 use super::{COLUMNS, ConvertError, Rotation};
 use crate::PixelPoint;
 use crate::camera::{Camera, CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray};
+
+/// Places that a rotation is found at, at most.
+const PLACES: usize = 20_000;
 
 /// How to compare.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,6 +79,41 @@ impl Difference {
 /// # Errors
 /// Cameras with images of different sizes, fewer than a handful of comparable pixels, a rotation that is not found.
 pub fn difference(first: &Camera, second: &Camera, options: &DifferenceOptions) -> Result<Difference, ConvertError> {
+    compared(first, second, options, None)
+}
+
+/// As [`difference`], after the rotation that is best at `places` of the first image (px), such as image points that were measured, and nowhere else: there
+/// poses make up for a camera, and what differs beyond is not hidden by what agrees. Nothing is compensated. Of many places 20,000 count, spread over
+/// their order.
+///
+/// # Errors
+/// As of [`difference`]; fewer than a handful of places that both cameras picture.
+pub fn difference_at(
+    first: &Camera,
+    second: &Camera,
+    places: &[PixelPoint],
+    options: &DifferenceOptions,
+) -> Result<Difference, ConvertError> {
+    let held = rotation_at(first, second, places)?;
+    compared(first, second, &DifferenceOptions { compensation: false, ..*options }, Some(held))
+}
+
+fn rotation_at(first: &Camera, second: &Camera, places: &[PixelPoint]) -> Result<Rotation, ConvertError> {
+    let sight = |&point: &PixelPoint| first.unproject(point).ok().map(|ray| Sight { node: Node { point, weight: 1.0 }, ray });
+    let some = places.iter().step_by(places.len().div_ceil(PLACES).max(1));
+    let mut sights: Vec<Sight> = some.filter_map(sight).collect();
+    let start = between(&sights, second);
+    sights.retain(|sight| second.project(start.apply(sight.ray)).is_ok());
+    if sights.len() < 5 {
+        return Err(ConvertError::NotPictured { share: 1.0 });
+    }
+    normalise(&mut sights);
+    let problem = Problem { sights: &sights, free: &[], rotation: true };
+    Ok(problem.solve(State { camera: *second, rotation: start })?.rotation)
+}
+
+/// The difference after the best rotation, or after one that is held.
+fn compared(first: &Camera, second: &Camera, options: &DifferenceOptions, held: Option<Rotation>) -> Result<Difference, ConvertError> {
     if first.size() != second.size() {
         return Err(ConvertError::Target { fault: "the cameras' images differ in size" });
     }
@@ -83,7 +121,11 @@ pub fn difference(first: &Camera, second: &Camera, options: &DifferenceOptions) 
     let total: f64 = nodes.iter().map(|node| node.weight).sum();
     let mut sights: Vec<Sight> =
         nodes.into_iter().filter_map(|node| first.unproject(node.point).ok().map(|ray| Sight { node, ray })).collect();
-    let start = if options.rotation { between(&sights, second) } else { Rotation::identity() };
+    let start = match held {
+        Some(rotation) => rotation,
+        None if options.rotation => between(&sights, second),
+        None => Rotation::identity(),
+    };
     sights.retain(|sight| second.project(start.apply(sight.ray)).is_ok());
     let compared: f64 = sights.iter().map(|sight| sight.node.weight).sum();
     if sights.len() < 5 {
@@ -92,7 +134,7 @@ pub fn difference(first: &Camera, second: &Camera, options: &DifferenceOptions) 
     normalise(&mut sights);
     let problem = Problem { sights: &sights, free: &[], rotation: options.rotation };
     let start = State { camera: *second, rotation: start };
-    let state = if options.rotation { problem.solve(start)? } else { start };
+    let state = if options.rotation && held.is_none() { problem.solve(start)? } else { start };
     let vectors = problem.residuals(&state).ok_or(ConvertError::NotConverged)?;
     let compensated = if options.compensation { Some(compensate(&sights, &state, options)?) } else { None };
     let not_comparable = (1.0 - compared / total).max(0.0);

@@ -25,7 +25,7 @@ use crate::camera::{Camera, CameraModel, NoCounterpart};
 use fit::{Problem, State};
 use grid::{Sight, sights, spread};
 
-pub use difference::{Compensated, Difference, DifferenceOptions, difference};
+pub use difference::{Compensated, Difference, DifferenceOptions, difference, difference_at};
 pub use grid::{Region, Spread, Vector};
 pub use mistake::{Mistake, Mistaken, mistaken};
 pub use naive::{Tangential, from_naive, naive};

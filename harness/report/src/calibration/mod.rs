@@ -4,7 +4,6 @@ mod board;
 mod checks;
 mod csv;
 mod digits;
-mod hull;
 mod limits;
 mod page;
 mod pictures;

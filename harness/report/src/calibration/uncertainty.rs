@@ -9,7 +9,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 
 use super::csv::table;
-use super::hull::Hull;
+use crate::hull::Hull;
 use crate::plain;
 
 /// Places along the longer side of the frame.

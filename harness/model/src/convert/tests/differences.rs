@@ -3,9 +3,9 @@
 use super::super::fit::{Problem, State};
 use super::super::grid::{Sight, sights};
 use super::super::rotation::between;
-use super::super::{DifferenceOptions, Region, Rotation, difference};
+use super::super::{ConvertError, DifferenceOptions, Region, Rotation, Vector, difference, difference_at};
 use super::{SIZE, mild, opencv, photogrammetric};
-use crate::camera::{Camera, ImageSize, OpenCv, Photogrammetric};
+use crate::camera::{Camera, CameraModel, ImageSize, OpenCv, Photogrammetric};
 
 const PLAIN: DifferenceOptions = DifferenceOptions { region: Region::Frame, rotation: false, compensation: false, columns: 41 };
 
@@ -47,6 +47,43 @@ fn a_shift_is_a_rotation_and_little_more() {
     assert!(turned.spread.rms_px < 0.2 && turned.rotation.angle() > 1e-3, "{:?}", turned.spread);
     let compensated = turned.compensated.unwrap();
     assert!(compensated.spread.max_px < 1e-8 && (compensated.shift[0] + 2.0).abs() < 1e-6, "{compensated:?}");
+}
+
+/// A pose makes up for a camera where points were measured, and shows elsewhere what it is off.
+#[test]
+fn the_rotation_may_be_that_of_measured_places() {
+    let other = OpenCv { cx: 694.0, cy: 455.0, ..opencv(5, &[-0.09, 0.02, 4e-4, -1.5e-3, -0.004]) };
+    let (a, b, options) = (mild(), Camera::from(other), DifferenceOptions::default());
+    let over_frame = difference(&a, &b, &options).unwrap();
+    let near = |vector: &&Vector| vector.at.distance(crate::PixelPoint::new(400.0, 300.0)) < 150.0;
+    let places: Vec<_> = over_frame.vectors.iter().filter(near).map(|vector| vector.at).collect();
+    assert!(places.len() > 20);
+    let at_places = difference_at(&a, &b, &places, &options).unwrap();
+    let rms = |vectors: &[Vector], inside: bool| {
+        let squares: Vec<f64> = vectors.iter().filter(|vector| near(vector) == inside).map(|vector| vector.length().powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    };
+    let [there, frame] = [&at_places, &over_frame].map(|found| [true, false].map(|inside| rms(&found.vectors, inside)));
+    assert!(there[0] < 0.5 * frame[0] && there[1] > 1.1 * frame[1], "{there:?} {frame:?}");
+    assert!(at_places.spread.rms_px > over_frame.spread.rms_px && at_places.compensated.is_none());
+    // No rotation does better at these places.
+    for axis in 0..3 {
+        for step in [-1e-5, 1e-5] {
+            let mut vector = at_places.rotation.vector();
+            vector[axis] += step;
+            let turned = Rotation::from_vector(vector);
+            let squares = |rotation: &Rotation| -> f64 {
+                let off = |at: &crate::PixelPoint| b.project(rotation.apply(a.unproject(*at).unwrap())).unwrap().distance(*at).powi(2);
+                places.iter().map(off).sum()
+            };
+            assert!(squares(&turned) > squares(&at_places.rotation), "axis {axis}");
+        }
+    }
+    // All places of the frame are the frame, but for the weight of its border.
+    let all: Vec<_> = over_frame.vectors.iter().map(|vector| vector.at).collect();
+    let found = difference_at(&a, &b, &all, &options).unwrap();
+    assert!((found.spread.rms_px / over_frame.spread.rms_px - 1.0).abs() < 0.05, "{:?} {:?}", found.spread, over_frame.spread);
+    assert!(matches!(difference_at(&a, &b, &places[..4], &options), Err(ConvertError::NotPictured { .. })));
 }
 
 #[test]

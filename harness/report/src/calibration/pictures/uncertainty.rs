@@ -9,7 +9,7 @@ use plotters::style::text_anchor::HPos;
 use super::super::uncertainty::{UncertaintyMap, maps};
 use super::frame::Map;
 use super::levels::{Scale, contour};
-use crate::field::{Area, BOTTOM, LEFT, TOP, shade, shades_beside, write};
+use crate::field::{Area, BOTTOM, LEFT, TOP, dashed, shade, shades_beside, write};
 use crate::{Canvas, plain};
 
 /// Room that a line's value needs on all sides, px of the picture.
@@ -58,18 +58,6 @@ fn said(mut sigmas: Vec<f64>) -> String {
     let Some(most) = sigmas.last() else { return "nothing".into() };
     let mean = (sigmas.iter().map(|sigma| sigma * sigma).sum::<f64>() / sigmas.len() as f64).sqrt();
     format!("median {}, RMS {}, at most {}", plain(sigmas[sigmas.len() / 2]), plain(mean), plain(*most))
-}
-
-/// A dashed line, black on white: seen on every colour of the map.
-fn dashed(area: &Area<'_>, [from, to]: [(i32, i32); 2]) {
-    let (dx, dy) = (f64::from(to.0 - from.0), f64::from(to.1 - from.1));
-    let length = dx.hypot(dy);
-    let at = |along: f64| (from.0 + (dx * along / length).round() as i32, from.1 + (dy * along / length).round() as i32);
-    area.draw(&PathElement::new(vec![from, to], WHITE.stroke_width(4))).ok();
-    for dash in (0..length as u32).step_by(12) {
-        let ends = vec![at(f64::from(dash)), at(f64::from(dash + 7).min(length))];
-        area.draw(&PathElement::new(ends, BLACK.stroke_width(2))).ok();
-    }
 }
 
 /// Lines of equal standard deviation, each with its value where there is most room.

@@ -4,11 +4,13 @@ use calibench_model::PixelPoint;
 
 /// A convex polygon around points, px; empty for fewer than three that are not on a line.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Hull(Vec<PixelPoint>);
+pub struct Hull(Vec<PixelPoint>);
 
 impl Hull {
+    /// The convex hull of image points, px.
+    ///
     /// Source: Andrew 1979.
-    pub(super) fn of(points: &[PixelPoint]) -> Self {
+    pub fn of(points: &[PixelPoint]) -> Self {
         let mut sorted: Vec<PixelPoint> = points.to_vec();
         sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         let mut chain: Vec<PixelPoint> = half(sorted.iter());
@@ -17,12 +19,12 @@ impl Hull {
     }
 
     /// Whether a place is inside or on the border.
-    pub(super) fn holds(&self, at: PixelPoint) -> bool {
+    pub fn holds(&self, at: PixelPoint) -> bool {
         !self.0.is_empty() && self.sides().all(|[a, b]| turn(a, b, at) >= 0.0)
     }
 
     /// The sides, one after the other around.
-    pub(super) fn sides(&self) -> impl Iterator<Item = [PixelPoint; 2]> + '_ {
+    pub fn sides(&self) -> impl Iterator<Item = [PixelPoint; 2]> + '_ {
         (0..self.0.len()).map(|i| [self.0[i], self.0[(i + 1) % self.0.len()]])
     }
 }
