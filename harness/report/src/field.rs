@@ -69,6 +69,9 @@ impl Field {
             colour_bar(area, map, top);
         });
         canvas.paint(|area| self.measured.sides().for_each(|side| dashed(area, side.map(|end| self.place(end, map)))));
+        if self.measured.sides().next().is_some() {
+            canvas.text("dashed: around the measured points", 16, (LEFT + map.0 / 2 - 110, TOP + map.1 + 60));
+        }
         let stretch = stretch(width / ARROWS as f64 * 1.2, top);
         if self.vectors.iter().any(|(_, vector)| vector.is_none()) {
             canvas.text("white: not compared", 16, (LEFT + map.0 - 150, TOP + map.1 + 60));
