@@ -13,6 +13,7 @@
 pub mod approximate;
 mod datum;
 mod defect;
+mod descent;
 mod error;
 mod network;
 mod normal;

@@ -2,45 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_gate::{Cells, Coordinates, FigureSums, Kept, PointSums, Table, Verdicts, fingerprint};
+use calibench_gate::{Cells, Coordinates, FigureSums, Kept, Measured, PointSums, Results, Table, Verdicts, fingerprint, recorded};
 use calibench_measure::Configured;
 use calibench_report::verdicts;
 use calibench_run::Plan;
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
-use calibench_scenario::{Scenario, Sweep, parse_cell};
+use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
 use super::context::Context;
 use super::progress::Progress;
-use super::recorded::stored;
 use crate::failure::{Failure, scenario_failure};
-
-/// A scenario and its result.
-pub struct Gated {
-    pub scenario: Scenario,
-    pub outcome: Outcome,
-    /// The figures of its adjustments, if it makes any.
-    pub figures: Option<Cells<FigureSums>>,
-}
-
-/// The results of a scenario as its file says: its own methods, seed and trials.
-pub enum Outcome {
-    /// Every point.
-    Points(Table),
-    /// Of a sweep, sums by cell.
-    Sums(Cells<PointSums>),
-    /// Nothing that the gate compares, and why.
-    NotCompared(String),
-}
-
-impl Gated {
-    /// The points, if there are any.
-    pub fn table(&self) -> Option<&Table> {
-        match &self.outcome {
-            Outcome::Points(table) => Some(table),
-            Outcome::Sums(_) | Outcome::NotCompared(_) => None,
-        }
-    }
-}
 
 /// Gets a table with its scenario and the cell of its sweep.
 pub type Seen<'a> = dyn FnMut(&Scenario, Option<usize>, &Table) -> Result<(), Failure> + 'a;
@@ -84,36 +55,42 @@ pub fn cell_verdicts(context: &Context<'_>, source: &Source<'_>) -> Result<Verdi
 ///
 /// # Errors
 /// A scenario that cannot be loaded or run, and none at all.
-pub fn gated(context: &Context<'_>, names: &[String], source: &mut Source<'_>) -> Result<Vec<Gated>, Failure> {
+pub fn gated(context: &Context<'_>, names: &[String], source: &mut Source<'_>) -> Result<Vec<Results>, Failure> {
     let names = if names.is_empty() { context.catalogue()?.names()? } else { names.to_vec() };
     if names.is_empty() {
         let folder = context.root()?.join("scenarios");
         return Err(Failure::input(format!("{}: there is no scenario, so there is nothing to check", folder.display())));
     }
     let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
-    scenarios.into_iter().map(|scenario| one(context, scenario, source)).collect()
+    scenarios.iter().map(|scenario| one(context, scenario, source)).collect()
 }
 
-fn one(context: &Context<'_>, scenario: Scenario, source: &mut Source<'_>) -> Result<Gated, Failure> {
-    let plan = plan(context, &scenario)?;
+fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>) -> Result<Results, Failure> {
+    let plan = plan(context, scenario)?;
+    let results = |measured: Measured, figures: Option<Cells<FigureSums>>| Results {
+        scenario: scenario.name.clone(),
+        deterministic: scenario.is_deterministic(),
+        measured,
+        figures,
+    };
     let missing = plan.missing();
     if let Some(why) = missing.filter(|_| source.records.is_none()) {
-        return Ok(Gated { outcome: Outcome::NotCompared(format!("unavailable: {why}")), scenario, figures: None });
+        return Ok(results(Measured::NotCompared(format!("unavailable: {why}")), None));
     }
     let keep = source.kept.as_ref().filter(|keep| source.records.is_none() && keep.scenarios.contains(&scenario.name));
     let records = match keep {
         Some(keep) => {
-            run_into(context, &scenario, keep.folder.path())?;
+            run_into(context, scenario, keep.folder.path())?;
             Some(keep.folder.path().to_owned())
         }
         None => source.records.clone(),
     };
     if let Some(sweep) = &scenario.sweep {
-        let (sums, figures) = swept(context, &scenario, sweep, (records.as_deref(), source))?;
-        return Ok(Gated { outcome: Outcome::Sums(sums), scenario, figures });
+        let (sums, figures) = swept(context, scenario, sweep, (records.as_deref(), source))?;
+        return Ok(results(Measured::Sums(sums), figures));
     }
     let table = match &records {
-        Some(folder) => described(stored(&folder.join(&scenario.name), &scenario.name, &scenario)?, &plan, keep.is_some()),
+        Some(folder) => described(recorded(&folder.join(&scenario.name), &scenario.name, unit(scenario))?, &plan, keep.is_some()),
         None => {
             let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
             let table = run(&plan, &scenario.name, &|| progress.step())?;
@@ -121,10 +98,10 @@ fn one(context: &Context<'_>, scenario: Scenario, source: &mut Source<'_>) -> Re
             table
         }
     };
-    (source.each)(&scenario, None, &table)?;
-    let mut figures = empty(&scenario);
+    (source.each)(scenario, None, &table)?;
+    let mut figures = empty(scenario);
     figures.add("", &table);
-    Ok(Gated { outcome: Outcome::Points(table), figures: kept(figures), scenario })
+    Ok(results(Measured::Points(table), kept(figures)))
 }
 
 /// All cells of a sweep, one after the other.
@@ -143,7 +120,7 @@ fn swept(
         let plan = plan(context, &cell)?;
         let table = match records {
             Some(records) => {
-                described(stored(&folder_of(records, scenario, Some(index)), &name, scenario)?, &plan, source.records.is_none())
+                described(recorded(&folder_of(records, scenario, Some(index)), &name, unit(scenario))?, &plan, source.records.is_none())
             }
             None => run(&plan, &name, &|| ())?,
         };
@@ -225,4 +202,12 @@ fn library(method: &Configured, detector: Option<&str>) -> String {
 pub fn folder_of(records: &Path, scenario: &Scenario, cell: Option<usize>) -> PathBuf {
     let folder = records.join(&scenario.name);
     cell.map_or_else(|| folder.clone(), |index| calibench_records::names::cell_folder(&folder, index))
+}
+
+/// The object unit, in which the errors of check points are.
+pub fn unit(scenario: &Scenario) -> &'static str {
+    match &scenario.subject {
+        Subject::Views(views) => views.unit.name(),
+        Subject::Scene(_) | Subject::Photographs(_) => "",
+    }
 }

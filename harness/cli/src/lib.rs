@@ -30,7 +30,6 @@ mod power;
 mod print;
 mod progress;
 mod reading;
-mod recorded;
 mod render;
 mod report;
 mod resect;

@@ -24,6 +24,8 @@ struct Winner {
     /// How many of the scenario's cells it leads, of how many; 1 of 1 where nothing is swept.
     cells: (usize, usize),
     method: String,
+    /// Its RMSE in each of these cells, px.
+    least: Vec<f64>,
     /// What stands in the table: RMSE, ratio to the bound, failures, the next, OpenCV's.
     row: Vec<String>,
 }
@@ -43,29 +45,31 @@ impl Answers {
     pub fn scenario(&mut self, loaded: &Loaded) {
         let labels = loaded.head.methods.iter().map(|info| &*info.label);
         let candidates: Vec<(&str, &Score)> = labels.zip(&loaded.scores.methods).filter(|(name, _)| *name != "pixel").collect();
-        if let Some((best, row)) = lead(&candidates) {
-            self.winners.push(Winner { scenario: loaded.name.clone(), cells: (1, 1), method: best.to_owned(), row });
+        if let Some((method, least, row)) = lead(&candidates) {
+            let (scenario, method) = (loaded.name.clone(), method.to_owned());
+            self.winners.push(Winner { scenario, cells: (1, 1), method, least: vec![least], row });
         }
     }
 
     /// A sweep: who leads in most of its cells.
     pub fn sweep(&mut self, loaded: &LoadedSweep) {
-        let mut wins: Vec<(String, usize)> = Vec::new();
+        let mut wins: Vec<(String, Vec<f64>)> = Vec::new();
         let cells = loaded.sweep.cells.len();
         for cell in 0..cells {
             let named = loaded.methods.iter().enumerate().filter(|(_, method)| method.name != "pixel");
             let candidates: Vec<(&str, &Score)> =
                 named.filter_map(|(index, method)| Some((method.name.as_str(), loaded.score(cell, index)?))).collect();
-            if let Some((best, _)) = lead(&candidates) {
+            if let Some((best, rmse, _)) = lead(&candidates) {
                 match wins.iter_mut().find(|(name, _)| name == best) {
-                    Some((_, count)) => *count += 1,
-                    None => wins.push((best.to_owned(), 1)),
+                    Some((_, least)) => least.push(rmse),
+                    None => wins.push((best.to_owned(), vec![rmse])),
                 }
             }
         }
-        let Some((method, count)) = wins.into_iter().max_by_key(|(_, count)| *count) else { return };
+        let Some((method, least)) = wins.into_iter().max_by_key(|(_, least)| least.len()) else { return };
+        let count = least.len();
         let row = vec![format!("in {count} of {cells} cells")];
-        self.winners.push(Winner { scenario: loaded.name.clone(), cells: (count, cells), method, row });
+        self.winners.push(Winner { scenario: loaded.name.clone(), cells: (count, cells), method, least, row });
     }
 
     /// The first paragraph: a sentence or two, without the numbers that stand in the tables.
@@ -86,23 +90,27 @@ impl Answers {
 
     /// Who leads how often, by operator.
     fn leaders(&self) -> Option<String> {
-        let mut wins: Vec<(&str, usize)> = Vec::new();
+        let mut wins: Vec<(&str, usize, Vec<f64>)> = Vec::new();
         for winner in &self.winners {
             let operator = winner.method.split(':').next().unwrap_or(&winner.method);
-            match wins.iter_mut().find(|(name, _)| *name == operator) {
-                Some((_, count)) => *count += winner.cells.0,
-                None => wins.push((operator, winner.cells.0)),
+            match wins.iter_mut().find(|(name, ..)| *name == operator) {
+                Some((_, count, least)) => {
+                    *count += winner.cells.0;
+                    least.extend(&winner.least);
+                }
+                None => wins.push((operator, winner.cells.0, winner.least.clone())),
             }
         }
-        wins.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        wins.sort_by_key(|(_, count, _)| std::cmp::Reverse(*count));
         let of: usize = self.winners.iter().map(|winner| winner.cells.1).sum();
         let things = if self.winners.iter().any(|winner| winner.cells.1 > 1) { "cells" } else { "scenarios" };
-        let (first, rest) = wins.split_first()?;
+        let ((first, count, least), rest) = wins.split_first()?;
+        let rmse = range(least);
         if of == 1 {
-            return Some(format!("`{}` has the least error.", first.0));
+            return Some(format!("`{first}` has the least error, {rmse} px RMSE."));
         }
-        let rest: String = rest.iter().map(|(name, count)| format!(", `{name}` in {count}")).collect();
-        Some(format!("Least error: `{}` in {} of {of} {things}{rest}.", first.0, first.1))
+        let rest: String = rest.iter().map(|(name, count, _)| format!(", `{name}` in {count}")).collect();
+        Some(format!("Least error: `{first}` in {count} of {of} {things}, {rmse} px RMSE{rest}."))
     }
 
     /// The tables behind the paragraph.
@@ -151,8 +159,15 @@ fn loss(score: &Score) -> Option<(f64, f64)> {
     (points > 0.0 && score.kept.square.count() == score.measured).then(|| ((kept + failed) / points, failed / points))
 }
 
-/// The best of some methods, and its row.
-fn lead<'a>(candidates: &[(&'a str, &Score)]) -> Option<(&'a str, Vec<String>)> {
+/// The least and the largest of some figures.
+fn range(figures: &[f64]) -> String {
+    let (least, most) = figures.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), x| (least.min(*x), most.max(*x)));
+    let [least, most] = [least, most].map(plain);
+    if least == most { least } else { format!("{least} to {most}") }
+}
+
+/// The best of some methods, its RMSE, px, with failures counted, and its row.
+fn lead<'a>(candidates: &[(&'a str, &Score)]) -> Option<(&'a str, f64, Vec<String>)> {
     let mut ranked: Vec<(&str, &Score, f64, f64)> =
         candidates.iter().filter_map(|(name, score)| loss(score).map(|(loss, failures)| (*name, *score, loss, failures))).collect();
     ranked.sort_by(|a, b| (a.3 > MOST_FAILURES).cmp(&(b.3 > MOST_FAILURES)).then(a.2.total_cmp(&b.2)));
@@ -165,6 +180,7 @@ fn lead<'a>(candidates: &[(&'a str, &Score)]) -> Option<(&'a str, Vec<String>)> 
     let bound = calibench_records::score::root(&score.to_bound, 0.99);
     Some((
         best,
+        rmse,
         vec![
             error.map_or_else(|| plain(rmse), |error| format!("{} \u{b1} {}", plain(rmse), plain_error(rmse, error))),
             bound.map_or_else(String::new, |(ratio, _)| format!("{ratio:.2}")),
@@ -201,8 +217,8 @@ mod tests {
     fn the_least_error_leads_unless_it_fails_too_often() {
         let (good, lossy, cv) = (score(&[0.03, 0.05, 0.04, 0.04], 0), score(&[0.01, 0.01, 0.01], 1), score(&[0.1, 0.1, 0.1, 0.1], 0));
         let candidates = [("lossy", &lossy), ("opencv_subpix:window=11", &cv), ("good:window=9", &good)];
-        let (best, row) = lead(&candidates).unwrap();
-        assert_eq!(best, "good:window=9");
+        let (best, rmse, row) = lead(&candidates).unwrap();
+        assert_eq!((best, plain(rmse).as_str()), ("good:window=9", "0.0406"));
         // sqrt((9 + 25 + 16 + 16) / 4) = 4.06 hundredths; 0.1 / 0.0406 = 2.46.
         assert!(row[0].starts_with("0.0406 \u{b1} 0.000"), "{row:?}");
         assert_eq!(row[1..], ["", "0.0", "`opencv_subpix:window=11`: 2.46", "2.46"].map(String::from));
@@ -213,11 +229,11 @@ mod tests {
         let mut answers = Answers::default();
         answers.table("Table 1: x", Tally { reproduce: 2, differ: 1, not_comparable: 0 });
         answers.table("Table 2", Tally { reproduce: 1, differ: 0, not_comparable: 4 });
-        for (scenario, method) in [("f/a", "one:window=9"), ("f/b", "one"), ("f/c", "two")] {
-            answers.winners.push(Winner { scenario: scenario.into(), cells: (1, 1), method: method.into(), row: vec!["0.1".into()] });
+        for (scenario, method, rmse) in [("f/a", "one:window=9", 0.12), ("f/b", "one", 0.1), ("f/c", "two", 0.3)] {
+            let row = vec!["0.1".into()];
+            answers.winners.push(Winner { scenario: scenario.into(), cells: (1, 1), method: method.into(), least: vec![rmse], row });
         }
-        let expected =
-            "Of 8 printed figures 3 reproduce, 1 differ and 4 are not comparable. Least error: `one` in 2 of 3 scenarios, `two` in 1.";
+        let expected = "Of 8 printed figures 3 reproduce, 1 differ and 4 are not comparable. Least error: `one` in 2 of 3 scenarios, 0.100 to 0.120 px RMSE, `two` in 1.";
         assert_eq!(answers.paragraph(), expected);
         let tables = answers.tables();
         assert!(tables.contains("[Table 1: x](#table-1-x)") && tables.contains("[a](#scenario-fa)"), "{tables}");

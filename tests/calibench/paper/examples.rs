@@ -26,7 +26,7 @@ fn a_testfield_and_a_published_table_of_ones_own_are_reported() {
     // The mean error of the operator is well below a hundredth; half a pixel is far above what it leaves.
     assert!(
         page.starts_with(
-            "# example\n\nOf 3 printed figures 1 reproduce, 1 differ and 1 are not comparable. `forstner` has the least error."
+            "# example\n\nOf 3 printed figures 1 reproduce, 1 differ and 1 are not comparable. `forstner` has the least error, "
         ),
         "{page}"
     );

@@ -1,11 +1,20 @@
 //! Least squares in a few unknowns: normal equations that are summed up, and damped steps.
 
+use std::convert::Infallible;
+
 use nalgebra::{SMatrix, SVector};
+
+use crate::descent::{Damping, Descent, descend};
+
+/// Hardly any at last.
+const DAMPING: Damping = Damping { first: 1e-5, again: 0.0, least: 2e-15, rest: 1e-16, most: 2e9, factors: (0.05, 20.0) };
 
 /// Steps at most.
 const MOST_STEPS: usize = 100;
 /// A predicted fall of the sum of squares, px^2 for each row, below which nothing is left to gain.
 const NOTHING: f64 = 1e-22;
+/// Share of the sum of squares that is beyond its digits.
+const DIGITS: f64 = 1e-13;
 /// Of a normal matrix of unit diagonal: the inverse's diagonal is 1 / (1 - R^2), with R the multiple correlation with the other unknowns.
 const MOST_INFLATION: f64 = 1e13;
 
@@ -70,39 +79,62 @@ impl<const N: usize> Normal<N> {
     }
 }
 
-/// The least-squares solution from `start`, with its normal equations: Levenberg-Marquardt. `None` if `normal` has none for the start.
+/// Values at which the squares stand, on their way down.
+struct Place<S, N, M, const U: usize> {
+    state: S,
+    here: Normal<U>,
+    step: SVector<f64, U>,
+    /// The sum of the squares before the last step.
+    before: f64,
+    normal: N,
+    moved: M,
+}
+
+impl<S, N, M, const U: usize> Descent for Place<S, N, M, U>
+where
+    N: Fn(&S) -> Option<Normal<U>>,
+    M: Fn(&S, &SVector<f64, U>) -> S,
+{
+    type Lost = Infallible;
+
+    fn step(&mut self, damping: f64) -> Option<f64> {
+        let (step, promised) = self.here.step(damping)?;
+        self.step = step;
+        Some(promised)
+    }
+
+    fn arrives(&mut self, _: f64) -> bool {
+        false
+    }
+
+    fn go(&mut self) -> Result<bool, Infallible> {
+        self.before = self.here.squares;
+        let trial = (self.moved)(&self.state, &self.step);
+        let better = (self.normal)(&trial).filter(|trial| trial.squares < self.before);
+        let lower = better.is_some();
+        if let Some(better) = better {
+            (self.state, self.here) = (trial, better);
+        }
+        Ok(lower)
+    }
+
+    fn ends(&self, promised: f64, _: f64, lower: bool) -> bool {
+        promised <= NOTHING * self.here.rows as f64 || (!lower && promised <= DIGITS * self.before)
+    }
+}
+
+/// The least-squares solution from `start`, with its normal equations. `None` if `normal` has none for the start.
 ///
 /// The last steps are hardly damped, so that the end is that of Gauss-Newton.
-pub(super) fn minimise<S, const N: usize>(
+pub(super) fn minimise<S, const U: usize>(
     start: S,
-    normal: impl Fn(&S) -> Option<Normal<N>>,
-    moved: impl Fn(&S, &SVector<f64, N>) -> S,
-) -> Option<(S, Normal<N>)> {
-    let mut state = start;
-    let mut here = normal(&state).filter(|normal| normal.squares.is_finite())?;
-    let mut damping = 1e-5;
-    for _ in 0..MOST_STEPS {
-        let Some((step, fall)) = here.step(damping) else {
-            damping *= 100.0;
-            if damping > 1e8 {
-                break;
-            }
-            continue;
-        };
-        let trial = moved(&state, &step);
-        match normal(&trial).filter(|trial| trial.squares < here.squares) {
-            Some(better) => {
-                (state, here) = (trial, better);
-                damping = (damping * 0.05).max(1e-16);
-            }
-            None if damping > 1e8 || fall <= 1e-13 * here.squares => break,
-            None => damping *= 20.0,
-        }
-        if fall <= NOTHING * here.rows as f64 {
-            break;
-        }
-    }
-    Some((state, here))
+    normal: impl Fn(&S) -> Option<Normal<U>>,
+    moved: impl Fn(&S, &SVector<f64, U>) -> S,
+) -> Option<(S, Normal<U>)> {
+    let here = normal(&start).filter(|normal| normal.squares.is_finite())?;
+    let mut place = Place { state: start, here, step: SVector::zeros(), before: here.squares, normal, moved };
+    let Ok(_) = descend(&mut place, &DAMPING, MOST_STEPS);
+    Some((place.state, place.here))
 }
 
 #[cfg(test)]

@@ -5,38 +5,28 @@ mod elimination_order;
 mod factor;
 mod inverse;
 mod kernel;
+mod place;
 mod reduced;
 mod schur;
 mod small_cholesky;
 mod window;
 
 use crate::AdjustError;
+use crate::descent::{Damping, Descended, descend};
 use crate::network::{ImageObservation, Layout, Network, Sight};
-use crate::normal::{Loss, Lost, Normals, Scratch, linearise, residuals};
+use crate::normal::{Loss, Lost, Normals, Scratch, linearise};
 use crate::state::{State, Step};
 pub(crate) use elimination_order::{Eliminated, Ordered, Plan};
 use factor::{Factor, Structure};
 pub(crate) use inverse::{Inverse, Member};
+use place::Place;
 use reduced::Reduced;
 pub(crate) use schur::{Coupling, Schur};
 
 /// Sights up to which the couplings of all are kept.
 const MOST_KEPT: usize = 1 << 18;
-/// Damping that is tried first, and below which there is none.
-const FIRST: f64 = 1e-6;
-const LEAST: f64 = 1e-9;
-/// Damping beyond which nothing helps.
-const MOST: f64 = 1e12;
-/// Share of the sum of squares that a step must promise for another to follow: it moves the unknowns by 1e-7 of their standard deviations.
-const WORTH: f64 = 1e-14;
-/// Share of the sum of squares that is beyond its digits: a step that promises no more changes neither it nor the normal equations, only the unknowns.
-const NOTHING: f64 = 1e-16;
-/// Share that is so little that the sums themselves may not tell it.
-const LITTLE: f64 = 1e-10;
-/// How far rounding of object coordinates may exceed that of pixels, squared.
-const NOISE: f64 = 1e4;
-/// Share of the sum of squares by which rounding may raise it.
-const ROUNDING: f64 = 1e-12;
+/// No damping, unless it is needed.
+const DAMPING: Damping = Damping { first: 0.0, again: 1e-6, least: 1e-9, rest: 0.0, most: 1e12, factors: (0.1, 10.0) };
 
 /// The reduced normal equations, solved: what the way back and covariances need.
 #[derive(Clone, Debug)]
@@ -164,63 +154,15 @@ impl<'n> Engine<'n> {
         Step::zero(self.layout.width, self.layout.pose_free.len(), self.layout.triple_free.len())
     }
 
-    /// The step with `damping`, what it promises and the decomposition behind it; `None` if there is none.
-    fn step(&self, (state, normals): (&State, &Normals), damping: f64, schur: &mut Schur, step: &mut Step) -> Option<(f64, Factor)> {
-        let mut reduced = self.blank.clone();
-        schur.eliminate(self.ordered(state, normals), damping, &mut reduced).ok()?;
-        let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;
-        let mut kept = schur.reduced.clone();
-        factor.solve(&mut kept);
-        schur.back(self.ordered(state, normals), &kept, step);
-        step.is_finite().then(|| (normals.along(step), factor))
-    }
-
     /// The minimum from `start`.
     ///
     /// # Errors
     /// [`AdjustError::NotPictured`] by the start values.
     pub(crate) fn descend(&self, start: State, most_iterations: usize) -> Result<End, AdjustError> {
-        let (mut scratch, mut normals) = (Scratch::default(), Normals::default());
-        self.linearise(&start, &mut scratch, &mut normals).map_err(|lost| self.not_pictured(&start, lost))?;
-        let (mut state, mut step, mut damping, mut gain) = (start, self.zero_step(), 0.0, f64::INFINITY);
-        let mut schur = Schur::default();
-        for iterations in 1..=most_iterations {
-            let mut accepted = false;
-            if let Some((promised, factor)) = self.step((&state, &normals), damping, &mut schur, &mut step) {
-                let before = std::mem::replace(&mut gain, promised);
-                let cost = normals.cost;
-                if damping == 0.0 && gain <= NOTHING * cost {
-                    let moved = state.moved(&self.layout, &step);
-                    if residuals(self.network, &self.layout, &moved, &mut scratch, &mut normals).is_ok() {
-                        let solved = Some(Solved { schur: schur.solved(), factor });
-                        return Ok(End { state: moved, normals, iterations, gain, converged: true, solved });
-                    }
-                }
-                let moved = state.moved(&self.layout, &step);
-                let pictured = self.linearise(&moved, &mut scratch, &mut normals).is_ok();
-                accepted = pictured && normals.cost <= cost * (1.0 + ROUNDING) + NOISE * self.floor;
-                if accepted {
-                    state = moved;
-                } else {
-                    // Seldom, so that one set of equations is in memory and not two.
-                    self.linearise(&state, &mut scratch, &mut normals).map_err(|lost| self.not_pictured(&state, lost))?;
-                }
-                // Nothing to gain, or so little that rounding alone decides: it no longer falls.
-                let stands = (gain <= LITTLE * cost || gain <= NOISE * self.floor) && gain > 0.25 * before;
-                if gain <= WORTH * cost + self.floor || (accepted && stands) {
-                    return Ok(End { state, normals, iterations, gain, converged: true, solved: None });
-                }
-            }
-            damping = match (accepted, damping) {
-                (true, damping) if damping <= LEAST => 0.0,
-                (true, damping) => damping * 0.1,
-                (false, damping) => (damping * 10.0).max(FIRST),
-            };
-            if damping > MOST {
-                return Ok(End { state, normals, iterations, gain, converged: false, solved: None });
-            }
-        }
-        Ok(End { state, normals, iterations: most_iterations, gain, converged: false, solved: None })
+        let mut place = Place::at(self, start)?;
+        let Descended { iterations, gain, converged } = descend(&mut place, &DAMPING, most_iterations)?;
+        let Place { state, normals, solved, .. } = place;
+        Ok(End { state, normals, iterations, gain, converged, solved })
     }
 
     fn not_pictured(&self, state: &State, Lost(sight): Lost) -> AdjustError {

@@ -1,5 +1,6 @@
 //! Tests of the whole gate.
 
+mod baselines;
 mod cells;
 mod check;
 mod files;

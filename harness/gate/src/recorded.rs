@@ -1,24 +1,34 @@
-//! Records as tables of the gate.
+//! Records of a run as a table of the gate.
 
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use calibench_gate::{Coordinates, Table, fingerprint};
 use calibench_records::adjustments::{self, CALIBRATIONS};
 use calibench_records::names::{RECORDS, SCENARIO};
 use calibench_records::points::read_records;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo, Outcome, Trial};
-use calibench_scenario::{Scenario, Subject};
 
-use crate::failure::Failure;
+use super::point_entry::Coordinates;
+use super::table::{Table, fingerprint};
 
-/// The records of `scenario`, or of a cell of its sweep, in `folder` as a table called `name`.
+/// Records that cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", path.display())]
+pub struct RecordedError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub problem: String,
+}
+
+/// The records of a scenario, or of a cell of its sweep, in `folder` as a table called `name`. `unit` is the object unit, in which the errors of
+/// check points are.
 ///
 /// # Errors
 /// Records that are not there or cannot be read, with their path.
-pub fn stored(folder: &Path, name: &str, scenario: &Scenario) -> Result<Table, Failure> {
+pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, RecordedError> {
     let path = folder.join(RECORDS);
     let file = File::open(&path).map_err(|error| wrong(&path, &error))?;
     let mut table: Option<Table> = None;
@@ -39,13 +49,13 @@ pub fn stored(folder: &Path, name: &str, scenario: &Scenario) -> Result<Table, F
         table.text = fingerprint(&text);
     }
     if adjusted {
-        adjustments_of(&folder.join(CALIBRATIONS), &head.methods, unit(scenario), &mut table)?;
+        adjustments_of(&folder.join(CALIBRATIONS), &head.methods, unit, &mut table)?;
     }
     Ok(table)
 }
 
-fn wrong(path: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::input(format!("{}: {error}", path.display()))
+fn wrong(path: &Path, error: &dyn std::fmt::Display) -> RecordedError {
+    RecordedError { path: path.to_owned(), problem: error.to_string() }
 }
 
 /// Whether any point has an error; records without a point count as of a known truth.
@@ -57,16 +67,8 @@ fn has_truth(trial: &Trial) -> bool {
     outcomes.next().unwrap_or(true)
 }
 
-/// The object unit, in which the errors of check points are.
-fn unit(scenario: &Scenario) -> &'static str {
-    match &scenario.subject {
-        Subject::Views(views) => views.unit.name(),
-        Subject::Scene(_) | Subject::Photographs(_) => "",
-    }
-}
-
 /// Adds the adjustments in the file at `path`, as a run hands them on: by trial, method and set.
-fn adjustments_of(path: &Path, methods: &[MethodInfo], unit: &'static str, table: &mut Table) -> Result<(), Failure> {
+fn adjustments_of(path: &Path, methods: &[MethodInfo], unit: &'static str, table: &mut Table) -> Result<(), RecordedError> {
     let file = File::open(path).map_err(|error| wrong(path, &error))?;
     let mut sets: BTreeMap<String, usize> = BTreeMap::new();
     let mut all: BTreeMap<u64, BTreeMap<(usize, usize), Calibrated>> = BTreeMap::new();

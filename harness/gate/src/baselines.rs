@@ -1,0 +1,156 @@
+//! The results of scenarios against the folder of what was blessed.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::Check;
+use super::baseline::{baseline_path, figures_path, read_baseline};
+use super::baseline_file::BaselineError;
+use super::cells::Cells;
+use super::figures::FigureSums;
+use super::finding::{Finding, Verdict};
+use super::index::{INDEX, Index, IndexError};
+use super::moments::PointSums;
+use super::table::Table;
+use super::verdicts::Verdicts;
+
+/// What a scenario gave, by its own methods, seed and trials.
+pub struct Results {
+    /// The scenario's name.
+    pub scenario: String,
+    /// Whether nothing in it is random.
+    pub deterministic: bool,
+    /// What was measured.
+    pub measured: Measured,
+    /// The figures of its adjustments, if it makes any.
+    pub figures: Option<Cells<FigureSums>>,
+}
+
+/// What a scenario measured.
+pub enum Measured {
+    /// Every point.
+    Points(Table),
+    /// Of a sweep, sums by cell.
+    Sums(Cells<PointSums>),
+    /// Nothing that the gate compares, and why.
+    NotCompared(String),
+}
+
+impl Results {
+    /// The points, if there are any.
+    pub fn table(&self) -> Option<&Table> {
+        match &self.measured {
+            Measured::Points(table) => Some(table),
+            Measured::Sums(_) | Measured::NotCompared(_) => None,
+        }
+    }
+
+    /// The files that keep it: of its points and of its figures.
+    pub(super) fn paths(&self, folder: &Path) -> [PathBuf; 2] {
+        [baseline_path(folder, &self.scenario), figures_path(folder, &self.scenario)]
+    }
+}
+
+/// The folder of what was blessed, with its list.
+#[derive(Debug)]
+pub struct Baselines {
+    pub(super) folder: PathBuf,
+    pub(super) index: Index,
+}
+
+impl Baselines {
+    /// Opens a folder; its files are read as they are compared.
+    ///
+    /// # Errors
+    /// A list of what is blessed that is not there or means nothing.
+    pub fn open(folder: &Path) -> Result<Self, IndexError> {
+        Ok(Self { folder: folder.to_owned(), index: Index::read(folder)? })
+    }
+
+    /// Compares one scenario with its baseline; a baseline that is not what was blessed is a finding.
+    pub fn compare(&self, now: &Results, check: &mut Check) {
+        let (name, [points, figures]) = (now.scenario.as_str(), now.paths(&self.folder));
+        let found = |verdict, metric, message: String| Finding::new(verdict, name, "all methods", metric, message);
+        match &now.measured {
+            Measured::Points(table) => {
+                if let Some(baseline) = self.blessed(check, name, &points, read_baseline(&points, name)) {
+                    check.compare(&baseline, table, now.deterministic);
+                } else if !self.index.lists(&points) {
+                    check.unblessed(table);
+                }
+            }
+            Measured::Sums(sums) => {
+                if let Some(baseline) = self.blessed(check, name, &points, Cells::read(&points, name)) {
+                    check.compare_cells(&baseline, sums);
+                } else if !self.index.lists(&points) {
+                    check.note(found(Verdict::Unblessed, "cells", format!("not blessed yet: {} cells", sums.len())));
+                }
+            }
+            Measured::NotCompared(why) => return check.note(found(Verdict::Informs, "untested", format!("not compared: {why}"))),
+        }
+        let blessed = self.blessed(check, name, &figures, Cells::<FigureSums>::read(&figures, name));
+        match (blessed, &now.figures) {
+            (Some(baseline), Some(now)) => check.compare_cells(&baseline, now),
+            (Some(_), None) => check.note(found(Verdict::Fails, "figures", "there are no figures of adjustments any more".into())),
+            (None, Some(_)) if !self.index.lists(&figures) => {
+                check.note(found(Verdict::Unblessed, "figures", "figures of adjustments: not blessed yet".into()));
+            }
+            (None, _) => {}
+        }
+    }
+
+    /// Compares the verdicts of published cells; of some scenarios alone, not `whole`, those of the tables that stand on them.
+    pub fn compare_verdicts(&self, now: &Verdicts, whole: bool, check: &mut Check) {
+        let path = Verdicts::path(&self.folder);
+        let Some(mut baseline) = self.blessed(check, "published tables", &path, Verdicts::read(&path)) else {
+            if !now.0.is_empty() && !self.index.lists(&path) {
+                let message = "verdicts of published cells: not blessed yet";
+                check.note(Finding::new(Verdict::Unblessed, "published tables", "", "published cell", message));
+            }
+            return;
+        };
+        if !whole {
+            baseline.0.retain(|[table, ..], _| now.0.keys().any(|[other, ..]| other == table));
+        }
+        check.verdicts(&baseline, now);
+    }
+
+    /// Notes every file of the folder, and of its list, that none of `all` scenarios makes.
+    ///
+    /// # Errors
+    /// A folder that cannot be read.
+    pub fn vanished(&self, all: &[Results], check: &mut Check) -> io::Result<()> {
+        let known: Vec<PathBuf> = all.iter().flat_map(|one| one.paths(&self.folder)).chain([Verdicts::path(&self.folder)]).collect();
+        let mut files: Vec<PathBuf> = std::fs::read_dir(&self.folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
+        files.extend(self.index.files.keys().map(|file| self.folder.join(file)));
+        files.sort();
+        files.dedup();
+        for path in files.into_iter().filter(|path| path.extension().is_some_and(|e| e == "csv") && !known.contains(path)) {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().replace("--", "/");
+            let message = if self.index.lists(&path) {
+                "the scenario is gone, its baseline is blessed: restore it, or `calibench bless`".to_owned()
+            } else {
+                format!("there is no such scenario, and its baseline is not in {INDEX}: remove {}", path.display())
+            };
+            check.note(Finding::new(Verdict::Fails, &name, "all methods", "scenario", message));
+        }
+        Ok(())
+    }
+
+    /// The content of a file if it is there; what is wrong with it is noted.
+    fn blessed<T>(&self, check: &mut Check, name: &str, path: &Path, read: Result<Option<(T, String)>, BaselineError>) -> Option<T> {
+        let fails = |why: String| Finding::new(Verdict::Fails, name, "all methods", "baseline", why);
+        let found = match read {
+            Ok(found) => found,
+            Err(error) => {
+                check.note(fails(error.to_string()));
+                return None;
+            }
+        };
+        let checksum = found.as_ref().map(|(_, sum)| sum.as_str());
+        if let Some(why) = self.index.mistake(path, checksum) {
+            check.note(fails(why));
+        }
+        found.map(|(content, _)| content)
+    }
+}
