@@ -97,8 +97,15 @@ pub enum CalibrationError {
     #[error("no start values: {0}")]
     Start(#[from] ApproximateError),
     /// No adjustment.
-    #[error(transparent)]
+    #[error("{}{}", .0, hint(.0))]
     Adjust(#[from] AdjustError),
+}
+
+fn hint(error: &AdjustError) -> &'static str {
+    match error {
+        AdjustError::NotConverged { .. } => "; where image points are in gross error this happens: --snoop looks for them",
+        _ => "",
+    }
 }
 
 impl From<NetworkError> for CalibrationError {

@@ -1,5 +1,6 @@
 //! From measured points to a calibrated camera, for users: start values without truth, the adjustment, and what is to be said of it.
 
+mod against_gross;
 mod board_shape;
 mod calibration;
 mod checked;

@@ -4,9 +4,8 @@ use calibench_adjust::Network;
 use calibench_exchange::{ControlRow, LostRows, Points};
 use calibench_model::camera::Camera;
 
-use crate::{
-    BoardShape, CalibrationError, DatumChoice, LeftOut, Rival, Settings, Shape, Survey, network, optics, search, shape, stages, start,
-};
+use crate::against_gross::{self, Found};
+use crate::{BoardShape, CalibrationError, DatumChoice, LeftOut, Rival, Settings, Shape, Survey, network, optics, shape};
 
 /// A network with its start values.
 #[derive(Clone, Debug)]
@@ -44,9 +43,7 @@ pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> R
     let settings = &with_shape(settings)?;
     let survey = Survey::new(points, control)?;
     let owners = optics::owners(&settings.cameras, &survey.images)?;
-    let usual = start::starts(&survey, &owners, settings).and_then(|rough| stages::refined(&survey, &owners, rough, settings));
-    let plain = usual.as_ref().map(|usual| usual.cameras.clone()).ok();
-    let (starts, rivals) = search::better(&survey, &owners, settings, usual)?;
+    let Found { plain, starts, rivals } = against_gross::found(&survey, &owners, settings)?;
     let (mut network, sights, left_out) = network::network(&survey, &owners, &starts, settings)?;
     let shape = shape::shape(&mut network, settings)?;
     let (plain, origins) = (plain.unwrap_or(starts.cameras), starts.origins);

@@ -1,7 +1,7 @@
 //! Some images and control points of a camera, for trials that cost the same however many there are.
 
 use calibench_adjust::approximate::Control;
-use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, adjust};
+use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, adjust, adjust_robustly};
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel};
 
@@ -31,12 +31,15 @@ pub(super) struct Sample {
     finder: PoseFinder,
 }
 
+/// With weights that follow the residuals an adjustment takes so many times the steps.
+const PATIENCE: usize = 10;
+
 /// Where an adjustment of the sample ended.
 #[derive(Clone, Debug)]
 pub(super) struct Arrived {
     pub(super) camera: Camera,
     pub(super) poses: Vec<Pose>,
-    /// Weighted sum of squares, a number.
+    /// Weighted sum of squares, a number; where gross errors are expected, the one that the median residual stands for.
     pub(super) cost: f64,
     /// Where the camera comes from, in words.
     pub(super) origin: String,
@@ -86,10 +89,22 @@ impl Sample {
 
     pub(super) fn adjusted(&self, interior: Interior, poses: &[Pose], most_iterations: usize, origin: &str) -> Option<Arrived> {
         let network = self.network(interior, poses);
-        let options = Options { huber: self.huber, most_iterations, ..Options::default() };
-        let solution = adjust(&network, &options).ok()?;
+        let (solution, cost) = match self.huber {
+            None => {
+                let solution = adjust(&network, &Options { most_iterations, ..Options::default() }).ok()?;
+                let cost = solution.cost();
+                (solution, cost)
+            }
+            // The bound follows the residuals: those of a lens that is not found yet are no gross errors.
+            Some(bound) => {
+                let options = Options { most_iterations: PATIENCE * most_iterations, ..Options::default() };
+                let (solution, _) = adjust_robustly(&network, &options, bound).ok()?;
+                let cost = solution.scale()?.powi(2) * 2.0 * network.observations.len() as f64;
+                (solution, cost)
+            }
+        };
         let camera = solution.cameras()[0];
-        Some(Arrived { camera, poses: solution.poses().to_vec(), cost: solution.cost(), origin: origin.to_owned() })
+        Some(Arrived { camera, poses: solution.poses().to_vec(), cost, origin: origin.to_owned() })
     }
 
     fn network(&self, interior: Interior, poses: &[Pose]) -> Network {
