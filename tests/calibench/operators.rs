@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use calibench_model::TargetKind;
 use calibench_records::results::{Outcome, PointResult};
 use calibench_run::Plan;
 use calibench_scenario::parse;
@@ -97,10 +98,10 @@ fn shapes(kinds: &str) -> String {
 }
 
 /// The largest error of each method without noise, px.
-fn worst(testfield: &str, blur: f64, methods: &[&str]) -> Vec<f64> {
+fn worst(testfield: &str, blur: f64, methods: &[&str], trials: u64) -> Vec<f64> {
     let mut worst = vec![0.0_f64; methods.len()];
     let mut points = 0;
-    run(testfield, blur, "", 0.7, methods, 6, |results| {
+    run(testfield, blur, "", 0.7, methods, trials, |results| {
         points += 1;
         for (worst, result) in worst.iter_mut().zip(results) {
             *worst = worst.max(off(result).unwrap_or(f64::INFINITY));
@@ -114,14 +115,29 @@ fn worst(testfield: &str, blur: f64, methods: &[&str]) -> Vec<f64> {
 #[test]
 fn without_noise_renders_are_measured_to_two_ten_thousandths_of_a_pixel() {
     for blur in [0.3, 0.7, 2.0] {
-        let worst = worst(BOARD, blur, &["parametric_corner"]);
+        let worst = worst(BOARD, blur, &["parametric_corner"], 6);
         assert!(worst[0] <= 2e-4, "blur {blur}: {worst:?}");
     }
     let known =
-        worst(&shapes(r#"["disc", "square", "triangle", "cross"]"#), 0.7, &["lsm:window=31,sigma=0.7", "lsm:window=31,sharpness=1"]);
+        worst(&shapes(r#"["disc", "square", "triangle", "cross"]"#), 0.7, &["lsm:window=31,sigma=0.7", "lsm:window=31,sharpness=1"], 6);
     assert!(known.iter().all(|worst| *worst <= 2e-4), "{known:?}");
-    let circle = worst(&shapes(r#"["disc"]"#), 0.7, &["parametric_circle"]);
+    let circle = worst(&shapes(r#"["disc"]"#), 0.7, &["parametric_circle"], 6);
     assert!(circle[0] <= 2e-4, "{circle:?}");
+}
+
+/// Every kind of target that has one shape, measured from the map that the truth gives.
+#[test]
+fn the_truth_s_map_is_a_start_for_every_kind_of_target() {
+    let large = |kinds: &str| {
+        shapes(kinds).replace("size = 0.05\nrows = 6\ncolumns = 6", "size = 0.13\nangles = [60, 90, 140]\nrows = 2\ncolumns = 2")
+    };
+    for kind in TargetKind::ALL.into_iter().filter(|kind| !kind.outlines().is_empty()) {
+        let is_open = matches!(kind, TargetKind::Corner | TargetKind::ChessCorner);
+        let kinds = format!("[\"{kind}\"]");
+        let (field, window, trials) = if is_open { (large(&kinds), 15, 30) } else { (shapes(&kinds), 31, 6) };
+        let worst = worst(&field, 0.7, &[&format!("lsm:window={window},sigma=0.7"), &format!("lsm:window={window},sharpness=1")], trials);
+        assert!(worst.iter().all(|worst| *worst <= 2e-4), "{kind}: {worst:?}");
+    }
 }
 
 /// Of the points whose start lies within 4 px: how many there are, and how many of them each method loses.

@@ -154,8 +154,8 @@ pub struct ObjectTarget {
     pub at: PlatePoint,
     /// Its size, object units: a disc's diameter, the side of a square, a triangle or a chessboard's square, a bar's length.
     pub size: f64,
-    /// How it is turned on the plate, from u towards v, radians.
-    pub turn: f64,
+    /// The directions on the plate of its own axes u and v, of length 1: [`axes`], but for the corner of one area, whose axes run along its edges.
+    pub axes: [PlatePoint; 2],
     /// Where a user believes it to be, object units: the plan or the survey, without what went wrong in printing or mounting.
     pub surveyed: Point3<f64>,
 }
@@ -169,6 +169,12 @@ pub struct Testfield {
     pub targets: Vec<ObjectTarget>,
     /// The radiance of what lies behind all plates, as a fraction of full scale.
     pub background: f64,
+}
+
+/// The directions on a plate of the own axes u, to the right, and v, down, of a target that is turned by `turn` (radians, from the plate's u towards its v).
+pub fn axes(turn: f64) -> [PlatePoint; 2] {
+    let (sine, cosine) = turn.sin_cos();
+    [[cosine, sine], [sine, -cosine]]
 }
 
 impl Testfield {

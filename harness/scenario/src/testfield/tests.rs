@@ -86,7 +86,7 @@ fn a_wall_is_its_plates_its_panels_and_its_targets() {
     let ids: Vec<&str> = field.plates.iter().map(|plate| plate.id.as_str()).collect();
     assert_eq!(ids, ["front", "p1-1", "p1-2"]);
     assert_eq!(field.targets.len(), 61);
-    assert!((field.targets[0].turn - 15_f64.to_radians()).abs() < 1e-15);
+    assert_eq!(field.targets[0].axes[1], [15_f64.to_radians().cos(), 15_f64.to_radians().sin()], "along its first edge");
     let corners = field.targets.iter().filter(|target| target.kind == calibench_model::TargetKind::Corner).count();
     assert_eq!(corners, 31, "two of four shapes, and the given one");
 }

@@ -1,7 +1,9 @@
 //! The planar chessboard.
 
+use std::f64::consts::FRAC_PI_2;
+
 use calibench_model::TargetKind;
-use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield};
+use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield, axes};
 use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand_distr::{Distribution, StandardNormal};
@@ -68,7 +70,8 @@ impl Chessboard {
                 plate: 0,
                 at: at(row, column),
                 size: self.square,
-                turn: 0.0,
+                // The dark squares lie at the lower right and the upper left of every other corner.
+                axes: axes(if (row + column) % 2 == 0 { 0.0 } else { FRAC_PI_2 }),
                 surveyed: Point3::new(u, v, 0.0),
             }
         };

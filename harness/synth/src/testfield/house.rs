@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield};
+use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint, Testfield, axes};
 use calibench_model::{PixelPoint, TargetKind};
 use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
@@ -113,7 +113,7 @@ impl House {
         let target = |&(at, name): &(PlatePoint, &str)| {
             let at = scaled(at);
             let surveyed = Point3::new(at[0], at[1], 0.0);
-            ObjectTarget { id: name.into(), kind: TargetKind::Junction, plate: 0, at, size: scale, turn: 0.0, surveyed }
+            ObjectTarget { id: name.into(), kind: TargetKind::Junction, plate: 0, at, size: scale, axes: axes(0.0), surveyed }
         };
         let plate = Plate {
             id: "house".into(),

@@ -1,9 +1,9 @@
 //! The shapes of targets.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use calibench_model::TargetKind;
-use calibench_model::testfield::{Outline, PlatePoint};
+use calibench_model::testfield::{Outline, PlatePoint, axes};
 
 /// What a target looks like. Its reference point is at (0, 0) of the outlines below before they are turned and moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +50,15 @@ impl Shape {
         let (sine, cosine) = turn.sin_cos();
         let place = |[u, v]: &PlatePoint| [at[0] + size * (u * cosine - v * sine), at[1] + size * (u * sine + v * cosine)];
         self.polygons().iter().map(|vertices| Outline::polygon(&vertices.iter().map(place).collect::<Vec<_>>())).collect()
+    }
+
+    /// The directions of its own axes, in which it lies as [`TargetKind::outlines`] say, turned by `turn` (radians, from u towards v).
+    pub fn axes(self, turn: f64) -> [PlatePoint; 2] {
+        match self {
+            Self::Chess => axes(turn + FRAC_PI_2),
+            Self::Corner { angle } => [turn + angle, turn].map(|direction| [direction.cos(), direction.sin()]),
+            Self::Cross { .. } | Self::Disc | Self::Square | Self::Triangle => axes(turn),
+        }
     }
 
     /// The distance from the reference point to the outline's farthest point, in the unit of `size`.
@@ -142,6 +151,25 @@ mod tests {
             assert!(polygons.len() < 2 || overlap(&polygons[0], &polygons[1]).is_none(), "{shape:?}");
             let farthest = polygons.iter().flat_map(|p| &p.vertices).map(|v| v.x.hypot(v.y)).fold(0.0, f64::max);
             assert!((farthest / shape.reach(3.0) - 1.0).abs() < 1e-4, "{shape:?}");
+        }
+    }
+
+    /// What the kind says of its own plane is what is drawn: every vertex, in the same order around the area.
+    #[test]
+    fn every_shape_lies_in_its_own_axes_as_its_kind_says() {
+        let bar = calibench_model::target::BAR;
+        let shapes = [Shape::Cross { bar }, Shape::Chess, Shape::Square, Shape::Triangle];
+        let corners = [20.0_f64, 60.0, 90.0, 150.0].map(|angle| Shape::Corner { angle: angle.to_radians() });
+        for (shape, turn) in shapes.into_iter().chain(corners).flat_map(|shape| [0.0, 0.4, 2.0].map(|turn| (shape, turn))) {
+            let [[ux, uy], [vx, vy]] = shape.axes(turn);
+            let mapped = |[u, v]: [f64; 2]| [5.0 + 2.0 * (u * ux + v * vx), -1.0 + 2.0 * (u * uy + v * vy)];
+            let drawn: Vec<[f64; 2]> =
+                shape.outlines([5.0, -1.0], 2.0, turn).iter().flat_map(|outline| &outline.0).map(|c| c.at(0.0)).collect();
+            let told: Vec<[f64; 2]> = shape.kind().outlines().iter().flat_map(|outline| &outline.0).map(|c| mapped(c.at(0.0))).collect();
+            let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12;
+            assert_eq!(told.len(), drawn.len());
+            assert!(told.iter().all(|a| drawn.iter().any(|b| near(a, b))), "{shape:?}: {told:?}, drawn {drawn:?}");
+            assert!(drawn.iter().all(|a| told.iter().any(|b| near(a, b))), "{shape:?}: {told:?}, drawn {drawn:?}");
         }
     }
 

@@ -115,11 +115,8 @@ fn affine(view: &View<'_>, target: &ObjectTarget) -> Option<Affine> {
     let h = 1e-3 * target.size;
     let along = |du: f64, dv: f64| (plate.point([u + du, v + dv]) - plate.point([u - du, v - dv])) / (2.0 * h);
     let (by_u, by_v) = (along(h, 0.0), along(0.0, h));
-    let (sine, cosine) = target.turn.sin_cos();
-    // The target's own x is turned from u towards v; its y points down.
-    let right = by_object * (by_u * cosine + by_v * sine) * target.size;
-    let down = by_object * (by_u * sine - by_v * cosine) * target.size;
-    Some(Affine { axx: right.x, axy: down.x, ayx: right.y, ayy: down.y })
+    let [own_u, own_v] = target.axes.map(|[u, v]| by_object * (by_u * u + by_v * v) * target.size);
+    Some(Affine { axx: own_u.x, axy: own_v.x, ayx: own_u.y, ayy: own_v.y })
 }
 
 /// The picture of a disc on a flat plate.

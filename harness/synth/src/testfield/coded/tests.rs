@@ -73,7 +73,7 @@ fn targets_are_apart_inside_their_squares_and_the_lines_are_two_millimetres_wide
             .iter()
             .map(|t| {
                 let shape = SHAPES.into_iter().find(|shape| shape.kind() == t.kind).unwrap();
-                (t.id.as_str(), shape.outlines(t.at, t.size, t.turn))
+                (t.id.as_str(), shape.outlines(t.at, t.size, t.axes[0][1].atan2(t.axes[0][0])))
             })
             .collect();
         sheet_layout::check("field", corners, &outlined).unwrap();

@@ -94,7 +94,8 @@ impl Wall {
                 let then = plates[plate].point(target.at) - self.sheets[plate].shift;
                 then + Vector3::from_fn(|_, _| self.survey_sigma * standard(&mut rng))
             });
-            ObjectTarget { id: target.id, kind: target.shape.kind(), plate, at: target.at, size: target.size, turn: target.turn, surveyed }
+            let (kind, axes) = (target.shape.kind(), target.shape.axes(target.turn));
+            ObjectTarget { id: target.id, kind, plate, at: target.at, size: target.size, axes, surveyed }
         });
         Ok(Testfield { targets: targets.collect(), plates, background: self.background })
     }

@@ -5,6 +5,7 @@ mod rays;
 use std::f64::consts::PI;
 
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, Photogrammetric};
+use calibench_model::testfield::axes;
 use calibench_model::{Area, Bend, ObjectTarget, Outline, Plate, Pose, TargetKind, Testfield};
 use nalgebra::{Point3, Vector3};
 
@@ -38,7 +39,7 @@ fn plate(id: &str, [x, y, z]: [f64; 3], half: f64, bend: Option<Bend>) -> Plate 
 
 fn disc_target(plate: usize, half: f64) -> ObjectTarget {
     let at = [-0.4 * half, 0.3 * half];
-    ObjectTarget { id: "d".into(), kind: TargetKind::Disc, plate, at, size: 0.5 * half, turn: 0.3, surveyed: Point3::origin() }
+    ObjectTarget { id: "d".into(), kind: TargetKind::Disc, plate, at, size: 0.5 * half, axes: axes(0.3), surveyed: Point3::origin() }
 }
 
 fn field(plates: Vec<Plate>) -> Testfield {
