@@ -134,12 +134,18 @@ fn bad_input_is_named_and_leaves_the_old_output() {
             "no point is of a photograph that was given: points name `deep.png`, the photographs are called `c.png`",
         ),
         (&["measure", "a.png", "--points", "good.csv", "-m", "forstner:window=10"], "odd number from 3 to 31"),
+        (
+            &["measure", "a.png", "--points", "good.csv", "-m", "lsm"],
+            "does not say what is pictured, which this method must know; give the column `kind`",
+        ),
     ] {
         let output = run(folder.path(), &[arguments, &["-o", "out.csv"]].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
         assert_eq!(std::fs::read_to_string(folder.path().join("out.csv")).unwrap(), "old", "{arguments:?}");
     }
+    let output = run(folder.path(), &["measure", "a.png", "--points", "good.csv", "-m", "lsm:shape=1"]);
+    assert!(output.status.success(), "told by the method's parameter: {}", stderr(&output));
     let output = run(folder.path(), &["measure", "a.png", "--points", "good.csv", "-o", "no/such/out.csv"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("no/such/out.csv"), "{}", stderr(&output));

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_exchange::{Inputs, MeasuredRow, Outcome, Points, write_measured};
+use calibench_measure::Configured;
+use calibench_model::TargetKind;
 use calibench_photographs::points::{Measured, measure_points, photos_of};
 use clap::Args;
 
@@ -42,6 +44,7 @@ impl Measure {
             return Err(Failure::input(format!("-m {}: asked for twice", twice.1.label)));
         }
         let points = read_measured(&self.points)?;
+        methods.iter().try_for_each(|method| has_kinds(method, &points))?;
         // What is wrong with the photographs' names is said before any is read.
         photos_of(&points, &self.photos)?;
         say_turns(&self.photos)?;
@@ -56,6 +59,19 @@ impl Measure {
         progress.finish(&summary(&found, &points));
         Ok(())
     }
+}
+
+/// Whether the points say what a method must know.
+fn has_kinds(method: &Configured, points: &Points) -> Result<(), Failure> {
+    let needed = method.operator.as_ref().is_ok_and(|operator| operator.needs_kind());
+    let Some(bare) = points.rows().find(|row| needed && row.start.kind.is_none()) else { return Ok(()) };
+    Err(Failure::input(format!(
+        "-m {}: point {} of {} does not say what is pictured, which this method must know; give the column `kind` ({}), or the method its `shape`",
+        method.label,
+        bare.target,
+        bare.image,
+        TargetKind::ALL.map(TargetKind::name).join(", ")
+    )))
 }
 
 fn not_given(image: &str) -> Outcome {

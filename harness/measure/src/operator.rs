@@ -20,6 +20,11 @@ pub trait Operator: Send + Sync {
         Unknowns::default()
     }
 
+    /// Whether a start must say what is pictured.
+    fn needs_kind(&self) -> bool {
+        false
+    }
+
     /// Whether the result depends on the grey values: true of all operators but the one that returns its start.
     fn reads_grey_values(&self) -> bool {
         true

@@ -79,11 +79,13 @@ pub enum Rejection {
     ErrorEllipse,
     /// The detector found nothing near the target: no operator was given a start.
     NotDetected,
+    /// What is pictured was not said, and the operator cannot tell.
+    UnknownKind,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Border,
         Self::NotFinite,
         Self::NoCorner,
@@ -92,6 +94,7 @@ impl Rejection {
         Self::NotConverged,
         Self::ErrorEllipse,
         Self::NotDetected,
+        Self::UnknownKind,
     ];
 
     /// The name in files.
@@ -105,6 +108,7 @@ impl Rejection {
             Self::NotConverged => "not_converged",
             Self::ErrorEllipse => "error_ellipse",
             Self::NotDetected => "not_detected",
+            Self::UnknownKind => "unknown_kind",
         }
     }
 
@@ -119,6 +123,7 @@ impl Rejection {
             Self::NotConverged => "the iteration did not converge",
             Self::ErrorEllipse => "the error ellipse is too large or too flat",
             Self::NotDetected => "the detector found nothing near the target",
+            Self::UnknownKind => "what is pictured was not said (`kind`)",
         }
     }
 }

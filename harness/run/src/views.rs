@@ -218,8 +218,10 @@ fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<S
     let point = |(index, truth): (usize, &TargetTruth)| {
         let target = &targets[index];
         let at = truth.at?;
-        let pointed = prepared.subject.hand.point(at, &mut stream(Key { target: &target.id, ..key }, Purpose::Pointing));
-        let start = Start { kind: Some(target.kind), affine: truth.affine, ..Start::at(pointed) };
+        let (hand, mut rng) = (prepared.subject.hand, stream(Key { target: &target.id, ..key }, Purpose::Pointing));
+        let pointed = hand.point(at, &mut rng);
+        let affine = truth.affine.map(|map| hand.map.apply(map, &mut rng));
+        let start = Start { kind: Some(target.kind), affine, ..Start::at(pointed) };
         Some(SeenTarget { target: index, truth: at, start })
     };
     whole.filter_map(point).collect()

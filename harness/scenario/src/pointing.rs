@@ -3,7 +3,7 @@
 use calibench_diagnostics::Problem;
 use calibench_measure::harris::{Detection, Harris, HarrisDetector, smooth};
 use calibench_model::{Image, PixelPoint, Start};
-use calibench_synth::pointing::Hand;
+use calibench_synth::pointing::{Hand, MapError};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -48,6 +48,10 @@ pub struct DetectorWire {
     pub separation: Option<DetectorSeparation>,
 }
 
+/// How far an approximate orientation of the camera turns a target, degrees, and by what part it changes its axes' lengths, where nothing else is said.
+const MAP_TURN: f64 = 5.0;
+const MAP_STRETCH: f64 = 0.1;
+
 /// Which detector.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -82,7 +86,11 @@ impl Pointing {
             return section.read::<DetectorWire>(&[], problems).map(|wire| Self::Detector(wire.into()));
         }
         let wire: PointingWire = section.read(&["detector"], problems)?;
-        Some(Self::Hand(Hand { sigma: wire.sigma.0, whole_pixels: wire.whole_pixels }))
+        let shakes = wire.sigma.0 > 0.0;
+        let usual = |value: f64| if shakes { value } else { 0.0 };
+        let turn = wire.map_turn.map_or(usual(MAP_TURN), |turn| turn.0).to_radians();
+        let stretch = wire.map_stretch.map_or(usual(MAP_STRETCH), |stretch| stretch.0);
+        Some(Self::Hand(Hand { sigma: wire.sigma.0, whole_pixels: wire.whole_pixels, map: MapError { turn, stretch } }))
     }
 }
 

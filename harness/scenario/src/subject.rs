@@ -112,7 +112,7 @@ impl Starts {
         match self {
             Self::Given(_) | Self::Detected(_) => true,
             // A hand that does not shake, whether it stops at whole pixels or not.
-            Self::Pointed(hand) => hand.sigma == 0.0,
+            Self::Pointed(hand) => hand.is_steady(),
         }
     }
 }

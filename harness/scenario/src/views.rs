@@ -8,7 +8,7 @@ use calibench_model::Testfield;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_random::Key;
 use calibench_synth::optics::Optics;
-use calibench_synth::pointing::Hand;
+use calibench_synth::pointing::{Hand, MapError};
 
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
@@ -114,7 +114,7 @@ impl<'i> ViewTables<'i> {
         let redraw = Some(plan_of_stations).filter(|plan| plan.each_trial);
         let (hand, detector) = match pointing {
             Pointing::Hand(hand) => (hand, None),
-            Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true }, Some(detector)),
+            Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true, map: MapError::default() }, Some(detector)),
         };
         let (unit, survey_sigma) = (plan.unit, plan.survey_sigma());
         let imaging = imaging?;

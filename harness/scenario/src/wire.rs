@@ -57,6 +57,10 @@ bounded! {
     Coordinate(f64), f64 "f64", -1e6, 1e6;
     /// A standard deviation of pointing, px.
     HandSigma(f64), f64 "f64", 0.0, 100.0;
+    /// A standard deviation of a turn, degrees.
+    MapTurn(f64), f64 "f64", 0.0, 30.0;
+    /// A standard deviation of a length, as a part of it.
+    MapStretch(f64), f64 "f64", 0.0, 0.5;
     /// Columns or rows.
     Side(usize), i64 "i64", 1, 1_000_000;
     /// How many trials.
@@ -270,6 +274,11 @@ pub struct PointingWire {
     pub sigma: HandSigma,
     /// Whether the pointer stops at whole pixels.
     pub whole_pixels: bool,
+    /// Methods that start from a target's shape get its affine map, turned in the image by a random angle of this standard deviation, degrees. Default 5, or 0
+    /// where `sigma` is 0.
+    pub map_turn: Option<MapTurn>,
+    /// And with both axes longer or shorter by a random part of this standard deviation. Default 0.1, or 0 where `sigma` is 0.
+    pub map_stretch: Option<MapStretch>,
 }
 
 /// An area of constant grey.

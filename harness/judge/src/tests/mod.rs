@@ -13,7 +13,7 @@ use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
 use calibench_model::{PixelPoint, Pose};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::judgement::{Row, Summary};
-use calibench_synth::pointing::Hand;
+use calibench_synth::pointing::{Hand, MapError};
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
 
@@ -58,7 +58,7 @@ fn material(scenario: &str, trial: u64, count: usize, sigmas: &[f64]) -> Materia
     let names: Vec<Arc<str>> = (1..=count).map(|view| format!("v{view:02}").into()).collect();
     let operator = |(index, sigma): (usize, &f64)| {
         let name = format!("operator-{}", index + 1);
-        let hand = Hand { sigma: *sigma, whole_pixels: false };
+        let hand = Hand { sigma: *sigma, whole_pixels: false, map: MapError::default() };
         let mut rng = stream(Key { target: &name, ..key }, Purpose::Pointing);
         let at = truth.iter().map(|view| view.iter().map(|at| Some(hand.point(*at, &mut rng))).collect()).collect();
         Corners { method: name.as_str().into(), unavailable: None, at, rejected: Vec::new() }

@@ -100,7 +100,13 @@ fn points(image: &Image, starts: &[Start]) {
     let rows: [Pair<'_>; 3] = [
         ("Förstner 11x11 / cornerSubPix 11x11, 40 iterations", "forstner:window=11", (image, starts), Some(&small), 5.0),
         ("Förstner 11x11 / cornerSubPix 11x11, 1 iteration", "forstner:window=11", (image, starts), Some(&once), 2.0),
-        ("LSM, eight parameters / cornerSubPix, 40 iterations", "lsm:window=15,sigma=0.7", (&squares, &targets), Some(&large), 0.5),
+        (
+            "LSM, eight parameters / cornerSubPix, 40 iterations",
+            "lsm:window=15,sigma=0.7,sharpness=0",
+            (&squares, &targets),
+            Some(&large),
+            0.5,
+        ),
     ];
     for (name, text, (image, starts), rival, least) in rows {
         let Some(operator) = operator(text) else {

@@ -4,7 +4,7 @@ use calibench_model::{Image, PixelPoint, Polygon, Scene, Start};
 use calibench_random::{Key, Purpose, stream};
 use calibench_synth::noise::{add_grey_noise, quantise};
 use calibench_synth::optics::Optics;
-use calibench_synth::pointing::Hand;
+use calibench_synth::pointing::{Hand, MapError};
 use calibench_synth::raster::{Picture, Renderer};
 use rayon::prelude::*;
 
@@ -92,7 +92,7 @@ pub(crate) fn spoil(mut image: Image) -> Image {
 
 /// Within about a pixel of the corners.
 pub(crate) fn starts(corners: &[PixelPoint]) -> Vec<Start> {
-    let hand = Hand { sigma: 0.4, whole_pixels: false };
+    let hand = Hand { sigma: 0.4, whole_pixels: false, map: MapError::default() };
     let mut rng = stream(key("corners"), Purpose::Pointing);
     corners.iter().map(|&corner| Start::at(hand.point(corner, &mut rng))).collect()
 }

@@ -219,7 +219,8 @@ fn groups(parts: &Parts, speeds: &Speeds) -> Vec<Group> {
                 ("30 degrees", &|a| a < 45.0),
                 ("60 degrees", &|a| (45.0..75.0).contains(&a)),
                 ("90 degrees", &|a| (75.0..105.0).contains(&a)),
-                ("120 and 150 degrees", &|a| a > 105.0),
+                ("120 degrees", &|a| (105.0..135.0).contains(&a)),
+                ("150 degrees", &|a| a > 135.0),
             ],
         )
     });

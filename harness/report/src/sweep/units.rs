@@ -14,7 +14,7 @@ fn key(axis: &Axis) -> &str {
 pub fn titled(axis: &Axis) -> String {
     match key(axis) {
         SNR => "noise, % of contrast".into(),
-        "snr_mean_db" => "mean grey value / noise, dB".into(),
+        "snr_mean_db" => "mean of light and dark / noise, dB".into(),
         "grey_noise" => "noise, fraction of full scale".into(),
         "tilt" | "tilts" => "tilt, degrees".into(),
         "roll" | "rolls" => "rotation, degrees".into(),

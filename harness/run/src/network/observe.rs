@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use calibench_model::{Measurement, PixelPoint};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::results::{Outcome, PointResult};
-use calibench_synth::pointing::Hand;
+use calibench_synth::pointing::{Hand, MapError};
 use nalgebra::{Point3, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -37,7 +37,7 @@ pub struct Observed {
 pub fn observe(job: &Job<'_>, points: &[PointResult], key: Key<'_>) -> Observed {
     let views: HashMap<&str, usize> = job.stations.iter().enumerate().map(|(i, station)| (station.name.as_str(), i)).collect();
     let targets: HashMap<&str, usize> = job.field.targets.iter().enumerate().map(|(i, target)| (target.id.as_str(), i)).collect();
-    let floor = Hand { sigma: job.calibration.floor_px, whole_pixels: false };
+    let floor = Hand { sigma: job.calibration.floor_px, whole_pixels: false, map: MapError::default() };
     let point = |point: &PointResult| {
         let Outcome::Measured { position, .. } = point.outcome else { return None };
         let at = if floor.sigma > 0.0 {
@@ -60,6 +60,6 @@ pub fn observe(job: &Job<'_>, points: &[PointResult], key: Key<'_>) -> Observed 
 pub fn draw(truth: PixelPoint, sigma: f64, method: &str, key: Key<'_>) -> Measurement {
     // Methods must not share their errors: the label is part of the key.
     let name = format!("{method} {}", key.target);
-    let hand = Hand { sigma, whole_pixels: false };
+    let hand = Hand { sigma, whole_pixels: false, map: MapError::default() };
     Measurement { position: hand.point(truth, &mut stream(Key { target: &name, ..key }, Purpose::DrawnPoint)), covariance: None }
 }

@@ -175,7 +175,7 @@ fn noise(wire: &SensorWire, keys: &Keys, around: &Surroundings, exposure: f64, p
     }
     let ratios = [
         ("snr_contrast_db", wire.snr_contrast_db, around.contrast, "the targets' contrast"),
-        ("snr_mean_db", wire.snr_mean_db, around.mean, "the mean grey value"),
+        ("snr_mean_db", wire.snr_mean_db, around.mean, "the mean of the lightest and the darkest level"),
     ];
     for (key, ratio, signal, what) in ratios {
         let Some(ratio) = ratio else { continue };

@@ -32,9 +32,9 @@ pub struct SensorWire {
 
     /// White noise: its standard deviation, fraction of full scale. One of the four descriptions of the noise.
     pub grey_noise: Option<GreyNoise>,
-    /// White noise from 20 lg(difference of light and dark targets / standard deviation), dB. One of the four descriptions of the noise.
+    /// White noise from 20 lg(difference of the lightest and the darkest level of the testfield / standard deviation), dB. One of the four descriptions of the noise.
     pub snr_contrast_db: Option<Decibel>,
-    /// White noise from 20 lg(mean grey value / standard deviation), dB. One of the four descriptions of the noise.
+    /// White noise from 20 lg(mean of the lightest and the darkest level of the testfield / standard deviation), dB. One of the four descriptions of the noise.
     pub snr_mean_db: Option<Decibel>,
 
     /// Saturation capacity, e-: the noise is described by electrons, one of the four descriptions.

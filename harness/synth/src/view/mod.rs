@@ -1,6 +1,7 @@
 //! A testfield seen by a camera: outlines in the image, and the truth about every target.
 
 mod clip;
+mod disc;
 mod occlusion;
 mod outline;
 mod polygon;

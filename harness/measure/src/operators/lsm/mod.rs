@@ -81,7 +81,7 @@ const PARAMETERS: &[Parameter] = &[
         name: "sharpness",
         about: "is the blur sought, too? 0 no, 1 yes",
         domain: Domain::Whole { min: 0, max: 1 },
-        default: 0.0,
+        default: 1.0,
         always_shown: false,
     },
     Parameter { name: "iterations", about: "most steps", domain: Domain::Whole { min: 1, max: 100 }, default: 30.0, always_shown: false },
@@ -127,17 +127,17 @@ impl Lsm {
         Work { planes: Planes::new(self.window), profile: self.profile.clone() }
     }
 
-    /// The mask for a start; a start that does not say what is pictured is taken for a corner.
-    fn mask(&self, start: &Start) -> Option<&Mask> {
-        let kind = self.shape.or(start.kind).unwrap_or(TargetKind::Corner);
-        TargetKind::ALL.iter().zip(&self.masks).find(|(k, _)| **k == kind).and_then(|(_, mask)| mask.as_ref())
+    /// The mask for a start.
+    fn mask(&self, start: &Start) -> Result<&Mask, Rejection> {
+        let kind = self.shape.or(start.kind).ok_or(Rejection::UnknownKind)?;
+        TargetKind::ALL.iter().zip(&self.masks).find(|(k, _)| **k == kind).and_then(|(_, mask)| mask.as_ref()).ok_or(Rejection::NoCorner)
     }
 
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let first = window_centre(image, start, half)?;
         let range = work.observe(image, first, half)?;
-        let mask = self.mask(start).ok_or(Rejection::NoCorner)?;
+        let mask = self.mask(start)?;
         let corner = |(x, y): (i64, i64)| ((x - half) as f64, (y - half) as f64);
         let (left, top) = corner(first);
         let area = start::area(mask, work.planes.grey(), range, [start.position.x - left, start.position.y - top]);
@@ -165,7 +165,7 @@ impl Lsm {
 
 impl Operator for Lsm {
     /// # Errors
-    /// [`Rejection::Border`] when the window leaves the image; [`Rejection::NotFinite`]; [`Rejection::NoCorner`] when the target has no one shape (a junction) or the window no
+    /// [`Rejection::Border`] when the window leaves the image; [`Rejection::NotFinite`]; [`Rejection::UnknownKind`] when neither the start nor `shape` says what is pictured; [`Rejection::NoCorner`] when the target has no one shape (a junction) or the window no
     /// contrast; [`Rejection::NotConverged`]; [`Rejection::LeftWindow`]; [`Rejection::ErrorEllipse`] when a coordinate's standard deviation exceeds 1 px.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         self.measure_with(&mut self.work(), image, start)
@@ -174,6 +174,10 @@ impl Operator for Lsm {
     fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
         let mut work = self.work();
         starts.iter().map(|start| self.measure_with(&mut work, image, start)).collect()
+    }
+
+    fn needs_kind(&self) -> bool {
+        self.shape.is_none()
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {

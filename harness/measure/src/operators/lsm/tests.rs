@@ -36,11 +36,21 @@ fn off(picture: &Picture, found: &Measurement) -> f64 {
 
 #[test]
 fn conforms() {
-    for spec in ["lsm:window=15", "lsm:window=21,shape=1,sharpness=1"] {
+    for spec in ["lsm:window=15,shape=1,sharpness=0", "lsm:window=21,shape=1,sharpness=1"] {
         conformance::check(&*operator(spec), 1e-6);
     }
     conformance::check_on(&*operator("lsm:window=23,shape=5,sharpness=1"), conformance::disc, 1e-6);
-    conformance::check_on(&*operator("lsm:window=15,shape=2"), conformance::chess_corner, 1e-6);
+    conformance::check_on(&*operator("lsm:window=15,shape=2,sharpness=0"), conformance::chess_corner, 1e-6);
+}
+
+/// A corner taken for a disc, or a chess corner for a corner, is measured somewhere else without a word.
+#[test]
+fn what_is_pictured_must_be_said() {
+    let picture = picture(TargetKind::Square, 9.0, 0.7, 1);
+    let bare = Start { kind: None, ..start(&picture, 0.2, 0.1) };
+    assert_eq!(operator("lsm:window=19").measure(&picture.image(SIDE), &bare).unwrap_err(), Rejection::UnknownKind);
+    assert!(operator("lsm:window=19,shape=6").measure(&picture.image(SIDE), &bare).is_ok());
+    assert!(operator("lsm").needs_kind() && !operator("lsm:shape=1").needs_kind());
 }
 
 fn drawn(picture: &Picture, pixels: usize) -> Planes {
@@ -103,7 +113,7 @@ fn noise_free_targets_are_found_where_they_are() {
     {
         let picture = picture(kind, 9.0, sigma, variant);
         let image = picture.image(SIDE);
-        for spec in [format!("lsm:window=19,sigma={sigma}"), "lsm:window=19,sharpness=1".to_owned()] {
+        for spec in [format!("lsm:window=19,sigma={sigma},sharpness=0"), "lsm:window=19,sharpness=1".to_owned()] {
             let found = operator(&spec).measure(&image, &start(&picture, 0.6, -0.7)).unwrap();
             assert!(off(&picture, &found) < 1e-5, "{kind}, blur {sigma}, variant {variant}, {spec}: {:e}", off(&picture, &found));
         }
@@ -119,7 +129,7 @@ fn the_shortest_last_step_is_reached() {
         let picture = picture(kind, 9.0, sigma, variant);
         let clean = picture.image(SIDE);
         for image in [noise.on(&clean, 0.006), noise.on(&clean, 0.03), clean] {
-            let spec = format!("lsm:window=19,sigma={sigma},epsilon=1e-6");
+            let spec = format!("lsm:window=19,sigma={sigma},epsilon=1e-6,sharpness=0");
             let found = operator(&spec).measure(&image, &start(&picture, 0.6, -0.7));
             assert!(found.is_ok(), "{kind}, blur {sigma}, variant {variant}: {found:?}");
         }
@@ -197,7 +207,7 @@ fn efficiency(kind: TargetKind, spec: &str, blur: bool, trials: usize) -> (f64, 
 #[test]
 fn the_bound_is_reached() {
     for kind in SHAPES {
-        for (spec, blur) in [("lsm:window=21,sigma=0.7", false), ("lsm:window=21,sigma=1,sharpness=1", true)] {
+        for (spec, blur) in [("lsm:window=21,sigma=0.7,sharpness=0", false), ("lsm:window=21,sigma=1,sharpness=1", true)] {
             let (ratio, predicted, lost) = efficiency(kind, spec, blur, 2000);
             eprintln!("{kind} {spec}: RMSE / bound {ratio:.3}, predicted / empirical {predicted:.3}, lost {lost}");
             // 4000 squared coordinates: a standard deviation of 1.1 % of the ratio.

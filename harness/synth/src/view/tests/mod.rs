@@ -166,6 +166,45 @@ fn a_disc_has_its_centre_and_its_ellipse() {
     }
 }
 
+/// Where distortion bends the outline, and where the plate does, the ellipse has the centroid and second moments of the picture: of a polygon of ten thousand
+/// places of the outline.
+#[test]
+fn a_disc_under_distortion_has_the_moments_of_its_picture() {
+    let bend = Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0 };
+    for bend in [None, Some(bend)] {
+        let mut field = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, bend)]);
+        field.targets.push(disc_target(0, 1.0));
+        let size = ImageSize { width: 1200, height: 900 };
+        let mut distortion = [0.0; 14];
+        distortion[..2].copy_from_slice(&[-0.4, 0.1]);
+        let camera: Camera = OpenCv { size, fx: 700.0, fy: 690.0, cx: 390.0, cy: 460.0, distortion, coefficients: 5 }.into();
+        let pose = pose(1.2, -0.9, 1.9, 0.4);
+        let view = View { field: &field, camera: &camera, pose: &pose };
+        let ellipse = view.seen(5.0).unwrap().truth()[0].ellipse.unwrap();
+        let places: Vec<[f64; 2]> = (0..10_000)
+            .map(|i| {
+                let (s, c) = (2.0 * PI * f64::from(i) / 10_000.0).sin_cos();
+                let at = camera.project(pose.ray(&field.plates[0].point([-0.4 + 0.25 * c, 0.3 + 0.25 * s]))).unwrap();
+                [at.x - ellipse.centre.x, at.y - ellipse.centre.y]
+            })
+            .collect();
+        let (mut area, mut first, mut second) = (0.0, [0.0; 2], [0.0; 3]);
+        for (a, b) in places.iter().zip(places.iter().cycle().skip(1)) {
+            let cross = a[0] * b[1] - b[0] * a[1];
+            area += cross / 2.0;
+            first = [0, 1].map(|i| first[i] + cross * (a[i] + b[i]) / 6.0);
+            let product = |i: usize, j: usize| cross * (2.0 * (a[i] * a[j] + b[i] * b[j]) + a[i] * b[j] + b[i] * a[j]) / 24.0;
+            second = [second[0] + product(0, 0), second[1] + product(0, 1), second[2] + product(1, 1)];
+        }
+        let [a2, b2] = ellipse.axes.map(|axis| axis * axis / 4.0);
+        let (sine, cosine) = ellipse.angle.sin_cos();
+        let expected = [a2 * cosine * cosine + b2 * sine * sine, (a2 - b2) * sine * cosine, a2 * sine * sine + b2 * cosine * cosine];
+        assert!(first.iter().all(|moment| (moment / area).abs() < 1e-5), "{:?} px off", first.map(|moment| moment / area));
+        assert!(second.iter().zip(expected).all(|(found, told)| (found / area - told).abs() < 1e-5 * a2), "{second:?} {area} {expected:?}");
+        assert!(ellipse.axes[0] > 60.0, "a large one: {:?}", ellipse.axes);
+    }
+}
+
 #[test]
 fn what_is_not_seen_is_said() {
     let mut field = field(vec![plate("wall", [0.0, 0.0, 0.0], 1.0, None), plate("near", [-0.3, 0.3, 0.5], 0.3, None)]);
