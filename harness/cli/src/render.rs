@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{NewFolder, encode_png};
+use calibench_exchange::{NewFolder, Points, encode_png};
 use calibench_random::Key;
-use calibench_run::truth;
-use calibench_run::views::Prepared;
-use calibench_run::{RunError, VIEW, trial_picture, trial_truth};
+use calibench_run::views::{self, Prepared};
+use calibench_run::{RunError, VIEW, starts, trial_picture, trial_truth, truth};
 use calibench_scenario::stations::NOISE_FREE;
 use calibench_scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
 use calibench_synth::stations::Station;
@@ -75,6 +74,11 @@ impl Render {
             folder.write(&format!("{VIEW}{NOISE_FREE}.png"), |file| encode_png(file, &noise_free, true))?;
         }
         truth::write_scene(folder, &format!("{VIEW}.csv"), &scene)?;
+        let mut points = Points::default();
+        for (target, start) in scene.targets.iter().zip(starts(subject, &exposure.image, &scene, key)) {
+            start.into_iter().for_each(|start| points.push(&truth::image_name(VIEW), &target.id, start));
+        }
+        truth::write_starts(folder, "starts.csv", &points)?;
         Ok(truth::clipping_note(VIEW, exposure.clipped, exposure.image.grey().len()).into_iter().collect())
     }
 
@@ -95,7 +99,7 @@ impl Render {
         let stations: Vec<Station> = drawn.iter().filter(chosen).cloned().collect();
         let prepared = Prepared::of(subject, &stations)?;
         let progress = Progress::start(&scenario.name, stations.len() as u64, context.quiet);
-        let (mut notes, mut rows) = (Vec::new(), Vec::new());
+        let (mut notes, mut rows, mut points) = (Vec::new(), Vec::new(), Points::default());
         for view in &prepared.views {
             let name = &view.station.name;
             let exposure = prepared.image(view, key)?;
@@ -104,12 +108,16 @@ impl Render {
                 folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
             }
             truth::write_view(folder, &format!("{name}.csv"), subject, view)?;
+            for (target, start) in views::starts(&prepared, view, &exposure.image, key) {
+                points.push(&truth::image_name(name), target, start);
+            }
             notes.extend(truth::clipping_note(name, exposure.clipped, exposure.image.grey().len()));
             notes.extend(truth::warnings(subject, view));
             rows.push(truth::StationRow::new(view.station, exposure.clipped));
             progress.step();
         }
         truth::write_stations(folder, "stations.csv", &rows)?;
+        truth::write_starts(folder, "starts.csv", &points)?;
         truth::write_control(folder, "control.csv", subject)?;
         truth::write_camera(folder, "camera", &subject.camera)?;
         progress.finish(&format!("{} images", stations.len()));

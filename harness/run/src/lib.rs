@@ -16,7 +16,7 @@ pub mod views;
 
 pub use error::RunError;
 pub use plan::Plan;
-pub use scene::{VIEW, trial_picture, trial_truth};
+pub use scene::{VIEW, starts, trial_picture, trial_truth};
 
 #[cfg(test)]
 mod tests;

@@ -97,7 +97,8 @@ pub fn trial_picture(subject: &SceneSubject, renderer: &Renderer, truth: &Scene,
     Ok(exposure)
 }
 
-fn starts(subject: &SceneSubject, image: &Image, truth: &Scene, key: Key<'_>) -> Vec<Option<Start>> {
+/// Where measuring starts in the image of a trial: of each target of `truth`, `None` where the scenario's detector misses it.
+pub fn starts(subject: &SceneSubject, image: &Image, truth: &Scene, key: Key<'_>) -> Vec<Option<Start>> {
     let positions: Vec<_> = match &subject.starts {
         Starts::Detected(detector) => return detector.starts(image, truth.targets.iter().map(|target| target.at)),
         Starts::Given(positions) => positions.clone(),

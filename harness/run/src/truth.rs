@@ -3,7 +3,7 @@
 use std::io;
 
 use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
-use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, station_numbers, write_table};
+use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
 use calibench_model::camera::Camera;
 use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene};
 use calibench_scenario::ViewsSubject;
@@ -13,6 +13,7 @@ use calibench_synth::view::{Ellipse, TargetTruth, Visibility};
 
 use crate::views::PreparedView;
 
+/// Those of a point file, and what else is known: its reader knows these names, too.
 const VIEW_COLUMNS: [&str; 20] = [
     "image",
     "target",
@@ -53,13 +54,26 @@ fn table(folder: &NewFolder, name: &str, columns: &[&str], rows: impl IntoIterat
     folder.write(name, |file| write_table(file, columns, rows))
 }
 
+/// The name of an image's file.
+pub fn image_name(view: &str) -> String {
+    format!("{view}.png")
+}
+
+/// Where measuring starts, as `measure` reads it: image, target, position (px), kind, affine map.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_starts(folder: &NewFolder, name: &str, starts: &Points) -> io::Result<()> {
+    folder.write(name, |file| write_points(file, starts.rows()))
+}
+
 /// All targets of a flat scene: name, kind, true position (px).
 ///
 /// # Errors
 /// What the file system refuses.
 pub fn write_scene(folder: &NewFolder, name: &str, scene: &Scene) -> io::Result<()> {
     let row = |target: &calibench_model::SceneTarget| {
-        vec![crate::VIEW.to_owned(), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
+        vec![image_name(crate::VIEW), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
     };
     table(folder, name, &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
 }
@@ -74,7 +88,7 @@ pub fn write_view(folder: &NewFolder, name: &str, subject: &ViewsSubject, view: 
 }
 
 fn view_row(subject: &ViewsSubject, view: &PreparedView<'_>, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
-    let mut row = vec![view.station.name.clone(), target.id.clone(), target.kind.to_string()];
+    let mut row = vec![image_name(&view.station.name), target.id.clone(), target.kind.to_string()];
     let numbers = |row: &mut Vec<String>, values: Option<&[f64]>, count: usize| match values {
         Some(values) => row.extend(values.iter().map(f64::to_string)),
         None => row.extend(vec![String::new(); count]),

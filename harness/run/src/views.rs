@@ -175,10 +175,7 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
             folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, prepared.is_deep()))?;
         }
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
-        let starts = match &prepared.subject.detector {
-            Some(detector) => detector.starts(&image, seen.iter().map(|point| point.truth)),
-            None => seen.iter().map(|point| Some(point.start)).collect(),
-        };
+        let starts = started(prepared, &image, &seen);
         for (method, results) in plan.measure_found(&image, &starts) {
             let unknowns = plan.unknowns(method);
             let points = seen.iter().zip(results).map(|(point, result)| {
@@ -203,6 +200,20 @@ pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<
     let Some(view) = prepared.views.first() else { return Err(RunError::NothingToRender) };
     let starts = seen(&prepared, view, Key { view: &view.station.name, ..key }).into_iter().map(|point| point.start).collect();
     Ok((prepared.image(view, key)?.image, starts))
+}
+
+/// Where measuring starts in `image`, that of `view`: of each target that is wholly in it and that the scenario's detector, if it has one, does not miss.
+pub fn starts<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>, image: &Image, key: Key<'_>) -> Vec<(&'p str, Start)> {
+    let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
+    let starts = started(prepared, image, &seen);
+    seen.iter().zip(starts).filter_map(|(point, start)| Some((&*prepared.targets[point.target], start?))).collect()
+}
+
+fn started(prepared: &Prepared<'_>, image: &Image, seen: &[SeenTarget]) -> Vec<Option<Start>> {
+    match &prepared.subject.detector {
+        Some(detector) => detector.starts(image, seen.iter().map(|point| point.truth)),
+        None => seen.iter().map(|point| Some(point.start)).collect(),
+    }
 }
 
 /// A target that is wholly in the image.

@@ -3,6 +3,7 @@
 mod projection;
 mod refused;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
@@ -12,6 +13,7 @@ use calibench_scenario::Subject;
 use calibench_scenario::catalogue::Catalogue;
 
 use crate::project::{copy_with, files, program, root, run, stderr};
+use projection::table;
 
 /// A board of 4 x 5 squares from one station, with noise.
 pub(crate) const BOARD: &str = r#"why = "To see what is written."
@@ -66,7 +68,7 @@ fn every_station_has_its_image_and_truth_beside_the_camera_and_the_control() {
     let folder = render(project.path(), "testfields/wall", "out", &["--noise-free"]);
     let mut names: Vec<String> = files(&folder).iter().map(|(path, _)| path.display().to_string()).collect();
     names.retain(|name| !name.starts_with('.'));
-    let mut expected: Vec<String> = ["camera.toml", "control.csv", "stations.csv"].map(str::to_owned).into();
+    let mut expected: Vec<String> = ["camera.toml", "control.csv", "starts.csv", "stations.csv"].map(str::to_owned).into();
     for station in (1..=4).flat_map(|i| [format!("s0{i}-r1"), format!("s0{i}-r2")]) {
         expected.extend([".csv", ".png", "-noise-free.png"].map(|end| format!("{station}{end}")));
     }
@@ -76,6 +78,33 @@ fn every_station_has_its_image_and_truth_beside_the_camera_and_the_control() {
     let bare = image::open(folder.join("s01-r1-noise-free.png")).unwrap();
     assert_eq!((image.width(), image.height(), image.color()), (1600, 1200, image::ColorType::L8));
     assert_eq!((bare.width(), bare.height(), bare.color()), (1600, 1200, image::ColorType::L16));
+}
+
+/// From the starts that the scenario's hand gives, and from the truth itself, with what each method must know of its targets.
+#[test]
+fn what_is_rendered_is_measured_from_its_starts_and_from_its_truth() {
+    let project = with_board("", "");
+    let folder = render(project.path(), "mine.toml", "out", &[]);
+    let truth: BTreeMap<String, [f64; 2]> = table(&folder.join("front.csv"))
+        .into_iter()
+        .map(|row| (row["target"].clone(), ["x", "y"].map(|axis| row[axis].parse().unwrap())))
+        .collect();
+    for (points, method) in [("starts.csv", "parametric_corner"), ("starts.csv", "lsm"), ("front.csv", "lsm"), ("front.csv", "forstner")] {
+        let output = run(&folder, &["measure", "front.png", "--points", points, "-m", method, "-o", "measured.csv"]);
+        assert!(output.status.success(), "{points}, {method}: {}", stderr(&output));
+        let rows = table(&folder.join("measured.csv"));
+        let off = rows.iter().filter(|row| row["status"] == "measured").map(|row| {
+            let [x, y] = ["x", "y"].map(|axis| row[axis].parse::<f64>().unwrap());
+            (x - truth[&row["target"]][0]).hypot(y - truth[&row["target"]][1])
+        });
+        let off: Vec<f64> = off.collect();
+        assert!(off.len() + 2 >= rows.len() && rows.len() > 10, "{points}, {method}: {} of {}", off.len(), rows.len());
+        assert!(off.iter().all(|off| *off < 0.5), "{points}, {method}: {off:?}");
+    }
+    // Starts are a hand's, and maps are those of an approximate orientation.
+    let starts = table(&folder.join("starts.csv"));
+    let far = starts.iter().filter(|row| (row["x"].parse::<f64>().unwrap() - truth[&row["target"]][0]).abs() > 0.05).count();
+    assert!(2 * far > starts.len(), "{far} of {}", starts.len());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use super::render;
 use crate::project::copy_with;
 
 /// The rows of a table as maps from column to cell.
-fn table(path: &Path) -> Vec<HashMap<String, String>> {
+pub(super) fn table(path: &Path) -> Vec<HashMap<String, String>> {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
     let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -84,7 +84,7 @@ fn compare(scenario: &str) -> usize {
         let centre = ["X0", "Y0", "Z0"].map(|column| number(&station, column));
         let angles = ["omega_deg", "phi_deg", "kappa_deg"].map(|column| number(&station, column));
         for target in table(&folder.join(format!("{}.csv", station["image"]))) {
-            assert_eq!(target["image"], station["image"]);
+            assert_eq!(target["image"], format!("{}.png", station["image"]));
             let object = ["X", "Y", "Z"].map(|column| number(&target, column));
             let [u, v, w] = turned(angles, std::array::from_fn(|i| object[i] - centre[i]));
             let inside = target["visibility"] == "visible" || target["visibility"] == "clipped";

@@ -69,7 +69,8 @@ fn place(line: Option<u64>, column: Option<&str>) -> String {
     }
 }
 
-/// Reads a point file: header `image,target,x,y`, optionally `sxx,sxy,syy` and `kind,axx,axy,ayx,ayy`, in any order.
+/// Reads a point file: header `image,target,x,y`, optionally `sxx,sxy,syy` and `kind,axx,axy,ayx,ayy`, in any order. The truth that `render` writes beside an image
+/// is one; what it has of hidden targets and of those outside is left out.
 ///
 /// Coordinates are px in the frame of [`PixelPoint`], covariances px^2. Empty optional cells mean "not given". The output of `measure` is read as well: its
 /// rejected and unavailable rows, which have no position, are counted and left out.
@@ -155,6 +156,11 @@ fn read_rows(file: &str, input: impl Read, text: &[u8], check: Check<'_>, found:
             found.lost.push([name(IMAGE), name(TARGET), status, cells.text(REASON).unwrap_or_default()]);
             continue;
         }
+        if let Some(unseen) = cells.text(VISIBILITY).filter(|word| UNSEEN.contains(word)) {
+            let name = |column: usize| escape::from_cell(cells.text(column).unwrap_or_default());
+            found.lost.push([name(IMAGE), name(TARGET), "unavailable", unseen]);
+            continue;
+        }
         let row = cells.row()?;
         check(&row).map_err(|(column, problem)| cells.wrong(KNOWN.iter().position(|known| *known == column).unwrap_or(TARGET), problem))?;
         found.points.push(row.image, row.target, row.start);
@@ -166,8 +172,8 @@ fn read_rows(file: &str, input: impl Read, text: &[u8], check: Check<'_>, found:
 fn line_of_row(text: &[u8], columns: &Columns, index: usize) -> u64 {
     let mut reader = csv::Reader::from_reader(text);
     let is_point = |record: &StringRecord| {
-        let status = columns.0[STATUS].and_then(|place| record.get(place)).map(str::trim);
-        !matches!(status, Some("rejected" | "unavailable"))
+        let text = |column: usize| columns.0[column].and_then(|place| record.get(place)).map(str::trim);
+        !matches!(text(STATUS), Some("rejected" | "unavailable")) && text(VISIBILITY).is_none_or(|word| !UNSEEN.contains(&word))
     };
     reader.records().filter_map(Result::ok).filter(is_point).nth(index).map_or(0, |record| line_of(text, &record))
 }
@@ -193,8 +199,12 @@ pub(crate) fn csv_error(file: &str, error: &csv::Error) -> PointFileError {
 /// Where each known column stands: [`REQUIRED`], [`COVARIANCE`], [`SHAPE`] and [`RESULT`], in this order.
 struct Columns([Option<usize>; KNOWN.len()]);
 
-const KNOWN: [&str; 15] =
-    ["image", "target", "x", "y", "sxx", "sxy", "syy", "kind", "axx", "axy", "ayx", "ayy", "method", "status", "reason"];
+const KNOWN: [&str; 16] =
+    ["image", "target", "x", "y", "sxx", "sxy", "syy", "kind", "axx", "axy", "ayx", "ayy", "method", "status", "reason", "visibility"];
+/// What the truth of a rendered image holds beside `visibility`, and is not needed here.
+const TRUTH: [&str; 10] = ["ellipse_x", "ellipse_y", "semi_major", "semi_minor", "angle_deg", "X", "Y", "Z", "size_px", "warning"];
+/// Of such a truth, targets of which there is nothing to measure.
+const UNSEEN: [&str; 2] = ["hidden", "outside"];
 const IMAGE: usize = 0;
 const TARGET: usize = 1;
 const X: usize = 2;
@@ -205,6 +215,7 @@ const AXX: usize = 8;
 const METHOD: usize = 12;
 const STATUS: usize = 13;
 const REASON: usize = 14;
+const VISIBILITY: usize = 15;
 
 impl Columns {
     fn new(file: &str, header: &StringRecord) -> Result<Self, PointFileError> {
@@ -214,6 +225,10 @@ impl Columns {
         let mut places = [None; KNOWN.len()];
         for (index, name) in header.iter().enumerate() {
             let Some(known) = KNOWN.iter().position(|known| *known == name) else {
+                // X, Y and Z of a file that is no truth would be taken for nothing without a word.
+                if TRUTH.contains(&name) && header.iter().any(|other| other == KNOWN[VISIBILITY]) {
+                    continue;
+                }
                 return wrong(name, format!("unknown; known are {}", KNOWN.join(", ")));
             };
             if places[known].replace(index).is_some() {

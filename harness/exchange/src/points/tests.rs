@@ -64,8 +64,23 @@ fn rows_without_a_position_are_counted_and_left_out() {
 }
 
 #[test]
+fn the_truth_of_an_image_is_a_point_file() {
+    let header = "image,target,kind,x,y,visibility,axx,axy,ayx,ayy,ellipse_x,X,Y,Z,warning\n";
+    let text = format!("{header}a.png,1,disc,2.5,3,visible,9,0,0,9,2.6,1,2,3,\na.png,2,disc,,,hidden,,,,,,1,2,3,\na.png,3,disc,4,5,outside,9,0,0,9,,1,2,3,\n");
+    let file = parse_points("truth.csv", text.as_bytes()).unwrap();
+    assert_eq!((file.points.len(), file.points.row(0).start.kind), (1, Some(TargetKind::Disc)));
+    let lost: Vec<_> = file.lost.iter().collect();
+    assert_eq!(lost, [["a.png", "2", "unavailable", "hidden"], ["a.png", "3", "unavailable", "outside"]]);
+    // Without a visibility it is no truth, and what X is meant for is not known.
+    assert!(error("image,target,x,y,X\ni,1,2,3,4\n").contains("column `X`: unknown"));
+    // A point given twice is on its own line, whatever was left out above.
+    let again = text.replace("a.png,3,disc,4,5,outside", "a.png,1,disc,4,5,visible");
+    assert!(error(&again).contains(":4"), "{}", error(&again));
+}
+
+#[test]
 fn the_columns_are_those_that_are_documented() {
-    assert_eq!(KNOWN.to_vec(), [&REQUIRED[..], &COVARIANCE, &SHAPE, &RESULT].concat());
+    assert_eq!(KNOWN.to_vec(), [&REQUIRED[..], &COVARIANCE, &SHAPE, &RESULT, &["visibility"]].concat());
 }
 
 #[test]

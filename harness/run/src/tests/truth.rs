@@ -40,7 +40,7 @@ fn a_view_s_table_is_the_drawing_on_paper() {
     let found = rows(&path.join("front.csv"));
     assert_eq!(found.len(), 12);
     for row in &found {
-        assert_eq!((&*row["image"], &*row["kind"], &*row["visibility"], &*row["warning"]), ("front", "corner", "visible", ""));
+        assert_eq!((&*row["image"], &*row["kind"], &*row["visibility"], &*row["warning"]), ("front.png", "corner", "visible", ""));
         let (x, y) = (499.5 + number(row, "X") * 2000.0 / 6.0, 400.0 - number(row, "Y") * 2000.0 / 6.0);
         assert!((number(row, "x") - x).abs() < 1e-9 && (number(row, "y") - y).abs() < 1e-9, "{row:?}");
         assert!((number(row, "size_px") - 0.06 * 2000.0 / 6.0).abs() < 1e-6, "60 mm are 20 px: {}", row["size_px"]);

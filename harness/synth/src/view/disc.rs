@@ -34,7 +34,7 @@ pub(super) fn ellipse(view: &View<'_>, target: &ObjectTarget) -> Option<Ellipse>
     // Of an ellipse the second moments are a quarter of the squared semi-axes.
     let shape = ((second / area - centre * centre.transpose()) * 4.0).symmetric_eigen();
     let (long, short) = if shape.eigenvalues[0] >= shape.eigenvalues[1] { (0, 1) } else { (1, 0) };
-    if !(shape.eigenvalues[short] > 0.0) {
+    if shape.eigenvalues[short].is_nan() || shape.eigenvalues[short] <= 0.0 {
         return None;
     }
     let axis = shape.eigenvectors.column(long);
