@@ -81,11 +81,13 @@ pub enum Rejection {
     NotDetected,
     /// What is pictured was not said, and the operator cannot tell.
     UnknownKind,
+    /// What the model leaves of the grey values is no noise: something else is in the window.
+    Misfit,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Border,
         Self::NotFinite,
         Self::NoCorner,
@@ -95,6 +97,7 @@ impl Rejection {
         Self::ErrorEllipse,
         Self::NotDetected,
         Self::UnknownKind,
+        Self::Misfit,
     ];
 
     /// The name in files.
@@ -109,6 +112,7 @@ impl Rejection {
             Self::ErrorEllipse => "error_ellipse",
             Self::NotDetected => "not_detected",
             Self::UnknownKind => "unknown_kind",
+            Self::Misfit => "misfit",
         }
     }
 
@@ -124,6 +128,7 @@ impl Rejection {
             Self::ErrorEllipse => "the error ellipse is too large or too flat",
             Self::NotDetected => "the detector found nothing near the target",
             Self::UnknownKind => "what is pictured was not said (`kind`)",
+            Self::Misfit => "something else is in the window",
         }
     }
 }

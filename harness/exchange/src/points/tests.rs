@@ -66,7 +66,9 @@ fn rows_without_a_position_are_counted_and_left_out() {
 #[test]
 fn the_truth_of_an_image_is_a_point_file() {
     let header = "image,target,kind,x,y,visibility,axx,axy,ayx,ayy,ellipse_x,X,Y,Z,warning\n";
-    let text = format!("{header}a.png,1,disc,2.5,3,visible,9,0,0,9,2.6,1,2,3,\na.png,2,disc,,,hidden,,,,,,1,2,3,\na.png,3,disc,4,5,outside,9,0,0,9,,1,2,3,\n");
+    let text = format!(
+        "{header}a.png,1,disc,2.5,3,visible,9,0,0,9,2.6,1,2,3,\na.png,2,disc,,,hidden,,,,,,1,2,3,\na.png,3,disc,4,5,outside,9,0,0,9,,1,2,3,\n"
+    );
     let file = parse_points("truth.csv", text.as_bytes()).unwrap();
     assert_eq!((file.points.len(), file.points.row(0).start.kind), (1, Some(TargetKind::Disc)));
     let lost: Vec<_> = file.lost.iter().collect();

@@ -4,6 +4,7 @@ mod area;
 mod levels;
 mod lists;
 mod model;
+mod residuals;
 mod start;
 mod sums;
 mod window;
@@ -23,6 +24,14 @@ const VARIANCE: f64 = 0.5;
 /// The window is laid anew when the corner is further than this beyond its middle pixel, px: more each time, so that it comes to rest also where
 /// either of two windows finds the corner in the other's middle.
 const BEYOND: [f64; LAYINGS] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+/// Sides of the smaller windows, px, that are tried where the residuals of the wanted one are no noise: a neighbour may stand in it.
+const SMALLER: [usize; 3] = [13, 11, 9];
+/// A smaller window holds half its side so many times the blur, or else it may be any texture.
+const TOO_SOFT: f64 = 3.0;
+/// Residuals beyond this part of half the contrast are those of a window of noise.
+const DROWNED: f64 = 0.8;
+/// Why a window may hold too much.
+const CROWDED: [Rejection; 3] = [Rejection::Misfit, Rejection::NotConverged, Rejection::LeftWindow];
 /// Each iteration ends with a step shorter than so many standard deviations. The first need not end near: the correction that follows moves it anyway.
 const ROUGHLY: f64 = 3.0;
 const NEARLY: f64 = 0.03;
@@ -49,7 +58,8 @@ const FEW: usize = 3;
 ///
 /// The window of odd side, px, follows the corner until this lies in its middle pixel. The start comes from the image: the strongest saddle
 /// of the smoothed grey values within `search` px of the given one, along each axis, and the edges from the grey values around it. Where these are less like those
-/// opposite than unlike, there is no crossing. Covariance (px^2):
+/// opposite than unlike, there is no crossing. Where residuals are no noise, since something else is in the window, smaller windows are tried, down to 9 px, and
+/// then the point is rejected. Covariance (px^2):
 /// `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
 /// Source: two blurred edges with unknown gain and offset fitted by least squares as in Wöhler 2013 (3D Computer Vision, Eq. 1.89 to 1.92) and Yang et al. 2018;
@@ -126,13 +136,28 @@ impl ParametricCorner {
         }
     }
 
+    /// The fit over a window of some side, px, from the edges seen around a place, px.
+    fn fitted(&self, window: (&Image, usize), position: [f64; 2]) -> Result<Measurement, Rejection> {
+        let guess = start::directions(window.0, position, window.1 as i64 / 2).ok_or(Rejection::NoCorner)?;
+        match (self.gradient, self.curvature) {
+            (EVEN, false) => self.fit::<7, EVEN, false>(window, &guess),
+            (ADDED, false) => self.fit::<9, ADDED, false>(window, &guess),
+            (LIGHT, false) => self.fit::<9, LIGHT, false>(window, &guess),
+            (_, false) => self.fit::<11, BOTH, false>(window, &guess),
+            (EVEN, true) => self.fit::<9, EVEN, true>(window, &guess),
+            (ADDED, true) => self.fit::<11, ADDED, true>(window, &guess),
+            (LIGHT, true) => self.fit::<11, LIGHT, true>(window, &guess),
+            (_, true) => self.fit::<13, BOTH, true>(window, &guess),
+        }
+    }
+
     fn fit<const P: usize, const GRADIENT: u8, const CURVED: bool>(
         &self,
-        image: &Image,
+        (image, side): (&Image, usize),
         guess: &start::Guess,
     ) -> Result<Measurement, Rejection> {
-        let half = self.window as i64 / 2;
-        let setting = Setting { side: self.window, photosite: self.photosite, mean: guess.mean, half: guess.half };
+        let half = side as i64 / 2;
+        let setting = Setting { side, photosite: self.photosite, mean: guess.mean, half: guess.half };
         let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
         let mut x = SVector::<f64, P>::zeros();
         x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, 0.0, 1.0]);
@@ -157,7 +182,15 @@ impl ParametricCorner {
             }
             at = [centre[0] as f64 + x[0], centre[1] as f64 + x[1]];
             if let Some(normal) = normal.filter(|_| off(&x) <= follow) {
-                let covariance = covariance(&normal, (self.window * self.window - P) as f64).ok_or(Rejection::ErrorEllipse)?;
+                let blurred = side < self.window && x[4] > (half as f64 / TOO_SOFT).powi(2);
+                if blurred || window.residuals(&x).is_none_or(|residuals| residuals.are_no_noise()) {
+                    return Err(Rejection::Misfit);
+                }
+                let noise = (normal.omega / (side * side) as f64).sqrt();
+                if noise > DROWNED * x[6].abs() {
+                    return Err(Rejection::NoCorner);
+                }
+                let covariance = covariance(&normal, (side * side - P) as f64).ok_or(Rejection::ErrorEllipse)?;
                 return Ok(Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) });
             }
         }
@@ -189,7 +222,7 @@ fn refined<const P: usize, const GRADIENT: u8, const CURVED: bool>(
 impl Operator for ParametricCorner {
     /// # Errors
     /// [`Rejection::Border`] when the window leaves the image, [`Rejection::NotFinite`], [`Rejection::NoCorner`] when there is no saddle near the start,
-    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
+    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::Misfit`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let centre = window_centre(image, start, half)?;
@@ -208,17 +241,10 @@ impl Operator for ParametricCorner {
         if self.search > 0 && !start::is_like_its_opposite(image, position, half) {
             return Err(Rejection::NoCorner);
         }
-        let guess = start::directions(image, position, half).ok_or(Rejection::NoCorner)?;
-        match (self.gradient, self.curvature) {
-            (EVEN, false) => self.fit::<7, EVEN, false>(image, &guess),
-            (ADDED, false) => self.fit::<9, ADDED, false>(image, &guess),
-            (LIGHT, false) => self.fit::<9, LIGHT, false>(image, &guess),
-            (_, false) => self.fit::<11, BOTH, false>(image, &guess),
-            (EVEN, true) => self.fit::<9, EVEN, true>(image, &guess),
-            (ADDED, true) => self.fit::<11, ADDED, true>(image, &guess),
-            (LIGHT, true) => self.fit::<11, LIGHT, true>(image, &guess),
-            (_, true) => self.fit::<13, BOTH, true>(image, &guess),
-        }
+        self.fitted((image, self.window), position).or_else(|why| {
+            let smaller = SMALLER.into_iter().filter(|side| CROWDED.contains(&why) && *side < self.window);
+            smaller.map(|side| self.fitted((image, side), position)).find(Result::is_ok).unwrap_or(Err(why))
+        })
     }
 
     fn unknowns(&self) -> Unknowns {

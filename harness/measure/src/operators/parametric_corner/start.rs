@@ -8,6 +8,9 @@ const WIDEST: usize = 5;
 /// Half the widest field of places, px.
 const FIELD: usize = 12;
 
+/// Strengths of saddles, row by row.
+type Field = [[f64; 2 * FIELD + 1]; 2 * FIELD + 1];
+
 /// The start: position (px, in the image), directions of the normals (rad), mean of the two grey values and half their difference.
 pub(super) struct Guess {
     pub(super) position: [f64; 2],
@@ -42,14 +45,14 @@ impl Kernels {
     }
 }
 
-/// The strongest saddle within `search` px of a pixel along each axis, refined by a parabola an axis. `reach` is half the kernel.
+/// Of the saddles within `search` px of a pixel along each axis the nearest that is at least half as strong as the strongest, refined by a parabola an axis. `reach` is half the kernel.
 ///
 /// Its strength is minus the determinant of the second derivatives: positive on saddles alone, zero along straight edges. `None` when
 /// there is no saddle. The image holds `reach` px around the pixel; places nearer to its border are left out.
 pub(super) fn saddle(image: &Image, (x, y): (i64, i64), search: usize, reach: usize) -> Option<[f64; 2]> {
     let kernels = Kernels::new(reach.min(WIDEST));
     let side = 2 * search + 1;
-    let mut strengths = [[0.0; 2 * FIELD + 1]; 2 * FIELD + 1];
+    let mut strengths: Field = [[0.0; 2 * FIELD + 1]; 2 * FIELD + 1];
     let [left, top] = [x, y].map(|c| c - search as i64);
     let mut columns = Columns { filtered: [[0.0; 2 * (FIELD + WIDEST) + 1]; 3], inside: (1, 0) };
     let (mut best, mut at) = (0.0, None);
@@ -63,7 +66,8 @@ pub(super) fn saddle(image: &Image, (x, y): (i64, i64), search: usize, reach: us
             }
         }
     }
-    let (column, row) = at?;
+    let (column, row) = nearest(&strengths, side, best, at?);
+    let best = strengths[row][column];
     let peak = |low: f64, high: f64| {
         let (slope, bend) = (0.5 * (high - low), 2.0 * best - low - high);
         if bend > 0.0 && low > 0.0 && high > 0.0 { (slope / bend).clamp(-0.5, 0.5) } else { 0.0 }
@@ -72,6 +76,18 @@ pub(super) fn saddle(image: &Image, (x, y): (i64, i64), search: usize, reach: us
     let dx = peak(value(column.wrapping_sub(1), row), value(column + 1, row));
     let dy = peak(value(column, row.wrapping_sub(1)), value(column, row + 1));
     Some([left as f64 + column as f64 + dx, top as f64 + row as f64 + dy])
+}
+
+/// Of the maxima of half of the strength `best` or more the one nearest to the middle: on a board of small squares the next corner may be the stronger.
+fn nearest(strengths: &Field, side: usize, best: f64, strongest: (usize, usize)) -> (usize, usize) {
+    let is_maximum = |column: usize, row: usize| {
+        let around = |place: usize| place.saturating_sub(1)..(place + 2).min(side);
+        around(row).all(|r| around(column).all(|c| strengths[r][c] <= strengths[row][column]))
+    };
+    let off = |(column, row): (usize, usize)| [column, row].map(|place| (place as i64 - side as i64 / 2).pow(2)).iter().sum::<i64>();
+    let places = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
+    let strong = places.filter(|&(column, row)| strengths[row][column] >= 0.5 * best && is_maximum(column, row));
+    strong.chain([strongest]).min_by_key(|place| off(*place)).unwrap_or(strongest)
 }
 
 /// Columns of the image around one row, filtered downwards by each kernel.

@@ -36,13 +36,13 @@ pub(super) struct Setting {
 /// Its unit of grey values is the setting's `half`, its zero the setting's `mean`: so single precision is enough.
 pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> {
     image: &'a Image,
-    setting: Setting,
+    pub(super) setting: Setting,
     /// First pixel.
     left: usize,
     top: usize,
     /// The window's grey values, corrected.
-    grey: Vec<f32>,
-    pixels: Lists,
+    pub(super) grey: Vec<f32>,
+    pub(super) pixels: Lists,
     /// How often the normal equations may still be set up.
     pub(super) patience: usize,
 }
@@ -89,7 +89,7 @@ impl<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'a, P, G
         Shape { position: [x[0], x[1]], normals: [x[2], x[3]], variance: x[4], curvature, photosite }
     }
 
-    fn levels(&self, x: &SVector<f64, P>) -> Levels {
+    pub(super) fn levels(&self, x: &SVector<f64, P>) -> Levels {
         Levels::of::<GRADIENT>(x.as_slice(), -self.setting.mean / self.setting.half)
     }
 }
