@@ -6,6 +6,8 @@ mod tables;
 
 pub use sweep::section as sweep;
 
+use calibench_records::results::Group;
+
 use super::load::Loaded;
 use crate::canvas::{Canvas, Pictures};
 
@@ -27,23 +29,13 @@ pub fn section(loaded: &Loaded, stem: &str, illustrated: bool) -> Option<(String
             drawn.push((file, canvas));
         }
     };
-    add(
-        "plan",
-        "The network from above, and the wall with control and check points (the paper's Fig. 10 and 11)",
-        pictures::plan::plan(views),
-    );
-    add(
-        "distribution",
-        "The distribution of the image points over the frame (the paper's Fig. 7)",
-        pictures::distribution::distribution(loaded, views),
-    );
-    let best = found.methods.iter().find(|method| *method == "forstner:window=15").or_else(|| found.methods.last());
-    add(
-        "factors",
-        "The reduction factor of all interior and exterior parameters (the paper's Fig. 8)",
-        best.and_then(|m| pictures::factors::factors(found, m)),
-    );
-    add("residuals", "The residuals after the calibration (the paper's Fig. 9)", pictures::residuals::residuals(found));
+    add("plan", "The network from above, and the wall with control and check points", pictures::plan::plan(views));
+    add("distribution", "The distribution of the image points over the frame", pictures::distribution::distribution(loaded, views));
+    let sigma0 =
+        |method: &&String| found.get(method, Group::Network, "sigma0").and_then(|sigma0| sigma0.value.mean()).unwrap_or(f64::INFINITY);
+    let best = found.methods.iter().min_by(|a, b| sigma0(a).total_cmp(&sigma0(b)));
+    add("factors", "The reduction factor of all interior and exterior parameters", best.and_then(|m| pictures::factors::factors(found, m)));
+    add("residuals", "The residuals after the calibration", pictures::residuals::residuals(found));
     add("convergence", "The residuals by the convergence of the image", pictures::residuals::by_convergence(found, views));
     Some((text, drawn))
 }

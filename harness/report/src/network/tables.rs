@@ -75,7 +75,7 @@ pub(super) fn with_half(value: f64, half: Option<f64>, digits: usize) -> String 
     half.map_or_else(|| fixed(value, digits), |half| format!("{} ± {}", fixed(value, digits), fixed(half, digits)))
 }
 
-/// The sets of parameters, for the reference method and the last.
+/// The sets of parameters, of every method.
 pub fn sets(found: &Summaries) -> String {
     let mut rows = MarkdownTable::new(&[
         "set",
@@ -86,13 +86,12 @@ pub fn sets(found: &Summaries) -> String {
         "the weakest parameter: |value| / sigma",
         "failed",
     ]);
-    let shown: Vec<&String> = found.methods.iter().take(3).collect();
     for set in &found.sets {
-        for method in &shown {
+        for method in &found.methods {
             let c = found.of_set(method, set, Group::Iop, "c");
             let sigma0 = found.of_set(method, set, Group::Network, "sigma0");
             let um = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(1e3 * value, 1));
-            let failed: u64 = found.failed.iter().filter(|((m, s, _), _)| m == *method && s == set).map(|(_, (n, _))| n).sum();
+            let failed: u64 = found.failed.iter().filter(|((m, s, _), _)| m == method && s == set).map(|(_, (n, _))| n).sum();
             rows.row([
                 format!("`{set}`"),
                 format!("`{method}`"),
@@ -109,10 +108,10 @@ pub fn sets(found: &Summaries) -> String {
         let best = found.sets.iter().filter_map(|set| Some((sigma(&set)?, set))).min_by(|a, b| a.0.total_cmp(&b.0));
         best.map(|(_, set)| format!("`{method}` chooses `{set}`"))
     };
-    let chosen: Vec<String> = shown.iter().filter_map(|method| lowest(method)).collect();
+    let chosen: Vec<String> = found.methods.iter().filter_map(lowest).collect();
     format!(
-        "### Sets of interior parameters\n\nThe paper took, of seven sets that it does not name here, the one with the least variance of c. These seven are made of the parameters its program had. By that rule, in the first trial, {}. \
-         The rule asks how well c is determined, not whether the model is right: beside it stand sigma0, whether the weakest parameter differs from zero (mean over the trials), and the true error of c.\n\n{}\n",
+        "### Sets of interior parameters\n\nBy the least variance of c, in the first trial, {}. \
+         That rule asks how well c is determined, not whether the model is right: beside it stand sigma0, whether the weakest parameter differs from zero (mean over the trials), and the true error of c.\n\n{}\n",
         chosen.join(", "),
         rows.render()
     )
