@@ -77,6 +77,12 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
         ),
         (
             "background = 0.8",
+            "background = 0.8\n[scene.pointing]\nsigma = 1\nwhole_pixels = true\nmap_turn = 3",
+            "12:1",
+            &["`map_turn` of [scene.pointing]", "a flat scene hands on no map"],
+        ),
+        (
+            "background = 0.8",
             "background = 0.8\n[scene.pointing]\nsigma = 1",
             "9:8",
             &["[scene.pointing] has no `whole_pixels`", "Whether the pointer stops"],

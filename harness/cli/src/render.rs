@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use calibench_exchange::{NewFolder, Points, encode_png};
 use calibench_random::Key;
+use calibench_records::names::kept_image_name;
 use calibench_run::views::{self, Prepared};
 use calibench_run::{RunError, VIEW, starts, trial_picture, trial_truth, truth};
 use calibench_scenario::stations::NOISE_FREE;
@@ -67,7 +68,7 @@ impl Render {
         let scene = trial_truth(subject, key);
         let renderer = subject.renderer()?;
         let exposure = trial_picture(subject, &renderer, &scene, key)?;
-        folder.write(&format!("{VIEW}.png"), |file| encode_png(file, &exposure.image, subject.is_deep()))?;
+        folder.write(&kept_image_name(VIEW), |file| encode_png(file, &exposure.image, subject.is_deep()))?;
         if self.noise_free {
             let picture = calibench_synth::raster::Picture::from(&scene);
             let noise_free = renderer.render(&picture, &[]);
@@ -76,7 +77,7 @@ impl Render {
         truth::write_scene(folder, &format!("{VIEW}.csv"), &scene)?;
         let mut points = Points::default();
         for (target, start) in scene.targets.iter().zip(starts(subject, &exposure.image, &scene, key)) {
-            start.into_iter().for_each(|start| points.push(&truth::image_name(VIEW), &target.id, start));
+            start.into_iter().for_each(|start| points.push(&kept_image_name(VIEW), &target.id, start));
         }
         truth::write_starts(folder, "starts.csv", &points)?;
         Ok(truth::clipping_note(VIEW, exposure.clipped, exposure.image.grey().len()).into_iter().collect())
@@ -103,13 +104,13 @@ impl Render {
         for view in &prepared.views {
             let name = &view.station.name;
             let exposure = prepared.image(view, key)?;
-            folder.write(&format!("{name}.png"), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
+            folder.write(&kept_image_name(name), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
             if self.noise_free {
                 folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
             }
             truth::write_view(folder, &format!("{name}.csv"), subject, view)?;
             for (target, start) in views::starts(&prepared, view, &exposure.image, key) {
-                points.push(&truth::image_name(name), target, start);
+                points.push(&kept_image_name(name), target, start);
             }
             notes.extend(truth::clipping_note(name, exposure.clipped, exposure.image.grey().len()));
             notes.extend(truth::warnings(subject, view));

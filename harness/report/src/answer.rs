@@ -21,10 +21,10 @@ pub struct Answers {
 /// The method with the least RMSE in a scenario, or in cells of a sweep.
 struct Winner {
     scenario: String,
-    /// How many of the scenario's cells it leads, of how many; 1 of 1 where nothing is swept.
-    cells: (usize, usize),
+    /// How many cells the scenario has; 1 where nothing is swept.
+    cells: usize,
     method: String,
-    /// Its RMSE in each of these cells, px.
+    /// Its RMSE in each of the cells that it leads, px.
     least: Vec<f64>,
     /// What stands in the table: RMSE, ratio to the bound, failures, the next, OpenCV's.
     row: Vec<String>,
@@ -47,7 +47,7 @@ impl Answers {
         let candidates: Vec<(&str, &Score)> = labels.zip(&loaded.scores.methods).filter(|(name, _)| *name != "pixel").collect();
         if let Some((method, least, row)) = lead(&candidates) {
             let (scenario, method) = (loaded.name.clone(), method.to_owned());
-            self.winners.push(Winner { scenario, cells: (1, 1), method, least: vec![least], row });
+            self.winners.push(Winner { scenario, cells: 1, method, least: vec![least], row });
         }
     }
 
@@ -69,7 +69,7 @@ impl Answers {
         let Some((method, least)) = wins.into_iter().max_by_key(|(_, least)| least.len()) else { return };
         let count = least.len();
         let row = vec![format!("in {count} of {cells} cells")];
-        self.winners.push(Winner { scenario: loaded.name.clone(), cells: (count, cells), method, least, row });
+        self.winners.push(Winner { scenario: loaded.name.clone(), cells, method, least, row });
     }
 
     /// The first paragraph: a sentence or two, without the numbers that stand in the tables.
@@ -90,27 +90,24 @@ impl Answers {
 
     /// Who leads how often, by operator.
     fn leaders(&self) -> Option<String> {
-        let mut wins: Vec<(&str, usize, Vec<f64>)> = Vec::new();
+        let mut wins: Vec<(&str, Vec<f64>)> = Vec::new();
         for winner in &self.winners {
             let operator = winner.method.split(':').next().unwrap_or(&winner.method);
-            match wins.iter_mut().find(|(name, ..)| *name == operator) {
-                Some((_, count, least)) => {
-                    *count += winner.cells.0;
-                    least.extend(&winner.least);
-                }
-                None => wins.push((operator, winner.cells.0, winner.least.clone())),
+            match wins.iter_mut().find(|(name, _)| *name == operator) {
+                Some((_, least)) => least.extend(&winner.least),
+                None => wins.push((operator, winner.least.clone())),
             }
         }
-        wins.sort_by_key(|(_, count, _)| std::cmp::Reverse(*count));
-        let of: usize = self.winners.iter().map(|winner| winner.cells.1).sum();
-        let things = if self.winners.iter().any(|winner| winner.cells.1 > 1) { "cells" } else { "scenarios" };
-        let ((first, count, least), rest) = wins.split_first()?;
+        wins.sort_by_key(|(_, least)| std::cmp::Reverse(least.len()));
+        let of: usize = self.winners.iter().map(|winner| winner.cells).sum();
+        let things = if self.winners.iter().any(|winner| winner.cells > 1) { "cells" } else { "scenarios" };
+        let ((first, least), rest) = wins.split_first()?;
         let rmse = range(least);
         if of == 1 {
             return Some(format!("`{first}` has the least error, {rmse} px RMSE."));
         }
-        let rest: String = rest.iter().map(|(name, count, _)| format!(", `{name}` in {count}")).collect();
-        Some(format!("Least error: `{first}` in {count} of {of} {things}, {rmse} px RMSE{rest}."))
+        let rest: String = rest.iter().map(|(name, least)| format!(", `{name}` in {}", least.len())).collect();
+        Some(format!("Least error: `{first}` in {} of {of} {things}, {rmse} px RMSE{rest}.", least.len()))
     }
 
     /// The tables behind the paragraph.
@@ -231,7 +228,7 @@ mod tests {
         answers.table("Table 2", Tally { reproduce: 1, differ: 0, not_comparable: 4 });
         for (scenario, method, rmse) in [("f/a", "one:window=9", 0.12), ("f/b", "one", 0.1), ("f/c", "two", 0.3)] {
             let row = vec!["0.1".into()];
-            answers.winners.push(Winner { scenario: scenario.into(), cells: (1, 1), method: method.into(), least: vec![rmse], row });
+            answers.winners.push(Winner { scenario: scenario.into(), cells: 1, method: method.into(), least: vec![rmse], row });
         }
         let expected = "Of 8 printed figures 3 reproduce, 1 differ and 4 are not comparable. Least error: `one` in 2 of 3 scenarios, 0.100 to 0.120 px RMSE, `two` in 1.";
         assert_eq!(answers.paragraph(), expected);

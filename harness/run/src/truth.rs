@@ -6,6 +6,7 @@ use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
 use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
 use calibench_model::camera::Camera;
 use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene};
+use calibench_records::names::kept_image_name;
 use calibench_scenario::ViewsSubject;
 use calibench_synth::sensor::Clipped;
 use calibench_synth::stations::Station;
@@ -54,11 +55,6 @@ fn table(folder: &NewFolder, name: &str, columns: &[&str], rows: impl IntoIterat
     folder.write(name, |file| write_table(file, columns, rows))
 }
 
-/// The name of an image's file.
-pub fn image_name(view: &str) -> String {
-    format!("{view}.png")
-}
-
 /// Where measuring starts, as `measure` reads it: image, target, position (px), kind, affine map.
 ///
 /// # Errors
@@ -73,7 +69,7 @@ pub fn write_starts(folder: &NewFolder, name: &str, starts: &Points) -> io::Resu
 /// What the file system refuses.
 pub fn write_scene(folder: &NewFolder, name: &str, scene: &Scene) -> io::Result<()> {
     let row = |target: &calibench_model::SceneTarget| {
-        vec![image_name(crate::VIEW), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
+        vec![kept_image_name(crate::VIEW), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
     };
     table(folder, name, &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
 }
@@ -88,7 +84,7 @@ pub fn write_view(folder: &NewFolder, name: &str, subject: &ViewsSubject, view: 
 }
 
 fn view_row(subject: &ViewsSubject, view: &PreparedView<'_>, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
-    let mut row = vec![image_name(&view.station.name), target.id.clone(), target.kind.to_string()];
+    let mut row = vec![kept_image_name(&view.station.name), target.id.clone(), target.kind.to_string()];
     let numbers = |row: &mut Vec<String>, values: Option<&[f64]>, count: usize| match values {
         Some(values) => row.extend(values.iter().map(f64::to_string)),
         None => row.extend(vec![String::new(); count]),

@@ -23,9 +23,17 @@ pub const SCENE_TABLES: [&str; 3] = ["polygon", "target", "pointing"];
 pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut Vec<Problem>) -> Option<SceneSubject> {
     let polygons = section.take_tables("polygon", "[[scene.polygon]]", problems).unwrap_or_default();
     let targets = section.take_tables("target", "[[scene.target]]", problems).unwrap_or_default();
-    let pointing = section.take_table("pointing", "[scene.pointing]", problems);
+    let mut pointing = section.take_table("pointing", "[scene.pointing]", problems);
+    let before = problems.len();
+    for key in ["map_turn", "map_stretch"] {
+        if let Some((span, _)) = pointing.as_mut().and_then(|pointing| pointing.take(key)) {
+            let problem = Problem::new(span, format!("`{key}` of [scene.pointing]: a flat scene hands on no map of its targets"));
+            problems.push(problem.help("leave it out"));
+        }
+    }
     let pointed = pointing.is_some();
-    let pointing = pointing.and_then(|section| Pointing::read(section, problems));
+    let idle = problems.len() > before;
+    let pointing = pointing.and_then(|section| Pointing::read(section, problems)).filter(|_| !idle);
     let span = section.span.clone();
     for (missing, list) in [("polygon", polygons.is_empty()), ("target", targets.is_empty())] {
         if list {

@@ -89,18 +89,14 @@ impl Sample {
 
     pub(super) fn adjusted(&self, interior: Interior, poses: &[Pose], most_iterations: usize, origin: &str) -> Option<Arrived> {
         let network = self.network(interior, poses);
-        let (solution, cost) = match self.huber {
-            None => {
-                let solution = adjust(&network, &Options { most_iterations, ..Options::default() }).ok()?;
-                let cost = solution.cost();
-                (solution, cost)
-            }
+        let (cost, solution) = match self.huber {
+            None => adjust(&network, &Options { most_iterations, ..Options::default() }).map(|found| (found.cost(), found)).ok()?,
             // The bound follows the residuals: those of a lens that is not found yet are no gross errors.
             Some(bound) => {
                 let options = Options { most_iterations: PATIENCE * most_iterations, ..Options::default() };
                 let (solution, _) = adjust_robustly(&network, &options, bound).ok()?;
                 let cost = solution.scale()?.powi(2) * 2.0 * network.observations.len() as f64;
-                (solution, cost)
+                (cost, solution)
             }
         };
         let camera = solution.cameras()[0];

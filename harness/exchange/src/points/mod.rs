@@ -151,14 +151,9 @@ fn read_rows(file: &str, input: impl Read, text: &[u8], check: Check<'_>, found:
     let mut record = StringRecord::new();
     while reader.read_record(&mut record).map_err(|error| csv_error(file, &error))? {
         let cells = Cells { file, columns: &columns, record: &record, text };
-        if let Some(status @ ("rejected" | "unavailable")) = cells.text(STATUS) {
+        if let Some([status, reason]) = columns.lost(&record) {
             let name = |column: usize| escape::from_cell(cells.text(column).unwrap_or_default());
-            found.lost.push([name(IMAGE), name(TARGET), status, cells.text(REASON).unwrap_or_default()]);
-            continue;
-        }
-        if let Some(unseen) = cells.text(VISIBILITY).filter(|word| UNSEEN.contains(word)) {
-            let name = |column: usize| escape::from_cell(cells.text(column).unwrap_or_default());
-            found.lost.push([name(IMAGE), name(TARGET), "unavailable", unseen]);
+            found.lost.push([name(IMAGE), name(TARGET), status, reason]);
             continue;
         }
         let row = cells.row()?;
@@ -171,11 +166,12 @@ fn read_rows(file: &str, input: impl Read, text: &[u8], check: Check<'_>, found:
 /// The line of the point `index` of a text that was read up to there.
 fn line_of_row(text: &[u8], columns: &Columns, index: usize) -> u64 {
     let mut reader = csv::Reader::from_reader(text);
-    let is_point = |record: &StringRecord| {
-        let text = |column: usize| columns.0[column].and_then(|place| record.get(place)).map(str::trim);
-        !matches!(text(STATUS), Some("rejected" | "unavailable")) && text(VISIBILITY).is_none_or(|word| !UNSEEN.contains(&word))
-    };
-    reader.records().filter_map(Result::ok).filter(is_point).nth(index).map_or(0, |record| line_of(text, &record))
+    reader
+        .records()
+        .filter_map(Result::ok)
+        .filter(|record| columns.lost(record).is_none())
+        .nth(index)
+        .map_or(0, |record| line_of(text, &record))
 }
 
 /// The line of a record: the reader's own count starts at the empty lines before it.
@@ -205,6 +201,8 @@ const KNOWN: [&str; 16] =
 const TRUTH: [&str; 10] = ["ellipse_x", "ellipse_y", "semi_major", "semi_minor", "angle_deg", "X", "Y", "Z", "size_px", "warning"];
 /// Of such a truth, targets of which there is nothing to measure.
 const UNSEEN: [&str; 2] = ["hidden", "outside"];
+/// And of which there is.
+const SEEN: [&str; 2] = ["visible", "clipped"];
 const IMAGE: usize = 0;
 const TARGET: usize = 1;
 const X: usize = 2;
@@ -245,6 +243,19 @@ impl Columns {
         }
         Ok(Self(places))
     }
+
+    fn text<'r>(&self, record: &'r StringRecord, column: usize) -> Option<&'r str> {
+        self.0[column].and_then(|place| record.get(place)).map(str::trim).filter(|text| !text.is_empty())
+    }
+
+    /// Status and reason of a row without a position: one that `measure` rejected, or a truth of what is not seen.
+    fn lost<'r>(&self, record: &'r StringRecord) -> Option<[&'r str; 2]> {
+        match (self.text(record, STATUS), self.text(record, VISIBILITY)) {
+            (Some(status @ ("rejected" | "unavailable")), _) => Some([status, self.text(record, REASON).unwrap_or_default()]),
+            (_, Some(unseen)) if UNSEEN.contains(&unseen) => Some(["unavailable", unseen]),
+            _ => None,
+        }
+    }
 }
 
 /// The largest image coordinate, px: no image is a tenth as wide.
@@ -260,6 +271,9 @@ struct Cells<'a> {
 
 impl<'a> Cells<'a> {
     fn row(&self) -> Result<PointRef<'a>, PointFileError> {
+        if let Some(word) = self.text(VISIBILITY).filter(|word| !SEEN.contains(word)) {
+            return Err(self.wrong(VISIBILITY, format!("found `{word}`; expected {}", [SEEN, UNSEEN].concat().join(", "))));
+        }
         let kind = self.text(KIND).map(|name| name.parse::<TargetKind>().map_err(|e| self.wrong(KIND, e.to_string()))).transpose()?;
         let position = PixelPoint::new(self.coordinate(X)?, self.coordinate(Y)?);
         let affine = self.group(AXX)?.map(|[axx, axy, ayx, ayy]| Affine { axx, axy, ayx, ayy });
@@ -274,7 +288,7 @@ impl<'a> Cells<'a> {
     }
 
     fn text(&self, column: usize) -> Option<&'a str> {
-        self.columns.0[column].and_then(|place| self.record.get(place)).map(str::trim).filter(|text| !text.is_empty())
+        self.columns.text(self.record, column)
     }
 
     fn required_name(&self, column: usize) -> Result<&'a str, PointFileError> {

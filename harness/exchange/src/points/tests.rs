@@ -73,6 +73,8 @@ fn the_truth_of_an_image_is_a_point_file() {
     assert_eq!((file.points.len(), file.points.row(0).start.kind), (1, Some(TargetKind::Disc)));
     let lost: Vec<_> = file.lost.iter().collect();
     assert_eq!(lost, [["a.png", "2", "unavailable", "hidden"], ["a.png", "3", "unavailable", "outside"]]);
+    let unknown = error(&text.replace("visible", "hiden"));
+    assert!(unknown.contains(":2, column `visibility`: found `hiden`; expected visible, clipped, hidden, outside"), "{unknown}");
     // Without a visibility it is no truth, and what X is meant for is not known.
     assert!(error("image,target,x,y,X\ni,1,2,3,4\n").contains("column `X`: unknown"));
     // A point given twice is on its own line, whatever was left out above.
