@@ -26,6 +26,8 @@ pub enum Domain {
         /// Largest.
         max: f64,
     },
+    /// One of these whole numbers, which are in order.
+    Choice(&'static [u32]),
 }
 
 impl Domain {
@@ -35,6 +37,7 @@ impl Domain {
         let right_form = match self {
             Self::Odd { .. } => value.fract() == 0.0 && value.rem_euclid(2.0) == 1.0,
             Self::Whole { .. } => value.fract() == 0.0,
+            Self::Choice(choices) => choices.iter().any(|choice| f64::from(*choice) == value),
             Self::Real { .. } => true,
         };
         value.is_finite() && value >= min && value <= max && right_form
@@ -45,6 +48,7 @@ impl Domain {
         match self {
             Self::Odd { min, max } | Self::Whole { min, max } => (f64::from(min), f64::from(max)),
             Self::Real { min, max } => (min, max),
+            Self::Choice(choices) => [choices.first(), choices.last()].map(|end| end.map_or(f64::NAN, |end| f64::from(*end))).into(),
         }
     }
 
@@ -54,6 +58,7 @@ impl Domain {
         match self {
             Self::Odd { .. } => format!("an odd number from {min} to {max}"),
             Self::Whole { .. } => format!("a whole number from {min} to {max}"),
+            Self::Choice(choices) => format!("one of {}", choices.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")),
             Self::Real { .. } => format!("a number from {min} to {max}"),
         }
     }

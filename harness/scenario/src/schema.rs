@@ -132,6 +132,9 @@ fn method(method: &calibench_measure::Method) -> Value {
         if matches!(parameter.domain, Domain::Odd { .. }) {
             schema["not"] = json!({ "multipleOf": 2 });
         }
+        if let Domain::Choice(choices) = parameter.domain {
+            schema["enum"] = json!(choices);
+        }
         properties.insert(parameter.name.into(), schema);
     }
     json!({ "type": "object", "description": method.about, "properties": properties, "required": ["name"], "additionalProperties": false })

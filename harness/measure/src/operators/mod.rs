@@ -11,6 +11,7 @@ pub mod lsm;
 pub mod opencv_subpix;
 pub mod parametric_circle;
 pub mod parametric_corner;
+pub mod parametric_junction;
 pub mod pixel;
 pub mod saddle;
 
@@ -32,6 +33,7 @@ impl Registry {
             lsm::method(),
             saddle::method(),
             parametric_corner::method(),
+            parametric_junction::method(),
             parametric_circle::method(),
             ellipse_edges::method(),
             chess_corners::method(),

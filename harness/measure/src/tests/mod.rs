@@ -2,4 +2,5 @@
 
 pub(crate) mod bound;
 pub(crate) mod closed_form_images;
+pub(crate) mod junction_images;
 pub(crate) mod quadrature_images;

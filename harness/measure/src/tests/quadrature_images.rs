@@ -44,7 +44,7 @@ fn bell(x: f64) -> f64 {
 }
 
 /// The mean over a photosite of this `width` at distance z of a blurred unit step, and its derivative by z.
-fn profile(z: f64, blur: f64, width: f64) -> (f64, f64) {
+pub(crate) fn profile(z: f64, blur: f64, width: f64) -> (f64, f64) {
     let (high, low) = ((z + 0.5 * width) / blur, (z - 0.5 * width) / blur);
     let area = |x: f64| x * phi(x) + bell(x);
     (blur * (area(high) - area(low)) / width, (phi(high) - phi(low)) / width)

@@ -46,7 +46,12 @@ pub(crate) fn run() {
     println!("{:<52} {:>9} {:>9} {:>16} {:>16} {:>9}", "", "required", "reached", "rate", "rival", "speed-up");
     control();
     points(&image, &starts);
-    BLURS.into_iter().for_each(crossings);
+    for blur in BLURS {
+        crossings(blur, ("parametric corner", "parametric_corner:window=15"), &[1.0, -1.0], 15_000.0);
+    }
+    for blur in BLURS {
+        crossings(blur, ("parametric junction, 2 arms", "parametric_junction:window=15,arms=2"), &[1.0], 20_000.0);
+    }
     harris(&image);
 }
 
@@ -61,16 +66,16 @@ fn control() {
     Row { name, unit: "/s", amount: 40.0, ours: &ours, spread: Some(&spread), rival: None, least: f64::NAN }.print();
 }
 
-/// The parametric corner on what it is for.
-fn crossings(blur: f64) {
-    let (image, places) = scene::crossings(blur);
+/// An operator on what it is for: crossings with these dark areas.
+fn crossings(blur: f64, (what, spec): (&str, &str), dark: &[f64], least: f64) {
+    let (image, places) = scene::crossings(blur, dark);
     let (image, starts) = (scene::spoil(image), scene::starts(&places));
-    let name = format!("parametric corner, blur {blur} px unknown, points/s");
-    let Some(operator) = operator("parametric_corner:window=15") else {
+    let name = format!("{what}, blur {blur} px unknown, points/s");
+    let Some(operator) = operator(spec) else {
         println!("{name:<52} is not available");
         return;
     };
-    measured(&name, &*operator, (&image, &starts), None, 15_000.0);
+    measured(&name, &*operator, (&image, &starts), None, least);
     let found = operator.measure_all(&image, &starts);
     let near = found.iter().zip(&places).filter(|(found, place)| found.as_ref().is_ok_and(|found| found.position.distance(**place) < 0.5));
     let converged = found.iter().filter(|found| found.is_ok()).count();

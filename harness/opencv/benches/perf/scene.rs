@@ -51,8 +51,9 @@ pub(crate) fn corners() -> (Image, Vec<PixelPoint>) {
     (image, corners)
 }
 
-/// A crossing of two turned, tilted edges in each cell, its dark areas opposite each other, through a lens of `blur` px; without noise. And where they are.
-pub(crate) fn crossings(blur: f64) -> (Image, Vec<PixelPoint>) {
+/// A crossing of two turned, tilted edges in each cell, through a lens of `blur` px; without noise. And where they are. Dark are those of two opposite areas
+/// whose signs are given: one is a corner, both a chess corner.
+pub(crate) fn crossings(blur: f64, dark: &[f64]) -> (Image, Vec<PixelPoint>) {
     let (mut image, mut places) = (Image::new(WIDTH, HEIGHT, vec![0.0; WIDTH * HEIGHT]), Vec::new());
     let optics = Optics { blur, ..Optics::default() };
     let renderer = Renderer::new(&optics, CELL.0, CELL.1).expect("a blur that can be rendered");
@@ -72,7 +73,7 @@ pub(crate) fn crossings(blur: f64) -> (Image, Vec<PixelPoint>) {
             Polygon { id: String::new(), vertices, grey: 0.2 }
         };
         let scene =
-            Scene { width: CELL.0, height: CELL.1, background: 0.8, polygons: vec![quarter(1.0), quarter(-1.0)], targets: Vec::new() };
+            Scene { width: CELL.0, height: CELL.1, background: 0.8, polygons: dark.iter().map(|sign| quarter(*sign)).collect(), targets: Vec::new() };
         let tile = renderer.render(&Picture::from(&scene), &[]);
         for y in 0..CELL.1 {
             let start = (top + y) * WIDTH + left;

@@ -6,6 +6,8 @@ use calibench_model::quadrature::gauss_legendre;
 
 use crate::blurred_step::{DENSITY, exp_minus, step};
 use crate::lanes::Real;
+pub(super) use crate::photosite::Fidelity;
+use crate::photosite::Square;
 
 /// Unknowns, in this order: position x, y (px), directions of the two edges' normals (rad), variance of the blur (px^2), mean of the two
 /// grey values, half their difference.
@@ -24,54 +26,6 @@ pub(super) struct Shape {
     pub(super) curvature: [f64; 2],
     /// Side of the square that is sensitive to light in each pixel, px: not unknown.
     pub(super) photosite: f64,
-}
-
-/// The area of a photosite as wide as the pixel as a mixture of Gaussians: `offsets` along each axis with `weights`, each of this `variance`, px^2. A narrower
-/// one is the same on a smaller scale.
-///
-/// Up to which order the mixture's cumulants are the unit square's grows with the Gaussians of an axis. Of the contrast, an edge blurred by a Gaussian of
-/// standard deviation s is off by 8e-6 with two at s = 0.71, 7e-6 with three at 0.4, 4e-6 with four at 0.3 and 5e-3 at 0.1, all px;
-/// without any blur the grey values are 4e-2 off, but the model does not become singular.
-struct Square {
-    offsets: &'static [f64],
-    weights: &'static [f64],
-    variance: f64,
-}
-
-/// One Gaussian of the square's variance: quick, and near enough to begin with.
-const ONE: Square = Square { offsets: &[0.0], weights: &[1.0], variance: 1.0 / 12.0 };
-const TWO: Square =
-    Square { offsets: &[-0.254_066_374_077_307_4, 0.254_066_374_077_307_4], weights: &[0.5, 0.5], variance: 0.018_783_610_896_543_05 };
-const THREE: Square = Square {
-    offsets: &[-0.345_831_998_689_224, 0.0, 0.345_831_998_689_224],
-    weights: &[0.318_902_974_746_591_3, 0.362_194_050_506_817_4, 0.318_902_974_746_591_3],
-    variance: 0.007_051_887_868_281_641,
-};
-const FOUR: Square = Square {
-    offsets: &[-0.393_654_415_751_417_5, -0.142_049_084_498_668_68, 0.142_049_084_498_668_68, 0.393_654_415_751_417_5],
-    weights: &[0.222_131_926_791_124_26, 0.277_868_073_208_875_7, 0.277_868_073_208_875_7, 0.222_131_926_791_124_26],
-    variance: 0.003_274_906_849_960_283_4,
-};
-
-impl Square {
-    /// As many Gaussians as the blur, of this variance in units of the square's side, needs.
-    fn for_blur(variance: f64, fidelity: Fidelity) -> &'static Self {
-        match variance {
-            _ if fidelity == Fidelity::Rough => &ONE,
-            v if v > 0.5 => &TWO,
-            v if v > 0.16 => &THREE,
-            _ => &FOUR,
-        }
-    }
-}
-
-/// How well the photosite's area is integrated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fidelity {
-    /// Within a hundredth of the contrast.
-    Rough,
-    /// As far as anything can be seen of it.
-    Full,
 }
 
 /// Gauss-Legendre rules of 2, 4 and 8 points on [0, 1].
@@ -141,11 +95,9 @@ impl<T: Real> Model<T> {
         let square = Square::for_blur(shape.variance / area, fidelity);
         let zero = T::of(0.0);
         let (mut nodes, mut count) = ([Node { x: zero, y: zero, weight: zero }; 16], 0);
-        for (y, wy) in square.offsets.iter().zip(square.weights) {
-            for (x, wx) in square.offsets.iter().zip(square.weights) {
-                nodes[count] = Node { x: T::of(x * width), y: T::of(y * width), weight: T::of(wx * wy) };
-                count += 1;
-            }
+        for [x, y, weight] in square.nodes() {
+            nodes[count] = Node { x: T::of(x * width), y: T::of(y * width), weight: T::of(weight) };
+            count += 1;
         }
         let edge = |i: usize| {
             let (ny, nx) = shape.normals[i].sin_cos();
@@ -154,9 +106,7 @@ impl<T: Real> Model<T> {
         let (integral, terms) = correlation(rho.asin());
         let variance = shape.variance + square.variance * area;
         let blur = variance.sqrt();
-        // The outermost Gaussian, and five standard deviations: 6e-7 of half the contrast.
-        let outermost = square.offsets.iter().fold(0.0, |most: f64, x| most.max(x * width));
-        let reach = std::f64::consts::SQRT_2 * outermost + 5.0 * blur;
+        let reach = square.reach(width, blur);
         Some(Self {
             edges: [edge(0), edge(1)],
             nodes,

@@ -8,19 +8,7 @@ use super::lists::{AREAS, CORNER, EDGES, Lists};
 use super::model::{Fidelity, Model};
 use super::window::Window;
 use crate::lanes::WIDE;
-
-/// The root of the covariance of neighbouring residuals, in units of half the contrast, beyond which the window holds something else. On photographs of
-/// OpenCV's samples, of lenses and prints as they are, it is 0.05 to 0.07 in the median and 0.13 at most but for one corner of 2101; on boards whose squares are
-/// 6 px wide, 0.6 or more.
-const MISFIT: f64 = 0.2;
-/// And so many standard deviations of that of white noise.
-const SIGNIFICANT: f64 = 5.0;
-
-/// The residuals of a window, row by row, in units of half the contrast.
-pub(super) struct Residuals {
-    grey: Vec<f32>,
-    side: usize,
-}
+use crate::residuals::Residuals;
 
 impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'_, P, GRADIENT, CURVED> {
     /// Those of the corrected grey values at `x`. `None` where the model has no meaning.
@@ -29,7 +17,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'_, P, GRADI
         let model = Model::new(&shape, Fidelity::Rough)?;
         let (levels, side, centre) = (self.levels(x), self.setting.side, shape.position.map(|p| p as f32));
         let mut grey = vec![0.0; side * side];
-        fill::<GRADIENT, CURVED>(&model, &levels, centre, (&self.grey, &mut grey, side), &mut self.pixels);
+        fill::<GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, &mut grey, side), &mut self.pixels);
         let half = x[6].abs() as f32;
         grey.iter_mut().for_each(|r| *r /= half);
         Some(Residuals { grey, side })
@@ -62,35 +50,5 @@ fn fill<const GRADIENT: u8, const CURVED: bool>(
                 into[index] = chunk.grey[i] - (level.mean + level.half * side * value[i]);
             }
         }
-    }
-}
-
-impl Residuals {
-    /// Whether they hold more structure than a lens, a print or a light that is not even leave, and than noise does.
-    pub(super) fn are_no_noise(&self) -> bool {
-        let (covariance, significance) = self.structure();
-        covariance > MISFIT * MISFIT && significance > SIGNIFICANT
-    }
-
-    /// The covariance of neighbours, in units of half the contrast squared, and how many standard deviations it has where residuals are white noise.
-    fn structure(&self) -> (f64, f64) {
-        let (side, r) = (self.side, &self.grey);
-        let (mut product, mut square, mut pairs) = (0.0, 0.0, 0.0);
-        for row in 0..side {
-            for column in 0..side {
-                let here = f64::from(r[row * side + column]);
-                square += here * here;
-                if column + 1 < side {
-                    product += here * f64::from(r[row * side + column + 1]);
-                    pairs += 1.0;
-                }
-                if row + 1 < side {
-                    product += here * f64::from(r[(row + 1) * side + column]);
-                    pairs += 1.0;
-                }
-            }
-        }
-        let (covariance, variance) = (product / pairs, square / (side * side) as f64);
-        (covariance, covariance * f64::sqrt(pairs) / variance)
     }
 }

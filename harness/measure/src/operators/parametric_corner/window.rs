@@ -1,7 +1,7 @@
 //! The normal equations of a chess corner over one window.
 //!
 //! They are those of a model that takes the photosite's area for one Gaussian. What that leaves out is worked out once in a while and taken from the grey
-//! values: see [`Window::correct`].
+//! values: see [`Laid::correct`].
 
 use calibench_model::Image;
 use multiversion::multiversion;
@@ -11,6 +11,8 @@ use super::levels::{ADDED, BOTH, EVEN, LIGHT, Levels};
 use super::lists::{AREAS, CORNER, EDGES, List, Lists};
 use super::model::{BASE, Fidelity, Field, Model, Shape};
 use super::sums::Sums;
+use crate::following::Laid;
+use crate::grey_window::GreyWindow;
 use crate::lanes::{WIDE, Wide};
 use crate::marquardt::{Normal, Problem};
 
@@ -32,16 +34,10 @@ pub(super) struct Setting {
 }
 
 /// One window of an image, as the least-squares problem of `P` unknowns: the [`BASE`], those of the `GRADIENT`, a curvature an edge if `CURVED`.
-///
-/// Its unit of grey values is the setting's `half`, its zero the setting's `mean`: so single precision is enough.
 pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> {
-    image: &'a Image,
     pub(super) setting: Setting,
-    /// First pixel.
-    left: usize,
-    top: usize,
-    /// The window's grey values, corrected.
-    pub(super) grey: Vec<f32>,
+    /// Grey values, corrected.
+    pub(super) greys: GreyWindow<'a>,
     pub(super) pixels: Lists,
     /// How often the normal equations may still be set up.
     pub(super) patience: usize,
@@ -49,37 +45,8 @@ pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: b
 
 impl<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'a, P, GRADIENT, CURVED> {
     pub(super) fn new(image: &'a Image, setting: Setting) -> Self {
-        let side = setting.side;
-        Self { image, setting, left: 0, top: 0, grey: vec![0.0; side * side], pixels: Lists::new(side), patience: EVALUATIONS }
-    }
-
-    /// Lays the window around a pixel from which `side / 2` px are in the image.
-    pub(super) fn centre_on(&mut self, (x, y): (i64, i64)) {
-        let half = self.setting.side as i64 / 2;
-        (self.left, self.top) = ((x - half) as usize, (y - half) as usize);
-        self.read();
-    }
-
-    fn read(&mut self) {
-        let Setting { side, mean, half, .. } = self.setting;
-        for (row, grey) in self.grey.chunks_exact_mut(side).enumerate() {
-            let from = &self.image.row(self.top + row)[self.left..self.left + side];
-            grey.iter_mut().zip(from).for_each(|(grey, from)| *grey = ((f64::from(*from) - mean) / half) as f32);
-        }
-    }
-
-    /// Takes from the grey values what the model leaves out of the photosite's area, as it is at `x`. `None` where the model has no meaning.
-    ///
-    /// It is at most a few hundredths of the contrast and hardly changes with the unknowns: a fit, a correction anew, and so on come to the same
-    /// place as a fit of the whole model.
-    pub(super) fn correct(&mut self, x: &SVector<f64, P>) -> Option<()> {
-        let shape = self.shape(x);
-        let models = [Model::new(&shape, Fidelity::Rough)?, Model::new(&shape, Fidelity::Full)?];
-        self.read();
-        let levels = self.levels(x);
-        let centre = shape.position.map(|p| p as f32);
-        correct::<GRADIENT, CURVED>(&models, &levels, centre, (&mut self.grey, self.setting.side), &mut self.pixels);
-        Some(())
+        let Setting { side, mean, half, .. } = setting;
+        Self { setting, greys: GreyWindow::new(image, side, mean, half), pixels: Lists::new(side), patience: EVALUATIONS }
     }
 
     /// The shape among the unknowns.
@@ -105,7 +72,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Problem<P> for Wind
         let model = Model::new(&shape, Fidelity::Rough)?;
         let (levels, mut sums) = (self.levels(x), Sums::<P>::new());
         let centre = shape.position.map(|p| p as f32);
-        add::<P, GRADIENT, CURVED>(&model, &levels, centre, (&self.grey, self.setting.side), &mut self.pixels, &mut sums);
+        add::<P, GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, self.setting.side), &mut self.pixels, &mut sums);
         Some(sums.normal())
     }
 
@@ -120,6 +87,22 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Problem<P> for Wind
     fn same(&self, omega: f64) -> f64 {
         let pixels = (self.setting.side * self.setting.side) as f64;
         omega + 4.0 * PRECISION * omega.sqrt() + pixels * PRECISION * PRECISION
+    }
+}
+
+impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Laid<P> for Window<'_, P, GRADIENT, CURVED> {
+    fn centre_on(&mut self, pixel: (i64, i64)) {
+        self.greys.centre_on(pixel);
+    }
+
+    fn correct(&mut self, x: &SVector<f64, P>) -> Option<()> {
+        let shape = self.shape(x);
+        let models = [Model::new(&shape, Fidelity::Rough)?, Model::new(&shape, Fidelity::Full)?];
+        self.greys.read();
+        let levels = self.levels(x);
+        let centre = shape.position.map(|p| p as f32);
+        correct::<GRADIENT, CURVED>(&models, &levels, centre, (&mut self.greys.grey, self.setting.side), &mut self.pixels);
+        Some(())
     }
 }
 

@@ -24,7 +24,7 @@ fn lit(corner: &Chess, share: f64, direction: f64) -> Chess {
 fn check_right_hand_side<const P: usize, const GRADIENT: u8, const CURVED: bool>(image: &Image) {
     let setting = Setting { side: 15, photosite: 0.9, mean: 0.4, half: 0.35 };
     let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
-    window.centre_on((15, 15));
+    window.greys.centre_on((15, 15));
     let start = [0.3, -0.2, 0.1, 1.5, 0.6, 0.1, 0.8];
     let rest = [0.03, -0.02, 0.015, 0.01, 0.012, -0.017];
     let x = SVector::<f64, P>::from_fn(|i, _| if i < 7 { start[i] } else { rest[i - 7] });
