@@ -12,6 +12,7 @@ pub mod conformance;
 pub mod ellipse;
 mod error;
 pub mod harris;
+pub mod kinds;
 mod lanes;
 mod marquardt;
 pub mod operator;
@@ -26,6 +27,7 @@ mod tests;
 
 pub use board::{Board, BoardDetector};
 pub use error::MethodError;
+pub use kinds::{Kinds, KindsError, KindsGap};
 pub use operator::Operator;
 pub use operators::*;
 pub use parameter::{Parameter, Settings};
