@@ -12,6 +12,7 @@ fn lists_what_there_is() {
         "forstner (version",
         "harris_paraboloid",
         "opencv_subpix (version 4.",
+        "opencv_chessboard_sb (version 4.",
         "window=11: side of the window, px; an odd number from 3 to 31",
     ] {
         assert!(methods.contains(part), "{part}\n{methods}");

@@ -107,6 +107,28 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
         ("window = 11", "window = \"big\"", "23:10", &["is a number, found string"]),
         ("window = 11", "window = 11\n\n[[method]]\nname = \"forstner\"", "25:1", &["listed twice"]),
         ("window = 11", "window = 11\nwindow = 13", "24:1", &["duplicate key"]),
+        (
+            "window = 11",
+            "kinds = [\"korner\"]",
+            "23:9",
+            &["no kind of target is called `korner`", "known are corner,", "did you mean `corner`"],
+        ),
+        ("window = 11", "kinds = [\"corner\", \"corner\"]", "23:9", &["`kinds`: the kind `corner` is given twice"]),
+        ("window = 11", "kinds = []", "23:9", &["`kinds`: no kind of target is given", "at least one of corner,"]),
+        ("window = 11", "kinds = \"corner\"", "23:9", &["`kinds` is a list of kinds of targets", "known are corner,"]),
+        ("window = 11", "kinds = [\"disc\"]", "21:1", &["`forstner:window=11,kinds=disc` has nothing to measure", "the kind `corner`"]),
+        (
+            "window = 11",
+            "window = 11\n\n[[method]]\nname = \"forstner\"\nkinds = [\"corner\"]",
+            "25:1",
+            &["`forstner:window=11,kinds=corner` is to measure `corner` twice, here and as `forstner:window=11`"],
+        ),
+        (
+            "\n[[method]]\n",
+            "\n[[scene.target]]\nid = \"2\"\nkind = \"disc\"\nat = [60, 20]\nstart = [60, 20]\n\n[[method]]\nkinds = [\"corner\"]\n",
+            "27:1",
+            &["no method measures targets of the kind `disc`", "add a method for them"],
+        ),
         ("source = \"a test\"", "source = \"\"", "2:10", &["`source` is empty"]),
         ("why = \"To see what is wrong.\"", "why = ", "1:7", &["string values must be quoted"]),
     ];

@@ -121,6 +121,7 @@ fn bad_input_is_named_and_leaves_the_old_output() {
     write(folder.path(), "out.csv", "old");
     write(folder.path(), "text.png", "no image");
     write(folder.path(), "good.csv", POINTS);
+    write(folder.path(), "kinds.csv", "image,target,x,y,kind\na.png,left,30,29,chess_corner\na.png,right,70,29,disc\n");
     std::fs::create_dir(folder.path().join("sub")).unwrap();
     std::fs::copy(folder.path().join("a.png"), folder.path().join("c.png")).unwrap();
     write_png(&folder.path().join("sub/a.png"), &corners(0.1), false).unwrap();
@@ -138,6 +139,22 @@ fn bad_input_is_named_and_leaves_the_old_output() {
             &["measure", "a.png", "--points", "good.csv", "-m", "lsm"],
             "does not say what is pictured, which this method must know; give the column `kind`",
         ),
+        (
+            &["measure", "a.png", "--points", "good.csv", "-m", "corner=forstner"],
+            "-m forstner:window=11,kinds=corner: point left of deep.png does not say what is pictured, which this method must know; give the column `kind` \
+             (corner, chess_corner, junction, cross, disc, square, triangle), or leave out the kinds",
+        ),
+        (&["measure", "a.png", "--points", "kinds.csv", "-m", "korner=forstner"], "no kind of target is called `korner`"),
+        (&["measure", "a.png", "--points", "kinds.csv", "-m", "korner=forstner"], "did you mean `corner`"),
+        (&["measure", "a.png", "--points", "kinds.csv", "-m", "disc+disc=forstner"], "the kind `disc` is given twice"),
+        (
+            &["measure", "a.png", "--points", "kinds.csv", "-m", "cross=forstner"],
+            "`forstner:window=11,kinds=cross` has nothing to measure: there are only targets of the kind `chess_corner`, `disc`",
+        ),
+        (
+            &["measure", "a.png", "--points", "kinds.csv", "-m", "forstner", "-m", "disc=forstner"],
+            "`forstner:window=11,kinds=disc` is to measure `disc` twice, here and as `forstner:window=11`",
+        ),
     ] {
         let output = run(folder.path(), &[arguments, &["-o", "out.csv"]].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -149,4 +166,51 @@ fn bad_input_is_named_and_leaves_the_old_output() {
     let output = run(folder.path(), &["measure", "a.png", "--points", "good.csv", "-o", "no/such/out.csv"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("no/such/out.csv"), "{}", stderr(&output));
+}
+
+const MIXED: &str = "image,target,x,y,kind\na.png,left,30,29,chess_corner\na.png,flat,90,10,disc\nb.png,gone,5,5,disc\na.png,right,70,29,square\n\
+                     a.png,edge,2,2,chess_corner\nb.png,there,5,5,chess_corner\n";
+
+/// What each row says: image, target, method, status, reason.
+fn told(text: &str) -> Vec<String> {
+    let of = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let label = cells[12..cells.len() - 2].join(",").replace('"', "");
+        [cells[0], cells[1], &label, cells[cells.len() - 2], cells[cells.len() - 1]].join(" ")
+    };
+    text.lines().skip(1).map(of).collect()
+}
+
+#[test]
+fn methods_by_kind_of_target_measure_their_own_and_what_nobody_measures_is_said() {
+    let folder = folder();
+    write(folder.path(), "p.csv", MIXED);
+    let by_kind = ["measure", "a.png", "--points", "p.csv", "-m", "disc=ellipse_edges", "-m", "chess_corner=forstner:window=15"];
+    let output = run(folder.path(), &by_kind);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let expected = [
+        "a.png flat ellipse_edges:kinds=disc rejected no_corner",
+        "b.png gone ellipse_edges:kinds=disc unavailable photograph b.png was not given",
+        "a.png left forstner:window=15,kinds=chess_corner measured ",
+        "a.png edge forstner:window=15,kinds=chess_corner rejected border",
+        "b.png there forstner:window=15,kinds=chess_corner unavailable photograph b.png was not given",
+        "a.png right  unavailable no method measures the kind square",
+    ];
+    assert_eq!(told(&stdout(&output)), expected);
+    let said = stderr(&output);
+    assert!(
+        said.contains("1 of 6 points are of the kind `square`, which no method measures; give one for it, as in -m square=METHOD"),
+        "{said}"
+    );
+    assert!(said.contains("1 measured, 2 rejected, 2 of 6 points are of photographs that were not given"), "{said}");
+    // Every point stands there once: the file can be the next input.
+    write(folder.path(), "q.csv", &stdout(&output));
+    let again = run(folder.path(), &["measure", "a.png", "--points", "q.csv", "-m", "pixel", "-q"]);
+    assert!(again.status.success() && stdout(&again).lines().count() == 2, "{}", stderr(&again));
+    // The position is that of the method on all kinds, to the digit.
+    let all = stdout(&run(folder.path(), &["measure", "a.png", "--points", "p.csv", "-m", "forstner:window=15", "-q"]));
+    let left = |text: &str| {
+        text.lines().find(|line| line.starts_with("a.png,left")).unwrap().split(',').take(7).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(left(&all), left(&stdout(&output)));
 }

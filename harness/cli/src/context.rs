@@ -5,7 +5,9 @@ use std::process::Command;
 
 use calibench_diagnostics::nearest;
 use calibench_exchange::Inputs;
-use calibench_measure::{Configured, MethodError};
+use calibench_measure::kinds::distinct;
+use calibench_measure::{Configured, KindsError, MethodError};
+use calibench_model::TargetKind;
 use calibench_report::Places;
 use calibench_scenario::catalogue::{Catalogue, LOCAL, is_toml};
 use calibench_scenario::data::data_folder;
@@ -123,11 +125,40 @@ impl Context<'_> {
         registry.parse(text).map_err(|error| {
             let proposal = match &error {
                 MethodError::UnknownMethod { name, known } => nearest(name, known.iter().map(String::as_str)),
+                MethodError::Kinds { error: KindsError::Unknown(unknown), .. } => {
+                    nearest(&unknown.0, TargetKind::ALL.map(TargetKind::name))
+                }
                 MethodError::UnknownParameter { key, known, .. } => nearest(key, known.iter().map(String::as_str)),
                 _ => None,
             };
             Failure::input(format!("-m {text}: {error}{}", proposal.map_or(String::new(), |near| format!("; did you mean `{near}`?"))))
         })
+    }
+
+    /// As [`Self::method`], for the corners of a chessboard.
+    pub fn method_of_boards(&self, text: &str) -> Result<Configured, Failure> {
+        let method = self.method(text)?;
+        let wanted = TargetKind::ChessCorner;
+        match method.kinds.as_ref().filter(|_| !method.measures(Some(wanted))) {
+            Some(kinds) => Err(Failure::input(format!(
+                "-m {text}: limited to targets of the kind `{kinds}`, and a board has none; expected `{wanted}` among the kinds, or no kinds"
+            ))),
+            None => Ok(method),
+        }
+    }
+
+    /// The methods of these names. None is there twice, and none measures a kind of target twice.
+    pub fn methods(&self, texts: &[String]) -> Result<Vec<Configured>, Failure> {
+        let mut found: Vec<Configured> = Vec::new();
+        for text in texts {
+            let method = self.method(text)?;
+            if found.iter().any(|earlier| earlier.label == method.label) {
+                return Err(Failure::input(format!("-m {text}: `{}` is asked for twice", method.label)));
+            }
+            distinct(&found, &method).map_err(|gap| Failure::input(format!("-m {text}: {gap}")))?;
+            found.push(method);
+        }
+        Ok(found)
     }
 
     /// Where photographs are.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_gate::{Cells, Coordinates, FigureSums, Kept, Measured, PointSums, Results, Table, Verdicts, fingerprint, recorded};
 use calibench_measure::Configured;
+use calibench_measure::registry::KINDS;
 use calibench_report::verdicts;
 use calibench_run::Plan;
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
@@ -189,7 +190,8 @@ fn described(mut table: Table, plan: &Plan<'_>, now: bool) -> Table {
 
 /// All parameters, those at their defaults among them.
 fn settings(method: &Configured) -> String {
-    method.settings.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(",")
+    let kinds = method.kinds.as_ref().map(|kinds| format!("{KINDS}={kinds}"));
+    method.settings.iter().map(|(name, value)| format!("{name}={value}")).chain(kinds).collect::<Vec<_>>().join(",")
 }
 
 /// The libraries of this machine on which a method's numbers depend.

@@ -4,12 +4,12 @@ use std::process::ExitCode;
 
 use calibench_cli::{Toolbox, main as run};
 use calibench_measure::Registry;
-use calibench_measure::opencv_subpix;
 use calibench_measure::registry::Build;
+use calibench_measure::{opencv_chessboard_sb, opencv_subpix};
 
 const WHY: &str = "this build is without OpenCV";
 
 fn main() -> ExitCode {
-    let absent = opencv_subpix::method(Build::Unavailable(WHY), "none".into());
-    run(&Toolbox { registry: Registry::builtin().with(absent), detector: None })
+    let absent = [opencv_subpix::method, opencv_chessboard_sb::method].map(|method| method(Build::Unavailable(WHY), "none".into()));
+    run(&Toolbox { registry: absent.into_iter().fold(Registry::builtin(), Registry::with), detector: None })
 }

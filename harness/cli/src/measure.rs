@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use calibench_exchange::{Inputs, MeasuredRow, Outcome, Points, write_measured};
 use calibench_measure::Configured;
+use calibench_measure::kinds::{all_busy, unmeasured};
 use calibench_model::TargetKind;
 use calibench_photographs::points::{Measured, measure_points, photos_of};
 use clap::Args;
@@ -24,7 +25,7 @@ pub struct Measure {
     /// Approximate positions: CSV with image,target,x,y, and optionally sxx,sxy,syy and kind,axx,axy,ayx,ayy
     #[arg(long, value_name = "CSV")]
     points: PathBuf,
-    /// The method, as in forstner:window=15; several are measured one after the other
+    /// The method, as in forstner:window=15; several are measured one after the other. Kinds of targets before it limit it to these, as in disc+square=centroid
     #[arg(short, long = "method", value_name = "METHOD", default_value = "forstner")]
     methods: Vec<String>,
     /// Where the result goes [default: standard output]
@@ -36,37 +37,59 @@ impl Measure {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let inputs = Inputs::new(self.photos.iter().chain([&self.points]));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
-        let methods = self.methods.iter().map(|text| context.method(text)).collect::<Result<Vec<_>, _>>()?;
+        let methods = context.methods(&self.methods)?;
         if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {
             return Err(Failure::input(format!("-m {}: unavailable: {why}", method.label)));
         }
-        if let Some(twice) = methods.iter().enumerate().find(|(i, m)| methods[..*i].iter().any(|earlier| earlier.label == m.label)) {
-            return Err(Failure::input(format!("-m {}: asked for twice", twice.1.label)));
-        }
         let points = read_measured(&self.points)?;
         methods.iter().try_for_each(|method| has_kinds(method, &points))?;
+        let kinds = || points.rows().filter_map(|row| row.start.kind);
+        all_busy(&methods, kinds()).map_err(|gap| Failure::input(format!("-m: {gap}")))?;
+        let nobodys = unmeasured(&methods, kinds());
         // What is wrong with the photographs' names is said before any is read.
         photos_of(&points, &self.photos)?;
         say_turns(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let found = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
-        let rows = (0..methods.len()).flat_map(|m| (0..points.len()).map(move |i| (m, i)));
-        let rows = rows.map(|(m, i)| {
-            let given = points.row(i);
-            MeasuredRow { given, method: &methods[m].label, outcome: found.outcome(m, i).unwrap_or_else(|| not_given(given.image)) }
-        });
+        let rows = rows(&points, &methods, &found).chain(rows_of_nobody(&points, &nobodys));
         deliver(output.as_ref(), |file| write_measured(file, rows))?;
         progress.finish(&summary(&found, &points));
+        nobodys.iter().for_each(|kind| {
+            let count = points.rows().filter(|row| row.start.kind == Some(*kind)).count();
+            say!(
+                "{count} of {} points are of the kind `{kind}`, which no method measures; give one for it, as in -m {kind}=METHOD",
+                points.len()
+            );
+        });
         Ok(())
     }
 }
 
+/// One row for every method and point of its kinds, in the order given.
+fn rows<'p>(points: &'p Points, methods: &'p [Configured], found: &'p Measured) -> impl Iterator<Item = MeasuredRow<'p>> {
+    let all = move |m| (0..points.len()).map(move |i| (m, i, points.row(i)));
+    let own = (0..methods.len()).flat_map(all).filter(|(m, _, given)| methods[*m].measures(given.start.kind));
+    own.map(|(m, i, given)| {
+        let outcome = found.outcome(m, i).unwrap_or_else(|| not_given(given.image));
+        MeasuredRow { given, method: &methods[m].label, outcome }
+    })
+}
+
+/// One row for every point of `kinds`, which no method measures.
+fn rows_of_nobody<'p>(points: &'p Points, kinds: &'p [TargetKind]) -> impl Iterator<Item = MeasuredRow<'p>> {
+    points.rows().filter_map(|given| {
+        let kind = given.start.kind.filter(|kind| kinds.contains(kind))?;
+        Some(MeasuredRow { given, method: "", outcome: Outcome::Unavailable(format!("no method measures the kind {kind}")) })
+    })
+}
+
 /// Whether the points say what a method must know.
 fn has_kinds(method: &Configured, points: &Points) -> Result<(), Failure> {
-    let needed = method.operator.as_ref().is_ok_and(|operator| operator.needs_kind());
+    let needed = method.kinds.is_some() || method.operator.as_ref().is_ok_and(|operator| operator.needs_kind());
     let Some(bare) = points.rows().find(|row| needed && row.start.kind.is_none()) else { return Ok(()) };
+    let or = if method.kinds.is_some() { "leave out the kinds" } else { "the method its `shape`" };
     Err(Failure::input(format!(
-        "-m {}: point {} of {} does not say what is pictured, which this method must know; give the column `kind` ({}), or the method its `shape`",
+        "-m {}: point {} of {} does not say what is pictured, which this method must know; give the column `kind` ({}), or {or}",
         method.label,
         bare.target,
         bare.image,

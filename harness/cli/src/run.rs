@@ -29,7 +29,7 @@ pub struct Run {
 /// What differs from the scenario's file.
 #[derive(Args)]
 pub struct Changes {
-    /// Methods in place of the scenario's, as in forstner:window=15
+    /// Methods in place of the scenario's, as in forstner:window=15; kinds of targets before it limit one, as in disc+square=centroid
     #[arg(short, long = "method", value_name = "METHOD")]
     methods: Vec<String>,
     /// Number of trials in place of the scenario's
@@ -43,20 +43,7 @@ pub struct Changes {
 impl Changes {
     /// The methods that are asked for; none if the scenario's own are meant.
     pub fn methods(&self, context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
-        Self::of_methods(&self.methods, context)
-    }
-
-    /// The methods of these names, each once.
-    pub fn of_methods(names: &[String], context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
-        let mut configured: Vec<Configured> = Vec::new();
-        for text in names {
-            let method = context.method(text)?;
-            if configured.iter().any(|earlier| earlier.label == method.label) {
-                return Err(Failure::input(format!("-m {text}: `{}` is asked for twice", method.label)));
-            }
-            configured.push(method);
-        }
-        Ok(configured)
+        context.methods(&self.methods)
     }
 }
 

@@ -4,8 +4,9 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use calibench_exchange::read_photo;
+use calibench_measure::registry::KINDS;
 use calibench_model::camera::CameraModel;
-use calibench_model::{Image, PixelPoint};
+use calibench_model::{Image, PixelPoint, TargetKind};
 use calibench_random::Key;
 use calibench_report::preview;
 use calibench_run::views::Prepared;
@@ -76,6 +77,9 @@ fn card(scenario: &Scenario) -> String {
         let _ = writeln!(text, "\n[[method]] # {}, version {}\nname = \"{name}\"", method.label, method.version);
         for (key, value) in method.settings.iter() {
             let _ = writeln!(text, "{key} = {value}");
+        }
+        if let Some(kinds) = &method.kinds {
+            let _ = writeln!(text, "{KINDS} = {:?}", kinds.iter().map(TargetKind::name).collect::<Vec<_>>());
         }
         if let Err(why) = &method.operator {
             let _ = writeln!(text, "# unavailable: {why}");

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use calibench_exchange::Inputs;
+use calibench_measure::kinds::all_busy;
 use calibench_measure::{Configured, Operator};
 use calibench_model::{Image, Start};
 use calibench_report::speeds::{SPEEDS, Speed, Speeds};
@@ -16,7 +17,6 @@ use clap::Args;
 use super::context::Context;
 use super::output;
 use super::progress::Progress;
-use super::run::Changes;
 use crate::deliver::{deliver, print};
 use crate::failure::Failure;
 
@@ -48,7 +48,7 @@ impl SpeedCommand {
         let inputs = Inputs::new(self.scenarios.iter().filter(|name| is_toml(name.as_ref())));
         let path = self.output.clone().map_or_else(|| Ok::<_, Failure>(context.root()?.join(SPEEDS)), Ok)?;
         let output = output::table("-o", Some(&path), &inputs)?;
-        let methods = Changes::of_methods(&self.methods, context)?;
+        let methods = context.methods(&self.methods)?;
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
         let mut speeds = Speeds { machine: machine(), rows: Vec::new() };
         for scenario in &scenarios {
@@ -57,6 +57,8 @@ impl SpeedCommand {
             };
             let (image, starts) = first_image(&scenario.name, scenario.seed, subject)?;
             let methods = if methods.is_empty() { &scenario.methods } else { &methods };
+            all_busy(methods, starts.iter().filter_map(|start| start.kind))
+                .map_err(|gap| Failure::input(format!("`{}`: {gap}", scenario.name)))?;
             let progress = Progress::start(&scenario.name, u64::from(self.rounds), context.quiet);
             speeds.rows.extend(one.install(|| self.time(scenario, methods, &image, &starts, &|| progress.step())));
             progress.finish(&format!("{} methods on {} points", methods.len(), starts.len()));
@@ -67,16 +69,17 @@ impl SpeedCommand {
 
     /// Every method in every round; what the machine does beside it hits all of them.
     fn time(&self, scenario: &Scenario, methods: &[Configured], image: &Image, starts: &[Start], step: &dyn Fn()) -> Vec<Speed> {
-        let operators: Vec<(&Configured, &dyn Operator)> =
-            methods.iter().filter_map(|method| Some((method, method.operator.as_deref().ok()?))).collect();
+        let of = |method: &Configured| starts.iter().copied().filter(|start| method.measures(start.kind)).collect::<Vec<_>>();
+        let operators: Vec<(&Configured, &dyn Operator, Vec<Start>)> =
+            methods.iter().filter_map(|method| Some((method, method.operator.as_deref().ok()?, of(method)))).collect();
         let mut found: Vec<Vec<f64>> = vec![Vec::new(); operators.len()];
         for _ in 0..self.rounds {
-            for ((_, operator), rates) in operators.iter().zip(&mut found) {
+            for ((_, operator, starts), rates) in operators.iter().zip(&mut found) {
                 rates.push(rate(*operator, image, starts));
             }
             step();
         }
-        let row = |((method, _), rates): (&(&Configured, &dyn Operator), &mut Vec<f64>)| {
+        let row = |((method, _, starts), rates): (&(&Configured, &dyn Operator, Vec<Start>), &mut Vec<f64>)| {
             rates.sort_by(f64::total_cmp);
             let at = |part: usize| three_digits(rates[(rates.len() - 1) * part / 4]);
             Speed {

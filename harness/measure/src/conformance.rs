@@ -48,6 +48,18 @@ pub fn disc(x: f64, y: f64) -> f32 {
     (0.5 + 0.35 * (6.0 * (u.hypot(v) - 1.0)).tanh() + texture(x, y)) as f32
 }
 
+/// A blurred board of 4 x 4 squares, 10 px wide and at 80 degrees, on a bright ground with the same texture, for operators that seek a board of 3 x 3 inner
+/// corners: the middle one is measured.
+pub fn chessboard(x: f64, y: f64) -> f32 {
+    const SQUARE: f64 = 10.0;
+    let along = |angle: f64| (x - CORNER.0) * angle.cos() + (y - CORNER.1) * angle.sin();
+    let [u, v] = [along(0.2), along(0.2 + 100_f64.to_radians())];
+    let sign = |t: f64| (1.2 * SQUARE / std::f64::consts::PI * (t * std::f64::consts::PI / SQUARE).sin()).tanh();
+    let inside = |t: f64| 0.5 + 0.5 * (1.2 * (2.0 * SQUARE - t.abs())).tanh();
+    let board = inside(u) * inside(v);
+    (0.5 + 0.35 * (board * sign(u) * sign(v) + 1.0 - board) + texture(x, y)) as f32
+}
+
 fn image_of(picture: Picture) -> Image {
     let middle = (SIDE / 2) as f64;
     Image::from_fn(SIDE, SIDE, |x, y| picture(x as f64 - middle, y as f64 - middle))
@@ -64,7 +76,7 @@ pub fn check(operator: &dyn Operator, tolerance: f64) {
     check_on(operator, grey, tolerance);
 }
 
-/// As [`check`], on another picture than the corner of one area: [`chess_corner`], [`disc`].
+/// As [`check`], on another picture than the corner of one area: [`chess_corner`], [`chessboard`], [`disc`].
 ///
 /// # Panics
 /// As [`check`].

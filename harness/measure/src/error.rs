@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::kinds::KindsError;
+
 /// A method or parameter that cannot be.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MethodError {
@@ -43,8 +45,19 @@ pub enum MethodError {
         /// The parameter.
         key: String,
     },
+    /// Kinds of targets that it cannot be limited to.
+    #[error("`{method}`: {error}")]
+    Kinds {
+        /// The method.
+        method: String,
+        /// What is wrong with them.
+        error: KindsError,
+    },
     /// Not of the form `name:key=value,key=value`.
-    #[error("`{text}` is no method: expected `name` or `name:key=value,key=value`, as in `forstner:window=11`")]
+    #[error(
+        "`{text}` is no method: expected `name` or `name:key=value,key=value`, as in `forstner:window=11`, or kinds of targets before it, as in \
+         `disc+square=centroid`"
+    )]
     Form {
         /// The text that was given.
         text: String,

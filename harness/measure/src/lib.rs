@@ -14,6 +14,7 @@ mod error;
 mod following;
 mod grey_window;
 pub mod harris;
+pub mod kinds;
 mod lanes;
 mod marquardt;
 pub mod operator;
@@ -31,6 +32,7 @@ mod tests;
 
 pub use board::{Board, BoardDetector};
 pub use error::MethodError;
+pub use kinds::{Kinds, KindsError, KindsGap};
 pub use operator::Operator;
 pub use operators::*;
 pub use parameter::{Parameter, Settings};

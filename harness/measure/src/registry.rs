@@ -1,6 +1,9 @@
 //! Which methods there are, by name.
 
+use calibench_model::TargetKind;
+
 use crate::error::MethodError;
+use crate::kinds::Kinds;
 use crate::operator::Operator;
 use crate::parameter::{Parameter, Settings};
 
@@ -32,17 +35,38 @@ pub enum Build {
 
 /// A method with its parameters set.
 pub struct Configured {
-    /// Name and parameters in one word, as in `forstner:window=11`: the windows and whatever differs from its default.
+    /// Name, parameters and kinds in one word, as in `forstner:window=11,kinds=corner+cross`: the windows and whatever differs from its default.
     pub label: String,
+    /// The label without the kinds.
+    pub unlimited_label: String,
     /// The label of the same operator with all parameters at their defaults.
     pub default_label: String,
     /// The method's version.
     pub version: String,
     /// All parameters.
     pub settings: Settings,
+    /// The kinds of target that it is limited to, if it is.
+    pub kinds: Option<Kinds>,
     /// The operator, or why there is none.
     pub operator: Result<Box<dyn Operator>, &'static str>,
 }
+
+impl Configured {
+    /// The same method for targets of these kinds alone.
+    #[must_use]
+    pub fn limited(self, kinds: Kinds) -> Self {
+        let separator = if self.unlimited_label.contains(':') { ',' } else { ':' };
+        Self { label: format!("{}{separator}{KINDS}={kinds}", self.unlimited_label), kinds: Some(kinds), ..self }
+    }
+
+    /// Whether it measures targets of this kind. One that is limited measures none of which the kind is not known.
+    pub fn measures(&self, kind: Option<TargetKind>) -> bool {
+        self.kinds.as_ref().is_none_or(|kinds| kind.is_some_and(|kind| kinds.iter().any(|known| known == kind)))
+    }
+}
+
+/// What the kinds are called among the parameters of a method.
+pub const KINDS: &str = "kinds";
 
 /// All methods of a build, in the order in which they are listed.
 #[derive(Clone, Default)]
@@ -81,22 +105,40 @@ impl Registry {
             Build::Unavailable(why) => Err(why),
         };
         let default_label = label(method, &Settings::resolve(name, method.parameters, &[])?);
-        Ok(Configured { label: label(method, &settings), default_label, version: method.version.clone(), settings, operator })
+        let (label, version) = (label(method, &settings), method.version.clone());
+        Ok(Configured { unlimited_label: label.clone(), label, default_label, version, settings, kinds: None, operator })
     }
 
-    /// The method that `text` names, as in `forstner:window=15`.
+    /// The method that `text` names, as in `forstner:window=15`. One that is limited to kinds of targets is written `corner+cross=forstner:window=15`, or
+    /// as its label, `forstner:window=15,kinds=corner+cross`.
     ///
     /// # Errors
-    /// As [`Self::configure`], and a text of another form.
+    /// As [`Self::configure`]; a text of another form; kinds that are unknown or given twice.
     pub fn parse(&self, text: &str) -> Result<Configured, MethodError> {
         let malformed = || MethodError::Form { text: text.to_owned() };
-        let (name, rest) = text.split_once(':').unwrap_or((text, ""));
-        let pairs = rest.split(',').filter(|pair| !pair.is_empty());
-        let given = pairs.map(|pair| {
+        let (mut kinds, method) = before_the_name(text);
+        let (name, rest) = method.split_once(':').unwrap_or((method, ""));
+        let mut given = Vec::new();
+        for pair in rest.split(',').filter(|pair| !pair.is_empty()) {
             let (key, value) = pair.split_once('=').ok_or_else(malformed)?;
-            Ok((key.trim().to_owned(), value.trim().parse().map_err(|_| malformed())?))
-        });
-        self.configure(name.trim(), &given.collect::<Result<Vec<_>, MethodError>>()?)
+            if key.trim() != KINDS {
+                given.push((key.trim().to_owned(), value.trim().parse().map_err(|_| malformed())?));
+            } else if kinds.replace(value).is_some() {
+                return Err(MethodError::Twice { method: name.trim().to_owned(), key: KINDS.to_owned() });
+            }
+        }
+        let configured = self.configure(name.trim(), &given)?;
+        let Some(kinds) = kinds else { return Ok(configured) };
+        let kinds = Kinds::parse(kinds).map_err(|error| MethodError::Kinds { method: configured.unlimited_label.clone(), error })?;
+        Ok(configured.limited(kinds))
+    }
+}
+
+/// The kinds of `corner+cross=forstner:window=15`, if there are any, and the rest.
+fn before_the_name(text: &str) -> (Option<&str>, &str) {
+    match text.split_once('=') {
+        Some((kinds, rest)) if !kinds.contains(':') => (Some(kinds), rest),
+        _ => (None, text),
     }
 }
 
@@ -122,6 +164,22 @@ mod tests {
         assert_eq!(registry.parse("harris_paraboloid:k=0.2,sigma=2,window=7").unwrap().label, "harris_paraboloid:window=7,sigma=2");
         assert_eq!(registry.parse("forstner:window=15").unwrap().default_label, "forstner:window=11");
         assert_eq!(registry.parse("pixel").unwrap().label, "pixel");
+    }
+
+    #[test]
+    fn kinds_stand_before_the_name_or_in_the_label() {
+        let label = |text: &str| Registry::builtin().parse(text).unwrap().label;
+        assert_eq!(label("disc=parametric_circle"), "parametric_circle:kinds=disc");
+        assert_eq!(label("cross+corner=forstner: window = 15"), "forstner:window=15,kinds=corner+cross");
+        for text in ["parametric_circle:kinds=disc", "forstner:window=15,kinds=corner+cross", "pixel:kinds=corner"] {
+            assert_eq!(label(text), text);
+        }
+        assert!(matches!(error("disk=forstner"), MethodError::Kinds { .. }));
+        assert!(matches!(error("disc+disc=forstner"), MethodError::Kinds { .. }));
+        assert!(matches!(error("=forstner"), MethodError::Kinds { .. }));
+        assert!(matches!(error("forstner:kinds="), MethodError::Kinds { .. }));
+        assert!(matches!(error("disc=forstner:kinds=disc"), MethodError::Twice { .. }));
+        assert!(matches!(error("disc="), MethodError::UnknownMethod { .. }));
     }
 
     #[test]

@@ -18,5 +18,5 @@ pub use image::Image;
 pub use observation::{Gradient, Measurement, Rejection, Start, Unknowns};
 pub use pose::Pose;
 pub use scene::{Polygon, Scene, SceneTarget};
-pub use target::{Affine, TargetKind};
+pub use target::{Affine, TargetKind, UnknownKind};
 pub use testfield::{Area, Bend, Curve, ObjectTarget, Outline, Plate, Testfield};

@@ -1,13 +1,14 @@
 //! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them, and a chessboard detector.
 
 pub mod chessboard;
+pub mod chessboard_sb;
 pub mod subpix;
 
 use calibench_measure::{BoardDetector, Registry};
 
 /// Every method of this build: ours and OpenCV's.
 pub fn registry() -> Registry {
-    Registry::builtin().with(subpix::method())
+    Registry::builtin().with(subpix::method()).with(chessboard_sb::method())
 }
 
 /// The detector of chessboards.

@@ -35,6 +35,8 @@ struct OfMethod {
 enum State {
     /// Its photograph was not given.
     NotGiven,
+    /// The method is limited to other kinds of targets.
+    OtherKind,
     Measured,
     Rejected(Rejection),
 }
@@ -58,11 +60,12 @@ impl Measured {
         }
     }
 
-    /// The result of a method at a point, counted among those that are available; `None` if its photograph was not given.
+    /// The result of a method at a point, counted among those that are available; `None` if its photograph was not given, or if the method is limited to
+    /// other kinds of targets.
     pub fn outcome(&self, method: usize, point: usize) -> Option<Outcome> {
         let of = self.methods.get(method)?;
         match of.state[point] {
-            State::NotGiven => None,
+            State::NotGiven | State::OtherKind => None,
             State::Rejected(why) => Some(Outcome::Rejected(why)),
             State::Measured => {
                 let [sxx, sxy, syy] = of.covariance[point];
@@ -92,7 +95,7 @@ impl Measured {
     }
 }
 
-/// Measures every point in its photograph with every available method.
+/// Measures every point in its photograph with every available method that is not limited to other kinds of targets.
 ///
 /// `points` name their images by file name, with folders where two photographs share one. One photograph a thread is in memory; `step` is called after each, on
 /// any thread.
@@ -109,18 +112,21 @@ pub fn measure_points(
     let mut images: Vec<Vec<usize>> = vec![Vec::new(); photos.len()];
     photo_of.iter().enumerate().for_each(|(image, photo)| photo.iter().for_each(|&photo| images[photo].push(image)));
     let groups = points.by_image();
-    let available: Vec<_> = methods.iter().filter_map(|method| method.operator.as_ref().ok()).collect();
+    let available: Vec<_> = methods.iter().filter_map(|method| Some((method, method.operator.as_ref().ok()?))).collect();
     let found = Mutex::new(Measured::new(points.len(), available.len()));
     let one = |(path, images): (&PathBuf, &Vec<usize>)| -> Result<(), PhotographsError> {
         // Read even if no point asks for it: a photograph that cannot be read is a mistake.
         let photo = read_photo(path)?.image;
         let wanted: Vec<usize> = images.iter().flat_map(|&image| groups.of_group(image)).collect();
         for chunk in wanted.chunks(CHUNK) {
-            let starts: Vec<Start> = chunk.iter().map(|&point| points.start(point)).collect();
-            for (method, operator) in available.iter().enumerate() {
+            for (index, (method, operator)) in available.iter().enumerate() {
+                let mine = |point: &usize| method.measures(points.start(*point).kind);
+                let (own, others): (Vec<usize>, Vec<usize>) = chunk.iter().copied().partition(mine);
+                let starts: Vec<Start> = own.iter().map(|&point| points.start(point)).collect();
                 let results = operator.measure_all(&photo, &starts);
                 let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
-                chunk.iter().zip(results).for_each(|(&point, result)| found.set(method, point, result));
+                own.iter().zip(results).for_each(|(&point, result)| found.set(index, point, result));
+                others.iter().for_each(|&point| found.methods[index].state[point] = State::OtherKind);
             }
         }
         step();

@@ -1,5 +1,6 @@
 //! What a page says first: who has the least error in which scenario, and how many printed figures reproduce.
 
+use calibench_records::description::{is_limited, looks};
 use calibench_records::score::Score;
 
 use crate::field::plain;
@@ -41,10 +42,13 @@ impl Answers {
         self.said = Some(answer);
     }
 
-    /// A scenario with scores.
+    /// A scenario with scores. Methods that are limited to kinds of targets measure other points than the rest: nobody leads there.
     pub fn scenario(&mut self, loaded: &Loaded) {
         let labels = loaded.head.methods.iter().map(|info| &*info.label);
-        let candidates: Vec<(&str, &Score)> = labels.zip(&loaded.scores.methods).filter(|(name, _)| *name != "pixel").collect();
+        if labels.clone().any(is_limited) {
+            return;
+        }
+        let candidates: Vec<(&str, &Score)> = labels.zip(&loaded.scores.methods).filter(|(name, _)| looks(name)).collect();
         if let Some((method, least, row)) = lead(&candidates) {
             let (scenario, method) = (loaded.name.clone(), method.to_owned());
             self.winners.push(Winner { scenario, cells: 1, method, least: vec![least], row });
@@ -55,8 +59,11 @@ impl Answers {
     pub fn sweep(&mut self, loaded: &LoadedSweep) {
         let mut wins: Vec<(String, Vec<f64>)> = Vec::new();
         let cells = loaded.sweep.cells.len();
+        if loaded.methods.iter().any(|method| is_limited(&method.name)) {
+            return;
+        }
         for cell in 0..cells {
-            let named = loaded.methods.iter().enumerate().filter(|(_, method)| method.name != "pixel");
+            let named = loaded.methods.iter().enumerate().filter(|(_, method)| looks(&method.name));
             let candidates: Vec<(&str, &Score)> =
                 named.filter_map(|(index, method)| Some((method.name.as_str(), loaded.score(cell, index)?))).collect();
             if let Some((best, rmse, _)) = lead(&candidates) {

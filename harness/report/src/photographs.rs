@@ -5,7 +5,7 @@ use std::fs::File;
 use std::sync::Arc;
 
 use calibench_model::{Image, PixelPoint, escape};
-use calibench_records::description::Subject;
+use calibench_records::description::{Subject, looks};
 use calibench_records::judgement::{JUDGEMENT, Summary, read_rows};
 
 use super::canvas::Canvas;
@@ -66,7 +66,7 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
         );
     }
     let points = compared(loaded);
-    let operators: Vec<usize> = (0..loaded.head.methods.len()).filter(|&m| &*loaded.head.methods[m].label != "pixel").collect();
+    let operators: Vec<usize> = (0..loaded.head.methods.len()).filter(|&m| looks(&loaded.head.methods[m].label)).collect();
     let (mut text, mut pictures) = judged(loaded);
     text.push_str("### What was measured\n\n");
     text.push_str(&seen(loaded, &points));

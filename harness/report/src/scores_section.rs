@@ -1,5 +1,6 @@
 //! The figures of every method on a rendered scene.
 
+use calibench_records::description::is_limited;
 use calibench_records::score::{Errors, Pooled, Score, root};
 
 use super::load::Loaded;
@@ -29,8 +30,9 @@ pub fn section(loaded: &Loaded) -> String {
         1 => "One trial, without standard errors and intervals".to_owned(),
         _ => format!("{trials} trials"),
     };
+    let kinds = if loaded.head.methods.iter().any(|info| is_limited(&info.label)) { KINDS } else { "" };
     format!(
-        "{}\n{trials}, seed {}, errors in px, bounds of a {window} x {window} px window. [What the columns mean]({LEGEND_ANCHOR}).\n\n\
+        "{}\n{kinds}{trials}, seed {}, errors in px, bounds of a {window} x {window} px window. [What the columns mean]({LEGEND_ANCHOR}).\n\n\
          <details><summary>Bias, scatter, common points, targets</summary>\n\n{}\n{}\n</details>\n",
         main.render(),
         loaded.head.run.seed,
@@ -39,6 +41,10 @@ pub fn section(loaded: &Loaded) -> String {
         window = loaded.scenario.bound_window
     )
 }
+
+/// What is to be known where methods measure different targets.
+const KINDS: &str = "Methods with `kinds` measured targets of these kinds alone, so that rows stand on different points; a point is common if all methods that were to \
+                     measure it did.\n\n";
 
 /// What is compared.
 const MAIN: [&str; 8] = ["method", "points", "rejected", "lost", "RMSE", "95 %", "RMSE / bound (99 %)", "RMSE, lost too"];
@@ -160,22 +166,30 @@ fn by_target(loaded: &Loaded) -> String {
         return String::new();
     }
     let available = || loaded.head.methods.iter().zip(&loaded.scores.methods).filter(|(info, _)| info.unavailable.is_none());
-    let targets = available().next().map_or(&[][..], |(_, score)| &score.targets);
+    // Limited methods have only their own targets.
+    let mut targets: Vec<&str> = Vec::new();
+    for target in available().flat_map(|(_, score)| &score.targets) {
+        if !targets.contains(&&*target.target) {
+            targets.push(&target.target);
+        }
+    }
     let table = |title: &str, cell: &dyn Fn(&Errors, u64) -> String| {
-        let of = |score: &Score, index: usize| score.targets.get(index).map_or(String::new(), |t| cell(&t.whole, t.failed));
+        let of = |score: &Score, name: &str| {
+            score.targets.iter().find(|target| &*target.target == name).map_or(String::new(), |t| cell(&t.whole, t.failed))
+        };
         let labels: Vec<String> = available().map(|(info, _)| format!("`{}`", info.label)).collect();
-        let names: Vec<String> = targets.iter().map(|target| target.target.to_string()).collect();
+        let names: Vec<String> = targets.iter().map(|&target| target.to_owned()).collect();
         // The longer list goes down the page.
         let down = labels.len() > names.len();
         let header: Vec<&str> = std::iter::once(title).chain(if down { &names } else { &labels }.iter().map(String::as_str)).collect();
         let mut rows = MarkdownTable::new(&header);
         if down {
             for (label, (_, score)) in labels.iter().zip(available()) {
-                rows.row(std::iter::once(label.clone()).chain((0..names.len()).map(|index| of(score, index))));
+                rows.row(std::iter::once(label.clone()).chain(names.iter().map(|name| of(score, name))));
             }
         } else {
-            for (index, name) in names.iter().enumerate() {
-                rows.row(std::iter::once(name.clone()).chain(available().map(|(_, score)| of(score, index))));
+            for name in &names {
+                rows.row(std::iter::once(name.clone()).chain(available().map(|(_, score)| of(score, name))));
             }
         }
         rows.render()
@@ -310,6 +324,29 @@ mod tests {
         let text = by_target(&loaded(&["m"], &["a", "b"], 2));
         assert_eq!(row(&text, &["a", "0.5000"]), ["a", "0.5000"]);
         assert_eq!(by_target(&loaded(&["m"], &["a"], 1)), "", "one trial has no scatter");
+        let mut limited = loaded(&["m", "n:kinds=disc"], &["a", "b"], 2);
+        limited.scores.methods[0].targets.remove(1);
+        limited.scores.methods[1].targets.remove(0);
+        let text = by_target(&limited);
+        assert_eq!(row(&text, &["a", "0.5000"]), ["a", "0.5000", ""], "each stands with its own target");
+        assert_eq!(row(&text, &["b", "", "0.5000 (1)"]).len(), 3);
+        let page = section(&limited);
+        assert!(page.contains("Methods with `kinds` measured targets of these kinds alone"), "{page}");
+        assert!(!section(&loaded(&["m", "n"], &["a"], 2)).contains("Methods with `kinds`"));
+    }
+
+    #[test]
+    fn nobody_leads_among_methods_for_different_targets() {
+        let said = |labels: &[&str]| {
+            let mut found = loaded(labels, &["a"], 2);
+            let score = Score { measured: 2, kept: errors(&[(0.3, 0.4), (0.3, 0.4)]), ..Score::default() };
+            found.scores.methods = vec![score; labels.len()];
+            let mut answers = crate::answer::Answers::default();
+            answers.scenario(&found);
+            answers.paragraph()
+        };
+        assert_eq!(said(&["pixel", "m"]), "`m` has the least error, 0.500 px RMSE.");
+        assert_eq!(said(&["pixel", "m", "n:kinds=disc"]), "");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Why a run cannot be completed.
 
 use calibench_exchange::PhotoError;
+use calibench_measure::KindsGap;
 use calibench_synth::optics::OpticsError;
 use calibench_synth::sensor::SensorError;
 use calibench_synth::stations::StationError;
@@ -24,6 +25,9 @@ pub enum RunError {
         /// The names that there are.
         known: String,
     },
+    /// Methods that are limited to kinds of targets, and other targets.
+    #[error(transparent)]
+    Kinds(#[from] KindsGap),
     /// A view that cannot be pictured.
     #[error("station `{station}`: {source}")]
     View {

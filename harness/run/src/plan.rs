@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_exchange::NewFolder;
-use calibench_measure::{BoardDetector, Configured};
-use calibench_model::{Image, Rejection, Start, Unknowns};
+use calibench_measure::{BoardDetector, Configured, Operator};
+use calibench_model::{Image, Measurement, Rejection, Start, TargetKind, Unknowns};
 use calibench_records::results::MethodInfo;
 use calibench_scenario::{PhotographsSubject, Scenario, Subject};
 
@@ -83,27 +83,26 @@ impl<'a> Plan<'a> {
         (0..self.methods.len()).map(|index| self.unknowns(index))
     }
 
-    /// As [`Self::measure`], with targets that nobody found: where there is no start, no operator is asked.
-    pub(crate) fn measure_found(
-        &self,
-        image: &Image,
-        starts: &[Option<Start>],
-    ) -> Vec<(usize, Vec<Result<calibench_model::Measurement, Rejection>>)> {
-        let found: Vec<Start> = starts.iter().copied().flatten().collect();
-        let whole = |(method, results): (usize, Vec<_>)| {
-            let mut results = results.into_iter();
-            let of = |start: &Option<Start>| start.and_then(|_| results.next()).unwrap_or(Err(Rejection::NotDetected));
-            (method, starts.iter().map(of).collect())
+    /// Every available method on one image, at the targets of its kinds: (method, results in the order of `targets`, `None` where it is not to measure).
+    ///
+    /// A target is its kind and its start; where nobody found it there is none, and no operator is asked.
+    pub(crate) fn measure(&self, image: &Image, targets: &[(TargetKind, Option<Start>)]) -> Vec<(usize, Vec<Option<Measured>>)> {
+        let available = self.methods.iter().enumerate().filter_map(|(i, method)| Some((i, method, method.operator.as_deref().ok()?)));
+        let of = |(index, method, operator): (usize, &Configured, &dyn Operator)| {
+            let mine = |kind: TargetKind| method.measures(Some(kind));
+            let starts: Vec<Start> = targets.iter().filter(|(kind, _)| mine(*kind)).filter_map(|(_, start)| *start).collect();
+            let mut results = operator.measure_all(image, &starts).into_iter();
+            let missed = Err(Rejection::NotDetected);
+            let result =
+                |(kind, start): &(TargetKind, Option<Start>)| mine(*kind).then(|| start.and_then(|_| results.next()).unwrap_or(missed));
+            (index, targets.iter().map(result).collect())
         };
-        self.measure(image, &found).into_iter().map(whole).collect()
-    }
-
-    /// Every available method on one image: (method, results in the order of `starts`).
-    pub(crate) fn measure(&self, image: &Image, starts: &[Start]) -> Vec<(usize, Vec<Result<calibench_model::Measurement, Rejection>>)> {
-        let available = self.methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?)));
-        available.map(|(index, operator)| (index, operator.measure_all(image, starts))).collect()
+        available.map(of).collect()
     }
 }
+
+/// What an operator says of a target.
+type Measured = Result<Measurement, Rejection>;
 
 /// Why the photographs cannot be measured, if so.
 fn missing(plan: &Plan<'_>, subject: &PhotographsSubject) -> Option<String> {

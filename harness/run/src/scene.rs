@@ -59,9 +59,11 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     let picture = Picture::from(&truth);
     let by_target: Vec<BySet> = truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.at))).collect();
     let mut points = Vec::new();
-    for (method, results) in plan.measure_found(&image, &starts) {
+    let to_measure: Vec<_> = truth.targets.iter().map(|target| target.kind).zip(starts).collect();
+    for (method, results) in plan.measure(&image, &to_measure) {
         let unknowns = plan.unknowns(method);
         for (((target, truth), by_set), result) in targets.iter().zip(&truth.targets).zip(&by_target).zip(results) {
+            let Some(result) = result else { continue };
             let bound = by_set.get(&unknowns).copied().flatten();
             points.push(PointResult { bound, ..PointResult::scored(view.clone(), target.clone(), method, truth.at, result) });
         }

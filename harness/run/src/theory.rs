@@ -32,7 +32,9 @@ pub fn write_theory(plan: &Plan<'_>, run: &RunInfo) -> Result<(), RunError> {
     }
     let image = read_photo(&kept_image(folder.path(), VIEW))?.image;
     let truth = trial_truth(subject, Key { seed: plan.seed, scenario: &plan.scenario.name, trial: 0, view: VIEW, target: "" });
-    let pairs = methods.iter().flat_map(|method| truth.targets.iter().map(move |target| (method, target)));
+    let pairs = methods
+        .iter()
+        .flat_map(|method| truth.targets.iter().filter(|target| method.measures(Some(target.kind))).map(move |target| (method, target)));
     let all: Vec<Theory> = pairs.map(|(method, target)| theory(method, target, &image)).collect();
     Ok(folder.write(THEORY, |file| write(file, run, &all))?)
 }

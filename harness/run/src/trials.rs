@@ -1,5 +1,6 @@
 //! All trials of a plan, in their order.
 
+use calibench_measure::kinds::cover;
 use calibench_records::results::Trial;
 use calibench_scenario::Subject;
 use rayon::prelude::*;
@@ -21,8 +22,9 @@ impl Plan<'_> {
     /// Runs all trials and hands them to `sink` in their order; `step` is called after each step, on any thread.
     ///
     /// # Errors
-    /// Photographs that cannot be read, or what `sink` returns.
+    /// Targets of a kind that no method measures, a method without targets of its kinds; photographs that cannot be read; what `sink` returns.
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
+        cover(self.methods, self.scenario.subject.kinds().iter().copied())?;
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
             Subject::Scene(subject) => {

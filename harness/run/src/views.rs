@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use calibench_exchange::encode_png;
 use calibench_model::camera::CameraModel;
-use calibench_model::{Image, Measurement, PixelPoint, Start};
+use calibench_model::{Image, Measurement, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::names::kept_image_name;
 use calibench_records::results::{PointResult, Trial};
@@ -152,7 +152,10 @@ fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Optio
         let key = Key { view: &view.station.name, ..key };
         for point in seen(prepared, view, key) {
             let target = &prepared.targets[point.target];
-            for (method, configured) in plan.methods.iter().enumerate().filter(|(_, configured)| configured.operator.is_ok()) {
+            let kind = Some(kind_of(prepared, &point));
+            let methods =
+                plan.methods.iter().enumerate().filter(|(_, configured)| configured.operator.is_ok() && configured.measures(kind));
+            for (method, configured) in methods {
                 let measured = match sigmas.iter().find(|(label, _)| *label == configured.label) {
                     Some((label, Some(sigma))) => network::draw(point.truth, *sigma, label, Key { target, ..key }),
                     Some((_, None)) => Measurement { position: point.start.position, covariance: None },
@@ -175,10 +178,11 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
             folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, prepared.is_deep()))?;
         }
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
-        let starts = started(prepared, &image, &seen);
-        for (method, results) in plan.measure_found(&image, &starts) {
+        let kinds = seen.iter().map(|point| kind_of(prepared, point));
+        let to_measure: Vec<_> = kinds.zip(started(prepared, &image, &seen)).collect();
+        for (method, results) in plan.measure(&image, &to_measure) {
             let unknowns = plan.unknowns(method);
-            let points = seen.iter().zip(results).map(|(point, result)| {
+            let points = seen.iter().zip(results).filter_map(|(point, result)| Some((point, result?))).map(|(point, result)| {
                 let bound = view.bounds[point.target].get(&unknowns).copied().flatten();
                 let target = prepared.targets[point.target].clone();
                 PointResult { bound, ..PointResult::scored(view.name.clone(), target, method, point.truth, result) }
@@ -214,6 +218,10 @@ fn started(prepared: &Prepared<'_>, image: &Image, seen: &[SeenTarget]) -> Vec<O
         Some(detector) => detector.starts(image, seen.iter().map(|point| point.truth)),
         None => seen.iter().map(|point| Some(point.start)).collect(),
     }
+}
+
+fn kind_of(prepared: &Prepared<'_>, point: &SeenTarget) -> TargetKind {
+    prepared.subject.field.targets[point.target].kind
 }
 
 /// A target that is wholly in the image.

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::calibration::{self, Seen};
-use super::methods::methods;
+use super::methods::{check_kinds, methods};
 use super::section::Section;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
@@ -136,7 +136,9 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     if methods_missing && problems.is_empty() {
         problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
     }
-    let methods = methods(listed.unwrap_or_default(), registry, problems);
+    let listed = listed.unwrap_or_default();
+    let listed_at: Vec<_> = listed.iter().map(|section| section.span.clone()).collect();
+    let methods = methods(listed, registry, problems);
     let head: Option<Head> = root.read(&TOP_TABLES, problems);
     let seed = head.as_ref().map_or(0, |head| head.seed.0);
     let key = Key { seed, scenario: name, trial: 0, view: "", target: "" };
@@ -177,6 +179,9 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         }
     };
     let (head, subject) = (head?, subject?);
+    if methods.len() == listed_at.len() {
+        check_kinds(&methods, &listed_at, &subject, problems);
+    }
     let trials_span = head.trials.as_ref().map(Spanned::span);
     let mut trials = head.trials.map_or(1, |trials| trials.into_inner().0);
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));

@@ -1,9 +1,16 @@
 //! The `[[method]]` tables: their keys are the method's own parameters.
 
+use std::ops::Range;
+
 use calibench_diagnostics::Problem;
-use calibench_measure::{Configured, MethodError, Registry};
+use calibench_measure::kinds::{cover, distinct};
+use calibench_measure::registry::KINDS;
+use calibench_measure::{Configured, Kinds, KindsError, KindsGap, MethodError, Registry};
+use calibench_model::TargetKind;
+use toml::Spanned;
 use toml::de::DeValue;
 
+use super::Subject;
 use super::section::Section;
 
 /// All methods of a scenario; mistakes are added to `problems`.
@@ -14,11 +21,21 @@ pub fn methods(sections: Vec<Section<'_>>, registry: &Registry, problems: &mut V
         let Some(configured) = method(section, registry, problems) else { continue };
         if found.iter().any(|earlier| earlier.label == configured.label) {
             problems.push(Problem::new(span, format!("method `{}` is listed twice; expected each once", configured.label)));
+        } else if let Err(gap) = distinct(&found, &configured) {
+            problems.push(Problem::new(span, gap.to_string()));
         } else {
             found.push(configured);
         }
     }
     found
+}
+
+/// Whether `methods`, whose tables stand at `spans`, and the `subject` go together; what does not is added to `problems`.
+pub fn check_kinds(methods: &[Configured], spans: &[Range<usize>], subject: &Subject, problems: &mut Vec<Problem>) {
+    if let Err(gap) = cover(methods, subject.kinds().iter().copied()) {
+        let index = if let KindsGap::Idle { index, .. } = gap { index } else { 0 };
+        problems.push(Problem::new(spans.get(index).cloned().unwrap_or(0..0), gap.to_string()));
+    }
 }
 
 fn method(mut section: Section<'_>, registry: &Registry, problems: &mut Vec<Problem>) -> Option<Configured> {
@@ -32,6 +49,10 @@ fn method(mut section: Section<'_>, registry: &Registry, problems: &mut Vec<Prob
         let found = value.get_ref().type_str();
         problems.push(Problem::new(key_span, format!("`name` is the name of a method, in quotes; found {found}")));
         return None;
+    };
+    let kinds = match section.take(KINDS) {
+        Some((_, value)) => Some(kinds(&value, problems)?),
+        None => None,
     };
     let mut given = Vec::new();
     // An unknown key first: what kind of value it has does not matter.
@@ -61,9 +82,35 @@ fn method(mut section: Section<'_>, registry: &Registry, problems: &mut Vec<Prob
         MethodError::Domain { key, .. } | MethodError::Twice { key, .. } => {
             Problem::new(span_of(key).map_or(section.span.clone(), |spans| spans.1), error.to_string())
         }
-        MethodError::Form { .. } => Problem::new(value.span(), error.to_string()),
+        MethodError::Form { .. } | MethodError::Kinds { .. } => Problem::new(value.span(), error.to_string()),
     };
-    registry.configure(name, &given).map_err(|error| problems.push(problem(error))).ok()
+    let configured = registry.configure(name, &given).map_err(|error| problems.push(problem(error))).ok()?;
+    Some(match kinds {
+        Some(kinds) => configured.limited(kinds),
+        None => configured,
+    })
+}
+
+/// The kinds of targets that a method is limited to, as in `["disc", "square"]`.
+fn kinds(value: &Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> Option<Kinds> {
+    let names = value.get_ref().as_array().map(|list| list.iter().map(|name| name.get_ref().as_str()).collect::<Option<Vec<_>>>());
+    let Some(Some(names)) = names else {
+        let message = "`kinds` is a list of kinds of targets, in quotes, as in [\"disc\", \"square\"]";
+        problems.push(Problem::new(value.span(), message).help(format!("known are {}", known_kinds())));
+        return None;
+    };
+    let problem = |error: KindsError| {
+        let problem = Problem::new(value.span(), format!("`kinds`: {error}"));
+        match &error {
+            KindsError::Unknown(unknown) => problem.nearest(&unknown.0, TargetKind::ALL.map(TargetKind::name)),
+            _ => problem,
+        }
+    };
+    Kinds::new(names).map_err(|error| problems.push(problem(error))).ok()
+}
+
+fn known_kinds() -> String {
+    TargetKind::ALL.map(TargetKind::name).join(", ")
 }
 
 fn number(value: &DeValue<'_>) -> Option<f64> {

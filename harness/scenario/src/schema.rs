@@ -2,6 +2,8 @@
 
 use calibench_measure::Registry;
 use calibench_measure::parameter::Domain;
+use calibench_measure::registry::KINDS;
+use calibench_model::TargetKind;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
@@ -121,9 +123,17 @@ fn require(schema: &mut Value, keys: &[&str]) {
     }
 }
 
+/// The kinds of targets that a method is limited to.
+fn kinds() -> Value {
+    let description = "The kinds of targets that it is limited to. Default: all.";
+    let names = TargetKind::ALL.map(TargetKind::name);
+    json!({ "description": description, "type": "array", "minItems": 1, "uniqueItems": true, "items": { "enum": names } })
+}
+
 fn method(method: &calibench_measure::Method) -> Value {
     let mut properties = Map::new();
     properties.insert("name".into(), json!({ "const": method.name }));
+    properties.insert(KINDS.into(), kinds());
     for parameter in method.parameters {
         let (min, max) = parameter.domain.range();
         let form = if matches!(parameter.domain, Domain::Real { .. }) { "number" } else { "integer" };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use calibench_measure::Board;
 use calibench_model::camera::Camera;
-use calibench_model::{PixelPoint, Scene, Testfield};
+use calibench_model::{PixelPoint, Scene, TargetKind, Testfield};
 use calibench_random::Key;
 use calibench_synth::optics::OpticsError;
 use calibench_synth::pointing::Hand;
@@ -22,6 +22,17 @@ pub enum Subject {
     Views(Box<ViewsSubject>),
     /// Photographs, of which no truth is known.
     Photographs(PhotographsSubject),
+}
+
+impl Subject {
+    /// The kind of every target that may be measured.
+    pub fn kinds(&self) -> Vec<TargetKind> {
+        match self {
+            Self::Scene(subject) => subject.scene.targets.iter().map(|target| target.kind).collect(),
+            Self::Views(subject) => subject.field.targets.iter().map(|target| target.kind).collect(),
+            Self::Photographs(_) => vec![TargetKind::ChessCorner],
+        }
+    }
 }
 
 /// A rendered scene and how its images come about.

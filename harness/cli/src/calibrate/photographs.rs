@@ -14,7 +14,7 @@ use crate::failure::Failure;
 pub fn corners(context: &Context<'_>, chessboard: Chessboard, photos: &[PathBuf], method: &str) -> Result<Corners, Failure> {
     let detector = context.toolbox.detector.as_deref();
     let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
-    let method = context.method(method)?;
+    let method = context.method_of_boards(method)?;
     let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
     let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);
     say_turns(photos)?;

@@ -38,7 +38,7 @@ impl Judge {
             (true, Some(_)) => vec![OF_CAMERA.to_owned()],
             (true, None) => METHODS.map(str::to_owned).to_vec(),
         };
-        let methods = texts.iter().map(|text| context.method(text)).collect::<Result<Vec<_>, _>>()?;
+        let methods = texts.iter().map(|text| context.method_of_boards(text)).collect::<Result<Vec<_>, _>>()?;
         let twice = methods.iter().enumerate().find(|(i, method)| methods[..*i].iter().any(|earlier| earlier.label == method.label));
         match twice {
             Some((_, method)) => Err(Failure::input(format!("-m {}: asked for twice; expected each once", method.label))),

@@ -8,6 +8,7 @@ pub mod ellipse_edges;
 pub mod forstner;
 pub mod harris_paraboloid;
 pub mod lsm;
+pub mod opencv_chessboard_sb;
 pub mod opencv_subpix;
 pub mod parametric_circle;
 pub mod parametric_corner;

@@ -72,8 +72,13 @@ pub(crate) fn crossings(blur: f64, dark: &[f64]) -> (Image, Vec<PixelPoint>) {
             let vertices = [(0.0, 0.0), u, (u.0 + v.0, u.1 + v.1), v].map(vertex).into();
             Polygon { id: String::new(), vertices, grey: 0.2 }
         };
-        let scene =
-            Scene { width: CELL.0, height: CELL.1, background: 0.8, polygons: dark.iter().map(|sign| quarter(*sign)).collect(), targets: Vec::new() };
+        let scene = Scene {
+            width: CELL.0,
+            height: CELL.1,
+            background: 0.8,
+            polygons: dark.iter().map(|sign| quarter(*sign)).collect(),
+            targets: Vec::new(),
+        };
         let tile = renderer.render(&Picture::from(&scene), &[]);
         for y in 0..CELL.1 {
             let start = (top + y) * WIDTH + left;

@@ -84,7 +84,7 @@ fn longer_side(image: &Mat) -> i32 {
 }
 
 /// Full scale becomes 255; NaN becomes black.
-fn to_8_bit(image: &Image) -> opencv::Result<Mat> {
+pub(crate) fn to_8_bit(image: &Image) -> opencv::Result<Mat> {
     let header = Mat::new_rows_cols_with_data(image.height() as i32, image.width() as i32, image.grey())?;
     let mut bytes = Mat::default();
     header.convert_to(&mut bytes, CV_8U, 255.0, 0.0)?;
@@ -156,4 +156,4 @@ fn spacing(board: Board, corners: &[PixelPoint]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -11,7 +11,7 @@ use super::{ChessboardDetector, enlarge};
 const BOARD: Board = Board { columns: 9, rows: 6 };
 
 /// A board of 10 x 7 squares of `side` px on white, turned by 0.1 rad, and its inner corners along the rows.
-fn drawn(width: usize, height: usize, side: f64) -> (Image, Vec<PixelPoint>) {
+pub(crate) fn drawn(width: usize, height: usize, side: f64) -> (Image, Vec<PixelPoint>) {
     let (sin, cos) = 0.1_f64.sin_cos();
     let middle = PixelPoint::new(width as f64 * 0.52, height as f64 * 0.47);
     let grey = |x: usize, y: usize| {
@@ -86,7 +86,7 @@ fn another_board_is_not_found_and_ends() {
     assert!(ChessboardDetector.detect(&image, Board { columns: 20, rows: 15 }).is_none());
 }
 
-fn photographs() -> Vec<(String, Image)> {
+pub(crate) fn photographs() -> Vec<(String, Image)> {
     let folder = Path::new(option_env!("CALIBENCH_PHOTOGRAPHS").unwrap_or_default());
     let numbers = (1..=14).filter(|&n| n != 10);
     let read = |name: String| {

@@ -70,6 +70,16 @@ pub fn operator(label: &str) -> &str {
     label.split(':').next().unwrap_or(label)
 }
 
+/// Whether the method of `label` looks at the image: `pixel` returns its start.
+pub fn looks(label: &str) -> bool {
+    operator(label) != "pixel"
+}
+
+/// Whether the method of `label` is limited to kinds of targets, as `forstner:window=11,kinds=corner` is.
+pub fn is_limited(label: &str) -> bool {
+    label.split([':', ',']).any(|part| part.starts_with("kinds="))
+}
+
 /// Writes `description` as JSON.
 ///
 /// # Errors
@@ -159,6 +169,8 @@ mod tests {
 
     #[test]
     fn the_operator_of_a_label_stands_before_its_settings() {
+        assert_eq!(["forstner", "pixel:kinds=disc", "pixel"].map(looks), [true, false, false]);
+        assert_eq!(["pixel:kinds=disc", "a:b=1,kinds=corner+disc", "kinds", "a:b=1"].map(is_limited), [true, true, false, false]);
         assert_eq!(["forstner:window=15,k=a:b", "pixel", ""].map(operator), ["forstner", "pixel", ""]);
     }
 }

@@ -113,7 +113,7 @@ pub struct Score {
     pub kept: Errors,
     /// Errors of all measured points, lost ones among them.
     pub whole: Errors,
-    /// Errors of the points that every operator measured and none lost.
+    /// Errors of the points that every operator that was to measure them did, and none lost.
     pub common: Errors,
     /// Squared errors of the kept points in units of their squared bound: numbers.
     pub to_bound: Pooled,
@@ -208,6 +208,8 @@ pub struct Scores {
     pub trials: u64,
     /// How targets are grouped; a target that is not named stands for itself.
     pub groups: Groups,
+    /// The methods that are limited to kinds of targets: they have no rows of others.
+    pub limited: BTreeSet<usize>,
 }
 
 impl Scores {
@@ -224,22 +226,25 @@ impl Scores {
         if most > self.methods.len() {
             self.methods.resize_with(most, Score::default);
         }
-        let common = common_points(trial, operators);
+        let common = self.common_points(trial, operators);
         for (index, score) in self.methods.iter_mut().enumerate() {
             let points: Vec<&PointResult> = trial.points.iter().filter(|point| point.method == index).collect();
             score.add(&points, &common, &self.groups);
         }
     }
-}
 
-/// The points that every operator of the trial measured and none lost.
-fn common_points(trial: &Trial, operators: impl Fn(usize) -> bool) -> BTreeSet<PointKey> {
-    let methods: BTreeSet<usize> = trial.points.iter().map(|point| point.method).filter(|m| operators(*m)).collect();
-    let mut counts: BTreeMap<PointKey, usize> = BTreeMap::new();
-    for point in trial.points.iter().filter(|point| operators(point.method) && point.outcome.kept_error().is_some()) {
-        *counts.entry((point.view.clone(), point.target.clone())).or_insert(0) += 1;
+    /// The points that every operator of the trial measured and none lost. One that is limited is asked only for those of which it says something.
+    fn common_points(&self, trial: &Trial, operators: impl Fn(usize) -> bool) -> BTreeSet<PointKey> {
+        let all = |method: usize| operators(method) && !self.limited.contains(&method);
+        let methods: BTreeSet<usize> = trial.points.iter().map(|point| point.method).filter(|m| all(*m)).collect();
+        let mut counts: BTreeMap<PointKey, (usize, usize)> = BTreeMap::new();
+        for point in trial.points.iter().filter(|point| operators(point.method)) {
+            let (asked, kept) = counts.entry((point.view.clone(), point.target.clone())).or_insert((methods.len(), 0));
+            *asked += usize::from(self.limited.contains(&point.method));
+            *kept += usize::from(point.outcome.kept_error().is_some());
+        }
+        counts.into_iter().filter(|(_, (asked, kept))| asked == kept).map(|(key, _)| key).collect()
     }
-    counts.into_iter().filter(|(_, count)| *count == methods.len()).map(|(key, _)| key).collect()
 }
 
 #[cfg(test)]

@@ -201,3 +201,26 @@ fn points_are_common_by_view_and_target() {
     let common = |method: usize| scores.methods[method].common.rmse();
     assert_eq!([common(0), common(1), common(2)], [Some(0.25), Some(0.5), Some(2.0)]);
 }
+
+/// Methods 1 and 2 are limited to one target each; method 3 only points.
+#[test]
+fn a_limited_operator_is_asked_only_for_what_it_measures() {
+    let row = |method: usize, target: &str, dx: f64| point(method, target, Some((dx, 0.0)));
+    let points = vec![
+        row(0, "a", 0.125),
+        row(0, "b", 0.125),
+        row(0, "c", 0.125),
+        row(1, "a", 0.5),
+        row(2, "b", 5.0),
+        row(3, "a", 0.25),
+        row(3, "c", 0.75),
+    ];
+    let common = |limited: &[usize]| {
+        let mut scores = Scores { limited: limited.iter().copied().collect(), ..Scores::new(4) };
+        scores.add(&Trial { points: points.clone(), ..Trial::default() }, |method| method < 3);
+        scores.methods.iter().map(|score| score.common.square.count()).collect::<Vec<_>>()
+    };
+    // `b` is lost by the only other method that is to measure it.
+    assert_eq!(common(&[1, 2]), [2, 1, 0, 2]);
+    assert_eq!(common(&[]), [0, 0, 0, 0]);
+}

@@ -1,6 +1,9 @@
-//! Targets that are scored together.
+//! Targets that are scored together, methods that are scored apart.
 
-use calibench_records::description::{Description, Subject};
+use std::collections::BTreeSet;
+
+use calibench_records::description::{Description, Subject, is_limited};
+use calibench_records::results::MethodInfo;
 use calibench_records::score::Groups;
 
 /// More targets than this are scored by kind.
@@ -14,4 +17,9 @@ pub fn groups(scenario: &Description) -> Groups {
         }
         _ => Groups::new(),
     }
+}
+
+/// The places of the methods that are limited to kinds of targets.
+pub fn limited(methods: &[MethodInfo]) -> BTreeSet<usize> {
+    methods.iter().enumerate().filter(|(_, method)| is_limited(&method.label)).map(|(place, _)| place).collect()
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::read_photo;
 use calibench_model::Image;
-use calibench_records::description::Description;
+use calibench_records::description::{Description, looks};
 use calibench_records::names::{RECORDS, SCENARIO, kept_image};
 use calibench_records::points::{RecordHead, read_records};
 use calibench_records::results::Trial;
@@ -15,7 +15,7 @@ use calibench_records::score::Scores;
 use super::LoadError;
 use super::adjustments::{self, Summaries};
 use super::description::description;
-use super::groups::groups;
+use super::groups::{groups, limited};
 
 /// All that a report needs of one scenario. Its size does not grow with the number of trials.
 pub struct Loaded {
@@ -52,7 +52,8 @@ pub fn load(records: &Path, name: &str) -> Result<Loaded, LoadError> {
     let mut first = None;
     // The methods of a file are named as they come; `pixel` is the one that does not look at the image.
     let head = read_records(BufReader::new(file), |trial, methods| {
-        scores.add(&trial, |method| methods.get(method).is_some_and(|info| &*info.label != "pixel"));
+        scores.limited = limited(methods);
+        scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
         first.get_or_insert(trial);
     });
     let head = head.map_err(|source| LoadError::Records { path, source })?;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use calibench_records::description::{Description, Sweep};
+use calibench_records::description::{Description, Sweep, looks};
 use calibench_records::names::{RECORDS, cell_folder};
 use calibench_records::points::read_records;
 use calibench_records::results::Trial;
@@ -12,7 +12,7 @@ use calibench_records::score::{Score, Scores};
 
 use crate::LoadError;
 use crate::load::description::description;
-use crate::load::groups::groups;
+use crate::load::groups::{groups, limited};
 
 /// All that reports and plots need of a sweep. Its size does not grow with the number of trials.
 pub struct LoadedSweep {
@@ -95,7 +95,8 @@ impl LoadedSweep {
         let head = read_records(BufReader::new(file), |trial, methods| {
             let names: Vec<String> = methods.iter().map(|info| self.sweep.method(&info.label)).collect();
             watch(cell, &trial, &names);
-            scores.add(&trial, |method| methods.get(method).is_some_and(|info| &*info.label != "pixel"));
+            scores.limited = limited(methods);
+            scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
         });
         let head = head.map_err(|source| LoadError::Records { path: path.to_owned(), source })?;
         scores.methods.resize_with(head.methods.len(), Score::default);

@@ -1,10 +1,14 @@
 //! Tables of a calibrated scenario: every method, and the sets of parameters.
 
+use calibench_records::description::is_limited;
 use calibench_records::results::Group;
 
 use crate::field::plain;
 use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::{MarkdownTable, fixed};
+
+/// What is to be known where methods measure different targets.
+const KINDS: &str = "Methods with `kinds` adjust targets of these kinds alone: their figures, reduction factors too, tell of fewer points as well as of the operator.\n\n";
 
 /// Every method: reported standard deviations, true errors and their reduction factors.
 pub fn methods(found: &Summaries) -> String {
@@ -43,8 +47,9 @@ pub fn methods(found: &Summaries) -> String {
             format!("- `{method}`, {}: {count} of {trials} failed, the first because {why}.\n", group.name())
         })
         .collect();
+    let kinds = if found.methods.iter().any(|label| is_limited(label)) { KINDS } else { "" };
     format!(
-        "Means of {trials} trials ± half their 95 % interval, set `{}`. *Over the frame*: distance of the estimated camera from the true one after the best rotation. *Error / sigma*: root mean square error over the mean \
+        "{kinds}Means of {trials} trials ± half their 95 % interval, set `{}`. *Over the frame*: distance of the estimated camera from the true one after the best rotation. *Error / sigma*: root mean square error over the mean \
          reported standard deviation, 1 if it is honest. *RF*: against `{}`, mean over the parameters. RMSE of check points against the truth, object units; their RF is the ratio of root mean squares.\n\n{}\n{failures}\n",
         found.sets.first().map_or("", String::as_str),
         found.methods.first().map_or("", String::as_str),

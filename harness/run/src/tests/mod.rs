@@ -1,5 +1,6 @@
 //! Runs of a small wall whose figures have closed forms.
 
+mod kinds;
 mod network;
 mod store;
 mod truth;
