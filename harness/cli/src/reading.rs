@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use calibench_diagnostics::nearest;
 use calibench_exchange::camera::open_points::{self, OpenPoints};
-use calibench_exchange::camera::{CameraFile, CameraFormat, NamedCamera, ReadOptions, read_camera_with};
+use calibench_exchange::camera::{CameraFile, CameraFormat, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
 use clap::{Args, ValueEnum};
 
@@ -15,6 +16,9 @@ pub struct Reading {
     /// Size of the images, for files that do not state it
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<ImageSize>,
+    /// Format of the file, where more than one recognises it; `list formats` lists them
+    #[arg(long, value_name = "FORMAT", value_parser = format)]
+    from: Option<&'static CameraFormat>,
     /// The file's OpenCV camera is the fisheye, though it does not say so
     #[arg(long)]
     fisheye: bool,
@@ -82,7 +86,7 @@ impl Reading {
     }
 
     pub fn file(&self, path: &Path) -> Result<CameraFile, Failure> {
-        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true) };
+        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), from: self.from };
         Ok(read_camera_with(path, &options)?)
     }
 
@@ -135,6 +139,12 @@ impl Reading {
         }
         cameras
     }
+}
+
+/// The format of a name.
+fn format(name: &str) -> Result<&'static CameraFormat, String> {
+    let near = || nearest(name, FORMATS.iter().map(|format| format.name)).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    format_named(name).ok_or_else(|| format!("no such format; `calibench list formats` lists them{}", near()))
 }
 
 pub fn size(text: &str) -> Result<ImageSize, String> {

@@ -3,6 +3,7 @@
 mod any_model;
 mod files;
 mod malformed;
+mod recognised;
 mod round_trip;
 mod same_camera;
 mod tool_formats;
