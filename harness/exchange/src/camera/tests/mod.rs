@@ -8,6 +8,7 @@ mod round_trip;
 mod same_camera;
 mod tool_formats;
 mod tool_formats_malformed;
+mod unknown_keys;
 
 use calibench_model::camera::{Camera, CameraModel};
 
