@@ -6,6 +6,7 @@ use calibench_diagnostics::nearest;
 use calibench_exchange::camera::open_points::{self, OpenPoints};
 use calibench_exchange::camera::{CameraFile, CameraFormat, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
+use calibench_model::escape;
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
@@ -95,12 +96,12 @@ impl Reading {
         let mut file = self.file(path)?;
         let chosen = self.choose(path, &file.cameras)?;
         if file.cameras.len() > 1 && self.camera.is_none() {
-            let (count, name) = (file.cameras.len(), &file.cameras[chosen].name);
-            say!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", path.display());
+            let (count, name) = (file.cameras.len(), escape::name(&file.cameras[chosen].name));
+            say!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", shown(path));
         }
         let one = vec![file.cameras.swap_remove(chosen)];
         let one = self.decided(path, CameraFile { cameras: one, ..file });
-        one.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
+        one.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", shown(path))))
     }
 
     /// All cameras, with the same words, each once.
@@ -116,7 +117,7 @@ impl Reading {
         let Some(name) = &self.camera else { return Ok(0) };
         let by_name = cameras.iter().position(|camera| camera.name == *name);
         let by_place = || name.parse::<usize>().ok().filter(|place| (1..=cameras.len()).contains(place)).map(|place| place - 1);
-        by_name.or_else(by_place).ok_or_else(|| Failure::input(format!("{}: no camera is called {name}", path.display())))
+        by_name.or_else(by_place).ok_or_else(|| Failure::input(format!("{}: no camera is called {}", shown(path), escape::name(name))))
     }
 
     /// The cameras as the user decided open points; says what is unverified, assumed and left out.
@@ -132,7 +133,7 @@ impl Reading {
             }
             for note in &named.notes {
                 if !said.contains(note) {
-                    say!("{}: {note}", path.display());
+                    say!("{}: {}", shown(path), escape::name(note));
                     said.push(note.clone());
                 }
             }
@@ -145,6 +146,11 @@ impl Reading {
 fn format(name: &str) -> Result<&'static CameraFormat, String> {
     let near = || nearest(name, FORMATS.iter().map(|format| format.name)).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
     format_named(name).ok_or_else(|| format!("no such format; `calibench list formats` lists them{}", near()))
+}
+
+/// A file's name in a message.
+fn shown(path: &Path) -> String {
+    escape::name(&path.display().to_string()).into_owned()
 }
 
 pub fn size(text: &str) -> Result<ImageSize, String> {

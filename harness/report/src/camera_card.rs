@@ -1,9 +1,9 @@
 //! A camera on a card: what it is, and what its parameters mean for the frame.
 
-use calibench_exchange::camera::{NamedCamera, PoseFrame};
-use calibench_model::PixelPoint;
+use calibench_exchange::camera::{NamedCamera, ParameterCovariance, PoseFrame};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
 use calibench_model::convert::without_distortion;
+use calibench_model::{PixelPoint, escape};
 
 use crate::plain;
 
@@ -14,7 +14,7 @@ pub fn camera_card(named: &NamedCamera) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| text.push_str(&format!("  {name:<11} {value}\n"));
     if !named.name.is_empty() {
-        line("name", named.name.clone());
+        line("name", escape::name(&named.name).into_owned());
     }
     let convention = camera.convention();
     line("convention", format!("{}: {}", convention.name, convention.about));
@@ -31,7 +31,10 @@ pub fn camera_card(named: &NamedCamera) -> String {
         );
     }
     for parameter in camera.parameters() {
-        line(parameter.name, format!("{} {}", parameter.value, parameter.unit).trim_end().to_owned());
+        let value = format!("{} {}", parameter.value, parameter.unit).trim_end().to_owned();
+        let sigma = named.covariance.as_ref().and_then(|covariance| sigma(covariance, parameter.name));
+        let sigma = sigma.map_or(String::new(), |sigma| format!(", sigma {} {}", plain(sigma), parameter.unit).trim_end().to_owned());
+        line(parameter.name, value + &sigma);
     }
     line("view", view(camera));
     line("distortion", distortion(camera));
@@ -49,9 +52,15 @@ pub fn camera_card(named: &NamedCamera) -> String {
         line("covariance", format!("of {}", covariance.parameters.join(", ")));
     }
     for note in &named.notes {
-        line("note", note.clone());
+        line("note", escape::name(note).into_owned());
     }
     text
+}
+
+/// Standard deviation of a parameter, in its unit; `None` for one that was held fixed.
+fn sigma(covariance: &ParameterCovariance, name: &str) -> Option<f64> {
+    let place = covariance.parameters.iter().position(|own| own == name)?;
+    Some(covariance.values[place * (covariance.parameters.len() + 1)].sqrt())
 }
 
 fn middles(size: ImageSize) -> (f64, f64) {
@@ -162,6 +171,17 @@ mod tests {
             assert!(said.contains("over the whole frame") && !said.contains("no ray"), "{said}");
             assert_eq!(said.contains("not in a plane"), width * 1.25_f64.sqrt() > 180.0, "{said}");
         }
+    }
+
+    #[test]
+    fn sigmas_stand_beside_what_was_estimated_and_names_are_escaped() {
+        let mut named = NamedCamera::new("a\n  view  1\u{b0}", equidistant(90.0, SIZE, [0.0; 4]));
+        let covariance = ParameterCovariance::new(vec!["cx".into(), "k1".into()], vec![0.0625, 0.0, 0.0, 1e-6]);
+        named.covariance = Some(covariance.unwrap());
+        let said = camera_card(&named);
+        let of = |name: &str| said.lines().find(|line| line.split_whitespace().next() == Some(name)).unwrap().to_owned();
+        assert!(of("cx").ends_with("600 px, sigma 0.250 px") && of("k1").ends_with("0, sigma 0.00100"), "{said}");
+        assert!(!of("cy").contains("sigma") && said.contains("a\\n  view"), "{said}");
     }
 
     #[test]

@@ -12,6 +12,7 @@ pub mod fit;
 pub mod for_file;
 mod format;
 pub mod formats;
+mod ids;
 mod json;
 mod number;
 pub mod open_points;

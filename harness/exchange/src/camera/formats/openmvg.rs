@@ -8,6 +8,7 @@ use calibench_model::convert::Target;
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
 use crate::camera::fit::{Keeps, Model};
+use crate::camera::ids::Ids;
 use crate::camera::json;
 use crate::camera::number::{row, shortened, shortest};
 use crate::camera::source::Source;
@@ -53,10 +54,11 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     for view in root.key("views")?.map_or(Ok(&[][..]), Entry::items)? {
         polymorphic(view.required("value")?, &mut names)?;
     }
-    let mut cameras = Vec::new();
+    let (mut cameras, mut ids) = (Vec::new(), Ids::default());
     for entry in root.required("intrinsics")?.items()? {
         let (key, value) = (entry.text_of("key")?, entry.required("value")?);
         let at = |error: CameraFileError| error.in_key(&format!("intrinsics {}", shortened(key)));
+        ids.take(key, entry.line)?;
         let model = polymorphic(value, &mut names)?;
         let Some(model) = model else { return Err(at(value.wrong("has no `polymorphic_name`"))) };
         let data = value.required("ptr_wrapper")?.required("data").map_err(at)?;

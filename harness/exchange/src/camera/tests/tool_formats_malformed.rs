@@ -81,6 +81,24 @@ fn the_samples_are_read_as_what_they_are() {
 }
 
 #[test]
+fn an_id_that_stands_twice_is_refused() {
+    let colmap = "1 PINHOLE 640 480 500 501 320 240\n01 PINHOLE 640 480 900 901 320 240\n";
+    let kapture = "cam0, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\ncam0, right, camera, RADIAL, 640, 480, 900, 320, 240, -0.1, 0.02\n";
+    for (text, id) in [(colmap, "01"), (kapture, "cam0")] {
+        let error = read_with(text, SIZE).unwrap_err();
+        assert!(error.contains(&format!("f:2, `{id}`: the id of two cameras, first on line 1")), "{error}");
+    }
+    let two = OPENMVG.replacen("\"intrinsics\": [", "\"intrinsics\": [ENTRY, ", 1);
+    let (entry, _) = OPENMVG.split_once("\"intrinsics\": [").and_then(|(_, rest)| rest.rsplit_once(']')).unwrap();
+    let error = read_with(&two.replacen("ENTRY", entry, 1), SIZE).unwrap_err();
+    assert!(error.contains("the id of two cameras"), "{error}");
+    // A camera without a name has one in ROS.
+    let named = super::super::NamedCamera::new("", read_with(ROS, SIZE).unwrap().cameras[0].camera);
+    let text = super::super::camera_text(super::super::format_named("ros").unwrap(), &[named]).unwrap();
+    assert!(text.contains("camera_name: \"camera\"\n"), "{text}");
+}
+
+#[test]
 fn what_is_left_out_is_said() {
     for (text, expected) in [
         (ROS, "`roi` was left out"),
