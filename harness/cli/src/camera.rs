@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use calibench_exchange::camera::NamedCamera;
 use calibench_model::camera::CameraModel;
+use calibench_model::escape;
 use calibench_report::camera_card;
 use clap::Args;
 
@@ -28,7 +29,7 @@ impl CameraCommand {
         let cameras = if count == 1 { "1 camera".to_owned() } else { format!("{count} cameras") };
         let mut text = format!(
             "{}\n  format      {} ({}, {}), {verified}\n  holds       {cameras}\n",
-            self.file.display(),
+            escape::name(&self.file.display().to_string()),
             format.name,
             format.tool,
             format.versions
@@ -49,7 +50,7 @@ fn index(cameras: &[NamedCamera]) -> String {
     }
     let line = |(place, named): (usize, &NamedCamera)| {
         let size = named.camera.size();
-        let name = if named.name.is_empty() { "-" } else { &named.name };
+        let name = if named.name.is_empty() { "-".into() } else { escape::name(&named.name) };
         format!("  {:>9}   {name}: {}, {} x {} px\n", place + 1, named.camera.convention().name, size.width, size.height)
     };
     let mut text: String = cameras.iter().enumerate().take(MOST_LISTED).map(line).collect();

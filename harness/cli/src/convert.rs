@@ -92,7 +92,7 @@ impl Convert {
         self.reading.warn_of_format(format);
         let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
         lost.dedup();
-        lost.iter().for_each(|what| say!("warning: lost: {what}"));
+        lost.iter().for_each(|what| say!("warning: lost: {}", escape::name(what)));
         cameras_file.write(format, &cameras)
     }
 
@@ -126,7 +126,7 @@ impl Convert {
         let found = converted(source, &goal, self.model.as_deref(), self.pitch, &options);
         let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error))?;
         if !quiet {
-            let name = label.map_or(String::new(), |label| format!("{label}: "));
+            let name = label.map_or(String::new(), |label| format!("{}: ", escape::name(label)));
             let model = model.map_or(String::new(), |model| format!("{model}: "));
             eprint!("{}", escape::message(&format!("{name}{model}{}", summary(&conversion))));
         }

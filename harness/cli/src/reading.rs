@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use calibench_diagnostics::nearest;
 use calibench_exchange::camera::open_points::{self, OpenPoints};
-use calibench_exchange::camera::{CameraFile, CameraFormat, NamedCamera, ReadOptions, read_camera_with};
+use calibench_exchange::camera::{CameraFile, CameraFormat, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
+use calibench_model::escape;
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
@@ -15,6 +17,9 @@ pub struct Reading {
     /// Size of the images, for files that do not state it
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<ImageSize>,
+    /// Format of the file, where more than one recognises it; `list formats` lists them
+    #[arg(long, value_name = "FORMAT", value_parser = format)]
+    from: Option<&'static CameraFormat>,
     /// The file's OpenCV camera is the fisheye, though it does not say so
     #[arg(long)]
     fisheye: bool,
@@ -82,7 +87,7 @@ impl Reading {
     }
 
     pub fn file(&self, path: &Path) -> Result<CameraFile, Failure> {
-        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true) };
+        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), from: self.from };
         Ok(read_camera_with(path, &options)?)
     }
 
@@ -91,12 +96,12 @@ impl Reading {
         let mut file = self.file(path)?;
         let chosen = self.choose(path, &file.cameras)?;
         if file.cameras.len() > 1 && self.camera.is_none() {
-            let (count, name) = (file.cameras.len(), &file.cameras[chosen].name);
-            say!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", path.display());
+            let (count, name) = (file.cameras.len(), escape::name(&file.cameras[chosen].name));
+            say!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", shown(path));
         }
         let one = vec![file.cameras.swap_remove(chosen)];
         let one = self.decided(path, CameraFile { cameras: one, ..file });
-        one.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
+        one.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", shown(path))))
     }
 
     /// All cameras, with the same words, each once.
@@ -112,7 +117,7 @@ impl Reading {
         let Some(name) = &self.camera else { return Ok(0) };
         let by_name = cameras.iter().position(|camera| camera.name == *name);
         let by_place = || name.parse::<usize>().ok().filter(|place| (1..=cameras.len()).contains(place)).map(|place| place - 1);
-        by_name.or_else(by_place).ok_or_else(|| Failure::input(format!("{}: no camera is called {name}", path.display())))
+        by_name.or_else(by_place).ok_or_else(|| Failure::input(format!("{}: no camera is called {}", shown(path), escape::name(name))))
     }
 
     /// The cameras as the user decided open points; says what is unverified, assumed and left out.
@@ -128,13 +133,24 @@ impl Reading {
             }
             for note in &named.notes {
                 if !said.contains(note) {
-                    say!("{}: {note}", path.display());
+                    say!("{}: {}", shown(path), escape::name(note));
                     said.push(note.clone());
                 }
             }
         }
         cameras
     }
+}
+
+/// The format of a name.
+fn format(name: &str) -> Result<&'static CameraFormat, String> {
+    let near = || nearest(name, FORMATS.iter().map(|format| format.name)).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+    format_named(name).ok_or_else(|| format!("no such format; `calibench list formats` lists them{}", near()))
+}
+
+/// A file's name in a message.
+fn shown(path: &Path) -> String {
+    escape::name(&path.display().to_string()).into_owned()
 }
 
 pub fn size(text: &str) -> Result<ImageSize, String> {

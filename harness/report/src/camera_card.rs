@@ -1,9 +1,9 @@
 //! A camera on a card: what it is, and what its parameters mean for the frame.
 
-use calibench_exchange::camera::{NamedCamera, PoseFrame};
-use calibench_model::PixelPoint;
+use calibench_exchange::camera::{NamedCamera, ParameterCovariance, PoseFrame};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Ray, fold};
 use calibench_model::convert::without_distortion;
+use calibench_model::{PixelPoint, escape};
 
 use crate::plain;
 
@@ -14,7 +14,7 @@ pub fn camera_card(named: &NamedCamera) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| text.push_str(&format!("  {name:<11} {value}\n"));
     if !named.name.is_empty() {
-        line("name", named.name.clone());
+        line("name", escape::name(&named.name).into_owned());
     }
     let convention = camera.convention();
     line("convention", format!("{}: {}", convention.name, convention.about));
@@ -31,7 +31,10 @@ pub fn camera_card(named: &NamedCamera) -> String {
         );
     }
     for parameter in camera.parameters() {
-        line(parameter.name, format!("{} {}", parameter.value, parameter.unit).trim_end().to_owned());
+        let value = format!("{} {}", parameter.value, parameter.unit).trim_end().to_owned();
+        let sigma = named.covariance.as_ref().and_then(|covariance| sigma(covariance, parameter.name));
+        let sigma = sigma.map_or(String::new(), |sigma| format!(", sigma {} {}", plain(sigma), parameter.unit).trim_end().to_owned());
+        line(parameter.name, value + &sigma);
     }
     line("view", view(camera));
     line("distortion", distortion(camera));
@@ -49,22 +52,30 @@ pub fn camera_card(named: &NamedCamera) -> String {
         line("covariance", format!("of {}", covariance.parameters.join(", ")));
     }
     for note in &named.notes {
-        line("note", note.clone());
+        line("note", escape::name(note).into_owned());
     }
     text
+}
+
+/// Standard deviation of a parameter, in its unit; `None` for one that was held fixed.
+fn sigma(covariance: &ParameterCovariance, name: &str) -> Option<f64> {
+    let place = covariance.parameters.iter().position(|own| own == name)?;
+    Some(covariance.values[place * (covariance.parameters.len() + 1)].sqrt())
 }
 
 fn middles(size: ImageSize) -> (f64, f64) {
     (f64::from(size.width - 1) / 2.0, f64::from(size.height - 1) / 2.0)
 }
 
-/// Angles between the rays of opposite sides and corners.
+/// Angles from side to side and from corner to corner, by way of the middle of the frame: they may be above 180 degrees.
 fn view(camera: &Camera) -> String {
     let size = camera.size();
     let ((mx, my), (right, down)) = (middles(size), (f64::from(size.width - 1), f64::from(size.height - 1)));
+    let ray = |(x, y): (f64, f64)| camera.unproject(PixelPoint::new(x, y)).ok();
+    let middle = ray((mx, my));
     let angle = |a: (f64, f64), b: (f64, f64)| {
-        let ray = |(x, y)| camera.unproject(PixelPoint::new(x, y)).ok();
-        ray(a).zip(ray(b)).map_or("no ray".to_owned(), |(a, b)| format!("{:.2}\u{b0}", a.angle_to(b).to_degrees()))
+        let rays = ray(a).zip(middle).zip(ray(b));
+        rays.map_or("no ray".to_owned(), |((a, middle), b)| format!("{:.2}\u{b0}", by_way_of(middle, a, b).to_degrees()))
     };
     format!(
         "{} wide, {} high, {} from corner to corner",
@@ -72,6 +83,13 @@ fn view(camera: &Camera) -> String {
         angle((mx, 0.0), (mx, down)),
         angle((0.0, 0.0), (right, down))
     )
+}
+
+/// The angle between two rays on the side where `middle` lies, radians: below 2 pi.
+fn by_way_of(middle: Ray, a: Ray, b: Ray) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    let shorter = a.angle_to(b);
+    if a.angle_to(middle) + middle.angle_to(b) > PI { TAU - shorter } else { shorter }
 }
 
 /// How far the corners are from where the same camera without distortion pictures their rays.
@@ -83,8 +101,12 @@ fn distortion(camera: &Camera) -> String {
     let (right, down) = (f64::from(size.width - 1), f64::from(size.height - 1));
     let corner = |x: f64, y: f64| {
         let at = PixelPoint::new(x, y);
-        let there = camera.unproject(at).and_then(|ray| ideal.project(ray));
-        there.map_or("no ray".to_owned(), |ideal| format!("{} px", plain(ideal.distance(at))))
+        match camera.unproject(at).map(|ray| ideal.project(ray)) {
+            Err(_) => "no ray".to_owned(),
+            // The ray is there: it is the plane that ends at 90 degrees.
+            Ok(Err(_)) => "not in a plane".to_owned(),
+            Ok(Ok(ideal)) => format!("{} px", plain(ideal.distance(at))),
+        }
     };
     format!(
         "{}, {}, {}, {} in the corners (clockwise from top left)",
@@ -95,14 +117,78 @@ fn distortion(camera: &Camera) -> String {
     )
 }
 
+/// Columns and rows of the pixels that are looked at for rays.
+const GRID: (u32, u32) = (120, 80);
+
+/// Share of the frame whose pixels have no ray, 0 to 1.
+fn without_ray(camera: &Camera) -> f64 {
+    let (size, (columns, rows)) = (camera.size(), GRID);
+    let place = |index: u32, count: u32, length: u32| f64::from(length - 1) * f64::from(index) / f64::from(count - 1);
+    let pixels =
+        (0..columns * rows).map(|i| PixelPoint::new(place(i % columns, columns, size.width), place(i / columns, rows, size.height)));
+    let lost = pixels.filter(|&pixel| camera.unproject(pixel).is_err()).count();
+    lost as f64 / f64::from(columns * rows)
+}
+
 fn one_to_one(camera: &Camera) -> String {
-    let axis = camera.project(Ray::from_tangent(0.0, 0.0)).ok();
-    match (fold(camera), axis) {
-        (None, _) => "over the whole frame".into(),
-        (Some(fold), _) => format!(
-            "only to {} px from the image of the axis: there the distortion folds over; {:.2} % of the frame have no ray",
+    let lost = 100.0 * without_ray(camera);
+    match fold(camera) {
+        None if lost == 0.0 => "over the whole frame".into(),
+        None => format!("where there are rays: {lost:.2} % of the frame have none, since the model ends before"),
+        Some(fold) => format!(
+            "only to {} px from the image of the axis: there the distortion folds over; {lost:.2} % of the frame have no ray",
             plain(fold.radius_px),
-            100.0 * fold.share
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibench_model::camera::OpenCvFisheye;
+
+    /// An equidistant camera of a field of view from side to side, degrees.
+    fn equidistant(degrees: f64, size: ImageSize, k: [f64; 4]) -> Camera {
+        let ((cx, cy), half) = (middles(size), f64::from(size.width - 1) / 2.0);
+        let f = half / (degrees / 2.0).to_radians();
+        OpenCvFisheye { size, fx: f, fy: f, cx, cy, skew: 0.0, k }.into()
+    }
+
+    fn card(camera: Camera) -> String {
+        camera_card(&NamedCamera::new("", camera))
+    }
+
+    const SIZE: ImageSize = ImageSize { width: 1201, height: 601 };
+
+    #[test]
+    fn a_view_may_be_above_180_degrees() {
+        // Equidistant: angles are lengths in the image; the diagonal is sqrt(5) / 2 of the width.
+        for width in [90.0, 160.0, 179.99, 180.01, 200.0, 220.0, 300.0] {
+            let said = card(equidistant(width, SIZE, [0.0; 4]));
+            let expected =
+                format!("{width:.2}\u{b0} wide, {:.2}\u{b0} high, {:.2}\u{b0} from corner to corner", width / 2.0, width * 1.25_f64.sqrt());
+            assert!(said.contains(&expected), "{expected}\n{said}");
+            assert!(said.contains("over the whole frame") && !said.contains("no ray"), "{said}");
+            assert_eq!(said.contains("not in a plane"), width * 1.25_f64.sqrt() > 180.0, "{said}");
+        }
+    }
+
+    #[test]
+    fn sigmas_stand_beside_what_was_estimated_and_names_are_escaped() {
+        let mut named = NamedCamera::new("a\n  view  1\u{b0}", equidistant(90.0, SIZE, [0.0; 4]));
+        let covariance = ParameterCovariance::new(vec!["cx".into(), "k1".into()], vec![0.0625, 0.0, 0.0, 1e-6]);
+        named.covariance = Some(covariance.unwrap());
+        let said = camera_card(&named);
+        let of = |name: &str| said.lines().find(|line| line.split_whitespace().next() == Some(name)).unwrap().to_owned();
+        assert!(of("cx").ends_with("600 px, sigma 0.250 px") && of("k1").ends_with("0, sigma 0.00100"), "{said}");
+        assert!(!of("cy").contains("sigma") && said.contains("a\\n  view"), "{said}");
+    }
+
+    #[test]
+    fn a_frame_that_the_model_does_not_fill_is_not_one_to_one() {
+        // Corners at 190 degrees from the axis.
+        let said = card(equidistant(340.0, SIZE, [0.0; 4]));
+        assert!(said.contains("340.00\u{b0} wide") && said.contains("no ray from corner to corner"), "{said}");
+        assert!(!said.contains("over the whole frame") && said.contains("have none, since the model ends before"), "{said}");
     }
 }

@@ -83,7 +83,7 @@ fn camera(bytes: &[u8], _: &Path) -> Result<(), String> {
 }
 
 fn camera_of_size(bytes: &[u8], _: &Path) -> Result<(), String> {
-    read_camera(bytes, ReadOptions { size: Some(SIZE), fisheye: Some(true) })
+    read_camera(bytes, ReadOptions { size: Some(SIZE), fisheye: Some(true), from: None })
 }
 
 /// What a format reads it writes and reads again, or says why not.
@@ -91,7 +91,7 @@ fn read_camera(bytes: &[u8], options: ReadOptions) -> Result<(), String> {
     let found = parse_camera(FILE, bytes, &options).map_err(|error| error.to_string())?;
     if let Ok(text) = camera_text(found.format, &found.cameras) {
         let size = (!found.format.states_size).then(|| calibench_model::camera::CameraModel::size(&found.cameras[0].camera));
-        let again = parse_camera(FILE, text.as_bytes(), &ReadOptions { size, fisheye: options.fisheye });
+        let again = parse_camera(FILE, text.as_bytes(), &ReadOptions { size, fisheye: options.fisheye, from: None });
         assert!(again.is_ok_and(|again| again.cameras.len() == found.cameras.len()), "{text}");
     }
     assert!(format_named(found.format.name).is_some());

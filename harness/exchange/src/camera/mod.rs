@@ -12,6 +12,7 @@ pub mod fit;
 pub mod for_file;
 mod format;
 pub mod formats;
+mod ids;
 mod json;
 mod number;
 pub mod open_points;
@@ -19,6 +20,7 @@ mod opencv;
 mod opencv_storage;
 mod photogrammetric_toml;
 mod pose;
+mod recognised;
 mod source;
 pub mod target;
 mod tree;
@@ -86,6 +88,8 @@ pub struct ReadOptions {
     pub size: Option<ImageSize>,
     /// OpenCV's fisheye camera (true) or its pinhole camera (false), for files that do not say `fisheye_model`: without both, the pinhole.
     pub fisheye: Option<bool>,
+    /// The format, where more than one recognises the file; one that does not is an error.
+    pub from: Option<&'static CameraFormat>,
 }
 
 impl ReadOptions {
@@ -105,7 +109,8 @@ impl ReadOptions {
 /// Reads a camera file; the format is found by content.
 ///
 /// # Errors
-/// The first mistake, with file, line and element; for an unknown format why each known one said no.
+/// The first mistake, with file, line and element; for an unknown format why each known one said no; several formats that read different cameras
+/// (by more than 1e-6 px in the frame).
 pub fn read_camera(path: &Path) -> Result<CameraFile, CameraFileError> {
     read_camera_with(path, &ReadOptions::default())
 }
@@ -129,21 +134,7 @@ pub fn parse_camera(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<C
 }
 
 fn parse(bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
-    let source = Source::new(bytes)?;
-    let mut refusals = Vec::new();
-    for &format in FORMATS {
-        match (format.recognise)(&source) {
-            Ok(()) => {
-                let cameras = (format.read)(&source, options)?;
-                if cameras.is_empty() {
-                    return Err(CameraFileError::new(format!("{} without a camera; expected at least one", format.name)));
-                }
-                return Ok(CameraFile { format, cameras });
-            }
-            Err(why) => refusals.push(format!("{}: {why}", format.name)),
-        }
-    }
-    Err(CameraFileError::new(format!("no camera file that is known; tried {}", refusals.join("; "))))
+    recognised::cameras(&Source::new(bytes)?, options)
 }
 
 /// The text of a camera file. Numbers have 17 significant digits or their shortest exact form.
@@ -165,7 +156,7 @@ pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Str
     }
     let text = write(cameras)?;
     let size = Some(cameras[0].camera.size()).filter(|_| !format.states_size);
-    match parse(text.as_bytes(), &ReadOptions { size, fisheye: None }) {
+    match parse(text.as_bytes(), &ReadOptions { size, fisheye: None, from: None }) {
         Ok(_) => Ok(text),
         Err(error) => {
             let problem = format!("cannot be written as {}: {}", format.name, error.problem);

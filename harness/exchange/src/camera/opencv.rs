@@ -2,21 +2,43 @@
 //!
 //! `camera_matrix`, `distortion_coefficients`, `image_width`, `image_height`, as OpenCV's calibration sample writes them, and the capitalised
 //! names of Metashape's export. The fisheye camera is told by the sample's own `fisheye_model: 1`; without it four coefficients are a pinhole
-//! camera's, for nothing else in the file tells them apart.
+//! camera's, for nothing else in the file tells them apart. With `xi` it is the camera of cv2.omnidir, which is Mei's.
 
-use calibench_model::camera::{Camera, ImageSize, OpenCv, OpenCvFisheye};
+use calibench_model::camera::{Camera, ImageSize, Omni, OpenCv, OpenCvFisheye};
 
 use super::number::pixels;
 use super::opencv_storage::Matrix;
-use super::tree::Entry;
+use super::tree::{Entry, Value};
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 
 const CAMERA_MATRIX: [&str; 4] = ["camera_matrix", "Camera_Matrix", "cameraMatrix", "Camera_matrix"];
 const DISTORTION: [&str; 5] = ["distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "distortionCoefficients"];
-const WIDTH: [&str; 3] = ["image_width", "image_Width", "imageWidth"];
-const HEIGHT: [&str; 3] = ["image_height", "image_Height", "imageHeight"];
+const WIDTH: [&str; 6] = ["image_width", "image_Width", "Image_Width", "imageWidth", "img_width", "width"];
+const HEIGHT: [&str; 6] = ["image_height", "image_Height", "Image_Height", "imageHeight", "img_height", "height"];
+/// Columns and rows in one value, as OpenCV's interactive calibration writes them, and others.
+const SIZE: [&str; 7] = ["cameraResolution", "calibImageSize", "image_size", "imageSize", "img_size", "Image_Size", "resolution"];
 const FISHEYE: [&str; 1] = ["fisheye_model"];
+const XI: [&str; 1] = ["xi"];
 const NAME: [&str; 1] = ["camera_name"];
+/// How the calibration was made, as the samples of OpenCV and Metashape say it: nothing of the camera.
+const ABOUT: [&str; 16] = [
+    "calibration_time",
+    "calibration_Time",
+    "calibrationDate",
+    "nr_of_frames",
+    "nframes",
+    "nFrames",
+    "framesCount",
+    "board_width",
+    "board_height",
+    "square_size",
+    "marker_size",
+    "aspectRatio",
+    "fix_aspect_ratio",
+    "flags",
+    "avg_reprojection_error",
+    "per_view_reprojection_errors",
+];
 
 /// The camera of a FileStorage.
 pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
@@ -26,12 +48,18 @@ pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamer
     let (name, entry) = required(&DISTORTION)?;
     let distortion = entry.matrix(14).and_then(|matrix| vector(&matrix)).map_err(|error| placed(error, name, entry))?;
     let size = options.size_or(stated_size(root)?)?;
-    let mut notes = Vec::new();
-    let fisheye = is_fisheye(root, options)?;
-    if !fisheye && distortion.len() == 4 && options.fisheye.is_none() && root.get(&FISHEYE)?.is_none() {
+    let known = [&CAMERA_MATRIX[..], &DISTORTION, &WIDTH, &HEIGHT, &SIZE, &FISHEYE, &XI, &NAME, &ABOUT].concat();
+    let mut notes = root.unknown(&known)?;
+    let (fisheye, xi) = (is_fisheye(root, options)?, mirror(root)?);
+    if !fisheye && xi.is_none() && distortion.len() == 4 && options.fisheye.is_none() && root.get(&FISHEYE)?.is_none() {
         notes.push("four coefficients without `fisheye_model`: read as the pinhole camera's k1, k2, p1, p2".into());
     }
-    let camera = if fisheye { fisheye_camera(size, &k, &distortion) } else { pinhole(size, &k, &distortion) };
+    let camera = match xi {
+        Some((_, at)) if fisheye => return Err(at.wrong("is cv2.omnidir's: no camera has it and `fisheye_model` both").of(XI[0])),
+        Some((xi, _)) => omnidirectional(size, &k, xi, &distortion),
+        None if fisheye => fisheye_camera(size, &k, &distortion),
+        None => pinhole(size, &k, &distortion),
+    };
     let camera = camera.map_err(|error| placed(error, name, entry))?;
     let name = root.get(&NAME)?.map(|(_, entry)| entry.text()).transpose()?.unwrap_or("");
     Ok(vec![NamedCamera { notes, ..NamedCamera::new(name, camera) }])
@@ -69,11 +97,46 @@ fn stated_size(root: &Entry) -> Result<Option<ImageSize>, CameraFileError> {
     let side = |names: &[&str]| {
         root.get(names)?.map(|(name, entry)| entry.text().and_then(pixels).map_err(|error| placed(error, name, entry))).transpose()
     };
-    match (side(&WIDTH)?, side(&HEIGHT)?) {
-        (Some(width), Some(height)) => Ok(Some(ImageSize { width, height })),
-        (None, None) => Ok(None),
-        _ => Err(root.wrong("expected `image_width` and `image_height`, found one of them")),
+    let sides = match (side(&WIDTH)?, side(&HEIGHT)?) {
+        (Some(width), Some(height)) => Some(ImageSize { width, height }),
+        (None, None) => None,
+        _ => return Err(root.wrong("expected `image_width` and `image_height`, found one of them")),
+    };
+    let Some((name, entry)) = root.get(&SIZE)? else { return Ok(sides) };
+    let whole = size_in_one(entry).map_err(|error| placed(error, name, entry))?;
+    match sides {
+        Some(sides) if sides != whole => {
+            let ImageSize { width, height } = sides;
+            Err(entry.wrong(&format!("says another size than `image_width` and `image_height`, {width} x {height} px")).of(name))
+        }
+        _ => Ok(Some(whole)),
     }
+}
+
+/// Columns and rows in a list, or in a text as XML has them.
+fn size_in_one(entry: &Entry) -> Result<ImageSize, CameraFileError> {
+    let words: Vec<&str> = match &entry.value {
+        Value::List(items) => items.iter().map(Entry::text).collect::<Result<_, _>>()?,
+        _ => entry.text()?.split_whitespace().collect(),
+    };
+    match words[..] {
+        [width, height] => Ok(ImageSize { width: pixels(width)?, height: pixels(height)? }),
+        _ => Err(entry.wrong(&format!("expected columns and rows, found {} values", words.len()))),
+    }
+}
+
+/// `xi` of cv2.omnidir, a number or a matrix of one.
+fn mirror(root: &Entry) -> Result<Option<(f64, &Entry)>, CameraFileError> {
+    let Some((name, entry)) = root.get(&XI)? else { return Ok(None) };
+    let value = match entry.value {
+        Value::Map(_) => entry.matrix(1).map(|matrix| matrix.data[0]),
+        _ => entry.number(),
+    };
+    let value = value.map_err(|error| placed(error, name, entry))?;
+    if value < 0.0 {
+        return Err(entry.wrong(&format!("expected a number from 0, found {value}")).of(name));
+    }
+    Ok(Some((value, entry)))
 }
 
 fn is_fisheye(root: &Entry, options: &ReadOptions) -> Result<bool, CameraFileError> {
@@ -99,6 +162,19 @@ fn pinhole(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, Camer
     let mut distortion = [0.0; 14];
     distortion[..found.len()].copy_from_slice(found);
     Ok(Camera::OpenCv(OpenCv { size, fx: k[0], fy: k[4], cx: k[2], cy: k[5], distortion, coefficients: found.len() }))
+}
+
+/// cv2.omnidir's camera: the generalised focal lengths stand in the camera matrix.
+fn omnidirectional(size: ImageSize, k: &[f64; 9], xi: f64, found: &[f64]) -> Result<Camera, CameraFileError> {
+    if k[1] != 0.0 {
+        return Err(CameraFileError::new(format!(
+            "the camera matrix has a skew of {}, which is not known here beside `xi`; expected 0",
+            k[1]
+        )));
+    }
+    let [k1, k2, p1, p2] = <[f64; 4]>::try_from(found)
+        .map_err(|_| CameraFileError::new(format!("expected 4 coefficients beside `xi`, k1, k2, p1, p2, found {}", found.len())))?;
+    Ok(Omni { size, fx: k[0], fy: k[4], cx: k[2], cy: k[5], xi, k: [k1, k2], p: [p1, p2] }.into())
 }
 
 fn fisheye_camera(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera, CameraFileError> {

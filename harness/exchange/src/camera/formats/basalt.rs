@@ -64,7 +64,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         }
         cameras.push(named);
     }
-    Ok(noted(cameras, &root.unknown(&["T_imu_cam", "intrinsics", "resolution"])?))
+    let mut notes = tree.unknown(&["value0"])?;
+    notes.extend(root.unknown(&["T_imu_cam", "intrinsics", "resolution"])?);
+    Ok(noted(cameras, &notes))
 }
 
 fn pose(entry: &Entry) -> Result<Pose, CameraFileError> {
@@ -104,7 +106,9 @@ fn camera(entry: &Entry, size: ImageSize) -> Result<NamedCamera, CameraFileError
         }
     };
     let known = [&["fx", "fy", "cx", "cy"], own].concat();
-    Ok(NamedCamera { notes: values.unknown(&known)?, ..NamedCamera::new("", camera) })
+    let mut notes = entry.unknown(&["camera_type", "intrinsics"])?;
+    notes.extend(values.unknown(&known)?);
+    Ok(NamedCamera { notes, ..NamedCamera::new("", camera) })
 }
 
 const RADTAN: [&str; 8] = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"];

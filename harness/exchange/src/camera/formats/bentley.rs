@@ -80,6 +80,10 @@ fn camera(group: Node<'_, '_>, options: &ReadOptions) -> Result<NamedCamera, Cam
     }
     let name = xml::child(group, "Name")?.map_or(Ok(""), xml::text)?;
     let mut notes: Vec<String> = Vec::new();
+    if let Some(distortion) = xml::child(group, "Distortion")? {
+        let names = xml::elements(distortion).map(|node| node.tag_name().name());
+        notes.extend(all_left_out(names.filter(|name| !["K1", "K2", "K3", "P1", "P2"].contains(name))));
+    }
     let photos = xml::elements(group).filter(|node| node.has_tag_name("Photo")).count();
     if photos > 0 {
         notes.push(format!("{photos} photos with their poses were left out"));

@@ -8,6 +8,7 @@ use crate::camera::brown::{Brown, positive};
 use crate::camera::fit::{Keeps, KeptCovariance, Model};
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::source::Source;
+use crate::camera::tree::all_left_out;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
@@ -25,6 +26,26 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
 };
 
 const NAMES: [&str; 9] = ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"];
+
+/// What is read, and how the calibration was made.
+const KNOWN: [&str; 16] = [
+    "fc",
+    "cc",
+    "alpha_c",
+    "kc",
+    "fc_error",
+    "cc_error",
+    "alpha_c_error",
+    "kc_error",
+    "nx",
+    "ny",
+    "n_ima",
+    "est_fc",
+    "est_aspect_ratio",
+    "center_optim",
+    "est_alpha",
+    "est_dist",
+];
 
 fn recognise(source: &Source<'_>) -> Result<(), String> {
     let has = |name: &str| statements(source).any(|(_, key, _)| key == name);
@@ -90,6 +111,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     if statements(source).any(|(_, key, _)| key.starts_with("omc_")) {
         notes.push("the poses of the calibration images were left out".into());
     }
+    let of_images = |key: &str| ["omc_", "Tc_"].iter().any(|start| key.starts_with(start));
+    notes.extend(all_left_out(statements(source).map(|(_, key, _)| key).filter(|key| !KNOWN.contains(key) && !of_images(key))));
     Ok(vec![NamedCamera { covariance, notes, ..NamedCamera::new("", camera) }])
 }
 

@@ -73,7 +73,14 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         }
     };
     let name = root.key("camera_name")?.map_or(Ok(""), Entry::text)?;
-    Ok(vec![NamedCamera { notes: root.unknown(&KNOWN)?, ..NamedCamera::new(name, camera) }])
+    let mut notes = root.unknown(&KNOWN)?;
+    for (group, known) in parts(&camera).map_or(Vec::new(), |(_, groups)| groups) {
+        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        notes.extend(
+            root.key(group)?.map_or(Ok(Vec::new()), |entry| entry.unknown(&names))?.into_iter().map(|note| format!("of {group}, {note}")),
+        );
+    }
+    Ok(vec![NamedCamera { notes, ..NamedCamera::new(name, camera) }])
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {

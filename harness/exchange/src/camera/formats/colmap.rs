@@ -4,6 +4,7 @@ use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
 use crate::camera::fit::Keeps;
+use crate::camera::ids::Ids;
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
@@ -41,7 +42,13 @@ fn recognise(source: &Source<'_>) -> Result<(), String> {
 }
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
-    lines(source).map(|(line, text)| camera(text, options).map_err(|error| error.on_line(line))).collect()
+    let mut ids = Ids::default();
+    let one = |(line, text)| {
+        let named = camera(text, options).map_err(|error| error.on_line(line))?;
+        ids.take(&named.name, line)?;
+        Ok(named)
+    };
+    lines(source).map(one).collect()
 }
 
 fn camera(text: &str, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {

@@ -4,6 +4,7 @@ use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
 use crate::camera::fit::Keeps;
+use crate::camera::ids::Ids;
 use crate::camera::number::{finite, pixels, shortest};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models, noted};
@@ -32,12 +33,13 @@ fn recognise(source: &Source<'_>) -> Result<(), String> {
 }
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
-    let (mut cameras, mut others) = (Vec::new(), Vec::new());
+    let (mut cameras, mut others, mut ids) = (Vec::new(), Vec::new(), Ids::default());
     for (line, text) in source.lines().filter(|(_, line)| !line.starts_with('#')) {
         let words: Vec<&str> = text.split(',').map(str::trim).collect();
         match words[..] {
             [id, name, "camera", model, width, height, ref values @ ..] => {
                 let at = |error: CameraFileError| error.on_line(line);
+                ids.take(id, line)?;
                 let size = ImageSize { width: pixels(width).map_err(at)?, height: pixels(height).map_err(at)? };
                 let size = options.size_or(Some(size)).map_err(at)?;
                 let values = values.iter().map(|word| finite(word)).collect::<Result<Vec<_>, _>>().map_err(at)?;

@@ -7,6 +7,7 @@ use roxmltree::Node;
 
 use super::PLAIN;
 use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::ids::Ids;
 use crate::camera::number::{finite, scientific};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions, agisoft, xml};
@@ -36,7 +37,12 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let mut cameras = Vec::new();
     for chunk in xml::elements(root).filter(|node| node.has_tag_name("chunk")) {
         let sensors = xml::required(chunk, "sensors")?;
+        // Each chunk counts its own.
+        let mut ids = Ids::default();
         for sensor in xml::elements(sensors).filter(|node| node.has_tag_name("sensor")) {
+            if let Some(id) = sensor.attribute("id") {
+                ids.take(id, sensor.document().text_pos_at(sensor.range().start).row as usize)?;
+            }
             cameras.extend(self::sensor(sensor, options)?);
         }
     }

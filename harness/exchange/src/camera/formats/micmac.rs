@@ -59,14 +59,18 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let pp = pair(node, "PP")?;
     let mut camera = MicMac { size, f, pp, offset: [0.0; 2], k: [0.0; 5], p: [0.0; 2], b: [0.0; 2] };
     let mut models = xml::elements(node).filter(|child| child.has_tag_name("CalibDistortion")).flat_map(xml::elements);
+    let mut notes = Vec::new();
     if let Some(model) = models.next() {
         distortion(model, &mut camera)?;
+        let parts = ["P1", "P2", "b1", "b2", "RadialePart", "CDist", "CoeffDist", "CoeffDistInv"];
+        let all = model.descendants().filter(|node| node.is_element() && *node != model).map(|node| node.tag_name().name());
+        notes.extend(all_left_out(all.filter(|name| !parts.contains(name))));
     }
     if let Some(second) = models.next() {
         return Err(xml::at(second, CameraFileError::new("stands after another distortion; expected one")));
     }
     let others = xml::elements(node).map(|child| child.tag_name().name()).filter(|name| !KNOWN.contains(name));
-    let mut notes = all_left_out(others);
+    notes.extend(all_left_out(others));
     if let Some(radius) = xml::number(node, "RayonUtile")? {
         notes.push(format!("`RayonUtile`, the calibration's own limit of {radius} px, was left out: restrict fits by a radius"));
     }

@@ -35,7 +35,7 @@ mod example;
 
 use super::format::{CameraFormat, PLAIN};
 
-/// Every format, in the order in which they are tried.
+/// Every format; all are asked, and of those that read the same cameras the first is taken.
 pub static FORMATS: &[&CameraFormat] = &[
     &photogrammetric::FORMAT,
     &camodocal::FORMAT,

@@ -21,7 +21,8 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
         "mrcal's own splined fit of one of its OPENCV8 cameras, made for points at 5 m, agrees to 0.2 px after a shift of the centre",
     ),
     recognise: |source| {
-        if source.xml.is_none() && source.text.contains("LENSMODEL_") { Ok(()) } else { Err("no `LENSMODEL_`".into()) }
+        let first = source.lines().find(|(_, line)| !line.starts_with('#')).map_or("", |(_, line)| line);
+        if first.starts_with('{') && source.text.contains(PREFIX) { Ok(()) } else { Err("no `LENSMODEL_`".into()) }
     },
     read,
     write: Some(write),

@@ -60,7 +60,13 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         cameras.push(NamedCamera { pose, ..NamedCamera::new(name, camera) });
     }
     let known = [&INTRINSICS[..], &["file_path", "transform_matrix"]].concat();
-    let more = all_left_out(frames[0].entries()?.iter().map(|(name, _)| name.as_str()).filter(|name| !known.contains(name)));
+    let mut others: Vec<&str> = Vec::new();
+    for frame in frames {
+        others.extend(frame.entries()?.iter().map(|(name, _)| name.as_str()).filter(|name| !known.contains(name)));
+    }
+    others.sort_unstable();
+    others.dedup();
+    let more = all_left_out(others.into_iter());
     let more: Vec<String> = more.into_iter().map(|note| format!("of frames, {note}")).collect();
     Ok(noted(noted(cameras, &unknown), &more))
 }

@@ -30,11 +30,14 @@ const MOST_VALUES: usize = 1_000_000;
 const MOST_DEPTH: usize = 32;
 
 fn recognise(source: &Source<'_>) -> Result<(), String> {
-    let header = source.text.starts_with("%YAML");
-    if source.xml.is_none() && (header || source.text.contains("!!opencv-matrix")) {
-        return Ok(());
+    let has = |key: &str| source.text.lines().any(|line| line.starts_with(key));
+    let tagged = source.text.contains("!!opencv-matrix");
+    if source.xml.is_some() || !(tagged || source.text.starts_with("%YAML")) {
+        return Err("neither a `%YAML` line at the top nor a `!!opencv-matrix`".into());
     }
-    Err("neither a `%YAML` line at the top nor a `!!opencv-matrix`".into())
+    // The first line alone is that of other tools' YAML, too; camodocal's may hold OpenCV's matrices.
+    let others = has("model_type:") || (!tagged && (has("distortion_model:") || has("cam0:")));
+    if others { Err("has the keys of another tool".into()) } else { Ok(()) }
 }
 
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {

@@ -8,6 +8,7 @@ use calibench_model::convert::Target;
 use super::PLAIN;
 use crate::camera::brown::{Brown, positive};
 use crate::camera::fit::{Keeps, Model};
+use crate::camera::ids::Ids;
 use crate::camera::json;
 use crate::camera::number::{row, shortened, shortest};
 use crate::camera::source::Source;
@@ -43,6 +44,9 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
 /// Set where a model's name stands for the first time.
 const NEW: u64 = 1 << 31;
 
+/// What is read, and what says nothing of a camera.
+const KNOWN: [&str; 7] = ["sfm_data_version", "root_path", "views", "intrinsics", "extrinsics", "structure", "control_points"];
+
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let root = json::json(source.text)?;
     let mut names = HashMap::new();
@@ -50,10 +54,11 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     for view in root.key("views")?.map_or(Ok(&[][..]), Entry::items)? {
         polymorphic(view.required("value")?, &mut names)?;
     }
-    let mut cameras = Vec::new();
+    let (mut cameras, mut ids) = (Vec::new(), Ids::default());
     for entry in root.required("intrinsics")?.items()? {
         let (key, value) = (entry.text_of("key")?, entry.required("value")?);
         let at = |error: CameraFileError| error.in_key(&format!("intrinsics {}", shortened(key)));
+        ids.take(key, entry.line)?;
         let model = polymorphic(value, &mut names)?;
         let Some(model) = model else { return Err(at(value.wrong("has no `polymorphic_name`"))) };
         let data = value.required("ptr_wrapper")?.required("data").map_err(at)?;
@@ -62,8 +67,9 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         cameras.push(named);
     }
     let posed = root.key("extrinsics")?.map_or(Ok(0), |entry| entry.items().map(<[Entry]>::len))?;
-    let note = (posed > 0).then(|| format!("`extrinsics`, {posed} poses of images, were left out"));
-    Ok(noted(cameras, note.as_slice()))
+    let mut notes = root.unknown(&KNOWN)?;
+    notes.extend((posed > 0).then(|| format!("`extrinsics`, {posed} poses of images, were left out")));
+    Ok(noted(cameras, &notes))
 }
 
 /// The name of a value's type, by its number if it was named before.
@@ -102,7 +108,11 @@ fn camera(model: &str, data: &Entry, options: &ReadOptions) -> Result<NamedCamer
             return Err(data.wrong(&format!("`{}` is not known; expected {known}", shortened(model))).of("polymorphic_name"));
         }
     };
-    let notes = data.unknown(&["value0", "width", "height", "focal_length", "principal_point", own])?;
+    let of_base = ["width", "height", "focal_length", "principal_point"];
+    let mut notes = data.unknown(&[&of_base[..], &["value0", own]].concat())?;
+    if data.key("value0")?.is_some() {
+        notes.extend(base.unknown(&of_base)?);
+    }
     Ok(NamedCamera { notes, ..NamedCamera::new("", camera) })
 }
 

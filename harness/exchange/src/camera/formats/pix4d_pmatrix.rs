@@ -17,14 +17,22 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     verified: Some("decomposed, they give the camera matrix, position and rotation that Pix4D wrote, to what six decimals allow"),
     many: true,
     states_size: false,
-    recognise: |source| {
-        let (_, first) = source.lines().next().unwrap_or_default();
-        row(first).map(|_| ()).map_err(|_| "the first line is not a name and 12 numbers".to_owned())
-    },
+    recognise,
     read,
     write: None,
     ..PLAIN
 };
+
+/// How far the length of a rotation's row may be from one: Pix4D prints six decimals.
+const UNIT: f64 = 1e-5;
+
+fn recognise(source: &Source<'_>) -> Result<(), String> {
+    let (_, first) = source.lines().next().unwrap_or_default();
+    let matrix = row(first).map_err(|_| "the first line is not a name and 12 numbers".to_owned())?.matrix;
+    // Twelve numbers after some words have others, too; the third row of K R is that of R.
+    let length = norm([matrix[2][0], matrix[2][1], matrix[2][2]]);
+    if (length - 1.0).abs() <= UNIT { Ok(()) } else { Err("the matrix of the first line has no rotation in its third row".into()) }
+}
 
 /// A projection matrix: homogeneous px, from the outer corner of the first pixel and without distortion, of a homogeneous world point.
 #[derive(Clone, Debug, PartialEq)]

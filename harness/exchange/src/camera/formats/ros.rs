@@ -118,12 +118,17 @@ fn rectified(root: &Entry, k: &[f64; 9]) -> Result<Vec<String>, CameraFileError>
     Ok(notes)
 }
 
+/// What a camera without a name is called.
+const UNNAMED: &str = "camera";
+
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let named = &cameras[0];
     let ImageSize { width, height } = named.camera.size();
     let (model, [fx, fy, cx, cy], d) =
         parts(&named.camera).ok_or_else(|| FORMAT.other_model("a camera of OpenCV's models, without shear"))?;
-    let mut out = format!("image_width: {width}\nimage_height: {height}\ncamera_name: {}\n", quoted(&named.name));
+    // camera_info_manager compares the name: an empty one is no name.
+    let name = if named.name.trim().is_empty() { UNNAMED } else { &named.name };
+    let mut out = format!("image_width: {width}\nimage_height: {height}\ncamera_name: {}\n", quoted(name));
     let mut matrix = |name: &str, rows: usize, data: &[f64]| {
         let columns = data.len() / rows;
         out.push_str(&format!("{name}:\n  rows: {rows}\n  cols: {columns}\n  data: [{}]\n", row(data)));

@@ -10,7 +10,7 @@ use crate::camera::json::{self, quoted};
 use crate::camera::number::{row, shortened, shortest};
 use crate::camera::source::Source;
 use crate::camera::tree::Entry;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, noted};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "theia",
@@ -59,7 +59,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let camera = |(index, prior): (usize, &Entry)| {
         camera(prior.required("CameraIntrinsicsPrior")?, options).map_err(|error| error.in_key(&format!("priors[{index}]")))
     };
-    priors.map(camera).collect()
+    let cameras = priors.map(camera).collect::<Result<_, _>>()?;
+    Ok(noted(cameras, &root.unknown(&["priors"])?))
 }
 
 fn camera(prior: &Entry, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {

@@ -94,7 +94,7 @@ fn into_format(format: &CameraFormat, camera: &Camera) -> &'static str {
     let text = camera_text(format, &[NamedCamera::new("7", found.camera)])
         .unwrap_or_else(|error| panic!("{} {}: {error}\n{:?}", format.name, model.name, found.camera));
     let size = (!format.states_size).then_some(camera.size());
-    let read = read_with(&text, ReadOptions { size, fisheye: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let read = read_with(&text, ReadOptions { size, fisheye: None, from: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
     // What the conversion says of itself is what the file pictures.
     let off = apart(camera, &read.cameras[0].camera);
     match found.method {

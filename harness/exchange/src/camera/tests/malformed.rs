@@ -31,7 +31,7 @@ const OURS: &str = "format = \"calibench-camera\"\nversion = 1\nmodel = \"photog
     [interior_orientation]\nc_mm = 20.0\nx0_mm = 0.1\ny0_mm = 0.2\n";
 const ALL: [&str; 9] = [YAML, OPENCV, METASHAPE, OLD, DOCUMENT, CAM, INPHO, PARAMETERS, OURS];
 
-const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None };
+const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, from: None };
 
 #[test]
 fn the_samples_are_read() {
@@ -111,7 +111,8 @@ fn a_mistake_is_named_with_its_place() {
 #[test]
 fn the_fisheye_is_told_by_its_mark_or_by_the_user() {
     let model = |text: &str, fisheye| {
-        read_with(text, ReadOptions { size: None, fisheye }).map(|file| matches!(file.cameras[0].camera, Camera::OpenCvFisheye(_)))
+        read_with(text, ReadOptions { size: None, fisheye, from: None })
+            .map(|file| matches!(file.cameras[0].camera, Camera::OpenCvFisheye(_)))
     };
     assert_eq!(model(OPENCV, None), Ok(false));
     assert!(read(OPENCV).unwrap().cameras[0].notes[0].contains("read as the pinhole camera's"));

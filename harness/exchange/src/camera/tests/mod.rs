@@ -3,10 +3,12 @@
 mod any_model;
 mod files;
 mod malformed;
+mod recognised;
 mod round_trip;
 mod same_camera;
 mod tool_formats;
 mod tool_formats_malformed;
+mod unknown_keys;
 
 use calibench_model::camera::{Camera, CameraModel};
 

@@ -104,7 +104,7 @@ fn comes_back(format: &str, cameras: &[NamedCamera]) {
     let size = calibench_model::camera::CameraModel::size(&cameras[0].camera);
     // Only Pix4D's .cam does not state it.
     let given = (!format.states_size).then_some(size);
-    let found = read_with(&text, ReadOptions { size: given, fisheye: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let found = read_with(&text, ReadOptions { size: given, fisheye: None, from: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!(found.format, format);
     assert_same(cameras, &found.cameras, 1e-12);
 }

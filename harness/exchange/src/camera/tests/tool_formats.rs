@@ -52,7 +52,7 @@ fn comes_back(format: &str, cameras: &[NamedCamera]) {
     let format = format_named(format).unwrap();
     let text = camera_text(format, cameras).unwrap_or_else(|error| panic!("{error}\n{cameras:?}"));
     let size = (!format.states_size).then_some(cameras[0].camera.size());
-    let found = read_with(&text, ReadOptions { size, fisheye: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let found = read_with(&text, ReadOptions { size, fisheye: None, from: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!((found.format, found.cameras.len()), (format, cameras.len()));
     for (a, b) in cameras.iter().zip(&found.cameras) {
         assert_eq!(a.camera.size(), b.camera.size());

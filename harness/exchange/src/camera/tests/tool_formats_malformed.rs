@@ -5,7 +5,7 @@ use calibench_model::camera::ImageSize;
 use super::super::{ReadOptions, parse_camera};
 use super::read_with;
 
-const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None };
+const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, from: None };
 
 const COLMAP: &str = "# Camera list\n1 OPENCV 640 480 500 501 320 240 -0.1 0.02 1e-3 2e-3\n2 PINHOLE 640 480 500 501 320 240\n";
 const KAPTURE: &str = "# kapture format: 1.1\ngps, , gnss, EPSG:4326\ncam, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\n";
@@ -73,11 +73,29 @@ fn the_samples_are_read_as_what_they_are() {
             assert_eq!(file.format.name, format, "{text}");
         }
         // A size that contradicts the file is refused, one that the file leaves open is asked for.
-        let other = ReadOptions { size: Some(ImageSize { width: 641, height: 480 }), fisheye: None };
+        let other = ReadOptions { size: Some(ImageSize { width: 641, height: 480 }), fisheye: None, from: None };
         let states_size = super::super::format_named(format).unwrap().states_size;
         assert_eq!(read_with(text, other).is_err(), states_size, "{format}");
         assert_eq!(read_with(text, ReadOptions::default()).is_ok(), states_size, "{format}");
     }
+}
+
+#[test]
+fn an_id_that_stands_twice_is_refused() {
+    let colmap = "1 PINHOLE 640 480 500 501 320 240\n01 PINHOLE 640 480 900 901 320 240\n";
+    let kapture = "cam0, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\ncam0, right, camera, RADIAL, 640, 480, 900, 320, 240, -0.1, 0.02\n";
+    for (text, id) in [(colmap, "01"), (kapture, "cam0")] {
+        let error = read_with(text, SIZE).unwrap_err();
+        assert!(error.contains(&format!("f:2, `{id}`: the id of two cameras, first on line 1")), "{error}");
+    }
+    let two = OPENMVG.replacen("\"intrinsics\": [", "\"intrinsics\": [ENTRY, ", 1);
+    let (entry, _) = OPENMVG.split_once("\"intrinsics\": [").and_then(|(_, rest)| rest.rsplit_once(']')).unwrap();
+    let error = read_with(&two.replacen("ENTRY", entry, 1), SIZE).unwrap_err();
+    assert!(error.contains("the id of two cameras"), "{error}");
+    // A camera without a name has one in ROS.
+    let named = super::super::NamedCamera::new("", read_with(ROS, SIZE).unwrap().cameras[0].camera);
+    let text = super::super::camera_text(super::super::format_named("ros").unwrap(), &[named]).unwrap();
+    assert!(text.contains("camera_name: \"camera\"\n"), "{text}");
 }
 
 #[test]

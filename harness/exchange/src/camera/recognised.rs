@@ -1,0 +1,90 @@
+//! Which format a camera file is of: all are asked, and what two of them read as different cameras is refused.
+
+use calibench_model::PixelPoint;
+use calibench_model::camera::{Camera, CameraModel, ImageSize};
+
+use super::source::Source;
+use super::{CameraFile, CameraFileError, CameraFormat, FORMATS, ReadOptions};
+
+/// Cameras that picture what one pixel sees no further apart than this, px, are one.
+const SAME_PX: f64 = 1e-6;
+/// Pixels of the comparison along each side.
+const PLACES: u32 = 21;
+
+type Read = Result<CameraFile, CameraFileError>;
+
+/// The cameras of `source`, by the one format that recognises it, or by several that read the same cameras.
+///
+/// # Errors
+/// No format recognises it, or not the one that was asked for; the mistake of the one that does; several that do not read the same.
+pub(super) fn cameras(source: &Source<'_>, options: &ReadOptions) -> Read {
+    let asked: Vec<_> = FORMATS.iter().map(|&format| (format, (format.recognise)(source))).collect();
+    let mut claims: Vec<&'static CameraFormat> = asked.iter().filter(|(_, answer)| answer.is_ok()).map(|(format, _)| *format).collect();
+    if claims.is_empty() {
+        let why: Vec<String> =
+            asked.iter().filter_map(|(format, answer)| Some(format!("{}: {}", format.name, answer.as_ref().err()?))).collect();
+        return Err(CameraFileError::new(format!("no camera file that is known; tried {}", why.join("; "))));
+    }
+    if let Some(from) = options.from {
+        if let Some((_, Err(why))) = asked.iter().find(|(format, _)| *format == from) {
+            let problem = format!("is no file of {}: {why}; it is one of {}", from.name, names(&claims));
+            return Err(CameraFileError::new(problem));
+        }
+        claims = vec![from];
+    }
+    let mut found: Vec<Read> = claims.iter().map(|&format| read(format, source, options)).collect();
+    let first = found.remove(0);
+    if found.iter().all(|other| matches!((&first, other), (Ok(a), Ok(b)) if are_same(a, b))) {
+        return first;
+    }
+    let all: Vec<String> = claims.iter().zip(std::iter::once(&first).chain(&found)).map(|(format, read)| said(format, read)).collect();
+    Err(CameraFileError::new(format!(
+        "may be a file of {}, which are not the same cameras: {}; say which with --from FORMAT, or write it anew with `calibench convert --from FORMAT`",
+        names(&claims),
+        all.join("; ")
+    )))
+}
+
+fn names(formats: &[&CameraFormat]) -> String {
+    formats.iter().map(|format| format.name).collect::<Vec<_>>().join(" or ")
+}
+
+fn read(format: &'static CameraFormat, source: &Source<'_>, options: &ReadOptions) -> Read {
+    let cameras = (format.read)(source, options)?;
+    if cameras.is_empty() {
+        return Err(CameraFileError::new(format!("{} without a camera; expected at least one", format.name)));
+    }
+    Ok(CameraFile { format, cameras })
+}
+
+/// What a format makes of a file: its first camera's size and scale, or the mistake that it finds.
+fn said(format: &CameraFormat, read: &Read) -> String {
+    let of = |file: &CameraFile| {
+        let (camera, count) = (&file.cameras[0].camera, file.cameras.len());
+        let ImageSize { width, height } = camera.size();
+        let parameters: Vec<String> =
+            camera.parameters().iter().take(4).map(|p| format!("{} {:.6} {}", p.name, p.value, p.unit).trim_end().to_owned()).collect();
+        format!("{count} of {width} x {height} px, {}", parameters.join(", "))
+    };
+    let what = read.as_ref().map_or_else(|error| error.to_string().trim_start_matches([':', ' ']).to_owned(), of);
+    format!("{}: {what}", format.name)
+}
+
+/// Whether the cameras of two readings agree, one by one.
+fn are_same(a: &CameraFile, b: &CameraFile) -> bool {
+    a.cameras.len() == b.cameras.len() && a.cameras.iter().zip(&b.cameras).all(|(a, b)| is_same(&a.camera, &b.camera))
+}
+
+/// Whether two cameras picture the same within [`SAME_PX`] over the frame, which they leave without a ray at the same pixels.
+fn is_same(a: &Camera, b: &Camera) -> bool {
+    let size = a.size();
+    let place = |index: u32, length: u32| f64::from(length.saturating_sub(1)) * f64::from(index) / f64::from(PLACES - 1);
+    let mut pixels = (0..PLACES * PLACES).map(|i| PixelPoint::new(place(i % PLACES, size.width), place(i / PLACES, size.height)));
+    size == b.size()
+        && (a == b
+            || pixels.all(|pixel| match (a.unproject(pixel), b.unproject(pixel)) {
+                (Ok(ray), Ok(_)) => b.project(ray).is_ok_and(|image| image.distance(pixel) <= SAME_PX),
+                (Err(_), Err(_)) => true,
+                _ => false,
+            }))
+}
