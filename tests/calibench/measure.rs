@@ -49,8 +49,9 @@ fn one_row_for_every_point_in_the_order_given() {
     assert_eq!(head, [given, given].concat());
     let tails =
         ["measured,", "measured,", "unavailable,photograph b.png was not given", "rejected,no_corner", "measured,", "rejected,border"];
-    for (line, (tail, method)) in
-        lines[1..].iter().zip(tails.iter().map(|t| (t, "forstner:window=15")).chain(tails.iter().map(|t| (t, "opencv_subpix:window=11"))))
+    for (line, (tail, method)) in lines[1..]
+        .iter()
+        .zip(tails.iter().map(|t| (t, "\"forstner:window=15,significance=4\"")).chain(tails.iter().map(|t| (t, "opencv_subpix:window=11"))))
     {
         assert!(line.ends_with(&format!(",{method},{tail}")), "{line}\nexpected {method},{tail}");
     }
@@ -191,9 +192,9 @@ fn methods_by_kind_of_target_measure_their_own_and_what_nobody_measures_is_said(
     let expected = [
         "a.png flat ellipse_edges:kinds=disc rejected no_corner",
         "b.png gone ellipse_edges:kinds=disc unavailable photograph b.png was not given",
-        "a.png left forstner:window=15,kinds=chess_corner measured ",
-        "a.png edge forstner:window=15,kinds=chess_corner rejected border",
-        "b.png there forstner:window=15,kinds=chess_corner unavailable photograph b.png was not given",
+        "a.png left forstner:window=15,significance=4,kinds=chess_corner measured ",
+        "a.png edge forstner:window=15,significance=4,kinds=chess_corner rejected border",
+        "b.png there forstner:window=15,significance=4,kinds=chess_corner unavailable photograph b.png was not given",
         "a.png right  unavailable no method measures the kind square",
     ];
     assert_eq!(told(&stdout(&output)), expected);

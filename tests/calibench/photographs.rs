@@ -35,7 +35,7 @@ fn detect_feeds_measure() {
     assert!(output.status.success(), "{}", stderr(&output));
     let output = run(folder.path(), &["measure", photo, "--points", "approx.csv", "-m", "forstner:window=9", "-q"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    assert_eq!(stdout(&output).matches(",forstner:window=9,measured,").count(), 54);
+    assert_eq!(stdout(&output).matches(",\"forstner:window=9,significance=4\",measured,").count(), 54);
     assert!(stdout(&output).contains("left01.jpg,r6c9,"));
 }
 

@@ -26,6 +26,15 @@ pub struct Context<'a> {
     pub toolbox: &'a Toolbox,
 }
 
+/// What is measured.
+#[derive(Clone, Copy)]
+pub enum Pictured {
+    /// What a scenario renders: methods as published.
+    Renders,
+    /// Photographs, in which there is more than targets.
+    Photographs,
+}
+
 impl Context<'_> {
     /// The project's folder: named, or the nearest one upwards that holds scenarios/ and reference/, if there is one.
     fn project(&self) -> Result<Option<PathBuf>, Failure> {
@@ -120,9 +129,13 @@ impl Context<'_> {
     }
 
     /// The method that `text` names, with the nearest name for a misspelt one.
-    pub fn method(&self, text: &str) -> Result<Configured, Failure> {
+    fn method(&self, text: &str, pictured: Pictured) -> Result<Configured, Failure> {
         let registry = &self.toolbox.registry;
-        registry.parse(text).map_err(|error| {
+        let parsed = match pictured {
+            Pictured::Renders => registry.parse(text),
+            Pictured::Photographs => registry.parse_for_photographs(text),
+        };
+        parsed.map_err(|error| {
             let proposal = match &error {
                 MethodError::UnknownMethod { name, known } => nearest(name, known.iter().map(String::as_str)),
                 MethodError::Kinds { error: KindsError::Unknown(unknown), .. } => {
@@ -135,9 +148,9 @@ impl Context<'_> {
         })
     }
 
-    /// As [`Self::method`], for the corners of a chessboard.
+    /// As [`Self::method`], for the corners of a chessboard in photographs.
     pub fn method_of_boards(&self, text: &str) -> Result<Configured, Failure> {
-        let method = self.method(text)?;
+        let method = self.method(text, Pictured::Photographs)?;
         let wanted = TargetKind::ChessCorner;
         match method.kinds.as_ref().filter(|_| !method.measures(Some(wanted))) {
             Some(kinds) => Err(Failure::input(format!(
@@ -148,10 +161,10 @@ impl Context<'_> {
     }
 
     /// The methods of these names. None is there twice, and none measures a kind of target twice.
-    pub fn methods(&self, texts: &[String]) -> Result<Vec<Configured>, Failure> {
+    pub fn methods(&self, texts: &[String], pictured: Pictured) -> Result<Vec<Configured>, Failure> {
         let mut found: Vec<Configured> = Vec::new();
         for text in texts {
-            let method = self.method(text)?;
+            let method = self.method(text, pictured)?;
             if found.iter().any(|earlier| earlier.label == method.label) {
                 return Err(Failure::input(format!("-m {text}: `{}` is asked for twice", method.label)));
             }

@@ -9,7 +9,7 @@ use calibench_model::TargetKind;
 use calibench_photographs::points::{Measured, measure_points, photos_of};
 use clap::Args;
 
-use super::context::Context;
+use super::context::{Context, Pictured};
 use super::output;
 use super::photos::say_turns;
 use super::progress::Progress;
@@ -37,7 +37,7 @@ impl Measure {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let inputs = Inputs::new(self.photos.iter().chain([&self.points]));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
-        let methods = context.methods(&self.methods)?;
+        let methods = context.methods(&self.methods, Pictured::Photographs)?;
         if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {
             return Err(Failure::input(format!("-m {}: unavailable: {why}", method.label)));
         }

@@ -8,7 +8,7 @@ use calibench_run::store::{self, RecordsFolder, SweepPlan};
 use calibench_scenario::{Scenario, Subject, Sweep};
 use clap::Args;
 
-use super::context::{Context, origin};
+use super::context::{Context, Pictured, origin};
 use super::output;
 use super::photos::say_turns;
 use super::progress::Progress;
@@ -43,7 +43,7 @@ pub struct Changes {
 impl Changes {
     /// The methods that are asked for; none if the scenario's own are meant.
     pub fn methods(&self, context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
-        context.methods(&self.methods)
+        context.methods(&self.methods, Pictured::Renders)
     }
 }
 

@@ -14,7 +14,7 @@ use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject};
 use clap::Args;
 
-use super::context::Context;
+use super::context::{Context, Pictured};
 use super::output;
 use super::progress::Progress;
 use crate::deliver::{deliver, print};
@@ -48,7 +48,7 @@ impl SpeedCommand {
         let inputs = Inputs::new(self.scenarios.iter().filter(|name| is_toml(name.as_ref())));
         let path = self.output.clone().map_or_else(|| Ok::<_, Failure>(context.root()?.join(SPEEDS)), Ok)?;
         let output = output::table("-o", Some(&path), &inputs)?;
-        let methods = context.methods(&self.methods)?;
+        let methods = context.methods(&self.methods, Pictured::Renders)?;
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
         let mut speeds = Speeds { machine: machine(), rows: Vec::new() };
         for scenario in &scenarios {

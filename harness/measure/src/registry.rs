@@ -5,6 +5,7 @@ use calibench_model::TargetKind;
 use crate::error::MethodError;
 use crate::kinds::Kinds;
 use crate::operator::Operator;
+use crate::operators::forstner::{ON_PHOTOGRAPHS, SIGNIFICANCE};
 use crate::parameter::{Parameter, Settings};
 
 /// A method as it is listed: an operator whose parameters are yet to be set.
@@ -134,6 +135,23 @@ impl Registry {
     }
 }
 
+impl Registry {
+    /// As [`Self::parse`], for photographs, which hold more than targets: operators that can test whether a window holds a corner do so, as
+    /// `forstner:window=15,significance=4`, unless `text` says otherwise.
+    ///
+    /// # Errors
+    /// As [`Self::parse`].
+    pub fn parse_for_photographs(&self, text: &str) -> Result<Configured, MethodError> {
+        let configured = self.parse(text)?;
+        let tests = configured.settings.iter().any(|(key, _)| key == SIGNIFICANCE);
+        if !tests || text.contains(SIGNIFICANCE) {
+            return Ok(configured);
+        }
+        let joint = if text.contains(':') { ',' } else { ':' };
+        self.parse(&format!("{text}{joint}{SIGNIFICANCE}={ON_PHOTOGRAPHS}"))
+    }
+}
+
 /// The kinds of `corner+cross=forstner:window=15`, if there are any, and the rest.
 fn before_the_name(text: &str) -> (Option<&str>, &str) {
     match text.split_once('=') {
@@ -180,6 +198,17 @@ mod tests {
         assert!(matches!(error("forstner:kinds="), MethodError::Kinds { .. }));
         assert!(matches!(error("disc=forstner:kinds=disc"), MethodError::Twice { .. }));
         assert!(matches!(error("disc="), MethodError::UnknownMethod { .. }));
+    }
+
+    #[test]
+    fn on_photographs_significance_is_asked_for() {
+        let label = |text: &str| Registry::builtin().parse_for_photographs(text).unwrap().label;
+        assert_eq!(label("forstner"), "forstner:window=11,significance=4");
+        assert_eq!(label("corner=forstner"), "forstner:window=11,significance=4,kinds=corner");
+        assert_eq!(label("forstner:window=9"), "forstner:window=9,significance=4");
+        assert_eq!(label("forstner:significance=0"), "forstner:window=11");
+        assert_eq!(label("saddle"), "saddle:window=7");
+        assert!(Registry::builtin().parse_for_photographs("forster").is_err());
     }
 
     #[test]

@@ -14,6 +14,8 @@ use crate::raster::{Picture, Piece, Renderer};
 const STEP: f64 = 0.05;
 /// The relative change of the blur.
 const BLUR_STEP: f64 = 0.02;
+/// The group of the grey levels.
+const LEVELS: usize = 3;
 /// Combinations of unknowns with less than this share of the information are not determined by the window: a disc's rotation, a straight edge's length. The
 /// differences leave such a combination some 1e-9; what is determined has more than 1e-4.
 const SINGULAR: f64 = 1e-6;
@@ -109,7 +111,11 @@ impl Window<'_> {
             Some((groups, DMatrix::from_fn(columns.len(), columns.len(), product)))
         };
         let Some((groups, normal)) = normal() else { return vec![None; sets.len()] };
-        sets.iter().map(|&set| position(&normal.select_rows(&chosen(groups, set)).select_columns(&chosen(groups, set)))).collect()
+        let part = |set| {
+            let (chosen, shared) = chosen(groups, set);
+            position(&normal.select_rows(&chosen).select_columns(&chosen), &shared)
+        };
+        sets.iter().map(|&set| part(set)).collect()
     }
 
     /// The derivatives that one of `sets` needs. They are differences of what the sensor makes of light: its curve counts.
@@ -152,25 +158,33 @@ fn slope(high: &[f64], low: &[f64], step: f64, mean: &impl Fn(f64) -> Option<f64
     high.iter().zip(low).map(|(&high, &low)| Some((mean(high)? - mean(low)?) / step)).collect()
 }
 
-/// The places of a set's unknowns among all columns.
-fn chosen(groups: [usize; 6], set: Unknowns) -> Vec<usize> {
+/// The places of a set's unknowns among all columns, and of each the place in the set from which those of its group are.
+fn chosen(groups: [usize; 6], set: Unknowns) -> (Vec<usize>, Vec<usize>) {
     let added = matches!(set.gradient, Gradient::Added | Gradient::Both);
     let light = matches!(set.gradient, Gradient::Light | Gradient::Both);
     let members = [true, set.shape, set.blur, set.levels, added, light];
     let mut first = 0;
-    let mut chosen = Vec::new();
-    for (count, member) in groups.into_iter().zip(members) {
-        chosen.extend((first..first + count).filter(|_| member));
+    let (mut chosen, mut shared) = (Vec::new(), Vec::new());
+    for (group, (count, member)) in groups.into_iter().zip(members).enumerate() {
+        if member {
+            let from = chosen.len();
+            // A grey level of 1 and a contrast are no two of a kind.
+            shared.extend((0..count).map(|k| if group == LEVELS { from + k } else { from }));
+            chosen.extend(first..first + count);
+        }
         first += count;
     }
-    chosen
+    (chosen, shared)
 }
 
 /// The position's part of the inverse of the normal equations: what is left of its information when the other unknowns have taken theirs.
-fn position(normal: &DMatrix<f64>) -> Option<Covariance> {
+///
+/// `shared` are groups of unknowns of one unit. Each is scaled to a diagonal of 1 at most, so that units do not decide what is singular. Were each unknown scaled
+/// by itself, a deformation that moves nothing, as one along the edges of an upright corner, would count with its rounding as much as one that moves all.
+fn position(normal: &DMatrix<f64>, shared: &[usize]) -> Option<Covariance> {
     let n = normal.nrows();
-    // Scaled to a unit diagonal, so that units do not decide what is singular. What has no information at all stays out.
-    let scale: Vec<f64> = (0..n).map(|i| if normal[(i, i)] > 0.0 { 1.0 / normal[(i, i)].sqrt() } else { 0.0 }).collect();
+    let most = |group: usize| (0..n).filter(|&i| shared[i] == group).map(|i| normal[(i, i)]).fold(0.0, f64::max);
+    let scale: Vec<f64> = shared.iter().map(|&group| if most(group) > 0.0 { 1.0 / most(group).sqrt() } else { 0.0 }).collect();
     let scaled = DMatrix::from_fn(n, n, |i, j| normal[(i, j)] * scale[i] * scale[j]);
     let information = Matrix2::new(scaled[(0, 0)], scaled[(0, 1)], scaled[(1, 0)], scaled[(1, 1)]) - taken(&scaled);
     let covariance = information.try_inverse()?;
@@ -336,5 +350,27 @@ mod tests {
             window.bounds(&[Unknowns { blur: true, ..Unknowns::default() }], Some, |_| Some(1e-4))[0].is_some(),
             "no blur to be estimated"
         );
+    }
+
+    /// A square window holds longer parts of the edges of a corner that is turned by 45 degrees, by 10 degrees hardly. Along its edges an upright corner is deformed without
+    /// a trace, and that is to take nothing, however soft it is.
+    #[test]
+    fn a_corner_has_about_one_bound_at_any_roll() {
+        let all = Unknowns { shape: true, levels: true, blur: true, gradient: Gradient::None };
+        for blur in [0.7, 1.5, 3.0] {
+            let sigma = |roll: f64| {
+                let (sin, cos) = roll.to_radians().sin_cos();
+                let turned = |(x, y): (f64, f64)| (20.2 + 70.0 * (cos * x - sin * y), 19.9 + 70.0 * (sin * x + cos * y));
+                let quarters = [1.0, -1.0].map(|s| [(0.0, 0.0), (s, 0.0), (s, s), (0.0, s)].map(turned));
+                let found = bound(&scene(&[&quarters[0], &quarters[1]]), blur, 15, all).unwrap();
+                (found.sxx + found.syy).sqrt()
+            };
+            let upright = sigma(0.0);
+            for roll in [0.5, 3.0, 10.0] {
+                let ratio = sigma(roll) / upright;
+                println!("blur {blur}, roll {roll}: {ratio:.4} of {upright:.5} px");
+                assert!((0.97..1.03).contains(&ratio), "blur {blur}, roll {roll}: {ratio}");
+            }
+        }
     }
 }

@@ -3,4 +3,5 @@
 pub(crate) mod bound;
 pub(crate) mod closed_form_images;
 pub(crate) mod junction_images;
+pub(crate) mod no_corners;
 pub(crate) mod quadrature_images;
