@@ -15,12 +15,13 @@ const DOUBT: f64 = 2.0;
 /// The root of the covariance of neighbouring residuals, in units of half the contrast, beyond which the window holds something else. Fitted to noise under a
 /// Gaussian of 1.5 to 3 px it is below that in 0.03 to 1.3 % of windows; at 0.2, as for chess corners, in 4 to 30 %.
 const MISFIT: f64 = 0.1;
-/// In a window of so many px and with two arms; a smaller one has the less to say against a fit, and more arms follow the more.
-const FULL: f64 = 15.0;
+/// Grey values of sectors differ by at most so many times what the window's grey values do: blur hides a part of a narrow sector's.
+const BEYOND: f64 = 4.0;
 /// Residuals beyond this part of half the contrast are those of a window of noise.
 const DROWNED: f64 = 0.5;
 
-/// The residuals of a fit, if it is that of a junction.
+/// The residuals of a fit, if it is that of a junction. In a window that is smaller than wanted a spot may look like the end of a sector: there they are to be
+/// white.
 ///
 /// # Errors
 /// [`Rejection::NoCorner`] for an edge or noise, [`Rejection::Misfit`] where something else is in the window.
@@ -28,12 +29,18 @@ pub(super) fn weigh<const P: usize>(
     window: &mut Window<'_, P>,
     unknowns: Unknowns,
     rest: &Rest<P>,
-    side: usize,
+    (side, wanted): (usize, usize),
 ) -> Result<Residuals, Rejection> {
     let (x, pixels) = (&rest.x, (side * side) as f64);
     let arms = unknowns.arms;
     let grey = |k: usize| x[unknowns.grey(k % arms)];
-    let contrast = (0..arms).map(|k| (grey(k + 1) - grey(k)).abs()).fold(0.0, f64::max);
+    let fitted = (0..arms).map(|k| (grey(k + 1) - grey(k)).abs()).fold(0.0, f64::max);
+    // A spot is fitted well by the tip of a sector that would be far darker than anything in the window.
+    let seen = window.range();
+    if fitted > BEYOND * seen {
+        return Err(Rejection::Misfit);
+    }
+    let contrast = fitted.min(seen);
     let noise = (rest.normal.omega / (pixels - P as f64)).sqrt();
     if noise > DROWNED * 0.5 * contrast {
         return Err(Rejection::NoCorner);
@@ -65,9 +72,7 @@ pub(super) fn weigh<const P: usize>(
         return Err(Rejection::NoCorner);
     }
     let residuals = window.residuals(x, contrast).ok_or(Rejection::Misfit)?;
-    if residuals.are_no_noise(MISFIT * (2.0 / arms as f64) * (side as f64 / FULL).powi(2).min(1.0)) {
-        Err(Rejection::Misfit)
-    } else {
-        Ok(residuals)
-    }
+    // More arms follow the more.
+    let fits = if side < wanted { residuals.are_white() } else { !residuals.are_no_noise(MISFIT * 2.0 / arms as f64) };
+    if fits { Ok(residuals) } else { Err(Rejection::Misfit) }
 }

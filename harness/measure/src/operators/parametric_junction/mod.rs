@@ -24,7 +24,7 @@ use window::Window;
 /// Blur at the start, px^2: between sharp and soft.
 const VARIANCE: f64 = 0.5;
 /// Sides of the smaller windows, px, that are tried where the residuals of the wanted one are no noise: a neighbour may stand in it.
-const SMALLER: [usize; 3] = [13, 11, 9];
+const SMALLER: [usize; 2] = [13, 11];
 /// Why a window may hold too much.
 const CROWDED: [Rejection; 3] = [Rejection::Misfit, Rejection::NotConverged, Rejection::LeftWindow];
 /// The starts are that of the gradient and those so many px beside it.
@@ -45,7 +45,7 @@ const BESIDE: f64 = 2.0;
 /// The window of odd side, px, follows the point until this lies in its middle pixel. The start comes from the image: the point to which the edges lead within
 /// `search` px of the given one, along each axis, and the directions from the grey values around it. A straight edge, noise and what is neither are told from a
 /// junction by the significance of what makes it one, and by residuals. Where these are no noise, since something else is in the window, smaller windows are tried,
-/// down to 9 px, and then the point is rejected. Covariance (px^2): `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
+/// down to 11 px, and then the point is rejected. Covariance (px^2): `sigma0^2 N^-1`, with `sigma0^2` from the residuals.
 ///
 /// Source: our own. The mass of a Gaussian in a sector by Owen's T function (Owen 1956), the photosite's integral as a mixture of Gaussians, the start after
 /// Förstner & Gülch 1987; cf. the parametric corner models of Deriche & Giraudon 1993 and Rohr 1992.
@@ -200,7 +200,7 @@ impl ParametricJunction {
         }
         x[unknowns.variance()] = VARIANCE;
         let rest = follow(&mut window, (image, half), guess.position, x)?;
-        let left = evidence::weigh(&mut window, unknowns, &rest, side)?;
+        let left = evidence::weigh(&mut window, unknowns, &rest, (side, self.window))?;
         let Rest { at, normal, .. } = rest;
         let pixels = (side * side) as f64;
         let covariance = covariance(&normal, pixels - P as f64).ok_or(Rejection::ErrorEllipse)?;

@@ -49,6 +49,12 @@ impl<'a, const P: usize> Window<'a, P> {
         self.unknowns.levels(x.as_slice(), -self.greys.mean / self.greys.half)
     }
 
+    /// The range of the window's grey values.
+    pub(super) fn range(&self) -> f64 {
+        let ends = self.greys.grey.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], grey| [low.min(*grey), high.max(*grey)]);
+        f64::from(ends[1] - ends[0])
+    }
+
     /// The residuals of the corrected grey values at `x`, in units of half of `contrast`. `None` where the model has no meaning.
     pub(super) fn residuals(&mut self, x: &SVector<f64, P>, contrast: f64) -> Option<Residuals> {
         let model = self.model(x, Fidelity::Rough)?;

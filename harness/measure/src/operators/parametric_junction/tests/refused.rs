@@ -44,6 +44,28 @@ fn bare_edges_noise_and_texture_are_refused() {
     refuses("window=15", 400);
 }
 
+/// A dark spot of 3 to 6 px: whatever is found there is not far from its rim.
+#[test]
+fn spots_are_no_far_tips_of_sectors() {
+    let mut rng = ChaCha8Rng::seed_from_u64(72);
+    let (mut far, mut accepted) = (0, 0);
+    for _ in 0..200 {
+        let (radius, softness) = (rng.random_range(1.5..3.0), rng.random_range(0.5..1.2));
+        let [x0, y0] = [(); 2].map(|()| 20.0 + rng.random_range(-0.5..0.5));
+        let dark = |i: usize| {
+            let r = ((i % WIDTH) as f64 - x0).hypot((i / WIDTH) as f64 - y0);
+            0.8 - 0.6 * 0.5 * libm::erfc((r - radius) / softness * std::f64::consts::FRAC_1_SQRT_2)
+        };
+        let image = quadrature_images::image(&noisy(&(0..WIDTH * WIDTH).map(dark).collect::<Vec<_>>(), 0.01, &mut rng), WIDTH);
+        if let Ok(found) = operator("window=15").measure(&image, &near([20.0, 20.0], 2.0, &mut rng)) {
+            accepted += 1;
+            far += usize::from(found.position.distance(PixelPoint::new(x0, y0)) > radius + 1.0);
+        }
+    }
+    println!("{accepted} of 200 spots accepted, {far} of them far off");
+    assert!(accepted <= 5, "{accepted}, {far} of them far off");
+}
+
 #[test]
 #[ignore = "takes minutes"]
 fn of_ten_thousand_windows_fewer_than_one_percent_are_taken_for_junctions() {
