@@ -5,7 +5,7 @@ use std::process::Output;
 
 use crate::project::{files, root, run, stderr, stdout};
 
-const METHODS: [&str; 2] = ["forstner:window=11", "chess_corners"];
+const METHODS: [&str; 2] = ["forstner:window=11,significance=4", "chess_corners"];
 const MODELS: [&str; 6] = ["--model", "opencv4:fx,fy,cx,cy,k1", "--model", "opencv4", "--splits", "2"];
 
 fn done(folder: &Path, arguments: &[&str]) -> String {
@@ -73,7 +73,7 @@ fn files_are_judged_exactly_as_the_photographs_they_were_measured_in() {
         ),
         "{page}"
     );
-    assert!(page.contains("- `forstner:window=11`: `0.csv`, ") && !page.contains("photographs of a chessboard"), "{page}");
+    assert!(page.contains("- `forstner:window=11,significance=4`: `0.csv`, ") && !page.contains("photographs of a chessboard"), "{page}");
     // One file alone is called as the file, and nothing stands beside it.
     let output = judged(folder.path(), &["0.csv"], &MODELS);
     assert!(

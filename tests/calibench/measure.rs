@@ -142,7 +142,7 @@ fn bad_input_is_named_and_leaves_the_old_output() {
         ),
         (
             &["measure", "a.png", "--points", "good.csv", "-m", "corner=forstner"],
-            "-m forstner:window=11,kinds=corner: point left of deep.png does not say what is pictured, which this method must know; give the column `kind` \
+            "-m forstner:window=11,significance=4,kinds=corner: point left of deep.png does not say what is pictured, which this method must know; give the column `kind` \
              (corner, chess_corner, junction, cross, disc, square, triangle), or leave out the kinds",
         ),
         (&["measure", "a.png", "--points", "kinds.csv", "-m", "korner=forstner"], "no kind of target is called `korner`"),
@@ -150,11 +150,11 @@ fn bad_input_is_named_and_leaves_the_old_output() {
         (&["measure", "a.png", "--points", "kinds.csv", "-m", "disc+disc=forstner"], "the kind `disc` is given twice"),
         (
             &["measure", "a.png", "--points", "kinds.csv", "-m", "cross=forstner"],
-            "`forstner:window=11,kinds=cross` has nothing to measure: there are only targets of the kind `chess_corner`, `disc`",
+            "`forstner:window=11,significance=4,kinds=cross` has nothing to measure: there are only targets of the kind `chess_corner`, `disc`",
         ),
         (
             &["measure", "a.png", "--points", "kinds.csv", "-m", "forstner", "-m", "disc=forstner"],
-            "`forstner:window=11,kinds=disc` is to measure `disc` twice, here and as `forstner:window=11`",
+            "`forstner:window=11,significance=4,kinds=disc` is to measure `disc` twice, here and as `forstner:window=11,significance=4`",
         ),
     ] {
         let output = run(folder.path(), &[arguments, &["-o", "out.csv"]].concat());

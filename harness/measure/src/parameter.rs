@@ -2,6 +2,10 @@
 
 use crate::error::MethodError;
 
+/// The parameter by which an operator tests whether a window holds what it measures, in standard deviations, and its value for photographs.
+pub(crate) const SIGNIFICANCE: &str = "significance";
+pub(crate) const ON_PHOTOGRAPHS: f64 = 4.0;
+
 /// What a parameter may be. Every domain excludes NaN and infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {

@@ -5,8 +5,7 @@ use calibench_model::TargetKind;
 use crate::error::MethodError;
 use crate::kinds::Kinds;
 use crate::operator::Operator;
-use crate::operators::forstner::{ON_PHOTOGRAPHS, SIGNIFICANCE};
-use crate::parameter::{Parameter, Settings};
+use crate::parameter::{ON_PHOTOGRAPHS, Parameter, SIGNIFICANCE, Settings};
 
 /// A method as it is listed: an operator whose parameters are yet to be set.
 #[derive(Clone)]

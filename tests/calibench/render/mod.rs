@@ -89,7 +89,9 @@ fn what_is_rendered_is_measured_from_its_starts_and_from_its_truth() {
         .into_iter()
         .map(|row| (row["target"].clone(), ["x", "y"].map(|axis| row[axis].parse().unwrap())))
         .collect();
-    for (points, method) in [("starts.csv", "parametric_corner"), ("starts.csv", "lsm"), ("front.csv", "lsm"), ("front.csv", "forstner")] {
+    for (points, method) in
+        [("starts.csv", "parametric_corner"), ("starts.csv", "lsm"), ("front.csv", "lsm"), ("front.csv", "forstner:significance=0")]
+    {
         let output = run(&folder, &["measure", "front.png", "--points", points, "-m", method, "-o", "measured.csv"]);
         assert!(output.status.success(), "{points}, {method}: {}", stderr(&output));
         let rows = table(&folder.join("measured.csv"));

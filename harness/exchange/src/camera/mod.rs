@@ -134,7 +134,7 @@ pub fn parse_camera(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<C
 }
 
 fn parse(bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
-    recognised::cameras(&Source::new(bytes)?, options)
+    recognised::cameras(FORMATS, &Source::new(bytes)?, options)
 }
 
 /// The text of a camera file. Numbers have 17 significant digits or their shortest exact form.

@@ -4,7 +4,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, ImageSize};
 
 use super::source::Source;
-use super::{CameraFile, CameraFileError, CameraFormat, FORMATS, ReadOptions};
+use super::{CameraFile, CameraFileError, CameraFormat, ReadOptions};
 
 /// Cameras that picture what one pixel sees no further apart than this, px, are one.
 const SAME_PX: f64 = 1e-6;
@@ -13,12 +13,12 @@ const PLACES: u32 = 21;
 
 type Read = Result<CameraFile, CameraFileError>;
 
-/// The cameras of `source`, by the one format that recognises it, or by several that read the same cameras.
+/// The cameras of `source`, by the one of `formats` that recognises it, or by several that read the same cameras.
 ///
 /// # Errors
 /// No format recognises it, or not the one that was asked for; the mistake of the one that does; several that do not read the same.
-pub(super) fn cameras(source: &Source<'_>, options: &ReadOptions) -> Read {
-    let asked: Vec<_> = FORMATS.iter().map(|&format| (format, (format.recognise)(source))).collect();
+pub(super) fn cameras(formats: &[&'static CameraFormat], source: &Source<'_>, options: &ReadOptions) -> Read {
+    let asked: Vec<_> = formats.iter().map(|&format| (format, (format.recognise)(source))).collect();
     let mut claims: Vec<&'static CameraFormat> = asked.iter().filter(|(_, answer)| answer.is_ok()).map(|(format, _)| *format).collect();
     if claims.is_empty() {
         let why: Vec<String> =

@@ -7,7 +7,7 @@ use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Sta
 
 use self::weighted::Gradients;
 use crate::operator::{Operator, window_centre};
-use crate::parameter::{Domain, Parameter, Settings};
+use crate::parameter::{Domain, Parameter, SIGNIFICANCE, Settings};
 use crate::registry::{Build, Method};
 
 /// At or below this ratio of the eigenvalues of the normal matrix the window holds a single edge.
@@ -119,9 +119,6 @@ const PARAMETERS: &[Parameter] = &[
         always_shown: false,
     },
 ];
-/// The parameter that tests for a corner, and its value for photographs.
-pub(crate) const SIGNIFICANCE: &str = "significance";
-pub(crate) const ON_PHOTOGRAPHS: f64 = 4.0;
 
 /// The method's entry.
 pub fn method() -> Method {

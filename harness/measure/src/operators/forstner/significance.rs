@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::parameter::ON_PHOTOGRAPHS;
 use crate::registry::Registry;
 use crate::tests::bound::noisy;
 use crate::tests::junction_images::Junction;
