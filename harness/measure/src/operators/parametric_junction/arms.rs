@@ -139,6 +139,7 @@ impl<T: Real> Model<T> {
     /// Sector k's share is the mass of the Gaussian in it. From where the pixel lies each arm takes the mass beside it, which [`Owen`] tells, from
     /// one of its sides to the other: no angle is too wide or too narrow for that.
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
     pub(super) fn field<const N: usize, const NEAR: bool>(&self, x: &[T; N], y: &[T; N]) -> Field<T, N> {
         let zero = [[T::of(0.0); N]; MOST];
         let mut field = Field { shares: zero, slopes: zero, turns: zero, across: zero };

@@ -43,6 +43,7 @@ impl Lists {
 
     /// Sorts the pixels of a window of `side` px with these grey values; arms meet at `(cx, cy)` from its centre.
     #[inline(always)]
+    #[expect(clippy::needless_bitwise_bool, reason = "without a branch it is done for many pixels at once")]
     pub(super) fn sort(&mut self, model: &Model<f32>, (grey, side): (&[f32], usize), [cx, cy]: [f32; 2]) {
         self.counts = [0; 3];
         let (half, reach) = ((side / 2) as f32, model.reach);

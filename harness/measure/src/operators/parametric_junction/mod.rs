@@ -161,7 +161,7 @@ impl ParametricJunction {
         guesses.sort_by(|a, b| a.left.total_cmp(&b.left));
         let mut why = Rejection::NoCorner;
         for (index, guess) in guesses.iter().enumerate().take(2) {
-            match self.from_guess((image, side), guess, arms) {
+            match self.fit_of_arms((image, side), guess, arms) {
                 Ok(found) => return Ok(found),
                 Err(rejection) if index == 0 => why = rejection,
                 Err(_) => {}
@@ -170,7 +170,7 @@ impl ParametricJunction {
         Err(why)
     }
 
-    fn from_guess(&self, window: (&Image, usize), guess: &Guess, arms: usize) -> Result<Fitted, Rejection> {
+    fn fit_of_arms(&self, window: (&Image, usize), guess: &Guess, arms: usize) -> Result<Fitted, Rejection> {
         let unknowns = Unknowns { arms, gradient: self.gradient };
         match unknowns.count() {
             7 => self.fit::<7>(window, guess, unknowns),

@@ -151,6 +151,7 @@ fn leave(model: &Model<f32>, levels: &Levels, centre: [f32; 2], (grey, into, sid
 
 /// The grey values of a chunk.
 #[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
 fn value(levels: &Levels, chunk: &Chunk, shares: &[Wide; MOST]) -> Wide {
     let mut value = [0.0; WIDE];
     for (sector, share) in shares.iter().enumerate().take(levels.unknowns.arms) {
@@ -170,19 +171,18 @@ fn add(model: &Model<f32>, levels: &Levels, centre: [f32; 2], window: (&[f32], u
     lists.sort(model, window, centre);
     let first = if levels.unknowns.gradient == EVEN { levels.unknowns.grey(0) } else { 0 };
     for (chunk, count) in lists.chunks(NEAR) {
-        rows(model, levels, (chunk, count), model.field::<WIDE, true>(&chunk.x, &chunk.y), (gram, 0));
+        rows(model, levels, (chunk, count), &model.field::<WIDE, true>(&chunk.x, &chunk.y), (gram, 0));
     }
     for (kind, first) in [(ALONG, 0), (AREAS, first)] {
         for (chunk, count) in lists.chunks(kind) {
-            rows(model, levels, (chunk, count), model.field::<WIDE, false>(&chunk.x, &chunk.y), (gram, first));
+            rows(model, levels, (chunk, count), &model.field::<WIDE, false>(&chunk.x, &chunk.y), (gram, first));
         }
     }
 }
 
 /// The observation equations of a chunk.
 #[inline(always)]
-#[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
-fn rows(model: &Model<f32>, levels: &Levels, (chunk, count): (&Chunk, usize), field: Field<f32, WIDE>, (gram, first): (&mut Gram, usize)) {
+fn rows(model: &Model<f32>, levels: &Levels, (chunk, count): (&Chunk, usize), field: &Field<f32, WIDE>, (gram, first): (&mut Gram, usize)) {
     let unknowns = levels.unknowns;
     let mut j: Columns = [[0.0; WIDE]; WIDEST];
     let (mut weight, mut gain) = ([0.0; WIDE], [0.0; WIDE]);
@@ -227,7 +227,6 @@ fn rows(model: &Model<f32>, levels: &Levels, (chunk, count): (&Chunk, usize), fi
 
 /// The derivatives by what changes linearly, and by the position what it does through that.
 #[inline(always)]
-#[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
 fn change(levels: &Levels, (chunk, weight): (&Chunk, &Wide), (value, shares): (&Wide, &[Wide; MOST]), j: &mut Columns) {
     let unknowns = levels.unknowns;
     for (axis, place) in [&chunk.x, &chunk.y].into_iter().enumerate() {
