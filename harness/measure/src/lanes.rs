@@ -16,6 +16,27 @@ pub(crate) const WIDE: usize = 16;
 /// [`WIDE`] numbers.
 pub(crate) type Wide = [f32; WIDE];
 
+/// The sum of all, in pairs, so that additions do not wait for each other.
+pub(crate) fn sum(lanes: &Wide) -> f64 {
+    let mut sums = lanes.map(f64::from);
+    let mut width = WIDE;
+    while width > 1 {
+        width /= 2;
+        for i in 0..width {
+            sums[i] += sums[i + width];
+        }
+    }
+    sums[0]
+}
+
+/// Adds the products of two, each to its own.
+#[inline(always)]
+pub(crate) fn add_products(sum: &mut Wide, a: &Wide, b: &Wide) {
+    for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
+        *sum += a * b;
+    }
+}
+
 /// A number of either precision, and what its exponential is made of.
 pub(crate) trait Real:
     Copy

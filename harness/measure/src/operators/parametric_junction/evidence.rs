@@ -14,11 +14,21 @@ const TOO_SOFT: f64 = 3.0;
 const DOUBT: f64 = 2.0;
 /// The root of the covariance of neighbouring residuals, in units of half the contrast, beyond which the window holds something else. Fitted to noise under a
 /// Gaussian of 1.5 to 3 px it is below that in 0.03 to 1.3 % of windows; at 0.2, as for chess corners, in 4 to 30 %.
-const MISFIT: f64 = 0.1;
+pub(super) const MISFIT: f64 = 0.1;
 /// Grey values of sectors differ by at most so many times what the window's grey values do: blur hides a part of a narrow sector's.
 const BEYOND: f64 = 4.0;
 /// Residuals beyond this part of half the contrast are those of a window of noise.
 const DROWNED: f64 = 0.5;
+
+/// By what a fit is judged.
+pub(super) struct Limits {
+    /// Side of its window, px.
+    pub(super) side: usize,
+    /// Side of the window that was asked for, px.
+    pub(super) wanted: usize,
+    /// As [`MISFIT`].
+    pub(super) misfit: f64,
+}
 
 /// The residuals of a fit, if it is that of a junction. In a window that is smaller than wanted a spot may look like the end of a sector: there they are to be
 /// white.
@@ -29,9 +39,10 @@ pub(super) fn weigh<const P: usize>(
     window: &mut Window<'_, P>,
     unknowns: Unknowns,
     rest: &Rest<P>,
-    (side, wanted): (usize, usize),
+    limits: &Limits,
 ) -> Result<Residuals, Rejection> {
-    let (x, pixels) = (&rest.x, (side * side) as f64);
+    let (x, side) = (&rest.x, limits.side);
+    let pixels = (side * side) as f64;
     let arms = unknowns.arms;
     let grey = |k: usize| x[unknowns.grey(k % arms)];
     let fitted = (0..arms).map(|k| (grey(k + 1) - grey(k)).abs()).fold(0.0, f64::max);
@@ -73,6 +84,6 @@ pub(super) fn weigh<const P: usize>(
     }
     let residuals = window.residuals(x, contrast).ok_or(Rejection::Misfit)?;
     // More arms follow the more.
-    let fits = if side < wanted { residuals.are_white() } else { !residuals.are_no_noise(MISFIT * 2.0 / arms as f64) };
+    let fits = if side < limits.wanted { residuals.are_white() } else { !residuals.are_no_noise(limits.misfit * 2.0 / arms as f64) };
     if fits { Ok(residuals) } else { Err(Rejection::Misfit) }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::unknowns::WIDEST;
-use crate::lanes::{WIDE, Wide};
+use crate::lanes::{WIDE, Wide, add_products, sum};
 use crate::marquardt::Normal;
 
 /// The derivatives of a chunk of pixels.
@@ -44,25 +44,5 @@ impl Gram {
             b: SVector::from_fn(|i, _| sum(&self.b[i])),
             omega: sum(&self.omega),
         }
-    }
-}
-
-/// In pairs, so that additions do not wait for each other.
-fn sum(lanes: &Wide) -> f64 {
-    let mut sums = lanes.map(f64::from);
-    let mut width = WIDE;
-    while width > 1 {
-        width /= 2;
-        for i in 0..width {
-            sums[i] += sums[i + width];
-        }
-    }
-    sums[0]
-}
-
-#[inline(always)]
-fn add_products(sum: &mut Wide, a: &Wide, b: &Wide) {
-    for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
-        *sum += a * b;
     }
 }

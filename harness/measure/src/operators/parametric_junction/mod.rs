@@ -17,6 +17,7 @@ use crate::marquardt::covariance;
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
+use evidence::Limits;
 use sectors::{Guess, sectors};
 use unknowns::{ADDED, EVEN, LIGHT, Unknowns};
 use window::Window;
@@ -55,6 +56,7 @@ pub struct ParametricJunction {
     arms: usize,
     gradient: u8,
     photosite: f64,
+    misfit: f64,
 }
 
 const PARAMETERS: &[Parameter] = &[
@@ -94,6 +96,14 @@ const PARAMETERS: &[Parameter] = &[
         default: 1.0,
         always_shown: false,
     },
+    Parameter {
+        name: "misfit",
+        about: "two arms are rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise; more arms earlier. \
+                Prints and lenses of photographs may leave more",
+        domain: Domain::Real { min: 0.0, max: 1.0 },
+        default: evidence::MISFIT,
+        always_shown: false,
+    },
 ];
 
 /// The method's entry.
@@ -126,6 +136,7 @@ impl ParametricJunction {
             arms: settings.whole("arms"),
             gradient: settings.whole("gradient") as u8,
             photosite: settings.get("photosite"),
+            misfit: settings.get("misfit"),
         }
     }
 
@@ -200,7 +211,7 @@ impl ParametricJunction {
         }
         x[unknowns.variance()] = VARIANCE;
         let rest = follow(&mut window, (image, half), guess.position, x)?;
-        let left = evidence::weigh(&mut window, unknowns, &rest, (side, self.window))?;
+        let left = evidence::weigh(&mut window, unknowns, &rest, &Limits { side, wanted: self.window, misfit: self.misfit })?;
         let Rest { at, normal, .. } = rest;
         let pixels = (side * side) as f64;
         let covariance = covariance(&normal, pixels - P as f64).ok_or(Rejection::ErrorEllipse)?;

@@ -66,6 +66,19 @@ fn spots_are_no_far_tips_of_sectors() {
     assert!(accepted <= 5, "{accepted}, {far} of them far off");
 }
 
+/// On paper that is not even two edges are crossed as well, but only if that is asked for.
+#[test]
+fn a_larger_misfit_takes_what_is_uneven() {
+    let mut rng = ChaCha8Rng::seed_from_u64(73);
+    let junction = Junction { position: [20.2, 19.7], ..junction(&[80.0, 100.0, 80.0, 100.0], 0.4, 0.8, [0.0; 2]) };
+    let uneven: Vec<f64> = junction.render(WIDTH).iter().zip(texture(1.5, &mut rng)).map(|(grey, uneven)| grey + 0.025 * uneven).collect();
+    let image = quadrature_images::image(&uneven, WIDTH);
+    let start = Start::at(PixelPoint::new(21.0, 19.0));
+    assert_eq!(operator("window=15,arms=4").measure(&image, &start), Err(Rejection::Misfit));
+    let found = operator("window=15,arms=4,misfit=0.4").measure(&image, &start).unwrap().position;
+    assert!(found.distance(PixelPoint::new(20.2, 19.7)) < 0.2, "{found:?}");
+}
+
 #[test]
 #[ignore = "takes minutes"]
 fn of_ten_thousand_windows_fewer_than_one_percent_are_taken_for_junctions() {
