@@ -93,3 +93,17 @@ fn refined<const P: usize>(window: &mut impl Laid<P>, mut x: SVector<f64, P>) ->
     }
     Err(Rejection::NotConverged)
 }
+
+/// Why a window may hold too much.
+const CROWDED: [Rejection; 3] = [Rejection::Misfit, Rejection::NotConverged, Rejection::LeftWindow];
+
+/// The fit over a window of the `wanted` side, px, or, where something else seems to stand in it, over the first of these smaller ones that holds a fit.
+///
+/// # Errors
+/// Why there is none in the wanted window.
+pub(crate) fn in_smaller_windows<T>(wanted: usize, smaller: &[usize], fit: impl Fn(usize) -> Result<T, Rejection>) -> Result<T, Rejection> {
+    fit(wanted).or_else(|why| {
+        let sides = smaller.iter().filter(|side| CROWDED.contains(&why) && **side < wanted);
+        sides.map(|side| fit(*side)).find(Result::is_ok).unwrap_or(Err(why))
+    })
+}

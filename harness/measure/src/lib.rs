@@ -12,6 +12,7 @@ pub mod conformance;
 pub mod ellipse;
 mod error;
 mod following;
+mod gradient;
 mod grey_window;
 pub mod harris;
 pub mod kinds;

@@ -1,6 +1,6 @@
 //! What every operator does.
 
-use calibench_model::{Image, Measurement, Rejection, Start, Unknowns};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
 
 /// A way of measuring points in an image, with its parameters set.
 pub trait Operator: Send + Sync {
@@ -38,4 +38,34 @@ pub trait Operator: Send + Sync {
 pub fn window_centre(image: &Image, start: &Start, reach: i64) -> Result<(i64, i64), Rejection> {
     let (x, y) = start.position.nearest_pixel().ok_or(Rejection::NotFinite)?;
     if image.holds(x, y, reach) { Ok((x, y)) } else { Err(Rejection::Border) }
+}
+
+/// Whether all grey values of the square of half-width `reach` px around a pixel are numbers.
+///
+/// # Errors
+/// [`Rejection::Border`] when the square leaves the image, [`Rejection::NotFinite`].
+pub fn finite_around(image: &Image, (x, y): (i64, i64), reach: i64) -> Result<(), Rejection> {
+    let mut rows = image.rows_around(x, y, reach).ok_or(Rejection::Border)?;
+    if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
+}
+
+/// What a detector of whole images measures: of each start the nearest detection within `radius` px. `reach` px around a start count; without any start that can be
+/// measured nothing is detected.
+pub fn nearest_detected(
+    (image, starts): (&Image, &[Start]),
+    (reach, radius): (i64, f64),
+    detect: impl FnOnce() -> Vec<PixelPoint>,
+) -> Vec<Result<Measurement, Rejection>> {
+    let admit = |start: &Start| window_centre(image, start, reach).and_then(|centre| finite_around(image, centre, reach));
+    let admitted: Vec<Result<(), Rejection>> = starts.iter().map(admit).collect();
+    let found = if admitted.iter().any(Result::is_ok) { detect() } else { Vec::new() };
+    let nearest = |start: &Start| {
+        let best = found.iter().min_by(|a, b| a.distance(start.position).total_cmp(&b.distance(start.position)));
+        best.filter(|at| at.distance(start.position) <= radius).copied()
+    };
+    let measure = |(start, admitted): (&Start, Result<(), Rejection>)| {
+        admitted?;
+        nearest(start).map(|position| Measurement { position, covariance: None }).ok_or(Rejection::NoCorner)
+    };
+    starts.iter().zip(admitted).map(measure).collect()
 }

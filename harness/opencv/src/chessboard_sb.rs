@@ -1,6 +1,6 @@
 //! `opencv_chessboard_sb`: OpenCV's findChessboardCornersSB.
 
-use calibench_measure::operator::window_centre;
+use calibench_measure::operator::nearest_detected;
 use calibench_measure::registry::{Build, Method};
 use calibench_measure::{Operator, Settings};
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
@@ -45,13 +45,6 @@ impl ChessboardSb {
         let whole = found && corners.len() as i32 == self.board.area();
         Ok(if whole { corners.iter().map(pixel).filter(|corner| corner.is_finite()).collect() } else { Vec::new() })
     }
-
-    fn admit(&self, image: &Image, start: &Start) -> Result<(), Rejection> {
-        let reach = self.radius.ceil() as i64 + 1;
-        let (x, y) = window_centre(image, start, reach)?;
-        let mut rows = image.rows_around(x, y, reach).ok_or(Rejection::Border)?;
-        if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
-    }
 }
 
 impl Operator for ChessboardSb {
@@ -63,18 +56,9 @@ impl Operator for ChessboardSb {
     }
 
     fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
-        let admitted: Vec<Result<(), Rejection>> = starts.iter().map(|start| self.admit(image, start)).collect();
+        let reach = self.radius.ceil() as i64 + 1;
         // What OpenCV objects to, an image of a few pixels for one, shows no board.
-        let found = if admitted.iter().any(Result::is_ok) { self.detect(image).unwrap_or_default() } else { Vec::new() };
-        let nearest = |start: &Start| {
-            let best = found.iter().min_by(|a, b| a.distance(start.position).total_cmp(&b.distance(start.position)));
-            best.filter(|at| at.distance(start.position) <= self.radius).copied()
-        };
-        let measure = |(start, admitted): (&Start, Result<(), Rejection>)| {
-            admitted?;
-            nearest(start).map(|position| Measurement { position, covariance: None }).ok_or(Rejection::NoCorner)
-        };
-        starts.iter().zip(admitted).map(measure).collect()
+        nearest_detected((image, starts), (reach, self.radius), || self.detect(image).unwrap_or_default())
     }
 }
 

@@ -3,7 +3,7 @@
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use chess_corners::{Detector, DetectorConfig, ImageRefiner};
 
-use crate::operator::{Operator, window_centre};
+use crate::operator::{Operator, nearest_detected};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
 
@@ -73,13 +73,6 @@ impl ChessCorners {
         let found = detector.detect_u8(&image.to_u8(), image.width() as u32, image.height() as u32).ok()?;
         Some(found.iter().map(|corner| PixelPoint::new(f64::from(corner.x), f64::from(corner.y))).filter(|p| p.is_finite()).collect())
     }
-
-    fn admit(&self, image: &Image, start: &Start) -> Result<(), Rejection> {
-        let reach = RING + self.radius.ceil() as i64;
-        let (x, y) = window_centre(image, start, reach)?;
-        let mut rows = image.rows_around(x, y, reach).ok_or(Rejection::Border)?;
-        if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
-    }
 }
 
 impl Operator for ChessCorners {
@@ -91,18 +84,8 @@ impl Operator for ChessCorners {
     }
 
     fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
-        let admitted: Vec<Result<(), Rejection>> = starts.iter().map(|start| self.admit(image, start)).collect();
-        let any = admitted.iter().any(Result::is_ok);
-        let found = if any { self.detect(image).unwrap_or_default() } else { Vec::new() };
-        let nearest = |start: &Start| {
-            let best = found.iter().min_by(|a, b| a.distance(start.position).total_cmp(&b.distance(start.position)));
-            best.filter(|at| at.distance(start.position) <= self.radius).copied()
-        };
-        let measure = |(start, admitted): (&Start, Result<(), Rejection>)| {
-            admitted?;
-            nearest(start).map(|position| Measurement { position, covariance: None }).ok_or(Rejection::NoCorner)
-        };
-        starts.iter().zip(admitted).map(measure).collect()
+        let reach = RING + self.radius.ceil() as i64;
+        nearest_detected((image, starts), (reach, self.radius), || self.detect(image).unwrap_or_default())
     }
 }
 

@@ -1,15 +1,7 @@
 //! The two grey values and how they change over the window.
 
 use super::model::BASE;
-
-/// What changes linearly over the window: nothing, or ...
-pub(super) const EVEN: u8 = 0;
-/// ... the mean of the two grey values: something is added. Two unknowns: grey values a px.
-pub(super) const ADDED: u8 = 1;
-/// ... the light, which multiplies both. Two unknowns: shares of the light at the corner a px.
-pub(super) const LIGHT: u8 = 2;
-/// ... each of the two grey values for itself. Four unknowns: their mean's and half their difference's change, a px. The two before are among them.
-pub(super) const BOTH: u8 = 3;
+use crate::gradient::{ADDED, EVEN, LIGHT};
 
 /// The grey value is `mean + mean_slope . d + (half + half_slope . d) f`, with d from the corner, px, and f from -1 to 1 by the model.
 pub(super) struct Levels {

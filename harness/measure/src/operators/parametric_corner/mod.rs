@@ -9,15 +9,16 @@ mod start;
 mod sums;
 mod window;
 
-use calibench_model::{Gradient, Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
 use nalgebra::SVector;
 
-use crate::following::{Rest, follow};
+use crate::following::{Rest, follow, in_smaller_windows};
+use crate::gradient::{ADDED, EACH, EVEN, LIGHT, estimated};
 use crate::marquardt::covariance;
-use crate::operator::{Operator, window_centre};
+use crate::operator::{Operator, finite_around, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
-use levels::{ADDED, BOTH, EVEN, LIGHT};
+
 use window::{Setting, Window};
 
 /// Blur at the start, px^2: between sharp and soft.
@@ -32,8 +33,6 @@ const DROWNED: f64 = 0.8;
 /// OpenCV's samples, of lenses and prints as they are, it is 0.05 to 0.07 in the median and 0.13 at most but for one corner of 2101; on boards whose squares are
 /// 6 px wide, 0.6 or more.
 const MISFIT: f64 = 0.2;
-/// Why a window may hold too much.
-const CROWDED: [Rejection; 3] = [Rejection::Misfit, Rejection::NotConverged, Rejection::LeftWindow];
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
 /// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the photosite's area (a square, as wide as the
@@ -132,11 +131,11 @@ impl ParametricCorner {
             (EVEN, false) => self.fit::<7, EVEN, false>(window, &guess),
             (ADDED, false) => self.fit::<9, ADDED, false>(window, &guess),
             (LIGHT, false) => self.fit::<9, LIGHT, false>(window, &guess),
-            (_, false) => self.fit::<11, BOTH, false>(window, &guess),
+            (_, false) => self.fit::<11, EACH, false>(window, &guess),
             (EVEN, true) => self.fit::<9, EVEN, true>(window, &guess),
             (ADDED, true) => self.fit::<11, ADDED, true>(window, &guess),
             (LIGHT, true) => self.fit::<11, LIGHT, true>(window, &guess),
-            (_, true) => self.fit::<13, BOTH, true>(window, &guess),
+            (_, true) => self.fit::<13, EACH, true>(window, &guess),
         }
     }
 
@@ -171,7 +170,7 @@ impl Operator for ParametricCorner {
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let centre = window_centre(image, start, half)?;
-        finite(image, centre, half)?;
+        finite_around(image, centre, half)?;
         let position = if self.search == 0 {
             [start.position.x, start.position.y]
         } else {
@@ -181,31 +180,17 @@ impl Operator for ParametricCorner {
         if !image.holds(at[0], at[1], half) {
             return Err(Rejection::Border);
         }
-        finite(image, (at[0], at[1]), half)?;
+        finite_around(image, (at[0], at[1]), half)?;
         // Without a search the start may be too far off for that.
         if self.search > 0 && !start::is_like_its_opposite(image, position, half) {
             return Err(Rejection::NoCorner);
         }
-        self.fitted((image, self.window), position).or_else(|why| {
-            let smaller = SMALLER.into_iter().filter(|side| CROWDED.contains(&why) && *side < self.window);
-            smaller.map(|side| self.fitted((image, side), position)).find(Result::is_ok).unwrap_or(Err(why))
-        })
+        in_smaller_windows(self.window, &SMALLER, |side| self.fitted((image, side), position))
     }
 
     fn unknowns(&self) -> Unknowns {
-        let gradient = match self.gradient {
-            EVEN => Gradient::None,
-            ADDED => Gradient::Added,
-            LIGHT => Gradient::Light,
-            _ => Gradient::Both,
-        };
-        Unknowns { shape: true, levels: true, blur: true, gradient }
+        Unknowns { shape: true, levels: true, blur: true, gradient: estimated(self.gradient) }
     }
-}
-
-fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
-    let mut rows = image.rows_around(x, y, half).ok_or(Rejection::Border)?;
-    if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
 }
 
 #[cfg(test)]

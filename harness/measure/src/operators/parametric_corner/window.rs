@@ -7,11 +7,12 @@ use calibench_model::Image;
 use multiversion::multiversion;
 use nalgebra::SVector;
 
-use super::levels::{ADDED, BOTH, EVEN, LIGHT, Levels};
+use super::levels::Levels;
 use super::lists::{AREAS, CORNER, EDGES, List, Lists};
 use super::model::{BASE, Fidelity, Field, Model, Shape};
 use super::sums::Sums;
 use crate::following::Laid;
+use crate::gradient::{ADDED, EACH, EVEN, LIGHT};
 use crate::grey_window::GreyWindow;
 use crate::lanes::{WIDE, Wide};
 use crate::marquardt::{Normal, Problem};
@@ -199,11 +200,11 @@ impl<const P: usize, const GRADIENT: u8> Rows<'_, P, GRADIENT> {
                 j[5][i] = weight * level.gain;
                 j[6][i] = weight * level.gain * value;
                 for (axis, d) in [x[i], y[i]].into_iter().enumerate() {
-                    if matches!(GRADIENT, ADDED | LIGHT | BOTH) {
+                    if matches!(GRADIENT, ADDED | LIGHT | EACH) {
                         let [first, second] = levels.by_slopes::<GRADIENT>(d, value);
                         j[axis][i] += weight * levels.by_position::<GRADIENT>(axis, value);
                         j[BASE + axis][i] = weight * first;
-                        if GRADIENT == BOTH {
+                        if GRADIENT == EACH {
                             j[BASE + 2 + axis][i] = weight * second;
                         }
                     }

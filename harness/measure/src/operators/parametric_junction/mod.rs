@@ -9,25 +9,24 @@ mod sectors;
 mod unknowns;
 mod window;
 
-use calibench_model::{Gradient, Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use nalgebra::SVector;
 
-use crate::following::{Rest, follow};
+use crate::following::{Rest, follow, in_smaller_windows};
+use crate::gradient::estimated;
 use crate::marquardt::covariance;
-use crate::operator::{Operator, window_centre};
+use crate::operator::{Operator, finite_around, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
 use evidence::Limits;
 use sectors::{Guess, sectors};
-use unknowns::{ADDED, EVEN, LIGHT, Unknowns};
+use unknowns::Unknowns;
 use window::Window;
 
 /// Blur at the start, px^2: between sharp and soft.
 const VARIANCE: f64 = 0.5;
 /// Sides of the smaller windows, px, that are tried where the residuals of the wanted one are no noise: a neighbour may stand in it.
 const SMALLER: [usize; 2] = [13, 11];
-/// Why a window may hold too much.
-const CROWDED: [Rejection; 3] = [Rejection::Misfit, Rejection::NotConverged, Rejection::LeftWindow];
 /// The starts are that of the gradient and those so many px beside it.
 const BESIDE: f64 = 2.0;
 
@@ -230,34 +229,20 @@ impl Operator for ParametricJunction {
     fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
         let centre = window_centre(image, start, half)?;
-        finite(image, centre, half)?;
+        finite_around(image, centre, half)?;
         let position = if self.search == 0 {
             [start.position.x, start.position.y]
         } else {
             apex::apex(image, centre, self.search).ok_or(Rejection::NoCorner)?
         };
         let at = position.map(|c| c.round() as i64);
-        finite(image, (at[0], at[1]), half)?;
-        self.fitted((image, self.window), position).or_else(|why| {
-            let smaller = SMALLER.into_iter().filter(|side| CROWDED.contains(&why) && *side < self.window);
-            smaller.map(|side| self.fitted((image, side), position)).find(Result::is_ok).unwrap_or(Err(why))
-        })
+        finite_around(image, (at[0], at[1]), half)?;
+        in_smaller_windows(self.window, &SMALLER, |side| self.fitted((image, side), position))
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
-        let gradient = match self.gradient {
-            EVEN => Gradient::None,
-            ADDED => Gradient::Added,
-            LIGHT => Gradient::Light,
-            _ => Gradient::Both,
-        };
-        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient }
+        calibench_model::Unknowns { shape: true, levels: true, blur: true, gradient: estimated(self.gradient) }
     }
-}
-
-fn finite(image: &Image, (x, y): (i64, i64), half: i64) -> Result<(), Rejection> {
-    let mut rows = image.rows_around(x, y, half).ok_or(Rejection::Border)?;
-    if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
 }
 
 #[cfg(test)]

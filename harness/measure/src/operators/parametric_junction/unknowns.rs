@@ -3,15 +3,7 @@
 use std::f64::consts::PI;
 
 use super::arms::{MOST, Shape};
-
-/// What changes linearly over the window: nothing, or ...
-pub(super) const EVEN: u8 = 0;
-/// ... something is added. Two unknowns: grey values a px.
-pub(super) const ADDED: u8 = 1;
-/// ... the light, which multiplies all. Two unknowns: shares of the light at the point a px.
-pub(super) const LIGHT: u8 = 2;
-/// ... each sector's grey value for itself. Two unknowns a sector: grey values a px.
-pub(super) const EACH: u8 = 3;
+use crate::gradient::{ADDED, EACH, EVEN, LIGHT};
 
 /// Most unknowns: of four sectors that change each for itself.
 pub(super) const WIDEST: usize = 17;

@@ -4,10 +4,10 @@ use nalgebra::SVector;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::super::levels::{ADDED, BOTH, EVEN, LIGHT};
 use super::super::window::{Setting, Window};
 use super::efficiency::{BLURS, NOISES, TILTS, bound_of, near};
 use super::{SIDE, chess, operator};
+use crate::gradient::{ADDED, EACH, EVEN, LIGHT};
 use crate::marquardt::Problem;
 use crate::operator::Operator;
 use crate::tests::bound::{Pool, noisy};
@@ -50,11 +50,11 @@ fn right_hand_sides_are_those_of_differences() {
     check_right_hand_side::<7, EVEN, false>(&image);
     check_right_hand_side::<9, ADDED, false>(&image);
     check_right_hand_side::<9, LIGHT, false>(&image);
-    check_right_hand_side::<11, BOTH, false>(&image);
+    check_right_hand_side::<11, EACH, false>(&image);
     check_right_hand_side::<9, EVEN, true>(&image);
     check_right_hand_side::<11, ADDED, true>(&image);
     check_right_hand_side::<11, LIGHT, true>(&image);
-    check_right_hand_side::<13, BOTH, true>(&image);
+    check_right_hand_side::<13, EACH, true>(&image);
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn a_gradient_of_the_light_leaves_no_bias() {
         let found = operator(&format!("window=15,gradient={gradient}")).measure(&image, &start).unwrap();
         (found.position.x - corner.position[0]).hypot(found.position.y - corner.position[1])
     };
-    let [none, added, light, both] = [EVEN, ADDED, LIGHT, BOTH].map(error);
+    let [none, added, light, both] = [EVEN, ADDED, LIGHT, EACH].map(error);
     println!("none {none:e}, added {added:e}, light {light:e}, both {both:e} px");
     assert!(light < 1e-5 && both < 1e-5 && added > 3.0 * light && none > 3.0 * light);
 }

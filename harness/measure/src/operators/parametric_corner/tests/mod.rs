@@ -6,6 +6,7 @@ use super::model::{Fidelity, Model, Shape};
 use super::*;
 use crate::lanes::{LANES, WIDE};
 use crate::registry::Registry;
+use crate::tests::print_rate;
 use crate::tests::quadrature_images::{self, Chess};
 
 pub(super) fn operator(spec: &str) -> Box<dyn Operator> {
@@ -64,18 +65,7 @@ fn speed() {
                 .map(|_| quadrature_images::image(&grey.iter().map(|g| g + normal.sample(&mut rng)).collect::<Vec<_>>(), SIDE))
                 .collect();
             let operator = operator(spec);
-            let mut best = f64::INFINITY;
-            for _ in 0..20 {
-                let clock = std::time::Instant::now();
-                for (i, image) in images.iter().enumerate() {
-                    let a = i as f64;
-                    let start = Start::at(PixelPoint::new(corner.position[0] + a.cos(), corner.position[1] + a.sin()));
-                    let found = operator.measure(image, &start);
-                    std::hint::black_box(&found);
-                }
-                best = best.min(clock.elapsed().as_secs_f64());
-            }
-            println!("{spec} blur {blur}: {:.0} points/s", 200.0 / best);
+            print_rate(&format!("{spec} blur {blur}"), &*operator, &images, corner.position);
         }
     }
 }

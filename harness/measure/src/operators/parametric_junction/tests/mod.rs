@@ -1,4 +1,5 @@
 mod efficiency;
+mod gradients;
 mod refused;
 mod speed;
 

@@ -1,5 +1,6 @@
 use super::*;
 use crate::tests::bound::noisy;
+use crate::tests::print_rate;
 use rand::SeedableRng;
 
 #[test]
@@ -12,17 +13,7 @@ fn speed() {
             let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
             let images: Vec<Image> = (0..200).map(|_| quadrature_images::image(&noisy(&grey, 0.012, &mut rng), SIDE)).collect();
             let operator = operator(spec);
-            let mut best = f64::INFINITY;
-            for _ in 0..20 {
-                let clock = std::time::Instant::now();
-                for (i, image) in images.iter().enumerate() {
-                    let a = i as f64;
-                    let start = Start::at(PixelPoint::new(junction.position[0] + a.cos(), junction.position[1] + a.sin()));
-                    std::hint::black_box(&operator.measure(image, &start)).as_ref().unwrap();
-                }
-                best = best.min(clock.elapsed().as_secs_f64());
-            }
-            println!("{spec} blur {blur}: {:.0} points/s", 200.0 / best);
+            print_rate(&format!("{spec} blur {blur}"), &*operator, &images, junction.position);
         }
     }
 }
