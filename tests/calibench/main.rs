@@ -11,6 +11,7 @@ mod covariance;
 mod determinism;
 mod diagnostics;
 mod doubts;
+mod eccentricity;
 mod fuzz;
 mod galo;
 mod gate;

@@ -73,7 +73,7 @@ fn a_user_who_calibrates_the_same_coordinates_finds_the_same_camera() {
         .control
         .iter()
         .enumerate()
-        .map(|(i, at)| ControlRow { target: name(i), position: (*at).into(), sigmas: Some([calibration.control_sigma; 3]) })
+        .map(|(i, at)| ControlRow { sigmas: Some([calibration.control_sigma; 3]), ..ControlRow::new(name(i), (*at).into()) })
         .collect();
     for calibrated in &trial.calibrations {
         let points: Points = observed.points.iter().filter(|point| point.method == calibrated.method).map(row).collect();

@@ -39,22 +39,8 @@ impl Prepared {
     /// # Errors
     /// What the network does not determine, by name; what else [`adjust`] refuses.
     pub fn adjust(&self) -> Result<Calibration<'_>, CalibrationError> {
-        let options = Options { most_iterations: ITERATIONS, ..Options::default() };
-        let test = Test { variance: self.settings.tested(), ..Test::default() };
-        let (mut found, mut huber) = (Vec::new(), None);
-        let solution = match self.settings.huber {
-            Some(bound) => {
-                let (solution, scaled) = adjust_robustly(&self.network, &options, bound)?;
-                huber = Some(scaled);
-                solution
-            }
-            None if self.settings.snoop => {
-                let (solution, rejected) = snoop(&self.network, &options, Snooping { test, ..Snooping::default() })?;
-                found = rejected;
-                solution
-            }
-            None => adjust(&self.network, &options)?,
-        };
+        let (solution, found, huber) = self.solution()?;
+        let test = self.test();
         let checked = solution.counts().redundancy() > 0;
         let covariances = solution.covariances(if checked { Variance::Estimated } else { Variance::Apriori })?;
         let reliability = if checked { Some(solution.reliability(test)?) } else { None };
@@ -69,6 +55,27 @@ impl Prepared {
             resampled: None,
             checked: Vec::new(),
         })
+    }
+
+    /// The solution alone, with what was rejected and the bound of Huber's weights.
+    pub(crate) fn solution(&self) -> Result<(Solution<'_>, Vec<Found>, Option<f64>), CalibrationError> {
+        let options = Options { most_iterations: ITERATIONS, ..Options::default() };
+        Ok(match self.settings.huber {
+            Some(bound) => {
+                let (solution, scaled) = adjust_robustly(&self.network, &options, bound)?;
+                (solution, Vec::new(), Some(scaled))
+            }
+            None if self.settings.snoop => {
+                let (solution, found) = snoop(&self.network, &options, Snooping { test: self.test(), ..Snooping::default() })?;
+                (solution, found, None)
+            }
+            None => (adjust(&self.network, &options)?, Vec::new(), None),
+        })
+    }
+
+    /// How image points are tested.
+    fn test(&self) -> Test {
+        Test { variance: self.settings.tested(), ..Test::default() }
     }
 }
 

@@ -90,6 +90,21 @@ pub enum CalibrationError {
         /// The image whose name is nearest.
         near: Option<String>,
     },
+    /// Discs whose planes nothing tells.
+    #[error("no plane for {}: their nearest neighbours lie in none; give the control file nX,nY,nZ of these discs", few(targets))]
+    NoPlane {
+        /// Their names.
+        targets: Vec<String>,
+    },
+    /// The eccentricity of discs was asked for, and there is none.
+    #[error("no image point is of a disc: {}", if *with_radius { "the point file says that all are of other kinds; expected `disc` in its column `kind`, or no kind" } else { "no measured target has a `radius` in the control file; expected that column, or the radius itself" })]
+    NoDisc {
+        /// Whether a radius was given for all.
+        with_radius: bool,
+    },
+    /// The eccentricity of discs and the adjustment do not settle.
+    #[error("the eccentricity of the discs does not settle: is their radius in the units of the control file?")]
+    NotCentred,
     /// The start cannot be put into the model.
     #[error("the start values do not fit the model: {0}")]
     Convert(#[from] ConvertError),
@@ -99,6 +114,12 @@ pub enum CalibrationError {
     /// No adjustment.
     #[error("{}{}", .0, hint(.0))]
     Adjust(#[from] AdjustError),
+}
+
+/// Some names, and how many more there are.
+fn few(names: &[String]) -> String {
+    let shown = names.iter().take(5).cloned().collect::<Vec<_>>().join(", ");
+    if names.len() > 5 { format!("{shown} and {} more", names.len() - 5) } else { shown }
 }
 
 fn hint(error: &AdjustError) -> &'static str {

@@ -5,7 +5,7 @@ use calibench_exchange::{ControlRow, LostRows, Points};
 use calibench_model::camera::Camera;
 
 use crate::against_gross::{self, Found};
-use crate::{BoardShape, CalibrationError, DatumChoice, LeftOut, Rival, Settings, Shape, Survey, network, optics, shape};
+use crate::{BoardShape, CalibrationError, DatumChoice, Eccentricity, LeftOut, Rival, Settings, Shape, Survey, network, optics, shape};
 
 /// A network with its start values.
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub struct Prepared {
     pub held: Vec<String>,
     /// What is adjusted.
     pub network: Network,
+    /// What was taken from the observations of discs, if that was asked for; [`prepare`] leaves it empty.
+    pub eccentricity: Option<Eccentricity>,
     /// The sight behind each observation of the network.
     pub sights: Vec<u32>,
     /// Rows that take no part, with the reason.
@@ -56,6 +58,7 @@ pub fn prepare(points: Points, control: &[ControlRow], settings: &Settings) -> R
         shape,
         held: Vec::new(),
         network,
+        eccentricity: None,
         sights,
         left_out,
         unmeasured: LostRows::default(),

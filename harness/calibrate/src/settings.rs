@@ -3,7 +3,7 @@
 use calibench_adjust::Variance;
 use calibench_exchange::ObservedStation;
 
-use crate::{BoardShape, DatumChoice, Optics};
+use crate::{BoardShape, DatumChoice, Discs, Optics};
 
 /// How to calibrate.
 #[derive(Clone, Debug)]
@@ -22,6 +22,8 @@ pub struct Settings {
     pub sigma_px: Option<f64>,
     /// Whether image points are weighted by their own covariances, where they have them.
     pub covariances: bool,
+    /// Discs whose eccentricity is taken from the centres of their pictures; `None` to take image points as they are.
+    pub discs: Option<Discs>,
     /// Poses that were observed, or parts of them.
     pub stations: Vec<ObservedStation>,
 }
@@ -43,6 +45,7 @@ impl Settings {
             snoop: false,
             sigma_px: None,
             covariances: false,
+            discs: None,
             stations: Vec::new(),
         }
     }

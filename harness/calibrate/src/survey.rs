@@ -1,8 +1,10 @@
 //! Measured points and control, joined by name.
 
 use calibench_diagnostics::nearest;
-use calibench_exchange::{ControlRow, Groups, Points};
-use calibench_model::{Covariance, PixelPoint};
+use std::collections::HashMap;
+
+use calibench_exchange::{ControlDisc, ControlRow, Groups, Points};
+use calibench_model::{Covariance, PixelPoint, TargetKind};
 use nalgebra::Point3;
 
 use super::CalibrationError;
@@ -18,6 +20,8 @@ pub struct Survey {
     /// Of each target: its place in `control`, or [`TIE`].
     known: Vec<u32>,
     control: Vec<Known>,
+    /// Of the targets whose control says so.
+    discs: HashMap<usize, ControlDisc>,
 }
 
 /// No place: of a tie point.
@@ -76,9 +80,10 @@ impl Survey {
     }
 
     fn join(points: Points, rows: &[ControlRow]) -> Self {
-        let (mut known, mut control) = (vec![TIE; points.targets().len()], Vec::new());
+        let (mut known, mut control, mut discs) = (vec![TIE; points.targets().len()], Vec::new(), HashMap::new());
         for row in rows {
             let Some(target) = points.targets().find(&row.target) else { continue };
+            row.disc.as_deref().and_then(|disc| discs.insert(target, *disc));
             let new = Known { position: row.position.into(), sigmas: row.sigmas };
             match control.get_mut(known[target] as usize) {
                 Some(earlier) => *earlier = new,
@@ -90,7 +95,7 @@ impl Survey {
         }
         let images = points.images().iter().map(str::to_owned).collect();
         let (by_image, by_target) = (points.by_image(), points.by_target());
-        Self { images, points, by_image, by_target, known, control }
+        Self { images, points, by_image, by_target, known, control, discs }
     }
 
     /// How many targets were measured.
@@ -121,6 +126,21 @@ impl Survey {
     /// Known coordinates of a target.
     pub fn known(&self, target: usize) -> Option<Point3<f64>> {
         self.control(target).map(|known| known.position)
+    }
+
+    /// What the control says of a target that is a disc.
+    pub fn disc(&self, target: usize) -> Option<&ControlDisc> {
+        self.discs.get(&target)
+    }
+
+    /// Whether the control says of any measured target that it is a disc.
+    pub fn states_discs(&self) -> bool {
+        !self.discs.is_empty()
+    }
+
+    /// What an image point was measured as, if its file says so.
+    pub fn kind(&self, sight: usize) -> Option<TargetKind> {
+        self.points.kind(sight)
     }
 
     /// How many image points there are.

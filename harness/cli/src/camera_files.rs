@@ -22,9 +22,16 @@ pub struct CameraFiles {
 
 /// A camera file, and the images that it is for.
 #[derive(Clone, Debug)]
-struct ImagesFile {
+pub struct ImagesFile {
     images: Pattern,
     file: PathBuf,
+}
+
+impl ImagesFile {
+    /// The camera file.
+    pub fn path(&self) -> &PathBuf {
+        &self.file
+    }
 }
 
 impl FromStr for ImagesFile {
@@ -43,9 +50,14 @@ impl FromStr for ImagesFile {
 }
 
 impl CameraFiles {
+    /// Those of a command that need not know any camera.
+    pub fn new(files: Vec<ImagesFile>, size: Option<ImageSize>) -> Self {
+        Self { files, size }
+    }
+
     /// The files.
     pub fn paths(&self) -> impl Iterator<Item = &PathBuf> {
-        self.files.iter().map(|given| &given.file)
+        self.files.iter().map(ImagesFile::path)
     }
 
     /// The camera of each image.

@@ -18,20 +18,27 @@ pub(crate) struct Form {
     pub(crate) key: &'static str,
     /// Columns of numbers that must be there.
     pub(crate) required: &'static [&'static str],
-    /// Columns of numbers that may be there, all or none.
-    pub(crate) optional: &'static [&'static str],
+    /// Groups of columns of numbers that may be there, each whole or not at all.
+    pub(crate) optional: &'static [&'static [&'static str]],
     /// Columns of other names are read over.
     pub(crate) others: bool,
     /// Columns that are passed over, since this program's own tables have them.
     pub(crate) passed_over: &'static [&'static str],
 }
 
-/// A row: its name, its numbers, and those of the optional columns if it has them.
+/// A row: its name, its numbers, and of each optional group those that it has.
 pub(crate) struct Row {
     pub(crate) line: u64,
     pub(crate) name: String,
     pub(crate) numbers: Vec<f64>,
-    pub(crate) optional: Option<Vec<f64>>,
+    optional: Vec<Option<Vec<f64>>>,
+}
+
+impl Row {
+    /// The numbers of an optional group, if the row has them.
+    pub(crate) fn group<const N: usize>(&self, group: usize) -> Option<[f64; N]> {
+        self.optional.get(group)?.as_deref()?.try_into().ok()
+    }
 }
 
 impl Form {
@@ -75,7 +82,7 @@ impl Form {
     }
 
     fn places(&self, file: &str, header: &StringRecord) -> Result<HashMap<String, usize>, PointFileError> {
-        let known = [&self.columns()[..], self.optional].concat();
+        let known = [self.columns(), self.optional.concat()].concat();
         let mut places = HashMap::new();
         for (index, name) in header.iter().enumerate() {
             if !known.contains(&name) && !self.others && !self.passed_over.contains(&name) {
@@ -89,10 +96,12 @@ impl Form {
             let problem = format!("missing in the header; every {} has {}", self.what, self.columns().join(","));
             return Err(wrong(file, Some(1), Some(missing), problem));
         }
-        let absent: Vec<_> = self.optional.iter().copied().filter(|name| !places.contains_key(*name)).collect();
-        if !absent.is_empty() && absent.len() < self.optional.len() {
-            let problem = format!("missing in the header; these go together: {}", self.optional.join(","));
-            return Err(wrong(file, Some(1), Some(absent[0]), problem));
+        for group in self.optional {
+            let absent: Vec<_> = group.iter().copied().filter(|name| !places.contains_key(*name)).collect();
+            if !absent.is_empty() && absent.len() < group.len() {
+                let problem = format!("missing in the header; these go together: {}", group.join(","));
+                return Err(wrong(file, Some(1), Some(absent[0]), problem));
+            }
         }
         Ok(places)
     }
@@ -101,8 +110,11 @@ impl Form {
         let name = cells.text(self.key).ok_or_else(|| cells.wrong(self.key, "is empty; expected a name".into()))?;
         let name = escape::from_cell(name).to_owned();
         let numbers = self.required.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()?;
-        let given = self.optional.iter().any(|column| cells.text(column).is_some());
-        let optional = given.then(|| self.optional.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()).transpose()?;
+        let group = |group: &&[&str]| {
+            let given = group.iter().any(|column| cells.text(column).is_some());
+            given.then(|| group.iter().map(|column| cells.number(column)).collect::<Result<_, _>>()).transpose()
+        };
+        let optional = self.optional.iter().map(group).collect::<Result<_, _>>()?;
         Ok(Row { line: cells.line, name, numbers, optional })
     }
 }

@@ -16,7 +16,7 @@ pub mod table;
 
 pub use atomic::OutputFile;
 pub use camera::{CameraFile, CameraFileError, CameraFormat, NamedCamera, ReadOptions, read_camera, read_camera_with, write_camera};
-pub use control::{ControlRow, POINT_QUALITY_COLUMNS, read_control, write_control};
+pub use control::{ControlDisc, ControlRow, POINT_QUALITY_COLUMNS, read_control, write_control};
 pub use folder::{NewFile, NewFolder, OutputFolder};
 pub use inputs::Inputs;
 pub use photo::{Photo, PhotoError, Turn, encode_png, parse_photo, read_photo, turn_of, write_png};

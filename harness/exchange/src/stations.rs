@@ -14,10 +14,10 @@ pub const POSE_COLUMNS: [&str; 6] = ["X0", "Y0", "Z0", "omega_deg", "phi_deg", "
 pub const POSE_SIGMA_COLUMNS: [&str; 6] = ["sX0", "sY0", "sZ0", "sx_deg", "sy_deg", "sz_deg"];
 
 const FORM: Form = Form { what: "station file", key: "image", required: &POSE_COLUMNS, optional: &[], others: true, passed_over: &[] };
-/// Standard deviations of the centre; each group is there whole or not at all.
-const CENTRES: Form = Form { optional: POSE_SIGMA_COLUMNS.split_at(3).0, ..FORM };
-/// Standard deviations of a small rotation about the camera's axes.
-const TURNS: Form = Form { optional: POSE_SIGMA_COLUMNS.split_at(3).1, ..FORM };
+/// Standard deviations of the centre, and of a small rotation about the camera's axes.
+const GROUPS: [&[&str]; 2] = [POSE_SIGMA_COLUMNS.split_at(3).0, POSE_SIGMA_COLUMNS.split_at(3).1];
+/// With standard deviations; each group is there whole or not at all.
+const OBSERVED: Form = Form { optional: &GROUPS, ..FORM };
 
 /// An image and its exterior orientation.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,26 +55,25 @@ pub fn read_observed_stations(path: &Path) -> Result<Vec<ObservedStation>, Point
 /// # Errors
 /// As [`read_observed_stations`].
 pub fn parse_observed_stations(file: &str, text: &[u8]) -> Result<Vec<ObservedStation>, PointFileError> {
-    let (centres, turns) = (CENTRES.parse(file, text, |_, row| Ok(row))?, TURNS.parse(file, text, |_, row| Ok(row))?);
-    let observed = |(centre, turn): (&Row, &Row)| {
-        let rotation = sigmas(file, &TURNS, turn)?.map(|sigmas| sigmas.map(f64::to_radians));
-        Ok(ObservedStation { station: station(centre), centre: sigmas(file, &CENTRES, centre)?, rotation })
+    let observed = |file: &str, row: Row| {
+        let rotation = sigmas(file, &row, 1)?.map(|sigmas| sigmas.map(f64::to_radians));
+        Ok(ObservedStation { station: station(&row), centre: sigmas(file, &row, 0)?, rotation })
     };
-    let rows = centres.iter().zip(&turns).map(observed).collect::<Result<Vec<_>, PointFileError>>()?;
+    let rows = OBSERVED.parse(file, text, observed)?;
     if rows.iter().all(|row| row.centre.is_none() && row.rotation.is_none()) {
-        let problem = format!("holds no standard deviation; expected {} or {}", CENTRES.optional.join(","), TURNS.optional.join(","));
+        let problem = format!("holds no standard deviation; expected {}", GROUPS.map(|group| group.join(",")).join(" or "));
         return Err(wrong(file, None, None, problem));
     }
     Ok(rows)
 }
 
-fn sigmas(file: &str, form: &Form, row: &Row) -> Result<Option<[f64; 3]>, PointFileError> {
-    let Some([a, b, c]) = row.optional.as_deref().and_then(|sigmas| <&[f64; 3]>::try_from(sigmas).ok()) else { return Ok(None) };
-    match [a, b, c].iter().position(|sigma| **sigma <= 0.0) {
-        None => Ok(Some([*a, *b, *c])),
+fn sigmas(file: &str, row: &Row, group: usize) -> Result<Option<[f64; 3]>, PointFileError> {
+    let Some(sigmas) = row.group::<3>(group) else { return Ok(None) };
+    match sigmas.iter().position(|sigma| *sigma <= 0.0) {
+        None => Ok(Some(sigmas)),
         Some(axis) => {
             let problem = "expected a positive standard deviation; leave all three empty for what was not observed".to_owned();
-            Err(wrong(file, Some(row.line), Some(form.optional[axis]), problem))
+            Err(wrong(file, Some(row.line), Some(GROUPS[group][axis]), problem))
         }
     }
 }

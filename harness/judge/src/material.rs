@@ -87,7 +87,7 @@ impl Material {
 
     /// The board as control, object units from the first corner: X along the rows, Y upwards, Z towards the viewer.
     pub fn control(&self) -> Vec<ControlRow> {
-        let row = |corner| ControlRow { target: self.board.target(corner), position: self.object(corner), sigmas: None };
+        let row = |corner| ControlRow::new(self.board.target(corner), self.object(corner));
         (0..self.board.corners()).map(row).collect()
     }
 

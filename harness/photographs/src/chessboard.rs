@@ -71,7 +71,7 @@ impl Chessboard {
             let (column, row) = (index % self.board.columns, index / self.board.columns);
             // Plus zero: a zero without a sign.
             let position = [column as f64 * self.side, -(row as f64 * self.side) + 0.0, 0.0];
-            ControlRow { target: self.board.target(index), position, sigmas: None }
+            ControlRow::new(self.board.target(index), position)
         };
         (0..self.board.corners()).map(corner).collect()
     }

@@ -3,9 +3,9 @@
 use std::io;
 
 use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
-use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
+use calibench_exchange::{ControlDisc, ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
 use calibench_model::camera::Camera;
-use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene};
+use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene, TargetKind};
 use calibench_records::names::kept_image_name;
 use calibench_scenario::ViewsSubject;
 use calibench_synth::sensor::Clipped;
@@ -156,13 +156,21 @@ pub fn write_stations(folder: &NewFolder, name: &str, rows: &[StationRow<'_>]) -
     table(folder, name, &columns, rows.iter().map(row))
 }
 
-/// The targets as a user knows them: surveyed coordinates, object units, with their standard deviations where the testfield was surveyed with any error.
+/// The targets as a user knows them: surveyed coordinates, object units, with their standard deviations where the testfield was surveyed with any error, and of
+/// discs the radius and the plate's normal.
 ///
 /// # Errors
 /// What the file system refuses.
 pub fn write_control(folder: &NewFolder, name: &str, subject: &ViewsSubject) -> io::Result<()> {
     let sigmas = subject.survey_sigma.map(|sigma| [sigma; 3]);
-    let row = |target: &ObjectTarget| ControlRow { target: target.id.clone(), position: target.surveyed.coords.into(), sigmas };
+    let disc = |target: &ObjectTarget| {
+        let normal = subject.field.plates[target.plate].normal();
+        Box::new(ControlDisc { radius: 0.5 * target.size, normal: Some(normal.into()) })
+    };
+    let row = |target: &ObjectTarget| {
+        let disc = (target.kind == TargetKind::Disc).then(|| disc(target));
+        ControlRow { sigmas, disc, ..ControlRow::new(&target.id, target.surveyed.coords.into()) }
+    };
     let rows: Vec<ControlRow> = subject.field.targets.iter().map(row).collect();
     folder.write(name, |file| calibench_exchange::write_control(file, &rows))
 }

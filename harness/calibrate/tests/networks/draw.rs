@@ -92,7 +92,7 @@ impl Drawn {
                 text += &format!("i{image},t{target},{},{}\n", seen[0] + sigma * chance.normal(), seen[1] + sigma * chance.normal());
             }
         }
-        let row = |(target, p): (usize, &Point3<f64>)| ControlRow { target: format!("t{target}"), position: [p.x, p.y, p.z], sigmas: None };
+        let row = |(target, p): (usize, &Point3<f64>)| ControlRow::new(format!("t{target}"), [p.x, p.y, p.z]);
         let control = targets.iter().enumerate().map(row).collect();
         Self { camera, poses, points: parse_points("points.csv", text.as_bytes()).unwrap().points, control, sigma }
     }

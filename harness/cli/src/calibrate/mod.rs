@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Settings, calibrate, prepare};
+use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Discs, Settings, calibrate, prepare};
 use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
 use calibench_photographs::{Chessboard, Corners, Photo};
 use calibench_report::calibration::{summary, write_report};
@@ -51,6 +51,9 @@ pub struct Calibrate {
     /// Weigh image points by the covariances of the point file
     #[arg(long)]
     covariances: bool,
+    /// Take the eccentricity of discs out, as the centre of a disc's picture is not the picture of its centre: their radius in object units, or `control` where the control file has the column radius. Planes are the control file's nX,nY,nZ, or those of each disc's neighbours
+    #[arg(long, value_name = "RADIUS", conflicts_with = "photos")]
+    eccentricity: Option<Discs>,
     /// Robust weights: bound in standard deviations of an image point, as the residuals show them, as in 2
     #[arg(long, value_name = "K", value_parser = positive, allow_negative_numbers = true)]
     huber: Option<f64>,
@@ -125,6 +128,7 @@ impl Calibrate {
             snoop: self.snoop,
             sigma_px: self.sigma,
             covariances: self.covariances,
+            discs: self.eccentricity,
             stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
             ..Settings::new(self.cameras.optics(photos)?)
         })

@@ -137,6 +137,12 @@ impl Points {
         self.position[index]
     }
 
+    /// What point `index` is a picture of, if it was said.
+    #[inline]
+    pub fn kind(&self, index: usize) -> Option<TargetKind> {
+        self.kind.get(index)
+    }
+
     /// The covariance of point `index`, px^2.
     #[inline]
     pub fn covariance(&self, index: usize) -> Option<Covariance> {

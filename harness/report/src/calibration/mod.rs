@@ -4,6 +4,7 @@ mod board;
 mod checks;
 mod csv;
 mod digits;
+mod discs;
 mod limits;
 mod page;
 mod pictures;

@@ -11,7 +11,7 @@ use calibench_model::escape;
 
 use super::digits::rounded;
 use super::warnings::warnings;
-use super::{board, checks, of, pictures, sets_page, tables};
+use super::{board, checks, discs, of, pictures, sets_page, tables};
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
@@ -120,6 +120,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
         format!("residuals {} px RMS", plain(calibration.rms_px())),
     ]);
     lines.extend(board::fact(calibration));
+    lines.extend(discs::fact(calibration));
     lines.extend(observed(calibration));
     if let Some(sigma0) = solution.sigma0() {
         lines.push(unit_weight(calibration, sigma0));

@@ -47,7 +47,11 @@ const RESIDUALS: [&str; 15] = [
     "reason",
 ];
 
-/// Every row that was given, and every target that a method could not measure, with its status. Residuals are adjusted less observed, px.
+/// What was taken from the image coordinates of discs, px; there where anything was.
+const ECCENTRICITY: [&str; 2] = ["eccentricity_x", "eccentricity_y"];
+
+/// Every row that was given, and every target that a method could not measure, with its status. Residuals are adjusted less observed, px, of discs less what was
+/// taken from them.
 fn residuals(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
     let prepared = calibration.prepared;
     let survey = &prepared.survey;
@@ -56,6 +60,7 @@ fn residuals(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()
     let mut checks = calibration.reliability.iter().flat_map(|r| &r.points).peekable();
     let mut left_out = prepared.left_out.iter().peekable();
     let rejected: HashMap<usize, &Found> = calibration.found.iter().map(|found| (found.observation, found)).collect();
+    let taken = prepared.eccentricity.as_ref();
     let given = (0..survey.sights()).map(|index| {
         let sight = survey.sight(index);
         let mut row = vec![survey.images[sight.image].clone(), survey.target(sight.target).to_owned()];
@@ -63,9 +68,11 @@ fn residuals(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()
         if let Some(left) = left_out.next_if(|left| left.sight == index) {
             row.extend(vec![String::new(); 9]);
             row.extend(["left_out".to_owned(), left.why.clone()]);
+            row.extend(taken.iter().flat_map(|_| texts::<2>(None)));
         } else if let Some(residual) = residuals.next_if(|residual| prepared.sights[residual.observation] as usize == index) {
             let checked = checks.next_if(|check| check.observation == residual.observation);
             row.extend(adjusted(&residual, checked, rejected.get(&residual.observation).copied()));
+            row.extend(taken.iter().flat_map(|taken| texts(Some(taken.offsets[residual.observation]))));
         }
         row
     });
@@ -73,9 +80,11 @@ fn residuals(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()
         let mut row = vec![image.to_owned(), target.to_owned()];
         row.extend(vec![String::new(); 11]);
         row.extend([status.to_owned(), reason.to_owned()]);
+        row.extend(taken.iter().flat_map(|_| texts::<2>(None)));
         row
     });
-    table(folder, "residuals.csv", &RESIDUALS, given.chain(unmeasured))
+    let columns = [&RESIDUALS[..], if taken.is_some() { &ECCENTRICITY } else { &[] }].concat();
+    table(folder, "residuals.csv", &columns, given.chain(unmeasured))
 }
 
 /// The cells of a row after its coordinates.
@@ -172,7 +181,7 @@ fn object_points(calibration: &Calibration<'_>) -> Vec<ControlRow> {
         let covariance = &calibration.covariances.points[index];
         let sigmas: [f64; 3] = std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt());
         let sigmas = Some(sigmas).filter(|sigmas| sigmas.iter().all(|sigma| *sigma > 0.0));
-        ControlRow { target: point.name.clone(), position: calibration.solution.points()[index].coords.into(), sigmas }
+        ControlRow { sigmas, ..ControlRow::new(&point.name, calibration.solution.points()[index].coords.into()) }
     };
     calibration.prepared.network.points.iter().enumerate().map(row).collect()
 }

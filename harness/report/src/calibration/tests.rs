@@ -72,7 +72,8 @@ fn wall() -> Prepared {
             points.push(PointRow { image: format!("i{index}"), target, start: Start::at(position) });
         }
     }
-    let control = targets().into_iter().map(|(target, position)| ControlRow { target, position, sigmas: Some([1e-4; 3]) });
+    let control =
+        targets().into_iter().map(|(target, position)| ControlRow { sigmas: Some([1e-4; 3]), ..ControlRow::new(target, position) });
     let names = ["c", "x0", "y0", "k1", "p1"].map(str::to_owned);
     let optics =
         Optics { pitch_um: Some(1e3 * PITCH_MM), model: Some("photogrammetric".into()), solve: Some(names.into()), ..Optics::new(SIZE) };

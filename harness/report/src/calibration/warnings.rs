@@ -5,7 +5,7 @@ use calibench_calibrate::{Calibration, Rival};
 use calibench_model::camera::CameraModel;
 
 use super::limits::{BASIC, CORRELATED, DOUBTFUL};
-use super::{board, checks, of, scale};
+use super::{board, checks, discs, of, scale};
 use crate::plain;
 
 /// Times that the images may disagree with the standard deviations: from twenty groups a ratio is known to a sixth.
@@ -29,6 +29,7 @@ pub(super) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     }
     warnings.extend(calibration.prepared.rivals.iter().map(|rival| another(calibration, rival)));
     warnings.extend(board::warning(calibration));
+    warnings.extend(discs::warnings(calibration));
     warnings.extend(held(calibration));
     warnings.extend(outside(calibration));
     warnings.extend(scale::warnings(calibration));

@@ -80,6 +80,8 @@ fn stations_control_and_camera_are_read_again() {
     assert_eq!(control.len(), 12);
     for (row, target) in control.iter().zip(&subject.field.targets) {
         assert_eq!((row.position, row.sigmas), (target.surveyed.coords.into(), None));
+        let disc = (target.kind == TargetKind::Disc).then(|| (0.5 * target.size, Some([0.0, 0.0, 1.0])));
+        assert_eq!(row.disc.as_ref().map(|disc| (disc.radius, disc.normal)), disc);
     }
 
     let camera = read_camera(&at("camera.toml")).unwrap().cameras.remove(0).camera;

@@ -16,7 +16,7 @@ const SIDE: f64 = 25.0;
 
 fn control() -> Vec<ControlRow> {
     let corner = |i: usize| [(i % BOARD.columns) as f64 * SIDE, -((i / BOARD.columns) as f64 * SIDE), 0.0];
-    (0..BOARD.corners()).map(|i| ControlRow { target: BOARD.target(i), position: corner(i), sigmas: None }).collect()
+    (0..BOARD.corners()).map(|i| ControlRow::new(BOARD.target(i), corner(i))).collect()
 }
 
 /// The corners that OpenCV finds in the photographs of a folder; single precision, as it gives them.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use calibench_calibrate::Offset;
 use calibench_exchange::{Inputs, MeasuredRow, Outcome, Points, write_measured};
 use calibench_measure::Configured;
 use calibench_measure::kinds::{all_busy, unmeasured};
@@ -9,13 +10,17 @@ use calibench_model::TargetKind;
 use calibench_photographs::points::{Measured, measure_points, photos_of};
 use clap::Args;
 
-use super::context::{Context, Pictured};
-use super::output;
-use super::photos::say_turns;
-use super::progress::Progress;
+use crate::context::{Context, Pictured};
 use crate::deliver::deliver;
 use crate::failure::Failure;
 use crate::inputs::read_measured;
+use crate::output;
+use crate::photos::say_turns;
+use crate::progress::Progress;
+
+mod eccentricity;
+
+use eccentricity::Eccentricity;
 
 #[derive(Args)]
 pub struct Measure {
@@ -28,6 +33,8 @@ pub struct Measure {
     /// The method, as in forstner:window=15; several are measured one after the other. Kinds of targets before it limit it to these, as in disc+square=centroid
     #[arg(short, long = "method", value_name = "METHOD", default_value = "forstner")]
     methods: Vec<String>,
+    #[command(flatten)]
+    eccentricity: Eccentricity,
     /// Where the result goes [default: standard output]
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
@@ -35,7 +42,7 @@ pub struct Measure {
 
 impl Measure {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let inputs = Inputs::new(self.photos.iter().chain([&self.points]));
+        let inputs = Inputs::new(self.photos.iter().chain([&self.points]).chain(self.eccentricity.paths()));
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let methods = context.methods(&self.methods, Pictured::Photographs)?;
         if let Some((method, why)) = methods.iter().find_map(|m| Some((m, m.operator.as_ref().err()?))) {
@@ -48,12 +55,20 @@ impl Measure {
         let nobodys = unmeasured(&methods, kinds());
         // What is wrong with the photographs' names is said before any is read.
         photos_of(&points, &self.photos)?;
+        let offsets = self.eccentricity.offsets(&points)?;
         say_turns(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let found = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
-        let rows = rows(&points, &methods, &found).chain(rows_of_nobody(&points, &nobodys));
+        let rows = rows(&points, &methods, &found, &offsets).chain(rows_of_nobody(&points, &nobodys));
         deliver(output.as_ref(), |file| write_measured(file, rows))?;
         progress.finish(&summary(&found, &points));
+        let unknown = offsets.iter().filter(|offset| matches!(offset, Offset::Unknown(_))).count();
+        if unknown > 0 {
+            say!(
+                "{unknown} of {} points are of discs whose eccentricity is not known: they have no position; their rows say why",
+                points.len()
+            );
+        }
         nobodys.iter().for_each(|kind| {
             let count = points.rows().filter(|row| row.start.kind == Some(*kind)).count();
             say!(
@@ -65,12 +80,18 @@ impl Measure {
     }
 }
 
-/// One row for every method and point of its kinds, in the order given.
-fn rows<'p>(points: &'p Points, methods: &'p [Configured], found: &'p Measured) -> impl Iterator<Item = MeasuredRow<'p>> {
+/// One row for every method and point of its kinds, in the order given, less the eccentricity of each point where there is one.
+fn rows<'p>(
+    points: &'p Points,
+    methods: &'p [Configured],
+    found: &'p Measured,
+    offsets: &'p [Offset],
+) -> impl Iterator<Item = MeasuredRow<'p>> {
     let all = move |m| (0..points.len()).map(move |i| (m, i, points.row(i)));
     let own = (0..methods.len()).flat_map(all).filter(|(m, _, given)| methods[*m].measures(given.start.kind));
     own.map(|(m, i, given)| {
         let outcome = found.outcome(m, i).unwrap_or_else(|| not_given(given.image));
+        let outcome = eccentricity::less(outcome, offsets.get(i).copied().unwrap_or(Offset::NoDisc));
         MeasuredRow { given, method: &methods[m].label, outcome }
     })
 }
