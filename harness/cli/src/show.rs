@@ -9,11 +9,10 @@ use calibench_model::camera::CameraModel;
 use calibench_model::{Image, PixelPoint, TargetKind};
 use calibench_random::Key;
 use calibench_report::preview;
-use calibench_run::views::Prepared;
+use calibench_run::views::{Prepared, is_pointed_at};
 use calibench_run::{trial_picture, trial_truth};
 use calibench_scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, ViewsSubject};
 use calibench_synth::stations::sees;
-use calibench_synth::view::Visibility;
 use clap::Args;
 
 use super::context::Context;
@@ -138,6 +137,7 @@ fn views(text: &mut String, subject: &ViewsSubject) {
         return;
     }
     let _ = writeln!(text, "\n[pointing]\nsigma = {}\nwhole_pixels = {}", subject.hand.sigma, subject.hand.whole_pixels);
+    let _ = writeln!(text, "clipped = {}", subject.clipped);
 }
 
 type Picture = (Image, Vec<(String, PixelPoint)>);
@@ -155,7 +155,7 @@ fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture,
             let prepared = Prepared::new(subject)?;
             let Some(view) = prepared.views.first() else { return Ok(Err("the scenario has no station".into())) };
             let image = prepared.image(view, Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: "", target: "" })?.image;
-            let seen = subject.field.targets.iter().zip(&view.truth).filter(|(_, truth)| truth.visibility == Visibility::Visible);
+            let seen = subject.field.targets.iter().zip(&view.truth).filter(|(_, truth)| is_pointed_at(subject, truth));
             Ok(Ok((image, seen.filter_map(|(target, truth)| Some((target.id.clone(), truth.at?))).collect())))
         }
         Subject::Photographs(subject) => {

@@ -79,7 +79,7 @@ impl<'a> Prepared<'a> {
             let seen = view.seen(margin).map_err(failed)?;
             let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
             let bound = |truth: &TargetTruth| match (bounds, truth.at) {
-                (Some(bounds), Some(at)) if truth.visibility == Visibility::Visible => bounds.of(&picture, at),
+                (Some(bounds), Some(at)) if is_pointed_at(subject, truth) => bounds.of(&picture, at),
                 _ => BySet::new(),
             };
             let bounds = truth.par_iter().map(bound).collect();
@@ -224,16 +224,21 @@ fn kind_of(prepared: &Prepared<'_>, point: &SeenTarget) -> TargetKind {
     prepared.subject.field.targets[point.target].kind
 }
 
-/// A target that is wholly in the image.
+/// A target that is pointed at.
 struct SeenTarget {
     target: usize,
     truth: PixelPoint,
     start: Start,
 }
 
+/// Whether somebody points at a target: it is wholly in view, or, where the scenario says so, its reference point is.
+pub fn is_pointed_at(subject: &ViewsSubject, truth: &TargetTruth) -> bool {
+    truth.visibility == Visibility::Visible || (subject.clipped && truth.visibility == Visibility::Clipped)
+}
+
 fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<SeenTarget> {
     let targets = &prepared.subject.field.targets;
-    let whole = view.truth.iter().enumerate().filter(|(_, truth)| truth.visibility == Visibility::Visible);
+    let pointed_at = view.truth.iter().enumerate().filter(|(_, truth)| is_pointed_at(prepared.subject, truth));
     let point = |(index, truth): (usize, &TargetTruth)| {
         let target = &targets[index];
         let at = truth.at?;
@@ -243,5 +248,5 @@ fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<S
         let start = Start { kind: Some(target.kind), affine, ..Start::at(pointed) };
         Some(SeenTarget { target: index, truth: at, start })
     };
-    whole.filter_map(point).collect()
+    pointed_at.filter_map(point).collect()
 }

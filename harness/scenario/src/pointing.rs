@@ -65,7 +65,12 @@ pub enum DetectorKind {
 #[derive(Clone, Debug)]
 pub enum Pointing {
     /// A hand, near the truth.
-    Hand(Hand),
+    Hand {
+        /// How well it points.
+        hand: Hand,
+        /// Whether at targets too of which only a part is in view.
+        clipped: bool,
+    },
     /// A detector, which sees the image and nothing else.
     Detector(Detector),
 }
@@ -90,7 +95,8 @@ impl Pointing {
         let usual = |value: f64| if shakes { value } else { 0.0 };
         let turn = wire.map_turn.map_or(usual(MAP_TURN), |turn| turn.0).to_radians();
         let stretch = wire.map_stretch.map_or(usual(MAP_STRETCH), |stretch| stretch.0);
-        Some(Self::Hand(Hand { sigma: wire.sigma.0, whole_pixels: wire.whole_pixels, map: MapError { turn, stretch } }))
+        let hand = Hand { sigma: wire.sigma.0, whole_pixels: wire.whole_pixels, map: MapError { turn, stretch } };
+        Some(Self::Hand { hand, clipped: wire.clipped.unwrap_or(false) })
     }
 }
 

@@ -25,9 +25,10 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
     let targets = section.take_tables("target", "[[scene.target]]", problems).unwrap_or_default();
     let mut pointing = section.take_table("pointing", "[scene.pointing]", problems);
     let before = problems.len();
-    for key in ["map_turn", "map_stretch"] {
+    let no_map = "a flat scene hands on no map of its targets";
+    for (key, why) in [("map_turn", no_map), ("map_stretch", no_map), ("clipped", "a flat scene hides nothing")] {
         if let Some((span, _)) = pointing.as_mut().and_then(|pointing| pointing.take(key)) {
-            let problem = Problem::new(span, format!("`{key}` of [scene.pointing]: a flat scene hands on no map of its targets"));
+            let problem = Problem::new(span, format!("`{key}` of [scene.pointing]: {why}"));
             problems.push(problem.help("leave it out"));
         }
     }

@@ -88,6 +88,8 @@ pub struct ViewsSubject {
     pub imaging: Imaging,
     /// Who points at the targets, unless a detector does.
     pub hand: Hand,
+    /// Whether it points at targets too of which only a part is in view.
+    pub clipped: bool,
     /// What finds them in place of a hand.
     pub detector: Option<Detector>,
     /// What is done with the measured points of every trial, if more than scoring them.
@@ -131,7 +133,7 @@ impl Starts {
 impl From<Pointing> for Starts {
     fn from(pointing: Pointing) -> Self {
         match pointing {
-            Pointing::Hand(hand) => Self::Pointed(hand),
+            Pointing::Hand { hand, .. } => Self::Pointed(hand),
             Pointing::Detector(detector) => Self::Detected(detector),
         }
     }

@@ -112,13 +112,26 @@ impl<'i> ViewTables<'i> {
         let drawn = plan_of_stations.generate(&field, &camera, key);
         let stations = drawn.map_err(|error| problems.push(plan_of_stations.problem(&error))).ok()?;
         let redraw = Some(plan_of_stations).filter(|plan| plan.each_trial);
-        let (hand, detector) = match pointing {
-            Pointing::Hand(hand) => (hand, None),
-            Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true, map: MapError::default() }, Some(detector)),
+        let (hand, clipped, detector) = match pointing {
+            Pointing::Hand { hand, clipped } => (hand, clipped, None),
+            Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true, map: MapError::default() }, false, Some(detector)),
         };
         let (unit, survey_sigma) = (plan.unit, plan.survey_sigma());
         let imaging = imaging?;
-        Some(ViewsSubject { field, survey_sigma, unit, camera, camera_file, stations, redraw, imaging, hand, detector, calibration: None })
+        Some(ViewsSubject {
+            field,
+            survey_sigma,
+            unit,
+            camera,
+            camera_file,
+            stations,
+            redraw,
+            imaging,
+            hand,
+            clipped,
+            detector,
+            calibration: None,
+        })
     }
 }
 

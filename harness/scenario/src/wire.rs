@@ -279,6 +279,8 @@ pub struct PointingWire {
     pub map_turn: Option<MapTurn>,
     /// And with both axes longer or shorter by a random part of this standard deviation. Default 0.1, or 0 where `sigma` is 0.
     pub map_stretch: Option<MapStretch>,
+    /// Whether targets are pointed at too of which a part is hidden or outside the image, as long as their reference point is in view. Default false.
+    pub clipped: Option<bool>,
 }
 
 /// An area of constant grey.

@@ -17,7 +17,12 @@ pub struct Part {
     pub sweep: LoadedSweep,
     /// By cell and name of the method.
     losses: BTreeMap<(usize, String), Losses>,
+    /// Points that were measured more than [`WRONG`] px off, by cell and name of the method.
+    wrong: BTreeMap<(usize, String), u64>,
 }
+
+/// A measured point further off is wrong without a word, px: beyond any noise of the atlas, and near enough that nobody notices.
+pub const WRONG: f64 = 0.25;
 
 impl Part {
     /// Reads the records of sweep `name`; `None` if there are none.
@@ -26,14 +31,23 @@ impl Part {
     /// Records that are not whole or not of this version.
     pub fn load(records: &Path, name: &str) -> Result<Option<Self>, LoadError> {
         let mut found: BTreeMap<(usize, String), Losses> = BTreeMap::new();
+        let mut wrong: BTreeMap<(usize, String), u64> = BTreeMap::new();
         let sweep = load_with(records, name, &mut |cell, trial, names| {
             for (method, loss) in losses(trial) {
                 if let Some(name) = names.get(method) {
                     found.entry((cell, name.clone())).or_default().insert(trial.number, loss);
                 }
             }
+            for name in trial.points.iter().filter(|point| is_wrong(&point.outcome)).filter_map(|point| names.get(point.method)) {
+                *wrong.entry((cell, name.clone())).or_default() += 1;
+            }
         })?;
-        Ok(sweep.map(|sweep| Self { sweep, losses: found }))
+        Ok(sweep.map(|sweep| Self { sweep, losses: found, wrong }))
+    }
+
+    /// How many points of a cell method `method` measured more than [`WRONG`] px off.
+    pub fn wrong(&self, cell: usize, method: usize) -> u64 {
+        self.wrong.get(&(cell, self.sweep.methods[method].name.clone())).copied().unwrap_or(0)
     }
 
     /// The losses of method `method` over `cells`: for each trial the mean over these cells, each of which has the same points.
@@ -58,6 +72,10 @@ impl Part {
         };
         (0..self.sweep.cells.len()).filter(passes).collect()
     }
+}
+
+fn is_wrong(outcome: &Outcome) -> bool {
+    matches!(outcome, Outcome::Measured { error: Some((dx, dy)), .. } if dx.hypot(*dy) > WRONG)
 }
 
 /// The loss of each method in a trial.

@@ -4,6 +4,7 @@ mod choose;
 mod frontier;
 mod labels;
 mod load;
+mod neighbours;
 mod page;
 mod pictures;
 mod rows;
@@ -28,6 +29,8 @@ pub use settings::{Found, best, unmeasured};
 pub const FAMILY: &str = "atlas";
 /// The page that says what to take.
 const WHICH: &str = "which-operator.md";
+/// The page of what stands beside the target.
+const NEIGHBOURS: &str = "neighbours.md";
 /// Every figure of every cell.
 const NUMBERS: &str = "numbers.csv";
 
@@ -60,10 +63,14 @@ pub fn write(places: &Places, names: &[String]) -> Result<Written, ReportError> 
         section(part, &usual(&parts, &part.sweep.name), &mut text, &mut files);
     }
     let which = page::which(&groups(&parts, &speeds), &speeds.machine, &evidence(&parts));
+    let neighbours = neighbours::page(&parts);
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| {
         files.iter().try_for_each(|(name, picture): &(String, Canvas)| folder.write(name, |file| picture.encode(file)))?;
         folder.write(NUMBERS, |file| Ok::<_, io::Error>(numbers(&parts, file)?))?;
         folder.write(WHICH, |file| file.write_all(which.text.as_bytes()))?;
+        if let Some(page) = &neighbours {
+            folder.write(NEIGHBOURS, |file| file.write_all(page.as_bytes()))?;
+        }
         let page = format!(
             "# Atlas of operators
 
@@ -83,7 +90,7 @@ pub fn write(places: &Places, names: &[String]) -> Result<Written, ReportError> 
 
 fn introduction() -> String {
     format!(
-        "[Which operator, when]({WHICH}) is what follows from it. [{NUMBERS}]({NUMBERS}) holds every figure of every cell; `calibench plot atlas/corners --x blur --y rmse --by method --at \
+        "[Which operator, when]({WHICH}) is what follows from it, [what stands beside the target]({NEIGHBOURS}) what neighbours, small squares and what hides a half cost. [{NUMBERS}]({NUMBERS}) holds every figure of every cell; `calibench plot atlas/corners --x blur --y rmse --by method --at \
          snr_contrast_db=34` draws any of them. Made by `calibench report atlas` from records and `reference/speeds.csv`. Some of the operators are our own; all get the same images, starts and scores. \
          The gate does not compare these sweeps: their cells that matter are scenarios of their own (`operators/*`).\n\n"
     )
