@@ -1,6 +1,6 @@
 //! A window that follows what is fitted in it.
 
-use calibench_model::{Image, Rejection};
+use calibench_model::{Image, Measurement, Rejection};
 use nalgebra::SVector;
 
 use crate::marquardt::{Normal, Problem, Solution, minimise};
@@ -97,13 +97,41 @@ fn refined<const P: usize>(window: &mut impl Laid<P>, mut x: SVector<f64, P>) ->
 /// Why a window may hold too much.
 const CROWDED: [Rejection; 3] = [Rejection::Misfit, Rejection::NotConverged, Rejection::LeftWindow];
 
-/// The fit over a window of the `wanted` side, px, or, where something else seems to stand in it, over the first of these smaller ones that holds a fit.
+/// What was fitted in a window.
+pub(crate) struct Fitted {
+    pub(crate) found: Measurement,
+    /// Whether it leaves a little more than noise: not enough to reject it.
+    pub(crate) doubtful: bool,
+}
+
+impl Fitted {
+    fn variance(&self) -> f64 {
+        self.found.covariance.map_or(f64::INFINITY, |covariance| covariance.sxx + covariance.syy)
+    }
+}
+
+/// The fit over a window of the `wanted` side, px, or, where something else stands in it, over one of these smaller ones: the first that holds a fit where the
+/// wanted one holds none, and where it leaves a doubt the one that is the most precise by its own residuals, up to the first without a doubt.
 ///
 /// # Errors
 /// Why there is none in the wanted window.
-pub(crate) fn in_smaller_windows<T>(wanted: usize, smaller: &[usize], fit: impl Fn(usize) -> Result<T, Rejection>) -> Result<T, Rejection> {
-    fit(wanted).or_else(|why| {
-        let sides = smaller.iter().filter(|side| CROWDED.contains(&why) && **side < wanted);
-        sides.map(|side| fit(*side)).find(Result::is_ok).unwrap_or(Err(why))
-    })
+pub(crate) fn in_smaller_windows(
+    wanted: usize,
+    smaller: &[usize],
+    fit: impl Fn(usize) -> Result<Fitted, Rejection>,
+) -> Result<Measurement, Rejection> {
+    let mut sides = smaller.iter().filter(|side| **side < wanted);
+    let mut best = match fit(wanted) {
+        Err(why) if CROWDED.contains(&why) => sides.find_map(|side| fit(*side).ok()).ok_or(why)?,
+        first => first?,
+    };
+    let mut doubtful = best.doubtful;
+    while let Some(side) = sides.next().filter(|_| doubtful) {
+        let Ok(next) = fit(*side) else { continue };
+        doubtful = next.doubtful;
+        if next.variance() < best.variance() {
+            best = next;
+        }
+    }
+    Ok(best.found)
 }

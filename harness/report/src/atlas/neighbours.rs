@@ -41,7 +41,7 @@ pub fn page(parts: &Parts) -> Option<String> {
         return None;
     }
     Some(format!(
-        "# What stands beside the target\n\nAt most {} % of the points wrong without a word in every row:\n\n{}\n\n{}Each cell: RMSE of the measured points, px (rejected, %; wrong without a word, %: measured, \
+        "# What stands beside the target\n\nAt most {} % of the points wrong without a word in every row:\n\n{}\n\n{}Each cell: RMSE of the points measured within 1 px, px (rejected, %; wrong without a word, %: measured, \
          and more than {WRONG} px off). Blur 0.7 px, 2 % of noise. Made by `calibench report atlas` from records.\n\n{}\n",
         100.0 * SOUND,
         answers.join("\n"),
@@ -78,6 +78,6 @@ fn figures(part: &Part, cell: usize, method: usize) -> String {
     let (Some(score), Some(wrong)) = (part.sweep.score(cell, method), share(part, cell, method)) else { return String::new() };
     let rejected = Metric::Rejected.of(score).map_or(0.0, |found| found.value);
     let rmse = Metric::Rmse.of(score).map_or_else(|| "none measured".to_owned(), |found| plain(found.value));
-    let brief = |share: f64| if share == 0.0 { "0".to_owned() } else { format!("{:.1}", 100.0 * share) };
-    if rejected == 0.0 && wrong == 0.0 { rmse } else { format!("{rmse} ({}; {})", brief(rejected), brief(wrong)) }
+    let brief = |percent: f64| if percent == 0.0 { "0".to_owned() } else { format!("{percent:.1}") };
+    if rejected == 0.0 && wrong == 0.0 { rmse } else { format!("{rmse} ({}; {})", brief(rejected), brief(100.0 * wrong)) }
 }

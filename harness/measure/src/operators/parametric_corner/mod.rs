@@ -12,7 +12,7 @@ mod window;
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
 use nalgebra::SVector;
 
-use crate::following::{Rest, follow, in_smaller_windows};
+use crate::following::{Fitted, Rest, follow, in_smaller_windows};
 use crate::gradient::{ADDED, EACH, EVEN, LIGHT, estimated};
 use crate::marquardt::covariance;
 use crate::operator::{Operator, finite_around, window_centre};
@@ -24,7 +24,9 @@ use window::{Setting, Window};
 /// Blur at the start, px^2: between sharp and soft.
 const VARIANCE: f64 = 0.5;
 /// Sides of the smaller windows, px, that are tried where the residuals of the wanted one are no noise: a neighbour may stand in it.
-const SMALLER: [usize; 3] = [13, 11, 9];
+const SMALLER: [usize; 4] = [13, 11, 9, 7];
+/// Smaller windows than this, px, must leave nothing but noise to be believed: they follow anything.
+const BELIEVED: usize = 9;
 /// A smaller window holds half its side so many times the blur, or else it may be any texture.
 const TOO_SOFT: f64 = 3.0;
 /// Residuals beyond this part of half the contrast are those of a window of noise.
@@ -33,6 +35,8 @@ const DROWNED: f64 = 0.8;
 /// OpenCV's samples, of lenses and prints as they are, it is 0.05 to 0.07 in the median and 0.13 at most but for one corner of 2101; on boards whose squares are
 /// 6 px wide, 0.6 or more.
 const MISFIT: f64 = 0.2;
+/// As much of it makes smaller windows worth a try: a neighbour at the border of the window leaves no more.
+const DOUBT: f64 = 0.05;
 /// Parametric chess corner: the position at which a model of the grey values agrees best, in the least-squares sense, with those of the window.
 ///
 /// The model is two straight edges that cross, dark and light areas in turn, blurred by a Gaussian and averaged over the photosite's area (a square, as wide as the
@@ -125,7 +129,7 @@ impl ParametricCorner {
     }
 
     /// The fit over a window of some side, px, from the edges seen around a place, px.
-    fn fitted(&self, window: (&Image, usize), position: [f64; 2]) -> Result<Measurement, Rejection> {
+    fn fitted(&self, window: (&Image, usize), position: [f64; 2]) -> Result<Fitted, Rejection> {
         let guess = start::directions(window.0, position, window.1 as i64 / 2).ok_or(Rejection::NoCorner)?;
         match (self.gradient, self.curvature) {
             (EVEN, false) => self.fit::<7, EVEN, false>(window, &guess),
@@ -143,7 +147,7 @@ impl ParametricCorner {
         &self,
         (image, side): (&Image, usize),
         guess: &start::Guess,
-    ) -> Result<Measurement, Rejection> {
+    ) -> Result<Fitted, Rejection> {
         let half = side as i64 / 2;
         let setting = Setting { side, photosite: self.photosite, mean: guess.mean, half: guess.half };
         let mut window = Window::<P, GRADIENT, CURVED>::new(image, setting);
@@ -151,7 +155,8 @@ impl ParametricCorner {
         x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, 0.0, 1.0]);
         let Rest { at, x, normal } = follow(&mut window, (image, half), guess.position, x)?;
         let blurred = side < self.window && x[4] > (half as f64 / TOO_SOFT).powi(2);
-        if blurred || window.residuals(&x).is_none_or(|residuals| residuals.are_no_noise(MISFIT)) {
+        let residuals = window.residuals(&x).filter(|residuals| !blurred && !residuals.are_no_noise(MISFIT)).ok_or(Rejection::Misfit)?;
+        if side < self.window && side < BELIEVED && !residuals.are_white() {
             return Err(Rejection::Misfit);
         }
         let noise = (normal.omega / (side * side) as f64).sqrt();
@@ -159,7 +164,8 @@ impl ParametricCorner {
             return Err(Rejection::NoCorner);
         }
         let covariance = covariance(&normal, (side * side - P) as f64).ok_or(Rejection::ErrorEllipse)?;
-        Ok(Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) })
+        let found = Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) };
+        Ok(Fitted { found, doubtful: residuals.are_no_noise(DOUBT) })
     }
 }
 

@@ -12,7 +12,7 @@ mod window;
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use nalgebra::SVector;
 
-use crate::following::{Rest, follow, in_smaller_windows};
+use crate::following::{self, Rest, follow, in_smaller_windows};
 use crate::gradient::estimated;
 use crate::marquardt::covariance;
 use crate::operator::{Operator, finite_around, window_centre};
@@ -237,7 +237,8 @@ impl Operator for ParametricJunction {
         };
         let at = position.map(|c| c.round() as i64);
         finite_around(image, (at[0], at[1]), half)?;
-        in_smaller_windows(self.window, &SMALLER, |side| self.fitted((image, side), position))
+        let fit = |side| self.fitted((image, side), position).map(|found| following::Fitted { found, doubtful: false });
+        in_smaller_windows(self.window, &SMALLER, fit)
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {

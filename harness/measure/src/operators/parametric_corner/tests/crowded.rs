@@ -56,20 +56,42 @@ fn corners_of_small_squares_are_measured_with_smaller_windows() {
     }
 }
 
+/// A corner and beside it, `away` px off, a dark bar of so many px.
+fn beside_a_bar(k: f64, away: f64, wide: f64) -> ([f64; 2], Image) {
+    let (at, turn) = ([30.0 + (0.618 * k).fract() - 0.5, 30.0 + (0.755 * k).fract() - 0.5], 0.37 * k);
+    let image = Image::from_fn(61, 61, |x, y| {
+        let ([u, v], [across, _]) = (turned(x, y, at, turn), turned(x, y, at, turn + 0.5));
+        let bar = 0.5 * (edge(across - away) - edge(across - away - wide));
+        let corner = 0.5 + 0.3 * edge(u) * edge(v);
+        (corner * (1.0 - bar) + 0.2 * bar) as f32
+    });
+    (at, image)
+}
+
+/// Where the bar takes the outer part of the window alone, too little to reject the fit, a smaller window is the better one.
+#[test]
+fn a_bar_at_the_border_of_the_window_costs_no_more_than_a_smaller_window() {
+    let mut noise = Noise(6);
+    let (mut squares, count) = (0.0, 200);
+    for k in 0..count {
+        let (at, image) = beside_a_bar(f64::from(k), 6.0 + 0.5 * f64::from(k % 6), 10.0);
+        let found = measured(&noise.on(&image, 0.005), [30.2, 29.9]).unwrap();
+        let off = found.position.distance(PixelPoint::new(at[0], at[1]));
+        assert!(off < 0.1, "corner {k}: {off} px");
+        squares += off * off;
+    }
+    let rms = (squares / f64::from(count)).sqrt();
+    println!("{rms:.4} px RMS");
+    assert!(rms < 0.02, "{rms} px RMS");
+}
+
 /// A bar beside the corner, 2 px wide: without a word it would move it by tenths of a pixel.
 #[test]
 fn a_bar_beside_the_corner_does_not_pass_silently() {
     let mut noise = Noise(4);
     let (mut kept, mut far) = (0, 0);
     for k in 0..200 {
-        let (k, away) = (f64::from(k), 3.0 + f64::from(k % 4));
-        let (at, turn) = ([30.0 + (0.618 * k).fract() - 0.5, 30.0 + (0.755 * k).fract() - 0.5], 0.37 * k);
-        let image = Image::from_fn(61, 61, |x, y| {
-            let ([u, v], [across, _]) = (turned(x, y, at, turn), turned(x, y, at, turn + 0.5));
-            let bar = 0.5 * (edge(across - away) - edge(across - away - 2.0));
-            let corner = 0.5 + 0.3 * edge(u) * edge(v);
-            (corner * (1.0 - bar) + 0.2 * bar) as f32
-        });
+        let (at, image) = beside_a_bar(f64::from(k), 3.0 + f64::from(k % 4), 2.0);
         if let Ok(found) = measured(&noise.on(&image, 0.005), [30.2, 29.9]) {
             let off = found.position.distance(PixelPoint::new(at[0], at[1]));
             let sigma = found.covariance.map_or(0.0, |c| (c.sxx + c.syy).sqrt());
