@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::Inputs;
 use calibench_model::PixelPoint;
-use calibench_model::camera::CameraModel;
+use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::convert::{DifferenceOptions, Vector, difference, difference_at};
 use calibench_report::{Hull, plain};
 use clap::Args;
 
 use super::convert::{advise, field, positive, region, size_of};
 use super::output;
-use super::reading::Reading;
+use super::reading::{Reading, shown};
 use crate::deliver::print;
 use crate::failure::Failure;
 use crate::inputs::read_measured;
@@ -45,7 +45,11 @@ impl Diff {
     pub fn run(&self) -> Result<(), Failure> {
         let inputs = Inputs::new([&self.first, &self.second].into_iter().chain(&self.points));
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
-        let camera = |path: &Path| self.reading.one(path).map(|named| named.camera);
+        let camera = |path: &Path| {
+            let named = self.reading.one(path)?;
+            let doubt = named.splines.as_ref().and_then(|splines| splines.doubt());
+            doubt.map_or(Ok(named.camera), |doubt| Err(Failure::input(format!("{}: {doubt}", shown(path)))))
+        };
         let (first, second) = (camera(&self.first)?, camera(&self.second)?);
         let (a, b) = (first.size(), second.size());
         if a != b {
@@ -73,8 +77,8 @@ impl Diff {
         let mut text = format!("difference  {}, {after}\n", size_of(&found.spread));
         let measured = Hull::of(&places.unwrap_or_default());
         if self.points.is_some() {
-            text.push_str(&format!("inside      {}, where points were measured\n", part(&found.vectors, |at| measured.holds(at))));
-            text.push_str(&format!("outside     {}\n", part(&found.vectors, |at| !measured.holds(at))));
+            text.push_str(&format!("inside      {}, where points were measured\n", part(&found.vectors, a, |at| measured.holds(at))));
+            text.push_str(&format!("outside     {}\n", part(&found.vectors, a, |at| !measured.holds(at))));
         }
         if let Some(compensated) = &found.compensated {
             let [dx, dy] = compensated.shift;
@@ -110,14 +114,34 @@ fn places(path: &Path) -> Result<Vec<PixelPoint>, Failure> {
     Ok(read_measured(path)?.rows().map(|row| row.start.position).collect())
 }
 
-/// The size of the vectors in a part of the frame.
-fn part(vectors: &[Vector], is_part: impl Fn(PixelPoint) -> bool) -> String {
-    let lengths: Vec<f64> = vectors.iter().filter(|vector| is_part(vector.at)).map(Vector::length).collect();
+/// The size of the vectors in a part of the frame: the RMS is the mean over its area, of which a node at the frame's border has half.
+fn part(vectors: &[Vector], size: ImageSize, is_part: impl Fn(PixelPoint) -> bool) -> String {
+    let half = |place: f64, side: u32| if place <= 0.0 || place >= f64::from(side) - 1.0 { 0.5 } else { 1.0 };
+    let weighted = |vector: &Vector| (half(vector.at.x, size.width) * half(vector.at.y, size.height), vector.length());
+    let lengths: Vec<(f64, f64)> = vectors.iter().filter(|vector| is_part(vector.at)).map(weighted).collect();
     if lengths.is_empty() {
         return "nothing was compared".to_owned();
     }
-    let rms = (lengths.iter().map(|length| length * length).sum::<f64>() / lengths.len() as f64).sqrt();
-    format!("{} px RMS, {} px at most", plain(rms), plain(lengths.iter().copied().fold(0.0, f64::max)))
+    let (sum, area) = lengths.iter().fold((0.0, 0.0), |(sum, area), (weight, length)| (sum + weight * length * length, area + weight));
+    let most = lengths.iter().map(|(_, length)| *length).fold(0.0, f64::max);
+    format!("{} px RMS, {} px at most", plain((sum / area).sqrt()), plain(most))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A frame of three nodes along each side: a corner's share of the area is a quarter of the middle's.
+    #[test]
+    fn an_rms_is_the_mean_over_the_area() {
+        let place = |i: i32| 50.0 * f64::from(i);
+        let all = (0..9).map(|i| Vector { at: PixelPoint::new(place(i % 3), place(i / 3)), dx: if i == 4 { 0.0 } else { 2.0 }, dy: 0.0 });
+        let all: Vec<Vector> = all.collect();
+        let size = ImageSize { width: 101, height: 101 };
+        assert_eq!(part(&all, size, |_| true), format!("{} px RMS, 2 px at most", plain(3.0_f64.sqrt())));
+        assert_eq!(part(&all, size, |at| at.x == 0.0 && at.y == 0.0), "2 px RMS, 2 px at most");
+        assert_eq!(part(&all, size, |at| at.x > 500.0), "nothing was compared");
+    }
 }
 
 fn stem(path: &Path) -> String {

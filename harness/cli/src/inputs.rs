@@ -36,6 +36,9 @@ pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
     if file.cameras.len() > 1 {
         say!("{}: the first of {} cameras", path.display(), file.cameras.len());
     }
+    if let Some(doubt) = file.cameras.first().and_then(|named| named.splines.as_ref()?.doubt()) {
+        return Err(Failure::input(format!("{}: {doubt}", path.display())));
+    }
     let first = file.cameras.first().map(|named| named.camera);
     first.ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
 }

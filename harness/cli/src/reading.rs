@@ -149,7 +149,7 @@ fn format(name: &str) -> Result<&'static CameraFormat, String> {
 }
 
 /// A file's name in a message.
-fn shown(path: &Path) -> String {
+pub fn shown(path: &Path) -> String {
     escape::name(&path.display().to_string()).into_owned()
 }
 

@@ -5,7 +5,7 @@ const SIGNIFICANT: f64 = 5.0;
 /// White noise has fewer, but for one window in a thousand.
 const WHITE: f64 = 3.0;
 
-/// The residuals of a window, row by row, in units of half the contrast.
+/// The residuals of a window, row by row, in units of half the contrast; those that do not count are NaN.
 pub(crate) struct Residuals {
     pub(crate) grey: Vec<f32>,
     pub(crate) side: usize,
@@ -27,22 +27,16 @@ impl Residuals {
     /// The covariance of neighbours, in units of half the contrast squared, and how many standard deviations it has where residuals are white noise.
     fn structure(&self) -> (f64, f64) {
         let (side, r) = (self.side, &self.grey);
-        let (mut product, mut square, mut pairs) = (0.0, 0.0, 0.0);
-        for row in 0..side {
-            for column in 0..side {
-                let here = f64::from(r[row * side + column]);
-                square += here * here;
-                if column + 1 < side {
-                    product += here * f64::from(r[row * side + column + 1]);
-                    pairs += 1.0;
-                }
-                if row + 1 < side {
-                    product += here * f64::from(r[(row + 1) * side + column]);
-                    pairs += 1.0;
-                }
+        let (mut product, mut square, mut pairs, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for (index, here) in r.iter().map(|here| f64::from(*here)).enumerate().filter(|(_, here)| !here.is_nan()) {
+            (square, count) = (square + here * here, count + 1.0);
+            let right = r.get(index + 1).filter(|_| (index + 1) % side != 0);
+            for beside in [right, r.get(index + side)].into_iter().flatten().filter(|beside| !beside.is_nan()) {
+                product += here * f64::from(*beside);
+                pairs += 1.0;
             }
         }
-        let (covariance, variance) = (product / pairs, square / (side * side) as f64);
+        let (covariance, variance) = (product / pairs, square / count);
         (covariance, covariance * f64::sqrt(pairs) / variance)
     }
 }

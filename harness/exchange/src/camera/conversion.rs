@@ -1,12 +1,12 @@
 //! A camera of a file in another convention: its model, its covariance and its pose.
 
 use calibench_model::camera::Ray;
-use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Rotation, convert};
+use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, Rotation, convert};
 use thiserror::Error;
 
 use super::fit::{FitError, fit_to_format};
 use super::target::{Goal, Way};
-use super::{NamedCamera, ParameterCovariance};
+use super::{NamedCamera, ParameterCovariance, splines};
 
 /// A converted camera and how it came about.
 #[derive(Clone, Debug)]
@@ -53,14 +53,17 @@ pub fn converted(
     let pitch_um = pitch_um.or(source.pitch_um);
     let (conversion, model) = match goal.way {
         Way::One(_) if model.is_some() => return Err(ConversionError::ModelNamed),
+        _ if let Some(splines) = &source.splines => splines::converted(splines, source.camera, goal, (model, pitch_um), &options)?,
         Way::One(target) => (convert(&source.camera, target, &options)?, None),
         Way::Best => {
             let (conversion, model) = fit_to_format(goal.format, &source.camera, model, pitch_um, &options)?;
             (conversion, Some(model.name))
         }
     };
+    let splines = source.splines.clone().filter(|_| conversion.method == Method::Exact);
     let covariance = conversion.covariance.as_ref().map(|q| ParameterCovariance::of(&conversion.camera, q)).transpose();
     let camera = NamedCamera {
+        splines,
         pitch_um,
         covariance: covariance.map_err(ConversionError::Covariance)?,
         pose: source.pose.map(|pose| pose.turned_by(in_file_axes(&conversion.rotation))),

@@ -1,7 +1,7 @@
 //! A camera for a format: which of its models holds it, and what else is lost.
 
-use calibench_model::camera::{Camera, Splined};
-use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Target, Verdict, convert, fit};
+use calibench_model::camera::Camera;
+use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Target, Verdict, convert};
 use thiserror::Error;
 
 use super::format::CameraFormat;
@@ -99,6 +99,19 @@ pub fn fit_to_format(
     pitch_um: Option<f64>,
     options: &ConvertOptions,
 ) -> Result<(Conversion, Model), FitError> {
+    let models = chosen(format, model, pitch_um)?;
+    let exact = ConvertOptions { covariance: options.covariance.clone(), ..ConvertOptions::default() };
+    for model in &models {
+        if model.target.is_exact_for(camera) {
+            let found = convert(camera, model.target, &exact);
+            return found.map(|found| (found, *model)).map_err(|why| FitError::Refused { format: format.name, why });
+        }
+    }
+    best(&models, |target| convert(camera, target, options)).map_err(|why| FitError::Refused { format: format.name, why })
+}
+
+/// The models of a format; with `model` that one alone.
+pub(super) fn chosen(format: &CameraFormat, model: Option<&str>, pitch_um: Option<f64>) -> Result<Vec<Model>, FitError> {
     let mut models = format.models(pitch_um);
     if models.is_empty() {
         return Err(FitError::NoModels { format: format.name });
@@ -110,22 +123,18 @@ pub fn fit_to_format(
             return Err(FitError::UnknownModel { format: format.name, model: wanted.to_owned(), known });
         }
     }
-    let exact = ConvertOptions { covariance: options.covariance.clone(), ..ConvertOptions::default() };
-    for model in &models {
-        if model.target.is_exact_for(camera) {
-            let found = convert(camera, model.target, &exact);
-            return found.map(|found| (found, *model)).map_err(|why| FitError::Refused { format: format.name, why });
-        }
-    }
-    best(&models, camera, options).map_err(|why| FitError::Refused { format: format.name, why })
+    Ok(models)
 }
 
 /// The fit with the smallest residuals; a good one ends the search.
-fn best(models: &[Model], camera: &Camera, options: &ConvertOptions) -> Result<(Conversion, Model), ConvertError> {
+pub(super) fn best(
+    models: &[Model],
+    converted: impl Fn(Target) -> Result<Conversion, ConvertError>,
+) -> Result<(Conversion, Model), ConvertError> {
     let mut found: Option<(Conversion, Model)> = None;
     let mut refused: Option<ConvertError> = None;
     for model in models {
-        match convert(camera, model.target, options) {
+        match converted(model.target) {
             Ok(conversion) => {
                 let good = conversion.verdict == Verdict::Good;
                 if found.as_ref().is_none_or(|(before, _)| conversion.residual.max_px < before.residual.max_px) {
@@ -184,28 +193,4 @@ pub fn losses(format: &CameraFormat, camera: &NamedCamera) -> Vec<String> {
         lost.push(format!("the world of the pose: {} holds poses of a rig, against each other or a sensor", format.name));
     }
     lost
-}
-
-/// The camera that other tools can hold and that is closest to mrcal's splines, and a note with its residual.
-pub(super) fn fit_spline(spline: &Splined) -> Result<(Camera, String), String> {
-    let options = ConvertOptions { accept: true, ..ConvertOptions::default() };
-    let models = [
-        ("OPENCV8", Target::OpenCv { coefficients: 8 }),
-        ("OPENCV12", Target::OpenCv { coefficients: 12 }),
-        ("OpenCV's fisheye", Target::OpenCvFisheye),
-        ("a fisheye with thin prism", Target::PrismFisheye),
-    ];
-    let fitted = models.into_iter().map(|(name, target)| fit(spline, target, &options).map(|found| (name, found)));
-    let (good, bad): (Vec<_>, Vec<_>) = fitted.partition(Result::is_ok);
-    let best = good.into_iter().flatten().min_by(|(_, a), (_, b)| a.residual.rms_px.total_cmp(&b.residual.rms_px));
-    let Some((name, found)) = best else {
-        let why = bad.into_iter().find_map(Result::err).map_or(String::new(), |why| format!(": {why}"));
-        return Err(format!("a splined model, to which no other can be fitted{why}"));
-    };
-    let [rms, max] = [found.residual.rms_px, found.residual.max_px];
-    let at = found.residual.at;
-    Ok((
-        found.camera,
-        format!("a splined model, fitted by {name}: residuals {rms:.3} px RMS, {max:.3} px at most, at ({:.0}, {:.0})", at.x, at.y),
-    ))
 }

@@ -35,6 +35,8 @@ pub struct CameraFormat {
     pub(super) models: fn(Option<f64>) -> Vec<Model>,
     /// What it has a place for besides the camera.
     pub keeps: Keeps,
+    /// It holds mrcal's splines.
+    pub(super) splines: bool,
     /// Public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner.
     pub origin_is_open: bool,
 }
@@ -54,6 +56,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     convention: None,
     models: |_| Vec::new(),
     keeps: Keeps { name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
+    splines: false,
     origin_is_open: false,
 };
 

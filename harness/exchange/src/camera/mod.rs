@@ -22,6 +22,7 @@ mod photogrammetric_toml;
 mod pose;
 mod recognised;
 mod source;
+mod splines;
 pub mod target;
 mod tree;
 mod xml;
@@ -39,6 +40,7 @@ pub use formats::{FORMATS, format_named};
 pub use pose::{Pose, PoseFrame};
 pub use source::LARGEST_FILE;
 use source::Source;
+pub use splines::Splines;
 
 /// What a camera file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,8 +56,10 @@ pub struct CameraFile {
 pub struct NamedCamera {
     /// Its name in the file: of a sensor or of an image; empty where the format has none.
     pub name: String,
-    /// The camera.
+    /// The camera; of a file of splines the one of another model that is nearest to them.
     pub camera: Camera,
+    /// The splines of such a file.
+    pub splines: Option<Box<Splines>>,
     /// Pixel pitch, um, where the file states it.
     pub pitch_um: Option<f64>,
     /// Where the camera stood, in files that say it.
@@ -71,7 +75,16 @@ pub struct NamedCamera {
 impl NamedCamera {
     /// A camera of which nothing else is known.
     pub fn new(name: impl Into<String>, camera: Camera) -> Self {
-        Self { name: name.into(), camera, pitch_um: None, pose: None, pose_frame: PoseFrame::World, covariance: None, notes: Vec::new() }
+        Self {
+            name: name.into(),
+            camera,
+            splines: None,
+            pitch_um: None,
+            pose: None,
+            pose_frame: PoseFrame::World,
+            covariance: None,
+            notes: Vec::new(),
+        }
     }
 }
 

@@ -80,6 +80,13 @@ pub enum TargetError {
     },
 }
 
+/// OpenCV's model with the fewest coefficients that holds a camera exactly, or the usual five.
+fn leanest(source: &NamedCamera) -> Target {
+    let counts = [4, 5, 8, 12, 14].map(|coefficients| Target::OpenCv { coefficients });
+    let exact = counts.into_iter().find(|target| source.splines.is_none() && target.is_exact_for(&source.camera));
+    exact.unwrap_or(Target::OpenCv { coefficients: 5 })
+}
+
 /// The target called `name`.
 ///
 /// # Errors
@@ -102,7 +109,8 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
         "pix4d" | "pix4d-inpho" => (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: given.order }, name),
         "photoscan" => (older(AgisoftVersion::PhotoScan), "photoscan-cameras"),
         "agisoft-lens" => (older(AgisoftVersion::Lens), "metashape"),
-        _ => match name.strip_prefix("opencv").map(|n| if n.is_empty() { Ok(5) } else { n.parse() }) {
+        "opencv" => (leanest(given.source), opencv),
+        _ => match name.strip_prefix("opencv").map(str::parse) {
             Some(Ok(coefficients @ (4 | 5 | 8 | 12 | 14))) => (Target::OpenCv { coefficients }, opencv),
             _ => return Err(unknown(name)),
         },

@@ -33,7 +33,7 @@ pub struct Splined {
 }
 
 const NAMES: [(&str, &str); 4] = [("fx", "px"), ("fy", "px"), ("cx", "px"), ("cy", "px")];
-/// The largest |u| that is looked at: 160 degrees from the axis.
+/// The largest |u| that is looked at where a grid reaches further: 160 degrees from the axis.
 const WIDEST: f64 = 11.34;
 const PLACES: usize = 400;
 
@@ -88,6 +88,18 @@ impl Splined {
 
     fn per_u(&self) -> f64 {
         (self.columns - self.order) as f64 / (4.0 * (self.fov_x_deg.to_radians() / 4.0).tan())
+    }
+
+    /// How far the grid reaches from the axis in a direction, in u: beyond, mrcal has no splines but their last ones, extended.
+    fn reach(&self, [x, y]: [f64; 2]) -> f64 {
+        let half = |count: usize| 0.5 * (count - self.order) as f64 / self.per_u();
+        (half(self.columns) / x.abs()).min(half(self.rows) / y.abs()).min(WIDEST)
+    }
+
+    /// Whether an image point lies in the frame, or nearly so.
+    fn is_in_frame(&self, at: PixelPoint) -> bool {
+        let within = |place: f64, side: u32| (-1.0..=f64::from(side)).contains(&place);
+        within(at.x, self.size.width) && within(at.y, self.size.height)
     }
 
     fn pixel(&self, [x, y]: [f64; 2]) -> PixelPoint {
@@ -158,7 +170,12 @@ impl CameraModel for Splined {
         if !(goal[0].is_finite() && goal[1].is_finite()) {
             return Err(NoCounterpart::NoSolution);
         }
-        let [ux, uy] = super::plane_map::invert(self, goal).or_else(|_| newton::solve(goal, goal, |at| self.map(at)))?;
+        // Where the way from the origin's image fails, that from the goal itself may not: on the same branch alone.
+        let from_goal = |why| match newton::solve(goal, goal, |at| self.map(at)) {
+            Ok(found) if is_on_branch(self, found) => Ok(found),
+            _ => Err(why),
+        };
+        let [ux, uy] = super::plane_map::invert(self, goal).or_else(from_goal)?;
         // The point of the unit sphere: (u, 1 - |u|^2/4) / (1 + |u|^2/4).
         let quarter = 0.25 * (ux * ux + uy * uy);
         Ok(Ray { x: ux / (1.0 + quarter), y: -uy / (1.0 + quarter), z: -(1.0 - quarter) / (1.0 + quarter) })
@@ -179,8 +196,12 @@ impl CameraModel for Splined {
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
         let (sin, cos) = angle.sin_cos();
-        let fold = first_fold(|s| determinant(self.map([s * cos, s * sin]).1), WIDEST, PLACES)?;
-        Some(self.pixel(self.map([fold * cos, fold * sin]).0))
+        let reach = self.reach([cos, sin]);
+        let image = |s: f64| self.pixel(self.map([s * cos, s * sin]).0);
+        // What the splines do once the image has left the frame says nothing of the frame.
+        let leaves = (1..=PLACES).map(|place| reach * place as f64 / PLACES as f64).find(|&s| !self.is_in_frame(image(s)));
+        let fold = first_fold(|s| determinant(self.map([s * cos, s * sin]).1), leaves.unwrap_or(reach), PLACES)?;
+        Some(image(fold))
     }
 }
 
@@ -205,6 +226,21 @@ mod tests {
             let camera = camera(order);
             camera.check().unwrap();
             conformance::check(&camera, Shape::Barrel);
+        }
+    }
+
+    /// The last column of control points turns the image back, but only once it has left the frame.
+    #[test]
+    fn what_splines_do_outside_the_frame_is_no_fold_of_it() {
+        let turned_back = |i: usize| if i % 12 == 11 || i % 12 == 0 { -0.3 * ((i % 12) as f64 - 5.5) } else { 0.0 };
+        let control = (0..12 * 9).map(|i| [turned_back(i), 0.0]).collect();
+        let wide = Splined { control, size: ImageSize { width: 1100, height: 500 }, core: [400.0, 400.0, 349.5, 249.5], ..camera(3) };
+        let camera = Splined { size: ImageSize { width: 700, height: 500 }, ..wide.clone() };
+        assert!(wide.fold_towards(0.0).is_some_and(|at| at.x > 700.0 && at.x < 1100.0), "{:?}", wide.fold_towards(0.0));
+        assert_eq!((camera.fold_towards(0.0), crate::camera::fold(&camera)), (None, None));
+        for [x, y] in [[0.0, 0.0], [699.0, 499.0], [0.0, 499.0], [350.0, 2.0]] {
+            let ray = camera.unproject(PixelPoint::new(x, y)).unwrap();
+            assert!(camera.project(ray).unwrap().distance(PixelPoint::new(x, y)) < 1e-9);
         }
     }
 

@@ -41,7 +41,7 @@ pub fn page(parts: &Parts) -> Option<String> {
         return None;
     }
     Some(format!(
-        "# What stands beside the target\n\nAt most {} % of the points wrong without a word in every row:\n\n{}\n\n{}Each cell: RMSE of the points measured within 1 px, px (rejected, %; wrong without a word, %: measured, \
+        "# What stands beside the target\n\nAt most {} % of the points wrong without a word in every row (what is rejected is not wrong: the tables say how much it is):\n\n{}\n\n{}Each cell: RMSE of the points measured within 1 px, px (rejected, %; wrong without a word, %: measured, \
          and more than {WRONG} px off). Blur 0.7 px, 2 % of noise. Made by `calibench report atlas` from records.\n\n{}\n",
         100.0 * SOUND,
         answers.join("\n"),

@@ -5,10 +5,11 @@ use calibench_model::convert::Target;
 
 use super::PLAIN;
 use crate::camera::brown::positive;
-use crate::camera::fit::{Keeps, KeptPose, Model, fit_spline};
+use crate::camera::fit::{Keeps, KeptPose, Model};
 use crate::camera::number::{row, shortened};
 use crate::camera::pose::{of_rotation_vector, rotation_vector};
 use crate::camera::source::Source;
+use crate::camera::splines::{Splines, nearest};
 use crate::camera::tree::Entry;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, json};
 
@@ -27,6 +28,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     read,
     write: Some(write),
     convention: Some(&tool_conventions::MRCAL),
+    splines: true,
     models: |_| {
         let opencv = |name, coefficients| Model { name, target: Target::OpenCv { coefficients } };
         vec![
@@ -54,18 +56,19 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let intrinsics = root.required("intrinsics")?;
     let v = intrinsics.row().map_err(|error| error.of("intrinsics"))?;
     let at = |error: CameraFileError| error.on_line(intrinsics.line).of("intrinsics");
-    let mut notes = root.unknown(&KNOWN)?;
+    let (mut notes, mut splines) = (root.unknown(&KNOWN)?, None);
     let camera = match model.strip_prefix(SPLINED) {
         Some(shape) => {
             let spline = splined(shape, size, &v).map_err(|error| error.on_line(entry.line).of(key))?;
-            let (camera, note) = fit_spline(&spline).map_err(|problem| CameraFileError::new(problem).on_line(entry.line).of(key))?;
+            let (camera, kept, note) = nearest(spline).map_err(|problem| CameraFileError::new(problem).on_line(entry.line).of(key))?;
             notes.push(note);
+            splines = Some(Box::new(kept));
             camera
         }
         None => parametric(model, size, &v).map_err(|error| if error.element.is_none() { at(error) } else { error.on_line(entry.line) })?,
     };
     let pose = pose(&root)?;
-    Ok(vec![NamedCamera { pose, notes, ..NamedCamera::new("", camera) }])
+    Ok(vec![NamedCamera { pose, notes, splines, ..NamedCamera::new("", camera) }])
 }
 
 fn pose(root: &Entry) -> Result<Option<Pose>, CameraFileError> {
@@ -122,7 +125,11 @@ pub(in crate::camera) fn splined(shape: &str, size: ImageSize, v: &[f64]) -> Res
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let named = &cameras[0];
     let size = named.camera.size();
-    let (model, values) = parts(&named.camera).ok_or_else(|| FORMAT.other_model("a camera of PINHOLE, STEREOGRAPHIC and OPENCV4 to 12"))?;
+    let other = || FORMAT.other_model("a camera of PINHOLE, STEREOGRAPHIC and OPENCV4 to 12");
+    let (model, values) = match &named.splines {
+        Some(splines) => of_splines(splines),
+        None => parts(&named.camera).ok_or_else(other)?,
+    };
     let pose = named.pose.unwrap_or(Pose::IDENTITY);
     let rt = [rotation_vector(pose.camera_from_world), pose.t()].concat();
     Ok(format!(
@@ -133,6 +140,12 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
         size.width,
         size.height
     ))
+}
+
+fn of_splines(splines: &Splines) -> (String, Vec<f64>) {
+    let Splined { core, order, columns, rows, fov_x_deg, control, .. } = &splines.model;
+    let model = format!("{SPLINED}order={order}_Nx={columns}_Ny={rows}_fov_x_deg={fov_x_deg}");
+    (model, core.iter().chain(control.iter().flatten()).copied().collect())
 }
 
 fn parts(camera: &Camera) -> Option<(String, Vec<f64>)> {

@@ -6,6 +6,7 @@ mod malformed;
 mod recognised;
 mod round_trip;
 mod same_camera;
+mod splines;
 mod tool_formats;
 mod tool_formats_malformed;
 mod unknown_keys;

@@ -141,6 +141,7 @@ fn a_splined_camera_is_read_and_its_residual_said() {
     let note = &found.cameras[0].notes[0];
     assert!(note.starts_with("a splined model, fitted by OPENCV12: residuals 0.4") && note.contains("px RMS, 3."), "{note}");
     assert!(matches!(found.cameras[0].camera, Camera::OpenCv(_)));
+    assert!(found.cameras[0].splines.as_ref().unwrap().doubt().is_some_and(|doubt| doubt.contains("is 3.37 px off")));
 }
 
 #[test]

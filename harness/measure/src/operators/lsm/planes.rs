@@ -8,6 +8,7 @@ use super::bank::Bank;
 use super::border;
 use super::mask::{Mask, Rule};
 use super::profile::{LANES, Profile};
+use crate::residuals::Residuals;
 
 /// Unknowns of the model, in this order: x, y, axx, axy, ayx, ayy, grey value of the ground, contrast, blur.
 pub(super) const UNKNOWNS: usize = 9;
@@ -19,6 +20,9 @@ pub(super) const COVERAGE: usize = 7;
 pub(super) const BLUR: usize = 8;
 /// Plane of residuals.
 const RESIDUAL: usize = 9;
+
+/// Change of the coverage with the mask's place, 1/px, from which on a pixel tells anything of that: a tenth of what a sharp edge has.
+const SHOWS: f32 = 0.05;
 
 /// Planes that are multiplied at a time; their number, with that of the blur, is a multiple.
 const TILE: usize = 3;
@@ -127,6 +131,15 @@ impl Planes {
         let (before, residual) = self.values.split_at_mut(RESIDUAL * area);
         let (ones, coverage) = (&before[GROUND * area..(GROUND + 1) * area], &before[COVERAGE * area..(COVERAGE + 1) * area]);
         subtract(&mut residual[..area], [&self.grey, ones, coverage], [ground as f32, contrast as f32])
+    }
+
+    /// The residuals of the last comparison where the mask's place shows, in units of `unit`, a grey value: what stands apart from the mask's border does
+    /// not move it.
+    pub(super) fn residuals(&self, unit: f64) -> Residuals {
+        let rows = |plane: usize| self.plane(plane).chunks(self.stride).take(self.pixels).flat_map(|row| &row[..self.pixels]);
+        let shows = rows(0).zip(rows(1)).map(|(by_x, by_y)| by_x * by_x + by_y * by_y > SHOWS * SHOWS);
+        let grey = rows(RESIDUAL).zip(shows).map(|(grey, shows)| if shows { grey / unit as f32 } else { f32::NAN }).collect();
+        Residuals { grey, side: self.pixels }
     }
 
     /// Sums of products of two planes, before the contrast scales the derivatives, and of each with the residuals: of the first `unknowns`.

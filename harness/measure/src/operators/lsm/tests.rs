@@ -244,3 +244,34 @@ fn the_image_gives_the_start() {
         assert_eq!(lost, 0, "{kind}");
     }
 }
+
+/// A dark bar across the window, its nearest border `away` px from the target's reference point.
+fn with_a_bar(image: &Image, at: [f64; 2], away: f64) -> Image {
+    Image::from_fn(image.width(), image.height(), |x, y| {
+        let covered = (x as f64 - at[0] - away + 0.5).clamp(0.0, 1.0) - (x as f64 - at[0] - away - 5.5).clamp(0.0, 1.0);
+        let covered = covered as f32;
+        image.grey()[y * image.width() + x] * (1.0 - covered) + 0.2 * covered
+    })
+}
+
+#[test]
+fn what_stands_beside_the_target_does_not_pass_silently() {
+    let mut noise = Noise(9);
+    let (mut kept, mut wrong, mut lost, mut untested) = (0, 0, 0, 0);
+    let is_wrong = |picture: &Picture, found: &Measurement| off(picture, found) > 0.25;
+    for variant in 0..200 {
+        let picture = picture(TargetKind::ChessCorner, 30.0, 0.7, variant);
+        let image = noise.on(&picture.image(SIDE), 0.01);
+        let start = start(&picture, 0.3, -0.2);
+        lost += i32::from(operator("lsm:window=15").measure(&image, &start).is_err());
+        let crowded = with_a_bar(&image, picture.at, 3.0 + f64::from(variant % 6));
+        if let Ok(found) = operator("lsm:window=15").measure(&crowded, &start) {
+            kept += 1;
+            wrong += i32::from(is_wrong(&picture, &found));
+        }
+        untested += i32::from(operator("lsm:window=15,misfit=2").measure(&crowded, &start).is_ok_and(|found| is_wrong(&picture, &found)));
+    }
+    println!("beside a bar {kept} of 200 are measured, {wrong} of them wrong; {lost} alone are rejected");
+    assert!(wrong <= 2 && lost == 0, "{wrong} of {kept}, {lost}");
+    assert!(untested > 40, "without the test {untested} are wrong");
+}

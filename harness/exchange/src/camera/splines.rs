@@ -1,0 +1,118 @@
+//! mrcal's splines, which no other tool holds: kept as they are, and fitted where another model is wanted.
+
+use calibench_model::PixelPoint;
+use calibench_model::camera::{Camera, CameraModel, Ray, Splined};
+use calibench_model::convert::{
+    Conversion, ConvertError, ConvertOptions, ERROR_PX, Method, Region, Rotation, Spread, Target, Verdict, fit,
+};
+
+use super::fit::{FitError, best, chosen};
+use super::target::{Goal, Way};
+
+/// Circles about the axis over which other models are fitted where a part of the frame has no ray, as shares of the one that holds the frame.
+const CIRCLES: [f64; 8] = [0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
+
+/// The splines of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Splines {
+    /// As the file has them.
+    pub model: Splined,
+    /// How far the camera that was fitted to them is off at most, px.
+    pub residual_px: f64,
+    /// Over what it was fitted.
+    pub region: Region,
+}
+
+impl Splines {
+    /// Why the camera that was fitted to them stands for them in nothing that is to be right; `None` where it is near enough.
+    pub fn doubt(&self) -> Option<String> {
+        let Self { residual_px, region, .. } = self;
+        let far =
+            (*residual_px > ERROR_PX).then(|| format!("the nearest camera of another model{} is {residual_px:.2} px off", within(*region)));
+        far.map(|far| format!("holds a splined model, and {far}; convert it first, with --radius PX where it is good enough or --accept"))
+    }
+}
+
+/// The camera of another model that is nearest to some splines, over the frame or over as much of it as has rays, and a note with its residual.
+pub(super) fn nearest(spline: Splined) -> Result<(Camera, Splines, String), String> {
+    let mut why = String::new();
+    let whole = whole(&spline);
+    for region in std::iter::once(Region::Frame).chain(CIRCLES.map(|share| Region::Radius { px: share * whole })) {
+        match fitted(&spline, region) {
+            Ok((name, found)) => {
+                let [rms, max] = [found.residual.rms_px, found.residual.max_px];
+                let (at, over) = (found.residual.at, within(region));
+                let note = format!(
+                    "a splined model, fitted by {name}{over}: residuals {rms:.3} px RMS, {max:.3} px at most, at ({:.0}, {:.0})",
+                    at.x, at.y
+                );
+                return Ok((found.camera, Splines { model: spline, residual_px: max, region }, note));
+            }
+            Err(error) if why.is_empty() => why = format!(": {error}"),
+            Err(_) => {}
+        }
+    }
+    Err(format!("a splined model, to which no other can be fitted{why}"))
+}
+
+/// Over what, in words; nothing for the frame.
+fn within(region: Region) -> String {
+    match region {
+        Region::Frame => String::new(),
+        Region::Radius { px } => format!(" within {px:.0} px of its axis, as a part of the frame has no ray"),
+    }
+}
+
+/// The radius about the axis that holds the frame, px.
+fn whole(spline: &Splined) -> f64 {
+    let Ok(axis) = spline.project(Ray::from_tangent(0.0, 0.0)) else { return 1.0 };
+    let (right, bottom) = (f64::from(spline.size.width) - 1.0, f64::from(spline.size.height) - 1.0);
+    let corners = [(0.0, 0.0), (right, 0.0), (0.0, bottom), (right, bottom)];
+    corners.map(|(x, y)| PixelPoint::new(x, y).distance(axis)).into_iter().fold(1.0, f64::max)
+}
+
+fn fitted(spline: &Splined, region: Region) -> Result<(&'static str, Conversion), ConvertError> {
+    let options = ConvertOptions { accept: true, region, ..ConvertOptions::default() };
+    let models = [
+        ("OPENCV8", Target::OpenCv { coefficients: 8 }),
+        ("OPENCV12", Target::OpenCv { coefficients: 12 }),
+        ("OpenCV's fisheye", Target::OpenCvFisheye),
+        ("a fisheye with thin prism", Target::PrismFisheye),
+    ];
+    let fitted = models.into_iter().map(|(name, target)| fit(spline, target, &options).map(|found| (name, found)));
+    let (good, bad): (Vec<_>, Vec<_>) = fitted.partition(Result::is_ok);
+    let best = good.into_iter().flatten().min_by(|(_, a), (_, b)| a.residual.rms_px.total_cmp(&b.residual.rms_px));
+    best.ok_or_else(|| bad.into_iter().find_map(Result::err).unwrap_or(ConvertError::NotConverged))
+}
+
+/// Splines in another model: as they are where the format is their own and no model is asked for, or else fitted to them directly.
+pub(super) fn converted(
+    splines: &Splines,
+    camera: Camera,
+    goal: &Goal,
+    (model, pitch_um): (Option<&str>, Option<f64>),
+    options: &ConvertOptions,
+) -> Result<(Conversion, Option<&'static str>), FitError> {
+    let refused = |why| FitError::Refused { format: goal.format.name, why };
+    match goal.way {
+        Way::One(target) => fit(&splines.model, target, options).map(|found| (found, None)).map_err(refused),
+        Way::Best if goal.format.splines && model.is_none() => Ok((as_they_are(camera), None)),
+        Way::Best => {
+            let models = chosen(goal.format, model, pitch_um)?;
+            best(&models, |target| fit(&splines.model, target, options)).map(|(found, model)| (found, Some(model.name))).map_err(refused)
+        }
+    }
+}
+
+fn as_they_are(camera: Camera) -> Conversion {
+    Conversion {
+        camera,
+        method: Method::Exact,
+        residual: Spread { rms_px: 0.0, max_px: 0.0, at: PixelPoint::default() },
+        residuals: Vec::new(),
+        region: Region::Frame,
+        rotation: Rotation::identity(),
+        covariance: None,
+        verdict: Verdict::Good,
+    }
+}

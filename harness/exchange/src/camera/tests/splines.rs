@@ -1,0 +1,63 @@
+//! mrcal's splines: kept as they are, and fitted within half a pixel or not at all.
+
+use calibench_model::camera::TangentialOrder;
+use calibench_model::convert::{ConvertOptions, Method};
+
+use super::super::conversion::{ConversionError, converted};
+use super::super::target::{Given, goal};
+use super::super::{NamedCamera, camera_text, format_named};
+use super::read;
+
+/// A .cameramodel of 16 x 11 control points whose D are `rough` times a wave beside a smooth distortion.
+fn text(rough: f64) -> String {
+    let control = (0..16 * 11).map(|i| {
+        let (x, y) = (f64::from(i % 16) - 7.5, f64::from(i / 16) - 5.0);
+        let r2 = x * x + y * y;
+        let wave = rough * (1.9 * x).sin() * (2.3 * y).cos();
+        format!("{}, {}", -2e-4 * x * r2 + wave, -2e-4 * y * r2 - wave)
+    });
+    format!(
+        "{{\n 'lensmodel': 'LENSMODEL_SPLINED_STEREOGRAPHIC_order=3_Nx=16_Ny=11_fov_x_deg=120',\n 'intrinsics': [ 1700.5, 1701.25, 1961.125, 1087.5, {} ],\n \
+         'extrinsics': [ 0.1, -0.2, 0.3, 1, 2, 3 ],\n 'imagersize': [ 3900, 2190 ]\n}}\n",
+        control.collect::<Vec<_>>().join(", ")
+    )
+}
+
+fn source(rough: f64) -> NamedCamera {
+    read(&text(rough)).unwrap().cameras.remove(0)
+}
+
+fn to(source: &NamedCamera, name: &str, options: &ConvertOptions) -> Result<super::super::conversion::Converted, ConversionError> {
+    let given = Given { source, pitch_um: None, base_mm: None, order: TangentialOrder::OpenCv, output: None };
+    converted(source, &goal(name, &given).unwrap(), None, None, options)
+}
+
+#[test]
+fn splines_to_splines_are_the_same_to_the_last_bit() {
+    let source = source(2e-3);
+    let found = to(&source, "mrcal", &ConvertOptions::default()).unwrap();
+    assert_eq!(found.conversion.method, Method::Exact);
+    let written = camera_text(format_named("mrcal").unwrap(), &[found.camera]).unwrap();
+    let again = read(&written).unwrap().cameras.remove(0);
+    let splines = |named: &NamedCamera| named.splines.clone().unwrap().model;
+    assert_eq!(splines(&again), splines(&source));
+    let off = again.pose.unwrap().t().iter().zip(source.pose.unwrap().t()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-12, "{off}");
+}
+
+#[test]
+fn other_models_are_fitted_to_the_splines_and_half_a_pixel_is_the_limit() {
+    let smooth = source(0.0);
+    assert!(smooth.splines.as_ref().unwrap().doubt().is_none(), "{:?}", smooth.notes);
+    let found = to(&smooth, "opencv-fisheye", &ConvertOptions::default()).unwrap();
+    assert_eq!(found.conversion.method, Method::Fitted);
+    assert!(found.conversion.residual.max_px < 0.5 && found.camera.splines.is_none());
+    let rough = source(2e-3);
+    assert!(rough.splines.as_ref().unwrap().doubt().is_some_and(|doubt| doubt.contains("px off; convert it first")));
+    for name in ["opencv-fisheye", "colmap", "ros"] {
+        let error = to(&rough, name, &ConvertOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("differs by up to"), "{name}: {error}");
+    }
+    let accepted = to(&rough, "opencv-fisheye", &ConvertOptions { accept: true, ..ConvertOptions::default() }).unwrap();
+    assert!(accepted.conversion.residual.max_px > 0.5);
+}
