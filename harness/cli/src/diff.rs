@@ -127,6 +127,10 @@ fn part(vectors: &[Vector], size: ImageSize, is_part: impl Fn(PixelPoint) -> boo
     format!("{} px RMS, {} px at most", plain((sum / area).sqrt()), plain(most))
 }
 
+fn stem(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -142,8 +146,4 @@ mod tests {
         assert_eq!(part(&all, size, |at| at.x == 0.0 && at.y == 0.0), "2 px RMS, 2 px at most");
         assert_eq!(part(&all, size, |at| at.x > 500.0), "nothing was compared");
     }
-}
-
-fn stem(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

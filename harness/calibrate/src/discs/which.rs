@@ -7,6 +7,9 @@ use nalgebra::Vector3;
 use super::Discs;
 use crate::{CalibrationError, Survey};
 
+/// Radius, object units, and normal of a disc.
+pub(super) type Face = (f64, Vector3<f64>);
+
 /// What is known of the discs among some object points before their planes are sought.
 pub(crate) struct Known {
     /// Of each object point.
@@ -67,7 +70,7 @@ impl Known {
         &self,
         name: impl Fn(usize) -> String,
         plane: impl Fn(usize) -> Option<Vector3<f64>>,
-    ) -> Result<Vec<Option<(f64, Vector3<f64>)>>, CalibrationError> {
+    ) -> Result<Vec<Option<Face>>, CalibrationError> {
         let mut without = Vec::new();
         let normal = |(index, disc): (usize, &Option<ControlDisc>)| {
             let disc = (*disc)?;

@@ -16,8 +16,8 @@ use crate::reading;
 #[derive(Args)]
 pub struct Eccentricity {
     /// Take the eccentricity of discs out where cameras, poses and discs are known (`calibrate --eccentricity` needs none of them): the discs' radius in object units, or `control` where the control file has the column radius. Planes are the control file's nX,nY,nZ, or those of each disc's neighbours
-    #[arg(long, value_name = "RADIUS", requires_all = ["camera", "stations", "control"])]
-    eccentricity: Option<Discs>,
+    #[arg(long = "eccentricity", id = "eccentricity", value_name = "RADIUS", requires_all = ["camera", "stations", "control"])]
+    discs: Option<Discs>,
     /// For --eccentricity: a camera file; of several cameras IMAGES=FILE, as in left*=left.yaml, may be repeated
     #[arg(long, value_name = "[IMAGES=]FILE", requires = "eccentricity")]
     camera: Vec<ImagesFile>,
@@ -40,7 +40,7 @@ impl Eccentricity {
 
     /// Of each point; none where it was not asked for.
     pub fn offsets(&self, points: &Points) -> Result<Vec<Offset>, Failure> {
-        let (Some(discs), Some(stations), Some(control)) = (self.eccentricity, &self.stations, &self.control) else {
+        let (Some(discs), Some(stations), Some(control)) = (self.discs, &self.stations, &self.control) else {
             return Ok(Vec::new());
         };
         let survey = Survey::new(points.clone(), &read_control(control)?)?;

@@ -19,6 +19,8 @@ pub struct Model {
 /// What a format has a place for besides the camera.
 #[derive(Clone, Copy, Debug)]
 pub struct Keeps {
+    /// mrcal's splines as they are.
+    pub splines: bool,
     /// A name.
     pub name: bool,
     /// The pixel pitch.
@@ -166,7 +168,7 @@ fn better(before: Option<ConvertError>, why: ConvertError) -> ConvertError {
 
 /// What of a camera a format has no place for, or what it needs and is not known, in words.
 pub fn losses(format: &CameraFormat, camera: &NamedCamera) -> Vec<String> {
-    let Keeps { name, pitch, pose, covariance } = format.keeps;
+    let Keeps { name, pitch, pose, covariance, .. } = format.keeps;
     let mut lost = Vec::new();
     let mut say = |is: bool, what: String| {
         if is {

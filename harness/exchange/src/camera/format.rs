@@ -35,8 +35,6 @@ pub struct CameraFormat {
     pub(super) models: fn(Option<f64>) -> Vec<Model>,
     /// What it has a place for besides the camera.
     pub keeps: Keeps,
-    /// It holds mrcal's splines.
-    pub(super) splines: bool,
     /// Public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner.
     pub origin_is_open: bool,
 }
@@ -55,8 +53,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     write: None,
     convention: None,
     models: |_| Vec::new(),
-    keeps: Keeps { name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
-    splines: false,
+    keeps: Keeps { splines: false, name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
     origin_is_open: false,
 };
 

@@ -96,7 +96,7 @@ pub(super) fn converted(
     let refused = |why| FitError::Refused { format: goal.format.name, why };
     match goal.way {
         Way::One(target) => fit(&splines.model, target, options).map(|found| (found, None)).map_err(refused),
-        Way::Best if goal.format.splines && model.is_none() => Ok((as_they_are(camera), None)),
+        Way::Best if goal.format.keeps.splines && model.is_none() => Ok((as_they_are(camera), None)),
         Way::Best => {
             let models = chosen(goal.format, model, pitch_um)?;
             best(&models, |target| fit(&splines.model, target, options)).map(|(found, model)| (found, Some(model.name))).map_err(refused)

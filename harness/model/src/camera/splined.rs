@@ -232,7 +232,7 @@ mod tests {
     /// The last column of control points turns the image back, but only once it has left the frame.
     #[test]
     fn what_splines_do_outside_the_frame_is_no_fold_of_it() {
-        let turned_back = |i: usize| if i % 12 == 11 || i % 12 == 0 { -0.3 * ((i % 12) as f64 - 5.5) } else { 0.0 };
+        let turned_back = |i: usize| if [0, 11].contains(&(i % 12)) { -0.3 * ((i % 12) as f64 - 5.5) } else { 0.0 };
         let control = (0..12 * 9).map(|i| [turned_back(i), 0.0]).collect();
         let wide = Splined { control, size: ImageSize { width: 1100, height: 500 }, core: [400.0, 400.0, 349.5, 249.5], ..camera(3) };
         let camera = Splined { size: ImageSize { width: 700, height: 500 }, ..wide.clone() };

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use calibench_exchange::camera::read_camera;
 use calibench_exchange::{NewFolder, OutputFolder, read_control, read_stations};
+use calibench_model::TargetKind;
 use calibench_model::camera::CameraModel;
 use calibench_synth::sensor::Clipped;
 
@@ -80,7 +81,7 @@ fn stations_control_and_camera_are_read_again() {
     assert_eq!(control.len(), 12);
     for (row, target) in control.iter().zip(&subject.field.targets) {
         assert_eq!((row.position, row.sigmas), (target.surveyed.coords.into(), None));
-        let disc = (target.kind == TargetKind::Disc).then(|| (0.5 * target.size, Some([0.0, 0.0, 1.0])));
+        let disc = (target.kind == TargetKind::Disc).then_some((0.5 * target.size, Some([0.0, 0.0, 1.0])));
         assert_eq!(row.disc.as_ref().map(|disc| (disc.radius, disc.normal)), disc);
     }
 

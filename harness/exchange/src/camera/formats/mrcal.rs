@@ -28,7 +28,6 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     read,
     write: Some(write),
     convention: Some(&tool_conventions::MRCAL),
-    splines: true,
     models: |_| {
         let opencv = |name, coefficients| Model { name, target: Target::OpenCv { coefficients } };
         vec![
@@ -38,7 +37,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
             opencv("LENSMODEL_OPENCV12", 12),
         ]
     },
-    keeps: Keeps { pose: KeptPose::InWorld, ..PLAIN.keeps },
+    keeps: Keeps { splines: true, pose: KeptPose::InWorld, ..PLAIN.keeps },
     ..PLAIN
 };
 
@@ -68,7 +67,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         None => parametric(model, size, &v).map_err(|error| if error.element.is_none() { at(error) } else { error.on_line(entry.line) })?,
     };
     let pose = pose(&root)?;
-    Ok(vec![NamedCamera { pose, notes, splines, ..NamedCamera::new("", camera) }])
+    Ok(vec![NamedCamera { splines, pose, notes, ..NamedCamera::new("", camera) }])
 }
 
 fn pose(root: &Entry) -> Result<Option<Pose>, CameraFileError> {

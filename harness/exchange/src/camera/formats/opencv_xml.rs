@@ -22,7 +22,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "opencv_storage"),
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
+    keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

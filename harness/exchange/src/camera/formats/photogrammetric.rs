@@ -19,7 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise,
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::Whole },
+    keeps: Keeps { splines: false, name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::Whole },
     ..PLAIN
 };
 

@@ -20,7 +20,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "collection"),
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
+    keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

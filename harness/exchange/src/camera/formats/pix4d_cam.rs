@@ -24,7 +24,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
+    keeps: Keeps { splines: false, name: true, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

@@ -29,7 +29,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
-    keeps: Keeps { name: false, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
+    keeps: Keeps { splines: false, name: false, pitch: true, pose: KeptPose::None, covariance: KeptCovariance::None },
     ..PLAIN
 };
 

@@ -26,7 +26,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     },
     read,
     write: Some(write),
-    keeps: Keeps { name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
+    keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::InWorld, covariance: KeptCovariance::None },
     ..PLAIN
 };
 
