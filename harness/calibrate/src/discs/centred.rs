@@ -5,42 +5,15 @@ use calibench_model::PixelPoint;
 use calibench_model::eccentricity::{Disc, in_image};
 use rayon::prelude::*;
 
+use super::Known;
 use super::plane::Neighbours;
-use super::{Discs, Known};
 use crate::ended::ended;
-use crate::{Calibration, CalibrationError, Prepared};
+use crate::{Calibration, CalibrationError, Discs, Eccentricity, Prepared};
 
 /// Change of a correction with which the rounds end, px.
 const SMALL: f64 = 1e-6;
 /// Rounds at most: each gains the ratio of the disc's radius to its distance, squared.
 const ROUNDS: usize = 20;
-
-/// What was taken from the centres of discs' pictures.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Eccentricity {
-    /// Of each observation, px (x right, y down): centre of the picture minus picture of the centre. Zero for what is no disc.
-    pub offsets: Vec<[f64; 2]>,
-    /// How many image points are of discs.
-    pub image_points: usize,
-    /// How many targets are discs.
-    pub discs: usize,
-    /// Image points of discs that do not lie before the camera as a whole: nothing was taken from them.
-    pub unpictured: usize,
-    /// Image points that were measured as discs and whose radius nobody states: nothing was taken from them.
-    pub unstated: usize,
-}
-
-impl Eccentricity {
-    /// The largest, px.
-    pub fn largest(&self) -> f64 {
-        self.offsets.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max)
-    }
-
-    /// The root mean square over the image points of discs, px: of `sqrt(x^2 + y^2)`.
-    pub fn rms(&self) -> f64 {
-        (self.offsets.iter().map(|[x, y]| x * x + y * y).sum::<f64>() / self.image_points.max(1) as f64).sqrt()
-    }
-}
 
 impl Calibration<'_> {
     /// The same network from the end of this adjustment, its observations freed of the eccentricity of discs; `None` where there is no disc or it was not asked

@@ -4,9 +4,9 @@ use calibench_model::camera::Camera;
 use calibench_model::eccentricity::{Disc, in_image};
 use calibench_model::{Pose, TargetKind};
 
+use super::Known;
 use super::plane::Neighbours;
-use super::{Discs, Known};
-use crate::{CalibrationError, Survey};
+use crate::{CalibrationError, Discs, Survey};
 
 /// What is to be taken from an image point.
 #[derive(Clone, Copy, Debug, PartialEq)]

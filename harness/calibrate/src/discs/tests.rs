@@ -5,9 +5,8 @@ use calibench_exchange::{ControlDisc, ControlRow, Points};
 use calibench_model::camera::{Camera, CameraModel};
 use nalgebra::{Point3, Vector3};
 
-use super::Discs;
 use crate::scenes::{Scene, agrees, board, lens, settings, wall};
-use crate::{CalibrationError, Settings, calibrate, prepare};
+use crate::{CalibrationError, Discs, Settings, calibrate, prepare};
 
 /// Corners of a polygon in place of an outline: its centroid is off by less than 1e-7 px.
 const CORNERS: u32 = 20_000;
@@ -97,7 +96,7 @@ fn a_wall_of_discs_gives_the_camera_without_bias() {
 #[test]
 fn planes_come_from_the_neighbours_and_squares_stay() {
     let scene = board(lens());
-    let kind = |target: usize| if target % 3 == 0 { "square" } else { "disc" };
+    let kind = |target: usize| if target.is_multiple_of(3) { "square" } else { "disc" };
     let points = points(&scene, |_| Vector3::z(), 12.0, kind);
     let plain = control(&scene, |_| None);
     for (control, discs) in [

@@ -4,8 +4,7 @@ use calibench_exchange::ControlDisc;
 use calibench_model::TargetKind;
 use nalgebra::Vector3;
 
-use super::Discs;
-use crate::{CalibrationError, Survey};
+use crate::{CalibrationError, Discs, Survey};
 
 /// Radius, object units, and normal of a disc.
 pub(super) type Face = (f64, Vector3<f64>);

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::fit::{FitError, fit_to_format};
 use super::target::{Goal, Way};
-use super::{NamedCamera, ParameterCovariance, splines};
+use super::{NamedCamera, ParameterCovariance, splined};
 
 /// A converted camera and how it came about.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ pub fn converted(
     let pitch_um = pitch_um.or(source.pitch_um);
     let (conversion, model) = match goal.way {
         Way::One(_) if model.is_some() => return Err(ConversionError::ModelNamed),
-        _ if let Some(splines) = &source.splines => splines::converted(splines, source.camera, goal, (model, pitch_um), &options)?,
+        _ if let Some(splines) = &source.splines => splined::converted(splines, source.camera, goal, (model, pitch_um), &options)?,
         Way::One(target) => (convert(&source.camera, target, &options)?, None),
         Way::Best => {
             let (conversion, model) = fit_to_format(goal.format, &source.camera, model, pitch_um, &options)?;

@@ -22,6 +22,7 @@ mod photogrammetric_toml;
 mod pose;
 mod recognised;
 mod source;
+mod splined;
 mod splines;
 pub mod target;
 mod tree;

@@ -2,12 +2,7 @@
 
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Ray, Splined};
-use calibench_model::convert::{
-    Conversion, ConvertError, ConvertOptions, ERROR_PX, Method, Region, Rotation, Spread, Target, Verdict, fit,
-};
-
-use super::fit::{FitError, best, chosen};
-use super::target::{Goal, Way};
+use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, ERROR_PX, Region, Target, fit};
 
 /// Circles about the axis over which other models are fitted where a part of the frame has no ray, as shares of the one that holds the frame.
 const CIRCLES: [f64; 8] = [0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
@@ -83,36 +78,4 @@ fn fitted(spline: &Splined, region: Region) -> Result<(&'static str, Conversion)
     let (good, bad): (Vec<_>, Vec<_>) = fitted.partition(Result::is_ok);
     let best = good.into_iter().flatten().min_by(|(_, a), (_, b)| a.residual.rms_px.total_cmp(&b.residual.rms_px));
     best.ok_or_else(|| bad.into_iter().find_map(Result::err).unwrap_or(ConvertError::NotConverged))
-}
-
-/// Splines in another model: as they are where the format is their own and no model is asked for, or else fitted to them directly.
-pub(super) fn converted(
-    splines: &Splines,
-    camera: Camera,
-    goal: &Goal,
-    (model, pitch_um): (Option<&str>, Option<f64>),
-    options: &ConvertOptions,
-) -> Result<(Conversion, Option<&'static str>), FitError> {
-    let refused = |why| FitError::Refused { format: goal.format.name, why };
-    match goal.way {
-        Way::One(target) => fit(&splines.model, target, options).map(|found| (found, None)).map_err(refused),
-        Way::Best if goal.format.keeps.splines && model.is_none() => Ok((as_they_are(camera), None)),
-        Way::Best => {
-            let models = chosen(goal.format, model, pitch_um)?;
-            best(&models, |target| fit(&splines.model, target, options)).map(|(found, model)| (found, Some(model.name))).map_err(refused)
-        }
-    }
-}
-
-fn as_they_are(camera: Camera) -> Conversion {
-    Conversion {
-        camera,
-        method: Method::Exact,
-        residual: Spread { rms_px: 0.0, max_px: 0.0, at: PixelPoint::default() },
-        residuals: Vec::new(),
-        region: Region::Frame,
-        rotation: Rotation::identity(),
-        covariance: None,
-        verdict: Verdict::Good,
-    }
 }
