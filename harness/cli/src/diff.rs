@@ -142,8 +142,8 @@ mod tests {
         let all = (0..9).map(|i| Vector { at: PixelPoint::new(place(i % 3), place(i / 3)), dx: if i == 4 { 0.0 } else { 2.0 }, dy: 0.0 });
         let all: Vec<Vector> = all.collect();
         let size = ImageSize { width: 101, height: 101 };
-        assert_eq!(part(&all, size, |_| true), format!("{} px RMS, 2 px at most", plain(3.0_f64.sqrt())));
-        assert_eq!(part(&all, size, |at| at.x == 0.0 && at.y == 0.0), "2 px RMS, 2 px at most");
+        assert_eq!(part(&all, size, |_| true), format!("{} px RMS, 2.00 px at most", plain(3.0_f64.sqrt())));
+        assert_eq!(part(&all, size, |at| at.x == 0.0 && at.y == 0.0), "2.00 px RMS, 2.00 px at most");
         assert_eq!(part(&all, size, |at| at.x > 500.0), "nothing was compared");
     }
 }
