@@ -2,8 +2,8 @@
 
 use super::{
     Agisoft, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, NoCounterpart,
-    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, Ray, agisoft, double_sphere, ebner, eucm, fov, micmac, moniwa, omni,
-    opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, tool_conventions,
+    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, agisoft, double_sphere, ebner, eucm, fov,
+    micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, rad_tan_prism_fisheye, tool_conventions,
 };
 use crate::PixelPoint;
 
@@ -32,6 +32,8 @@ pub enum Camera {
     Fov(Fov),
     /// Fisheye with decentring and thin prism.
     PrismFisheye(PrismFisheye),
+    /// Fisheye, then decentring and thin prism.
+    RadTanPrismFisheye(RadTanPrismFisheye),
     /// MicMac's.
     MicMac(MicMac),
 }
@@ -50,6 +52,7 @@ macro_rules! each {
             Camera::Omni($model) => $work,
             Camera::Fov($model) => $work,
             Camera::PrismFisheye($model) => $work,
+            Camera::RadTanPrismFisheye($model) => $work,
             Camera::MicMac($model) => $work,
         }
     };
@@ -68,6 +71,7 @@ pub const fn conventions() -> &'static [&'static Convention] {
         &opencv::CONVENTION,
         &opencv_fisheye::CONVENTION,
         &prism_fisheye::CONVENTION,
+        &rad_tan_prism_fisheye::CONVENTION,
         &double_sphere::CONVENTION,
         &eucm::CONVENTION,
         &omni::CONVENTION,
@@ -107,6 +111,7 @@ impl Camera {
             Self::Omni(_) => &omni::CONVENTION,
             Self::Fov(_) => &fov::CONVENTION,
             Self::PrismFisheye(_) => &prism_fisheye::CONVENTION,
+            Self::RadTanPrismFisheye(_) => &rad_tan_prism_fisheye::CONVENTION,
             Self::MicMac(_) => &micmac::CONVENTION,
         }
     }
@@ -156,7 +161,21 @@ macro_rules! from {
     };
 }
 
-from!(Photogrammetric, Ebner, OpenCv, OpenCvFisheye, Agisoft, Pix4d, DoubleSphere, Eucm, Omni, Fov, PrismFisheye, MicMac);
+from!(
+    Photogrammetric,
+    Ebner,
+    OpenCv,
+    OpenCvFisheye,
+    Agisoft,
+    Pix4d,
+    DoubleSphere,
+    Eucm,
+    Omni,
+    Fov,
+    PrismFisheye,
+    RadTanPrismFisheye,
+    MicMac
+);
 
 #[cfg(test)]
 mod tests {

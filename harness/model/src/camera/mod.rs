@@ -25,6 +25,7 @@ mod pinhole;
 pub mod pix4d;
 mod plane_map;
 pub mod prism_fisheye;
+pub mod rad_tan_prism_fisheye;
 mod ray;
 pub mod splined;
 pub mod tool_conventions;
@@ -51,6 +52,7 @@ pub use opencv_fisheye::OpenCvFisheye;
 pub use photogrammetric::Photogrammetric;
 pub use pix4d::Pix4d;
 pub use prism_fisheye::PrismFisheye;
+pub use rad_tan_prism_fisheye::RadTanPrismFisheye;
 pub use ray::Ray;
 pub use splined::Splined;
 

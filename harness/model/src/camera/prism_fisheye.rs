@@ -73,11 +73,11 @@ impl Axial for PrismFisheye {
     }
 
     fn plane(&self) -> Option<Plane> {
-        Some(Plane { k: self.k, p: self.p, s: self.s })
+        Some(Plane { k: self.k, p: self.p, s: self.s, s4: [0.0; 2] })
     }
 
-    fn plane_parameters(&self) -> usize {
-        8
+    fn plane_parameters(&self) -> &'static [usize] {
+        &[0, 1, 2, 3, 4, 5, 6, 7]
     }
 }
 

@@ -34,49 +34,60 @@ pub(super) trait Axial {
     fn plane(&self) -> Option<Plane> {
         None
     }
-    /// How many of the plane's coefficients are parameters of the model: the first of k1, k2, p1, p2, k3, k4, s1, s2.
-    fn plane_parameters(&self) -> usize {
-        0
+    /// Which of the plane's coefficients are parameters of the model, in its order: places in [`Plane::by_coefficients`].
+    fn plane_parameters(&self) -> &'static [usize] {
+        &[]
+    }
+    /// Whether the radius rises up to `theta`; models whose end is dear to find answer sooner.
+    fn pictures(&self, theta: f64) -> bool {
+        theta < self.end()
     }
 }
 
-/// `x q + 2 p1 x y + p2 (r2 + 2 x^2) + s1 r2`, `y q + p1 (r2 + 2 y^2) + 2 p2 x y + s2 r2` with `q = 1 + k1 r2 + ... + k4 r2^4`.
+/// `x q + 2 p1 x y + p2 (r2 + 2 x^2) + s1 r2 + s3 r2^2`, `y q + p1 (r2 + 2 y^2) + 2 p2 x y + s2 r2 + s4 r2^2` with `q = 1 + k1 r2 + ... + k4 r2^4`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
     pub(super) k: [f64; 4],
     /// In OpenCV's order.
     pub(super) p: [f64; 2],
+    /// s1, s2.
     pub(super) s: [f64; 2],
+    /// s3, s4.
+    pub(super) s4: [f64; 2],
 }
 
 impl Plane {
-    /// d(value) / d(k1, k2, p1, p2, k3, k4, s1, s2).
-    fn by_coefficients([x, y]: [f64; 2]) -> [[f64; 2]; 8] {
+    /// d(value) / d(k1, k2, p1, p2, k3, k4, s1, s2, s3, s4).
+    fn by_coefficients([x, y]: [f64; 2]) -> [[f64; 2]; 10] {
         let r2 = x * x + y * y;
         let radial = |power: i32| [x * r2.powi(power), y * r2.powi(power)];
         let tangential = [[2.0 * x * y, r2 + 2.0 * y * y], [r2 + 2.0 * x * x, 2.0 * x * y]];
-        [radial(1), radial(2), tangential[0], tangential[1], radial(3), radial(4), [r2, 0.0], [0.0, r2]]
+        [radial(1), radial(2), tangential[0], tangential[1], radial(3), radial(4), [r2, 0.0], [0.0, r2], [r2 * r2, 0.0], [0.0, r2 * r2]]
     }
 }
 
 impl PlaneMap for Plane {
     fn map(&self, [x, y]: [f64; 2]) -> ValueAndDerivatives {
-        let ([k1, k2, k3, k4], [p1, p2], [s1, s2]) = (self.k, self.p, self.s);
+        let ([k1, k2, k3, k4], [p1, p2]) = (self.k, self.p);
         let r2 = x * x + y * y;
+        // The prism's terms and their derivatives by r2.
+        let prism: [(f64, f64); 2] = [0, 1].map(|i| (r2 * (self.s[i] + r2 * self.s4[i]), self.s[i] + 2.0 * r2 * self.s4[i]));
         let q = 1.0 + r2 * (k1 + r2 * (k2 + r2 * (k3 + r2 * k4)));
         let slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3 + r2 * 4.0 * k4)));
         let cross = x * y * slope + 2.0 * (p1 * x + p2 * y);
-        let value =
-            [x * q + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x) + s1 * r2, y * q + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y + s2 * r2];
+        let value = [
+            x * q + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x) + prism[0].0,
+            y * q + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y + prism[1].0,
+        ];
         let by = [
-            [q + x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x + 2.0 * s1 * x, cross + 2.0 * s1 * y],
-            [cross + 2.0 * s2 * x, q + y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x + 2.0 * s2 * y],
+            [q + x * x * slope + 2.0 * p1 * y + 6.0 * p2 * x + 2.0 * prism[0].1 * x, cross + 2.0 * prism[0].1 * y],
+            [cross + 2.0 * prism[1].1 * x, q + y * y * slope + 6.0 * p1 * y + 2.0 * p2 * x + 2.0 * prism[1].1 * y],
         ];
         (value, by)
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
-        let prism = 2.0 * radius * self.s[0].hypot(self.s[1]);
+        let prism = 2.0 * radius * self.s[0].hypot(self.s[1]) + 4.0 * radius.powi(3) * self.s4[0].hypot(self.s4[1]);
         super::plane_map::is_one_to_one(radius, &self.k, &self.p, prism)
     }
 }
@@ -93,7 +104,7 @@ fn polar(camera: &impl Axial, ray: Ray) -> Result<([f64; 3], f64, f64), NoCounte
         return Err(NoCounterpart::Behind);
     }
     let theta = r.atan2(z);
-    if theta >= camera.end() {
+    if !camera.pictures(theta) {
         return Err(NoCounterpart::Behind);
     }
     Ok(([x, y, z], r, theta))
@@ -188,7 +199,8 @@ pub(super) fn derivatives_into(camera: &impl Axial, ray: Ray, into: &mut Derivat
     into.by_ray = [0, 1].map(|row| std::array::from_fn(|i| signs[i] * columns[i][row]));
     into.extend([[distorted[0], 0.0], [0.0, distorted[1]], [1.0, 0.0], [0.0, 1.0]]);
     into.extend(camera.by_lens(theta).into_iter().map(|d| after([d * cos, d * sin])));
-    into.extend(Plane::by_coefficients(flat).into_iter().take(camera.plane_parameters()).map(scaled));
+    let by_plane = Plane::by_coefficients(flat);
+    into.extend(camera.plane_parameters().iter().map(|&i| scaled(by_plane[i])));
     Ok(())
 }
 

@@ -76,7 +76,14 @@ pub(super) fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> boo
             let held = k[radial.min(4)..].iter().all(|&k| k == 0.0) && p[if tangential { 2 } else { 0 }..].iter().all(|&p| p == 0.0);
             held && !affine && form.b == 0.0
         }
-        Target::OpenCvFisheye | Target::DoubleSphere | Target::Eucm | Target::Omni { .. } | Target::Fov | Target::PrismFisheye => false,
+        Target::OpenCvFisheye
+        | Target::DoubleSphere
+        | Target::Eucm
+        | Target::Division
+        | Target::Omni { .. }
+        | Target::Fov
+        | Target::PrismFisheye
+        | Target::RadTanPrismFisheye => false,
     }
 }
 

@@ -4,7 +4,7 @@ use super::ConvertError;
 use super::brown::BrownForm;
 use crate::camera::{
     Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, Omni, OpenCv, OpenCvFisheye,
-    Photogrammetric, Pix4d, PrismFisheye, TangentialOrder,
+    Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
 };
 
 /// A convention with its shape. Terms that the shape leaves out are zero.
@@ -62,6 +62,8 @@ pub enum Target {
     DoubleSphere,
     /// Enhanced unified.
     Eucm,
+    /// The division model, as an enhanced unified camera with alpha 1/2.
+    Division,
     /// Mei's unified camera.
     Omni {
         /// Holds k1, k2, p1, p2.
@@ -71,6 +73,8 @@ pub enum Target {
     Fov,
     /// Fisheye with decentring and thin prism.
     PrismFisheye,
+    /// Fisheye, then decentring and thin prism.
+    RadTanPrismFisheye,
     /// MicMac's, with the distortion around the principal point.
     MicMac {
         /// Radial coefficients: 0 to 5.
@@ -136,9 +140,13 @@ impl Target {
             }
             Self::DoubleSphere => DoubleSphere { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, xi: 0.0, alpha: 0.0 }.into(),
             Self::Eucm => Eucm { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, alpha: 0.0, beta: 1.0 }.into(),
+            Self::Division => Eucm { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, alpha: 0.5, beta: 0.0 }.into(),
             Self::Omni { .. } => Omni { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, xi: 0.0, k: [0.0; 2], p: [0.0; 2] }.into(),
             Self::Fov => Fov { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, w: 0.0 }.into(),
             Self::PrismFisheye => PrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] }.into(),
+            Self::RadTanPrismFisheye => {
+                RadTanPrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()
+            }
             Self::MicMac { .. } => MicMac { size, f: 1.0, pp: [0.0; 2], offset: [0.0; 2], k: [0.0; 5], p: [0.0; 2], b: [0.0; 2] }.into(),
             Self::Agisoft { version, .. } => {
                 Agisoft { size, version, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 4] }.into()
@@ -149,7 +157,7 @@ impl Target {
         }
     }
 
-    /// Names of the parameters that the convention has and this shape leaves out.
+    /// Names of the parameters that the convention has and this shape leaves out or holds.
     fn left_out(&self) -> Vec<&'static str> {
         const K: [&str; 4] = ["k1", "k2", "k3", "k4"];
         const P: [&str; 4] = ["p1", "p2", "p3", "p4"];
@@ -162,6 +170,7 @@ impl Target {
             Self::Ebner { .. } => [&K[..], &P[..], &B[..]].concat(),
             Self::Agisoft { radial, tangential, affinity: b, .. } => [&K[radial..], &P[tangential..], affinity(b)].concat(),
             Self::OpenCvFisheye => vec!["skew", "alpha"],
+            Self::Division => vec!["alpha"],
             Self::Centred { radial } => [&["cx", "cy"], &K[radial..], &P[..], &B[..]].concat(),
             Self::Omni { distortion: false } => [&K[..2], &P[..2]].concat(),
             Self::MicMac { radial, tangential } => {
@@ -174,7 +183,8 @@ impl Target {
             | Self::Eucm
             | Self::Omni { distortion: true }
             | Self::Fov
-            | Self::PrismFisheye => Vec::new(),
+            | Self::PrismFisheye
+            | Self::RadTanPrismFisheye => Vec::new(),
         }
     }
 

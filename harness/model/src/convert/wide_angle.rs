@@ -2,16 +2,20 @@
 
 use super::Target;
 use super::brown::BrownForm;
-use crate::camera::{Camera, DoubleSphere, Eucm, Fov, ImageSize, Omni, OpenCvFisheye, PrismFisheye};
+use crate::camera::{Camera, DoubleSphere, Eucm, Fov, ImageSize, Omni, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye};
 
 /// The same camera in the target's convention where a formula leads to it; `None` where there is none or the target cannot hold all terms.
 pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
     match (source, target) {
         (Camera::DoubleSphere(_), Target::DoubleSphere)
-        | (Camera::Eucm(_), Target::Eucm)
         | (Camera::Omni(_), Target::Omni { distortion: true })
         | (Camera::Fov(_), Target::Fov)
-        | (Camera::PrismFisheye(_), Target::PrismFisheye) => Some(*source),
+        | (Camera::PrismFisheye(_), Target::PrismFisheye)
+        | (Camera::RadTanPrismFisheye(_), Target::RadTanPrismFisheye)
+        | (Camera::Eucm(Eucm { alpha: 0.5, .. }), Target::Division) => Some(*source),
+        // Tools bound beta from below by zero.
+        (Camera::Eucm(from), Target::Eucm) if from.beta > 0.0 => Some(*source),
+        (Camera::OpenCvFisheye(from), Target::RadTanPrismFisheye) => then_prism(from),
         (Camera::OpenCvFisheye(from), Target::PrismFisheye) => with_prism(from),
         (Camera::PrismFisheye(from), Target::OpenCvFisheye) => without_prism(from),
         _ => from_unified(&unified(source)?, target),
@@ -21,6 +25,12 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
 fn with_prism(from: &OpenCvFisheye) -> Option<Camera> {
     let OpenCvFisheye { size, fx, fy, cx, cy, skew, k } = *from;
     (skew == 0.0).then(|| PrismFisheye { size, fx, fy, cx, cy, k, p: [0.0; 2], s: [0.0; 2] }.into())
+}
+
+fn then_prism(from: &OpenCvFisheye) -> Option<Camera> {
+    let OpenCvFisheye { size, fx, fy, cx, cy, skew, k: [k0, k1, k2, k3] } = *from;
+    let k = [k0, k1, k2, k3, 0.0, 0.0];
+    (skew == 0.0).then(|| RadTanPrismFisheye { size, fx, fy, cx, cy, k, p: [0.0; 2], s: [0.0; 4] }.into())
 }
 
 fn without_prism(from: &PrismFisheye) -> Option<Camera> {
@@ -61,7 +71,10 @@ fn from_unified(from: &Omni, target: &Target) -> Option<Camera> {
         Target::DoubleSphere if straight && s > 0.0 => {
             Some(DoubleSphere { size, fx: fx / s, fy: fy / s, cx, cy, xi: 0.0, alpha: xi / s }.into())
         }
-        Target::DoubleSphere | Target::Eucm => None,
+        // The stereographic projection, and the pinhole.
+        Target::Division if straight && xi == 1.0 => Some(Eucm { size, fx: fx / s, fy: fy / s, cx, cy, alpha: 0.5, beta: 1.0 }.into()),
+        Target::Division if straight && xi == 0.0 => Some(Eucm { size, fx, fy, cx, cy, alpha: 0.5, beta: 0.0 }.into()),
+        Target::DoubleSphere | Target::Eucm | Target::Division => None,
         _ if xi == 0.0 => {
             let centre = crate::PixelPoint::new(cx, cy);
             let form = BrownForm { size, a: fx, b: 0.0, d: fy, centre, k: [k[0], k[1], 0.0, 0.0], p: [p[1], p[0], 0.0, 0.0] };
@@ -81,6 +94,7 @@ pub(super) fn starts(form: &BrownForm, target: &Target) -> Vec<Camera> {
             .map(|(xi, alpha)| DoubleSphere { size, fx: fx * (1.0 + xi), fy: fy * (1.0 + xi), cx, cy, xi, alpha }.into())
             .into(),
         Target::Eucm => [0.6, 0.5, 0.01].map(|alpha| Eucm { size, fx, fy, cx, cy, alpha, beta: 1.0 }.into()).into(),
+        Target::Division => [0.0, 0.4, 1.0].map(|beta| Eucm { size, fx, fy, cx, cy, alpha: 0.5, beta }.into()).into(),
         Target::Omni { .. } => [2.0, 1.0, 0.0]
             .map(|xi| Omni { size, fx: fx * (1.0 + xi), fy: fy * (1.0 + xi), cx, cy, xi, k: [0.0; 2], p: [0.0; 2] }.into())
             .into(),
@@ -91,6 +105,9 @@ pub(super) fn starts(form: &BrownForm, target: &Target) -> Vec<Camera> {
             })
             .into(),
         Target::PrismFisheye => vec![PrismFisheye { size, fx, fy, cx, cy, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] }.into()],
+        Target::RadTanPrismFisheye => {
+            vec![RadTanPrismFisheye { size, fx, fy, cx, cy, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()]
+        }
         _ => Vec::new(),
     }
 }

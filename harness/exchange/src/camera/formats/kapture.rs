@@ -19,7 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     read,
     write: Some(write),
     convention: Some(&tool_conventions::KAPTURE),
-    models: colmap_models::models,
+    models: colmap_models::classic_models,
     keeps: Keeps { name: true, ..PLAIN.keeps },
     ..PLAIN
 };
@@ -58,7 +58,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let mut out = String::from("# kapture format: 1.1\n# sensor_id, name, sensor_type, [sensor_params]+\n");
     for (index, named) in cameras.iter().enumerate() {
-        let (model, values) = colmap_models::written(&named.camera, &FORMAT)?;
+        let (model, values) = colmap_models::written_classic(&named.camera, &FORMAT)?;
         let ImageSize { width, height } = named.camera.size();
         let values: Vec<String> = values.into_iter().map(shortest).collect();
         let name = named.name.replace([',', '\n', '\r'], "_");

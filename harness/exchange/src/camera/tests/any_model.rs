@@ -3,7 +3,7 @@
 use calibench_model::PixelPoint;
 use calibench_model::camera::{
     Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, Omni, OpenCv, OpenCvFisheye,
-    Photogrammetric, Pix4d, PrismFisheye, TangentialOrder,
+    Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
 };
 use calibench_model::convert::{ConvertOptions, Method, WARNING_PX};
 
@@ -57,6 +57,18 @@ fn all_models() -> Vec<Camera> {
         Omni { size: SIZE, fx: 1100.0, fy: 1101.0, cx, cy, xi: 1.3, k: [-0.1, 0.02], p: [2e-4, 1e-4] }.into(),
         Fov { size: SIZE, fx, fy, cx, cy, w: 0.8 }.into(),
         PrismFisheye { size: SIZE, fx, fy, cx, cy, k: [-0.01, 0.002, 0.0, 0.0], p: [2e-4, 1e-4], s: [1e-4, -2e-4] }.into(),
+        Eucm { size: SIZE, fx, fy, cx, cy, alpha: 0.5, beta: -0.1 }.into(),
+        RadTanPrismFisheye {
+            size: SIZE,
+            fx,
+            fy,
+            cx,
+            cy,
+            k: [-0.01, 0.002, 0.0, 0.0, 1e-4, 0.0],
+            p: [2e-4, 1e-4],
+            s: [1e-4, -2e-4, 2e-4, 1e-4],
+        }
+        .into(),
         MicMac {
             size: SIZE,
             f: 1400.0,

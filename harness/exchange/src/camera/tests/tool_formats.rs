@@ -2,6 +2,7 @@
 
 use calibench_model::camera::{
     Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Eucm, Fov, ImageSize, MicMac, Omni, OpenCv, OpenCvFisheye, PrismFisheye,
+    RadTanPrismFisheye,
 };
 use proptest::prelude::*;
 
@@ -115,6 +116,24 @@ fn prism() -> impl Strategy<Value = Camera> {
     camera.prop_map(|((size, [fx, fy, cx, cy]), k, p, s)| PrismFisheye { size, fx, fy, cx, cy, k, p, s }.into())
 }
 
+fn then_prism() -> impl Strategy<Value = Camera> {
+    let camera = (plain(), coefficients(), coefficients(), coefficients());
+    camera.prop_map(|((size, [fx, fy, cx, cy]), k, p, s)| RadTanPrismFisheye { size, fx, fy, cx, cy, k, p, s }.into())
+}
+
+fn division() -> impl Strategy<Value = Camera> {
+    let camera = (plain(), any::<bool>(), -0.5..2.0_f64);
+    camera
+        .prop_map(|((size, [fx, fy, cx, cy]), one, beta)| Eucm { size, fx, fy: if one { fx } else { fy }, cx, cy, alpha: 0.5, beta }.into())
+}
+
+fn equidistant() -> impl Strategy<Value = Camera> {
+    let camera = (plain(), any::<bool>());
+    camera.prop_map(|((size, [fx, fy, cx, cy]), one)| {
+        OpenCvFisheye { size, fx, fy: if one { fx } else { fy }, cx, cy, skew: 0.0, k: [0.0; 4] }.into()
+    })
+}
+
 /// One focal length, k1 to k3, p1, p2.
 fn one_focal(tangential: bool) -> impl Strategy<Value = Camera> {
     (plain(), coefficients::<5>()).prop_map(move |((size, [f, _, cx, cy]), [k1, k2, p1, p2, k3])| {
@@ -157,17 +176,26 @@ fn posed(camera: impl Strategy<Value = Camera>) -> impl Strategy<Value = NamedCa
     (camera, name(), pose()).prop_map(|(camera, name, pose)| NamedCamera { pose: Some(pose), ..NamedCamera::new(name, camera) })
 }
 
+fn any_of_colmap_4() -> impl Strategy<Value = Camera> {
+    prop_oneof![any_of_colmap(), then_prism(), division(), eucm()]
+}
+
 fn any_of_colmap() -> impl Strategy<Value = Camera> {
-    prop_oneof![opencv(4), opencv(8), one_focal(false), fisheye(), fov(), prism(), centred()]
+    prop_oneof![opencv(4), opencv(8), one_focal(false), fisheye(), equidistant(), fov(), prism(), centred()]
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn colmap_and_kapture(cameras in prop::collection::vec(any_of_colmap(), 1..4)) {
+    fn colmap(cameras in prop::collection::vec(any_of_colmap_4(), 1..4)) {
         let named = |prefix: &'static str| cameras.iter().enumerate().map(move |(i, c)| NamedCamera::new(format!("{prefix}{}", i + 3), *c));
         comes_back("colmap", &named("").collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn kapture(cameras in prop::collection::vec(any_of_colmap(), 1..4)) {
+        let named = |prefix: &'static str| cameras.iter().enumerate().map(move |(i, c)| NamedCamera::new(format!("{prefix}{}", i + 3), *c));
         comes_back("kapture", &named("left ").collect::<Vec<_>>());
     }
 

@@ -116,8 +116,11 @@ fn what_is_left_out_is_said() {
 
 /// Sample, what is replaced, by what, and what the error must say.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str, &str, &str); 47] = [
+const MISTAKES: [(&str, &str, &str, &str); 50] = [
     (COLMAP, "OPENCV 640", "OPENGL 640", "f:2, `OPENGL`: model `OPENGL` is not known; expected SIMPLE_PINHOLE, PINHOLE"),
+    (COLMAP, "PINHOLE 640 480 500 501 320 240", "EUCM 640 480 500 501 320 240 0.5 -1", "f:3, `EUCM`: expected a number above zero, found -1"),
+    (COLMAP, "PINHOLE 640 480 500 501 320 240", "EUCM 640 480 500 501 320 240 1.5 1", "`EUCM`: expected alpha from 0 to 1, found 1.5"),
+    (COLMAP, "PINHOLE 640 480 500 501 320 240", "EQUIRECTANGULAR 640 480 640 480", "`EQUIRECTANGULAR`: a whole panorama"),
     (COLMAP, "2 PINHOLE 640 480 500", "2 PINHOLE 640 480", "f:3, `PINHOLE`: expected 4 numbers for PINHOLE, found 3"),
     (COLMAP, "2 PINHOLE 640 480 500", "2 PINHOLE 640 480 -500", "expected a number above zero, found -500"),
     (COLMAP, "2 PINHOLE 640", "2 PINHOLE 0", "f:3, `WIDTH`: expected a whole number of pixels"),

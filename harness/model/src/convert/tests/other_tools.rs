@@ -4,7 +4,8 @@ use super::super::{ConvertOptions, Method, Region, Target, convert, fit};
 use super::{SIZE, mild, opencv};
 use crate::PixelPoint;
 use crate::camera::{
-    Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Eucm, Fov, MicMac, Omni, OpenCv, OpenCvFisheye, PrismFisheye, Splined,
+    Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Eucm, Fov, MicMac, Omni, OpenCv, OpenCvFisheye, PrismFisheye,
+    RadTanPrismFisheye, Splined,
 };
 
 const CENTRE: [f64; 2] = [690.0, 500.0];
@@ -119,7 +120,14 @@ fn what_is_centred_stays_centred() {
 #[test]
 fn wide_cameras_are_fitted_by_each_other() {
     for source in wide() {
-        for target in [Target::DoubleSphere, Target::Eucm, Target::Omni { distortion: true }, Target::OpenCvFisheye, Target::PrismFisheye] {
+        for target in [
+            Target::DoubleSphere,
+            Target::Eucm,
+            Target::Omni { distortion: true },
+            Target::OpenCvFisheye,
+            Target::PrismFisheye,
+            Target::RadTanPrismFisheye,
+        ] {
             // 80 degrees from the axis; beyond, towards the ends of their images, the models part.
             let options = ConvertOptions { region: Region::Radius { px: 560.0 }, columns: 21, ..ConvertOptions::default() };
             let found = convert(&source, target, &options).unwrap_or_else(|error| panic!("{source:?} {target:?}: {error}"));
@@ -133,6 +141,36 @@ fn wide_cameras_are_fitted_by_each_other() {
     let there = convert(&fov, Target::OpenCvFisheye, &options).unwrap();
     let back = convert(&there.camera, Target::Fov, &options).unwrap();
     assert!(apart(&fov, &back.camera) < 2.0 * there.residual.max_px + 1e-6, "{:?} {:?}", there.residual, back.residual);
+}
+
+#[test]
+fn the_division_model_is_kept_and_fitted() {
+    let [cx, cy] = CENTRE;
+    let division = |beta| Camera::from(Eucm { size: SIZE, fx: 900.0, fy: 901.0, cx, cy, alpha: 0.5, beta });
+    for beta in [1.0, 0.3, -0.2] {
+        assert_eq!(exactly(division(beta), Target::Division), division(beta));
+    }
+    assert!(Target::Eucm.is_exact_for(&division(0.3)) && !Target::Eucm.is_exact_for(&division(-0.2)));
+    exactly(exactly(division(1.0), Target::Omni { distortion: false }), Target::Division);
+    // Of a camera made of it by a fit it comes back.
+    let options = ConvertOptions { accept: true, ..ConvertOptions::default() };
+    let radial = convert(&division(0.3), Target::OpenCv { coefficients: 8 }, &options).unwrap();
+    let back = convert(&radial.camera, Target::Division, &options).unwrap();
+    let Camera::Eucm(found) = back.camera else { panic!() };
+    assert!(
+        found.alpha == 0.5 && (found.beta - 0.3).abs() < 1e-3 && apart(&division(0.3), &back.camera) < 0.01,
+        "{found:?} {:?}",
+        radial.residual
+    );
+}
+
+#[test]
+fn a_fisheye_then_prism_holds_opencv_s() {
+    let [cx, cy] = CENTRE;
+    let fisheye = OpenCvFisheye { size: SIZE, fx: 420.0, fy: 421.0, cx, cy, skew: 0.0, k: [-0.02, 0.003, -0.001, 1e-4] };
+    let there = exactly(fisheye.into(), Target::RadTanPrismFisheye);
+    assert!(matches!(there, Camera::RadTanPrismFisheye(RadTanPrismFisheye { k: [-0.02, 0.003, -0.001, 1e-4, 0.0, 0.0], .. })));
+    assert!(!Target::RadTanPrismFisheye.is_exact_for(&OpenCvFisheye { skew: 1e-3, ..fisheye }.into()));
 }
 
 #[test]
