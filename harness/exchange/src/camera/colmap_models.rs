@@ -111,16 +111,10 @@ pub(super) fn camera(name: &str, size: ImageSize, v: &[f64]) -> Result<Camera, C
 pub(super) fn written_classic(camera: &Camera, format: &CameraFormat) -> Result<(&'static str, Vec<f64>), CameraFileError> {
     let (name, numbers) = written(camera, format)?;
     let is_classic = MODELS[..CLASSIC].iter().any(|(known, _)| *known == name);
-    match name {
-        _ if is_classic => Ok((name, numbers)),
-        // The equidistant fisheyes are those of COLMAP 3 without distortion.
-        "SIMPLE_FISHEYE" => Ok(("SIMPLE_RADIAL_FISHEYE", [&numbers[..], &[0.0]].concat())),
-        "FISHEYE" => Ok(("OPENCV_FISHEYE", [&numbers[..], &[0.0; 4]].concat())),
-        _ => Err(format.other_model("cameras of COLMAP 3's models")),
-    }
+    if is_classic { Ok((name, numbers)) } else { Err(format.other_model("cameras of COLMAP 3's models")) }
 }
 
-/// The leanest model that holds `camera`, and its numbers.
+/// The leanest model that holds `camera`, and its numbers; one of COLMAP 3 where it has one, which COLMAP 4 reads too.
 pub(super) fn written(camera: &Camera, format: &CameraFormat) -> Result<(&'static str, Vec<f64>), CameraFileError> {
     let head = |fx: f64, fy: f64, cx: f64, cy: f64| {
         let corner = PixelPoint::new(cx, cy).to_corner();
@@ -132,8 +126,6 @@ pub(super) fn written(camera: &Camera, format: &CameraFormat) -> Result<(&'stati
             let head = head(fx, fy, cx, cy);
             let lean = |name, n: usize| Ok((name, [&head[1..], &k[..n]].concat()));
             match k {
-                [0.0, 0.0, 0.0, 0.0] if fx == fy => lean("SIMPLE_FISHEYE", 0),
-                [0.0, 0.0, 0.0, 0.0] => Ok(("FISHEYE", head)),
                 [_, 0.0, 0.0, 0.0] if fx == fy => lean("SIMPLE_RADIAL_FISHEYE", 1),
                 [_, _, 0.0, 0.0] if fx == fy => lean("RADIAL_FISHEYE", 2),
                 _ => Ok(("OPENCV_FISHEYE", with(head, &k))),
