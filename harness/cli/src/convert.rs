@@ -7,7 +7,7 @@ use calibench_diagnostics::nearest;
 use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
 use calibench_exchange::camera::fit::{FitError, losses};
 use calibench_exchange::camera::target::{Given, Goal, TargetError, goal};
-use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_text};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_bytes};
 use calibench_exchange::{Inputs, OutputFile, OutputFolder};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
 use calibench_model::convert::{
@@ -186,9 +186,9 @@ impl CamerasFile {
         match self {
             Self::Folder(folder) => folder.replace(|folder| {
                 for (index, camera) in cameras.iter().enumerate() {
-                    let text = camera_text(format, std::slice::from_ref(camera)).map_err(io::Error::other)?;
+                    let bytes = camera_bytes(format, std::slice::from_ref(camera)).map_err(io::Error::other)?;
                     let name = format!("{}.{}", file_name(&camera.name, index), format.extension);
-                    folder.write(&name, |file| file.write_all(text.as_bytes()))?;
+                    folder.write(&name, |file| file.write_all(&bytes))?;
                 }
                 Ok(())
             }),
@@ -196,13 +196,13 @@ impl CamerasFile {
                 Err(Failure::input(format!("{} holds one camera a file: name a folder with -o", format.name)))
             }
             Self::Standard => {
-                let text = camera_text(format, cameras)?;
-                stream(|output| output.write_all(text.as_bytes()))
+                let bytes = camera_bytes(format, cameras)?;
+                stream(|output| output.write_all(&bytes))
             }
             Self::File(file) => {
-                let text =
-                    camera_text(format, cameras).map_err(|error| Failure::input(format!("-o {}: {error}", file.path().display())))?;
-                Ok(file.write(|output| output.write_all(text.as_bytes()))?)
+                let bytes =
+                    camera_bytes(format, cameras).map_err(|error| Failure::input(format!("-o {}: {error}", file.path().display())))?;
+                Ok(file.write(|output| output.write_all(&bytes))?)
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::{ReadOptions, camera_text, format_named, parse_camera};
+use calibench_exchange::camera::{ReadOptions, camera_bytes, format_named, parse_camera};
 use calibench_exchange::control::{parse_control, write_control};
 use calibench_exchange::photo::parse_photo;
 use calibench_exchange::points::parse_points;
@@ -89,10 +89,10 @@ fn camera_of_size(bytes: &[u8], _: &Path) -> Result<(), String> {
 /// What a format reads it writes and reads again, or says why not.
 fn read_camera(bytes: &[u8], options: ReadOptions) -> Result<(), String> {
     let found = parse_camera(FILE, bytes, &options).map_err(|error| error.to_string())?;
-    if let Ok(text) = camera_text(found.format, &found.cameras) {
+    if let Ok(bytes) = camera_bytes(found.format, &found.cameras) {
         let size = (!found.format.states_size).then(|| calibench_model::camera::CameraModel::size(&found.cameras[0].camera));
-        let again = parse_camera(FILE, text.as_bytes(), &ReadOptions { size, fisheye: options.fisheye, from: None });
-        assert!(again.is_ok_and(|again| again.cameras.len() == found.cameras.len()), "{text}");
+        let again = parse_camera(FILE, &bytes, &ReadOptions { size, fisheye: options.fisheye, from: None });
+        assert!(again.is_ok_and(|again| again.cameras.len() == found.cameras.len()), "{}", String::from_utf8_lossy(&bytes));
     }
     assert!(format_named(found.format.name).is_some());
     Ok(())

@@ -7,7 +7,7 @@ use calibench_exchange::OutputFile;
 use calibench_exchange::camera::conversion::ConversionError;
 use calibench_exchange::camera::fit::losses;
 use calibench_exchange::camera::for_file::{FileCamera, FileCameraError, for_file, one_file_for, own_file};
-use calibench_exchange::camera::{NamedCamera, camera_text};
+use calibench_exchange::camera::{NamedCamera, camera_bytes};
 use calibench_model::convert::ConvertError;
 
 use super::super::convert::{advise, no_target, size_of};
@@ -33,21 +33,21 @@ pub fn write(output: &OutputFile, calibration: &Calibration<'_>, to: Option<&str
     }
     if let Some(format) = one_file_for(&made) {
         let all: Vec<NamedCamera> = made.into_iter().map(|file| file.camera).collect();
-        let text = camera_text(format, &all).map_err(|error| Failure::input(format!("-o {}: {error}", path.display())))?;
-        return Ok(output.write(|file| file.write_all(text.as_bytes()))?);
+        let bytes = camera_bytes(format, &all).map_err(|error| Failure::input(format!("-o {}: {error}", path.display())))?;
+        return Ok(output.write(|file| file.write_all(&bytes))?);
     }
     if !output.is_file() {
         return Err(Failure::input(format!("-o {}: the format holds one camera a file; expected the name of a file", path.display())));
     }
     let file = |FileCamera { format, camera, .. }: FileCamera| {
         let own = OutputFile::open(&own_file(path, &camera.name)).map_err(|error| Failure::input(format!("-o {error}")))?;
-        let text = camera_text(format, &[NamedCamera { name: String::new(), ..camera }]);
-        Ok((text.map_err(|error| Failure::input(format!("-o {}: {error}", own.path().display())))?, own))
+        let bytes = camera_bytes(format, &[NamedCamera { name: String::new(), ..camera }]);
+        Ok((bytes.map_err(|error| Failure::input(format!("-o {}: {error}", own.path().display())))?, own))
     };
     // All are possible before the first is written.
     let files = made.into_iter().map(file).collect::<Result<Vec<_>, Failure>>()?;
-    for (text, own) in files {
-        own.write(|file| file.write_all(text.as_bytes()))?;
+    for (bytes, own) in files {
+        own.write(|file| file.write_all(&bytes))?;
         say!("{}: written", own.path().display());
     }
     Ok(())

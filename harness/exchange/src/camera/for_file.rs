@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::conversion::{ConversionError, Converted, converted};
 use super::target::{Given, TargetError, goal};
-use super::{CameraFormat, FORMATS, NamedCamera, camera_text};
+use super::{CameraFormat, FORMATS, NamedCamera, camera_bytes};
 
 /// A camera as a file will hold it.
 #[derive(Clone, Debug)]
@@ -63,7 +63,7 @@ pub fn one_file_for(cameras: &[FileCamera]) -> Option<&'static CameraFormat> {
     let format = cameras.first()?.format;
     let same = cameras.iter().all(|other| other.format.name == format.name);
     let all: Vec<NamedCamera> = cameras.iter().map(|file| file.camera.clone()).collect();
-    (same && (all.len() == 1 || camera_text(format, &all).is_ok())).then_some(format)
+    (same && (all.len() == 1 || camera_bytes(format, &all).is_ok())).then_some(format)
 }
 
 /// The file of one of several cameras beside the file `path`: `camera-left.yaml` for `camera.yaml`.
@@ -94,7 +94,7 @@ fn by_ending(path: &Path, source: &NamedCamera) -> Option<&'static str> {
 fn as_it_is(path: &Path, source: &NamedCamera) -> Option<&'static CameraFormat> {
     let spelt = |ending: &str| if ending == "yml" { "yaml".to_owned() } else { ending.to_owned() };
     let ending = ending(path).map(|ending| spelt(&ending));
-    let fits = |format: &&&'static CameraFormat| format.is_written() && camera_text(format, std::slice::from_ref(source)).is_ok();
+    let fits = |format: &&&'static CameraFormat| format.is_written() && camera_bytes(format, std::slice::from_ref(source)).is_ok();
     let same = |format: &&&'static CameraFormat| Some(spelt(format.extension)) == ending;
     // OpenCV's YAML is what most tools read; other YAMLs are asked for by name.
     let first = FORMATS.iter().filter(|format| format.name.starts_with("opencv")).chain(FORMATS.iter()).filter(same).find(fits);

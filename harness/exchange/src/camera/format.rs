@@ -9,6 +9,14 @@ use super::{CameraFileError, NamedCamera, ReadOptions};
 /// Cameras to text.
 type Writer = fn(&[NamedCamera]) -> Result<String, CameraFileError>;
 
+/// A format whose files are no text.
+pub(super) struct Binary {
+    /// Accepts a file of this format; the error says why it is none.
+    pub recognise: fn(&[u8]) -> Result<(), String>,
+    pub read: fn(&[u8], &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
+    pub write: fn(&[NamedCamera]) -> Result<Vec<u8>, CameraFileError>,
+}
+
 /// A format of camera files.
 pub struct CameraFormat {
     /// Its name here.
@@ -29,6 +37,8 @@ pub struct CameraFormat {
     pub(super) recognise: fn(&Source<'_>) -> Result<(), String>,
     pub(super) read: fn(&Source<'_>, &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
     pub(super) write: Option<Writer>,
+    /// In place of the three before, where its files are no text.
+    pub(super) binary: Option<Binary>,
     /// The convention of its numbers, where the cameras read from it are of another.
     pub convention: Option<&'static Convention>,
     /// The models that it holds, the leanest first, for a pixel pitch in um if one is known; empty for a format that is written through its convention.
@@ -51,6 +61,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     recognise: |_| Err(String::new()),
     read: |_, _| Ok(Vec::new()),
     write: None,
+    binary: None,
     convention: None,
     models: |_| Vec::new(),
     keeps: Keeps { splines: false, name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
@@ -60,7 +71,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
 impl CameraFormat {
     /// Whether it can be written.
     pub fn is_written(&self) -> bool {
-        self.write.is_some()
+        self.write.is_some() || self.binary.is_some()
     }
 
     /// The error for a camera whose model the format does not hold.

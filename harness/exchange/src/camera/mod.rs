@@ -4,6 +4,7 @@
 
 mod agisoft;
 mod brown;
+mod colmap_images;
 mod colmap_models;
 pub mod conversion;
 mod covariance;
@@ -14,6 +15,7 @@ mod format;
 pub mod formats;
 mod ids;
 mod json;
+mod little_endian;
 mod number;
 pub mod open_points;
 mod opencv;
@@ -129,13 +131,16 @@ pub fn read_camera(path: &Path) -> Result<CameraFile, CameraFileError> {
     read_camera_with(path, &ReadOptions::default())
 }
 
-/// As [`read_camera`], with what the file leaves open.
+/// As [`read_camera`], with what the file leaves open. COLMAP's list of images is read with its list of cameras beside it: a camera an image, with its pose.
 ///
 /// # Errors
 /// As [`read_camera`].
 pub fn read_camera_with(path: &Path, options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
     let name = path.display().to_string();
     let bytes = source::read(path).map_err(|error| error.in_file(&name))?;
+    if colmap_images::are_images(&bytes) {
+        return colmap_images::read(path, &bytes, options);
+    }
     parse_camera(&name, &bytes, options)
 }
 
@@ -144,21 +149,39 @@ pub fn read_camera_with(path: &Path, options: &ReadOptions) -> Result<CameraFile
 /// # Errors
 /// As [`read_camera`].
 pub fn parse_camera(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
+    if colmap_images::are_images(bytes) {
+        return Err(colmap_images::without_cameras().in_file(file));
+    }
     parse(bytes, options).map_err(|error| error.in_file(file))
 }
 
 fn parse(bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
-    recognised::cameras(FORMATS, &Source::new(bytes)?, options)
+    match Source::new(bytes) {
+        Ok(source) => recognised::cameras(FORMATS, &source, options),
+        Err(no_text) => recognised::binary(FORMATS, bytes, options).unwrap_or(Err(no_text)),
+    }
 }
 
-/// The text of a camera file. Numbers have 17 significant digits or their shortest exact form.
+/// The text of a camera file: [`camera_bytes`] of a format whose files are text.
+///
+/// # Errors
+/// As [`camera_bytes`], and a format whose files are no text.
+pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
+    let no_text = || CameraFileError::new(format!("the files of {} are no text", format.name));
+    if format.binary.is_some() {
+        return Err(no_text());
+    }
+    String::from_utf8(camera_bytes(format, cameras)?).map_err(|_| no_text())
+}
+
+/// The bytes of a camera file. In text, numbers have 17 significant digits or their shortest exact form.
 ///
 /// # Errors
 /// A format that is only read, a camera of another model, more cameras than the format holds, a number that is not finite, and whatever else [`parse_camera`] would refuse.
-pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
-    let Some(write) = format.write else {
+pub fn camera_bytes(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Vec<u8>, CameraFileError> {
+    if !format.is_written() {
         return Err(CameraFileError::new(format!("{} is only read, not written", format.name)));
-    };
+    }
     if cameras.is_empty() {
         return Err(CameraFileError::new("no camera to write"));
     }
@@ -168,10 +191,14 @@ pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Str
     for camera in cameras {
         check(camera)?;
     }
-    let text = write(cameras)?;
+    let bytes = match (&format.binary, format.write) {
+        (Some(binary), _) => (binary.write)(cameras)?,
+        (None, Some(write)) => write(cameras)?.into_bytes(),
+        (None, None) => Vec::new(),
+    };
     let size = Some(cameras[0].camera.size()).filter(|_| !format.states_size);
-    match parse(text.as_bytes(), &ReadOptions { size, fisheye: None, from: None }) {
-        Ok(_) => Ok(text),
+    match parse(&bytes, &ReadOptions { size, fisheye: None, from: None }) {
+        Ok(_) => Ok(bytes),
         Err(error) => {
             let problem = format!("cannot be written as {}: {}", format.name, error.problem);
             Err(CameraFileError { element: error.element, ..CameraFileError::new(problem) })
@@ -187,14 +214,14 @@ fn check(camera: &NamedCamera) -> Result<(), CameraFileError> {
     Ok(())
 }
 
-/// Writes a camera file, whole or not at all: [`camera_text`].
+/// Writes a camera file, whole or not at all: [`camera_bytes`].
 ///
 /// # Errors
-/// As [`camera_text`], and what the file system refuses.
+/// As [`camera_bytes`], and what the file system refuses.
 pub fn write_camera(path: &Path, format: &CameraFormat, cameras: &[NamedCamera]) -> Result<(), CameraFileError> {
     let name = path.display().to_string();
-    let text = camera_text(format, cameras).map_err(|error| error.in_file(&name))?;
-    write_atomically(path, |file| file.write_all(text.as_bytes())).map_err(|error: std::io::Error| CameraFileError::new(error.to_string()))
+    let bytes = camera_bytes(format, cameras).map_err(|error| error.in_file(&name))?;
+    write_atomically(path, |file| file.write_all(&bytes)).map_err(|error: std::io::Error| CameraFileError::new(error.to_string()))
 }
 
 #[cfg(test)]

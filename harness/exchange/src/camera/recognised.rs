@@ -18,7 +18,11 @@ type Read = Result<CameraFile, CameraFileError>;
 /// # Errors
 /// No format recognises it, or not the one that was asked for; the mistake of the one that does; several that do not read the same.
 pub(super) fn cameras(formats: &[&'static CameraFormat], source: &Source<'_>, options: &ReadOptions) -> Read {
-    let asked: Vec<_> = formats.iter().map(|&format| (format, (format.recognise)(source))).collect();
+    if let Some(from) = options.from.filter(|from| from.binary.is_some()) {
+        return Err(CameraFileError::new(format!("is no file of {}: it is text", from.name)));
+    }
+    let texts = formats.iter().filter(|format| format.binary.is_none());
+    let asked: Vec<_> = texts.map(|&format| (format, (format.recognise)(source))).collect();
     let mut claims: Vec<&'static CameraFormat> = asked.iter().filter(|(_, answer)| answer.is_ok()).map(|(format, _)| *format).collect();
     if claims.is_empty() {
         let why: Vec<String> =
@@ -43,6 +47,19 @@ pub(super) fn cameras(formats: &[&'static CameraFormat], source: &Source<'_>, op
         names(&claims),
         all.join("; ")
     )))
+}
+
+/// The cameras of `bytes` that are no text, by the format that recognises them; `None` where none does.
+pub(super) fn binary(formats: &[&'static CameraFormat], bytes: &[u8], options: &ReadOptions) -> Option<Read> {
+    let asked = |format: &&&'static CameraFormat| options.from.is_none_or(|from| from == **format);
+    let is_of = |format: &&&'static CameraFormat| format.binary.as_ref().is_some_and(|binary| (binary.recognise)(bytes).is_ok());
+    if let Some(format) = formats.iter().filter(asked).find(is_of).copied() {
+        let cameras = format.binary.as_ref().map(|binary| (binary.read)(bytes, options))?;
+        return Some(cameras.map(|cameras| CameraFile { format, cameras }));
+    }
+    let from = options.from?;
+    let why = from.binary.as_ref().map_or(Err("it is no text".to_owned()), |binary| (binary.recognise)(bytes));
+    Some(Err(CameraFileError::new(format!("is no file of {}: {}", from.name, why.err()?))))
 }
 
 fn names(formats: &[&CameraFormat]) -> String {

@@ -1,5 +1,7 @@
 //! COLMAP's cameras.txt.
 
+use std::collections::HashSet;
+
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
@@ -12,8 +14,9 @@ use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, col
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "colmap",
     tool: "COLMAP",
-    versions: "cameras.txt of 3.x",
+    versions: "cameras.txt of 3.x and 4.x",
     extension: "txt",
+    verified: Some("its projections by pycolmap 4.2.1 in every model, to 1e-9 px"),
     many: true,
     recognise,
     read,
@@ -78,8 +81,8 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
 }
 
 /// The names where they are numbers that differ, or else 1, 2, ...
-fn ids(cameras: &[NamedCamera]) -> Vec<u32> {
+pub(super) fn ids(cameras: &[NamedCamera]) -> Vec<u32> {
     let own: Option<Vec<u32>> = cameras.iter().map(|camera| camera.name.parse().ok()).collect();
-    let differ = |ids: &Vec<u32>| ids.iter().enumerate().all(|(i, id)| !ids[..i].contains(id));
+    let differ = |ids: &Vec<u32>| ids.iter().collect::<HashSet<_>>().len() == ids.len();
     own.filter(differ).unwrap_or_else(|| (1..).take(cameras.len()).collect())
 }

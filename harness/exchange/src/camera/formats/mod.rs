@@ -7,6 +7,7 @@ mod bundler;
 mod caltech;
 mod camodocal;
 mod colmap;
+mod colmap_bin;
 mod kalibr;
 mod kapture;
 mod metashape_calibration;
@@ -60,6 +61,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &theia::FORMAT,
     &opensfm::FORMAT,
     &colmap::FORMAT,
+    &colmap_bin::FORMAT,
     &kapture::FORMAT,
     &bundler::FORMAT,
     &bal::FORMAT,

@@ -1,6 +1,7 @@
 //! Camera files, read and written.
 
 mod any_model;
+mod colmap_files;
 mod files;
 mod malformed;
 mod recognised;

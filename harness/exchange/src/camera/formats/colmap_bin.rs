@@ -1,0 +1,107 @@
+//! COLMAP's cameras.bin: what cameras.txt says, as numbers of little-endian bytes.
+
+use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
+
+use super::{PLAIN, colmap};
+use crate::camera::fit::Keeps;
+use crate::camera::format::Binary;
+use crate::camera::ids::Ids;
+use crate::camera::little_endian::Bytes;
+use crate::camera::number::pixels;
+use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
+
+pub(super) static FORMAT: CameraFormat = CameraFormat {
+    name: "colmap-bin",
+    tool: "COLMAP",
+    versions: "cameras.bin of 3.x and 4.x",
+    extension: "bin",
+    verified: Some("read and written by pycolmap 4.2.1: every model's projections to 1e-9 px"),
+    many: true,
+    binary: Some(Binary { recognise, read, write }),
+    convention: Some(&tool_conventions::COLMAP),
+    models: colmap_models::models,
+    keeps: Keeps { name: true, ..PLAIN.keeps },
+    ..PLAIN
+};
+
+/// Bytes of a camera without its numbers: id, model, columns, rows.
+const HEAD: usize = 24;
+/// Sides above this are no images: what lies there is of another file.
+const LARGEST_SIDE: u64 = 1 << 28;
+
+/// A count, then an id, a model that may be one and sides that may be those of an image.
+fn recognise(bytes: &[u8]) -> Result<(), String> {
+    let no = || "no count of cameras before a camera's id, model, columns and rows".to_owned();
+    let count = bytes.first_chunk().map(|count| u64::from_le_bytes(*count)).ok_or_else(no)?;
+    if is_big_endian(bytes) {
+        return Ok(());
+    }
+    if count == 0 || count > u64::from(u32::MAX) {
+        return Err(no());
+    }
+    let mut rest = Bytes::new(&bytes[8..]);
+    let Ok(_) = rest.u32() else { return Ok(()) };
+    let Ok(model) = rest.i32() else { return Ok(()) };
+    let sides = [rest.u64(), rest.u64()];
+    let plausible = (-1..256).contains(&model) && sides.iter().flatten().all(|side| *side <= LARGEST_SIDE);
+    if plausible { Ok(()) } else { Err(no()) }
+}
+
+/// Whether count, model and sides are read the other way round.
+fn is_big_endian(bytes: &[u8]) -> bool {
+    let Some(head) = bytes.first_chunk::<{ 8 + HEAD }>() else { return false };
+    let number = |at: usize| head[at..at + 8].iter().fold(0, |sum, byte| sum << 8 | u64::from(*byte));
+    let model = number(8) & u64::from(u32::MAX);
+    (1..1 << 24).contains(&number(0)) && model < 256 && (1..LARGEST_SIDE).contains(&number(16)) && (1..LARGEST_SIDE).contains(&number(24))
+}
+
+fn read(bytes: &[u8], options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
+    if is_big_endian(bytes) {
+        return Err(CameraFileError::new("its numbers have the greatest byte first; expected the least first, as COLMAP writes them"));
+    }
+    let mut rest = Bytes::new(bytes);
+    let (count, mut ids, mut cameras) = (rest.u64()?, Ids::default(), Vec::new());
+    for index in 1..=count {
+        let place = |error: CameraFileError| {
+            let element = error.element.as_ref().map_or(String::new(), |element| format!(", {element}"));
+            error.of(format!("camera {index} of {count}{element}"))
+        };
+        let named = camera(&mut rest, options).map_err(place)?;
+        ids.take(&named.name, cameras.len() + 1)
+            .map_err(|_| place(CameraFileError::new(format!("the id {} is another camera's", named.name))))?;
+        cameras.push(named);
+    }
+    if rest.left() > 0 {
+        let problem = format!("{} bytes follow the last of {count} cameras; expected none", rest.left());
+        return Err(CameraFileError::new(problem));
+    }
+    Ok(cameras)
+}
+
+fn camera(rest: &mut Bytes<'_>, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
+    let (id, number) = (rest.u32()?, rest.i32()?);
+    let known = usize::try_from(number).ok().and_then(|number| colmap_models::MODELS.get(number));
+    let Some((model, length)) = known else {
+        let last = colmap_models::MODELS.len() - 1;
+        return Err(CameraFileError::new(format!("model number {number} is not known; expected 0 to {last}")));
+    };
+    let mut side = |name| rest.u64().and_then(|side| pixels(&side.to_string())).map_err(|error| error.of(name));
+    let size = options.size_or(Some(ImageSize { width: side("WIDTH")?, height: side("HEIGHT")? }))?;
+    let values = (0..*length).map(|_| rest.f64()).collect::<Result<Vec<_>, _>>().map_err(|error| error.of("PARAMS[]"))?;
+    let camera = colmap_models::camera(model, size, &values).map_err(|error| error.of(*model))?;
+    Ok(NamedCamera::new(id.to_string(), camera))
+}
+
+fn write(cameras: &[NamedCamera]) -> Result<Vec<u8>, CameraFileError> {
+    let mut out = (cameras.len() as u64).to_le_bytes().to_vec();
+    for (named, id) in cameras.iter().zip(colmap::ids(cameras)) {
+        let (model, values) = colmap_models::written(&named.camera, &FORMAT)?;
+        let number = colmap_models::MODELS.iter().position(|(known, _)| *known == model).unwrap_or_default();
+        let ImageSize { width, height } = named.camera.size();
+        out.extend(id.to_le_bytes());
+        out.extend((number as i32).to_le_bytes());
+        out.extend([width, height].into_iter().flat_map(|side| u64::from(side).to_le_bytes()));
+        out.extend(values.into_iter().flat_map(f64::to_le_bytes));
+    }
+    Ok(out)
+}
