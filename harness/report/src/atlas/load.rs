@@ -17,7 +17,7 @@ pub struct Part {
     pub sweep: LoadedSweep,
     /// By cell and name of the method.
     losses: BTreeMap<(usize, String), Losses>,
-    /// Points that were measured more than [`WRONG`] px off, by cell and name of the method.
+    /// Points that were measured wrong, by more than `is_wrong` allows, by cell and name of the method.
     wrong: BTreeMap<(usize, String), u64>,
 }
 
@@ -45,7 +45,7 @@ impl Part {
         Ok(sweep.map(|sweep| Self { sweep, losses: found, wrong }))
     }
 
-    /// How many points of a cell method `method` measured more than [`WRONG`] px off.
+    /// How many points of a cell method `method` measured wrong, by more than `is_wrong` allows.
     pub fn wrong(&self, cell: usize, method: usize) -> u64 {
         self.wrong.get(&(cell, self.sweep.methods[method].name.clone())).copied().unwrap_or(0)
     }
