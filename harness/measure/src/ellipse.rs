@@ -91,12 +91,12 @@ impl Patch {
         let side = (2 * half - 1) as usize;
         let first = [centre.0 - half + 1, centre.1 - half + 1];
         let rows: Vec<&[f32]> = image.rows_around(centre.0, centre.1, half).map(Iterator::collect).unwrap_or_default();
-        let along =
-            |row: &&[f32]| -> Vec<f64> { row.windows(3).map(|g| f64::from(g[0]) + 2.0 * f64::from(g[1]) + f64::from(g[2])).collect() };
-        let lines: Vec<Vec<f64>> = rows.iter().map(along).collect();
-        let mut grey = Vec::with_capacity(side * side);
-        for lines in lines.windows(3) {
-            grey.extend((0..side).map(|x| (lines[0][x] + 2.0 * lines[1][x] + lines[2][x]) / 16.0));
+        let (mut grey, mut line) = (Vec::with_capacity(side * side), vec![0.0; side + 2]);
+        for rows in rows.windows(3) {
+            for (sum, ((above, here), below)) in line.iter_mut().zip(rows[0].iter().zip(rows[1]).zip(rows[2])) {
+                *sum = (f64::from(*above) + 2.0 * f64::from(*here) + f64::from(*below)) / 16.0;
+            }
+            grey.extend(line.windows(3).map(|g| g[0] + 2.0 * g[1] + g[2]));
         }
         Self { first, side, grey }
     }
@@ -196,9 +196,9 @@ fn otsu(grey: &[f64]) -> Option<f64> {
     if range.is_nan() || range <= 1e-6 * low.abs().max(high.abs()) {
         return None;
     }
-    let (mut counts, mut sums) = ([0.0; STEPS], [0.0; STEPS]);
+    let (mut counts, mut sums, scale) = ([0.0; STEPS], [0.0; STEPS], STEPS as f64 / range);
     for g in grey {
-        let step = (((g - low) / range * STEPS as f64) as usize).min(STEPS - 1);
+        let step = (((g - low) * scale) as u32 as usize).min(STEPS - 1);
         counts[step] += 1.0;
         sums[step] += g - low;
     }

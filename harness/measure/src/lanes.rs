@@ -48,6 +48,7 @@ pub(crate) trait Real:
     + AddAssign
     + SubAssign
     + PartialOrd
+    + Into<f64>
 {
     /// Degree of the Taylor polynomial of the exponential: enough within half of log 2.
     const DEGREE: usize;

@@ -9,6 +9,7 @@ mod blurred_step;
 pub mod board;
 mod cholesky;
 pub mod conformance;
+mod disc_fit;
 pub mod ellipse;
 mod error;
 mod following;

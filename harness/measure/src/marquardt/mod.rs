@@ -6,7 +6,6 @@ use calibench_model::{Covariance, Rejection};
 use descent::{Damping, Descent, Gone, descend};
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
-use crate::lanes::{LANES, Lanes};
 
 /// The normal equations at one place, and the sum of the squared residuals there.
 #[derive(Clone)]
@@ -159,47 +158,6 @@ impl<const P: usize> Normal<P> {
         let Scaled { factor, scale } = decompose(&self.n)?;
         let inverse = factor.inverse();
         Some(SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
-    }
-}
-
-/// The normal equations, the upper triangle in lanes.
-pub(crate) struct Sums<const P: usize> {
-    n: [[Lanes; P]; P],
-    b: [Lanes; P],
-    omega: Lanes,
-}
-
-impl<const P: usize> Sums<P> {
-    pub(crate) fn new() -> Self {
-        Self { n: [[[0.0; LANES]; P]; P], b: [[0.0; LANES]; P], omega: [0.0; LANES] }
-    }
-
-    /// Adds the rows of one chunk: `j` the derivatives, `r` the residuals.
-    #[inline(always)]
-    pub(crate) fn add(&mut self, j: &[Lanes; P], r: &Lanes) {
-        for row in 0..P {
-            for column in row..P {
-                add_products(&mut self.n[row][column], &j[row], &j[column]);
-            }
-            add_products(&mut self.b[row], &j[row], r);
-        }
-        add_products(&mut self.omega, r, r);
-    }
-
-    pub(crate) fn normal(&self) -> Normal<P> {
-        let sum = |lanes: &Lanes| lanes.iter().sum::<f64>();
-        Normal {
-            n: SMatrix::from_fn(|i, j| sum(&self.n[i.min(j)][i.max(j)])),
-            b: SVector::from_fn(|i, _| sum(&self.b[i])),
-            omega: sum(&self.omega),
-        }
-    }
-}
-
-#[inline(always)]
-fn add_products(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
-    for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
-        *sum += a * b;
     }
 }
 

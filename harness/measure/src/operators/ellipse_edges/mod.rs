@@ -5,17 +5,15 @@ mod search;
 mod sectors;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
-use nalgebra::SVector;
-
-use crate::ellipse::{Guess, seek};
-use crate::marquardt::covariance;
+use crate::blurred_ellipse::{FINE, MARGIN};
+use crate::disc_fit::{Grey, Rough, UNKNOWNS, Unknowns, start};
+use crate::ellipse::seek;
+use crate::marquardt::{Solution, covariance};
 use crate::operator::Operator;
 use crate::registry::{Build, Method};
 use search::search;
 use sectors::Window;
 
-/// Blur at the start, px^2.
-const VARIANCE: f64 = 0.5;
 /// The search ends with a step of the position of so many standard deviations: the first one, with the outline parted around the start, and the last.
 const ROUGHLY: f64 = 1.0;
 const NEARLY: f64 = 1e-2;
@@ -51,25 +49,43 @@ impl Operator for EllipseEdges {
     /// # Errors
     /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when nothing stands out near the start,
     /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
-    fn measure(&self, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
-        let Guess { ellipse, inside, outside } = seek(image, start)?;
-        let mut window = Window::new(image, &ellipse)?;
-        let ([left, top], last) = (window.first, window.side as f64 - 1.0);
-        let ([x, y], [a, b, c]) = (ellipse.position, ellipse.shape);
-        let start = SVector::from([x - left, y - top, a, b, c, VARIANCE, outside, inside - outside]);
-        let rough = search(&mut window, start, ROUGHLY)?;
-        let found = search(&mut window, rough.x, NEARLY)?;
+    fn measure(&self, image: &Image, from: &Start) -> Result<Measurement, Rejection> {
+        let guess = seek(image, from)?;
+        let half = (guess.ellipse.extent() + MARGIN).ceil() as i64;
+        let grey = Grey::new(image, guess.ellipse.position.map(|c| c.round() as i64), half)?;
+        let ([left, top], last) = (grey.first, grey.side as f64 - 1.0);
+        let (found, redundancy) = find(&grey, &start(&grey, &guess))?;
         let (x, y) = (found.x[0], found.x[1]);
         if !(0.0..=last).contains(&x) || !(0.0..=last).contains(&y) {
             return Err(Rejection::LeftWindow);
         }
-        let covariance = covariance(&found.normal, window.redundancy()).ok_or(Rejection::ErrorEllipse)?;
+        let covariance = covariance(&found.normal, redundancy).ok_or(Rejection::ErrorEllipse)?;
         Ok(Measurement { position: PixelPoint::new(x + left, y + top), covariance: Some(covariance) })
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
         calibench_model::Unknowns { shape: true, levels: true, blur: true, ..Default::default() }
     }
+}
+
+/// The ellipse through the edge points, and the redundancy: with the outline parted around that of the best picture, or, where that is not found or does not lead there,
+/// around the start and again.
+///
+/// # Errors
+/// [`Rejection::NotConverged`].
+fn find(grey: &Grey, start: &Unknowns) -> Result<(Solution<UNKNOWNS>, f64), Rejection> {
+    if let Ok(rough) = Rough::new(grey, start)
+        && !rough.is_quiet()
+    {
+        let mut window = Window::<f32>::new(grey, rough.fineness());
+        if let Ok(found) = search(&mut window, rough.near.x, NEARLY) {
+            return Ok((found, window.redundancy()));
+        }
+    }
+    let mut window = Window::<f64>::new(grey, FINE);
+    let rough = search(&mut window, *start, ROUGHLY)?;
+    let found = search(&mut window, rough.x, NEARLY)?;
+    Ok((found, window.redundancy()))
 }
 
 #[cfg(test)]

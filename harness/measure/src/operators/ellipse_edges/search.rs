@@ -4,9 +4,10 @@ use calibench_model::Rejection;
 use nalgebra::SVector;
 
 use super::conic::{self, UNKNOWNS};
-use super::sectors::{Disc, Window};
-use crate::blurred_ellipse::{SHARPEST, is_pictured};
+use super::sectors::{Disc, Sectored, Window};
+use crate::blurred_ellipse::{Picture, Planes, SHARPEST, is_pictured};
 use crate::ellipse::Ellipse;
+use crate::lanes::Real;
 use crate::marquardt::descent::{Damping, Descent, Gone, descend};
 use crate::marquardt::{Normal, STILL, Scaled, Solution};
 
@@ -41,19 +42,27 @@ struct Step {
 ///
 /// # Errors
 /// [`Rejection::NotConverged`] when that takes too long or comes to a place of no meaning.
-pub(super) fn search(window: &mut Window, start: Unknowns, short: f64) -> Result<Solution<UNKNOWNS>, Rejection> {
+pub(super) fn search<T: Real>(window: &mut Window<T>, start: Unknowns, short: f64) -> Result<Solution<UNKNOWNS>, Rejection>
+where
+    Planes<T>: Picture,
+    Window<T>: Sectored,
+{
     let normal = normal(window, &start, true).ok_or(Rejection::NotConverged)?;
     descend(&mut Search { window, x: start, normal, short }, &DAMPING, SEARCHES)
 }
 
-struct Search<'a> {
-    window: &'a mut Window,
+struct Search<'a, T> {
+    window: &'a mut Window<T>,
     x: Unknowns,
     normal: Normal<UNKNOWNS>,
     short: f64,
 }
 
-impl Descent for Search<'_> {
+impl<T: Real> Descent for Search<'_, T>
+where
+    Planes<T>: Picture,
+    Window<T>: Sectored,
+{
     type Step = Step;
     type Found = Solution<UNKNOWNS>;
 
@@ -83,7 +92,11 @@ impl Descent for Search<'_> {
     }
 }
 
-fn normal(window: &mut Window, x: &Unknowns, part: bool) -> Option<Normal<UNKNOWNS>> {
+fn normal<T: Real>(window: &mut Window<T>, x: &Unknowns, part: bool) -> Option<Normal<UNKNOWNS>>
+where
+    Planes<T>: Picture,
+    Window<T>: Sectored,
+{
     let disc =
         Disc { ellipse: Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] }, variance: x[5], ground: x[6], contrast: x[7] };
     if !x.iter().all(|value| value.is_finite()) || !is_pictured(&disc.ellipse, disc.variance, window.side) {

@@ -1,13 +1,13 @@
 //! Where the outline of a disc is, sector by sector.
 
-use calibench_model::{Image, Rejection};
 use multiversion::multiversion;
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::conic::UNKNOWNS;
-use crate::blurred_ellipse::{self, MARGIN, Planes, eight};
+use crate::blurred_ellipse::{self, Fineness, Picture, Planes, lanes};
+use crate::disc_fit::Grey;
 use crate::ellipse::Ellipse;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, Lanes, Real};
 
 /// Pixels nearer to the outline than this are taken, px.
 const BAND: f64 = 4.0;
@@ -42,49 +42,41 @@ pub(super) struct EdgePoint {
 }
 
 /// The pixels around a disc, each told which sector of the outline it belongs to.
-pub(super) struct Window {
+pub(super) struct Window<T> {
     pub(super) side: usize,
-    /// The window's first pixel.
-    pub(super) first: [f64; 2],
     /// In rows as the planes' are.
     grey: Vec<f64>,
     /// 1 for pixels of the band, 0 for others.
     taken: Vec<f64>,
     sector: Vec<u16>,
     sums: Vec<Sums>,
-    planes: Planes,
+    planes: Planes<T>,
+    fineness: Fineness,
 }
 
 /// Sums over the pixels of one sector: squared slope, and slope times derivatives by position, shape, common unknowns, and slope times residual.
 type Sums = [f64; 10];
 const RESIDUAL: usize = 9;
 
-impl Window {
-    /// Around an ellipse.
-    ///
-    /// # Errors
-    /// [`Rejection::Border`], [`Rejection::NotFinite`].
-    pub(super) fn new(image: &Image, ellipse: &Ellipse) -> Result<Self, Rejection> {
-        let half = (ellipse.extent() + MARGIN).ceil() as i64;
-        let [x, y] = ellipse.position.map(|c| c.round() as i64);
-        let rows = image.rows_around(x, y, half).ok_or(Rejection::Border)?;
-        let side = (2 * half + 1) as usize;
-        let planes = Planes::new(side);
+impl<T: Real> Window<T>
+where
+    Planes<T>: Picture,
+    Self: Sectored,
+{
+    /// Of these grey values, with outlines followed so closely.
+    pub(super) fn new(from: &Grey, fineness: Fineness) -> Self {
+        let (side, planes) = (from.side, Planes::new(from.side));
         let mut grey = vec![0.0; side * planes.stride];
-        for (line, row) in grey.chunks_exact_mut(planes.stride).zip(rows) {
+        for (line, row) in grey.chunks_exact_mut(planes.stride).zip(from.rows()) {
             line.iter_mut().zip(row).for_each(|(grey, from)| *grey = f64::from(*from));
         }
-        if !grey.iter().all(|grey| grey.is_finite()) {
-            return Err(Rejection::NotFinite);
-        }
-        let first = [x - half, y - half].map(|c| c as f64);
         let (taken, sector) = (vec![0.0; grey.len()], vec![0; grey.len()]);
-        Ok(Self { side, first, grey, taken, sector, sums: Vec::new(), planes })
+        Self { side, grey, taken, sector, sums: Vec::new(), planes, fineness }
     }
 
     /// Fills the planes for a disc whose position is taken from the window's first pixel.
     pub(super) fn picture(&mut self, disc: &Disc) {
-        self.planes.fill(&disc.ellipse, disc.variance);
+        self.planes.fill(&disc.ellipse, disc.variance, self.fineness);
     }
 
     /// Tells every pixel whether it is taken, and its sector: by the direction in which the edge is steepest there.
@@ -95,7 +87,7 @@ impl Window {
         let sectors = (8 * (length / 8.0).ceil() as usize).clamp(FEWEST, usize::from(u16::MAX) - 7);
         self.sums.clear();
         self.sums.resize(sectors, [0.0; RESIDUAL + 1]);
-        part(self, ellipse);
+        self.sort(ellipse);
     }
 
     /// How many more pixels are taken than there are unknowns.
@@ -106,7 +98,7 @@ impl Window {
     /// The points of the edge of the disc that was pictured, and the normal equations of what they have in common.
     pub(super) fn edge(&mut self, disc: &Disc) -> (Vec<EdgePoint>, Common) {
         self.sums.iter_mut().for_each(|sums| *sums = [0.0; RESIDUAL + 1]);
-        let common = add_up(self, disc);
+        let common = self.add_up(disc);
         let heaviest = self.sums.iter().map(|sums| sums[0]).fold(0.0, f64::max);
         let heavy = self.sums.iter().filter(|sums| sums[0] > WEIGHTLESS * heaviest);
         (heavy.map(edge_point).collect(), common)
@@ -130,26 +122,76 @@ pub(super) struct Common {
     pub(super) omega: f64,
 }
 
+/// What is done pixel by pixel.
+pub(super) trait Sectored {
+    /// Tells every pixel its sector.
+    fn sort(&mut self, ellipse: &Ellipse);
+    /// Adds up the sectors' sums, and those of what all have in common.
+    fn add_up(&mut self, disc: &Disc) -> Common;
+}
+
+impl Sectored for Window<f32> {
+    fn sort(&mut self, ellipse: &Ellipse) {
+        sort_quick(self, ellipse);
+    }
+
+    fn add_up(&mut self, disc: &Disc) -> Common {
+        add_up_quick(self, disc)
+    }
+}
+
+impl Sectored for Window<f64> {
+    fn sort(&mut self, ellipse: &Ellipse) {
+        sort_exact(self, ellipse);
+    }
+
+    fn add_up(&mut self, disc: &Disc) -> Common {
+        add_up_exact(self, disc)
+    }
+}
+
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn part(window: &mut Window, ellipse: &Ellipse) {
+fn sort_quick(window: &mut Window<f32>, ellipse: &Ellipse) {
+    sort(window, ellipse);
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn sort_exact(window: &mut Window<f64>, ellipse: &Ellipse) {
+    sort(window, ellipse);
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn add_up_quick(window: &mut Window<f32>, disc: &Disc) -> Common {
+    add_up(window, disc)
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn add_up_exact(window: &mut Window<f64>, disc: &Disc) -> Common {
+    add_up(window, disc)
+}
+
+#[inline(always)]
+fn sort<T: Real>(window: &mut Window<T>, ellipse: &Ellipse) {
     let Window { side, taken, sector, sums, planes, .. } = window;
     let [a, b, c] = ellipse.shape;
-    let determinant = a * c - b * b;
+    let inverse = 1.0 / (a * c - b * b);
+    let seen = planes.seen_rows();
+    taken.fill(0.0);
     let [by_x, by_y] = blurred_ellipse::CENTRE.map(|plane| &planes.values[plane]);
     let eighth = sums.len() as f64 / 8.0;
-    for row in 0..*side {
+    for row in seen.start / planes.stride..seen.end / planes.stride {
         let v = row as f64 - ellipse.position[1];
         for from in (0..*side).step_by(LANES) {
             let at = row * planes.stride + from;
             for i in 0..LANES {
                 let u = (from + i) as f64 - ellipse.position[0];
                 // In the frame where the ellipse is the unit circle; then its gradient, and the distance of first order.
-                let (p, q) = ((c * u - b * v) / determinant, (a * v - b * u) / determinant);
+                let (p, q) = ((c * u - b * v) * inverse, (a * v - b * u) * inverse);
                 let radius = (p * p + q * q).sqrt();
-                let (s, t) = ((c * p - b * q) / determinant, (a * q - b * p) / determinant);
+                let (s, t) = ((c * p - b * q) * inverse, (a * q - b * p) * inverse);
                 let near = (radius - 1.0).abs() * radius <= BAND * (s * s + t * t).sqrt();
                 taken[at + i] = if near && from + i < *side { 1.0 } else { 0.0 };
-                let (gx, gy) = (by_x[at + i], by_y[at + i]);
+                let (gx, gy): (f64, f64) = (by_x[at + i].into(), by_y[at + i].into());
                 let turn = octants(a * gx + b * gy, b * gx + c * gy) * eighth;
                 sector[at + i] = (turn as i32 as u16).min(sums.len() as u16 - 1);
             }
@@ -168,18 +210,29 @@ fn octants(x: f64, y: f64) -> f64 {
     if y < 0.0 { 8.0 - half } else { half }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn add_up(window: &mut Window, disc: &Disc) -> Common {
+/// The lanes of a plane, in double precision.
+#[inline(always)]
+fn double<T: Real>(planes: &Planes<T>, plane: usize, at: usize) -> Lanes {
+    let (from, mut to) = (planes.lanes(plane, at), [0.0; LANES]);
+    for i in 0..LANES {
+        to[i] = from[i].into();
+    }
+    to
+}
+
+#[inline(always)]
+fn add_up<T: Real>(window: &mut Window<T>, disc: &Disc) -> Common {
     let Window { side, grey, taken, sector, sums, planes, .. } = window;
     let mut all = [[0.0; LANES]; 10];
-    for row in 0..*side {
+    let seen = planes.seen_rows();
+    for row in seen.start / planes.stride..seen.end / planes.stride {
         for from in (0..*side).step_by(LANES) {
             let at = row * planes.stride + from;
-            let (covered, by_variance) = (planes.lanes(blurred_ellipse::COVERED, at), planes.lanes(blurred_ellipse::VARIANCE, at));
-            let (by_x, by_y) = (planes.lanes(blurred_ellipse::CENTRE[0], at), planes.lanes(blurred_ellipse::CENTRE[1], at));
-            let (taken, grey) = (eight(taken, at), eight(grey, at));
+            let (covered, by_variance) = (double(planes, blurred_ellipse::COVERED, at), double(planes, blurred_ellipse::VARIANCE, at));
+            let (by_x, by_y) = (double(planes, blurred_ellipse::CENTRE[0], at), double(planes, blurred_ellipse::CENTRE[1], at));
+            let (taken, grey) = (lanes::<_, LANES>(taken, at), lanes::<_, LANES>(grey, at));
             let [a, b, c] = blurred_ellipse::SHAPE;
-            let by_shape = [planes.lanes(a, at), planes.lanes(b, at), planes.lanes(c, at)];
+            let by_shape = [double(planes, a, at), double(planes, b, at), double(planes, c, at)];
             let mut terms = [[0.0; LANES]; RESIDUAL + 1];
             let mut steep = 0.0;
             for i in 0..LANES {

@@ -2,6 +2,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::blurred_ellipse::{self, Exact, FINE, Picture};
+use crate::ellipse::Ellipse;
 use crate::registry::Registry;
 use crate::tests::bound::{Pool, bound, noisy};
 use crate::tests::quadrature_images;
@@ -111,8 +113,8 @@ fn conforms() {
 fn coverage_is_exact_and_derivatives_are_those_of_differences() {
     let disc = quadrature_images::Ellipse { inside: 1.0, outside: 0.0, ..disc(3.0, 0.6, 0.5, 0.4, [0.2, 0.1]) };
     let at = |x: [f64; 6]| {
-        let mut planes = Planes::new(SIDE);
-        planes.fill(&Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] }, x[5]);
+        let mut planes = Exact::new(SIDE);
+        planes.fill(&Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] }, x[5], FINE);
         let window = |plane: &Vec<f64>| plane.chunks(planes.stride).take(SIDE).flat_map(|row| row[..SIDE].to_vec()).collect::<Vec<_>>();
         planes.values.each_ref().map(window)
     };
