@@ -171,7 +171,7 @@ impl Lsm {
         if fitted.covariance.sxx.max(fitted.covariance.syy) > LARGEST * LARGEST {
             return Err(Rejection::ErrorEllipse);
         }
-        if work.planes.residuals(0.5 * fitted.parameters.contrast).are_no_noise(self.misfit) {
+        if work.planes.structure(0.5 * fitted.parameters.contrast).is_no_noise(self.misfit) {
             return Err(Rejection::Misfit);
         }
         let [dx, dy] = fitted.parameters.pose.at;

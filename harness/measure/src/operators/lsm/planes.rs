@@ -8,7 +8,7 @@ use super::bank::Bank;
 use super::border;
 use super::mask::{Mask, Rule};
 use super::profile::{LANES, Profile};
-use crate::residuals::Residuals;
+use crate::residuals::Structure;
 
 /// Unknowns of the model, in this order: x, y, axx, axy, ayx, ayy, grey value of the ground, contrast, blur.
 pub(super) const UNKNOWNS: usize = 9;
@@ -35,6 +35,8 @@ pub(super) struct Planes {
     stride: usize,
     values: Vec<f32>,
     grey: Vec<f32>,
+    /// 1 where the mask's place shows, and 0 elsewhere, as of the last question.
+    shows: Vec<f32>,
     bank: Bank,
 }
 
@@ -75,7 +77,7 @@ impl Planes {
         let mut values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
         let ones = values[GROUND * pixels * stride..].chunks_exact_mut(stride).take(pixels);
         ones.for_each(|row| row[..pixels].fill(1.0));
-        Self { pixels, stride, values, grey: vec![0.0; pixels * stride], bank: Bank::new(pixels, stride) }
+        Self { pixels, stride, values, grey: vec![0.0; pixels * stride], shows: vec![0.0; pixels * stride], bank: Bank::new(pixels, stride) }
     }
 
     /// Pixels in the window.
@@ -133,13 +135,13 @@ impl Planes {
         subtract(&mut residual[..area], [&self.grey, ones, coverage], [ground as f32, contrast as f32])
     }
 
-    /// The residuals of the last comparison where the mask's place shows, in units of `unit`, a grey value: what stands apart from the mask's border does
-    /// not move it.
-    pub(super) fn residuals(&self, unit: f64) -> Residuals {
-        let rows = |plane: usize| self.plane(plane).chunks(self.stride).take(self.pixels).flat_map(|row| &row[..self.pixels]);
-        let shows = rows(0).zip(rows(1)).map(|(by_x, by_y)| by_x * by_x + by_y * by_y > SHOWS * SHOWS);
-        let grey = rows(RESIDUAL).zip(shows).map(|(grey, shows)| if shows { grey / unit as f32 } else { f32::NAN }).collect();
-        Residuals { grey, side: self.pixels }
+    /// The structure of the residuals of the last comparison where the mask's place shows, in units of `unit`, a grey value: what stands apart from the
+    /// mask's border does not move it.
+    pub(super) fn structure(&mut self, unit: f64) -> Structure {
+        let area = self.area();
+        let (before, residual) = self.values.split_at_mut(RESIDUAL * area);
+        let [by_x, by_y] = [0, 1].map(|plane| &before[plane * area..(plane + 1) * area]);
+        structure([by_x, by_y], &mut residual[..area], &mut self.shows, (self.stride, 1.0 / unit))
     }
 
     /// Sums of products of two planes, before the contrast scales the derivatives, and of each with the residuals: of the first `unknowns`.
@@ -170,6 +172,32 @@ fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, 
         *to = grey - ground * one - contrast * c;
     }
     dot(residual, residual)
+}
+
+/// Leaves of `residual` what shows, in units, and adds up its structure. Rows end with zeros, which show nothing.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn structure([by_x, by_y]: [&[f32]; 2], residual: &mut [f32], shows: &mut [f32], (stride, inverse): (usize, f64)) -> Structure {
+    for (((r, shows), by_x), by_y) in residual.iter_mut().zip(&mut *shows).zip(by_x).zip(by_y) {
+        *shows = if by_x * by_x + by_y * by_y > SHOWS * SHOWS { 1.0 } else { 0.0 };
+        *r *= *shows * inverse as f32;
+    }
+    let neighbours = |values: &[f32]| shifted(values, 1) + shifted(values, stride);
+    Structure { product: neighbours(residual), pairs: neighbours(shows), square: dot(residual, residual), count: dot(shows, shows) }
+}
+
+/// The sum of the products of values with those `by` further on.
+#[inline(always)]
+fn shifted(values: &[f32], by: usize) -> f64 {
+    let mut sums = [0.0_f32; LANES];
+    let mut pairs = values.chunks_exact(LANES).zip(values[by..].chunks_exact(LANES));
+    for (here, there) in &mut pairs {
+        for lane in 0..LANES {
+            sums[lane] += here[lane] * there[lane];
+        }
+    }
+    let done = (values.len() - by) / LANES * LANES;
+    let rest: f32 = values[done..].iter().zip(&values[done + by..]).map(|(here, there)| here * there).sum();
+    total(&sums) + f64::from(rest)
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
