@@ -53,14 +53,12 @@ impl Operator for EllipseEdges {
         let guess = seek(image, from)?;
         let half = (guess.ellipse.extent() + MARGIN).ceil() as i64;
         let grey = Grey::new(image, guess.ellipse.position.map(|c| c.round() as i64), half)?;
-        let ([left, top], last) = (grey.first, grey.side as f64 - 1.0);
-        let (found, redundancy) = find(&grey, &start(&grey, &guess))?;
-        let (x, y) = (found.x[0], found.x[1]);
-        if !(0.0..=last).contains(&x) || !(0.0..=last).contains(&y) {
-            return Err(Rejection::LeftWindow);
+        let start = start(&grey, &guess);
+        let rough = Rough::new(&grey, &start).ok();
+        if let Some(found) = rough.as_ref().and_then(|rough| near_picture(&grey, rough)) {
+            return Ok(found);
         }
-        let covariance = covariance(&found.normal, redundancy).ok_or(Rejection::ErrorEllipse)?;
-        Ok(Measurement { position: PixelPoint::new(x + left, y + top), covariance: Some(covariance) })
+        in_two_steps(&grey, &start)
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
@@ -68,24 +66,37 @@ impl Operator for EllipseEdges {
     }
 }
 
-/// The ellipse through the edge points, and the redundancy: with the outline parted around that of the best picture, or, where that is not found or does not lead there,
-/// around the start and again.
+/// With the outline parted around the ellipse of the best picture; `None` where single precision is seen, or this does not lead there.
+fn near_picture(grey: &Grey, rough: &Rough<'_>) -> Option<Measurement> {
+    if rough.is_quiet() {
+        return None;
+    }
+    let mut window = Window::<f32>::new(grey, rough.fineness());
+    let found = search(&mut window, rough.near.x, NEARLY).ok()?;
+    conclude(grey, &found, window.redundancy()).ok()
+}
+
+/// With the outline parted around a start, and again around what is found.
 ///
 /// # Errors
-/// [`Rejection::NotConverged`].
-fn find(grey: &Grey, start: &Unknowns) -> Result<(Solution<UNKNOWNS>, f64), Rejection> {
-    if let Ok(rough) = Rough::new(grey, start)
-        && !rough.is_quiet()
-    {
-        let mut window = Window::<f32>::new(grey, rough.fineness());
-        if let Ok(found) = search(&mut window, rough.near.x, NEARLY) {
-            return Ok((found, window.redundancy()));
-        }
-    }
+/// Those of [`search`] and [`conclude`].
+fn in_two_steps(grey: &Grey, start: &Unknowns) -> Result<Measurement, Rejection> {
     let mut window = Window::<f64>::new(grey, FINE);
     let rough = search(&mut window, *start, ROUGHLY)?;
     let found = search(&mut window, rough.x, NEARLY)?;
-    Ok((found, window.redundancy()))
+    conclude(grey, &found, window.redundancy())
+}
+
+/// # Errors
+/// [`Rejection::LeftWindow`], [`Rejection::ErrorEllipse`].
+fn conclude(grey: &Grey, found: &Solution<UNKNOWNS>, redundancy: f64) -> Result<Measurement, Rejection> {
+    let ([left, top], last) = (grey.first, grey.side as f64 - 1.0);
+    let (x, y) = (found.x[0], found.x[1]);
+    if !(0.0..=last).contains(&x) || !(0.0..=last).contains(&y) {
+        return Err(Rejection::LeftWindow);
+    }
+    let covariance = covariance(&found.normal, redundancy).ok_or(Rejection::ErrorEllipse)?;
+    Ok(Measurement { position: PixelPoint::new(x + left, y + top), covariance: Some(covariance) })
 }
 
 #[cfg(test)]

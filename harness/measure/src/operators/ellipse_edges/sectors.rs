@@ -175,11 +175,9 @@ fn sort<T: Real>(window: &mut Window<T>, ellipse: &Ellipse) {
     let Window { side, taken, sector, sums, planes, .. } = window;
     let [a, b, c] = ellipse.shape;
     let inverse = 1.0 / (a * c - b * b);
-    let seen = planes.seen_rows();
-    taken.fill(0.0);
     let [by_x, by_y] = blurred_ellipse::CENTRE.map(|plane| &planes.values[plane]);
     let eighth = sums.len() as f64 / 8.0;
-    for row in seen.start / planes.stride..seen.end / planes.stride {
+    for row in 0..*side {
         let v = row as f64 - ellipse.position[1];
         for from in (0..*side).step_by(LANES) {
             let at = row * planes.stride + from;
@@ -224,8 +222,7 @@ fn double<T: Real>(planes: &Planes<T>, plane: usize, at: usize) -> Lanes {
 fn add_up<T: Real>(window: &mut Window<T>, disc: &Disc) -> Common {
     let Window { side, grey, taken, sector, sums, planes, .. } = window;
     let mut all = [[0.0; LANES]; 10];
-    let seen = planes.seen_rows();
-    for row in seen.start / planes.stride..seen.end / planes.stride {
+    for row in 0..*side {
         for from in (0..*side).step_by(LANES) {
             let at = row * planes.stride + from;
             let (covered, by_variance) = (double(planes, blurred_ellipse::COVERED, at), double(planes, blurred_ellipse::VARIANCE, at));
