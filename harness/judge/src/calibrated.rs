@@ -37,7 +37,7 @@ pub struct Calibrated {
 /// # Errors
 /// As [`prepare`] and [`adjust`]: what cannot be determined, by name.
 pub fn calibrate(material: &Material, operator: usize, views: &[usize], settings: &Settings) -> Result<Calibrated, CalibrationError> {
-    let prepared = prepare(material.points(operator, views), &material.control(), settings)?;
+    let prepared = prepare(material.points(operator, views), &material.field.control(), settings)?;
     match Calibrated::of(&prepared, views) {
         Err(error) if error.is_undetermined() => Calibrated::of(&prepared.held_weakly().ok_or(error)?, views),
         found => found,

@@ -5,8 +5,6 @@ use std::sync::Arc;
 
 use calibench_calibrate::choice::HALF;
 use calibench_exchange::PointFile;
-use calibench_measure::Board;
-use calibench_model::camera::ImageSize;
 use calibench_records::judgement::COMPARABLE;
 use thiserror::Error;
 
@@ -60,7 +58,7 @@ pub enum CornerFilesError {
         /// An image of the first file.
         there: String,
     },
-    /// A row without a position that names no corner of the board.
+    /// A row without a position that names no point of the field.
     #[error("{path}: {why}", path = path.display())]
     NoCorner {
         /// The file.
@@ -70,7 +68,7 @@ pub enum CornerFilesError {
     },
     /// Too few images for two halves.
     #[error(
-        "{path}: judging takes at least {needed} images with {corners} corners or more (each half of them is calibrated by itself), found {found}; measure more images of the board",
+        "{path}: judging takes at least {needed} images with {corners} corners or more (each half of them is calibrated by itself), found {found}; measure more images",
         path = path.display()
     )]
     TooFewImages {
@@ -127,30 +125,23 @@ fn same(a: &Path, b: &Path) -> bool {
 }
 
 impl Material {
-    /// The corners that `read` holds of each of `files`, whose rows passed [`Expected::check`]: of a board whose squares have a side, object units, in images of
-    /// `size`, px.
+    /// The corners that `read` holds of each of `files`, whose rows passed [`Expected::check`].
     ///
     /// # Errors
     /// [`CornerFilesError`] for files that cannot be judged, or not together.
-    pub fn of_corner_files(
-        files: &[CornerFile],
-        read: &[PointFile],
-        (board, side): (Board, f64),
-        size: ImageSize,
-    ) -> Result<Self, CornerFilesError> {
-        let expected = Expected::new(board, size);
-        files.iter().zip(read).try_for_each(|(file, read)| of_board(&expected, file, read))?;
+    pub fn of_corner_files(files: &[CornerFile], read: &[PointFile], expected: &Expected) -> Result<Self, CornerFilesError> {
+        files.iter().zip(read).try_for_each(|(file, read)| of_field(expected, file, read))?;
         same_images(files, read)?;
         let named: Vec<(&Arc<str>, &PointFile)> = files.iter().map(|file| &file.name).zip(read).collect();
-        let material = Self::of_files(&named, board, side, size);
+        let material = Self::of_files(&named, expected);
         files.iter().enumerate().try_for_each(|(operator, file)| enough(&material, operator, file))?;
         files.iter().enumerate().try_for_each(|(operator, file)| comparable(&material, operator, file))?;
         Ok(material)
     }
 }
 
-/// Rows without a position name corners of the board as well.
-fn of_board(expected: &Expected, file: &CornerFile, read: &PointFile) -> Result<(), CornerFilesError> {
+/// Rows without a position name points of the field as well.
+fn of_field(expected: &Expected, file: &CornerFile, read: &PointFile) -> Result<(), CornerFilesError> {
     let named = read.lost.iter().try_for_each(|[_, target, ..]| expected.name(target));
     named.map_err(|why| CornerFilesError::NoCorner { path: file.path.clone(), why })
 }
@@ -172,7 +163,7 @@ fn same_images(files: &[CornerFile], read: &[PointFile]) -> Result<(), CornerFil
 
 /// As many images as two halves take.
 fn enough(material: &Material, operator: usize, file: &CornerFile) -> Result<(), CornerFilesError> {
-    let (found, needed, corners) = (material.usable(operator).len(), 2 * HALF, FEWEST.min(material.board.corners()));
+    let (found, needed, corners) = (material.usable(operator).len(), 2 * HALF, FEWEST.min(material.field.count()));
     if found >= needed { Ok(()) } else { Err(CornerFilesError::TooFewImages { path: file.path.clone(), found, needed, corners }) }
 }
 

@@ -54,15 +54,11 @@ pub struct Unseen<'a> {
 impl Unseen<'_> {
     /// Predicts corners from others: the pose from one part of the corners, the errors (2D) of the others. Each of `parts` says which corners the pose
     /// comes from; all others of `chosen` are predicted.
-    fn predict(&self, chosen: &[bool], parts: &[&dyn Fn(usize, usize) -> bool]) -> Result<Squares, String> {
+    fn predict(&self, chosen: &[bool], parts: &[Vec<bool>]) -> Result<Squares, String> {
         let mut squares = Squares::default();
         for part in parts {
-            let inside = |corner: usize| {
-                let (column, row) = self.material.place(corner);
-                part(column, row)
-            };
-            let known = self.material.seen(self.operator, self.view, self.bend, &|corner| chosen[corner] && inside(corner));
-            let others = self.material.seen(self.operator, self.view, self.bend, &|corner| chosen[corner] && !inside(corner));
+            let known = self.material.seen(self.operator, self.view, self.bend, &|corner| chosen[corner] && part[corner]);
+            let others = self.material.seen(self.operator, self.view, self.bend, &|corner| chosen[corner] && !part[corner]);
             if known.len() < FEWEST || others.is_empty() {
                 return Err(format!("{} corners to resect from, at least {FEWEST} are needed", known.len()));
             }
@@ -85,7 +81,7 @@ impl Unseen<'_> {
     /// # Errors
     /// In words: too few corners, no pose, a corner that is not pictured.
     pub fn interleaved(&self, chosen: &[bool]) -> Result<Squares, String> {
-        self.predict(chosen, &[&|c, r| (c + r) % 2 == 0, &|c, r| (c + r) % 2 == 1])
+        self.predict(chosen, &self.material.field.interleaved())
     }
 
     /// One side of the board from the other, left, right, top and bottom: the pose is carried on, and errors of the camera with it.
@@ -93,8 +89,7 @@ impl Unseen<'_> {
     /// # Errors
     /// As [`Self::interleaved`].
     pub fn across(&self, chosen: &[bool]) -> Result<Squares, String> {
-        let (columns, rows) = (self.material.board.columns, self.material.board.rows);
-        self.predict(chosen, &[&|c, _| 2 * c < columns, &|c, _| 2 * c >= columns, &|_, r| 2 * r < rows, &|_, r| 2 * r >= rows])
+        self.predict(chosen, &self.material.field.sides())
     }
 
     /// The residuals (2D) of the view resected from all its corners.

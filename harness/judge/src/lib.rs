@@ -7,6 +7,7 @@ mod bend;
 mod calibrated;
 mod camera_difference;
 mod corner_files;
+mod field;
 mod frame;
 mod halves;
 mod holdout;
@@ -28,6 +29,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 pub use corner_files::{CornerFile, CornerFilesError};
+pub use field::Field;
 pub use material::{Corners, FEWEST, Material};
 pub use options::{METHODS, MODELS, OF_CAMERA, Options};
 pub use point_files::Expected;
@@ -96,7 +98,7 @@ fn corners(material: &Material, operator: usize, common: &[Vec<bool>], tried: &[
     };
     let missed = material.missed.iter().map(|(name, why)| Row::without(measure::CORNERS, name, "missed", why));
     let rejected = corners.rejected.iter().map(|(view, corner, why)| {
-        Row::without(measure::REJECTED, &format!("{} of {}", material.board.target(*corner), material.views[*view]), "rejected", why)
+        Row::without(measure::REJECTED, &format!("{} of {}", material.field.name(*corner), material.views[*view]), "rejected", why)
     });
     let rows = material.views.iter().enumerate().map(view).chain(missed).chain(rejected);
     rows.map(|row| Row { method: corners.method.clone(), ..row }).collect()

@@ -24,11 +24,8 @@ pub fn straightness(material: &Material, operator: usize, view: usize, camera: &
             flat[corner] = Some(undistorted(camera, *at, focal).ok_or("a corner has no ray before the camera")?);
         }
     }
-    let (columns, rows) = (material.board.columns, material.board.rows);
-    let by_row = (0..rows).map(|row| (0..columns).map(|column| row * columns + column).collect::<Vec<_>>());
-    let by_column = (0..columns).map(|column| (0..rows).map(|row| row * columns + column).collect::<Vec<_>>());
     let (mut squares, mut freedom, mut count) = (0.0, 0, 0);
-    for line in by_row.chain(by_column) {
+    for line in material.field.lines() {
         let points: Vec<[f64; 2]> = line.into_iter().filter_map(|corner| flat[corner]).collect();
         if points.len() > 2 {
             squares += off_line(&points);

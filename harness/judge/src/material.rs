@@ -1,11 +1,10 @@
-//! What was measured: a chessboard's corners in photographs, by several operators.
+//! What was measured: points of a field in photographs, by several operators.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use calibench_adjust::approximate::Control;
-use calibench_exchange::{ControlRow, Points};
-use calibench_measure::Board;
+use calibench_exchange::Points;
 use calibench_model::camera::ImageSize;
 use calibench_model::{PixelPoint, Start};
 use calibench_records::judgement::COMPARABLE;
@@ -13,6 +12,7 @@ use calibench_records::results::{MethodInfo, Outcome, Trial};
 use nalgebra::Point3;
 
 use super::bend::Bend;
+use super::field::Field;
 
 /// A view with fewer corners of an operator does not take part in its calibration; of a board with fewer, all are needed.
 pub const FEWEST: usize = 12;
@@ -24,7 +24,7 @@ pub struct Corners {
     pub method: Arc<str>,
     /// Why it measured nothing, if so.
     pub unavailable: Option<String>,
-    /// By view, by corner along the rows of the board: image coordinates, px; `None` where it measured none.
+    /// By view, by point of the field: image coordinates, px; `None` where it measured none.
     pub at: Vec<Vec<Option<PixelPoint>>>,
     /// View, corner and reason of what it rejected.
     pub rejected: Vec<(usize, usize, Arc<str>)>,
@@ -33,13 +33,11 @@ pub struct Corners {
 /// All corners.
 #[derive(Clone, Debug)]
 pub struct Material {
-    /// The board.
-    pub board: Board,
-    /// Side of its squares, object units.
-    pub side: f64,
+    /// What they show.
+    pub field: Field,
     /// Size of the photographs.
     pub size: ImageSize,
-    /// Photographs that show the board.
+    /// Photographs that show it.
     pub views: Vec<Arc<str>>,
     /// Photographs in which it was not found, and why.
     pub missed: Vec<(Arc<str>, String)>,
@@ -48,9 +46,9 @@ pub struct Material {
 }
 
 impl Material {
-    /// The corners of a run of photographs; `side` is that of the board's squares, object units.
-    pub fn new(trial: &Trial, methods: &[MethodInfo], board: Board, side: f64, size: ImageSize) -> Self {
-        let place: HashMap<String, usize> = (0..board.corners()).map(|index| (board.target(index), index)).collect();
+    /// The corners of a run of photographs.
+    pub fn new(trial: &Trial, methods: &[MethodInfo], field: Field, size: ImageSize) -> Self {
+        let place: HashMap<String, usize> = (0..field.count()).map(|index| (field.name(index).into_owned(), index)).collect();
         let mut views: Vec<Arc<str>> = Vec::new();
         for point in &trial.points {
             if !views.contains(&point.view) {
@@ -60,7 +58,7 @@ impl Material {
         let empty = |info: &MethodInfo| Corners {
             method: info.label.clone(),
             unavailable: info.unavailable.clone(),
-            at: vec![vec![None; board.corners()]; views.len()],
+            at: vec![vec![None; field.count()]; views.len()],
             rejected: Vec::new(),
         };
         let mut operators: Vec<Corners> = methods.iter().map(empty).collect();
@@ -72,23 +70,7 @@ impl Material {
                 Outcome::Rejected(why) => operators[point.method].rejected.push((view, corner, why.name().into())),
             }
         }
-        Self { board, side, size, views, missed: trial.missed_views.clone(), operators }
-    }
-
-    /// Column and row of a corner.
-    pub fn place(&self, corner: usize) -> (usize, usize) {
-        (corner % self.board.columns, corner / self.board.columns)
-    }
-
-    fn object(&self, corner: usize) -> [f64; 3] {
-        let (column, row) = self.place(corner);
-        [column as f64 * self.side, -(row as f64 * self.side), 0.0]
-    }
-
-    /// The board as control, object units from the first corner: X along the rows, Y upwards, Z towards the viewer.
-    pub fn control(&self) -> Vec<ControlRow> {
-        let row = |corner| ControlRow::new(self.board.target(corner), self.object(corner));
-        (0..self.board.corners()).map(row).collect()
+        Self { field, size, views, missed: trial.missed_views.clone(), operators }
     }
 
     /// The corners of an operator in some views, in their order.
@@ -96,7 +78,7 @@ impl Material {
         let mut points = Points::default();
         for &view in views {
             for (corner, at) in self.operators[operator].at[view].iter().enumerate() {
-                at.iter().for_each(|at| points.push(&self.views[view], &self.board.target(corner), Start::at(*at)));
+                at.iter().for_each(|at| points.push(&self.views[view], &self.field.name(corner), Start::at(*at)));
             }
         }
         points
@@ -107,13 +89,13 @@ impl Material {
         let corners = self.operators[operator].at[view].iter().enumerate();
         corners
             .filter(|(corner, _)| chosen(*corner))
-            .filter_map(|(c, at)| Some(Control { object: bend.at(Point3::from(self.object(c))), image: (*at)? }))
+            .filter_map(|(c, at)| Some(Control { object: bend.at(Point3::from(self.field.object(c))), image: (*at)? }))
             .collect()
     }
 
     /// The views in which an operator measured enough.
     pub fn usable(&self, operator: usize) -> Vec<usize> {
-        let enough = |view: &usize| self.operators[operator].at[*view].iter().flatten().count() >= FEWEST.min(self.board.corners());
+        let enough = |view: &usize| self.operators[operator].at[*view].iter().flatten().count() >= FEWEST.min(self.field.count());
         (0..self.views.len()).filter(enough).collect()
     }
 
@@ -129,7 +111,7 @@ impl Material {
 
     /// By view: how many corners at least one operator measured or rejected. In photographs these are the whole board, in a file what the detector saw of it.
     pub fn tried(&self) -> Vec<usize> {
-        let mut tried = vec![vec![false; self.board.corners()]; self.views.len()];
+        let mut tried = vec![vec![false; self.field.count()]; self.views.len()];
         for operator in &self.operators {
             operator.rejected.iter().for_each(|&(view, corner, _)| tried[view][corner] = true);
             for (tried, at) in tried.iter_mut().zip(&operator.at) {
@@ -146,7 +128,7 @@ impl Material {
             .filter(|&operator| self.measured(operator) as f64 >= COMPARABLE * all as f64)
             .map(|operator| &self.operators[operator])
             .collect();
-        let by_corner = |view: usize| (0..self.board.corners()).map(|c| enough.iter().all(|o| o.at[view][c].is_some())).collect();
+        let by_corner = |view: usize| (0..self.field.count()).map(|c| enough.iter().all(|o| o.at[view][c].is_some())).collect();
         (0..self.views.len()).map(by_corner).collect()
     }
 }

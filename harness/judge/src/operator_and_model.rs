@@ -104,7 +104,7 @@ impl Job<'_> {
         rows
     }
 
-    fn predicted(&self, found: &Calibrated, view: usize, near: &Pose) -> [Row; 3] {
+    fn predicted(&self, found: &Calibrated, view: usize, near: &Pose) -> Vec<Row> {
         let (name, chosen) = (&self.material.views[view], &self.common[view][..]);
         let row = |measure: &str, found: Result<(f64, usize), String>| match found {
             Ok((value, count)) => Row::px(measure, name, value).of(count),
@@ -113,11 +113,11 @@ impl Job<'_> {
         let rms = |found: Result<Squares, String>| found.map(|squares| (squares.rms().unwrap_or(f64::NAN), squares.count()));
         let (material, operator, camera, bend) = (self.material, self.operator, &found.camera, &found.bend);
         let unseen = Unseen { material, operator, view, camera, bend, near };
-        [
-            row(measure::HOLDOUT, rms(unseen.interleaved(chosen))),
-            row(measure::ACROSS, rms(unseen.across(chosen))),
-            row(measure::STRAIGHT, lines::straightness(material, operator, view, camera, chosen)),
-        ]
+        let mut rows = vec![row(measure::HOLDOUT, rms(unseen.interleaved(chosen))), row(measure::ACROSS, rms(unseen.across(chosen)))];
+        if !material.field.lines().is_empty() {
+            rows.push(row(measure::STRAIGHT, lines::straightness(material, operator, view, camera, chosen)));
+        }
+        rows
     }
 
     /// Halves of the views, compared.

@@ -3,29 +3,28 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use calibench_diagnostics::nearest;
 use calibench_exchange::{PointFile, PointRef};
-use calibench_measure::Board;
 use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
 
-use super::{Corners, Material};
+use super::{Corners, Field, Material};
 
-/// What the rows of a point file may name: the corners of a board, in images of one size.
+/// What the rows of a point file may name: the points of a field, in images of one size.
 #[derive(Clone, Debug)]
 pub struct Expected {
-    board: Board,
+    field: Field,
     size: ImageSize,
     places: HashMap<String, usize>,
 }
 
 impl Expected {
-    /// The corners of `board` by their names (`r1c1` is the first) in images of `size`, px.
-    pub fn new(board: Board, size: ImageSize) -> Self {
-        Self { board, size, places: (0..board.corners()).map(|index| (board.target(index), index)).collect() }
+    /// The points of `field` by their names (of a board `r1c1` is the first) in images of `size`, px.
+    pub fn new(field: Field, size: ImageSize) -> Self {
+        let places = (0..field.count()).map(|index| (field.name(index).into_owned(), index)).collect();
+        Self { field, size, places }
     }
 
-    /// Whether a row names a corner of the board, and lies in the image.
+    /// Whether a row names a point of the field, and lies in the image.
     ///
     /// # Errors
     /// The column that is wrong, what was expected there and what to do.
@@ -48,44 +47,31 @@ impl Expected {
         ))
     }
 
-    /// Whether `target` is a corner of the board.
+    /// Whether `target` is a point of the field.
     ///
     /// # Errors
     /// What was expected and what to do.
     pub fn name(&self, target: &str) -> Result<(), String> {
-        if self.places.contains_key(target) { Ok(()) } else { Err(self.stranger(target)) }
-    }
-
-    fn stranger(&self, target: &str) -> String {
-        let Board { columns, rows } = self.board;
-        let (first, last) = (self.board.target(0), self.board.target(self.board.corners() - 1));
-        let mut known: Vec<&str> = self.places.keys().map(String::as_str).collect();
-        known.sort_unstable();
-        let near = nearest(target, known).map_or_else(String::new, |near| format!("; is it `{near}`?"));
-        format!(
-            "`{target}` is no inner corner of a board of {columns} x {rows}: expected `{first}` (row 1, column 1) to `{last}`, as `calibench control {columns}x{rows}:SIDE` \
-             lists them{near}"
-        )
+        if self.places.contains_key(target) { Ok(()) } else { Err(self.field.stranger(target)) }
     }
 }
 
 impl Material {
-    /// The corners of point files whose rows passed [`Expected::check`], each file by the name of its operator; `side` is that of the board's squares, object
-    /// units, `size` that of the images, px.
+    /// The corners of point files whose rows passed [`Expected::check`], each file by the name of its operator.
     ///
     /// Images stand in the order in which the files name them. Rows that a method rejected count as rejected; covariances are not used.
-    pub fn of_files(files: &[(&Arc<str>, &PointFile)], board: Board, side: f64, size: ImageSize) -> Self {
-        let places = Expected::new(board, size).places;
+    pub fn of_files(files: &[(&Arc<str>, &PointFile)], expected: &Expected) -> Self {
+        let Expected { field, size, places } = expected;
         let mut views = Views::default();
-        let operators: Vec<Read> = files.iter().map(|(_, file)| Read::new(file, &places, &mut views)).collect();
+        let operators: Vec<Read> = files.iter().map(|(_, file)| Read::new(file, places, &mut views)).collect();
         let missed = missed(files, &views);
         let corners = |((name, _), read): (&(&Arc<str>, &PointFile), Read)| {
-            let mut at = vec![vec![None; board.corners()]; views.names.len()];
+            let mut at = vec![vec![None; field.count()]; views.names.len()];
             read.found.into_iter().for_each(|(view, corner, position)| at[view][corner] = Some(position));
             Corners { method: Arc::clone(name), unavailable: None, at, rejected: read.rejected }
         };
         let operators = files.iter().zip(operators).map(corners).collect();
-        Self { board, side, size, views: views.names, missed, operators }
+        Self { field: field.clone(), size: *size, views: views.names, missed, operators }
     }
 }
 

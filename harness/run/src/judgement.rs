@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibench_exchange::NewFolder;
-use calibench_judge::{Material, Options, judge, published_camera, stated_sigma};
+use calibench_judge::{Field, Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
 use calibench_records::names::kept_image;
@@ -38,7 +38,7 @@ fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -
         return Err(format!("{file} has {b}, the first photograph {a}: photographs of one camera have one size"));
     }
     let published = wanted.published.as_ref().map(|file| published_camera(&plan.data.join(&subject.folder).join(file), file, size));
-    let material = Material::new(trial, &plan.method_infos(), subject.board, wanted.side, size);
+    let material = Material::new(trial, &plan.method_infos(), Field::Board { board: subject.board, side: wanted.side }, size);
     let options = Options {
         models: wanted.models.clone(),
         pitch_um: wanted.pitch_um,

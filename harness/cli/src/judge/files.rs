@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use calibench_judge::{CornerFile, Expected, Material};
+use calibench_judge::{CornerFile, Expected, Field, Material};
 use calibench_model::camera::ImageSize;
 use calibench_model::escape;
-use calibench_photographs::Chessboard;
 
 use crate::failure::Failure;
 use crate::inputs::checked;
@@ -32,13 +31,13 @@ fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The corners of `chessboard` that the files hold, of images of one size.
-pub fn material(files: &[CornerFile], chessboard: Chessboard, size: ImageSize) -> Result<Material, Failure> {
+/// The points of `field` that the files hold, of images of one size.
+pub fn material(files: &[CornerFile], field: Field, size: ImageSize) -> Result<Material, Failure> {
     CornerFile::told_apart(files)?;
-    let expected = Expected::new(chessboard.board, size);
+    let expected = Expected::new(field, size);
     let read = |file: &CornerFile| checked(&file.path, &|point| expected.check(point));
     let read = files.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
-    Ok(Material::of_corner_files(files, &read, (chessboard.board, chessboard.side), size)?)
+    Ok(Material::of_corner_files(files, &read, &expected)?)
 }
 
 #[cfg(test)]

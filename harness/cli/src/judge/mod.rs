@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
-use calibench_exchange::Inputs;
-use calibench_judge::{CornerFile, MODELS, Material, Options, judge, published_camera, stated_sigma};
+use calibench_exchange::{Inputs, read_control};
+use calibench_judge::{CornerFile, Field, MODELS, Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_photographs::Chessboard;
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
@@ -23,21 +23,27 @@ mod photographs;
 
 use files::corner_file;
 
+/// How the name of a model ends that is of a board which may be bent.
+const BENT: &str = "+bent";
+
 #[derive(Args)]
 pub struct Judge {
     /// Photographs of a chessboard, all by one camera: at least six
     #[arg(value_name = "PHOTO", required_unless_present = "points")]
     photos: Vec<PathBuf>,
-    /// Corners that were measured beforehand, in place of photographs: CSV with image,target,x,y and targets r1c1, r1c2, ... as `detect` and `control` name them. Each file
-    /// stands for an operator, called as the file without its ending, or NAME; may be repeated, to compare files of the same images. Covariances are not used
+    /// Points that were measured beforehand, in place of photographs: CSV with image,target,x,y; of a chessboard targets r1c1, r1c2, ... as `detect` and `control` name
+    /// them, of --control its own. Each file stands for an operator, called as the file without its ending, or NAME; may be repeated, to compare files of the same images. Covariances are not used
     #[arg(long, value_name = "[NAME=]CSV", value_parser = corner_file, conflicts_with = "photos", requires = "size")]
     points: Vec<CornerFile>,
     /// Size of the images that --points are of, px
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "points", conflicts_with = "photos")]
     size: Option<ImageSize>,
     /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
-    #[arg(long, value_name = "COLUMNSxROWS:SIDE")]
-    chessboard: Chessboard,
+    #[arg(long, value_name = "COLUMNSxROWS:SIDE", required_unless_present = "control", conflicts_with = "control")]
+    chessboard: Option<Chessboard>,
+    /// In place of a chessboard: points of known object coordinates, as of a house, whose names the files of --points use: CSV with target,X,Y,Z and, if known, sX,sY,sZ
+    #[arg(long, value_name = "CSV", requires = "points")]
+    control: Option<PathBuf>,
     /// Methods to compare, as in forstner:window=15 [default: all that make sense on chess corners; with --camera parametric_corner:window=15]
     #[arg(short, long = "method", value_name = "METHOD", conflicts_with = "points")]
     methods: Vec<String>,
@@ -72,7 +78,7 @@ impl Judge {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let models = self.models()?;
         let files = self.points.iter().map(|file| &file.path);
-        let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera));
+        let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
         let material = self.material(context)?;
         let size = material.size;
@@ -113,15 +119,25 @@ impl Judge {
     }
 
     fn models(&self) -> Result<Vec<ModelChoice>, Failure> {
-        let texts: Vec<String> = if self.models.is_empty() { MODELS.map(str::to_owned).to_vec() } else { self.models.clone() };
+        let (bent, of_board) = (|text: &str| text.ends_with(BENT), self.control.is_none());
+        if let Some(text) = self.models.iter().find(|text| !of_board && bent(text)) {
+            return Err(Failure::input(format!(
+                "--model {text}: a board that may be bent is asked for, and --control is none; leave `{BENT}` out"
+            )));
+        }
+        let usual = || MODELS.iter().filter(|text| of_board || !bent(text)).map(|text| (*text).to_owned()).collect();
+        let texts: Vec<String> = if self.models.is_empty() { usual() } else { self.models.clone() };
         ModelChoice::parse_all(&texts).map_err(|(place, error)| Failure::input(format!("--model {}: {error}", texts[place])))
     }
 
     /// The corners to judge by: measured here, or read.
     fn material(&self, context: &Context<'_>) -> Result<Material, Failure> {
-        match self.size {
-            Some(size) => files::material(&self.points, self.chessboard, size),
-            None => self.measured(context),
+        match (self.size, &self.control, self.chessboard) {
+            (Some(size), Some(control), _) => files::material(&self.points, Field::Points(read_control(control)?), size),
+            (Some(size), None, Some(Chessboard { board, side })) => files::material(&self.points, Field::Board { board, side }, size),
+            (_, _, Some(chessboard)) => self.measured(context, chessboard),
+            // The arguments' own rules leave nothing else.
+            _ => Err(Failure::input("expected --chessboard, or --control with --points and --size")),
         }
     }
 }

@@ -30,9 +30,9 @@ impl Judge {
 
     fn of_photographs(&self) -> String {
         format!(
-            "# Which operator and which model to trust on these photographs\n\nMade by `calibench judge` from {} photographs of a chessboard of {}.",
+            "# Which operator and which model to trust on these photographs\n\nMade by `calibench judge` from {} photographs of {}.",
             self.photos.len(),
-            self.board()
+            self.field()
         )
     }
 
@@ -42,17 +42,22 @@ impl Judge {
         };
         let files: String = self.points.iter().enumerate().map(file).collect();
         format!(
-            "# Which file of corners and which model to trust\n\nMade by `calibench judge` from corners that were measured beforehand, of a chessboard of {}, in {} \
+            "# Which file of corners and which model to trust\n\nMade by `calibench judge` from corners that were measured beforehand, of {}, in {} \
              photographs of {} x {} px. Each file stands for an operator:\n\n{files}\nCovariances in the files are not used.",
-            self.board(),
+            self.field(),
             material.views.len(),
             material.size.width,
             material.size.height
         )
     }
 
-    fn board(&self) -> String {
-        let Chessboard { board, side } = self.chessboard;
-        format!("{} x {} inner corners, squares of {side}", board.columns, board.rows)
+    fn field(&self) -> String {
+        match (&self.control, self.chessboard) {
+            (Some(control), _) => format!("the points of {}", code(&control.display().to_string())),
+            (None, Some(Chessboard { board, side })) => {
+                format!("a chessboard of {} x {} inner corners, squares of {side}", board.columns, board.rows)
+            }
+            (None, None) => "a chessboard".into(),
+        }
     }
 }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use calibench_calibrate::choice::HALF;
 use calibench_exchange::read_photo;
-use calibench_judge::{JudgementError, METHODS, Material, OF_CAMERA};
-use calibench_measure::{BoardDetector, Configured};
+use calibench_judge::{Field, JudgementError, METHODS, Material, OF_CAMERA};
+use calibench_measure::{Board, BoardDetector, Configured};
 use calibench_model::camera::ImageSize;
-use calibench_photographs::measured_board;
 use calibench_photographs::names::{names, once};
+use calibench_photographs::{Chessboard, measured_board};
 use calibench_records::results::{MethodInfo, Trial};
 use rayon::prelude::*;
 
@@ -20,16 +20,16 @@ use crate::failure::Failure;
 
 impl Judge {
     /// All corners of all photographs in the hands of all methods.
-    pub fn measured(&self, context: &Context<'_>) -> Result<Material, Failure> {
+    pub fn measured(&self, context: &Context<'_>, chessboard: Chessboard) -> Result<Material, Failure> {
         let methods = self.methods(context)?;
         let needed = 2 * HALF;
         if self.photos.len() < needed {
             return Err(JudgementError::TooFewViews { found: self.photos.len(), needed }.into());
         }
         once(&self.photos)?;
-        let (trial, size) = self.measure(context, &methods)?;
+        let (trial, size) = self.measure(context, &methods, chessboard.board)?;
         let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
-        Ok(Material::new(&trial, &infos, self.chessboard.board, self.chessboard.side, size))
+        Ok(Material::new(&trial, &infos, Field::Board { board: chessboard.board, side: chessboard.side }, size))
     }
 
     fn methods(&self, context: &Context<'_>) -> Result<Vec<Configured>, Failure> {
@@ -46,18 +46,18 @@ impl Judge {
         }
     }
 
-    fn measure(&self, context: &Context<'_>, methods: &[Configured]) -> Result<(Trial, ImageSize), Failure> {
+    fn measure(&self, context: &Context<'_>, methods: &[Configured], board: Board) -> Result<(Trial, ImageSize), Failure> {
         let detector = context.toolbox.detector.as_deref();
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("judge", self.photos.len() as u64, context.quiet);
         say_turns(&self.photos)?;
         let names = names(&self.photos);
-        let one = |(path, name): (&PathBuf, &String)| {
-            let found = self.one(path, name, detector, methods);
+        let found = |(path, name): (&PathBuf, &String)| {
+            let found = one(path, name, (detector, board), methods);
             progress.step();
             found
         };
-        let found = self.photos.par_iter().zip(&names).map(one).collect::<Result<Vec<_>, Failure>>()?;
+        let found = self.photos.par_iter().zip(&names).map(found).collect::<Result<Vec<_>, Failure>>()?;
         let size = one_size(self.photos.iter().zip(found.iter().map(|(_, size)| *size)))?;
         let mut trial = Trial::default();
         for (view, _) in found {
@@ -71,12 +71,12 @@ impl Judge {
         }
         Ok((trial, size))
     }
+}
 
-    fn one(&self, path: &Path, name: &str, detector: &dyn BoardDetector, methods: &[Configured]) -> Result<(Trial, ImageSize), Failure> {
-        let image = read_photo(path)?.image;
-        let trial = measured_board(&image, name, (detector, self.chessboard.board), methods);
-        Ok((trial, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
-    }
+fn one(path: &Path, name: &str, board: (&dyn BoardDetector, Board), methods: &[Configured]) -> Result<(Trial, ImageSize), Failure> {
+    let image = read_photo(path)?.image;
+    let trial = measured_board(&image, name, board, methods);
+    Ok((trial, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
 }
 
 fn info(method: &Configured) -> MethodInfo {

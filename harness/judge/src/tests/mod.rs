@@ -1,5 +1,6 @@
 //! Boards whose truth is known, with Gaussian noise on their corners: what is measured without truth must agree with it.
 
+mod fields;
 mod honest;
 mod outliers;
 mod point_files;
@@ -17,7 +18,7 @@ use calibench_synth::pointing::{Hand, MapError};
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
 
-use super::{Corners, Material, Options, judge};
+use super::{Corners, Field, Material, Options, judge};
 
 const SIZE: ImageSize = ImageSize { width: 640, height: 480 };
 const BOARD: Board = Board { columns: 9, rows: 6 };
@@ -64,7 +65,7 @@ fn material(scenario: &str, trial: u64, count: usize, sigmas: &[f64]) -> Materia
         Corners { method: name.as_str().into(), unavailable: None, at, rejected: Vec::new() }
     };
     let operators = sigmas.iter().enumerate().map(operator).collect();
-    Material { board: BOARD, side: SIDE, size: SIZE, views: names, missed: Vec::new(), operators }
+    Material { field: Field::Board { board: BOARD, side: SIDE }, size: SIZE, views: names, missed: Vec::new(), operators }
 }
 
 fn options(models: &[&str], splits: u64) -> Options {

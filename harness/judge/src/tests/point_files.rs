@@ -17,10 +17,14 @@ fn files(material: &Material) -> Vec<(Arc<str>, calibench_exchange::PointFile)> 
     (0..material.operators.len()).map(file).collect()
 }
 
+fn expected() -> Expected {
+    Expected::new(Field::Board { board: BOARD, side: SIDE }, SIZE)
+}
+
 fn read(material: &Material) -> Material {
     let files = files(material);
     let named: Vec<_> = files.iter().map(|(name, file)| (name, file)).collect();
-    Material::of_files(&named, material.board, material.side, material.size)
+    Material::of_files(&named, &Expected::new(material.field.clone(), material.size))
 }
 
 #[test]
@@ -52,7 +56,7 @@ fn what_a_file_says_of_lost_corners_is_kept() {
     let text = "image,target,x,y,method,status,reason\na,r1c1,1,2,m,measured,\na,r1c2,,,m,rejected,border\na,r1c3,,,m,unavailable,no\n\
                 b,,,,m,rejected,no board\na,x,,,m,rejected,border\n";
     let file = parse_points("p.csv", text.as_bytes()).unwrap();
-    let material = Material::of_files(&[(&"p".into(), &file)], BOARD, SIDE, SIZE);
+    let material = Material::of_files(&[(&"p".into(), &file)], &expected());
     assert_eq!(material.operators[0].rejected, [(0, 1, "border".into())]);
     assert_eq!(material.tried(), [2]);
     assert_eq!(material.missed, [("b".into(), "no board".to_owned())]);
@@ -60,7 +64,7 @@ fn what_a_file_says_of_lost_corners_is_kept() {
 
 #[test]
 fn rows_name_a_corner_of_the_board_within_the_image() {
-    let expected = Expected::new(BOARD, SIZE);
+    let expected = expected();
     let checked = |target: &str, x: f64, y: f64| {
         let row = PointRow { image: "a".into(), target: target.into(), start: Start::at(PixelPoint::new(x, y)) };
         expected.check(&PointRef::from(&row))

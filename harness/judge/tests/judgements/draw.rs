@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_judge::{Corners, Material};
+use calibench_judge::{Corners, Field, Material};
 use calibench_measure::Board;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye, fold};
 use calibench_model::{PixelPoint, Pose};
@@ -126,7 +126,7 @@ fn material(chance: &mut Chance, size: ImageSize, seen: &[Vec<PixelPoint>], sigm
     let mut measured = |at: &PixelPoint| Some(PixelPoint::new(at.x + sigma * chance.normal(), at.y + sigma * chance.normal()));
     let at = seen.iter().map(|view| view.iter().map(&mut measured).collect()).collect();
     let operators = vec![Corners { method: "operator".into(), unavailable: None, at, rejected: Vec::new() }];
-    Material { board: BOARD, side: SIDE, size, views, missed: Vec::new(), operators }
+    Material { field: Field::Board { board: BOARD, side: SIDE }, size, views, missed: Vec::new(), operators }
 }
 
 fn lens(chance: &mut Chance, lens: Lens, size: ImageSize) -> Camera {

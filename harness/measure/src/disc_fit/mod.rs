@@ -33,7 +33,7 @@ pub(crate) type Unknowns = SVector<f64, UNKNOWNS>;
 
 /// The window's grey values.
 pub(crate) struct Grey {
-    grey: Vec<f32>,
+    values: Vec<f32>,
     pub(crate) side: usize,
     /// The window's first pixel.
     pub(crate) first: [f64; 2],
@@ -52,17 +52,17 @@ impl Grey {
         if !grey.iter().all(|grey| grey.is_finite()) {
             return Err(Rejection::NotFinite);
         }
-        Ok(Self { grey, side, first: [x - half, y - half].map(|c| c as f64) })
+        Ok(Self { values: grey, side, first: [x - half, y - half].map(|c| c as f64) })
     }
 
     /// Its rows.
     pub(crate) fn rows(&self) -> impl Iterator<Item = &[f32]> {
-        self.grey.chunks_exact(self.side)
+        self.values.chunks_exact(self.side)
     }
 
     /// Observations minus unknowns.
     pub(crate) fn redundancy(&self) -> f64 {
-        (self.grey.len() - UNKNOWNS) as f64
+        (self.values.len() - UNKNOWNS) as f64
     }
 }
 
@@ -80,7 +80,7 @@ impl<T: Real> Disc<T> {
     fn new(grey: &Grey, fineness: Fineness) -> Self {
         let planes = Planes::new(grey.side);
         let at = SVector::zeros();
-        Self { greys: Greys::new(&grey.grey, grey.side, planes.stride), planes, fineness, redundancy: grey.redundancy(), at }
+        Self { greys: Greys::new(&grey.values, grey.side, planes.stride), planes, fineness, redundancy: grey.redundancy(), at }
     }
 }
 

@@ -6,7 +6,6 @@ use calibench_model::{Covariance, Rejection};
 use descent::{Damping, Descent, Gone, descend};
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 
-
 /// The normal equations at one place, and the sum of the squared residuals there.
 #[derive(Clone)]
 pub(crate) struct Normal<const P: usize> {

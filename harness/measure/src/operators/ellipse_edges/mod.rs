@@ -4,13 +4,13 @@ mod conic;
 mod search;
 mod sectors;
 
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use crate::blurred_ellipse::{FINE, MARGIN};
 use crate::disc_fit::{Grey, Rough, UNKNOWNS, Unknowns, start};
 use crate::ellipse::seek;
 use crate::marquardt::{Solution, covariance};
 use crate::operator::Operator;
 use crate::registry::{Build, Method};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use search::search;
 use sectors::Window;
 

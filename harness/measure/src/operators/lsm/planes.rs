@@ -77,7 +77,14 @@ impl Planes {
         let mut values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
         let ones = values[GROUND * pixels * stride..].chunks_exact_mut(stride).take(pixels);
         ones.for_each(|row| row[..pixels].fill(1.0));
-        Self { pixels, stride, values, grey: vec![0.0; pixels * stride], shows: vec![0.0; pixels * stride], bank: Bank::new(pixels, stride) }
+        Self {
+            pixels,
+            stride,
+            values,
+            grey: vec![0.0; pixels * stride],
+            shows: vec![0.0; pixels * stride],
+            bank: Bank::new(pixels, stride),
+        }
     }
 
     /// Pixels in the window.
