@@ -17,6 +17,7 @@ mod galo;
 mod gate;
 mod input;
 mod judge;
+mod judge_field;
 mod judge_points;
 mod killed;
 mod measure;

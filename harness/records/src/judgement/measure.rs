@@ -10,7 +10,7 @@ pub const PARAMETERS: &str = "parameters";
 pub const RESIDUALS: &str = "residuals";
 /// By view: RMS error of the half of its corners predicted from the other half, the camera calibrated without the view.
 pub const HOLDOUT: &str = "holdout";
-/// By view: the same, one side of the board from the other.
+/// By view: the same, one side of the field from the other.
 pub const ACROSS: &str = "across";
 /// By view: how far rows and columns are from straight, the camera calibrated without the view.
 pub const STRAIGHT: &str = "straight";

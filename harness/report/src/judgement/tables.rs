@@ -17,7 +17,7 @@ fn number(value: Option<f64>) -> String {
 /// What the hold-out figures are and on what they rest.
 pub fn about_holdout(summary: &Summary) -> String {
     let mut text = format!(
-        "Each photograph is left out in turn; the camera calibrated from the others is held, the photograph is resected from every other corner of the board, \
+        "Each photograph is left out in turn; the camera calibrated from the others is held, the photograph is resected from every other point, \
          and the remaining ones are predicted, both ways. RMS (2D) in px with the 95 % interval over views (photographs drawn again). Operators are compared on \
          the {} corners that all of them have, each calibrated with its own. Thin frame: trusted; bold frame: the least.",
         summary.common
@@ -69,7 +69,7 @@ pub fn cells(summary: &Summary) -> String {
         ]);
     }
     let mut text = format!(
-        "`across` predicts one side of the board from the other, left, right, top and bottom: errors of the camera are carried on, and noise with them; that shows what a pose makes up for. \
+        "`across` predicts one side of the field from the other, left, right, top and bottom (of points that are no board, halves along their longest extents): errors of the camera are carried on, and noise with them; that shows what a pose makes up for. \
          `straight` is how far undistorted rows and columns are from straight lines (standard deviation of a coordinate; the camera calibrated without the \
          photograph; no pose takes part). `residuals` are those of the adjustment of all photographs. `free`: how many parameters of the camera are solved for. All \
          but `straight` are 2D.\n\n{}\n",

@@ -30,8 +30,8 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     lines.push(outlying(cell));
     lines.extend(published(trusted));
     lines.push(
-        "**What cannot be seen here**: an error that a camera of the same model can imitate, or that all photographs share with the board (corners displaced \
-         alike, a board that is not of the size given), predicts itself. The pose of a photograph is resected from the other half of its corners."
+        "**What cannot be seen here**: an error that a camera of the same model can imitate, or that all photographs share with the field (points displaced \
+         alike, a board that is not of the size given, coordinates that are not right), predicts itself. The pose of a photograph is resected from the other half of its corners."
             .into(),
     );
     lines.iter().map(|line| format!("- {line}\n")).collect()
@@ -181,7 +181,7 @@ fn beyond(summary: &Summary, trusted: &Trusted<'_>) -> Option<String> {
     let seen = found.iter().filter_map(|(_, apart)| apart.seen).reduce(f64::max)?;
     Some(format!(
         "**Beyond the corners** nobody checked: the models that predict best in some of the draws agree with `{}` to {} px RMS or better where corners were \
-         measured, but over the whole frame only to {} px RMS, and {} px at most (`{}`). What was photographed decides there, and not the model: see to boards \
+         measured, but over the whole frame only to {} px RMS, and {} px at most (`{}`). What was photographed decides there, and not the model: see to points \
          in every corner of the frame.",
         cell.model,
         plain(seen),

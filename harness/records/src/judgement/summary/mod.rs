@@ -104,11 +104,11 @@ pub struct Cell {
     pub views: Vec<View>,
     /// By view: hold-out RMS, px, and of how many corners.
     pub held_out: BTreeMap<Arc<str>, (f64, usize)>,
-    /// By view: the same, one side of the board from the other, px.
+    /// By view: the same, one side of the field from the other, px.
     pub carried: BTreeMap<Arc<str>, (f64, usize)>,
     /// Over all views, px.
     pub holdout: Option<Estimate>,
-    /// The same, one side of the board from the other, px.
+    /// The same, one side of the field from the other, px.
     pub across: Option<Estimate>,
     /// Departure of rows and columns from straight, px.
     pub straight: Option<Estimate>,
