@@ -5,10 +5,11 @@ mod sums;
 use calibench_model::{Image, Rejection};
 use nalgebra::SVector;
 
-use crate::blurred_ellipse::{FINE, Fineness, NOISY, Picture, Planes, ROUGH, SHARPEST, is_pictured};
+use crate::blurred_ellipse::{CENTRE, FINE, Fineness, NOISY, Picture, Planes, ROUGH, SHARPEST, is_pictured};
 use crate::ellipse::{Ellipse, Guess};
 use crate::lanes::Real;
 use crate::marquardt::{Normal, Problem, STILL, Solution, minimise};
+use crate::residuals::Structure;
 use sums::{Greys, Levels, Summed};
 
 /// Centre, three of the shape, variance of the blur, grey value outside, contrast.
@@ -125,6 +126,12 @@ pub(crate) fn start(grey: &Grey, guess: &Guess) -> Unknowns {
     Unknowns::from([x - left, y - top, a, b, c, VARIANCE, guess.outside, guess.inside - guess.outside])
 }
 
+/// A fit, and what it leaves.
+pub(crate) struct Fitted {
+    pub(crate) found: Solution<UNKNOWNS>,
+    pub(crate) structure: Structure,
+}
+
 /// A fit in single precision, to a standard deviation.
 pub(crate) struct Rough<'a> {
     grey: &'a Grey,
@@ -167,7 +174,7 @@ impl<'a> Rough<'a> {
     }
 
     /// Steps by the same derivatives, or almost; `None` where these do not lead there.
-    fn settle(mut self) -> Option<Solution<UNKNOWNS>> {
+    fn settle(mut self) -> Option<Fitted> {
         let fineness = self.fineness();
         let mut exact = self.is_quiet().then(|| Disc::<f64>::new(self.grey, fineness));
         let (mut x, mut normal, mut last) = (self.near.x, self.normal()?, f64::INFINITY);
@@ -191,7 +198,9 @@ impl<'a> Rough<'a> {
                 return None;
             }
             if square <= NEARLY * NEARLY * normal.omega / self.disc.redundancy || step[0].hypot(step[1]) < STILL {
-                return Some(Solution { x: next, normal });
+                let residuals = exact.as_ref().map_or_else(|| self.disc.greys.residuals(), |exact| exact.greys.residuals());
+                let structure = structure(&self.disc.planes, residuals, next[7]);
+                return Some(Fitted { found: Solution { x: next, normal }, structure });
             }
             if square > SHORTER * last {
                 return None;
@@ -206,9 +215,19 @@ impl<'a> Rough<'a> {
 ///
 /// # Errors
 /// [`Rejection::NotConverged`].
-pub(crate) fn fit(grey: &Grey, start: &Unknowns) -> Result<Solution<UNKNOWNS>, Rejection> {
-    match Rough::new(grey, start).ok().and_then(Rough::settle) {
-        Some(found) => Ok(found),
-        None => minimise(&mut Disc::<f64>::new(grey, FINE), *start, NEARLY),
+pub(crate) fn fit(grey: &Grey, start: &Unknowns) -> Result<Fitted, Rejection> {
+    if let Some(fitted) = Rough::new(grey, start).ok().and_then(Rough::settle) {
+        return Ok(fitted);
     }
+    let mut disc = Disc::<f64>::new(grey, FINE);
+    let found = minimise(&mut disc, *start, NEARLY)?;
+    let structure = structure(&disc.planes, disc.greys.residuals(), found.x[7]);
+    Ok(Fitted { found, structure })
+}
+
+/// The structure of `residuals` along the outline, in units of half the contrast.
+pub(crate) fn structure<T: Real>(planes: &Planes<T>, mut residuals: Vec<f32>, contrast: f64) -> Structure {
+    let by = CENTRE.map(|plane| planes.values[plane].iter().map(|by| Into::<f64>::into(*by) as f32).collect::<Vec<_>>());
+    let mut shows = vec![0.0; residuals.len()];
+    Structure::of_outline(by.each_ref().map(Vec::as_slice), &mut residuals, &mut shows, (planes.stride, 2.0 / contrast))
 }

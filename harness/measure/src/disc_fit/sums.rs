@@ -29,6 +29,11 @@ impl<T: Real> Greys<T> {
         Self { r: filled.clone(), grey: filled, side }
     }
 
+    /// The residuals of the last picture.
+    pub(super) fn residuals(&self) -> Vec<f32> {
+        self.r.iter().map(|r| Into::<f64>::into(*r) as f32).collect()
+    }
+
     /// What the picture leaves of the grey values.
     #[inline(always)]
     fn subtract(&mut self, planes: &Planes<T>, [ground, contrast]: Levels) {

@@ -10,11 +10,12 @@ use crate::sweep::Metric;
 const SOUND: f64 = 0.01;
 
 /// The scenarios of the page: the axis that is the distance, px, and its name.
-const SECTIONS: [(&str, &str, &str, &str); 5] = [
+const SECTIONS: [(&str, &str, &str, &str); 6] = [
     ("atlas/corners-small", "Small squares", "testfield.square", "square, px"),
     ("atlas/corners-beside", "Chess corners beside a bar", "testfield.plate.1.middle.0", "bar from the corner, px"),
     ("atlas/corners-hidden", "Chess corners half hidden", "testfield.plate.1.middle.0", "in view on that side, px"),
     ("atlas/discs-beside", "Discs beside a bar", "testfield.plate.1.middle.0", "bar from the border, px"),
+    ("atlas/discs-hidden", "Discs half hidden", "testfield.plate.1.middle.0", "border from the centre, px"),
     ("atlas/wedges-beside", "Corners of one area beside a bar", "testfield.plate.1.middle.0", "bar from the corner, px"),
 ];
 

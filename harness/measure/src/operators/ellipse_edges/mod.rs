@@ -5,11 +5,12 @@ mod search;
 mod sectors;
 
 use crate::blurred_ellipse::{FINE, MARGIN};
-use crate::disc_fit::{Grey, Rough, UNKNOWNS, Unknowns, start};
+use crate::disc_fit::{Grey, Rough, UNKNOWNS, Unknowns, fit, start};
 use crate::ellipse::seek;
 use crate::marquardt::{Solution, covariance};
 use crate::operator::Operator;
 use crate::registry::{Build, Method};
+use crate::residuals::{MISFIT_OF_OUTLINE, Structure};
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use search::search;
 use sectors::Window;
@@ -31,7 +32,9 @@ const NEARLY: f64 = 1e-2;
 /// the grey values is that of the residuals.
 ///
 /// Source: our own.
-pub struct EllipseEdges;
+pub struct EllipseEdges {
+    misfit: f64,
+}
 
 /// The method's entry.
 pub fn method() -> Method {
@@ -40,25 +43,30 @@ pub fn method() -> Method {
         about: "ellipse through the points where the edge of a disc is in each sector of its outline",
         source: "calibench",
         version: "2".into(),
-        parameters: &[],
-        build: Build::With(|_| Box::new(EllipseEdges)),
+        parameters: &[MISFIT_OF_OUTLINE],
+        build: Build::With(|settings| Box::new(EllipseEdges { misfit: settings.get("misfit") })),
     }
 }
 
 impl Operator for EllipseEdges {
     /// # Errors
     /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when nothing stands out near the start,
-    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
+    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel,
+    /// [`Rejection::Misfit`] where something else stands at the outline or hides a part of it.
     fn measure(&self, image: &Image, from: &Start) -> Result<Measurement, Rejection> {
         let guess = seek(image, from)?;
         let half = (guess.ellipse.extent() + MARGIN).ceil() as i64;
         let grey = Grey::new(image, guess.ellipse.position.map(|c| c.round() as i64), half)?;
         let start = start(&grey, &guess);
         let rough = Rough::new(&grey, &start).ok();
-        if let Some(found) = rough.as_ref().and_then(|rough| near_picture(&grey, rough)) {
-            return Ok(found);
+        let found = rough.as_ref().and_then(|rough| near_picture(&grey, rough));
+        let (found, structure) = found.map_or_else(|| in_two_steps(&grey, &start), Ok)?;
+        // The position may stand before blur and contrast do: what the best picture leaves decides.
+        let doubtful = structure.is_no_noise(self.misfit);
+        if doubtful && fit(&grey, &start).is_ok_and(|best| best.structure.is_no_noise(self.misfit)) {
+            return Err(Rejection::Misfit);
         }
-        in_two_steps(&grey, &start)
+        Ok(found)
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
@@ -67,24 +75,26 @@ impl Operator for EllipseEdges {
 }
 
 /// With the outline parted around the ellipse of the best picture; `None` where single precision is seen, or this does not lead there.
-fn near_picture(grey: &Grey, rough: &Rough<'_>) -> Option<Measurement> {
+fn near_picture(grey: &Grey, rough: &Rough<'_>) -> Option<(Measurement, Structure)> {
     if rough.is_quiet() {
         return None;
     }
     let mut window = Window::<f32>::new(grey, rough.fineness());
     let found = search(&mut window, rough.near.x, NEARLY).ok()?;
-    conclude(grey, &found, window.redundancy()).ok()
+    let structure = window.structure(found.x[6], found.x[7]);
+    Some((conclude(grey, &found, window.redundancy()).ok()?, structure))
 }
 
 /// With the outline parted around a start, and again around what is found.
 ///
 /// # Errors
 /// Those of [`search`] and [`conclude`].
-fn in_two_steps(grey: &Grey, start: &Unknowns) -> Result<Measurement, Rejection> {
+fn in_two_steps(grey: &Grey, start: &Unknowns) -> Result<(Measurement, Structure), Rejection> {
     let mut window = Window::<f64>::new(grey, FINE);
     let rough = search(&mut window, *start, ROUGHLY)?;
     let found = search(&mut window, rough.x, NEARLY)?;
-    conclude(grey, &found, window.redundancy())
+    let structure = window.structure(found.x[6], found.x[7]);
+    Ok((conclude(grey, &found, window.redundancy())?, structure))
 }
 
 /// # Errors

@@ -5,9 +5,10 @@ use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::conic::UNKNOWNS;
 use crate::blurred_ellipse::{self, Fineness, Picture, Planes, lanes};
-use crate::disc_fit::Grey;
+use crate::disc_fit::{Grey, structure};
 use crate::ellipse::Ellipse;
 use crate::lanes::{LANES, Lanes, Real};
+use crate::residuals::Structure;
 
 /// Pixels nearer to the outline than this are taken, px.
 const BAND: f64 = 4.0;
@@ -93,6 +94,19 @@ where
     /// How many more pixels are taken than there are unknowns.
     pub(super) fn redundancy(&self) -> f64 {
         self.taken.iter().sum::<f64>() - UNKNOWNS as f64
+    }
+
+    /// The structure along the outline of what the disc that was pictured leaves of the grey values.
+    pub(super) fn structure(&self, ground: f64, contrast: f64) -> Structure {
+        let stride = self.planes.stride;
+        let mut residuals = vec![0.0; self.grey.len()];
+        let covered = self.planes.values[blurred_ellipse::COVERED].chunks_exact(stride);
+        for ((to, grey), covered) in residuals.chunks_exact_mut(stride).zip(self.grey.chunks_exact(stride)).zip(covered) {
+            for (to, (grey, covered)) in to[..self.side].iter_mut().zip(grey.iter().zip(covered)) {
+                *to = (grey - ground - contrast * Into::<f64>::into(*covered)) as f32;
+            }
+        }
+        structure(&self.planes, residuals, contrast)
     }
 
     /// The points of the edge of the disc that was pictured, and the normal equations of what they have in common.

@@ -20,13 +20,10 @@ use self::profile::Profile;
 use crate::operator::{Operator, window_centre};
 use crate::parameter::{Domain, Parameter, Settings};
 use crate::registry::{Build, Method};
+use crate::residuals::MISFIT_OF_OUTLINE;
 
 /// The largest standard deviation of a result, px: beyond, the window holds no such target.
 const LARGEST: f64 = 1.0;
-/// The root of the covariance of neighbouring residuals, in units of half the contrast, beyond which the window holds something else: of 702 corners of OpenCV's
-/// sample photographs none leaves as much, of 200 corners beside a bar all that are more than 0.25 px off do.
-const MISFIT: f64 = 0.2;
-
 /// Least-squares matching of an artificial mask: an ideal shape (see [`TargetKind::outlines`]), mapped into the image by an affine
 /// transformation, blurred there by a pixel and a Gaussian, with a grey value for the ground and a contrast: eight parameters, or nine with
 /// the Gaussian's width.
@@ -97,14 +94,7 @@ const PARAMETERS: &[Parameter] = &[
         default: 1e-3,
         always_shown: false,
     },
-    Parameter {
-        name: "misfit",
-        about: "rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise: something else is in the window. \
-                2: nothing is rejected",
-        domain: Domain::Real { min: 0.0, max: 2.0 },
-        default: MISFIT,
-        always_shown: false,
-    },
+    MISFIT_OF_OUTLINE,
 ];
 
 /// The method's entry.

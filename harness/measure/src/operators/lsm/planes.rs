@@ -21,9 +21,6 @@ pub(super) const BLUR: usize = 8;
 /// Plane of residuals.
 const RESIDUAL: usize = 9;
 
-/// Change of the coverage with the mask's place, 1/px, from which on a pixel tells anything of that: a tenth of what a sharp edge has.
-const SHOWS: f32 = 0.05;
-
 /// Planes that are multiplied at a time; their number, with that of the blur, is a multiple.
 const TILE: usize = 3;
 
@@ -147,8 +144,8 @@ impl Planes {
     pub(super) fn structure(&mut self, unit: f64) -> Structure {
         let area = self.area();
         let (before, residual) = self.values.split_at_mut(RESIDUAL * area);
-        let [by_x, by_y] = [0, 1].map(|plane| &before[plane * area..(plane + 1) * area]);
-        structure([by_x, by_y], &mut residual[..area], &mut self.shows, (self.stride, 1.0 / unit))
+        let by = [0, 1].map(|plane| &before[plane * area..(plane + 1) * area]);
+        Structure::of_outline(by, &mut residual[..area], &mut self.shows, (self.stride, 1.0 / unit))
     }
 
     /// Sums of products of two planes, before the contrast scales the derivatives, and of each with the residuals: of the first `unknowns`.
@@ -179,32 +176,6 @@ fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, 
         *to = grey - ground * one - contrast * c;
     }
     dot(residual, residual)
-}
-
-/// Leaves of `residual` what shows, in units, and adds up its structure. Rows end with zeros, which show nothing.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn structure([by_x, by_y]: [&[f32]; 2], residual: &mut [f32], shows: &mut [f32], (stride, inverse): (usize, f64)) -> Structure {
-    for (((r, shows), by_x), by_y) in residual.iter_mut().zip(&mut *shows).zip(by_x).zip(by_y) {
-        *shows = if by_x * by_x + by_y * by_y > SHOWS * SHOWS { 1.0 } else { 0.0 };
-        *r *= *shows * inverse as f32;
-    }
-    let neighbours = |values: &[f32]| shifted(values, 1) + shifted(values, stride);
-    Structure { product: neighbours(residual), pairs: neighbours(shows), square: dot(residual, residual), count: dot(shows, shows) }
-}
-
-/// The sum of the products of values with those `by` further on.
-#[inline(always)]
-fn shifted(values: &[f32], by: usize) -> f64 {
-    let mut sums = [0.0_f32; LANES];
-    let mut pairs = values.chunks_exact(LANES).zip(values[by..].chunks_exact(LANES));
-    for (here, there) in &mut pairs {
-        for lane in 0..LANES {
-            sums[lane] += here[lane] * there[lane];
-        }
-    }
-    let done = (values.len() - by) / LANES * LANES;
-    let rest: f32 = values[done..].iter().zip(&values[done + by..]).map(|(here, there)| here * there).sum();
-    total(&sums) + f64::from(rest)
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]

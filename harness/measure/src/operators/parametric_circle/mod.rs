@@ -3,12 +3,13 @@
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 
 use crate::blurred_ellipse::MARGIN;
-use crate::disc_fit::{Grey, fit, start};
+use crate::disc_fit::{Fitted, Grey, fit, start};
 use crate::ellipse::seek;
 use crate::marquardt::covariance;
 use crate::operator::Operator;
 use crate::parameter::{Domain, Parameter};
 use crate::registry::{Build, Method};
+use crate::residuals::MISFIT_OF_OUTLINE;
 
 /// Parametric circle: the ellipse whose blurred picture agrees best, in the least-squares sense, with the grey values of the window.
 ///
@@ -24,15 +25,19 @@ use crate::registry::{Build, Method};
 /// Source: our own; Green's theorem turns the average over a pixel into a sum along the outline.
 pub struct ParametricCircle {
     window: usize,
+    misfit: f64,
 }
 
-const PARAMETERS: &[Parameter] = &[Parameter {
-    name: "window",
-    about: "side of the window, an odd number of px (an even one is made odd); 0: as the ellipse needs",
-    domain: Domain::Whole { min: 0, max: 151 },
-    default: 0.0,
-    always_shown: false,
-}];
+const PARAMETERS: &[Parameter] = &[
+    Parameter {
+        name: "window",
+        about: "side of the window, an odd number of px (an even one is made odd); 0: as the ellipse needs",
+        domain: Domain::Whole { min: 0, max: 151 },
+        default: 0.0,
+        always_shown: false,
+    },
+    MISFIT_OF_OUTLINE,
+];
 
 /// The method's entry.
 pub fn method() -> Method {
@@ -42,23 +47,27 @@ pub fn method() -> Method {
         source: "calibench",
         version: "1".into(),
         parameters: PARAMETERS,
-        build: Build::With(|settings| Box::new(ParametricCircle { window: settings.whole("window") })),
+        build: Build::With(|settings| Box::new(ParametricCircle { window: settings.whole("window"), misfit: settings.get("misfit") })),
     }
 }
 
 impl Operator for ParametricCircle {
     /// # Errors
     /// [`Rejection::Border`], [`Rejection::NotFinite`], [`Rejection::NoCorner`] when nothing stands out near the start,
-    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel.
+    /// [`Rejection::LeftWindow`], [`Rejection::NotConverged`], [`Rejection::ErrorEllipse`] when the standard deviation is above a pixel,
+    /// [`Rejection::Misfit`] where something else stands at the outline or hides a part of it.
     fn measure(&self, image: &Image, from: &Start) -> Result<Measurement, Rejection> {
         let guess = seek(image, from)?;
         let half = if self.window == 0 { (guess.ellipse.extent() + MARGIN).ceil() as i64 } else { self.window as i64 / 2 };
         let grey = Grey::new(image, guess.ellipse.position.map(|c| c.round() as i64), half)?;
         let [left, top] = grey.first;
-        let found = fit(&grey, &start(&grey, &guess))?;
+        let Fitted { found, structure } = fit(&grey, &start(&grey, &guess))?;
         let (side, x, y) = (grey.side as f64 - 1.0, found.x[0], found.x[1]);
         if !(0.0..=side).contains(&x) || !(0.0..=side).contains(&y) {
             return Err(Rejection::LeftWindow);
+        }
+        if structure.is_no_noise(self.misfit) {
+            return Err(Rejection::Misfit);
         }
         let covariance = covariance(&found.normal, grey.redundancy()).ok_or(Rejection::ErrorEllipse)?;
         Ok(Measurement { position: PixelPoint::new(x + left, y + top), covariance: Some(covariance) })
