@@ -15,8 +15,10 @@ fn points_of_a_house_are_judged_and_the_true_camera_is_within_what_is_claimed() 
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     done(at, &["--root", root().to_str().unwrap(), "render", "galo-2011/network", "-o", "house", "-q"]);
-    let photos: Vec<String> = files(&at.join("house")).into_iter().map(|(name, _)| format!("house/{}", name.display())).collect();
-    let photos: Vec<&str> = photos.iter().map(String::as_str).filter(|name| name.ends_with(".png")).collect();
+    let names = files(&at.join("house")).into_iter().map(|(name, _)| name);
+    let photos = names.filter(|name| name.extension().is_some_and(|ending| ending == "png"));
+    let photos: Vec<String> = photos.map(|name| format!("house/{}", name.display())).collect();
+    let photos: Vec<&str> = photos.iter().map(String::as_str).collect();
     let measured = |method: &str, file: &str| {
         done(at, &[&["measure", "--points", "house/starts.csv", "-q", "-m", method, "-o", file][..], &photos].concat());
     };

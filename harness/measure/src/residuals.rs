@@ -5,19 +5,18 @@ use multiversion::multiversion;
 use crate::lanes::{WIDE, sum};
 use crate::parameter::{Domain, Parameter};
 
-/// The root of the covariance of neighbouring residuals, in units of half the contrast, beyond which a window holds something else: of 702 corners of OpenCV's
-/// sample photographs `lsm` leaves as much of none, of 200 corners beside a bar of all that are more than 0.25 px off.
-const MISFIT: f64 = 0.2;
-
-/// The parameter of operators that fit an outline.
-pub(crate) const MISFIT_OF_OUTLINE: Parameter = Parameter {
-    name: "misfit",
-    about: "rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise: something else is in the window. \
-            2: nothing is rejected",
-    domain: Domain::Real { min: 0.0, max: 2.0 },
-    default: MISFIT,
-    always_shown: false,
-};
+/// The parameter of operators that fit an outline: the root of the covariance of neighbouring residuals, in units of half the contrast, beyond which a window holds
+/// something else.
+pub(crate) const fn misfit(default: f64) -> Parameter {
+    Parameter {
+        name: "misfit",
+        about: "rejected where the covariance of neighbouring residuals is beyond its square, in units of half the contrast, and no noise: something else is in the window. \
+                2: nothing is rejected",
+        domain: Domain::Real { min: 0.0, max: 2.0 },
+        default,
+        always_shown: false,
+    }
+}
 
 /// Structure has a covariance of neighbours of so many standard deviations of that of white noise.
 const SIGNIFICANT: f64 = 5.0;

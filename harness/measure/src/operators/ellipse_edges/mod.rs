@@ -4,16 +4,21 @@ mod conic;
 mod search;
 mod sectors;
 
+use super::parametric_circle::MISFIT;
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+
 use crate::blurred_ellipse::{FINE, MARGIN};
 use crate::disc_fit::{Grey, Rough, UNKNOWNS, Unknowns, fit, start};
 use crate::ellipse::seek;
 use crate::marquardt::{Solution, covariance};
 use crate::operator::Operator;
+use crate::parameter::Parameter;
 use crate::registry::{Build, Method};
-use crate::residuals::{MISFIT_OF_OUTLINE, Structure};
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use crate::residuals::{Structure, misfit};
 use search::search;
 use sectors::Window;
+
+const PARAMETERS: &[Parameter] = &[misfit(MISFIT)];
 
 /// The search ends with a step of the position of so many standard deviations: the first one, with the outline parted around the start, and the last.
 const ROUGHLY: f64 = 1.0;
@@ -43,7 +48,7 @@ pub fn method() -> Method {
         about: "ellipse through the points where the edge of a disc is in each sector of its outline",
         source: "calibench",
         version: "2".into(),
-        parameters: &[MISFIT_OF_OUTLINE],
+        parameters: PARAMETERS,
         build: Build::With(|settings| Box::new(EllipseEdges { misfit: settings.get("misfit") })),
     }
 }
