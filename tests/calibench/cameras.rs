@@ -125,6 +125,46 @@ fn bad_input_is_named() {
 }
 
 #[test]
+fn a_format_that_is_named_is_read_and_no_other() {
+    let folder = folder();
+    let ours = good(folder.path(), &["camera", "camera.yml", "--from", "opencv-yaml"]);
+    assert_eq!(ours, good(folder.path(), &["camera", "camera.yml"]));
+    good(folder.path(), &["convert", "camera.yml", "--from", "opencv-yaml", "--to", "opencv", "-o", "same.yml"]);
+    // Of both files of `diff`.
+    good(folder.path(), &["diff", "camera.yml", "same.yml", "--from", "opencv-yaml"]);
+    good(folder.path(), &["convert", "camera.yml", "--to", "metashape", "-o", "m.xml"]);
+    for (arguments, expected) in [
+        (&["camera", "camera.yml", "--from", "colmap"][..], "camera.yml: is no file of colmap: "),
+        (&["camera", "camera.yml", "--from", "opencv"], "did you mean `opencv-"),
+        (&["diff", "camera.yml", "m.xml", "--from", "opencv-yaml"], "m.xml: is no file of opencv-yaml: "),
+        (&["convert", "m.xml", "--from", "colmap-bin", "--to", "opencv", "-o", "x.yml"], "m.xml: is no file of colmap-bin: it is text"),
+    ] {
+        let output = run(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stdout(&output));
+        assert!(stderr(&output).contains(expected), "{arguments:?}: expected {expected}\n{}", stderr(&output));
+    }
+    assert!(!folder.path().join("x.yml").exists());
+}
+
+#[test]
+fn k4_p3_and_p4_stay_and_a_frame_as_tall_as_a_tower_is_refused() {
+    let folder = folder();
+    let rich = "<?xml version=\"1.0\"?>\n<calibration>\n<projection>frame</projection>\n<width>6000</width>\n<height>4000</height>\n<f>4000.5</f>\n<cx>12.5</cx>\n<cy>-7.25</cy>\n\
+        <b1>1.5</b1>\n<b2>-0.7</b2>\n<k1>-0.05</k1>\n<k2>0.02</k2>\n<k3>-0.004</k3>\n<k4>0.003</k4>\n<p1>0.0004</p1>\n<p2>-0.0003</p2>\n<p3>0.1</p3>\n<p4>-0.05</p4>\n\
+        </calibration>\n";
+    std::fs::write(folder.path().join("rich.xml"), rich).unwrap();
+    assert!(good(folder.path(), &["convert", "rich.xml", "--to", "metashape", "-o", "again.xml"]).contains("exact"));
+    let again = std::fs::read_to_string(folder.path().join("again.xml")).unwrap();
+    assert!(again.contains("<k4>") && again.contains("<p3>") && again.contains("<p4>"), "{again}");
+    // A fit that goes nowhere ends: 752 x 1,000,000 px took half a minute.
+    let tall = CAMERA.replace("image_width: 1600", "image_width: 752").replace("image_height: 1200", "image_height: 1000000");
+    std::fs::write(folder.path().join("tall.yml"), tall.replace("-1.0e-01, 4.0e-02", "4.4e-01, -3.0")).unwrap();
+    let output = run(folder.path(), &["convert", "tall.yml", "--to", "micmac", "-o", "tall.xml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("micmac cannot hold the camera"), "{}", stderr(&output));
+}
+
+#[test]
 fn what_is_unverified_is_said_and_can_be_decided() {
     let folder = folder();
     std::fs::write(folder.path().join("camera.yml"), CAMERA.replace("1502.", "1500.")).unwrap();

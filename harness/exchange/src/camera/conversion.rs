@@ -1,12 +1,16 @@
 //! A camera of a file in another convention: its model, its covariance and its pose.
 
-use calibench_model::camera::Ray;
-use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, Rotation, convert};
+use calibench_model::camera::{CameraModel, Ray};
+use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, Rotation, Target, convert};
 use thiserror::Error;
 
 use super::fit::{FitError, fit_to_format};
+use super::recognised::are_within;
 use super::target::{Goal, Way};
-use super::{NamedCamera, ParameterCovariance, splined};
+use super::{NamedCamera, ParameterCovariance, ReadOptions, camera_bytes, parse_camera, splined};
+
+/// A file gives a camera back that pictures the same within so many px: rounding.
+const BACK: f64 = 1e-8;
 
 /// A converted camera and how it came about.
 #[derive(Clone, Debug)]
@@ -54,6 +58,10 @@ pub fn converted(
     let (conversion, model) = match goal.way {
         Way::One(_) if model.is_some() => return Err(ConversionError::ModelNamed),
         _ if let Some(splines) = &source.splines => splined::converted(splines, source.camera, goal, (model, pitch_um), &options)?,
+        Way::One(Target::OpenCvFisheye) | Way::Best if model.is_none() && holds_only_as_it_is(source, goal, pitch_um) => {
+            let covariance = options.covariance.clone();
+            (Conversion { covariance, ..splined::as_they_are(source.camera) }, None)
+        }
         Way::One(target) => (convert(&source.camera, target, &options)?, None),
         Way::Best => {
             let (conversion, model) = fit_to_format(goal.format, &source.camera, model, pitch_um, &options)?;
@@ -71,6 +79,24 @@ pub fn converted(
         ..NamedCamera::new(source.name.clone(), conversion.camera)
     };
     Ok(Converted { camera, conversion, model })
+}
+
+/// Whether none of the goal's models has a formula for the camera, and yet a file of the format gives it back: what the tool holds beyond the models that others are
+/// fitted to.
+fn holds_only_as_it_is(source: &NamedCamera, goal: &Goal, pitch_um: Option<f64>) -> bool {
+    let has_formula = match goal.way {
+        Way::One(target) => target.is_exact_for(&source.camera),
+        Way::Best => goal.format.models(pitch_um).iter().any(|model| model.target.is_exact_for(&source.camera)),
+    };
+    let camera = NamedCamera { pitch_um, ..NamedCamera::new(String::new(), source.camera) };
+    let size = (!goal.format.states_size).then(|| source.camera.size());
+    let options = ReadOptions { size, fisheye: None, from: Some(goal.format) };
+    let given_back = || {
+        let bytes = camera_bytes(goal.format, &[camera]).ok()?;
+        let read = parse_camera("", &bytes, &options).ok()?;
+        Some(are_within(BACK, &source.camera, &read.cameras.first()?.camera))
+    };
+    !has_formula && given_back().unwrap_or(false)
 }
 
 /// A rotation of rays in the axes of camera files, where y points down and z forward.

@@ -89,18 +89,18 @@ fn said(format: &CameraFormat, read: &Read) -> String {
 
 /// Whether the cameras of two readings agree, one by one.
 fn are_same(a: &CameraFile, b: &CameraFile) -> bool {
-    a.cameras.len() == b.cameras.len() && a.cameras.iter().zip(&b.cameras).all(|(a, b)| is_same(&a.camera, &b.camera))
+    a.cameras.len() == b.cameras.len() && a.cameras.iter().zip(&b.cameras).all(|(a, b)| are_within(SAME_PX, &a.camera, &b.camera))
 }
 
-/// Whether two cameras picture the same within [`SAME_PX`] over the frame, which they leave without a ray at the same pixels.
-fn is_same(a: &Camera, b: &Camera) -> bool {
+/// Whether two cameras picture the same within so many px over the frame, which they leave without a ray at the same pixels.
+pub(super) fn are_within(px: f64, a: &Camera, b: &Camera) -> bool {
     let size = a.size();
     let place = |index: u32, length: u32| f64::from(length.saturating_sub(1)) * f64::from(index) / f64::from(PLACES - 1);
     let mut pixels = (0..PLACES * PLACES).map(|i| PixelPoint::new(place(i % PLACES, size.width), place(i / PLACES, size.height)));
     size == b.size()
         && (a == b
             || pixels.all(|pixel| match (a.unproject(pixel), b.unproject(pixel)) {
-                (Ok(ray), Ok(_)) => b.project(ray).is_ok_and(|image| image.distance(pixel) <= SAME_PX),
+                (Ok(ray), Ok(_)) => b.project(ray).is_ok_and(|image| image.distance(pixel) <= px),
                 (Err(_), Err(_)) => true,
                 _ => false,
             }))

@@ -27,7 +27,7 @@ pub(super) fn converted(
     }
 }
 
-fn as_they_are(camera: Camera) -> Conversion {
+pub(super) fn as_they_are(camera: Camera) -> Conversion {
     Conversion {
         camera,
         method: Method::Exact,

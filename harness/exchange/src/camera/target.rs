@@ -12,13 +12,13 @@ use super::{CameraFormat, FORMATS, NamedCamera, format_named};
 pub const TARGETS: [(&str, &str); 13] = [
     ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
     ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
-    ("opencv", "OpenCV with five coefficients; also opencv4, opencv5, opencv8, opencv12, opencv14"),
+    ("opencv", "OpenCV with the fewest coefficients that are exact, or five; also opencv4, opencv5, opencv8, opencv12, opencv14"),
     ("opencv4", "k1, k2, p1, p2"),
     ("opencv8", "rational: k4 to k6 as well"),
     ("opencv12", "thin prism: s1 to s4 as well"),
     ("opencv14", "tilt as well"),
     ("opencv-fisheye", "OpenCV's fisheye"),
-    ("metashape", "Metashape, PhotoScan from 1.2: k1 to k3, p1, p2, b1, b2"),
+    ("metashape", "Metashape, PhotoScan from 1.2: k1 to k3, p1, p2, b1, b2; k4, p3, p4 where the camera has them"),
     ("photoscan", "PhotoScan before 1.2: cameras XML with fx, fy, cx, cy, skew"),
     ("agisoft-lens", "Agisoft Lens: calibration XML with fx, fy, cx, cy, skew"),
     ("pix4d", "Pix4D's .cam (needs the pixel pitch)"),
@@ -87,6 +87,14 @@ fn leanest(source: &NamedCamera) -> Target {
     exact.unwrap_or(Target::OpenCv { coefficients: 5 })
 }
 
+/// Metashape's model with the fewest of K4, P3, P4 that holds a camera exactly, or the usual one without them.
+fn of_metashape(source: &NamedCamera) -> Target {
+    let of = |(radial, tangential)| Target::Agisoft { version: AgisoftVersion::Metashape, radial, tangential, affinity: true };
+    let exact =
+        [(3, 2), (4, 2), (3, 4), (4, 4)].map(of).into_iter().find(|target| source.splines.is_none() && target.is_exact_for(&source.camera));
+    exact.unwrap_or(Target::metashape())
+}
+
 /// The target called `name`.
 ///
 /// # Errors
@@ -105,7 +113,7 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
             (Target::Ebner { pitch_um: given.pitch(name)?, b_mm }, "photogrammetric")
         }
         "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
-        "metashape" => (Target::metashape(), "metashape"),
+        "metashape" => (of_metashape(given.source), "metashape"),
         "pix4d" | "pix4d-inpho" => (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: given.order }, name),
         "photoscan" => (older(AgisoftVersion::PhotoScan), "photoscan-cameras"),
         "agisoft-lens" => (older(AgisoftVersion::Lens), "metashape"),

@@ -72,7 +72,7 @@ pub(super) fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> boo
             let centred = form.centre.to_corner() == middle;
             centred && !affine && form.b == 0.0 && k[radial..].iter().all(|&k| k == 0.0) && p == [0.0; 4]
         }
-        Target::MicMac { radial, tangential } => {
+        Target::MicMac { radial, tangential, .. } => {
             let held = k[radial.min(4)..].iter().all(|&k| k == 0.0) && p[if tangential { 2 } else { 0 }..].iter().all(|&p| p == 0.0);
             held && !affine && form.b == 0.0
         }

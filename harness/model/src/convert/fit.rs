@@ -9,7 +9,7 @@ use crate::camera::CameraModel;
 
 const MOST_STEPS: usize = 300;
 /// Sights that a fit begins with, of more.
-const FEW: usize = 200;
+const FEW: usize = 150;
 /// Slope of the sum of squares below which nothing is left to gain, px.
 const FLAT: f64 = 1e-11;
 /// Slope, px, above which a fit that ran out of steps has failed.

@@ -75,12 +75,14 @@ pub enum Target {
     PrismFisheye,
     /// Fisheye, then decentring and thin prism.
     RadTanPrismFisheye,
-    /// MicMac's, with the distortion around the principal point.
+    /// MicMac's.
     MicMac {
         /// Radial coefficients: 0 to 5.
         radial: usize,
         /// Holds P1 and P2.
         tangential: bool,
+        /// Holds b1 and b2, and a centre of the distortion that is not the principal point.
+        affinity: bool,
     },
 }
 
@@ -173,9 +175,10 @@ impl Target {
             Self::Division => vec!["alpha"],
             Self::Centred { radial } => [&["cx", "cy"], &K[radial..], &P[..], &B[..]].concat(),
             Self::Omni { distortion: false } => [&K[..2], &P[..2]].concat(),
-            Self::MicMac { radial, tangential } => {
+            Self::MicMac { radial, tangential, affinity: b } => {
                 const FIVE: [&str; 5] = ["k1", "k2", "k3", "k4", "k5"];
-                [&["ex", "ey"], &FIVE[radial..], &P[if tangential { 2 } else { 0 }..], &B[..]].concat()
+                let centre = if b { &[][..] } else { &["ex", "ey"] };
+                [centre, &FIVE[radial..], &P[if tangential { 2 } else { 0 }..], affinity(b)].concat()
             }
             Self::OpenCv { .. }
             | Self::Pix4d { .. }

@@ -26,8 +26,9 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     convention: Some(&micmac::CONVENTION),
     models: |_| {
         vec![
-            Model { name: "ModRad", target: Target::MicMac { radial: 3, tangential: false } },
-            Model { name: "ModPhgrStd", target: Target::MicMac { radial: 5, tangential: true } },
+            Model { name: "ModRad", target: Target::MicMac { radial: 3, tangential: false, affinity: false } },
+            Model { name: "ModPhgrStd", target: Target::MicMac { radial: 5, tangential: true, affinity: false } },
+            Model { name: "ModPhgrStd", target: Target::MicMac { radial: 5, tangential: true, affinity: true } },
         ]
     },
     keeps: Keeps { ..PLAIN.keeps },

@@ -98,12 +98,18 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let d: [f64; 6] = numbers(coefficients).map_err(|error| at(error, "DistortionCoeficients"))?;
     let (radial, tangential) = match value(node, "DistortionModel")?.unwrap_or("perspective") {
         "perspective" => (0, false),
+        "division" if d == [0.0; 6] => (0, false),
+        "division" => {
+            let problem =
+                "has coefficients of the division model, whose formula is not published; expected zeros, or export with a Brown model";
+            return Err(at(CameraFileError::new(problem), "DistortionCoeficients"));
+        }
         "brown3" => (3, false),
         "brown4" => (4, false),
         "brown3t2" => (3, true),
         "brown4t2" => (4, true),
         other => {
-            let known = "perspective, brown3, brown4, brown3t2 or brown4t2";
+            let known = "perspective, division, brown3, brown4, brown3t2 or brown4t2";
             return Err(at(CameraFileError::new(format!("`{}` is not known; expected {known}", shortened(other))), "DistortionModel"));
         }
     };

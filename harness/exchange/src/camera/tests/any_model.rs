@@ -13,7 +13,7 @@ use super::super::{
 };
 
 /// One camera of each model of the workspace, of little and of much distortion.
-fn all_models() -> Vec<Camera> {
+pub(super) fn all_models() -> Vec<Camera> {
     const SIZE: ImageSize = ImageSize { width: 1200, height: 900 };
     let mut distortion = [0.0; 14];
     distortion[..5].copy_from_slice(&[-0.08, 0.02, 3e-4, -6e-4, -0.002]);
@@ -84,7 +84,7 @@ fn all_models() -> Vec<Camera> {
 }
 
 /// The largest distance of the two cameras' images of the rays of `a`'s pixels.
-fn apart(a: &Camera, b: &Camera) -> f64 {
+pub(super) fn apart(a: &Camera, b: &Camera) -> f64 {
     let ImageSize { width, height } = a.size();
     let mut worst: f64 = 0.0;
     for (x, y) in (0..=12).flat_map(|x| (0..=9).map(move |y| (x, y))) {

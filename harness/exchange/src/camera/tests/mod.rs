@@ -4,6 +4,7 @@ mod any_model;
 mod colmap_files;
 mod files;
 mod malformed;
+mod own_format;
 mod recognised;
 mod round_trip;
 mod same_camera;

@@ -81,6 +81,13 @@ fn the_samples_are_read_as_what_they_are() {
 }
 
 #[test]
+fn a_division_model_without_coefficients_is_a_pinhole() {
+    let zeros = XMP.replace("-0.1 0.02 0 0 0.001 0.002", "0 0 0 0 0 0");
+    let read = |text: &str| read_with(text, SIZE).unwrap().cameras[0].camera;
+    assert_eq!(read(&zeros.replace("brown3t2", "division")), read(&zeros.replace("brown3t2", "perspective")));
+}
+
+#[test]
 fn an_id_that_stands_twice_is_refused() {
     let colmap = "1 PINHOLE 640 480 500 501 320 240\n01 PINHOLE 640 480 900 901 320 240\n";
     let kapture = "cam0, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\ncam0, right, camera, RADIAL, 640, 480, 900, 320, 240, -0.1, 0.02\n";
@@ -116,7 +123,7 @@ fn what_is_left_out_is_said() {
 
 /// Sample, what is replaced, by what, and what the error must say.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str, &str, &str); 50] = [
+const MISTAKES: [(&str, &str, &str, &str); 51] = [
     (COLMAP, "OPENCV 640", "OPENGL 640", "f:2, `OPENGL`: model `OPENGL` is not known; expected SIMPLE_PINHOLE, PINHOLE"),
     (COLMAP, "PINHOLE 640 480 500 501 320 240", "EUCM 640 480 500 501 320 240 0.5 -1", "f:3, `EUCM`: expected a number above zero, found -1"),
     (COLMAP, "PINHOLE 640 480 500 501 320 240", "EUCM 640 480 500 501 320 240 1.5 1", "`EUCM`: expected alpha from 0 to 1, found 1.5"),
@@ -158,7 +165,8 @@ const MISTAKES: [(&str, &str, &str, &str); 50] = [
     (BUNDLER, "0 0 1\n1 2 3\n", "0 0 1\n", "ends inside camera 0 of 1"),
     (BUNDLER, "500 -0.1", "-500 -0.1", "f:3: expected a focal length above zero, found -500"),
     (BAL, "0.02\n1\n2\n3\n", "", "ends before the nine numbers of camera 0"),
-    (XMP, "brown3t2", "division", "`DistortionModel`: `division` is not known; expected perspective"),
+    (XMP, "brown3t2", "fisheye", "`DistortionModel`: `fisheye` is not known; expected perspective, division"),
+    (XMP, "brown3t2", "division", "`DistortionCoeficients`: has coefficients of the division model, whose formula is not published"),
     (XMP, "brown3t2", "brown3", "`DistortionCoeficients`: has coefficients that the model has not"),
     (XMP, "xcr:PrincipalPointU=\"0.01\"", "xcr:AspectRatio=\"1.01\"", "`AspectRatio`: is 1.01; how it acts is not published"),
     (BENTLEY, "Perspective", "Fisheye", "f:3:1, `CameraModelType`: `Fisheye` is not known here; expected Perspective"),

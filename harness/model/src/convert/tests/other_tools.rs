@@ -88,18 +88,35 @@ fn micmac_s_pixels_become_numbers() {
     let (k, p) = ([-3e-8, 4e-15, 1e-22, 0.0, 0.0], [2e-7, -5e-7]);
     let micmac = MicMac { size: SIZE, f: 1500.0, pp: [x, y], offset: [0.0; 2], k, p, b: [0.0; 2] };
     let there = exactly(micmac.into(), Target::OpenCv { coefficients: 5 });
-    let back = exactly(there, Target::MicMac { radial: 3, tangential: true });
+    let back = exactly(there, Target::MicMac { radial: 3, tangential: true, affinity: false });
     assert!(apart(&micmac.into(), &back) < 1e-8);
     exactly(micmac.into(), Target::metashape());
     for other in [MicMac { offset: [1.0, 0.0], ..micmac }, MicMac { b: [1e-3, 0.0], ..micmac }] {
         assert!(!Target::metashape().is_exact_for(&other.into()));
         let found = convert(&other.into(), Target::metashape(), &ConvertOptions::default()).unwrap();
         assert_eq!(found.method, Method::Fitted);
+        assert!(!Target::MicMac { radial: 5, tangential: true, affinity: false }.is_exact_for(&other.into()));
+        assert_eq!(exactly(other.into(), Target::MicMac { radial: 5, tangential: true, affinity: true }), other.into());
     }
+    // Two focal lengths are b1 of a fit, skew b2.
+    let skewed = Camera::from(Agisoft {
+        version: AgisoftVersion::Metashape,
+        size: SIZE,
+        f: 1500.0,
+        cx: 8.0,
+        cy: -6.0,
+        b1: 2.0,
+        b2: 0.7,
+        k: [-0.05, 0.01, 0.0, 0.0],
+        p: [3e-4, -2e-4, 0.0, 0.0],
+    });
+    let fitted = |affinity| convert(&skewed, Target::MicMac { radial: 5, tangential: true, affinity }, &ConvertOptions::default());
+    assert!(fitted(false).is_err() || fitted(false).unwrap().residual.max_px > 0.1);
+    assert!(fitted(true).unwrap().residual.max_px < 0.01);
     // A fifth radial coefficient and two focal lengths have no place on either side.
     assert!(!Target::metashape().is_exact_for(&MicMac { k: [0.0, 0.0, 0.0, 0.0, 1e-36], ..micmac }.into()));
     let two = Camera::from(OpenCv { fy: 1501.0, ..opencv(5, &[0.1]) });
-    assert!(!Target::MicMac { radial: 5, tangential: true }.is_exact_for(&two));
+    assert!(!Target::MicMac { radial: 5, tangential: true, affinity: false }.is_exact_for(&two));
 }
 
 #[test]
