@@ -6,7 +6,7 @@ use std::hint::black_box;
 use calibench_measure::Operator;
 use calibench_measure::harris::{Harris, StrengthMap};
 use calibench_measure::paraboloid::Weights;
-use calibench_model::{Image, Start};
+use calibench_model::{Image, PixelPoint, Start};
 use opencv::core::{BORDER_DEFAULT, Mat};
 use rayon::prelude::*;
 
@@ -47,10 +47,13 @@ pub(crate) fn run() {
     control();
     points(&image, &starts);
     for blur in BLURS {
-        crossings(blur, ("parametric corner", "parametric_corner:window=15"), &[1.0, -1.0], 15_000.0);
+        targets(blur, ("parametric corner", "parametric_corner:window=15"), scene::crossings(blur, &[1.0, -1.0]), 15_000.0);
     }
     for blur in BLURS {
-        crossings(blur, ("parametric junction, 2 arms", "parametric_junction:window=15,arms=2"), &[1.0], 20_000.0);
+        targets(blur, ("parametric junction, 2 arms", "parametric_junction:window=15,arms=2"), scene::crossings(blur, &[1.0]), 20_000.0);
+    }
+    for disc in [("parametric circle, 14 px", "parametric_circle"), ("ellipse edges, 14 px", "ellipse_edges")] {
+        targets(0.7, disc, scene::discs(0.7), 25_000.0);
     }
     harris(&image);
 }
@@ -66,9 +69,8 @@ fn control() {
     Row { name, unit: "/s", amount: 40.0, ours: &ours, spread: Some(&spread), rival: None, least: f64::NAN }.print();
 }
 
-/// An operator on what it is for: crossings with these dark areas.
-fn crossings(blur: f64, (what, spec): (&str, &str), dark: &[f64], least: f64) {
-    let (image, places) = scene::crossings(blur, dark);
+/// An operator on what it is for: an image without noise and where the targets are in it.
+fn targets(blur: f64, (what, spec): (&str, &str), (image, places): (Image, Vec<PixelPoint>), least: f64) {
     let (image, starts) = (scene::spoil(image), scene::starts(&places));
     let name = format!("{what}, blur {blur} px unknown, points/s");
     let Some(operator) = operator(spec) else {
@@ -79,7 +81,7 @@ fn crossings(blur: f64, (what, spec): (&str, &str), dark: &[f64], least: f64) {
     let found = operator.measure_all(&image, &starts);
     let near = found.iter().zip(&places).filter(|(found, place)| found.as_ref().is_ok_and(|found| found.position.distance(**place) < 0.5));
     let converged = found.iter().filter(|found| found.is_ok()).count();
-    println!("  of {} crossings {converged} converged, {} within half a pixel", starts.len(), near.count());
+    println!("  of {} targets {converged} converged, {} within half a pixel", starts.len(), near.count());
 }
 
 fn operator(text: &str) -> Option<Box<dyn Operator>> {

@@ -54,6 +54,36 @@ pub(crate) fn corners() -> (Image, Vec<PixelPoint>) {
 /// A crossing of two turned, tilted edges in each cell, through a lens of `blur` px; without noise. And where they are. Dark are those of two opposite areas
 /// whose signs are given: one is a corner, both a chess corner.
 pub(crate) fn crossings(blur: f64, dark: &[f64]) -> (Image, Vec<PixelPoint>) {
+    through_lens(blur, |i, centre| {
+        let turn = std::f64::consts::TAU * (i * 0.618_033_988_749_895).fract();
+        // Edges that cross at 70 to 90 degrees.
+        let between = std::f64::consts::FRAC_PI_2 - 0.35 * (i * 0.414_213_562).fract();
+        let reach = (CELL.0 + CELL.1) as f64;
+        let quarter = |sign: &f64| {
+            let along = |angle: f64| (sign * reach * angle.cos(), sign * reach * angle.sin());
+            let (u, v) = (along(turn), along(turn + between));
+            let vertex = |(x, y): (f64, f64)| PixelPoint::new(centre.x + x, centre.y + y);
+            let vertices = [(0.0, 0.0), u, (u.0 + v.0, u.1 + v.1), v].map(vertex).into();
+            Polygon { id: String::new(), vertices, grey: 0.2 }
+        };
+        dark.iter().map(quarter).collect()
+    })
+}
+
+/// A dark disc of 14 px in each cell, through a lens of `blur` px; without noise. And where they are.
+pub(crate) fn discs(blur: f64) -> (Image, Vec<PixelPoint>) {
+    const RADIUS: f64 = 7.0;
+    through_lens(blur, |_, centre| {
+        let vertex = |k: u32| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 128.0).sin_cos();
+            PixelPoint::new(centre.x + RADIUS * cos, centre.y + RADIUS * sin)
+        };
+        vec![Polygon { id: String::new(), vertices: (0..128).map(vertex).collect(), grey: 0.2 }]
+    })
+}
+
+/// What `areas` says of each cell's number and centre, pictured by a lens, and the centres.
+fn through_lens(blur: f64, areas: impl Fn(f64, PixelPoint) -> Vec<Polygon>) -> (Image, Vec<PixelPoint>) {
     let (mut image, mut places) = (Image::new(WIDTH, HEIGHT, vec![0.0; WIDTH * HEIGHT]), Vec::new());
     let optics = Optics { blur, ..Optics::default() };
     let renderer = Renderer::new(&optics, CELL.0, CELL.1).expect("a blur that can be rendered");
@@ -61,24 +91,7 @@ pub(crate) fn crossings(blur: f64, dark: &[f64]) -> (Image, Vec<PixelPoint>) {
     for index in 0..columns * (HEIGHT / CELL.1) {
         let (i, left, top) = (index as f64, index % columns * CELL.0, index / columns * CELL.1);
         let centre = PixelPoint::new(19.5 + (i * 0.754_877_666).fract(), 14.5 + (i * 0.569_840_291).fract());
-        let turn = std::f64::consts::TAU * (i * 0.618_033_988_749_895).fract();
-        // Edges that cross at 70 to 90 degrees.
-        let between = std::f64::consts::FRAC_PI_2 - 0.35 * (i * 0.414_213_562).fract();
-        let reach = (CELL.0 + CELL.1) as f64;
-        let quarter = |sign: f64| {
-            let along = |angle: f64| (sign * reach * angle.cos(), sign * reach * angle.sin());
-            let (u, v) = (along(turn), along(turn + between));
-            let vertex = |(x, y): (f64, f64)| PixelPoint::new(centre.x + x, centre.y + y);
-            let vertices = [(0.0, 0.0), u, (u.0 + v.0, u.1 + v.1), v].map(vertex).into();
-            Polygon { id: String::new(), vertices, grey: 0.2 }
-        };
-        let scene = Scene {
-            width: CELL.0,
-            height: CELL.1,
-            background: 0.8,
-            polygons: dark.iter().map(|sign| quarter(*sign)).collect(),
-            targets: Vec::new(),
-        };
+        let scene = Scene { width: CELL.0, height: CELL.1, background: 0.8, polygons: areas(i, centre), targets: Vec::new() };
         let tile = renderer.render(&Picture::from(&scene), &[]);
         for y in 0..CELL.1 {
             let start = (top + y) * WIDTH + left;
