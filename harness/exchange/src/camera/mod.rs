@@ -8,6 +8,7 @@ mod colmap_images;
 mod colmap_models;
 pub mod conversion;
 mod covariance;
+mod encoding;
 mod error;
 pub mod fit;
 pub mod for_file;
@@ -156,9 +157,13 @@ pub fn parse_camera(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<C
 }
 
 fn parse(bytes: &[u8], options: &ReadOptions) -> Result<CameraFile, CameraFileError> {
-    match Source::new(bytes) {
-        Ok(source) => recognised::cameras(FORMATS, &source, options),
-        Err(no_text) => recognised::binary(FORMATS, bytes, options).unwrap_or(Err(no_text)),
+    let no_text = |why| recognised::binary(FORMATS, bytes, options).unwrap_or(Err(why));
+    match encoding::in_utf8(bytes) {
+        Ok(text) => match Source::new(&text) {
+            Ok(source) => recognised::cameras(FORMATS, &source, options),
+            Err(why) => no_text(why),
+        },
+        Err(why) => no_text(why),
     }
 }
 

@@ -5,6 +5,7 @@ use roxmltree::Node;
 
 use super::PLAIN;
 use crate::camera::fit::{Keeps, KeptCovariance, KeptPose};
+use crate::camera::ids::Ids;
 use crate::camera::number::{numbers, scientific};
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, agisoft, xml};
@@ -27,8 +28,14 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
 fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
     let Some(document) = &source.xml else { return Ok(Vec::new()) };
     let list = xml::required(document.root_element(), "cameras")?;
-    let cameras = xml::elements(list).filter(|node| node.has_tag_name("camera"));
-    cameras.map(|node| camera(node, options)).collect()
+    let mut ids = Ids::default();
+    let cameras = xml::elements(list).filter(|node| node.has_tag_name("camera")).map(|node| {
+        if let Some(id) = node.attribute("id") {
+            ids.take(id, node.document().text_pos_at(node.range().start).row as usize)?;
+        }
+        camera(node, options)
+    });
+    cameras.collect()
 }
 
 fn camera(node: Node<'_, '_>, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {

@@ -2,6 +2,7 @@
 
 mod any_model;
 mod colmap_files;
+mod encodings;
 mod files;
 mod malformed;
 mod own_format;

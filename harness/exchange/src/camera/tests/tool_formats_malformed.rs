@@ -99,6 +99,11 @@ fn an_id_that_stands_twice_is_refused() {
     let (entry, _) = OPENMVG.split_once("\"intrinsics\": [").and_then(|(_, rest)| rest.rsplit_once(']')).unwrap();
     let error = read_with(&two.replacen("ENTRY", entry, 1), SIZE).unwrap_err();
     assert!(error.contains("the id of two cameras"), "{error}");
+    let camera = "<camera id=\"3\" label=\"LABEL\"><calibration><projection>frame</projection><width>640</width><height>480</height><fx>500</fx><fy>501</fy>\
+        <cx>320</cx><cy>240</cy></calibration></camera>\n";
+    let old = format!("<collection><cameras>\n{}{}</cameras></collection>\n", camera.replace("LABEL", "a"), camera.replace("LABEL", "b"));
+    let error = read_with(&old, ReadOptions::default()).unwrap_err();
+    assert!(error.contains("`3`: the id of two cameras, first on line 2"), "{error}");
     // A camera without a name has one in ROS.
     let named = super::super::NamedCamera::new("", read_with(ROS, SIZE).unwrap().cameras[0].camera);
     let text = super::super::camera_text(super::super::format_named("ros").unwrap(), &[named]).unwrap();
