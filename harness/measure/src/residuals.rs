@@ -123,3 +123,34 @@ fn shifted(values: &[f32], by: usize) -> f64 {
     let rest: f32 = values[done..].iter().zip(&values[done + by..]).map(|(here, there)| here * there).sum();
     sum(&sums) + f64::from(rest)
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+
+    #[test]
+    fn lanes_add_up_what_one_by_one_is_added_up() {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        for (side, stride) in [(15, 16), (21, 32), (47, 48)] {
+            let mut planes = [(); 3].map(|()| vec![0.0_f32; side * stride]);
+            for plane in &mut planes {
+                plane.chunks_exact_mut(stride).for_each(|row| row[..side].fill_with(|| rng.random_range(-0.08..0.08)));
+            }
+            let [by_x, by_y, residual] = planes;
+            let shows = |at: usize| by_x[at].hypot(by_y[at]) > SHOWS;
+            let of = |index: usize| (index / side * stride + index % side, residual[index / side * stride + index % side] * 2.5);
+            let grey = (0..side * side).map(of).map(|(at, r)| if shows(at) { r } else { f32::NAN }).collect();
+            let one = Residuals { grey, side }.structure();
+            let found = Structure::of_outline([&by_x, &by_y], &mut residual.clone(), &mut vec![0.0; side * stride], (stride, 2.5));
+            assert_eq!((found.pairs, found.count), (one.pairs, one.count));
+            assert!(one.count > 50.0 && one.count < 0.9 * (side * side) as f64, "{one:?}");
+            assert!(
+                (found.product - one.product).abs() < 1e-6 * one.square && (found.square / one.square - 1.0).abs() < 1e-6,
+                "{found:?} {one:?}"
+            );
+        }
+    }
+}

@@ -139,3 +139,30 @@ fn coverage_is_exact_and_derivatives_are_those_of_differences() {
         }
     }
 }
+
+/// A disc of which something grey hides all that is more than so many px to the right of its centre.
+fn hidden(disc: &quadrature_images::Ellipse, beyond: f64, noise: f64) -> Image {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let mut grey = noisy(&disc.render(SIDE), noise, &mut rng);
+    for (index, grey) in grey.iter_mut().enumerate() {
+        let covered = ((index % SIDE) as f64 + 0.5 - disc.position[0] - beyond).clamp(0.0, 1.0);
+        *grey += covered * (0.55 - *grey);
+    }
+    quadrature_images::image(&grey, SIDE)
+}
+
+#[test]
+fn a_disc_that_is_partly_hidden_is_rejected() {
+    let disc = disc(7.0, 0.9, 0.4, 0.7, [0.2, -0.3]);
+    let start = Start::at(PixelPoint::new(disc.position[0] - 1.0, disc.position[1]));
+    for name in ["parametric_circle", "ellipse_edges"] {
+        let measured = |spec: &str, beyond: f64| operator(spec).measure(&hidden(&disc, beyond, 0.006), &start);
+        assert!(measured(name, 20.0).is_ok(), "{name}");
+        for beyond in [1.0, 2.5, 4.0, 5.5] {
+            assert_eq!(measured(name, beyond), Err(Rejection::Misfit), "{name} {beyond}");
+            // Nothing else rejects it.
+            let wrong = measured(&format!("{name}:misfit=2"), beyond).unwrap().position;
+            assert!(wrong.x - disc.position[0] < -0.05, "{name} {beyond}: {wrong:?}");
+        }
+    }
+}
