@@ -189,6 +189,8 @@ fn fisheye_camera(size: ImageSize, k: &[f64; 9], found: &[f64]) -> Result<Camera
 pub(super) struct Written {
     pub size: ImageSize,
     pub fisheye: bool,
+    /// Of cv2.omnidir's camera.
+    pub xi: Option<f64>,
     pub matrix: [f64; 9],
     pub distortion: Vec<f64>,
 }
@@ -199,10 +201,13 @@ pub(super) fn written(camera: &Camera, format: &CameraFormat) -> Result<Written,
     match *camera {
         Camera::OpenCv(OpenCv { size, fx, fy, cx, cy, distortion, coefficients }) if [4, 5, 8, 12, 14].contains(&coefficients) => {
             let distortion = distortion[..coefficients].to_vec();
-            Ok(Written { size, fisheye: false, matrix: matrix(fx, 0.0, cx, fy, cy), distortion })
+            Ok(Written { size, fisheye: false, xi: None, matrix: matrix(fx, 0.0, cx, fy, cy), distortion })
         }
         Camera::OpenCvFisheye(OpenCvFisheye { size, fx, fy, cx, cy, skew, k }) => {
-            Ok(Written { size, fisheye: true, matrix: matrix(fx, fx * skew, cx, fy, cy), distortion: k.to_vec() })
+            Ok(Written { size, fisheye: true, xi: None, matrix: matrix(fx, fx * skew, cx, fy, cy), distortion: k.to_vec() })
+        }
+        Camera::Omni(Omni { size, fx, fy, cx, cy, xi, k, p }) => {
+            Ok(Written { size, fisheye: false, xi: Some(xi), matrix: matrix(fx, 0.0, cx, fy, cy), distortion: [k, p].concat() })
         }
         _ => Err(format.other_model("a camera of OpenCV's models")),
     }

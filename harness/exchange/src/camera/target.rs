@@ -9,7 +9,7 @@ use thiserror::Error;
 use super::{CameraFormat, FORMATS, NamedCamera, format_named};
 
 /// The names of conventions, besides those of formats with models of their own, with what they mean.
-pub const TARGETS: [(&str, &str); 13] = [
+pub const TARGETS: [(&str, &str); 14] = [
     ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
     ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
     ("opencv", "OpenCV with the fewest coefficients that are exact, or five; also opencv4, opencv5, opencv8, opencv12, opencv14"),
@@ -18,6 +18,7 @@ pub const TARGETS: [(&str, &str); 13] = [
     ("opencv12", "thin prism: s1 to s4 as well"),
     ("opencv14", "tilt as well"),
     ("opencv-fisheye", "OpenCV's fisheye"),
+    ("opencv-omnidir", "cv2.omnidir's camera of Mei: xi, k1, k2, p1, p2"),
     ("metashape", "Metashape, PhotoScan from 1.2: k1 to k3, p1, p2, b1, b2; k4, p3, p4 where the camera has them"),
     ("photoscan", "PhotoScan before 1.2: cameras XML with fx, fy, cx, cy, skew"),
     ("agisoft-lens", "Agisoft Lens: calibration XML with fx, fy, cx, cy, skew"),
@@ -113,6 +114,7 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
             (Target::Ebner { pitch_um: given.pitch(name)?, b_mm }, "photogrammetric")
         }
         "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
+        "opencv-omnidir" => (Target::Omni { distortion: true }, opencv),
         "metashape" => (of_metashape(given.source), "metashape"),
         "pix4d" | "pix4d-inpho" => (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: given.order }, name),
         "photoscan" => (older(AgisoftVersion::PhotoScan), "photoscan-cameras"),

@@ -131,6 +131,9 @@ impl<T: Real> Outline<T> {
     #[inline(always)]
     fn columns<const ALL: bool>(&mut self, node: &mut Node<T>, blur: f64) {
         node.across = self.across.len();
+        if node.chunks == 0 {
+            return;
+        }
         let (edge, bell, _) = self.rims.of(&node.seen);
         let (from, count) = (node.across + node.seen.first - node.chunk * LANES, node.seen.count);
         let end = node.across + node.chunks * LANES;

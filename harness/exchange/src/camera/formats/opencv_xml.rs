@@ -79,6 +79,7 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     out.push_str(&format!("<fisheye_model>{}</fisheye_model>\n", u8::from(camera.fisheye)));
     out.push_str(&matrix("camera_matrix", 3, &camera.matrix));
     out.push_str(&matrix("distortion_coefficients", camera.distortion.len(), &camera.distortion));
+    out.extend(camera.xi.map(|xi| matrix("xi", 1, &[xi])));
     Ok(out + "</opencv_storage>\n")
 }
 

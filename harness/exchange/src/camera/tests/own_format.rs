@@ -61,6 +61,7 @@ fn target(format: &CameraFormat, camera: &Camera) -> Option<&'static str> {
     match (format.name, camera) {
         ("opencv-yaml" | "opencv-xml", Camera::OpenCvFisheye(_)) => Some("opencv-fisheye"),
         ("opencv-yaml" | "opencv-xml", Camera::OpenCv(_)) => Some("opencv"),
+        ("opencv-yaml" | "opencv-xml", Camera::Omni(_)) => Some("opencv-omnidir"),
         ("metashape", Camera::Agisoft(camera)) if camera.version == AgisoftVersion::Lens => Some("agisoft-lens"),
         ("photoscan-cameras", _) => Some("photoscan"),
         ("metashape" | "pix4d" | "pix4d-inpho", _) => Some(format.name),

@@ -166,3 +166,29 @@ fn a_disc_that_is_partly_hidden_is_rejected() {
         }
     }
 }
+
+#[test]
+fn an_outline_that_leaves_the_window_is_pictured_as_in_a_larger_one() {
+    // 31 px of 61, from pixel 15 on.
+    const MARGIN: usize = 15;
+    let fill = |side: usize, at: [f64; 2], radius: f64, fineness| {
+        let mut planes = Exact::new(side);
+        planes.fill(&Ellipse { position: at, shape: [radius, 0.2 * radius, 0.8 * radius] }, 0.4, fineness);
+        planes
+    };
+    for at in [[15.0, 15.0], [-2.0, 12.0], [33.0, 3.0], [15.0, 31.5], [29.0, 31.0], [-9.0, -9.0]] {
+        for radius in [2.0, 6.0, 11.0] {
+            for fineness in [FINE, blurred_ellipse::ROUGH] {
+                let small = fill(31, at, radius, fineness);
+                let large = fill(31 + 2 * MARGIN, at.map(|c| c + MARGIN as f64), radius, fineness);
+                for (small_plane, large_plane) in small.values.iter().zip(&large.values) {
+                    for (row, column) in (0..31).flat_map(|row| (0..31).map(move |column| (row, column))) {
+                        let there = large_plane[(row + MARGIN) * large.stride + column + MARGIN];
+                        let here = small_plane[row * small.stride + column];
+                        assert!((here - there).abs() < 1e-9, "{at:?} {radius}: {here} {there} at {column}, {row}");
+                    }
+                }
+            }
+        }
+    }
+}
