@@ -37,7 +37,7 @@ pub const CONVENTION: Convention = Convention {
     about: "unified (omnidirectional) camera of Mei: fx, fy, cx, cy, xi, k1, k2, p1, p2",
     order: TangentialOrder::OpenCv,
     source: "Mei and Rives 2007",
-    verification: Verification::Unverified("formulas after the paper; no projected point of a tool was at hand"),
+    verification: Verification::Verified("projectPoints of cv2.omnidir, OpenCV 5.0, to 1e-9 px"),
     ..double_sphere::CONVENTION
 };
 
@@ -101,6 +101,23 @@ mod tests {
     fn conforms() {
         conformance::check(&camera(), Shape::Barrel);
         conformance::check(&Omni { xi: 0.7, fx: 700.0, fy: 700.0, k: [0.0; 2], p: [0.0; 2], ..camera() }, Shape::Barrel);
+    }
+
+    /// Points (x right, y down, z forward) as OpenCV 5.0.0 (opencv-contrib) pictures them: `cv2.omnidir.projectPoints` with this camera, no rotation.
+    #[test]
+    fn points_are_pictured_as_by_opencv_s_omnidir() {
+        let size = ImageSize { width: 1200, height: 900 };
+        let camera = Omni { size, fx: 1100.0, fy: 1101.0, cx: 605.0, cy: 445.0, xi: 1.3, k: [-0.1, 0.02], p: [2e-4, 1e-4] };
+        for ([x, y, z], u, v) in [
+            ([0.3, -0.2, 1.0], 743.229_117_793_775_9, 352.770_206_953_229),
+            ([-2.0, 0.5, 1.0], 66.157_722_858_033_03, 579.899_542_683_391),
+            ([1.5, 2.5, 0.4], 978.829_147_293_391_1, 1_068.632_457_037_867_9),
+            ([-0.7, -3.0, -0.5], 402.499_134_777_521_36, -423.838_556_726_444_84),
+        ] {
+            // Rays have y upwards and z backwards.
+            let found = camera.project(Ray { x, y: -y, z: -z }).unwrap();
+            assert!((found.x - u).hypot(found.y - v) < 1e-9, "{found:?} {u} {v}");
+        }
     }
 
     #[test]
