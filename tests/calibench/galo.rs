@@ -13,6 +13,9 @@ struct Printed {
     estimate: (f64, f64),
 }
 
+/// Figures that nobody drew.
+const DRAWN: usize = 4000;
+
 const FIVE: Printed = Printed { reference: (93.5, 91.5), estimate: (93.532, 91.481) };
 const NINE: Printed = Printed { reference: (209.5, 151.0), estimate: (209.487, 151.066) };
 const TEN: Printed = Printed { reference: (178.0, 182.5), estimate: (178.099, 182.518) };
@@ -20,6 +23,18 @@ const TEN: Printed = Printed { reference: (178.0, 182.5), estimate: (178.099, 18
 impl Printed {
     /// The smallest largest difference from the print, px, over starts within 3 px, for a wedge drawn between two directions.
     fn best(&self, first: (i32, i32), second: (i32, i32)) -> f64 {
+        let printed = self.error();
+        let off = self.errors(first, second).into_iter().map(|(x, y)| (x - printed.0).abs().max((y - printed.1).abs()));
+        off.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The printed error, px.
+    fn error(&self) -> (f64, f64) {
+        (self.estimate.0 - self.reference.0, self.estimate.1 - self.reference.1)
+    }
+
+    /// The errors, px, from all starts within 3 px.
+    fn errors(&self, first: (i32, i32), second: (i32, i32)) -> Vec<(f64, f64)> {
         let offset = (self.reference.0.floor() - 23.0, self.reference.1.floor() - 23.0);
         let apex = PixelPoint::new(self.reference.0 - offset.0, self.reference.1 - offset.1);
         let far = |d: (i32, i32)| PixelPoint::new(apex.x + 100.0 * f64::from(d.0), apex.y + 100.0 * f64::from(d.1));
@@ -27,13 +42,29 @@ impl Printed {
         let image = draw(&Scene { width: SIDE, height: SIDE, background: 0.8, polygons: vec![wedge], targets: Vec::new() });
         let operator = Forstner::new(11);
         let starts = (-3..=3).flat_map(|dx| (-3..=3).map(move |dy| (f64::from(dx), f64::from(dy))));
-        let off = starts.filter_map(|(dx, dy)| {
+        let error = |(dx, dy): (f64, f64)| {
             let start = Start::at(PixelPoint::new(apex.x.round() + dx, apex.y.round() + dy));
             let found = operator.measure(&image, &start).ok()?.position;
-            let (ex, ey) = (found.x + offset.0 - self.estimate.0, found.y + offset.1 - self.estimate.1);
-            Some(ex.abs().max(ey.abs()))
-        });
-        off.fold(f64::INFINITY, f64::min)
+            Some((found.x - apex.x, found.y - apex.y))
+        };
+        starts.filter_map(error).collect()
+    }
+
+    /// The chance that a figure which nobody drew is met as nearly as the print: figures are errors of some wedge, moved by up to `by` px in each axis.
+    fn chance(&self, by: f64) -> f64 {
+        let directions = directions(3);
+        let pairs = directions.iter().enumerate().flat_map(|(i, first)| directions[i + 1..].iter().map(move |second| (*first, *second)));
+        let wedges = pairs.filter(|(first, second)| first.0 * second.1 != first.1 * second.0);
+        let all: Vec<(f64, f64)> =
+            wedges.flat_map(|(first, second)| self.errors(first, second)).filter(|(x, y)| x.hypot(*y) < 0.15).collect();
+        // Evenly spread, by the plastic number.
+        let spread = |step: usize, power: i32| 2.0 * (step as f64 * 1.324_717_957_244_746_f64.powi(-power)).fract() - 1.0;
+        let is_met = |step: &usize| {
+            let (x, y) = all[step * all.len() / DRAWN];
+            let (x, y) = (x + by * spread(*step, 1), y + by * spread(*step, 2));
+            all.iter().any(|other| (other.0 - x).abs().max((other.1 - y).abs()) < 7e-4)
+        };
+        (0..DRAWN).filter(is_met).count() as f64 / DRAWN as f64
     }
 
     /// The wedges with whole-number directions up to `most` that come within 0.0007 px of the print.
@@ -76,6 +107,16 @@ fn table_1_determines_the_edges_at_5_9_and_10() {
     assert_eq!(FIVE.search(3), [[(0, -1), (1, 0)]], "5: up and right, nothing else");
     assert_eq!(NINE.search(3), [[(-1, 1), (0, -1)]], "9: down to 10 at 45 degrees, and straight up");
     assert_eq!(TEN.search(3), [[(1, -1), (1, 1)]], "10: both edges at 45 degrees");
+}
+
+/// So many directions and starts meet many a figure: the share of those that nobody drew but that lie among the others.
+#[test]
+fn the_chance_of_such_an_agreement_is_what_the_report_says() {
+    let chances = [FIVE, NINE, TEN].map(|point| point.chance(0.01));
+    let said = [0.054, 0.061, 0.058];
+    for (chance, said) in chances.into_iter().zip(said) {
+        assert!((chance - said).abs() < 0.005, "{chances:?}");
+    }
 }
 
 #[test]

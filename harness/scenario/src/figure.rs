@@ -1,7 +1,7 @@
 //! The `[figure]` table: a drawing of a paper, as a flat scene.
 
 use calibench_diagnostics::Problem;
-use calibench_synth::testfield::{Figure4, Zhu};
+use calibench_synth::testfield::{Figure4, Join, Zhu};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
@@ -43,6 +43,8 @@ pub struct FigureWire {
     pub pen: Option<DrawingPen>,
     /// Whether one edge of (b) to (g) runs along +x, rather than the bisector. Default false.
     pub edge_along_x: Option<bool>,
+    /// How the two lines of (b) to (d) join. Default `mitre`.
+    pub join: Option<JoinWire>,
     /// Another angle of a line or solid corner, degrees; it then opens to the right. Default: that of the image.
     #[schemars(with = "Option<DrawingAngle>")]
     pub angle: Option<Spanned<DrawingAngle>>,
@@ -59,6 +61,36 @@ pub struct FigureWire {
     pub grey_noise: Option<Spanned<GreyNoise>>,
     /// Quantisation: 8, 12 or 16 bits; grey values below 0 and above 1 are clipped then. Default: none.
     pub bits: Option<Bits>,
+}
+
+/// How two lines join at a corner.
+#[derive(Clone, Copy, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum JoinWire {
+    /// The outer edges go on until they meet.
+    #[default]
+    Mitre,
+    /// The tip of the mitre is cut where the lines' own ends are.
+    Bevel,
+    /// An arc about where the lines' middles meet.
+    Round,
+    /// Each line ends where the middles meet.
+    Butt,
+    /// Each line goes on by half its width.
+    Square,
+}
+
+impl From<JoinWire> for Join {
+    fn from(join: JoinWire) -> Self {
+        match join {
+            JoinWire::Mitre => Self::Mitre,
+            JoinWire::Bevel => Self::Bevel,
+            JoinWire::Round => Self::Round,
+            JoinWire::Butt => Self::Butt,
+            JoinWire::Square => Self::Square,
+        }
+    }
 }
 
 /// Reads a `[figure]` table.
@@ -87,6 +119,7 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
         background: grey(wire.background, plain.background),
         edge_along_x: wire.edge_along_x.unwrap_or(false),
         pen: wire.pen.map_or(0.0, |pen| pen.0),
+        join: wire.join.unwrap_or_default().into(),
         angle: wire.angle.as_ref().map(|angle| angle.get_ref().0),
     };
     if let Some(angle) = wire.angle.as_ref().filter(|_| matches!(figure, Drawn::Sheet | Drawn::One(Figure4::EndPoint))) {

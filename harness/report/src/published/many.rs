@@ -7,6 +7,7 @@ use calibench_records::names::RECORDS;
 use calibench_records::points::read_records;
 use calibench_records::statistics::running::Running;
 
+use super::ensemble::Range;
 use super::figure::{Ours, of_points};
 use super::notes::Notes;
 use super::{Cell, Printed, Table, Tally, Verdict};
@@ -15,6 +16,8 @@ use crate::markdown::{MarkdownTable, fixed};
 
 /// Within so many standard deviations of their mean lie 95 % of single runs, if these are normal.
 const SINGLE: f64 = 1.959_964;
+/// The heading of what plausible experiments say.
+const PLAUSIBLE: &str = "plausible, 95 %";
 
 /// Our figures of points for every cell of `table`, over all trials in the records of `loaded`.
 ///
@@ -42,23 +45,28 @@ pub fn of_all_trials(table: &Table, loaded: &Loaded) -> Result<Vec<Option<Ours>>
 /// The table, with a figure of ours for every cell or none, over `trials` trials.
 pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (String, Tally) {
     let against_truth = figures.iter().flatten().any(|ours| ours.truth.is_some());
-    let mut header = vec!["row", "column", "printed", "one run", "mean", "single runs, 95 %", "true errors", "verdict"];
-    header.retain(|name| against_truth || *name != "true errors");
+    let mut header = vec!["row", "column", "printed", "one run", "mean", "single runs, 95 %", "true errors", PLAUSIBLE, "verdict"];
+    header.retain(|name| (against_truth || *name != "true errors") && (table.experiments.is_some() || *name != PLAUSIBLE));
     let mut rows = MarkdownTable::new(&header);
     let (mut tally, mut notes) = (Tally::default(), Notes::default());
     for (cell, figure) in table.cells.iter().zip(figures) {
-        let verdict = verdict(cell, figure.as_ref());
+        let verdict = verdict(table, cell, figure.as_ref());
+        let range = plausible(table, cell);
         tally.count(&verdict);
         let mut row = vec![cell.row.clone(), cell.column.clone(), cell.printed.clone()];
         row.extend(figure.as_ref().map_or_else(|| vec!["none".to_owned(); 4], |ours| cells(cell, ours)));
         if !against_truth {
             row.pop();
         }
+        if table.experiments.is_some() {
+            row.push(range.map_or_else(String::new, |range| ranged(cell, range)));
+        }
         let misprint = cell.misprint.as_ref().map_or_else(String::new, |misprint| notes.mark(&format!("misprint: {misprint}")));
         let said = match (&verdict, figure, Printed::parse(&cell.printed)) {
             (Verdict::NotComparable(why), _, _) => format!("{}{}", verdict.word(), notes.mark(why)),
-            (Verdict::Differs, Some(ours), Some(printed)) if printed.value != 0.0 => {
-                format!("{}: {:.2} times", verdict.word(), ours.mean / printed.value)
+            (Verdict::Differs, ours, Some(printed)) if printed.value != 0.0 => {
+                let ours = range.map(|range| range.median).or(ours.as_ref().map(|ours| ours.mean)).unwrap_or(f64::NAN);
+                format!("{}: {:.2} times", verdict.word(), ours / printed.value)
             }
             _ => verdict.word().to_owned(),
         };
@@ -69,9 +77,15 @@ pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (Stri
     } else {
         ""
     };
+    let experiments = table.experiments.as_ref().map_or_else(String::new, |experiments| {
+        format!(
+            " *{PLAUSIBLE}*: median, and where 95 % of {} experiments lie that could have been the paper's (see what was found out); where this is given, it decides and not our own network.",
+            experiments.count()
+        )
+    });
     let text = format!(
         "Printed beside `{}`: its first trial, the mean of {trials} trials, and where 95 % of single runs lie; after \u{b1} stands half a 95 % interval. The paper is a single run: a cell \
-         *reproduces* when it lies in that range, widened by half a unit of its last digit; where it *differs*, ours is so many times as large in the mean.{truth}\n\n{}\n{}{}\n\n",
+         *reproduces* when it lies in that range, widened by half a unit of its last digit; where it *differs*, ours is so many times as large in the mean.{truth}{experiments}\n\n{}\n{}{}\n\n",
         table.scenario,
         rows.render(),
         notes.render(),
@@ -80,13 +94,25 @@ pub fn comparison(table: &Table, figures: &[Option<Ours>], trials: u64) -> (Stri
     (text, tally)
 }
 
-/// The verdict of `cell`, given our figure or none.
-pub fn verdict(cell: &Cell, ours: Option<&Ours>) -> Verdict {
+/// The verdict of `cell`, given our figure or none: plausible experiments come first where the table has them.
+pub fn verdict(table: &Table, cell: &Cell, ours: Option<&Ours>) -> Verdict {
+    if let Some(range) = plausible(table, cell) {
+        return cell.verdict_within(0.5 * (range.low + range.high), 0.5 * (range.high - range.low));
+    }
     match (&cell.not_comparable, ours) {
         (Some(why), _) => Verdict::NotComparable(why.clone()),
         (None, None) => Verdict::NotComparable("no record of ours".to_owned()),
         (None, Some(ours)) => cell.verdict_within(ours.mean, SINGLE * ours.scatter.unwrap_or(0.0)),
     }
+}
+
+fn plausible(table: &Table, cell: &Cell) -> Option<Range> {
+    table.experiments.as_ref()?.range(cell.predicted.as_ref()?)
+}
+
+/// A fraction's largest denominator comes first, as its value is the least.
+fn ranged(cell: &Cell, Range { median, low, high }: Range) -> String {
+    format!("{} ({} to {})", like(cell, median), like(cell, low), like(cell, high))
 }
 
 fn cells(cell: &Cell, ours: &Ours) -> Vec<String> {
@@ -130,6 +156,23 @@ mod tests {
         Cell::bare(printed, Metric::MeanDx)
     }
 
+    fn table(cells: Vec<Cell>) -> Table {
+        Table {
+            title: String::new(),
+            source: String::new(),
+            unit: String::new(),
+            scenario: "s".into(),
+            method: "m".into(),
+            columns: vec!["c".into()],
+            findings: Vec::new(),
+            beside: Vec::new(),
+            sets: Vec::new(),
+            ensemble: None,
+            cells,
+            experiments: None,
+        }
+    }
+
     const OURS: Ours = Ours { one: 2.0, mean: 2.5, half: Some(0.25), scatter: Some(0.5), truth: Some((3.0, None)) };
 
     /// 95 % of single runs of deviation 0.5 lie within 0.98 of 2.5.
@@ -140,10 +183,14 @@ mod tests {
         for (printed, expected) in
             [("1.5", Verdict::Reproduces), ("1.4", Verdict::Differs), ("3.5", Verdict::Reproduces), ("3.6", Verdict::Differs)]
         {
-            assert_eq!(verdict(&cell(printed), Some(&OURS)), expected, "{printed}");
+            assert_eq!(verdict(&table(Vec::new()), &cell(printed), Some(&OURS)), expected, "{printed}");
         }
-        assert_eq!(verdict(&cell("2.4"), Some(&Ours { scatter: None, ..OURS })), Verdict::Differs, "one run has no range");
-        assert_eq!(verdict(&cell("2.4"), None), Verdict::NotComparable("no record of ours".into()));
+        assert_eq!(
+            verdict(&table(Vec::new()), &cell("2.4"), Some(&Ours { scatter: None, ..OURS })),
+            Verdict::Differs,
+            "one run has no range"
+        );
+        assert_eq!(verdict(&table(Vec::new()), &cell("2.4"), None), Verdict::NotComparable("no record of ours".into()));
     }
 
     /// 1/4 px within 0.05: of the denominator that is 0.05 / (1/4)^2 = 0.8.
@@ -163,18 +210,7 @@ mod tests {
 
     #[test]
     fn a_cell_that_differs_is_told_how_many_times() {
-        let table = Table {
-            title: String::new(),
-            source: String::new(),
-            unit: String::new(),
-            scenario: "s".into(),
-            method: "m".into(),
-            columns: vec!["c".into()],
-            findings: Vec::new(),
-            beside: Vec::new(),
-            sets: Vec::new(),
-            cells: vec![cell("10"), cell("0.0"), Cell { misprint: Some("read 2".into()), ..cell("2.0") }, cell("9")],
-        };
+        let table = table(vec![cell("10"), cell("0.0"), Cell { misprint: Some("read 2".into()), ..cell("2.0") }, cell("9")]);
         let figures = [Some(OURS), Some(OURS), Some(OURS), None];
         let (text, tally) = comparison(&table, &figures, 3);
         let said: Vec<Vec<&str>> = text
@@ -188,5 +224,25 @@ mod tests {
         assert!(text.contains("- (a) misprint: read 2\n- (b) no record of ours\n") && text.contains("the mean of 3 trials"), "{text}");
         let (text, _) = comparison(&table, &[Some(Ours { truth: None, ..OURS }), None, None, None], 3);
         assert!(!text.to_lowercase().contains("true errors") && text.contains("| none "), "{text}");
+    }
+
+    /// Of 0, 1, ..., 40, 95 % lie from 1 to 39: these decide where a cell names their column, and our own runs elsewhere.
+    #[test]
+    fn plausible_experiments_decide_where_there_are_some() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("e.csv");
+        std::fs::write(&path, (0..=40).fold("a\n".to_owned(), |text, value| format!("{text}{value}\n"))).unwrap();
+        let of = |printed: &str| Cell { predicted: Some("a".into()), ..cell(printed) };
+        let cells =
+            vec![of("39.0"), of("39.6"), of("0.9"), of("80"), cell("2.5"), Cell { not_comparable: Some("put in".into()), ..of("20") }];
+        let table = Table { experiments: Some(super::super::Ensemble::read(&path).unwrap()), ..table(cells) };
+        let (text, tally) = comparison(&table, &[Some(OURS); 6], 3);
+        let ends: Vec<&str> =
+            text.lines().filter(|line| line.starts_with("| r")).skip(1).filter_map(|line| line.split("| ").nth(8)).map(str::trim).collect();
+        let expected =
+            ["20.00 (1.00 to 39.00)", "20.00 (1.00 to 39.00)", "20.00 (1.00 to 39.00)", "20.0 (1.0 to 39.0)", "", "20.0 (1.0 to 39.0)"];
+        assert_eq!(ends, expected, "{text}");
+        assert_eq!(tally, Tally { reproduce: 2, differ: 3, not_comparable: 1 }, "{text}");
+        assert!(text.contains("differs: 0.25 times") && text.contains("95 % of 41 experiments"), "{text}");
     }
 }

@@ -1,6 +1,7 @@
 //! What papers printed, and which of our figures stands behind each cell.
 
 pub(crate) mod adjustment;
+mod ensemble;
 mod every_method;
 mod figure;
 mod many;
@@ -12,6 +13,7 @@ mod section;
 mod sweep;
 mod verdict;
 
+pub use ensemble::{Ensemble, EnsembleError};
 pub use metric::Metric;
 pub use schema::schema;
 pub(crate) use section::{section, verdicts, without_records};
@@ -52,9 +54,15 @@ pub struct Table {
     /// Sets of targets over which statistics are shown for every method. Default: all targets.
     #[serde(default, rename = "set")]
     pub sets: Vec<TargetSet>,
+    /// A CSV file beside the table with the figures of many plausible experiments, where the paper does not tell which was its own; see `predicted` of cells.
+    #[serde(default)]
+    pub ensemble: Option<String>,
     /// The printed cells.
     #[serde(rename = "cell")]
     pub cells: Vec<Cell>,
+    /// What `ensemble` holds.
+    #[serde(skip)]
+    pub experiments: Option<Ensemble>,
 }
 
 /// A named choice of targets.
@@ -101,6 +109,9 @@ pub struct Cell {
     /// The parameter of the interior orientation, for figures of adjustments; `c` by default.
     #[serde(default)]
     pub of: Option<String>,
+    /// The column of the table's `ensemble` that stands for the cell: what is printed must lie where 95 % of the experiments lie.
+    #[serde(default)]
+    pub predicted: Option<String>,
     /// Why the two cannot be compared, if so.
     #[serde(default)]
     pub not_comparable: Option<String>,
@@ -143,6 +154,9 @@ pub enum PublishedError {
     /// Its text.
     #[error(transparent)]
     Problems(#[from] Problems),
+    /// Its experiments.
+    #[error(transparent)]
+    Ensemble(#[from] EnsembleError),
 }
 
 /// All tables of `paper` below `folder` (`reference/published`), in the order of their file names, with these.
@@ -162,7 +176,13 @@ pub fn tables(folder: &Path, paper: &str) -> Result<Vec<(String, Table)>, Publis
     let read = |path: PathBuf| {
         let text = fs::read_to_string(&path).map_err(|source| PublishedError::File { path: path.clone(), source })?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Ok((name, parse(&path.display().to_string(), &text)?))
+        let mut table = parse(&path.display().to_string(), &text)?;
+        if let Some(file) = &table.ensemble {
+            table.experiments = Some(Ensemble::read(&folder.join(file))?);
+        }
+        without_column(&table)
+            .map_or(Ok(()), |problem| Err(Problems { file: path.display().to_string(), text: text.clone(), problems: vec![problem] }))?;
+        Ok((name, table))
     };
     names.into_iter().map(read).collect()
 }
@@ -200,6 +220,22 @@ fn parse(file: &str, text: &str) -> Result<Table, Problems> {
     Ok(table)
 }
 
+/// The first cell that names a column which its table's experiments have not.
+fn without_column(table: &Table) -> Option<Problem> {
+    let named = |cell: &Cell| Some((cell.predicted.clone()?, format!("row `{}`, column `{}`", cell.row, cell.column)));
+    let experiments = table.experiments.as_ref();
+    let (column, cell) = table
+        .cells
+        .iter()
+        .filter_map(named)
+        .find(|(column, _)| experiments.is_none_or(|experiments| experiments.range(column).is_none()))?;
+    let Some(experiments) = experiments else {
+        return Some(Problem::new(0..0, format!("{cell}: `predicted` needs a table with an `ensemble`")));
+    };
+    let message = format!("{cell}: the `ensemble` has no column `{column}`");
+    Some(Problem::new(0..0, message).nearest(&column, experiments.names()))
+}
+
 #[cfg(test)]
 impl Cell {
     /// A cell of nothing but what is printed and what of ours it is compared with.
@@ -216,6 +252,7 @@ impl Cell {
             misprint: None,
             method: None,
             of: None,
+            predicted: None,
             not_comparable: None,
         }
     }

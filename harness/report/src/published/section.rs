@@ -75,7 +75,7 @@ fn of_adjustments(table: &Table, main: &Loaded, found: &Summaries) -> Vec<Option
 /// Records that cannot be read.
 pub fn verdicts(table: &Table, main: &Loaded) -> Result<Option<Vec<Verdict>>, LoadError> {
     let of_many =
-        |figures: &[Option<Ours>]| table.cells.iter().zip(figures).map(|(cell, ours)| many::verdict(cell, ours.as_ref())).collect();
+        |figures: &[Option<Ours>]| table.cells.iter().zip(figures).map(|(cell, ours)| many::verdict(table, cell, ours.as_ref())).collect();
     if table.is_of_adjustments() {
         return Ok(main.calibrations.as_ref().map(|found| of_many(&of_adjustments(table, main, found))));
     }

@@ -158,6 +158,7 @@ mod tests {
             misprint: None,
             method: None,
             of: None,
+            predicted: None,
             not_comparable: None,
         }
     }
@@ -174,6 +175,8 @@ mod tests {
             findings: Vec::new(),
             beside: Vec::new(),
             sets: Vec::new(),
+            ensemble: None,
+            experiments: None,
             cells: vec![
                 cell("1", "C", "2.0", Metric::MeanDx, first),
                 cell("1", "D", "3.9", Metric::RmseXy, first),

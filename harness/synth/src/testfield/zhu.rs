@@ -2,6 +2,7 @@
 
 use calibench_model::{PixelPoint, Polygon, Scene, SceneTarget, TargetKind};
 
+use super::join::Join;
 use super::pen::grown;
 use super::{FieldError, check};
 
@@ -41,6 +42,11 @@ impl Figure4 {
         [0.0, 30.0, 45.0, 60.0, 30.0, 45.0, 60.0, 90.0][self as usize]
     }
 
+    /// Whether it is a corner of two lines.
+    pub const fn is_of_lines(self) -> bool {
+        matches!(self, Self::Line30 | Self::Line45 | Self::Line60)
+    }
+
     const fn is_solid(self) -> bool {
         matches!(self, Self::Solid30 | Self::Solid45 | Self::Solid60 | Self::Solid90)
     }
@@ -71,6 +77,8 @@ pub struct Zhu {
     pub pen: f64,
     /// One edge of a corner runs along +x, rather than its bisector; (h) stays as it is.
     pub edge_along_x: bool,
+    /// How the two lines of a corner join.
+    pub join: Join,
 }
 
 impl Default for Zhu {
@@ -85,6 +93,7 @@ impl Default for Zhu {
             angle: None,
             pen: 0.0,
             edge_along_x: false,
+            join: Join::Mitre,
         }
     }
 }
@@ -153,11 +162,6 @@ impl Zhu {
         Ok(())
     }
 
-    /// How far the lines' edges meet from where their middles do.
-    fn half_width_along(&self, figure: Figure4) -> f64 {
-        0.5 * self.stroke / (0.5 * self.degrees(figure).to_radians()).sin()
-    }
-
     fn vertices(&self, figure: Figure4) -> Vec<PixelPoint> {
         let (half, arm) = (0.5 * self.stroke, self.arm);
         let at = |x: f64, y: f64| PixelPoint::new(self.at.x + x, self.at.y + y);
@@ -167,9 +171,11 @@ impl Zhu {
             Figure4::Solid90 if self.angle.is_none() => vec![at(0.0, 0.0), at(0.0, -arm), at(arm, -arm), at(arm, 0.0)],
             _ if figure.is_solid() => vec![at(0.0, 0.0), at(arm * cosine, -arm * sine), at(arm * cosine, arm * sine)],
             _ => {
-                let apex = self.half_width_along(figure);
+                // Inside, the edges go on until they meet.
+                let inside = at(half / sine, 0.0);
                 let end = |side: f64, out: f64| at(arm * cosine - out * half * sine, side * (arm * sine + out * half * cosine));
-                vec![at(-apex, 0.0), end(-1.0, 1.0), end(-1.0, -1.0), at(apex, 0.0), end(1.0, -1.0), end(1.0, 1.0)]
+                let outside = self.join.outside(half, self.degrees(figure).to_radians()).into_iter().map(|[x, y]| at(x, y));
+                outside.chain([end(-1.0, 1.0), end(-1.0, -1.0), inside, end(1.0, -1.0), end(1.0, 1.0)]).collect()
             }
         }
     }
@@ -209,6 +215,29 @@ mod tests {
                 let direction = |from: PixelPoint, to: PixelPoint| (to.y - from.y).atan2(to.x - from.x);
                 let between = direction(v[0], v[v.len() - 1]) - direction(v[0], v[1]);
                 assert!((between - angle).abs() < 1e-12, "{figure:?}");
+            }
+        }
+    }
+
+    /// Two bars, less what they share inside, and the join's own area outside; pens and joins go together.
+    #[test]
+    fn lines_join_in_every_way() {
+        for figure in [Figure4::Line30, Figure4::Line45, Figure4::Line60] {
+            for join in Join::ALL {
+                let drawn = |pen: f64| Zhu { join, pen, ..Zhu::default() }.scene(figure).unwrap().polygons.remove(0);
+                assert!(crosses_itself(&drawn(0.0)).is_none(), "{figure:?} {join:?}");
+                assert!(drawn(0.5).doubled_area().abs() > drawn(0.0).doubled_area().abs(), "{figure:?} {join:?}");
+                let (tangent, angle) = ((0.5 * figure.degrees().to_radians()).tan(), figure.degrees().to_radians());
+                // A quarter of the squared stroke, 2.25, is the unit.
+                let outside = match join {
+                    Join::Mitre => 1.0 / tangent,
+                    Join::Bevel => 0.5 * angle.sin(),
+                    Join::Round => 0.5 * (std::f64::consts::PI - angle),
+                    Join::Butt => 0.0,
+                    Join::Square => 2.0 - tangent,
+                };
+                let area = 2.0 * 450.0 + 2.25 * (outside - 1.0 / tangent);
+                assert!((drawn(0.0).doubled_area().abs() / 2.0 - area).abs() < 0.02, "{figure:?} {join:?}");
             }
         }
     }
