@@ -107,7 +107,7 @@ impl Drawn {
             .iter()
             .map(|station| {
                 let pose = station.pose();
-                self.wall.places().filter(|place| station.sees(*place, &pose)).count()
+                self.wall.places().filter(|place| sees(&pose, *place)).count()
             })
             .sum::<usize>();
         if seen < 326 { (seen + slack).min(326) } else { seen.saturating_sub(slack).max(326) }
@@ -223,12 +223,13 @@ impl From {
         let pose = Pose::looking_at(self.place().into(), Point3::new(x, y, 0.0), Vector3::y(), self.roll.to_radians());
         pose.expect("the wall is in front of every station")
     }
+}
 
-    fn sees(&self, place: [f64; 3], pose: &Pose) -> bool {
-        let ray = pose.ray(&place.into());
-        let (x, y) = (FOCAL * ray.x / ray.z, FOCAL * ray.y / ray.z);
-        x.abs() < 681.0 && y.abs() < 510.5
-    }
+/// Whether a pinhole camera has a place of the wall in its frame.
+fn sees(pose: &Pose, place: [f64; 3]) -> bool {
+    let ray = pose.ray(&place.into());
+    let (x, y) = (FOCAL * ray.x / ray.z, FOCAL * ray.y / ray.z);
+    x.abs() < 681.0 && y.abs() < 510.5
 }
 
 /// Images 1 to 5 look at the wall less obliquely than 6 to 10.

@@ -224,7 +224,7 @@ mod tests {
     fn lines_join_in_every_way() {
         for figure in [Figure4::Line30, Figure4::Line45, Figure4::Line60] {
             for join in Join::ALL {
-                let drawn = |pen: f64| Zhu { join, pen, ..Zhu::default() }.scene(figure).unwrap().polygons.remove(0);
+                let drawn = |pen: f64| Zhu { pen, join, ..Zhu::default() }.scene(figure).unwrap().polygons.remove(0);
                 assert!(crosses_itself(&drawn(0.0)).is_none(), "{figure:?} {join:?}");
                 assert!(drawn(0.5).doubled_area().abs() > drawn(0.0).doubled_area().abs(), "{figure:?} {join:?}");
                 let (tangent, angle) = ((0.5 * figure.degrees().to_radians()).tan(), figure.degrees().to_radians());
