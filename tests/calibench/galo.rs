@@ -164,3 +164,38 @@ fn rendered_right_angles_on_the_pixel_grid_have_the_closed_form_bias() {
         }
     }
 }
+
+/// What the networks of the report were chosen by, and what follows from their own figures: a column in another's place shows.
+#[test]
+fn the_plausible_networks_are_those_that_were_asked_for() {
+    let path = crate::project::root().join("reference/published/galo-2011/networks.csv");
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let names = lines.next().unwrap();
+    let rows: Vec<Vec<f64>> = lines.map(|line| line.iter().map(|field| field.parse().unwrap()).collect()).collect();
+    assert_eq!((names.len(), rows.len()), (38, 240));
+    for row in &rows {
+        let of = |name: &str| row[names.iter().position(|known| *known == name).unwrap_or_else(|| panic!("no column {name}"))];
+        let like = |name: &str, printed: f64, within: f64| assert!((of(name) / printed).ln().abs() < within, "{name}: {row:?}");
+        assert!((316.0..=336.0).contains(&of("image_points")) && of("rolled") <= 10.0 && (0.1..=1.0).contains(&of("survey_mm")), "{row:?}");
+        let chosen = [("c", 0.0411), ("x0", 0.0305), ("y0", 0.0426), ("k1", 0.000_027_2)];
+        chosen.iter().for_each(|(name, printed)| like(&format!("sigma_{name}_pixel"), *printed, 0.1001));
+        for (column, of_c) in [("9", 0.0291), ("15", 0.0275)] {
+            like(&format!("sigma_c_{column}"), of_c, 0.1001);
+            let factors = chosen.map(|(name, _)| {
+                let factor = of(&format!("sigma_{name}_{column}")) / of(&format!("sigma_{name}_pixel"));
+                like(&format!("factor_{name}_{column}"), factor, 2e-4);
+                factor
+            });
+            like(&format!("factor_mean_{column}"), factors.iter().sum::<f64>() / 4.0, 2e-4);
+        }
+        for axis in ["xy", "z"] {
+            like(&format!("factor_{axis}"), of(&format!("relative_{axis}_15")) / of(&format!("relative_{axis}_pixel")), 2e-4);
+        }
+        // Noise falls from column to column; the least is what the hand's whole pixels leave.
+        assert!(
+            of("noise_15_px") < of("noise_9_px") && of("noise_9_px") < of("noise_pixel_px") && of("noise_pixel_px") > 0.2886,
+            "{row:?}"
+        );
+    }
+}

@@ -69,6 +69,33 @@ fn table_2_is_the_transcription_in_both_readings() {
     }
 }
 
+/// The search of `zhu_search` shares no code with the operator but the fit of the paraboloid: its |v| for the scenario's setting, and the printed m.
+#[test]
+fn the_operator_measures_what_the_search_found() {
+    let path = crate::project::root().join("scenarios/zhu-2007/table-1.toml");
+    // The others' methods have no part in it, and not every build has OpenCV's.
+    let text = std::fs::read_to_string(path).unwrap().replace("[[method]]\nname = \"opencv_subpix\"\nwindow = 11\n", "");
+    let scenario = parse("zhu-2007/table-1", "table-1.toml", &text, &Registry::builtin()).unwrap();
+    let method = scenario.methods.iter().position(|method| method.label.starts_with("harris_paraboloid")).unwrap();
+    let mut trials = Vec::new();
+    let sink = &mut |trial| {
+        trials.push(trial);
+        Ok(())
+    };
+    Plan::new(&scenario, None, std::path::PathBuf::new()).run(&|| (), sink).unwrap();
+    let mine = trials[0].points.iter().filter(|point| point.method == method);
+    let found: Vec<f64> = mine
+        .map(|point| match point.outcome {
+            calibench_records::results::Outcome::Measured { error: Some((dx, dy)), .. } => dx.hypot(dy),
+            _ => panic!("{point:?}"),
+        })
+        .collect();
+    let searched = [0.051, 0.035, 0.054, 0.117, 0.192, 0.316, 0.175, 0.024];
+    assert!(found.len() == 8 && found.iter().zip(searched).all(|(v, s)| (v - s).abs() < 5.5e-4), "{found:?}");
+    let m = (found.iter().map(|v| v * v).sum::<f64>() / 8.0).sqrt();
+    assert!((m - 0.153).abs() < 5e-4, "printed: 0.153; {m}");
+}
+
 fn corner(angle: f64, phase: (f64, f64)) -> (calibench_model::Image, PixelPoint) {
     let at = PixelPoint::new(31.5 + phase.0, 31.5 + phase.1);
     let zhu = Zhu { side: 64, at, arm: 26.0, angle: Some(angle), stroke: 1.0, ..Zhu::default() };
