@@ -32,7 +32,7 @@ pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
 
 /// The first camera of a file.
 pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
-    let file = read_camera_with(path, &ReadOptions { size, fisheye: None, from: None })?;
+    let file = read_camera_with(path, &ReadOptions { size, fisheye: None, lens: None, from: None })?;
     if file.cameras.len() > 1 {
         say!("{}: the first of {} cameras", path.display(), file.cameras.len());
     }

@@ -37,6 +37,7 @@ mod run;
 mod schema;
 mod show;
 mod speed;
+mod stmap;
 mod toolbox;
 
 use std::path::PathBuf;
@@ -114,6 +115,8 @@ enum Command {
     Camera(camera::CameraCommand),
     /// Say how far two cameras differ, in px over the frame, after the best rotation
     Diff(diff::Diff),
+    /// Write a camera's distortion as an ST-map for compositing programs, either way, or check one
+    Stmap(stmap::StMapCommand),
     /// Print the JSON Schema of scenario files or of published tables, for editors
     Schema {
         /// Of which files
@@ -168,6 +171,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Convert(convert) => convert.run(&context),
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),
+        Command::Stmap(map) => map.run(),
         Command::Schema { of } => deliver::print(&of.text(&toolbox.registry)),
     }
 }

@@ -4,6 +4,7 @@ use std::io;
 use std::path::Path;
 
 use calibench_exchange::camera::FORMATS;
+use calibench_exchange::st_map::MapFile;
 use calibench_exchange::{Inputs, OutputFile, OutputFolder};
 
 use crate::failure::Failure;
@@ -29,6 +30,11 @@ pub fn table(option: &str, path: Option<&Path>, inputs: &Inputs) -> Result<Optio
 /// A PNG file.
 pub fn picture(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
     file(option, path, ("a picture", &["png"]), inputs)
+}
+
+/// An ST-map.
+pub fn map(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    file(option, path, ("an ST-map", &MapFile::ENDINGS), inputs)
 }
 
 /// A JUnit XML file.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibench_diagnostics::nearest;
 use calibench_exchange::camera::open_points::{self, OpenPoints};
-use calibench_exchange::camera::{CameraFile, CameraFormat, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with};
+use calibench_exchange::camera::{self, CameraFile, CameraFormat, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
 use calibench_model::escape;
 use clap::{Args, ValueEnum};
@@ -29,6 +29,9 @@ pub struct Reading {
     /// What (0, 0) is in files of PhotoScan before 1.2, Lens [default: corner], MicMac, OpenMVG and Theia [default: centre], which public sources do not settle
     #[arg(long, value_enum, value_name = "ORIGIN")]
     origin: Option<Origin>,
+    /// Distortion model of RealityScan's CSV, which does not say it [default: brown, where the coefficients can be no other's]
+    #[arg(long, value_enum, value_name = "LENS")]
+    lens: Option<Lens>,
     /// Which camera of a file that holds several: its name, or its place counted from 1 [default: the first]
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
@@ -41,6 +44,15 @@ pub enum Order {
     Brown,
     /// The second: OpenCV's
     Opencv,
+}
+
+/// Whose coefficients they are.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Lens {
+    /// Brown's polynomials
+    Brown,
+    /// The division model
+    Division,
 }
 
 /// What the position (0, 0) is.
@@ -87,7 +99,11 @@ impl Reading {
     }
 
     pub fn file(&self, path: &Path) -> Result<CameraFile, Failure> {
-        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), from: self.from };
+        let lens = self.lens.map(|lens| match lens {
+            Lens::Brown => camera::Lens::Brown,
+            Lens::Division => camera::Lens::Division,
+        });
+        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from };
         Ok(read_camera_with(path, &options)?)
     }
 

@@ -11,6 +11,7 @@ pub mod photograph;
 pub mod points;
 pub mod points_write;
 pub mod print;
+pub mod st_map;
 pub mod stations;
 pub mod table;
 

@@ -5,7 +5,13 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// So many bytes decide.
-const HEAD: u64 = 64;
+const HEAD: u64 = 2048;
+/// What files that are marked name as their software.
+pub(crate) const WRITER: &str = "calibench";
+/// Its place in the head of an EXR: name, type and length of the attribute come before.
+const IN_EXR: &[u8] = b"software\0string\0\x09\0\0\0calibench";
+/// Bytes of a TIFF's head in which the software's name stands where it is the first of the texts.
+const TIFF_HEAD: usize = 128;
 /// A PNG text chunk, behind the header of every picture that is written as a file of its own: length, type, `Software\0calibench`, CRC.
 const MARK: &[u8; 30] = b"\x00\x00\x00\x12tEXtSoftware\0calibench\x9d\x9d\xe2\x79";
 /// Where the first chunk behind a PNG's header begins.
@@ -73,7 +79,11 @@ fn is_pnm(head: &[u8]) -> bool {
 }
 
 fn is_ours(head: &[u8]) -> bool {
+    let holds = |part: &[u8], text: &[u8]| part.windows(text.len()).any(|window| window == text);
+    let is_tiff = [&b"II*\0"[..], b"MM\0*"].iter().any(|magic| head.starts_with(magic));
     head.starts_with(PNG) && head.get(BEHIND_HEADER..BEHIND_HEADER + MARK.len()) == Some(MARK)
+        || head.starts_with(b"\x76\x2f\x31\x01") && holds(head, IN_EXR)
+        || is_tiff && holds(&head[..head.len().min(TIFF_HEAD)], b"calibench\0")
 }
 
 /// The same PNG, marked as drawn by this program: what is drawn again replaces it.

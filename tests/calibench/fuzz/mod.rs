@@ -134,8 +134,7 @@ fn every_reader_has_seeds_that_it_reads() {
         .filter_map(|(_, bytes)| {
             let sized = calibench_exchange::ReadOptions {
                 size: Some(calibench_model::camera::ImageSize { width: 640, height: 480 }),
-                fisheye: None,
-                from: None,
+                ..calibench_exchange::ReadOptions::default()
             };
             calibench_exchange::camera::parse_camera("f", bytes, &sized).ok().map(|file| file.format.name)
         })

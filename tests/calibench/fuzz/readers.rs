@@ -83,15 +83,16 @@ fn camera(bytes: &[u8], _: &Path) -> Result<(), String> {
 }
 
 fn camera_of_size(bytes: &[u8], _: &Path) -> Result<(), String> {
-    read_camera(bytes, ReadOptions { size: Some(SIZE), fisheye: Some(true), from: None })
+    read_camera(bytes, ReadOptions { size: Some(SIZE), fisheye: Some(true), lens: None, from: None })
 }
 
 /// What a format reads it writes and reads again, or says why not.
 fn read_camera(bytes: &[u8], options: ReadOptions) -> Result<(), String> {
     let found = parse_camera(FILE, bytes, &options).map_err(|error| error.to_string())?;
     if let Ok(bytes) = camera_bytes(found.format, &found.cameras) {
-        let size = (!found.format.states_size).then(|| calibench_model::camera::CameraModel::size(&found.cameras[0].camera));
-        let again = parse_camera(FILE, &bytes, &ReadOptions { size, fisheye: options.fisheye, from: None });
+        let size = calibench_model::camera::CameraModel::size(&found.cameras[0].camera);
+        let own = ReadOptions { fisheye: options.fisheye, ..ReadOptions::of_written(found.format, size) };
+        let again = parse_camera(FILE, &bytes, &own);
         assert!(again.is_ok_and(|again| again.cameras.len() == found.cameras.len()), "{}", String::from_utf8_lossy(&bytes));
     }
     assert!(format_named(found.format.name).is_some());

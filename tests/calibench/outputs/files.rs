@@ -38,6 +38,9 @@ fn writers() -> Vec<FileWriter> {
         new(&["convert", "wall/camera.toml", "-q", "--to", "photogrammetric"], "-o", "toml", "wall/camera.toml"),
         new(&["convert", "wall/camera.toml", "-q", "--to", "photogrammetric"], "--plot", "png", "wall/camera.toml"),
         new(&["diff", "wall/camera.toml", "found.toml"], "--plot", "png", "found.toml"),
+        new(&["stmap", "found.toml"], "-o", "exr", "found.toml"),
+        new(&["stmap", "found.toml", "--redistort", "--overscan", "auto"], "-o", "tif", "found.toml"),
+        new(&["stmap", "found.toml"], "-o", "png", "found.toml"),
         FileWriter { writer: Writer::new(&["control", "9x6:25"], "-o"), ending: "csv", input: None },
     ]
 }

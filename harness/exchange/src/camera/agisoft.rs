@@ -1,6 +1,6 @@
 //! Agisoft's `<calibration>` element, which all its camera files share.
 
-use calibench_model::camera::{Agisoft, AgisoftVersion, ImageSize};
+use calibench_model::camera::{Agisoft, AgisoftFisheye, AgisoftVersion, Camera, FisheyeProjection, ImageSize};
 use roxmltree::Node;
 
 use super::number::{finite, scientific, shortened};
@@ -11,9 +11,62 @@ const COEFFICIENTS: [&str; 8] = ["k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4"]
 /// Elements that do not change the geometry, or that are read elsewhere.
 const KNOWN: [&str; 13] = ["projection", "width", "height", "resolution", "date", "f", "fx", "fy", "cx", "cy", "skew", "b1", "b2"];
 
-/// The camera of a `<calibration>`, and notes on what was left out. With `f` it is Metashape's, with `fx` and `fy` an older one.
-pub(super) fn read(node: Node<'_, '_>, size: ImageSize) -> Result<(Agisoft, Vec<String>), CameraFileError> {
-    frame_only(node)?;
+/// The projection that a sensor or a calibration states; `None` for a frame camera.
+pub(super) type Projection = Option<FisheyeProjection>;
+
+/// Names of projections, as files have them; the first of each is written.
+const PROJECTIONS: [(&str, Projection); 4] = [
+    ("frame", None),
+    ("equidistant_fisheye", Some(FisheyeProjection::Equidistant)),
+    ("fisheye", Some(FisheyeProjection::Equidistant)),
+    ("equisolid_fisheye", Some(FisheyeProjection::Equisolid)),
+];
+
+/// The projection called `name`; others are refused.
+pub(super) fn projection(at: Node<'_, '_>, name: &str) -> Result<Projection, CameraFileError> {
+    let known = PROJECTIONS.map(|(name, _)| name).join(", ");
+    let wrong =
+        || xml::at(at, CameraFileError::new(format!("projection `{}` is not known here; expected one of {known}", shortened(name))));
+    PROJECTIONS.iter().find(|(known, _)| *known == name).map(|(_, projection)| *projection).ok_or_else(wrong)
+}
+
+/// The name of a camera's projection; Metashape's older versions read it too.
+pub(super) fn projection_name(camera: &Camera) -> &'static str {
+    match camera {
+        Camera::AgisoftFisheye(AgisoftFisheye { projection: FisheyeProjection::Equidistant, .. }) => "fisheye",
+        Camera::AgisoftFisheye(AgisoftFisheye { projection: FisheyeProjection::Equisolid, .. }) => "equisolid_fisheye",
+        _ => "frame",
+    }
+}
+
+/// The camera of a `<calibration>`, and notes on what was left out. With `f` it is Metashape's, with `fx` and `fy` an older one. `stated` is what was said around it.
+pub(super) fn read(node: Node<'_, '_>, size: ImageSize, stated: Option<Projection>) -> Result<(Camera, Vec<String>), CameraFileError> {
+    let inside = match xml::child(node, "projection")? {
+        Some(own) => Some((own, projection(own, xml::text(own)?)?)),
+        None => None,
+    };
+    if let (Some((at, inside)), Some(stated)) = (inside, stated)
+        && inside != stated
+    {
+        return Err(xml::at(at, CameraFileError::new("contradicts the type of the sensor")));
+    }
+    let fisheye = inside.map(|(_, projection)| projection).or(stated).flatten();
+    let (camera, notes) = frame(node, size)?;
+    let Some(projection) = fisheye else { return Ok((camera.into(), notes)) };
+    let Agisoft { version, f, cx, cy, b1, b2, k, p, .. } = camera;
+    if version != AgisoftVersion::Metashape {
+        return Err(xml::at(node, CameraFileError::new("is a fisheye with `fx`; expected `f`")));
+    }
+    for name in ["p3", "p4"] {
+        if let Some(at) = xml::child(node, name)?.filter(|_| p[2..] != [0.0; 2]) {
+            return Err(xml::at(at, CameraFileError::new("is no parameter of a fisheye in the tool's manual; expected zero or none")));
+        }
+    }
+    Ok((AgisoftFisheye { size, projection, f, cx, cy, b1, b2, k, p: [p[0], p[1]] }.into(), notes))
+}
+
+/// The parameters as those of a frame camera, which a fisheye has alike.
+fn frame(node: Node<'_, '_>, size: ImageSize) -> Result<(Agisoft, Vec<String>), CameraFileError> {
     let notes = unknown(node)?;
     let old = xml::child(node, "fx")?.is_some();
     if let (true, Some(f)) = (old, xml::child(node, "f")?) {
@@ -39,20 +92,6 @@ pub(super) fn read(node: Node<'_, '_>, size: ImageSize) -> Result<(Agisoft, Vec<
     let (fx, f) = (positive(node, "fx")?, positive(node, "fy")?);
     let (cx, cy) = (xml::required_number(node, "cx")?, xml::required_number(node, "cy")?);
     Ok((Agisoft { size, version: AgisoftVersion::PhotoScan, f, cx, cy, b1: fx - f, b2: or_zero("skew")?, k, p }, notes))
-}
-
-/// Other projections are refused by name.
-fn frame_only(node: Node<'_, '_>) -> Result<(), CameraFileError> {
-    let Some(projection) = xml::child(node, "projection")? else { return Ok(()) };
-    projection_is_frame(projection, xml::text(projection)?)
-}
-
-/// Refuses another projection than `frame`.
-pub(super) fn projection_is_frame(at: Node<'_, '_>, found: &str) -> Result<(), CameraFileError> {
-    if found == "frame" {
-        return Ok(());
-    }
-    Err(xml::at(at, CameraFileError::new(format!("projection `{}` is not known here; expected `frame`", shortened(found)))))
 }
 
 /// An unknown number that is not zero changes the camera; other unknown elements are noted.
@@ -93,9 +132,22 @@ fn positive(node: Node<'_, '_>, name: &str) -> Result<f64, CameraFileError> {
     Err(xml::at(xml::required(node, name)?, CameraFileError::new(format!("expected a focal length above zero, found {value}"))))
 }
 
-/// The elements inside a `<calibration>` that follow its size, each on a line after `indent`. Terms that are zero are left out, as Agisoft does.
-pub(super) fn written(camera: &Agisoft, indent: &str) -> String {
-    let Agisoft { f, cx, cy, b1, b2, k, p, .. } = *camera;
+/// A fisheye's elements are those of a frame camera.
+fn as_frame(camera: &Camera) -> Option<Agisoft> {
+    match *camera {
+        Camera::Agisoft(camera) => Some(camera),
+        Camera::AgisoftFisheye(AgisoftFisheye { size, f, cx, cy, b1, b2, k, p: [p1, p2], .. }) => {
+            Some(Agisoft { size, version: AgisoftVersion::Metashape, f, cx, cy, b1, b2, k, p: [p1, p2, 0.0, 0.0] })
+        }
+        _ => None,
+    }
+}
+
+/// The elements inside a `<calibration>` that follow its size, each on a line after `indent`; `None` for a camera that is not Agisoft's. Terms that are zero are left
+/// out, as Agisoft does.
+pub(super) fn written(camera: &Camera, indent: &str) -> Option<String> {
+    let camera = as_frame(camera)?;
+    let Agisoft { f, cx, cy, b1, b2, k, p, .. } = camera;
     let mut out = String::new();
     let mut line = |name: &str, value: f64| out.push_str(&format!("{indent}<{name}>{}</{name}>\n", scientific(value)));
     if camera.version == AgisoftVersion::Metashape {
@@ -112,5 +164,5 @@ pub(super) fn written(camera: &Agisoft, indent: &str) -> String {
     }
     let coefficients = COEFFICIENTS.into_iter().zip(k.into_iter().chain(p));
     coefficients.filter(|(_, value)| *value != 0.0).for_each(|(name, value)| line(name, value));
-    out
+    Some(out)
 }

@@ -4,7 +4,7 @@ use calibench_model::camera::{CameraModel, Ray};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, Method, Rotation, Target, convert};
 use thiserror::Error;
 
-use super::fit::{FitError, fit_to_format};
+use super::fit::{FitError, fit_to_format, fit_to_models};
 use super::recognised::are_within;
 use super::target::{Goal, Way};
 use super::{NamedCamera, ParameterCovariance, ReadOptions, camera_bytes, parse_camera, splined};
@@ -55,14 +55,19 @@ pub fn converted(
     let covariance = source.covariance.as_ref().map(|covariance| covariance.whole(&source.camera)).transpose();
     let options = ConvertOptions { covariance: covariance.map_err(ConversionError::Covariance)?, ..options.clone() };
     let pitch_um = pitch_um.or(source.pitch_um);
-    let (conversion, model) = match goal.way {
-        Way::One(_) if model.is_some() => return Err(ConversionError::ModelNamed),
+    let (conversion, model) = match &goal.way {
+        Way::One(_) | Way::AnyOf(_) if model.is_some() => return Err(ConversionError::ModelNamed),
         _ if let Some(splines) = &source.splines => splined::converted(splines, source.camera, goal, (model, pitch_um), &options)?,
         Way::One(Target::OpenCvFisheye) | Way::Best if model.is_none() && holds_only_as_it_is(source, goal, pitch_um) => {
             let covariance = options.covariance.clone();
             (Conversion { covariance, ..splined::as_they_are(source.camera) }, None)
         }
-        Way::One(target) => (convert(&source.camera, target, &options)?, None),
+        Way::One(target) => (convert(&source.camera, *target, &options)?, None),
+        Way::AnyOf(models) => {
+            let (conversion, model) = fit_to_models(goal.format, models, &source.camera, &options)?;
+            let fitted = conversion.method == Method::Fitted;
+            (conversion, fitted.then_some(model.name))
+        }
         Way::Best => {
             let (conversion, model) = fit_to_format(goal.format, &source.camera, model, pitch_um, &options)?;
             (conversion, Some(model.name))
@@ -84,13 +89,9 @@ pub fn converted(
 /// Whether none of the goal's models has a formula for the camera, and yet a file of the format gives it back: what the tool holds beyond the models that others are
 /// fitted to.
 fn holds_only_as_it_is(source: &NamedCamera, goal: &Goal, pitch_um: Option<f64>) -> bool {
-    let has_formula = match goal.way {
-        Way::One(target) => target.is_exact_for(&source.camera),
-        Way::Best => goal.format.models(pitch_um).iter().any(|model| model.target.is_exact_for(&source.camera)),
-    };
+    let has_formula = goal.targets(pitch_um).iter().any(|target| target.is_exact_for(&source.camera));
     let camera = NamedCamera { pitch_um, ..NamedCamera::new(String::new(), source.camera) };
-    let size = (!goal.format.states_size).then(|| source.camera.size());
-    let options = ReadOptions { size, fisheye: None, from: Some(goal.format) };
+    let options = ReadOptions { from: Some(goal.format), ..ReadOptions::of_written(goal.format, source.camera.size()) };
     let given_back = || {
         let bytes = camera_bytes(goal.format, &[camera]).ok()?;
         let read = parse_camera("", &bytes, &options).ok()?;

@@ -101,15 +101,24 @@ pub fn fit_to_format(
     pitch_um: Option<f64>,
     options: &ConvertOptions,
 ) -> Result<(Conversion, Model), FitError> {
-    let models = chosen(format, model, pitch_um)?;
+    fit_to_models(format, &chosen(format, model, pitch_um)?, camera, options)
+}
+
+/// As [`fit_to_format`], of models that are given.
+pub(super) fn fit_to_models(
+    format: &CameraFormat,
+    models: &[Model],
+    camera: &Camera,
+    options: &ConvertOptions,
+) -> Result<(Conversion, Model), FitError> {
     let exact = ConvertOptions { covariance: options.covariance.clone(), ..ConvertOptions::default() };
-    for model in &models {
+    for model in models {
         if model.target.is_exact_for(camera) {
             let found = convert(camera, model.target, &exact);
             return found.map(|found| (found, *model)).map_err(|why| FitError::Refused { format: format.name, why });
         }
     }
-    best(&models, |target| convert(camera, target, options)).map_err(|why| FitError::Refused { format: format.name, why })
+    best(models, |target| convert(camera, target, options)).map_err(|why| FitError::Refused { format: format.name, why })
 }
 
 /// The models of a format; with `model` that one alone.

@@ -18,6 +18,7 @@ pub(super) struct Binary {
 }
 
 /// A format of camera files.
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub struct CameraFormat {
     /// Its name here.
     pub name: &'static str,
@@ -47,6 +48,8 @@ pub struct CameraFormat {
     pub keeps: Keeps,
     /// Public sources leave open whether (0, 0) is the centre of the first pixel, as is assumed, or its corner.
     pub origin_is_open: bool,
+    /// It does not say whether its coefficients are Brown's or those of the division model: [`ReadOptions::lens`].
+    pub lens_is_open: bool,
 }
 
 /// What most formats have in common, for struct updates.
@@ -66,6 +69,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     models: |_| Vec::new(),
     keeps: Keeps { splines: false, name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
     origin_is_open: false,
+    lens_is_open: false,
 };
 
 impl CameraFormat {

@@ -23,6 +23,7 @@ mod opencv;
 mod opencv_storage;
 mod photogrammetric_toml;
 mod pose;
+mod reality_scan;
 mod recognised;
 mod source;
 mod splined;
@@ -98,6 +99,15 @@ fn noted(mut cameras: Vec<NamedCamera>, notes: &[String]) -> Vec<NamedCamera> {
     cameras
 }
 
+/// A family of distortion models that a file may not name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lens {
+    /// Brown's polynomials.
+    Brown,
+    /// The division model.
+    Division,
+}
+
 /// What a file may leave open.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
@@ -105,11 +115,19 @@ pub struct ReadOptions {
     pub size: Option<ImageSize>,
     /// OpenCV's fisheye camera (true) or its pinhole camera (false), for files that do not say `fisheye_model`: without both, the pinhole.
     pub fisheye: Option<bool>,
+    /// The lens of RealityScan's CSV, which does not say it; where another lens would be another camera, one is needed.
+    pub lens: Option<Lens>,
     /// The format, where more than one recognises the file; one that does not is an error.
     pub from: Option<&'static CameraFormat>,
 }
 
 impl ReadOptions {
+    /// What reads again a file that was written in `format` of a camera of `size`.
+    pub fn of_written(format: &CameraFormat, size: ImageSize) -> Self {
+        let (size, lens) = ((!format.states_size).then_some(size), format.lens_is_open.then_some(Lens::Brown));
+        Self { size, fisheye: None, lens, from: None }
+    }
+
     /// The size that the file states, or else the one given.
     fn size_or(&self, stated: Option<ImageSize>) -> Result<ImageSize, CameraFileError> {
         match (stated, self.size) {
@@ -201,8 +219,7 @@ pub fn camera_bytes(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Ve
         (None, Some(write)) => write(cameras)?.into_bytes(),
         (None, None) => Vec::new(),
     };
-    let size = Some(cameras[0].camera.size()).filter(|_| !format.states_size);
-    match parse(&bytes, &ReadOptions { size, fisheye: None, from: None }) {
+    match parse(&bytes, &ReadOptions::of_written(format, cameras[0].camera.size())) {
         Ok(_) => Ok(bytes),
         Err(error) => {
             let problem = format!("cannot be written as {}: {}", format.name, error.problem);

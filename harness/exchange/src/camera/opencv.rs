@@ -4,12 +4,13 @@
 //! names of Metashape's export. The fisheye camera is told by the sample's own `fisheye_model: 1`; without it four coefficients are a pinhole
 //! camera's, for nothing else in the file tells them apart. With `xi` it is the camera of cv2.omnidir, which is Mei's.
 
-use calibench_model::camera::{Camera, ImageSize, Omni, OpenCv, OpenCvFisheye};
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Omni, OpenCv, OpenCvFisheye};
+use nalgebra::{DMatrix, DVector};
 
 use super::number::pixels;
 use super::opencv_storage::Matrix;
 use super::tree::{Entry, Value};
-use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
+use super::{CameraFileError, CameraFormat, NamedCamera, ParameterCovariance, ReadOptions};
 
 const CAMERA_MATRIX: [&str; 4] = ["camera_matrix", "Camera_Matrix", "cameraMatrix", "Camera_matrix"];
 const DISTORTION: [&str; 5] = ["distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "distortionCoefficients"];
@@ -19,6 +20,8 @@ const HEIGHT: [&str; 6] = ["image_height", "image_Height", "Image_Height", "imag
 const SIZE: [&str; 7] = ["cameraResolution", "calibImageSize", "image_size", "imageSize", "img_size", "Image_Size", "resolution"];
 const FISHEYE: [&str; 1] = ["fisheye_model"];
 const XI: [&str; 1] = ["xi"];
+/// Standard deviations, as OpenCV's interactive calibration writes them: of fx, fy, cx, cy and of the coefficients; and, here alone, of xi.
+const SPREADS: [&str; 3] = ["cameraMatrix_std_dev", "dist_coeffs_std_dev", "xi_std_dev"];
 const NAME: [&str; 1] = ["camera_name"];
 /// How the calibration was made, as the samples of OpenCV and Metashape say it: nothing of the camera.
 const ABOUT: [&str; 16] = [
@@ -48,7 +51,7 @@ pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamer
     let (name, entry) = required(&DISTORTION)?;
     let distortion = entry.matrix(14).and_then(|matrix| vector(&matrix)).map_err(|error| placed(error, name, entry))?;
     let size = options.size_or(stated_size(root)?)?;
-    let known = [&CAMERA_MATRIX[..], &DISTORTION, &WIDTH, &HEIGHT, &SIZE, &FISHEYE, &XI, &NAME, &ABOUT].concat();
+    let known = [&CAMERA_MATRIX[..], &DISTORTION, &WIDTH, &HEIGHT, &SIZE, &FISHEYE, &XI, &NAME, &SPREADS, &ABOUT].concat();
     let mut notes = root.unknown(&known)?;
     let (fisheye, xi) = (is_fisheye(root, options)?, mirror(root)?);
     if !fisheye && xi.is_none() && distortion.len() == 4 && options.fisheye.is_none() && root.get(&FISHEYE)?.is_none() {
@@ -62,7 +65,55 @@ pub(super) fn read(root: &Entry, options: &ReadOptions) -> Result<Vec<NamedCamer
     };
     let camera = camera.map_err(|error| placed(error, name, entry))?;
     let name = root.get(&NAME)?.map(|(_, entry)| entry.text()).transpose()?.unwrap_or("");
-    Ok(vec![NamedCamera { notes, ..NamedCamera::new(name, camera) }])
+    let covariance = spreads(root, &camera, &mut notes)?;
+    Ok(vec![NamedCamera { covariance, notes, ..NamedCamera::new(name, camera) }])
+}
+
+/// The parameters whose standard deviations stand in each of [`SPREADS`], in its order.
+fn spread_names(camera: &Camera) -> [Vec<&'static str>; 3] {
+    let all: Vec<&'static str> = camera.parameters().iter().map(|p| p.name).collect();
+    let lens = all[4..].iter().copied().filter(|name| !["skew", "xi"].contains(name)).collect();
+    [all[..4].to_vec(), lens, XI.to_vec()]
+}
+
+/// The variances of a camera's parameters, where the file has standard deviations; a zero is one that was held fixed.
+fn spreads(root: &Entry, camera: &Camera, notes: &mut Vec<String>) -> Result<Option<ParameterCovariance>, CameraFileError> {
+    let (mut names, mut variances, mut any) = (Vec::new(), Vec::new(), false);
+    for (key, parameters) in SPREADS.iter().zip(spread_names(camera)) {
+        let Some((key, entry)) = root.get(&[key])? else { continue };
+        let wrong = |problem: String| placed(CameraFileError::new(problem), key, entry);
+        let sigmas = entry.matrix(14).and_then(|matrix| vector(&matrix)).map_err(|error| placed(error, key, entry))?;
+        any = true;
+        if let Some(least) = sigmas.iter().find(|sigma| **sigma < 0.0) {
+            return Err(wrong(format!("expected standard deviations from 0, found {least}")));
+        }
+        if sigmas.iter().skip(parameters.len()).any(|sigma| *sigma > 0.0) {
+            return Err(wrong(format!("has {} standard deviations, the camera {} such parameters", sigmas.len(), parameters.len())));
+        }
+        // The interactive calibration holds the ratio of the focal lengths.
+        if parameters[0] == "fx" && matches!(sigmas[..], [0.0, fy, ..] if fy > 0.0) {
+            notes.push("fx has no standard deviation of its own: it was tied to fy".into());
+        }
+        for (name, sigma) in parameters.into_iter().zip(sigmas).filter(|(_, sigma)| *sigma > 0.0) {
+            names.push(name.to_owned());
+            variances.push(sigma * sigma);
+        }
+    }
+    let q = DMatrix::from_diagonal(&DVector::from_vec(variances));
+    let covariance = any.then(|| ParameterCovariance::named(names, &q)).transpose();
+    covariance.map_err(|problem| CameraFileError::new(problem).of(SPREADS[0]))
+}
+
+/// The standard deviations of a camera by their keys, one after another.
+pub(super) fn written_spreads(named: &NamedCamera) -> Vec<(&'static str, Vec<f64>)> {
+    let Some(covariance) = &named.covariance else { return Vec::new() };
+    let sigma = |name: &str| {
+        let (n, place) = (covariance.parameters.len(), covariance.parameters.iter().position(|own| own == name));
+        place.map_or(0.0, |place| covariance.values[place * n + place].sqrt())
+    };
+    let rows =
+        SPREADS.into_iter().zip(spread_names(&named.camera)).map(|(key, names)| (key, names.into_iter().map(sigma).collect::<Vec<_>>()));
+    rows.filter(|(key, sigmas)| *key != SPREADS[2] || sigmas[0] > 0.0).collect()
 }
 
 /// The error with the name of the matrix, and with its line if it has none of its own.

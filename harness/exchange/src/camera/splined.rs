@@ -17,11 +17,11 @@ pub(super) fn converted(
     options: &ConvertOptions,
 ) -> Result<(Conversion, Option<&'static str>), FitError> {
     let refused = |why| FitError::Refused { format: goal.format.name, why };
-    match goal.way {
-        Way::One(target) => fit(&splines.model, target, options).map(|found| (found, None)).map_err(refused),
+    match &goal.way {
+        Way::One(target) => fit(&splines.model, *target, options).map(|found| (found, None)).map_err(refused),
         Way::Best if goal.format.keeps.splines && model.is_none() => Ok((as_they_are(camera), None)),
-        Way::Best => {
-            let models = chosen(goal.format, model, pitch_um)?;
+        Way::AnyOf(_) | Way::Best => {
+            let models = if let Way::AnyOf(models) = &goal.way { models.clone() } else { chosen(goal.format, model, pitch_um)? };
             best(&models, |target| fit(&splines.model, target, options)).map(|(found, model)| (found, Some(model.name))).map_err(refused)
         }
     }

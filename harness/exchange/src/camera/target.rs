@@ -2,24 +2,26 @@
 
 use std::path::Path;
 
-use calibench_model::camera::{AgisoftVersion, CameraModel, TangentialOrder};
+use calibench_model::camera::{AgisoftVersion, CameraModel, FisheyeProjection, TangentialOrder};
 use calibench_model::convert::Target;
 use thiserror::Error;
 
+use super::fit::Model;
 use super::{CameraFormat, FORMATS, NamedCamera, format_named};
 
 /// The names of conventions, besides those of formats with models of their own, with what they mean.
-pub const TARGETS: [(&str, &str); 14] = [
+pub const TARGETS: [(&str, &str); 15] = [
     ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
     ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
-    ("opencv", "OpenCV with the fewest coefficients that are exact, or five; also opencv4, opencv5, opencv8, opencv12, opencv14"),
+    ("opencv", "OpenCV with the fewest coefficients that are exact, or that fit best; also opencv4, opencv5, opencv8, opencv12, opencv14"),
     ("opencv4", "k1, k2, p1, p2"),
     ("opencv8", "rational: k4 to k6 as well"),
     ("opencv12", "thin prism: s1 to s4 as well"),
     ("opencv14", "tilt as well"),
     ("opencv-fisheye", "OpenCV's fisheye"),
     ("opencv-omnidir", "cv2.omnidir's camera of Mei: xi, k1, k2, p1, p2"),
-    ("metashape", "Metashape, PhotoScan from 1.2: k1 to k3, p1, p2, b1, b2; k4, p3, p4 where the camera has them"),
+    ("metashape", "Metashape, PhotoScan from 1.2: a frame camera, with k4, p3, p4 where it needs them, or a fisheye"),
+    ("metashape-fisheye", "Metashape's equidistant fisheye"),
     ("photoscan", "PhotoScan before 1.2: cameras XML with fx, fy, cx, cy, skew"),
     ("agisoft-lens", "Agisoft Lens: calibration XML with fx, fy, cx, cy, skew"),
     ("pix4d", "Pix4D's .cam (needs the pixel pitch)"),
@@ -30,7 +32,9 @@ pub const TARGETS: [(&str, &str); 14] = [
 pub enum Way {
     /// The convention and its shape.
     One(Target),
-    /// The best of the format's own models.
+    /// The first of these that holds the camera exactly, or else the one that fits best.
+    AnyOf(Vec<Model>),
+    /// The same of the format's own models.
     Best,
 }
 
@@ -62,6 +66,17 @@ impl Given<'_> {
     }
 }
 
+impl Goal {
+    /// The models that may be chosen, for a pixel pitch in um if one is known.
+    pub(super) fn targets(&self, pitch_um: Option<f64>) -> Vec<Target> {
+        match &self.way {
+            Way::One(target) => vec![*target],
+            Way::AnyOf(models) => models.iter().map(|model| model.target).collect(),
+            Way::Best => self.format.models(pitch_um).iter().map(|model| model.target).collect(),
+        }
+    }
+}
+
 /// A name that is no target, or not with what is given.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum TargetError {
@@ -81,19 +96,30 @@ pub enum TargetError {
     },
 }
 
-/// OpenCV's model with the fewest coefficients that holds a camera exactly, or the usual five.
-fn leanest(source: &NamedCamera) -> Target {
-    let counts = [4, 5, 8, 12, 14].map(|coefficients| Target::OpenCv { coefficients });
-    let exact = counts.into_iter().find(|target| source.splines.is_none() && target.is_exact_for(&source.camera));
-    exact.unwrap_or(Target::OpenCv { coefficients: 5 })
+/// The first of `exact` that holds the camera by formula, alone, or else those to be fitted.
+fn held_or_fitted(source: &NamedCamera, exact: Vec<Model>, fitted: Vec<Model>) -> Vec<Model> {
+    let held = exact.into_iter().find(|model| source.splines.is_none() && model.target.is_exact_for(&source.camera));
+    held.map_or(fitted, |model| vec![model])
 }
 
-/// Metashape's model with the fewest of K4, P3, P4 that holds a camera exactly, or the usual one without them.
-fn of_metashape(source: &NamedCamera) -> Target {
-    let of = |(radial, tangential)| Target::Agisoft { version: AgisoftVersion::Metashape, radial, tangential, affinity: true };
-    let exact =
-        [(3, 2), (4, 2), (3, 4), (4, 4)].map(of).into_iter().find(|target| source.splines.is_none() && target.is_exact_for(&source.camera));
-    exact.unwrap_or(Target::metashape())
+/// OpenCV's pinhole models, the one with the fewest coefficients first.
+fn of_opencv(source: &NamedCamera) -> Vec<Model> {
+    let named = |(coefficients, name)| Model { name, target: Target::OpenCv { coefficients } };
+    let all = [(4, "opencv4"), (5, "opencv5"), (8, "opencv8"), (12, "opencv12"), (14, "opencv14")].map(named);
+    // Five hold what four do, and no fit has a use for fewer.
+    held_or_fitted(source, all.into(), all[1..].into())
+}
+
+/// Metashape's model with the fewest of K4, P3, P4, or its fisheye.
+fn of_metashape(source: &NamedCamera) -> Vec<Model> {
+    let frame = |(radial, tangential)| {
+        let target = Target::Agisoft { version: AgisoftVersion::Metashape, radial, tangential, affinity: true };
+        Model { name: "frame", target }
+    };
+    let fisheye = |(name, projection)| Model { name, target: Target::MetashapeFisheye { projection } };
+    let fisheyes = [("fisheye", FisheyeProjection::Equidistant), ("equisolid_fisheye", FisheyeProjection::Equisolid)].map(fisheye);
+    let exact = [&[(3, 2), (4, 2), (3, 4), (4, 4)].map(frame)[..], &fisheyes].concat();
+    held_or_fitted(source, exact, [&[(3, 2), (4, 4)].map(frame)[..], &fisheyes].concat())
 }
 
 /// The target called `name`.
@@ -115,11 +141,12 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
         }
         "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
         "opencv-omnidir" => (Target::Omni { distortion: true }, opencv),
-        "metashape" => (of_metashape(given.source), "metashape"),
+        "metashape" => return any_of(of_metashape(given.source), "metashape"),
+        "metashape-fisheye" => (Target::MetashapeFisheye { projection: FisheyeProjection::Equidistant }, "metashape"),
         "pix4d" | "pix4d-inpho" => (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: given.order }, name),
         "photoscan" => (older(AgisoftVersion::PhotoScan), "photoscan-cameras"),
         "agisoft-lens" => (older(AgisoftVersion::Lens), "metashape"),
-        "opencv" => (leanest(given.source), opencv),
+        "opencv" => return any_of(of_opencv(given.source), opencv),
         _ => match name.strip_prefix("opencv").map(str::parse) {
             Some(Ok(coefficients @ (4 | 5 | 8 | 12 | 14))) => (Target::OpenCv { coefficients }, opencv),
             _ => return Err(unknown(name)),
@@ -127,6 +154,11 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
     };
     let format = format_named(format).ok_or_else(|| unknown(format))?;
     Ok(Goal { way: Way::One(target), format })
+}
+
+fn any_of(models: Vec<Model>, format: &str) -> Result<Goal, TargetError> {
+    let format = format_named(format).ok_or_else(|| unknown(format))?;
+    Ok(Goal { way: Way::AnyOf(models), format })
 }
 
 /// PhotoScan before 1.2 and Lens: three radial and two decentring coefficients, two focal lengths and a skew.

@@ -1,9 +1,10 @@
 //! All models behind one dispatch.
 
 use super::{
-    Agisoft, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, NoCounterpart,
-    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, agisoft, double_sphere, ebner, eucm, fov,
-    micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye, rad_tan_prism_fisheye, tool_conventions,
+    Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
+    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, agisoft, agisoft_fisheye,
+    double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye,
+    rad_tan_prism_fisheye, tool_conventions,
 };
 use crate::PixelPoint;
 
@@ -20,6 +21,8 @@ pub enum Camera {
     OpenCvFisheye(OpenCvFisheye),
     /// Agisoft's.
     Agisoft(Agisoft),
+    /// Metashape's fisheye.
+    AgisoftFisheye(AgisoftFisheye),
     /// Pix4D's.
     Pix4d(Pix4d),
     /// Double sphere.
@@ -46,6 +49,7 @@ macro_rules! each {
             Camera::OpenCv($model) => $work,
             Camera::OpenCvFisheye($model) => $work,
             Camera::Agisoft($model) => $work,
+            Camera::AgisoftFisheye($model) => $work,
             Camera::Pix4d($model) => $work,
             Camera::DoubleSphere($model) => $work,
             Camera::Eucm($model) => $work,
@@ -66,6 +70,7 @@ pub const fn conventions() -> &'static [&'static Convention] {
         &ebner::CONVENTION,
         &pix4d::CONVENTION,
         &agisoft::METASHAPE,
+        &agisoft_fisheye::CONVENTION,
         &agisoft::PHOTOSCAN,
         &agisoft::LENS,
         &opencv::CONVENTION,
@@ -105,6 +110,7 @@ impl Camera {
             Self::OpenCv(_) => &opencv::CONVENTION,
             Self::OpenCvFisheye(_) => &opencv_fisheye::CONVENTION,
             Self::Agisoft(camera) => camera.version.convention(),
+            Self::AgisoftFisheye(_) => &agisoft_fisheye::CONVENTION,
             Self::Pix4d(_) => &pix4d::CONVENTION,
             Self::DoubleSphere(_) => &double_sphere::CONVENTION,
             Self::Eucm(_) => &eucm::CONVENTION,
@@ -167,6 +173,7 @@ from!(
     OpenCv,
     OpenCvFisheye,
     Agisoft,
+    AgisoftFisheye,
     Pix4d,
     DoubleSphere,
     Eucm,

@@ -4,6 +4,7 @@
 //! own file, and converts to [`Ray`] and [`PixelPoint`] there and nowhere else.
 
 pub mod agisoft;
+pub mod agisoft_fisheye;
 pub mod conformance;
 pub mod convention;
 mod derivatives;
@@ -36,6 +37,7 @@ use thiserror::Error;
 use crate::PixelPoint;
 
 pub use agisoft::{Agisoft, AgisoftVersion};
+pub use agisoft_fisheye::{AgisoftFisheye, FisheyeProjection};
 pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 pub use derivatives::{DerivativeBuffer, Derivatives, MOST_PARAMETERS};
 pub use dispatch::{Camera, conventions};

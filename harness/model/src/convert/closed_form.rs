@@ -83,7 +83,8 @@ pub(super) fn is_held(form: &BrownForm, target: &Target, camera: &Camera) -> boo
         | Target::Omni { .. }
         | Target::Fov
         | Target::PrismFisheye
-        | Target::RadTanPrismFisheye => false,
+        | Target::RadTanPrismFisheye
+        | Target::MetashapeFisheye { .. } => false,
     }
 }
 

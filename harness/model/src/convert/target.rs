@@ -3,8 +3,8 @@
 use super::ConvertError;
 use super::brown::BrownForm;
 use crate::camera::{
-    Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, Omni, OpenCv, OpenCvFisheye,
-    Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize, MicMac,
+    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
 };
 
 /// A convention with its shape. Terms that the shape leaves out are zero.
@@ -75,6 +75,11 @@ pub enum Target {
     PrismFisheye,
     /// Fisheye, then decentring and thin prism.
     RadTanPrismFisheye,
+    /// Metashape's fisheye.
+    MetashapeFisheye {
+        /// How it pictures angles.
+        projection: FisheyeProjection,
+    },
     /// MicMac's.
     MicMac {
         /// Radial coefficients: 0 to 5.
@@ -149,6 +154,9 @@ impl Target {
             Self::RadTanPrismFisheye => {
                 RadTanPrismFisheye { size, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()
             }
+            Self::MetashapeFisheye { projection } => {
+                AgisoftFisheye { size, projection, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 2] }.into()
+            }
             Self::MicMac { .. } => MicMac { size, f: 1.0, pp: [0.0; 2], offset: [0.0; 2], k: [0.0; 5], p: [0.0; 2], b: [0.0; 2] }.into(),
             Self::Agisoft { version, .. } => {
                 Agisoft { size, version, f: 1.0, cx: 0.0, cy: 0.0, b1: 0.0, b2: 0.0, k: [0.0; 4], p: [0.0; 4] }.into()
@@ -187,7 +195,8 @@ impl Target {
             | Self::Omni { distortion: true }
             | Self::Fov
             | Self::PrismFisheye
-            | Self::RadTanPrismFisheye => Vec::new(),
+            | Self::RadTanPrismFisheye
+            | Self::MetashapeFisheye { .. } => Vec::new(),
         }
     }
 

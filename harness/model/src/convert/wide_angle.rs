@@ -2,7 +2,10 @@
 
 use super::Target;
 use super::brown::BrownForm;
-use crate::camera::{Camera, DoubleSphere, Eucm, Fov, ImageSize, Omni, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye};
+use crate::PixelPoint;
+use crate::camera::{
+    AgisoftFisheye, Camera, DoubleSphere, Eucm, FisheyeProjection, Fov, ImageSize, Omni, OpenCvFisheye, PrismFisheye, RadTanPrismFisheye,
+};
 
 /// The same camera in the target's convention where a formula leads to it; `None` where there is none or the target cannot hold all terms.
 pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
@@ -18,6 +21,11 @@ pub(super) fn exact(source: &Camera, target: &Target) -> Option<Camera> {
         (Camera::OpenCvFisheye(from), Target::RadTanPrismFisheye) => then_prism(from),
         (Camera::OpenCvFisheye(from), Target::PrismFisheye) => with_prism(from),
         (Camera::PrismFisheye(from), Target::OpenCvFisheye) => without_prism(from),
+        (Camera::AgisoftFisheye(from), Target::MetashapeFisheye { projection }) => (from.projection == *projection).then_some(*source),
+        (_, Target::MetashapeFisheye { projection: FisheyeProjection::Equidistant }) => to_metashape(source),
+        (Camera::AgisoftFisheye(from), Target::PrismFisheye | Target::OpenCvFisheye | Target::RadTanPrismFisheye) => {
+            exact(&equidistant(from)?.into(), target)
+        }
         _ => from_unified(&unified(source)?, target),
     }
 }
@@ -36,6 +44,28 @@ fn then_prism(from: &OpenCvFisheye) -> Option<Camera> {
 fn without_prism(from: &PrismFisheye) -> Option<Camera> {
     let PrismFisheye { size, fx, fy, cx, cy, k, p, s } = *from;
     (p == [0.0; 2] && s == [0.0; 2]).then(|| OpenCvFisheye { size, fx, fy, cx, cy, skew: 0.0, k }.into())
+}
+
+/// Metashape's equidistant fisheye as one with a prism, which has no shear.
+fn equidistant(from: &AgisoftFisheye) -> Option<PrismFisheye> {
+    let AgisoftFisheye { size, projection, f, b1, b2, k, p: [p1, p2], .. } = *from;
+    let PixelPoint { x: cx, y: cy } = from.principal_point();
+    let held = projection == FisheyeProjection::Equidistant && b2 == 0.0;
+    held.then_some(PrismFisheye { size, fx: f + b1, fy: f, cx, cy, k, p: [p2, p1], s: [0.0; 2] })
+}
+
+fn to_metashape(source: &Camera) -> Option<Camera> {
+    let of = |size: ImageSize, [fx, fy, cx, cy]: [f64; 4], b2: f64, k: [f64; 4], [p2, p1]: [f64; 2]| {
+        let (at, half) = (PixelPoint::new(cx, cy).to_corner(), |length: u32| f64::from(length) / 2.0);
+        let (cx, cy) = (at.x - half(size.width), at.y - half(size.height));
+        let projection = FisheyeProjection::Equidistant;
+        Some(AgisoftFisheye { size, projection, f: fy, cx, cy, b1: fx - fy, b2, k, p: [p1, p2] }.into())
+    };
+    match *source {
+        Camera::OpenCvFisheye(OpenCvFisheye { size, fx, fy, cx, cy, skew, k }) => of(size, [fx, fy, cx, cy], fx * skew, k, [0.0; 2]),
+        Camera::PrismFisheye(PrismFisheye { size, fx, fy, cx, cy, k, p, s: [0.0, 0.0] }) => of(size, [fx, fy, cx, cy], 0.0, k, p),
+        _ => None,
+    }
 }
 
 /// The unified camera that pictures alike, `None` where there is none.
@@ -76,7 +106,7 @@ fn from_unified(from: &Omni, target: &Target) -> Option<Camera> {
         Target::Division if straight && xi == 0.0 => Some(Eucm { size, fx, fy, cx, cy, alpha: 0.5, beta: 0.0 }.into()),
         Target::DoubleSphere | Target::Eucm | Target::Division => None,
         _ if xi == 0.0 => {
-            let centre = crate::PixelPoint::new(cx, cy);
+            let centre = PixelPoint::new(cx, cy);
             let form = BrownForm { size, a: fx, b: 0.0, d: fy, centre, k: [k[0], k[1], 0.0, 0.0], p: [p[1], p[0], 0.0, 0.0] };
             let camera = form.to_target(target)?;
             super::closed_form::is_held(&form, target, &camera).then_some(camera)
@@ -105,6 +135,14 @@ pub(super) fn starts(form: &BrownForm, target: &Target) -> Vec<Camera> {
             })
             .into(),
         Target::PrismFisheye => vec![PrismFisheye { size, fx, fy, cx, cy, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] }.into()],
+        Target::MetashapeFisheye { projection } => {
+            let plain = PrismFisheye { size, fx, fy, cx, cy, k: [0.0; 4], p: [0.0; 2], s: [0.0; 2] };
+            let as_asked = |camera| match camera {
+                Camera::AgisoftFisheye(camera) => AgisoftFisheye { projection: *projection, ..camera }.into(),
+                other => other,
+            };
+            to_metashape(&plain.into()).map(as_asked).into_iter().collect()
+        }
         Target::RadTanPrismFisheye => {
             vec![RadTanPrismFisheye { size, fx, fy, cx, cy, k: [0.0; 6], p: [0.0; 2], s: [0.0; 4] }.into()]
         }

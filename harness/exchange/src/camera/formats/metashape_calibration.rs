@@ -1,6 +1,6 @@
 //! The calibration XML of Metashape, and the one with `fx`, `fy` of PhotoScan before 1.2 and of Lens.
 
-use calibench_model::camera::{AgisoftVersion, Camera};
+use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize};
 
 use super::PLAIN;
 use crate::camera::source::Source;
@@ -24,17 +24,17 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     let Some(document) = &source.xml else { return Ok(Vec::new()) };
     let root = document.root_element();
     let size = options.size_or(Some(xml::size_of_children(root)?)).map_err(|error| xml::at(root, error))?;
-    let (camera, mut notes) = agisoft::read(root, size)?;
-    if camera.version != AgisoftVersion::Metashape {
+    let (camera, mut notes) = agisoft::read(root, size, None)?;
+    if matches!(camera, Camera::Agisoft(Agisoft { version: AgisoftVersion::PhotoScan | AgisoftVersion::Lens, .. })) {
         notes.push("read as PhotoScan's before 1.2; Lens writes the same elements, with the same formulas".into());
     }
-    Ok(vec![NamedCamera { notes, ..NamedCamera::new("", Camera::Agisoft(camera)) }])
+    Ok(vec![NamedCamera { notes, ..NamedCamera::new("", camera) }])
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
-    let Camera::Agisoft(camera) = cameras[0].camera else { return Err(FORMAT.other_model("a camera of Agisoft's model")) };
-    let (width, height) = (camera.size.width, camera.size.height);
-    let size = format!("  <projection>frame</projection>\n  <width>{width}</width>\n  <height>{height}</height>\n");
-    let inside = agisoft::written(&camera, "  ");
+    let camera = &cameras[0].camera;
+    let inside = agisoft::written(camera, "  ").ok_or_else(|| FORMAT.other_model("a camera of Agisoft's models"))?;
+    let (projection, ImageSize { width, height }) = (agisoft::projection_name(camera), camera.size());
+    let size = format!("  <projection>{projection}</projection>\n  <width>{width}</width>\n  <height>{height}</height>\n");
     Ok(format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<calibration>\n{size}{inside}</calibration>\n"))
 }

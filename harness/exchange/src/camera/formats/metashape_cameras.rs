@@ -2,7 +2,7 @@
 //!
 //! Each sensor is a camera here. The images' poses belong to the block, not to the cameras, and are not read.
 
-use calibench_model::camera::{Agisoft, AgisoftVersion, Camera};
+use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize};
 use roxmltree::Node;
 
 use super::PLAIN;
@@ -55,24 +55,24 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 /// A sensor's camera; `None` for a sensor that was never calibrated.
 fn sensor(node: Node<'_, '_>, options: &ReadOptions) -> Result<Option<NamedCamera>, CameraFileError> {
     let Some(calibration) = calibration(node)? else { return Ok(None) };
-    for element in [node, calibration] {
-        if let Some(kind) = element.attribute("type") {
-            agisoft::projection_is_frame(element, kind)?;
-        }
+    let kind = |element: Node<'_, '_>| element.attribute("type").map(|kind| agisoft::projection(element, kind)).transpose();
+    let (of_sensor, own) = (kind(node)?, kind(calibration)?);
+    if of_sensor.is_some() && own.is_some() && of_sensor != own {
+        return Err(xml::at(calibration, CameraFileError::new("is of another type than its sensor")));
     }
     let resolution = match xml::child(calibration, "resolution")? {
         Some(own) => own,
         None => xml::required(node, "resolution")?,
     };
     let size = options.size_or(Some(xml::size_of_attributes(resolution)?)).map_err(|error| xml::at(resolution, error))?;
-    let (camera, mut notes) = agisoft::read(calibration, size)?;
+    let (camera, mut notes) = agisoft::read(calibration, size, own.or(of_sensor))?;
     if calibration.attribute("class") == Some("initial") {
         notes.push("holds the initial calibration only, not an adjusted one".into());
     }
     let pitch_um = pitch(node, &mut notes)?;
     let covariance = covariance(node)?;
     let name = node.attribute("label").unwrap_or("");
-    Ok(Some(NamedCamera { pitch_um, covariance, notes, ..NamedCamera::new(name, Camera::Agisoft(camera)) }))
+    Ok(Some(NamedCamera { pitch_um, covariance, notes, ..NamedCamera::new(name, camera) }))
 }
 
 /// The adjusted calibration of a sensor, or else its only one.
@@ -122,25 +122,27 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     );
     out.push_str(&format!("    <sensors next_id=\"{}\">\n", cameras.len()));
     for (id, named) in cameras.iter().enumerate() {
-        match &named.camera {
-            Camera::Agisoft(camera) if camera.version == AgisoftVersion::Metashape => out.push_str(&written(id, named, camera)),
-            _ => return Err(FORMAT.other_model("cameras of Metashape's model")),
-        }
+        let is_metashape_s =
+            !matches!(named.camera, Camera::Agisoft(Agisoft { version: AgisoftVersion::PhotoScan | AgisoftVersion::Lens, .. }));
+        let text = Some(named).filter(|_| is_metashape_s).and_then(|named| written(id, named));
+        out.push_str(&text.ok_or_else(|| FORMAT.other_model("cameras of Metashape's models"))?);
     }
     out.push_str("    </sensors>\n  </chunk>\n</document>\n");
     Ok(out)
 }
 
-fn written(id: usize, named: &NamedCamera, camera: &Agisoft) -> String {
-    let resolution = format!("<resolution width=\"{}\" height=\"{}\"/>\n", camera.size.width, camera.size.height);
-    let mut out = format!("      <sensor id=\"{id}\" label=\"{}\" type=\"frame\">\n        {resolution}", xml::escaped(&named.name));
+/// A sensor; `None` for a camera that is not Agisoft's.
+fn written(id: usize, named: &NamedCamera) -> Option<String> {
+    let (inside, kind) = (agisoft::written(&named.camera, "          ")?, agisoft::projection_name(&named.camera));
+    let ImageSize { width, height } = named.camera.size();
+    let resolution = format!("<resolution width=\"{width}\" height=\"{height}\"/>\n");
+    let mut out = format!("      <sensor id=\"{id}\" label=\"{}\" type=\"{kind}\">\n        {resolution}", xml::escaped(&named.name));
     if let Some(pitch) = named.pitch_um {
         for side in ["pixel_width", "pixel_height"] {
             out.push_str(&format!("        <property name=\"{side}\" value=\"{}\"/>\n", scientific(pitch * 1e-3)));
         }
     }
-    out.push_str(&format!("        <calibration type=\"frame\" class=\"adjusted\">\n          {resolution}"));
-    out.push_str(&agisoft::written(camera, "          "));
+    out.push_str(&format!("        <calibration type=\"{kind}\" class=\"adjusted\">\n          {resolution}{inside}"));
     out.push_str("        </calibration>\n");
     if let Some(covariance) = &named.covariance {
         let values: Vec<String> = covariance.values.iter().copied().map(scientific).collect();
@@ -148,5 +150,5 @@ fn written(id: usize, named: &NamedCamera, camera: &Agisoft) -> String {
         out.push_str(&format!("        <covariance>\n          <params>{}</params>\n", xml::escaped(&names)));
         out.push_str(&format!("          <coeffs>{values}</coeffs>\n        </covariance>\n"));
     }
-    out + "      </sensor>\n"
+    Some(out + "      </sensor>\n")
 }

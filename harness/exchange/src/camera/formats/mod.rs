@@ -26,6 +26,7 @@ mod pix4d_inpho;
 mod pix4d_parameters;
 pub mod pix4d_pmatrix;
 mod reality_capture;
+mod reality_scan_csv;
 mod ros;
 mod theia;
 
@@ -54,6 +55,7 @@ pub static FORMATS: &[&CameraFormat] = &[
     &micmac::FORMAT,
     &bentley::FORMAT,
     &reality_capture::FORMAT,
+    &reality_scan_csv::FORMAT,
     &mrcal::FORMAT,
     &basalt::FORMAT,
     &nerfstudio::FORMAT,

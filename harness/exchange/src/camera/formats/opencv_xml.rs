@@ -22,7 +22,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise: |source| xml::root_is(source.xml.as_ref(), "opencv_storage"),
     read,
     write: Some(write),
-    keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
+    keeps: Keeps { splines: false, name: true, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::Variances },
     ..PLAIN
 };
 
@@ -80,6 +80,7 @@ fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     out.push_str(&matrix("camera_matrix", 3, &camera.matrix));
     out.push_str(&matrix("distortion_coefficients", camera.distortion.len(), &camera.distortion));
     out.extend(camera.xi.map(|xi| matrix("xi", 1, &[xi])));
+    out.extend(opencv::written_spreads(&cameras[0]).iter().map(|(name, sigmas)| matrix(name, sigmas.len(), sigmas)));
     Ok(out + "</opencv_storage>\n")
 }
 

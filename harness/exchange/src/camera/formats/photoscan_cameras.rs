@@ -1,6 +1,6 @@
 //! The camera XML of the oldest PhotoScan: a calibration and a pose for each image, below `<collection>`.
 
-use calibench_model::camera::{AgisoftVersion, Camera};
+use calibench_model::camera::{Agisoft, AgisoftVersion, Camera, CameraModel, ImageSize};
 use roxmltree::Node;
 
 use super::PLAIN;
@@ -50,9 +50,9 @@ fn camera(node: Node<'_, '_>, options: &ReadOptions) -> Result<NamedCamera, Came
         }
     }
     let size = options.size_or(Some(size)).map_err(|error| xml::at(calibration, error))?;
-    let (camera, notes) = agisoft::read(calibration, size)?;
+    let (camera, notes) = agisoft::read(calibration, size, None)?;
     let pose = xml::child(node, "transform")?.map(pose).transpose()?;
-    Ok(NamedCamera { pose, notes, ..NamedCamera::new(name, Camera::Agisoft(camera)) })
+    Ok(NamedCamera { pose, notes, ..NamedCamera::new(name, camera) })
 }
 
 /// The pose of a `<transform>`: 4 x 4, from the camera to the world of the block.
@@ -77,15 +77,14 @@ pub(super) fn transform(pose: &Pose) -> String {
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<collection>\n  <cameras>\n");
     for named in cameras {
-        let Camera::Agisoft(camera) = &named.camera else { return Err(FORMAT.other_model("cameras of PhotoScan's older model")) };
-        if camera.version == AgisoftVersion::Metashape {
-            return Err(FORMAT.other_model("cameras of PhotoScan's older model"));
-        }
-        let (width, height) = (camera.size.width, camera.size.height);
+        let is_older = matches!(named.camera, Camera::Agisoft(Agisoft { version: AgisoftVersion::PhotoScan | AgisoftVersion::Lens, .. }));
+        let inside = Some(&named.camera).filter(|_| is_older).and_then(|camera| agisoft::written(camera, "        "));
+        let inside = inside.ok_or_else(|| FORMAT.other_model("cameras of PhotoScan's older model"))?;
+        let ImageSize { width, height } = named.camera.size();
         out.push_str(&format!("    <camera label=\"{}\">\n", xml::escaped(&named.name)));
         out.push_str(&format!("      <resolution width=\"{width}\" height=\"{height}\"/>\n      <calibration>\n"));
         out.push_str(&format!("        <width>{width}</width>\n        <height>{height}</height>\n"));
-        out.push_str(&agisoft::written(camera, "        "));
+        out.push_str(&inside);
         out.push_str("      </calibration>\n");
         if let Some(pose) = &named.pose {
             out.push_str(&format!("      <transform>{}</transform>\n", transform(pose)));

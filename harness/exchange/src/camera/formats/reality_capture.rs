@@ -1,21 +1,20 @@
-//! RealityCapture's XMP beside an image: lengths in units of the longer side, from the middle.
+//! RealityCapture's and RealityScan's XMP beside an image.
 
-use calibench_model::camera::{AgisoftVersion, CameraModel, ImageSize, tool_conventions};
-use calibench_model::convert::Target;
+use calibench_model::camera::tool_conventions;
 use roxmltree::Node;
 
 use super::PLAIN;
-use crate::camera::brown::{Brown, middle, positive};
-use crate::camera::fit::{Keeps, KeptPose, Model};
+use crate::camera::fit::{Keeps, KeptPose};
 use crate::camera::number::{finite, numbers, shortened, shortest};
+use crate::camera::reality_scan::{self, Coefficients, DIVISION, Lengths};
 use crate::camera::source::Source;
 use crate::camera::tree::all_left_out;
-use crate::camera::{CameraFileError, CameraFormat, NamedCamera, Pose, ReadOptions, xml};
+use crate::camera::{CameraFileError, CameraFormat, Lens, NamedCamera, Pose, ReadOptions, xml};
 
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "reality-capture",
     tool: "RealityCapture, RealityScan",
-    versions: "XMP version 2 and 3",
+    versions: "XMP version 2 to 4",
     extension: "xmp",
     states_size: false,
     recognise: |source| {
@@ -25,20 +24,14 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     read,
     write: Some(write),
     convention: Some(&tool_conventions::REALITY_CAPTURE),
-    models: |_| {
-        let brown = |name, radial, tangential| Model {
-            name,
-            target: Target::Agisoft { version: AgisoftVersion::Metashape, radial, tangential, affinity: false },
-        };
-        vec![brown("brown3", 3, 0), brown("brown4", 4, 0), brown("brown3t2", 3, 2), brown("brown4t2", 4, 2)]
-    },
+    models: |_| [reality_scan::brown_models(), reality_scan::richer_models()].concat(),
     keeps: Keeps { pose: KeptPose::InWorld, ..PLAIN.keeps },
     ..PLAIN
 };
 
 const NAMESPACE: &str = "http://www.capturingreality.com/ns/xcr/1.1#";
 /// What is read, and what says nothing of the camera.
-const KNOWN: [&str; 18] = [
+const KNOWN: [&str; 29] = [
     "Version",
     "PosePrior",
     "Coordinates",
@@ -57,6 +50,17 @@ const KNOWN: [&str; 18] = [
     "Rotation",
     "Position",
     "DistortionCoeficients",
+    "DistortionPrior",
+    "LockedPoseGroup",
+    "Rig",
+    "RigInstance",
+    "RigPoseIndex",
+    "ExportCoordinateSystemType",
+    "Gravity",
+    "latitude",
+    "longitude",
+    "altitude",
+    "ComponentId",
 ];
 
 fn description<'a, 'input>(root: Node<'a, 'input>) -> Option<Node<'a, 'input>> {
@@ -84,41 +88,46 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
         Some(text) => finite(text).map_err(|error| at(error, name)),
         None => default.ok_or_else(|| at(CameraFileError::new("missing"), name)),
     };
-    let longer = f64::from(size.width.max(size.height));
-    let f = positive("FocalLength35mm", number("FocalLength35mm", None)?).map_err(|error| at(error, "FocalLength35mm"))? / 36.0 * longer;
-    for (name, expected) in [("Skew", 0.0), ("AspectRatio", 1.0)] {
-        let found = number(name, Some(expected))?;
-        if found != expected {
-            return Err(at(CameraFileError::new(format!("is {found}; how it acts is not published; expected {expected}")), name));
+    let lengths = Lengths {
+        f35: number("FocalLength35mm", None)?,
+        u: number("PrincipalPointU", Some(0.0))?,
+        v: number("PrincipalPointV", Some(0.0))?,
+        skew: number("Skew", Some(0.0))?,
+        aspect: number("AspectRatio", Some(1.0))?,
+    };
+    for (name, found) in [("FocalLength35mm", lengths.f35), ("AspectRatio", lengths.aspect)] {
+        if found <= 0.0 {
+            return Err(at(CameraFileError::new(format!("expected a number above zero, found {found}")), name));
         }
     }
-    let centre = middle(size);
-    let (u, v) = (number("PrincipalPointU", Some(0.0))?, number("PrincipalPointV", Some(0.0))?);
     let coefficients = value(node, "DistortionCoeficients")?.unwrap_or("0 0 0 0 0 0");
-    let d: [f64; 6] = numbers(coefficients).map_err(|error| at(error, "DistortionCoeficients"))?;
-    let (radial, tangential) = match value(node, "DistortionModel")?.unwrap_or("perspective") {
+    let d: Coefficients = numbers(coefficients).map_err(|error| at(error, "DistortionCoeficients"))?;
+    let lens = lens(value(node, "DistortionModel")?.unwrap_or("perspective"), &d).map_err(|(error, name)| at(error, name))?;
+    let camera = reality_scan::camera(size, &lengths, &d, lens).map_err(|error| at(error, "DistortionModel"))?;
+    let assumed = (lens == Lens::Division).then(|| DIVISION.to_owned());
+    let notes = assumed.into_iter().chain(unknown(node)).collect();
+    Ok(vec![NamedCamera { pose: pose(node)?, notes, ..NamedCamera::new("", camera) }])
+}
+
+/// The lens of a model's name, and whether it has all coefficients that are not zero; an error with the name of what is wrong.
+fn lens(model: &str, d: &Coefficients) -> Result<Lens, (CameraFileError, &'static str)> {
+    let (radial, tangential) = match model {
         "perspective" => (0, false),
-        "division" if d == [0.0; 6] => (0, false),
-        "division" => {
-            let problem =
-                "has coefficients of the division model, whose formula is not published; expected zeros, or export with a Brown model";
-            return Err(at(CameraFileError::new(problem), "DistortionCoeficients"));
-        }
+        // Without coefficients it is a pinhole camera by any formula.
+        "division" => (1, false),
         "brown3" => (3, false),
         "brown4" => (4, false),
         "brown3t2" => (3, true),
         "brown4t2" => (4, true),
         other => {
             let known = "perspective, division, brown3, brown4, brown3t2 or brown4t2";
-            return Err(at(CameraFileError::new(format!("`{}` is not known; expected {known}", shortened(other))), "DistortionModel"));
+            return Err((CameraFileError::new(format!("`{}` is not known; expected {known}", shortened(other))), "DistortionModel"));
         }
     };
     if d[radial..4].iter().chain(d[4..].iter().filter(|_| !tangential)).any(|&value| value != 0.0) {
-        return Err(at(CameraFileError::new("has coefficients that the model has not; expected zeros"), "DistortionCoeficients"));
+        return Err((CameraFileError::new("has coefficients that the model has not; expected zeros"), "DistortionCoeficients"));
     }
-    let plain = Brown::plain(size, [f, f, centre.x + u * longer, centre.y + v * longer]);
-    let camera = Brown { k: [d[0], d[1], d[2], d[3]], p1: d[5], p2: d[4], ..plain }.camera();
-    Ok(vec![NamedCamera { pose: pose(node)?, notes: unknown(node), ..NamedCamera::new("", camera) }])
+    Ok(if model == "division" && d[0] != 0.0 { Lens::Division } else { Lens::Brown })
 }
 
 fn pose(node: Node<'_, '_>) -> Result<Option<Pose>, CameraFileError> {
@@ -138,32 +147,27 @@ fn unknown(node: Node<'_, '_>) -> Vec<String> {
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
     let named = &cameras[0];
-    let brown = Brown::of(&named.camera).filter(|brown| brown.skew == 0.0 && brown.has_one_focal());
-    let brown = brown.ok_or_else(|| FORMAT.other_model("a camera of Brown's model with one focal length"))?;
-    let ImageSize { width, height } = named.camera.size();
-    let (longer, centre) = (f64::from(width.max(height)), middle(brown.size));
-    let model = match (brown.radial(), brown.has_tangential()) {
-        (0, false) => "perspective",
-        (4, false) => "brown4",
-        (4, true) => "brown4t2",
-        (_, false) => "brown3",
-        (_, true) => "brown3t2",
+    let (Lengths { f35, u, v, skew, aspect }, d, lens) = reality_scan::parts(&named.camera, &FORMAT)?;
+    let tangential = d[4..] != [0.0; 2];
+    let model = match (lens, d) {
+        (Lens::Division, _) => "division",
+        (_, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) => "perspective",
+        (_, [_, _, _, 0.0, ..]) if tangential => "brown3t2",
+        (_, [_, _, _, 0.0, ..]) => "brown3",
+        _ if tangential => "brown4t2",
+        _ => "brown4",
     };
-    let (f, u, v) = (brown.fx * 36.0 / longer, (brown.cx - centre.x) / longer, (brown.cy - centre.y) / longer);
     let words = |values: &[f64]| values.iter().map(|&value| shortest(value)).collect::<Vec<_>>().join(" ");
-    let [k1, k2, k3, k4] = brown.k;
     let pose = named.pose.map_or(String::new(), |pose| {
         let rotation = words(pose.camera_from_world.as_flattened());
         format!("      <xcr:Rotation>{rotation}</xcr:Rotation>\n      <xcr:Position>{}</xcr:Position>\n", words(&pose.position))
     });
+    let [f35, skew, aspect, u, v] = [f35, skew, aspect, u, v].map(shortest);
     Ok(format!(
         "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n  <rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\n    <rdf:Description xcr:Version=\"3\" \
-         xcr:DistortionModel=\"{model}\" xcr:FocalLength35mm=\"{}\"\n       xcr:Skew=\"0\" xcr:AspectRatio=\"1\" xcr:PrincipalPointU=\"{}\" xcr:PrincipalPointV=\"{}\"\n       \
-         xcr:CalibrationPrior=\"exact\" xmlns:xcr=\"{NAMESPACE}\">\n{pose}      <xcr:DistortionCoeficients>{}</xcr:DistortionCoeficients>\n    \
-         </rdf:Description>\n  </rdf:RDF>\n</x:xmpmeta>\n",
-        shortest(f),
-        shortest(u),
-        shortest(v),
-        words(&[k1, k2, k3, k4, brown.p2, brown.p1])
+         xcr:DistortionModel=\"{model}\" xcr:FocalLength35mm=\"{f35}\"\n       xcr:Skew=\"{skew}\" xcr:AspectRatio=\"{aspect}\" xcr:PrincipalPointU=\"{u}\" \
+         xcr:PrincipalPointV=\"{v}\"\n       xcr:CalibrationPrior=\"exact\" xmlns:xcr=\"{NAMESPACE}\">\n{pose}      \
+         <xcr:DistortionCoeficients>{}</xcr:DistortionCoeficients>\n    </rdf:Description>\n  </rdf:RDF>\n</x:xmpmeta>\n",
+        words(&d)
     ))
 }

@@ -2,8 +2,8 @@
 
 use calibench_model::PixelPoint;
 use calibench_model::camera::{
-    Agisoft, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac, Omni, OpenCv, OpenCvFisheye,
-    Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, Camera, CameraModel, DoubleSphere, Ebner, Eucm, FisheyeProjection, Fov, ImageSize, MicMac,
+    Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, TangentialOrder,
 };
 use calibench_model::convert::{ConvertOptions, Method, WARNING_PX};
 
@@ -43,6 +43,18 @@ pub(super) fn all_models() -> Vec<Camera> {
         OpenCvFisheye { size: SIZE, fx: 420.0, fy: 421.0, cx, cy, skew: 0.0, k: [-0.02, 0.003, -0.001, 1e-4] }.into(),
         OpenCvFisheye { size: SIZE, fx, fy, cx, cy, skew: 0.002, k: [0.0; 4] }.into(),
         metashape.into(),
+        AgisoftFisheye {
+            size: SIZE,
+            projection: FisheyeProjection::Equisolid,
+            f: 420.0,
+            cx: 7.0,
+            cy: -3.0,
+            b1: 1.0,
+            b2: 0.5,
+            k: [-0.02, 0.003, 0.0, 0.0],
+            p: [2e-4, 1e-4],
+        }
+        .into(),
         Agisoft {
             version: AgisoftVersion::PhotoScan,
             cx: 610.0,
@@ -106,8 +118,7 @@ fn into_format(format: &CameraFormat, camera: &Camera) -> &'static str {
     };
     let bytes = camera_bytes(format, &[NamedCamera::new("7", found.camera)])
         .unwrap_or_else(|error| panic!("{} {}: {error}\n{:?}", format.name, model.name, found.camera));
-    let size = (!format.states_size).then_some(camera.size());
-    let read = parse_camera("f", &bytes, &ReadOptions { size, fisheye: None, from: None });
+    let read = parse_camera("f", &bytes, &ReadOptions::of_written(format, camera.size()));
     let read = read.unwrap_or_else(|error| panic!("{error}\n{}", String::from_utf8_lossy(&bytes)));
     // What the conversion says of itself is what the file pictures.
     let off = apart(camera, &read.cameras[0].camera);

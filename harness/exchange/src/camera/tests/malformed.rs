@@ -31,7 +31,7 @@ const OURS: &str = "format = \"calibench-camera\"\nversion = 1\nmodel = \"photog
     [interior_orientation]\nc_mm = 20.0\nx0_mm = 0.1\ny0_mm = 0.2\n";
 const ALL: [&str; 9] = [YAML, OPENCV, METASHAPE, OLD, DOCUMENT, CAM, INPHO, PARAMETERS, OURS];
 
-const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, from: None };
+const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, lens: None, from: None };
 
 #[test]
 fn the_samples_are_read() {
@@ -44,7 +44,7 @@ fn the_samples_are_read() {
 
 /// Sample, what is replaced, by what, and what the error must say.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str, &str, &str); 44] = [
+const MISTAKES: [(&str, &str, &str, &str); 47] = [
     (YAML, "500., 0.,", "500.,", "f:9, `camera_matrix.data`: expected 9 numbers for 3 x 3, found 8"),
     (YAML, "rows: 5", "rows: 6", "f:14, `distortion_coefficients.data`: expected 6 numbers for 6 x 1, found 5"),
     (YAML, "rows: 5", "rows: 99999999", "is 99999999 x 1; expected no more than 14 numbers"),
@@ -66,7 +66,9 @@ const MISTAKES: [(&str, &str, &str, &str); 44] = [
     (OPENCV, "<cols>4", "<cols>3", "expected 3 numbers for 1 x 3, found 4"),
     (OPENCV, "<dt>f</dt>", "<dt>f</dt><dt>d</dt>", "`dt`: stands twice"),
     (OPENCV, "</opencv_storage>", "", "not well-formed XML"),
-    (METASHAPE, "frame", "fisheye", "f:2:1, `projection`: projection `fisheye` is not known here; expected `frame`"),
+    (METASHAPE, "frame", "spherical", "f:2:1, `projection`: projection `spherical` is not known here; expected one of frame, equidistant_fisheye, fisheye"),
+    (METASHAPE, "frame</projection>", "fisheye</projection>\n<p3>0.1</p3>", "f:3:1, `p3`: is no parameter of a fisheye"),
+    (OLD, "frame", "fisheye", "is a fisheye with `fx`; expected `f`"),
     (METASHAPE, "<f>500</f>", "<f>500</f><f>500</f>", "f:5:11, `f`: stands in `calibration` twice; expected once"),
     (METASHAPE, "<f>500</f>", "", "`calibration`: has no element `f`"),
     (METASHAPE, "<f>500</f>", "<f>NaN</f>", "f:5:1, `f`: expected a finite number with a decimal point, found `NaN`"),
@@ -77,6 +79,7 @@ const MISTAKES: [(&str, &str, &str, &str); 44] = [
     (OLD, "<fy>501</fy>", "<fy>501</fy><b1>1</b1>", "belongs to files with `f`"),
     (DOCUMENT, "\"2.0.0\"", "\"7.0\"", "version `7.0` is not known"),
     (DOCUMENT, "type=\"frame\">\n<prop", "type=\"spherical\">\n<prop", "projection `spherical` is not known here"),
+    (DOCUMENT, "type=\"frame\">\n<prop", "type=\"fisheye\">\n<prop", "is of another type than its sensor"),
     (DOCUMENT, "4 0.1 0.1 1", "4 0.1 1", "`coeffs`: expected 2 x 2 numbers for the parameters above, at most 32, found 3"),
     (DOCUMENT, "4 0.1 0.1 1", "4 9 9 1", "not those of anything"),
     (DOCUMENT, "4 0.1 0.1 1", "4 0.1 0.1 -1", "variance of `k1` is -1"),
@@ -111,7 +114,7 @@ fn a_mistake_is_named_with_its_place() {
 #[test]
 fn the_fisheye_is_told_by_its_mark_or_by_the_user() {
     let model = |text: &str, fisheye| {
-        read_with(text, ReadOptions { size: None, fisheye, from: None })
+        read_with(text, ReadOptions { size: None, fisheye, ..ReadOptions::default() })
             .map(|file| matches!(file.cameras[0].camera, Camera::OpenCvFisheye(_)))
     };
     assert_eq!(model(OPENCV, None), Ok(false));

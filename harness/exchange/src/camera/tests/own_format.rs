@@ -52,8 +52,12 @@ fn cameras() -> Vec<Camera> {
 
 fn read(format: &'static CameraFormat, camera: &NamedCamera) -> Option<NamedCamera> {
     let bytes = camera_bytes(format, std::slice::from_ref(camera)).ok()?;
-    let options = ReadOptions { size: (!format.states_size).then_some(SIZE), fisheye: None, from: Some(format) };
-    Some(parse_camera("f", &bytes, &options).unwrap_or_else(|error| panic!("{}: {error}", format.name)).cameras.remove(0))
+    Some(
+        parse_camera("f", &bytes, &ReadOptions { from: Some(format), ..ReadOptions::of_written(format, SIZE) })
+            .unwrap_or_else(|error| panic!("{}: {error}", format.name))
+            .cameras
+            .remove(0),
+    )
 }
 
 /// The target by which a camera of a format is asked for in that format again.

@@ -1,7 +1,8 @@
 //! What is written is read again, for any camera.
 
 use calibench_model::camera::{
-    Agisoft, AgisoftVersion, Camera, Ebner, ImageSize, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, TangentialOrder,
+    Agisoft, AgisoftFisheye, AgisoftVersion, Camera, Ebner, FisheyeProjection, ImageSize, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d,
+    TangentialOrder,
 };
 use proptest::prelude::*;
 
@@ -48,6 +49,14 @@ fn metashape() -> impl Strategy<Value = Camera> {
     let camera = (size(), focal(), offset(), offset(), offset(), offset(), coefficients(), coefficients());
     camera.prop_map(|(size, f, cx, cy, b1, b2, k, p)| {
         Camera::Agisoft(Agisoft { size, version: AgisoftVersion::Metashape, f, cx, cy, b1, b2, k, p })
+    })
+}
+
+fn metashape_fisheye() -> impl Strategy<Value = Camera> {
+    let camera = (size(), focal(), offset(), offset(), offset(), offset(), coefficients(), coefficients(), any::<bool>());
+    camera.prop_map(|(size, f, cx, cy, b1, b2, k, p, equisolid)| {
+        let projection = if equisolid { FisheyeProjection::Equisolid } else { FisheyeProjection::Equidistant };
+        Camera::AgisoftFisheye(AgisoftFisheye { size, projection, f, cx, cy, b1, b2, k, p })
     })
 }
 
@@ -102,9 +111,7 @@ fn comes_back(format: &str, cameras: &[NamedCamera]) {
     let format = format_named(format).unwrap();
     let text = camera_text(format, cameras).unwrap();
     let size = calibench_model::camera::CameraModel::size(&cameras[0].camera);
-    // Only Pix4D's .cam does not state it.
-    let given = (!format.states_size).then_some(size);
-    let found = read_with(&text, ReadOptions { size: given, fisheye: None, from: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let found = read_with(&text, ReadOptions::of_written(format, size)).unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!(found.format, format);
     assert_same(cameras, &found.cameras, 1e-12);
 }
@@ -113,18 +120,22 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn opencv_yaml_and_xml(camera in prop_oneof![opencv(), fisheye()], name in name()) {
-        comes_back("opencv-yaml", &[NamedCamera::new(name.clone(), camera)]);
-        comes_back("opencv-xml", &[NamedCamera::new(name, camera)]);
+    fn opencv_yaml_and_xml(camera in prop_oneof![opencv(), fisheye()], name in name(), sigmas in prop::option::of((0.0..10.0_f64, 1e-6..1.0_f64))) {
+        // Squares of numbers with few digits have exact roots.
+        let variances = sigmas.map(|(a, b)| [a, b].map(|sigma| f64::from((sigma * 1024.0).ceil() as u32) / 1024.0).map(|sigma| sigma * sigma));
+        let covariance = variances.map(|[a, b]| ParameterCovariance::new(vec!["cx".into(), "k2".into()], vec![a.max(1.0), 0.0, 0.0, b]).unwrap());
+        for format in ["opencv-yaml", "opencv-xml"] {
+            comes_back(format, &[NamedCamera { covariance: covariance.clone(), ..NamedCamera::new(name.clone(), camera) }]);
+        }
     }
 
     #[test]
-    fn metashape_calibration(camera in prop_oneof![metashape(), photoscan()]) {
+    fn metashape_calibration(camera in prop_oneof![metashape(), metashape_fisheye(), photoscan()]) {
         comes_back("metashape", &[NamedCamera::new("", camera)]);
     }
 
     #[test]
-    fn metashape_cameras(cameras in prop::collection::vec((name(), metashape(), prop::option::of(0.5..20.0_f64), covariance(["f", "k1"])), 1..4)) {
+    fn metashape_cameras(cameras in prop::collection::vec((name(), prop_oneof![metashape(), metashape_fisheye()], prop::option::of(0.5..20.0_f64), covariance(["f", "k1"])), 1..4)) {
         let cameras: Vec<_> = cameras.into_iter().map(|(name, camera, pitch_um, covariance)| {
             NamedCamera { pitch_um, covariance, ..NamedCamera::new(name, camera) }
         }).collect();

@@ -13,13 +13,14 @@ use super::read_with;
 use super::round_trip::{coefficients, focal, name, offset, size};
 
 /// The formats of this file, in the order of the registry.
-pub const ROUND_TRIPPED: [&str; 17] = [
+pub const ROUND_TRIPPED: [&str; 18] = [
     "camodocal",
     "ros",
     "kalibr",
     "micmac",
     "bentley",
     "reality-capture",
+    "reality-scan-csv",
     "mrcal",
     "basalt",
     "nerfstudio",
@@ -52,8 +53,8 @@ fn near(a: f64, b: f64, scale: f64) -> bool {
 fn comes_back(format: &str, cameras: &[NamedCamera]) {
     let format = format_named(format).unwrap();
     let text = camera_text(format, cameras).unwrap_or_else(|error| panic!("{error}\n{cameras:?}"));
-    let size = (!format.states_size).then_some(cameras[0].camera.size());
-    let found = read_with(&text, ReadOptions { size, fisheye: None, from: None }).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let found =
+        read_with(&text, ReadOptions::of_written(format, cameras[0].camera.size())).unwrap_or_else(|error| panic!("{error}\n{text}"));
     assert_eq!((found.format, found.cameras.len()), (format, cameras.len()));
     for (a, b) in cameras.iter().zip(&found.cameras) {
         assert_eq!(a.camera.size(), b.camera.size());
@@ -259,8 +260,13 @@ proptest! {
     }
 
     #[test]
-    fn reality_capture(camera in posed(prop_oneof![one_focal(true), one_focal(false), centred(), metashape(false)])) {
+    fn reality_capture(camera in posed(prop_oneof![one_focal(true), opencv(5), centred(), metashape(false), metashape(true), division()])) {
         comes_back("reality-capture", &[camera]);
+    }
+
+    #[test]
+    fn reality_scan_csv(camera in posed(prop_oneof![one_focal(true), one_focal(false), centred(), metashape(false)]), other in pose()) {
+        comes_back("reality-scan-csv", &[camera.clone(), NamedCamera { pose: Some(other), ..NamedCamera::new("a, \"b\"", camera.camera) }]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use calibench_model::camera::ImageSize;
 use super::super::{ReadOptions, parse_camera};
 use super::read_with;
 
-const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, from: None };
+const SIZE: ReadOptions = ReadOptions { size: Some(ImageSize { width: 640, height: 480 }), fisheye: None, lens: None, from: None };
 
 const COLMAP: &str = "# Camera list\n1 OPENCV 640 480 500 501 320 240 -0.1 0.02 1e-3 2e-3\n2 PINHOLE 640 480 500 501 320 240\n";
 const KAPTURE: &str = "# kapture format: 1.1\ngps, , gnss, EPSG:4326\ncam, left, camera, RADIAL, 640, 480, 500, 320, 240, -0.1, 0.02\n";
@@ -36,6 +36,8 @@ const XMP: &str = "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\">\n<rdf:RDF xmlns:rdf=\"
     <rdf:Description xcr:Version=\"3\" xcr:DistortionModel=\"brown3t2\" xcr:FocalLength35mm=\"28\" xcr:PrincipalPointU=\"0.01\"\n\
     xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n<xcr:Rotation>1 0 0 0 1 0 0 0 1</xcr:Rotation>\n<xcr:Position>1 2 3</xcr:Position>\n\
     <xcr:DistortionCoeficients>-0.1 0.02 0 0 0.001 0.002</xcr:DistortionCoeficients>\n</rdf:Description>\n</rdf:RDF>\n</x:xmpmeta>\n";
+const SCAN: &str = "#cameras 2\n#name,x,y,alt,yaw,pitch,roll,f_35mm,px_norm,py_norm,k1,k2,k3,k4,t1,t2\n\
+    a.jpg,1,2,3,0,0,0,28,0.01,0,-0.1,0.02,0,0,0.001,0.002\nb.jpg,1,2,3,30,80,-10,28,0.01,0,0,0,0,0,0,0\n";
 const BENTLEY: &str = "<BlocksExchange version=\"2.1\"><Block><Photogroups><Photogroup>\n<ImageDimensions><Width>640</Width><Height>480</Height></ImageDimensions>\n\
     <CameraModelType>Perspective</CameraModelType>\n<FocalLength>10</FocalLength>\n<SensorSize>12.8</SensorSize>\n\
     <PrincipalPoint><x>320</x><y>240</y></PrincipalPoint>\n<Distortion><K1>-0.1</K1><P1>0.001</P1></Distortion>\n\
@@ -45,7 +47,7 @@ const MICMAC: &str = "<?xml version=\"1.0\" ?>\n<ExportAPERO>\n<CalibrationInter
     </ModPhgrStd>\n</CalibDistortion>\n</CalibrationInternConique>\n</ExportAPERO>\n";
 const CALTECH: &str = "% Intrinsic\n%-- Focal length:\nfc = [ 500.0 ; 501.0 ];\ncc = [ 320.0 ; 240.0 ];\nalpha_c = 0.000000;\nkc = [ -0.1 ; 0.02 ; 0.001 ; 0.0 ; 0.0 ];\n\
     fc_error = [ 3.0 ; 3.0 ];\ncc_error = [ 1.5 ; 1.5 ];\nkc_error = [ 0.01 ; 0.02 ; 0.001 ; 0.001 ; 0.0 ];\nnx = 640;\nny = 480;\nn_ima = 2;\nomc_1 = [ 1 ; 2 ; 3 ];\n";
-const ALL: [(&str, &str); 17] = [
+const ALL: [(&str, &str); 18] = [
     ("colmap", COLMAP),
     ("kapture", KAPTURE),
     ("ros", ROS),
@@ -60,6 +62,7 @@ const ALL: [(&str, &str); 17] = [
     ("bundler", BUNDLER),
     ("bal", BAL),
     ("reality-capture", XMP),
+    ("reality-scan-csv", SCAN),
     ("bentley", BENTLEY),
     ("micmac", MICMAC),
     ("caltech", CALTECH),
@@ -73,7 +76,7 @@ fn the_samples_are_read_as_what_they_are() {
             assert_eq!(file.format.name, format, "{text}");
         }
         // A size that contradicts the file is refused, one that the file leaves open is asked for.
-        let other = ReadOptions { size: Some(ImageSize { width: 641, height: 480 }), fisheye: None, from: None };
+        let other = ReadOptions { size: Some(ImageSize { width: 641, height: 480 }), fisheye: None, lens: None, from: None };
         let states_size = super::super::format_named(format).unwrap().states_size;
         assert_eq!(read_with(text, other).is_err(), states_size, "{format}");
         assert_eq!(read_with(text, ReadOptions::default()).is_ok(), states_size, "{format}");
@@ -128,7 +131,7 @@ fn what_is_left_out_is_said() {
 
 /// Sample, what is replaced, by what, and what the error must say.
 #[rustfmt::skip]
-const MISTAKES: [(&str, &str, &str, &str); 51] = [
+const MISTAKES: [(&str, &str, &str, &str); 56] = [
     (COLMAP, "OPENCV 640", "OPENGL 640", "f:2, `OPENGL`: model `OPENGL` is not known; expected SIMPLE_PINHOLE, PINHOLE"),
     (COLMAP, "PINHOLE 640 480 500 501 320 240", "EUCM 640 480 500 501 320 240 0.5 -1", "f:3, `EUCM`: expected a number above zero, found -1"),
     (COLMAP, "PINHOLE 640 480 500 501 320 240", "EUCM 640 480 500 501 320 240 1.5 1", "`EUCM`: expected alpha from 0 to 1, found 1.5"),
@@ -171,9 +174,14 @@ const MISTAKES: [(&str, &str, &str, &str); 51] = [
     (BUNDLER, "500 -0.1", "-500 -0.1", "f:3: expected a focal length above zero, found -500"),
     (BAL, "0.02\n1\n2\n3\n", "", "ends before the nine numbers of camera 0"),
     (XMP, "brown3t2", "fisheye", "`DistortionModel`: `fisheye` is not known; expected perspective, division"),
-    (XMP, "brown3t2", "division", "`DistortionCoeficients`: has coefficients of the division model, whose formula is not published"),
+    (XMP, "brown3t2", "division", "`DistortionCoeficients`: has coefficients that the model has not"),
     (XMP, "brown3t2", "brown3", "`DistortionCoeficients`: has coefficients that the model has not"),
-    (XMP, "xcr:PrincipalPointU=\"0.01\"", "xcr:AspectRatio=\"1.01\"", "`AspectRatio`: is 1.01; how it acts is not published"),
+    (XMP, "xcr:PrincipalPointU=\"0.01\"", "xcr:AspectRatio=\"-1.01\"", "`AspectRatio`: expected a number above zero, found -1.01"),
+    (SCAN, ",28,", ",-28,", "f:3, `f`: expected a number above zero, found -28"),
+    (SCAN, "-0.1,0.02", "-0.1,x", "f:3, `k2`: expected a finite number"),
+    (SCAN, "-0.1,0.02", "-0.1", "f:3: expected 16 columns, found 15"),
+    (SCAN, "k3,k4", "k3,k3", "f:2: column `k3` stands twice"),
+    (SCAN, "-0.1,0.02,0,0,0.001,0.002", "-0.1,0,0,0,0,0", "f:3, `k1`: has k1 alone, which is the division model's as likely as Brown's; say which with --lens"),
     (BENTLEY, "Perspective", "Fisheye", "f:3:1, `CameraModelType`: `Fisheye` is not known here; expected Perspective"),
     (BENTLEY, "<SensorSize>12.8</SensorSize>\n", "", "has neither `FocalLengthPixels` nor `SensorSize`"),
     (MICMAC, "eConvApero_DistM2C", "eConvApero_DistC2M", "f:4:1, `KnownConv`: `eConvApero_DistC2M` is not known here"),
