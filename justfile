@@ -7,6 +7,9 @@ calibench := "./target/release/calibench"
 # Snapshots are compared and not written; `INSTA_UPDATE=always just test` accepts what is there now.
 export INSTA_UPDATE := env("INSTA_UPDATE", "no")
 
+# The tools' own packages, where `./bootstrap peers` put them; without them the tests that ask them are skipped, by name.
+export CALIBENCH_PEERS := if path_exists(justfile_directory() / "target/peers") == "true" { justfile_directory() / "target/peers" } else { "" }
+
 # List the recipes
 default:
     @just --list --unsorted
@@ -53,6 +56,10 @@ lint:
     cargo clippy {{everything}} --all-targets --quiet -- -D warnings
     RUSTDOCFLAGS="-D warnings" cargo doc {{everything}} --no-deps --quiet
     sh -n bootstrap
+
+# Camera files that we write, read and projected by the tools' own packages (`./bootstrap peers` installs them)
+peers:
+    cargo test {{everything}} --test calibench peers::
 
 # Small faults in what scores, gates, adjusts and reports that no test of its crate notices: COUNT mutants by SEED, at most MINUTES (`./bootstrap mutants` installs cargo-mutants)
 mutants SEED="2026" COUNT="200" MINUTES="60":

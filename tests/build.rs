@@ -1,8 +1,45 @@
-//! Says whether the photographs and camera files that some tests need are there: `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`.
+//! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, packages of other
+//! tools as `cfg(peer_...)`.
+
+use std::env;
+use std::path::{Path, PathBuf};
 
 #[path = "../harness/test_data.rs"]
 mod test_data;
 
+/// Packages by the name of their cfg; the last two are Debian's.
+const PEERS: [(&str, &str); 6] = [
+    ("peer_pycolmap", "pycolmap"),
+    ("peer_kapture", "kapture"),
+    ("peer_opencv", "cv2"),
+    ("peer_theia", "pytheia"),
+    ("peer_mrcal", "mrcal"),
+    ("peer_ros", "camera_calibration_parsers"),
+];
+/// Where Debian's are.
+const SYSTEM: &str = "/usr/lib/python3/dist-packages";
+
 fn main() {
     test_data::announce(&[("photographs", "opencv-left"), ("camera_files", "cameras"), ("webcam", "webcam")]);
+    println!("cargo::rerun-if-env-changed=CALIBENCH_PEERS");
+    let folder = env::var_os("CALIBENCH_PEERS").map(PathBuf::from).filter(|folder| folder.is_dir());
+    let own = folder.as_deref().and_then(packages);
+    for (index, (name, package)) in PEERS.into_iter().enumerate() {
+        println!("cargo::rustc-check-cfg=cfg({name})");
+        let place = if index < 4 { own.clone() } else { folder.as_ref().map(|_| PathBuf::from(SYSTEM)) };
+        if place.is_some_and(|place| place.join(package).exists()) {
+            println!("cargo::rustc-cfg={name}");
+        }
+    }
+    if let Some(folder) = &folder {
+        // Not the folder: Python writes into it.
+        println!("cargo::rerun-if-changed={}", folder.join("pyvenv.cfg").display());
+        println!("cargo::rustc-env=CALIBENCH_PEERS={}", folder.display());
+    }
+}
+
+/// The packages of a virtual environment.
+fn packages(folder: &Path) -> Option<PathBuf> {
+    let versions = std::fs::read_dir(folder.join("lib")).ok()?;
+    versions.filter_map(Result::ok).map(|version| version.path().join("site-packages")).find(|place| place.is_dir())
 }

@@ -29,6 +29,7 @@ mod operators;
 mod orient;
 mod outputs;
 mod paper;
+mod peers;
 mod photographs;
 mod priors;
 mod project;
