@@ -154,9 +154,9 @@ fn an_st_map_is_opencv_s_map() {
         let camera = opencv(coefficients);
         write_camera(&file, calibench_exchange::camera::format_named("opencv-yaml").unwrap(), &[NamedCamera::new("", camera)]).unwrap();
         // OpenCV's picture has its camera matrix, ours the scale on the axis: another one where the sensor is tilted.
-        let (own, principal) = (Undistorted::of(&camera, Overscan::Percent(0.0)).unwrap(), PixelPoint::new(610.0, 440.0));
-        let picture = Undistorted { focal: [1400.0, 1403.0], principal, ..own };
-        assert!(coefficients == 14 || own.principal.distance(principal) < 1e-9);
+        let (on_axis, principal) = (Undistorted::of(&camera, Overscan::Percent(0.0)).unwrap(), PixelPoint::new(610.0, 440.0));
+        let picture = Undistorted { focal: [1400.0, 1403.0], principal, ..on_axis };
+        assert!(coefficients == 14 || on_axis.principal.distance(principal) < 1e-9);
         let ours = StMap::new(&camera, &picture, Direction::Undistort, true);
         std::fs::write(&map, encode(&ours, MapFile::TiffFloat).unwrap()).unwrap();
         let points: Vec<[f64; 3]> =

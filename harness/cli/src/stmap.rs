@@ -46,10 +46,12 @@ impl StMapCommand {
     pub fn run(&self) -> Result<(), Failure> {
         let inputs = Inputs::new([&self.file].into_iter().chain(&self.check));
         let output = self.output.as_deref().map(|path| output::map("-o", path, &inputs)).transpose()?;
-        let kind = self
-            .output
-            .as_deref()
-            .map(|path| MapFile::of(path, self.float).ok_or_else(|| Failure::input("--float: a PNG holds 16 bits; name a .tif or a .exr")));
+        let kind = output.as_ref().map(|output| {
+            // What is no regular file has any ending.
+            let stream = (!output.is_file()).then_some(MapFile::Exr);
+            let kind = MapFile::of(output.path(), self.float).or(stream);
+            kind.ok_or_else(|| Failure::input("--float: a PNG holds 16 bits; name a .tif or a .exr"))
+        });
         let kind = kind.transpose()?;
         let NamedCamera { camera, .. } = self.reading.one(&self.file)?;
         let picture = Undistorted::of(&camera, self.overscan).map_err(|error| Failure::input(format!("{}: {error}", shown(&self.file))))?;

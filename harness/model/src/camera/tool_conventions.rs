@@ -7,12 +7,14 @@ use super::{agisoft, opencv, photogrammetric};
 pub const COLMAP: Convention = Convention {
     name: "colmap",
     about: "COLMAP: SIMPLE_PINHOLE to FULL_OPENCV, fisheyes, FOV, thin prism",
-    version: "3.x",
+    version: "3.x and 4.x",
     pixel_origin: PixelOrigin::PixelCorner,
     principal_point_from: PixelOrigin::PixelCorner,
     normalisation: "divided by f or fx, fy, px",
     source: "COLMAP's documentation, Camera Models and Output Format: the centre of the first pixel is (0.5, 0.5)",
-    verification: Verification::Unverified("origin and formulas by COLMAP's documentation; no projected point of it was at hand"),
+    verification: Verification::Verified(
+        "pycolmap 4.2.1 projects alike in every model, to 1e-8 px, and its SIFT finds a blob at (100, 60) at (100.5, 60.5)",
+    ),
     ..opencv::CONVENTION
 };
 
@@ -22,8 +24,8 @@ pub const KAPTURE: Convention = Convention {
     about: "kapture: COLMAP's models in sensors.txt",
     version: "1.0, 1.1",
     source: "kapture's format specification: camera models are COLMAP's",
-    verification: Verification::Unverified(
-        "formulas by its specification; that the origin is COLMAP's is what its converters do, which copy the numbers",
+    verification: Verification::Verified(
+        "kapture 1.1.12 reads the models and numbers, which pycolmap projects alike, to 1e-8 px; that the origin is COLMAP's is what its converters do",
     ),
     ..COLMAP
 };
@@ -34,7 +36,9 @@ pub const ROS: Convention = Convention {
     about: "ROS camera_info: plumb_bob, rational_polynomial, equidistant",
     version: "camera_calibration and image_pipeline of ROS 1 and 2",
     source: "sensor_msgs/CameraInfo and distortion_models.h: OpenCV's models",
-    verification: Verification::Unverified("OpenCV's functions by ROS's own statement; no projected point of ROS was at hand"),
+    verification: Verification::Verified(
+        "camera_calibration_parsers 1.12 of ROS reads the files, and OpenCV projects alike what it read, to 1e-8 px",
+    ),
     ..opencv::CONVENTION
 };
 
@@ -56,9 +60,7 @@ pub const MRCAL: Convention = Convention {
     about: "mrcal .cameramodel: PINHOLE, STEREOGRAPHIC, OPENCV4 to OPENCV12; splined models are read and fitted",
     version: "1 and 2",
     source: "mrcal's documentation, Lens models and Conventions",
-    verification: Verification::Verified(
-        "mrcal's own splined fit of one of its OPENCV8 cameras, made for points at 5 m, agrees to 0.2 px after a shift of the centre",
-    ),
+    verification: Verification::Verified("mrcal 2.2 projects alike by the files, models to 1e-8 px and splines to 1e-6 px"),
     ..opencv::CONVENTION
 };
 
@@ -128,7 +130,7 @@ pub const THEIA: Convention = Convention {
     version: "0.8 and later",
     source: "Theia's documentation, Camera",
     verification: Verification::Unverified(
-        "formulas after its documentation; what (0, 0) is it does not say: the centre of the first pixel is assumed",
+        "formulas by its own package, pytheia 1.2.1, to 1e-8 px; what (0, 0) is it does not say: the centre of the first pixel is assumed",
     ),
     ..opencv::CONVENTION
 };
@@ -144,21 +146,23 @@ pub const BUNDLER: Convention = Convention {
     order: TangentialOrder::Without,
     normalisation: "divided by f, px",
     source: "Bundler v0.4 User's Manual; Agarwal et al. 2010",
-    verification: Verification::Unverified("formulas after the manual; no projected point was at hand"),
+    verification: Verification::Unverified(
+        "formulas after the manual; Theia's package reads the cameras of Bundler's files, no projected point of Bundler was at hand",
+    ),
     ..opencv::CONVENTION
 };
 
 /// RealityCapture.
 pub const REALITY_CAPTURE: Convention = Convention {
     name: "reality-capture",
-    about: "RealityCapture, RealityScan XMP: FocalLength35mm, PrincipalPointU and V, brown3 to brown4t2",
-    version: "XMP version 2 and 3",
+    about: "RealityCapture, RealityScan: XMP and CSV; focal length of 36 mm film, principal point, skew, aspect ratio, brown3 to brown4t2, division",
+    version: "XMP version 2 to 4, Internal/External camera parameters",
     pixel_origin: PixelOrigin::FrameCentre,
     principal_point_from: PixelOrigin::FrameCentre,
     normalisation: "divided by the focal length; that and the principal point are in units of the longer side, the former times 36",
-    source: "RealityCapture's support pages, XMP camera math; the readers of AliceVision and camorph",
+    source: "RealityCapture's support pages, XMP camera math; Epic's own writer of its XMP in the calibration library of MetaHuman; the export templates of RealityScan 2; the readers of AliceVision and camorph",
     verification: Verification::Unverified(
-        "formulas and the order of t1 and t2 by two other programs' readers; no numbers of the tool were at hand",
+        "aspect ratio, skew and the order of t1 and t2 by Epic's writer and templates, angles of the CSV by nerfstudio's reader, the division model's formula by none; no numbers of the tool were at hand",
     ),
     ..agisoft::METASHAPE
 };

@@ -16,7 +16,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "COLMAP",
     versions: "cameras.txt of 3.x and 4.x",
     extension: "txt",
-    verified: Some("its projections by pycolmap 4.2.1 in every model, to 1e-9 px"),
+    verified: Some("pycolmap 4.2.1 reads what is written and projects alike in every model, to 1e-8 px"),
     many: true,
     recognise,
     read,

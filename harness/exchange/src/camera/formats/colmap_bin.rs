@@ -15,7 +15,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "COLMAP",
     versions: "cameras.bin of 3.x and 4.x",
     extension: "bin",
-    verified: Some("read and written by pycolmap 4.2.1: every model's projections to 1e-9 px"),
+    verified: Some("pycolmap 4.2.1 reads what is written and projects alike in every model, to 1e-8 px"),
     many: true,
     binary: Some(Binary { recognise, read, write }),
     convention: Some(&tool_conventions::COLMAP),

@@ -14,6 +14,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     tool: "kapture",
     versions: "sensors.txt of 1.0 and 1.1",
     extension: "txt",
+    verified: Some("kapture 1.1.12 reads what is written, and pycolmap projects alike, to 1e-8 px"),
     many: true,
     recognise,
     read,

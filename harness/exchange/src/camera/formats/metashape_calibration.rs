@@ -9,9 +9,11 @@ use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, agi
 pub(super) static FORMAT: CameraFormat = CameraFormat {
     name: "metashape",
     tool: "Agisoft Metashape, PhotoScan, Lens",
-    versions: "calibration XML: Metashape and PhotoScan from 1.2 (f), older PhotoScan and Lens (fx, fy)",
+    versions: "calibration XML: Metashape and PhotoScan from 1.2 (f; frame cameras and fisheyes), older PhotoScan and Lens (fx, fy)",
     extension: "xml",
-    verified: Some("Metashape's own OpenCV export of the same adjustment pictures every ray alike, to 1e-10 of the frame (f; not fx, fy)"),
+    verified: Some(
+        "Metashape's own OpenCV export of the same adjustment pictures every ray alike, to 1e-10 of the frame (frame cameras with f; not fx, fy, not fisheyes)",
+    ),
     many: false,
     states_size: true,
     recognise: |source| xml::root_is(source.xml.as_ref(), "calibration"),
