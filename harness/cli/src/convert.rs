@@ -1,12 +1,13 @@
 //! `calibench convert`: cameras from one convention, or one tool's file, to another.
 
+use std::collections::HashMap;
 use std::io;
 use std::path::PathBuf;
 
 use calibench_diagnostics::nearest;
 use calibench_exchange::camera::conversion::{ConversionError, Converted, converted};
 use calibench_exchange::camera::fit::{FitError, losses};
-use calibench_exchange::camera::target::{Given, Goal, TargetError, goal};
+use calibench_exchange::camera::target::{Given, TargetError, goal};
 use calibench_exchange::camera::{CameraFormat, NamedCamera, camera_bytes};
 use calibench_exchange::{Inputs, OutputFile, OutputFolder};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, fold};
@@ -16,6 +17,7 @@ use calibench_model::convert::{
 use calibench_model::escape;
 use calibench_report::{Field, Hull, plain};
 use clap::Args;
+use rayon::prelude::*;
 
 use super::context::Context;
 use super::output;
@@ -79,20 +81,20 @@ impl Convert {
         let cameras_file = self.cameras_file(&inputs)?;
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
-        let mut results = Vec::new();
-        for (index, source) in sources.iter().enumerate() {
+        let many = sources.len() > 1;
+        let one = |(index, source): (usize, NamedCamera)| {
             let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
-            let label = (sources.len() > 1).then_some(place);
-            results.push(self.converted(source, label.as_deref(), plot.as_ref(), context.quiet)?);
-        }
-        let Some((_, goal)) = results.last() else { return Err(Failure::input("the file holds no camera")) };
-        let format = goal.format;
-        let mut cameras: Vec<NamedCamera> = results.into_iter().map(|(camera, _)| camera).collect();
+            self.converted(&source, many.then_some(place).as_deref(), plot.as_ref(), context.quiet)
+        };
+        let results: Vec<Answer> = sources.into_par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
+        say_all(results.iter().flat_map(|answer| &answer.said).map(|(label, text)| (label.as_deref(), text.as_str())));
+        let Some(&Answer { format, .. }) = results.first() else { return Err(Failure::input("the file holds no camera")) };
+        let mut cameras: Vec<NamedCamera> = results.into_iter().map(|answer| answer.camera).collect();
         self.reading.open_points().written(format, &mut cameras);
         self.reading.warn_of_format(format);
-        let mut lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
-        lost.dedup();
-        lost.iter().for_each(|what| say!("warning: lost: {}", escape::name(what)));
+        let lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
+        let words: Vec<String> = lost.iter().map(|what| format!("warning: lost: {}", escape::name(what))).collect();
+        say_all(words.iter().map(|text| (None, text.as_str())));
         cameras_file.write(format, &cameras)
     }
 
@@ -106,40 +108,36 @@ impl Convert {
     }
 
     /// A camera in the new convention, and the format of its file.
-    fn converted(
-        &self,
-        source: &NamedCamera,
-        label: Option<&str>,
-        plot: Option<&OutputFile>,
-        quiet: bool,
-    ) -> Result<(NamedCamera, Goal), Failure> {
+    fn converted(&self, source: &NamedCamera, label: Option<&str>, plot: Option<&OutputFile>, quiet: bool) -> Result<Answer, Failure> {
         let order = self.reading.open_points().order();
         let given = Given { source, pitch_um: self.pitch, base_mm: self.base, order, output: self.output.as_deref() };
         let goal = goal(&self.to, &given).map_err(no_target)?;
         if self.naive {
             let pitch_um = self.pitch.or(source.pitch_um);
-            let result = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, plot, quiet)?) };
-            return Ok((result, goal));
+            let camera = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, plot, quiet)?) };
+            return Ok(Answer { camera, format: goal.format, said: Vec::new() });
         }
         let options =
             ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
         let found = converted(source, &goal, self.model.as_deref(), self.pitch, &options);
         let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error))?;
+        let mut said = Vec::new();
         if !quiet {
-            let name = label.map_or(String::new(), |label| format!("{}: ", escape::name(label)));
             let model = model.map_or(String::new(), |model| format!("{model}: "));
-            eprint!("{}", escape::message(&format!("{name}{model}{}", summary(&conversion))));
+            said.push((label.map(str::to_owned), format!("{model}{}", summary(&conversion))));
         }
         if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
             // An exact conversion takes a fold along; it is no truth beyond it in any convention.
             let (radius, share) = (plain(fold.radius_px), 100.0 * fold.share);
-            say!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
+            let text =
+                format!("warning: the camera folds over {radius} px from the image of the axis: {share:.2} % of the frame have no ray");
+            said.push((None, text));
         }
         plot.map_or(Ok(()), |plot| drawn(&conversion).write(plot))?;
         if goal.format.convention.is_none() && conversion.camera.convention() != source.camera.convention() {
-            self.reading.warn(&conversion.camera);
+            said.extend(self.reading.doubt(&conversion.camera).map(|doubt| (None, doubt)));
         }
-        Ok((camera, goal))
+        Ok(Answer { camera, format: goal.format, said })
     }
 
     fn refused(&self, error: &ConversionError) -> Failure {
@@ -172,6 +170,44 @@ impl Convert {
 fn drawn(conversion: &Conversion) -> calibench_report::Canvas {
     let title = if conversion.method == Method::Exact { "Exact conversion: no residuals" } else { "Residuals of the fitted conversion" };
     field(title, &conversion.camera, &conversion.residuals, Hull::default())
+}
+
+/// A converted camera.
+struct Answer {
+    camera: NamedCamera,
+    format: &'static CameraFormat,
+    /// What the user is told, of this camera by its label or of all.
+    said: Vec<(Option<String>, String)>,
+}
+
+/// Cameras of which each is told apart.
+const TOLD_APART: usize = 20;
+
+/// Says each text once; of many cameras how many a text is about, and the first of them.
+fn say_all<'a>(said: impl Iterator<Item = (Option<&'a str>, &'a str)>) {
+    let all: Vec<_> = said.collect();
+    let told_apart = all.len() <= TOLD_APART;
+    let mut counts: HashMap<&str, usize> = HashMap::new();
+    all.iter().for_each(|(_, text)| *counts.entry(text).or_default() += 1);
+    let mut told = 0;
+    for &(label, text) in &all {
+        let name = label.map_or(String::new(), |label| format!("{}: ", escape::name(label)));
+        match counts.get(text).copied().unwrap_or(0) {
+            0 => continue,
+            _ if told_apart && label.is_some() => say!("{name}{text}"),
+            1 => say!("{name}{text}"),
+            count if label.is_some() => say!("{name}{text} (so are {} more)", count - 1),
+            _ => say!("{text}"),
+        }
+        if !(told_apart && label.is_some()) {
+            counts.remove(text);
+        }
+        told += 1;
+        if told > TOLD_APART && counts.len() > 1 {
+            say!("... and {} more of these", counts.len());
+            return;
+        }
+    }
 }
 
 /// Where converted cameras go.
@@ -252,7 +288,7 @@ fn summary(conversion: &Conversion) -> String {
         Region::Radius { px } => format!("{} px around the image of the axis", plain(px)),
     };
     if conversion.method == Method::Exact {
-        return "exact: the same camera in other units\n".into();
+        return "exact: the same camera in other units".into();
     }
     let word = match conversion.verdict {
         Verdict::Good => "fitted",
@@ -261,7 +297,7 @@ fn summary(conversion: &Conversion) -> String {
     };
     let angle = conversion.rotation.angle().to_degrees();
     let rotation = if angle > 0.0 { format!(", rotated by {angle:.6}\u{b0}") } else { String::new() };
-    format!("{word}: residuals {}, over {region}{rotation}\n", size_of(&conversion.residual))
+    format!("{word}: residuals {}, over {region}{rotation}", size_of(&conversion.residual))
 }
 
 /// Vectors on a regular grid as a picture.

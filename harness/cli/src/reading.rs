@@ -1,5 +1,6 @@
 //! How a camera file is read: which camera of it, and what it may leave open.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use calibench_diagnostics::nearest;
@@ -86,16 +87,15 @@ impl Reading {
         }
     }
 
-    /// Says what of a camera's convention is not confirmed by numbers of its tool, and which flag decides it.
-    pub fn warn(&self, camera: &Camera) {
-        if let Verification::Unverified(open) = camera.convention().verification {
-            let flag = match camera {
-                Camera::Pix4d(_) if self.order.is_none() => "; --order brown or --order opencv decides the order of T1 and T2",
-                Camera::Agisoft(_) if self.order.is_none() || self.origin.is_none() => "; --order and --origin decide",
-                _ => "",
-            };
-            say!("unverified: {}: {open}{flag}", camera.convention().name);
-        }
+    /// What of a camera's convention is not confirmed by numbers of its tool, and which flag decides it.
+    pub fn doubt(&self, camera: &Camera) -> Option<String> {
+        let Verification::Unverified(open) = camera.convention().verification else { return None };
+        let flag = match camera {
+            Camera::Pix4d(_) if self.order.is_none() => "; --order brown or --order opencv decides the order of T1 and T2",
+            Camera::Agisoft(_) if self.order.is_none() || self.origin.is_none() => "; --order and --origin decide",
+            _ => "",
+        };
+        Some(format!("unverified: {}: {open}{flag}", camera.convention().name))
     }
 
     pub fn file(&self, path: &Path) -> Result<CameraFile, Failure> {
@@ -141,17 +141,13 @@ impl Reading {
         let format = file.format;
         let cameras = self.open_points().read(file);
         self.warn_of_format(format);
-        let mut said: Vec<String> = Vec::new();
+        let mut said: HashSet<&str> = HashSet::new();
         for named in &cameras {
-            if !said.iter().any(|word| word == named.camera.convention().name) && format.convention.is_none() {
-                self.warn(&named.camera);
-                said.push(named.camera.convention().name.to_owned());
+            if format.convention.is_none() && said.insert(named.camera.convention().name) {
+                self.doubt(&named.camera).iter().for_each(|doubt| say!("{doubt}"));
             }
-            for note in &named.notes {
-                if !said.contains(note) {
-                    say!("{}: {}", shown(path), escape::name(note));
-                    said.push(note.clone());
-                }
+            for note in named.notes.iter().filter(|note| said.insert(note.as_str())) {
+                say!("{}: {}", shown(path), escape::name(note));
             }
         }
         cameras

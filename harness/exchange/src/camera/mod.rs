@@ -197,6 +197,9 @@ pub fn camera_text(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Str
     String::from_utf8(camera_bytes(format, cameras)?).map_err(|_| no_text())
 }
 
+/// Cameras of a long list that are read again at a time, to see that they can be.
+const READ_AT_A_TIME: usize = 10_000;
+
 /// The bytes of a camera file. In text, numbers have 17 significant digits or their shortest exact form.
 ///
 /// # Errors
@@ -214,17 +217,28 @@ pub fn camera_bytes(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Ve
     for camera in cameras {
         check(camera)?;
     }
-    let bytes = match (&format.binary, format.write) {
-        (Some(binary), _) => (binary.write)(cameras)?,
-        (None, Some(write)) => write(cameras)?.into_bytes(),
-        (None, None) => Vec::new(),
+    let options = ReadOptions::of_written(format, cameras[0].camera.size());
+    let unreadable = |error: CameraFileError| {
+        let problem = format!("cannot be written as {}: {}", format.name, error.problem);
+        CameraFileError { element: error.element, ..CameraFileError::new(problem) }
     };
-    match parse(&bytes, &ReadOptions::of_written(format, cameras[0].camera.size())) {
-        Ok(_) => Ok(bytes),
-        Err(error) => {
-            let problem = format!("cannot be written as {}: {}", format.name, error.problem);
-            Err(CameraFileError { element: error.element, ..CameraFileError::new(problem) })
+    // Parts of a long list are lists too, and take less memory to be read again.
+    if cameras.len() > READ_AT_A_TIME {
+        for part in cameras.chunks(READ_AT_A_TIME) {
+            parse(&written(format, part)?, &options).map_err(unreadable)?;
         }
+        return written(format, cameras);
+    }
+    let bytes = written(format, cameras)?;
+    parse(&bytes, &options).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+fn written(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Vec<u8>, CameraFileError> {
+    match (&format.binary, format.write) {
+        (Some(binary), _) => (binary.write)(cameras),
+        (None, Some(write)) => write(cameras).map(String::into_bytes),
+        (None, None) => Ok(Vec::new()),
     }
 }
 

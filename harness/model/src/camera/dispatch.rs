@@ -155,6 +155,10 @@ impl CameraModel for Camera {
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
         each!(self, camera => camera.fold_towards(angle))
     }
+
+    fn has_surely_no_fold(&self) -> bool {
+        each!(self, camera => camera.has_surely_no_fold())
+    }
 }
 
 macro_rules! from {

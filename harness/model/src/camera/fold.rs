@@ -1,7 +1,7 @@
 //! Where a camera stops being one to one.
 
-use super::{CameraModel, NoCounterpart, Ray};
-use crate::PixelPoint;
+use super::{CameraModel, ImageSize, NoCounterpart, Ray};
+use crate::{CornerPoint, PixelPoint};
 
 /// Directions in which the edge of the fold is looked for.
 const DIRECTIONS: usize = 1440;
@@ -21,18 +21,28 @@ pub struct Fold {
 ///
 /// The radius is that of the nearest of 1440 directions, each located to the last bits.
 pub fn fold(camera: &dyn CameraModel) -> Option<Fold> {
+    if camera.has_surely_no_fold() {
+        return None;
+    }
     let centre = camera.project(Ray::from_tangent(0.0, 0.0)).ok()?;
-    let (width, height) = (f64::from(camera.size().width), f64::from(camera.size().height));
-    let inside = |point: &PixelPoint| {
-        let corner = point.to_corner();
-        (0.0..=width).contains(&corner.x) && (0.0..=height).contains(&corner.y)
-    };
+    let inside = |point: &PixelPoint| is_inside(camera.size(), *point);
     let angles = (0..DIRECTIONS).map(|i| std::f64::consts::TAU * i as f64 / DIRECTIONS as f64);
-    let corners = [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)];
-    let to_corners = corners.map(|(x, y)| (y - centre.to_corner().y).atan2(x - centre.to_corner().x));
+    let to_corners = corners(camera.size()).map(|corner| (corner.y - centre.y).atan2(corner.x - centre.x));
     let edge = angles.chain(to_corners).filter_map(|angle| camera.fold_towards(angle)).filter(inside);
     let radius_px = edge.map(|point| point.distance(centre)).min_by(f64::total_cmp)?;
     Some(Fold { radius_px, share: share(camera) })
+}
+
+/// The outer corners of a frame.
+pub(super) fn corners(size: ImageSize) -> [PixelPoint; 4] {
+    let (width, height) = (f64::from(size.width), f64::from(size.height));
+    [(0.0, 0.0), (width, 0.0), (0.0, height), (width, height)].map(|(x, y)| CornerPoint { x, y }.to_pixel())
+}
+
+/// Whether a position lies in a frame.
+pub(super) fn is_inside(size: ImageSize, point: PixelPoint) -> bool {
+    let corner = point.to_corner();
+    (0.0..=f64::from(size.width)).contains(&corner.x) && (0.0..=f64::from(size.height)).contains(&corner.y)
 }
 
 fn share(camera: &dyn CameraModel) -> f64 {
@@ -43,4 +53,64 @@ fn share(camera: &dyn CameraModel) -> f64 {
         (0..columns * rows).map(|i| PixelPoint::new(place(i % columns, columns, size.width), place(i / columns, rows, size.height)));
     let folded = points.filter(|&point| matches!(camera.unproject(point), Err(NoCounterpart::Fold))).count();
     folded as f64 / (columns * rows) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{OpenCv, OpenCvFisheye};
+
+    /// The search alone.
+    struct Searched<'a>(&'a dyn CameraModel);
+
+    impl CameraModel for Searched<'_> {
+        fn size(&self) -> ImageSize {
+            self.0.size()
+        }
+        fn parameters(&self) -> Vec<crate::camera::CameraParameter> {
+            self.0.parameters()
+        }
+        fn with_parameters(&self, _: &[f64]) -> Self {
+            Searched(self.0)
+        }
+        fn project(&self, ray: Ray) -> Result<PixelPoint, NoCounterpart> {
+            self.0.project(ray)
+        }
+        fn unproject(&self, point: PixelPoint) -> Result<Ray, NoCounterpart> {
+            self.0.unproject(point)
+        }
+        fn derivatives_into(&self, ray: Ray, into: &mut crate::camera::DerivativeBuffer) -> Result<(), NoCounterpart> {
+            self.0.derivatives_into(ray, into)
+        }
+        fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {
+            self.0.fold_towards(angle)
+        }
+    }
+
+    #[test]
+    fn what_is_surely_without_a_fold_has_none() {
+        let size = ImageSize { width: 640, height: 480 };
+        let (mut sure, mut folded) = (0, 0);
+        for i in 0..400_u32 {
+            // Coefficients of every sign and size, principal points beside the middle.
+            let part = |shift: u32, scale: f64| {
+                scale * (f64::from(i.wrapping_mul(2_654_435_761).rotate_left(shift) >> 8) / f64::from(1 << 24) - 0.5)
+            };
+            let mut distortion = [0.0; 14];
+            distortion[..5].copy_from_slice(&[part(0, 1.2), part(5, 0.8), part(9, 0.1), part(13, 0.1), part(17, 0.6)]);
+            let (cx, cy) = (320.0 + part(21, 200.0), 240.0 + part(25, 200.0));
+            let pinhole = OpenCv { size, fx: 500.0, fy: 480.0, cx, cy, distortion, coefficients: 5 };
+            let k = [part(0, 0.4), part(5, 0.2), part(9, 0.1), part(13, 0.02)];
+            let fisheye = OpenCvFisheye { size, fx: 260.0, fy: 255.0, cx, cy, skew: part(17, 0.1), k };
+            for camera in [&pinhole as &dyn CameraModel, &fisheye] {
+                let found = fold(&Searched(camera));
+                if camera.has_surely_no_fold() {
+                    sure += 1;
+                    assert_eq!(found, None, "{pinhole:?} {fisheye:?}");
+                }
+                folded += usize::from(found.is_some());
+            }
+        }
+        assert!(sure > 150 && folded > 150, "{sure} {folded}");
+    }
 }

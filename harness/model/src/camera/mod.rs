@@ -145,6 +145,11 @@ pub trait CameraModel {
     /// The image of the first fold on the way from the axis, where the mapping stops being one to one, inside or outside the frame; `angle` is that in
     /// the image at the axis, from x towards y, radians. See [`fold()`] for what is inside the frame.
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint>;
+
+    /// Whether there is certainly no fold inside the frame: a cheap bound that spares the search; `false` when in doubt.
+    fn has_surely_no_fold(&self) -> bool {
+        false
+    }
 }
 
 fn named(names: &[(&'static str, &'static str)], values: &[f64]) -> Vec<CameraParameter> {

@@ -1,6 +1,7 @@
 //! OpenCV's fisheye camera: four coefficients of the angle from the axis.
 
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
+use super::fold::corners;
 use super::plane_map::first_fold;
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
 use crate::PixelPoint;
@@ -179,6 +180,16 @@ impl CameraModel for OpenCvFisheye {
         let distorted = self.distort(self.turning()?).0;
         let (sin, cos) = angle.sin_cos();
         Some(self.pixel([distorted * cos, distorted * sin]))
+    }
+
+    fn has_surely_no_fold(&self) -> bool {
+        let distorted = |corner: PixelPoint| {
+            let y = (corner.y - self.cy) / self.fy;
+            ((corner.x - self.cx) / self.fx - self.skew * y).hypot(y)
+        };
+        let farthest = corners(self.size).map(distorted).into_iter().fold(0.0, f64::max);
+        // The polynomial rises to an angle whose image is farther off than any corner's.
+        self.is_surely_rising(2.0 * farthest) && self.distort(2.0 * farthest).0 >= farthest
     }
 }
 

@@ -1,5 +1,6 @@
 //! What the tools' pinhole cameras have in common: ideal tangents, distorted ones, an affinity to pixels.
 
+use super::fold::{corners, is_inside};
 use super::newton::{ValueAndDerivatives, determinant};
 use super::plane_map::{PlaneMap, first_fold, invert, is_on_branch};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray};
@@ -8,6 +9,9 @@ use crate::PixelPoint;
 /// The widest angle from the axis at which folds are looked for, radians, and the places on the way.
 const WIDEST: f64 = 1.56;
 const PLACES: usize = 400;
+/// A circle of ideal tangents around those of the frame, relative, and directions in which its image is looked at.
+const AROUND: f64 = 1.2;
+const DIRECTIONS: usize = 32;
 
 /// Distorted coordinates to pixels: `x = a x' + b y' + shift.x`, `y = d y' + shift.y`.
 #[derive(Clone, Copy, Debug)]
@@ -111,6 +115,17 @@ impl<P: Pinhole> CameraModel for P {
         let at = |theta: f64| [theta.tan() * cos, theta.tan() * sin];
         let theta = first_fold(|theta| determinant(self.distort(at(theta)).1), WIDEST, PLACES)?;
         Some(self.affinity().to_pixel(self.distort(at(theta)).0))
+    }
+
+    fn has_surely_no_fold(&self) -> bool {
+        let radius = |corner| self.unproject(corner).ok().and_then(Ray::tangent).map_or(f64::INFINITY, |(x, y)| x.hypot(y));
+        let around = AROUND * corners(self.size()).map(radius).into_iter().fold(0.0, f64::max);
+        // What lies beyond the circle is pictured beyond its image, which is outside of the frame.
+        let is_outside = |i: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * i as f64 / DIRECTIONS as f64).sin_cos();
+            !is_inside(self.size(), self.affinity().to_pixel(self.distort([around * cos, around * sin]).0))
+        };
+        around.is_finite() && self.is_surely_one_to_one(around) && (0..DIRECTIONS).all(is_outside)
     }
 }
 

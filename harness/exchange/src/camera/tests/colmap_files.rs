@@ -187,3 +187,18 @@ fn images_that_are_wrong_are_named() {
     lying[points..points + 8].copy_from_slice(&u64::MAX.to_le_bytes());
     assert!(fails("images.bin", &lying).contains("`image 2 of 2`: the file of"), "{}", fails("images.bin", &lying));
 }
+
+#[test]
+fn a_long_list_is_whole_and_each_of_its_cameras_is_looked_at() {
+    use calibench_model::camera::{ImageSize, OpenCv};
+    let size = ImageSize { width: 640, height: 480 };
+    let camera = |f: f64| OpenCv { size, fx: f, fy: f, cx: 320.0, cy: 240.0, distortion: [0.0; 14], coefficients: 4 };
+    let named = |i: u32, f: f64| NamedCamera::new(i.to_string(), camera(f).into());
+    let mut all: Vec<NamedCamera> = (1..=20_001).map(|i| named(i, 500.0 + f64::from(i))).collect();
+    let format = format_named("colmap").unwrap();
+    let found = parse_camera("f", &camera_bytes(format, &all).unwrap(), &ReadOptions::default()).unwrap();
+    assert_eq!(found.cameras.len(), all.len());
+    assert!(found.cameras.iter().zip(&all).all(|(a, b)| a.name == b.name && a.camera == b.camera));
+    all[20_000] = named(20_001, -500.0);
+    assert!(camera_bytes(format, &all).unwrap_err().to_string().contains("cannot be written as colmap: expected"));
+}
