@@ -22,6 +22,11 @@ impl Layer {
         Self { name: "truth".into(), mark: Mark::Plus, colour: BLACK }
     }
 
+    /// The truth where targets stand close together.
+    pub fn truth_of_a_crowd() -> Self {
+        Self { mark: Mark::Dot, colour: COLOURS[0], ..Self::truth() }
+    }
+
     /// Approximate positions.
     pub fn start() -> Self {
         Self { name: "approximate position".into(), mark: Mark::Square, colour: BLACK }

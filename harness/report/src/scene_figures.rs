@@ -25,7 +25,8 @@ fn zoom_for(image: &Image) -> u32 {
 /// An image with its targets, for a look at a scenario.
 pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
     let marks: Vec<MarkAt> = targets.iter().map(|(_, at)| MarkAt { layer: 0, at: *at }).collect();
-    let layer = Layer { name: "target".into(), ..Layer::truth() };
+    let mark = if targets.len() > CROWD { Layer::truth_of_a_crowd() } else { Layer::truth() };
+    let layer = Layer { name: "target".into(), ..mark };
     overview(image, zoom_for(image), &[layer], &marks, &labelled(targets))
 }
 
@@ -52,9 +53,10 @@ pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
     }
     // An overview shows truth, starts and one method: more would hide each other.
     // Of a crowd of targets it shows the truth alone.
-    let shown = if targets.len() > CROWD { 1 } else { OVERVIEW.min(layers.len()) };
+    let of_all = if targets.len() > CROWD { vec![Layer::truth_of_a_crowd()] } else { layers[..OVERVIEW.min(layers.len())].to_vec() };
+    let shown = of_all.len();
     let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < shown).map(|(_, mark)| mark.clone()).collect();
-    let whole = overview(&image, zoom_for(&image), &layers[..shown], &few, &labelled(&targets));
+    let whole = overview(&image, zoom_for(&image), &of_all, &few, &labelled(&targets));
     // One further at each step, so that targets that come in turn all get a panel.
     let step = targets.len().div_ceil(MOST_PANELS).max(1);
     let chosen = (0..targets.len().min(MOST_PANELS)).map(|i| &targets[(i * step + if step > 1 { i } else { 0 }) % targets.len()]);

@@ -1,9 +1,9 @@
 //! OpenCV's functions on the same points.
 
 use calibench_model::PixelPoint;
-use calibench_model::camera::OpenCv;
 use calibench_model::camera::opencv::CameraFromWorld;
-use opencv::core::{Mat, MatTraitConst, Point2d, Point3d, TermCriteria, TermCriteria_COUNT, TermCriteria_EPS, Vec3d, no_array};
+use calibench_model::camera::{ImageSize, OpenCv};
+use opencv::core::{Mat, MatTraitConst, Point2d, Point3d, Size, TermCriteria, TermCriteria_COUNT, TermCriteria_EPS, Vec3d, no_array};
 
 /// A camera, points, and places for results that are used again.
 pub(crate) struct Theirs {
@@ -59,6 +59,22 @@ impl Theirs {
             &no_array(),
             &no_array(),
             criteria,
+        )
+    }
+
+    /// The map that undistorts an image, floats of 32 bits.
+    pub(crate) fn map(&mut self, size: ImageSize) -> opencv::Result<()> {
+        let (mut x, mut y) = (Mat::default(), Mat::default());
+        let size = Size::new(size.width as i32, size.height as i32);
+        opencv::calib3d::init_undistort_rectify_map(
+            &self.matrix,
+            &self.distortion,
+            &no_array(),
+            &self.matrix,
+            size,
+            opencv::core::CV_32FC1,
+            &mut x,
+            &mut y,
         )
     }
 
