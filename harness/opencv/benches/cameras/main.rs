@@ -176,7 +176,7 @@ fn maps(camera: &OpenCv) -> opencv::Result<()> {
     let opencv_s = median(&mut || theirs.map(camera.size))?;
     for (threads, name) in [(1, "one thread"), (0, "all")] {
         let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { continue };
-        let mut rate = |direction| {
+        let rate = |direction| {
             median(&mut || {
                 black_box(pool.install(|| StMap::new(&any, &picture, direction, false)));
                 Ok(())
