@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
 use crate::network::{ImageObservation, Layout, Network};
 
 /// Values of all unknowns.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct State {
     pub(crate) cameras: Vec<Camera>,
     pub(crate) poses: Vec<Pose>,

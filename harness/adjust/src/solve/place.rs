@@ -16,6 +16,10 @@ const LITTLE: f64 = 1e-10;
 const NOISE: f64 = 1e4;
 /// Share of the sum of squares by which rounding may raise it.
 const ROUNDING: f64 = 1e-12;
+/// Undamped steps beyond one that raised the sum of squares, before it is taken back.
+const AHEAD: usize = 2;
+/// How often on a way it is looked ahead.
+const LOOKS: usize = 4;
 
 /// The state, its normal equations and the step from it.
 pub(super) struct Place<'e, 'n> {
@@ -26,6 +30,10 @@ pub(super) struct Place<'e, 'n> {
     schur: Schur,
     step: Step,
     factor: Option<Factor>,
+    /// Whether the last step was undamped.
+    undamped: bool,
+    /// How often it may still be looked ahead.
+    looks: usize,
     /// The sum of squares before the last step.
     before: f64,
     /// The normal equations, solved, where the last step needed that.
@@ -41,7 +49,47 @@ impl<'e, 'n> Place<'e, 'n> {
         let (mut scratch, mut normals) = (Scratch::default(), Normals::default());
         engine.linearise(&state, &mut scratch, &mut normals).map_err(|lost| engine.not_pictured(&state, lost))?;
         let (step, before) = (engine.zero_step(), normals.cost);
-        Ok(Self { engine, state, normals, scratch, schur: Schur::default(), step, factor: None, before, solved: None })
+        let (schur, factor, solved) = (Schur::default(), None, None);
+        Ok(Self { engine, state, normals, scratch, schur, step, factor, undamped: true, looks: LOOKS, before, solved })
+    }
+
+    /// Solves the normal equations made at `state` for the step.
+    fn solve(&mut self, state: &State, damping: f64) -> Option<Factor> {
+        let Self { engine, normals, schur, step, .. } = self;
+        let mut reduced = engine.blank.clone();
+        schur.eliminate(engine.ordered(state, normals), damping, &mut reduced).ok()?;
+        let factor = Factor::of(reduced, engine.scale(normals), engine.structure.as_ref())?;
+        let mut kept = schur.reduced.clone();
+        factor.solve(&mut kept);
+        schur.back(engine.ordered(state, normals), &kept, step);
+        step.is_finite().then_some(factor)
+    }
+
+    /// Moves from `state` by the step and makes the normal equations there; `None` if points are not pictured.
+    fn moved(&mut self, state: &State) -> Option<State> {
+        let moved = state.moved(&self.engine.layout, &self.step);
+        self.engine.linearise(&moved, &mut self.scratch, &mut self.normals).is_ok().then_some(moved)
+    }
+
+    /// Whether the sum of squares is not above that before the last step.
+    fn is_lower(&self) -> bool {
+        self.normals.cost <= self.before * (1.0 + ROUNDING) + NOISE * self.engine.floor
+    }
+
+    /// From a state with a higher sum: the first of the next undamped ones whose sum is lower than before. Where unknowns bend the way together (the form of an
+    /// object, and parameters of many cameras that do the like to its images) a step may lead far up a side of the valley, and the next one to its floor.
+    ///
+    /// Source: the watchdog technique of Chamberlain, Powell, Lemarechal & Pedersen 1982.
+    fn ahead(&mut self, mut state: State) -> Option<State> {
+        self.looks -= 1;
+        for _ in 0..AHEAD {
+            self.solve(&state, 0.0)?;
+            state = self.moved(&state)?;
+            if self.is_lower() {
+                return Some(state);
+            }
+        }
+        None
     }
 }
 
@@ -49,16 +97,12 @@ impl Descent for Place<'_, '_> {
     type Lost = AdjustError;
 
     fn step(&mut self, damping: f64) -> Option<f64> {
-        let Self { engine, state, normals, schur, step, .. } = self;
-        (self.factor, self.before) = (None, normals.cost);
-        let mut reduced = engine.blank.clone();
-        schur.eliminate(engine.ordered(state, normals), damping, &mut reduced).ok()?;
-        let factor = Factor::of(reduced, engine.scale(normals), engine.structure.as_ref())?;
-        let mut kept = schur.reduced.clone();
-        factor.solve(&mut kept);
-        schur.back(engine.ordered(state, normals), &kept, step);
-        self.factor = Some(factor);
-        step.is_finite().then(|| normals.along(step))
+        (self.factor, self.before, self.undamped) = (None, self.normals.cost, damping == 0.0);
+        let state = std::mem::take(&mut self.state);
+        let factor = self.solve(&state, damping);
+        self.state = state;
+        self.factor = Some(factor?);
+        Some(self.normals.along(&self.step))
     }
 
     fn arrives(&mut self, promised: f64) -> bool {
@@ -76,16 +120,19 @@ impl Descent for Place<'_, '_> {
     }
 
     fn go(&mut self) -> Result<bool, AdjustError> {
-        let Self { engine, scratch, normals, .. } = self;
         self.factor = None;
-        let moved = self.state.moved(&engine.layout, &self.step);
-        let pictured = engine.linearise(&moved, scratch, normals).is_ok();
-        let lower = pictured && normals.cost <= self.before * (1.0 + ROUNDING) + NOISE * engine.floor;
-        if lower {
-            self.state = moved;
-        } else {
+        let from = std::mem::take(&mut self.state);
+        let moved = match self.moved(&from) {
+            Some(moved) if self.is_lower() => Some(moved),
+            Some(moved) if self.undamped && self.looks > 0 => self.ahead(moved),
+            _ => None,
+        };
+        let lower = moved.is_some();
+        self.state = moved.unwrap_or(from);
+        if !lower {
             // Seldom, so that one set of equations is in memory and not two.
-            engine.linearise(&self.state, scratch, normals).map_err(|lost| engine.not_pictured(&self.state, lost))?;
+            let Self { engine, state, scratch, normals, .. } = self;
+            engine.linearise(state, scratch, normals).map_err(|lost| engine.not_pictured(state, lost))?;
         }
         Ok(lower)
     }

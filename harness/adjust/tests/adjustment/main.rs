@@ -7,6 +7,7 @@ mod noise_free;
 mod projection_uncertainty;
 mod quality;
 mod significance;
+mod stand;
 mod standard_deviations;
 mod surfaces;
 mod undetermined;

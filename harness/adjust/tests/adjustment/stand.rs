@@ -1,0 +1,151 @@
+//! The block of Vosselman and Förstner as its text has it: a field on a bent stand, turned and tilted before a rolled camera.
+
+use calibench_adjust::{AdjustError, Datum, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Variance, adjust};
+use calibench_model::Pose;
+use calibench_model::camera::{Camera, CameraModel, Ebner, ImageSize, Photogrammetric};
+use nalgebra::{DMatrix, DVector, Matrix3, Point3, Vector3};
+use rand::RngExt;
+
+use crate::networks::{normal, random};
+
+/// Distance of the camera, mm.
+const DISTANCE: f64 = 4440.0;
+const NAMES: [&str; 12] = ["e1", "e2", "e3", "e4", "e5", "e6", "e7", "e8", "e9", "e10", "e11", "e12"];
+
+/// How the images are grouped.
+#[derive(Clone, Copy, PartialEq)]
+enum Sets {
+    None,
+    One,
+    Eight,
+}
+
+fn camera() -> Camera {
+    let size = ImageSize { width: 240, height: 240 };
+    let base = Photogrammetric { size, pitch_um: 27.0, c: 57.5, x0: 0.0, y0: 0.0, k: [0.0; 3], p: [0.0; 2], b: [0.0; 2] };
+    Ebner { base, b_mm: 2.4, parameters: [0.0; 12] }.into()
+}
+
+/// 32 places over the central 500 mm of the field: two in each of 16 squares, mm.
+fn places() -> Vec<[f64; 2]> {
+    let mut random = random(88);
+    let middle = |i: i32| f64::from(i) * 125.0 - 187.5;
+    let place = |i: i32| [middle(i / 2 % 4), middle(i / 8)].map(|at| at + 90.0 * (random.random::<f64>() - 0.5));
+    (0..32).map(place).collect()
+}
+
+/// 32 images of the field; the stand bends by `bend` mm over 250 mm to either side. Start values: a flat field, the poses off by a little.
+fn block(bend: f64, sets: Sets) -> Network {
+    let (camera, mut random) = (camera(), random(3));
+    let mut network = Network { datum: Datum::Minimal { horizontal: [0, 31], vertical: [0, 7, 28] }, ..Network::default() };
+    let places = places();
+    network.points = places.iter().enumerate().map(|(i, [u, v])| ObjectPoint::free(format!("{i}"), Point3::new(*u, *v, 0.0))).collect();
+    let count = [(Sets::None, 1), (Sets::One, 1), (Sets::Eight, 8)].iter().find(|(kind, _)| *kind == sets).map_or(1, |(_, count)| *count);
+    for group in 0..count {
+        let interior = Interior::fixed(format!("group {group}"), camera);
+        network.cameras.push(if sets == Sets::None { interior } else { interior.free(&NAMES).expect("Ebner's parameters") });
+    }
+    for (image, (phi, turn, roll)) in [30.0_f64, 45.0].into_iter().flat_map(turns).enumerate() {
+        let stand = Matrix3::new(turn.cos(), -turn.sin(), 0.0, turn.sin(), turn.cos(), 0.0, 0.0, 0.0, 1.0);
+        let centre = stand.transpose() * Vector3::new(phi.sin(), 0.0, phi.cos()) * DISTANCE;
+        let pose = Pose::looking_at(centre.into(), Point3::origin(), stand.transpose() * Vector3::y(), roll).expect("a pose");
+        let group = if count == 8 { (image / 16) * 4 + image % 4 } else { 0 };
+        network.images.push(Exterior::free(format!("{image}"), group, pose));
+        for (point, [u, v]) in places.iter().enumerate() {
+            let along = (turn.cos() * u - turn.sin() * v) / 250.0;
+            let at = Point3::new(*u, *v, bend * (1.0 - along * along));
+            let seen = camera.project(pose.ray(&at)).expect("in view");
+            network.observations.push(ImageObservation::new(image, point, seen, 1.0));
+        }
+    }
+    for image in &mut network.images {
+        image.pose.centre += Vector3::from_fn(|_, _| 5.0 * normal(&mut random));
+    }
+    network
+}
+
+/// Turns of the field and rolls of the camera at one tilt, radians.
+fn turns(phi: f64) -> impl Iterator<Item = (f64, f64, f64)> {
+    let quarter = |i: i32| f64::from(i) * std::f64::consts::FRAC_PI_2;
+    (0..16).map(move |i| (phi.to_radians(), quarter(i / 4), quarter(i % 4)))
+}
+
+fn sigma0(network: &Network) -> f64 {
+    adjust(network, &Options::default()).unwrap_or_else(|error| panic!("{error}")).sigma0().expect("redundancy")
+}
+
+#[test]
+fn the_bend_of_a_stand_is_taken_up_by_parameters_of_each_group_alone() {
+    let [none, one, eight] = [Sets::None, Sets::One, Sets::Eight].map(|sets| sigma0(&block(0.8, sets)));
+    assert!(none > 0.03 && one > 0.98 * none && one <= none, "{none} {one}");
+    assert!(eight < 0.02 * none, "{eight}");
+    assert!(sigma0(&block(0.0, Sets::None)) < 1e-9, "nothing is left where nothing is bent");
+}
+
+#[test]
+fn eight_groups_converge_from_a_flat_field_where_a_step_raises_the_sum() {
+    let network = block(0.8, Sets::Eight);
+    let solution = adjust(&network, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    let counts = solution.counts();
+    assert_eq!((counts.observations(), counts.unknowns, counts.redundancy()), (2055, 384, 1671));
+    assert!(solution.iterations() <= 10, "{}", solution.iterations());
+    // The same minimum from where it ended, without a step that raises anything.
+    let mut again = network.clone();
+    again.cameras.iter_mut().zip(solution.cameras()).for_each(|(interior, camera)| interior.camera = *camera);
+    again.images.iter_mut().zip(solution.poses()).for_each(|(image, pose)| image.pose = *pose);
+    again.points.iter_mut().zip(solution.points()).for_each(|(point, at)| point.position = *at);
+    let ended = adjust(&again, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert!((ended.cost() / solution.cost() - 1.0).abs() < 1e-9, "{} {}", ended.cost(), solution.cost());
+    assert!(ended.iterations() <= 2, "{}", ended.iterations());
+}
+
+#[test]
+fn heights_from_the_images_of_one_axis_are_those_of_the_stand() {
+    // The field upright or upside down: it bends across the same of its axes.
+    let mut network = block(0.8, Sets::None);
+    let upright = |image: usize| (image % 16 / 4).is_multiple_of(2);
+    network.observations.retain(|o| upright(o.image));
+    network.observations.iter_mut().for_each(|o| o.image = o.image / 8 * 4 + o.image % 4);
+    let mut image = 0..32;
+    network.images.retain(|_| image.next().is_some_and(upright));
+    let solution = adjust(&network, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(solution.sigma0().is_some_and(|sigma0| sigma0 < 1e-6), "the object takes the bend up: {:?}", solution.sigma0());
+    // Heights are relative to the plane of the three points that are held.
+    let places = places();
+    let row = |[u, v]: [f64; 2]| [1.0, u, v, (u / 250.0).powi(2), (v / 250.0).powi(2)];
+    let rows = DMatrix::from_fn(32, 5, |i, k| row(places[i])[k]);
+    let heights = DVector::from_iterator(32, solution.points().iter().map(|point| point.z));
+    let found = rows.svd(true, true).solve(&heights, 1e-12).expect("five coefficients");
+    assert!((found[3] + 0.8).abs() < 2e-3 && found[4].abs() < 2e-3, "{found}");
+}
+
+/// Adds an image from straight ahead with parameters of its own.
+fn add_frontal(network: &mut Network) {
+    let (group, image) = (network.cameras.len(), network.images.len());
+    let camera = camera();
+    network.cameras.push(Interior::fixed("frontal", camera).free(&NAMES).expect("Ebner's parameters"));
+    let pose = Pose::looking_at(Point3::new(0.0, 0.0, DISTANCE), Point3::origin(), Vector3::y(), 0.0).expect("a pose");
+    network.images.push(Exterior::free(format!("frontal {group}"), group, pose));
+    for (point, [u, v]) in places().into_iter().enumerate() {
+        let seen = camera.project(pose.ray(&Point3::new(u, v, 0.8 * (1.0 - (u / 250.0).powi(2))))).expect("in view");
+        network.observations.push(ImageObservation::new(image, point, seen, 1.0));
+    }
+}
+
+#[test]
+fn a_frontal_image_with_parameters_of_its_own_hangs_on_the_others() {
+    let mut network = block(0.8, Sets::Eight);
+    add_frontal(&mut network);
+    let solution = adjust(&network, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    // The others give the object: what is weak are the oblique groups, of which an affine parameter goes with the places of their cameras.
+    let covariances = solution.covariances(Variance::Apriori).unwrap_or_else(|error| panic!("{error}"));
+    let sigma = |camera: usize| covariances.of_camera(camera).1[(0, 0)].sqrt();
+    assert!(sigma(8) < 0.1 * sigma(0), "{} {}", sigma(8), sigma(0));
+    let mut alone = Network { cameras: Vec::new(), images: Vec::new(), observations: Vec::new(), ..network.clone() };
+    (0..4).for_each(|_| add_frontal(&mut alone));
+    match adjust(&alone, &Options::default()) {
+        Err(AdjustError::Undetermined(defect)) => assert!(defect.to_string().ends_with("no convergence, no roll"), "{defect}"),
+        Err(other) => panic!("{other}"),
+        Ok(solution) => panic!("determined, with {:?}", solution.counts()),
+    }
+}
