@@ -88,7 +88,6 @@ fn eight_groups_converge_from_a_flat_field_where_a_step_raises_the_sum() {
     let solution = adjust(&network, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let counts = solution.counts();
     assert_eq!((counts.observations(), counts.unknowns, counts.redundancy()), (2055, 384, 1671));
-    assert!(solution.iterations() <= 10, "{}", solution.iterations());
     // The same minimum from where it ended, without a step that raises anything.
     let mut again = network.clone();
     again.cameras.iter_mut().zip(solution.cameras()).for_each(|(interior, camera)| interior.camera = *camera);
@@ -97,6 +96,24 @@ fn eight_groups_converge_from_a_flat_field_where_a_step_raises_the_sum() {
     let ended = adjust(&again, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
     assert!((ended.cost() / solution.cost() - 1.0).abs() < 1e-9, "{} {}", ended.cost(), solution.cost());
     assert!(ended.iterations() <= 2, "{}", ended.iterations());
+}
+
+#[test]
+fn noise_and_rough_starts_do_not_lead_eight_groups_astray() {
+    // Taking back every step that raises the sum, four of six of these do not arrive in a thousand.
+    for (noise, shift, seed) in [0.0, 0.025].into_iter().flat_map(|noise| (0..6).map(move |seed| (noise, [5.0, 30.0][seed % 2], seed))) {
+        let (mut network, mut random) = (block(0.8, Sets::Eight), random(seed as u64));
+        for o in &mut network.observations {
+            o.position.x += noise * normal(&mut random);
+            o.position.y += noise * normal(&mut random);
+        }
+        network.images.iter_mut().for_each(|image| image.pose.centre += Vector3::from_fn(|_, _| shift * normal(&mut random)));
+        let solution = adjust(&network, &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+        assert!(solution.iterations() <= 10, "{noise} {shift} {seed}: {}", solution.iterations());
+        let (sigma0, expected) = (solution.sigma0().expect("redundancy"), noise.max(4e-4));
+        // 1671 degrees of freedom: 1.7 %.
+        assert!((sigma0 / expected - 1.0).abs() < 0.1, "{noise} {shift} {seed}: {sigma0}");
+    }
 }
 
 #[test]
