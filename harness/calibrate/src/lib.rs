@@ -54,6 +54,6 @@ pub use rival::Rival;
 pub use sets::compare_sets;
 pub use settings::{Settings, USUAL_SIGMA};
 pub use shape::{Bend, Board, Shape};
-pub use start::{control_of, pose_of};
+pub use start::{control_of, pose_of, robust_pose_of};
 pub use survey::{Known, LeftOut, Sight, Survey};
 pub use whole::calibrate;

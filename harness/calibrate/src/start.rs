@@ -222,7 +222,10 @@ pub fn pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, String> {
 }
 
 /// As [`pose_of`], against gross errors in the first place.
-pub(super) fn robust_pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, String> {
+///
+/// # Errors
+/// As of [`pose_of`].
+pub fn robust_pose_of(camera: &Camera, control: &[Control]) -> Result<Pose, String> {
     let against = Search { seed: 1, tolerance: Tolerance::Unknown };
     resect(camera, control, Some(&against)).map(|found| found.pose).or_else(|_| pose_of(camera, control))
 }

@@ -108,11 +108,13 @@ pub enum Group {
     Residual,
     /// A residual of the first trial, as in `6/left/3/x`.
     Point,
+    /// A coordinate of an object point in the first trial, as in `left/3/Z`.
+    Object,
 }
 
 impl Group {
     /// All groups with their names in files.
-    pub const ALL: [(Self, &'static str); 7] = [
+    pub const ALL: [(Self, &'static str); 8] = [
         (Self::Iop, "iop"),
         (Self::Eop, "eop"),
         (Self::Network, "network"),
@@ -120,6 +122,7 @@ impl Group {
         (Self::Check, "check"),
         (Self::Residual, "residual"),
         (Self::Point, "point"),
+        (Self::Object, "object"),
     ];
 
     /// The name in files.

@@ -1,5 +1,6 @@
 //! Scenarios to results: truth-blind measuring, scored against the truth at the end.
 
+pub mod blocks;
 mod bounds;
 pub mod description;
 mod error;

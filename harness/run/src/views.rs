@@ -8,7 +8,7 @@ use calibench_model::{Image, Measurement, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::names::kept_image_name;
 use calibench_records::results::{PointResult, Trial};
-use calibench_scenario::{Calibration, ViewsSubject};
+use calibench_scenario::{Blocks, Calibration, ViewsSubject};
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::Exposure;
 use calibench_synth::stations::Station;
@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
-use crate::network;
 use crate::network::Job;
+use crate::{blocks, network};
 
 /// What is the same in all trials.
 pub struct Prepared<'a> {
@@ -122,6 +122,9 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option
     if let Some(calibration) = &subject.calibration {
         return calibrated(plan, prepared, calibration, key);
     }
+    if let Some(blocks) = &subject.blocks {
+        return in_blocks(plan, prepared, blocks, key);
+    }
     if subject.redraw.is_none() {
         return run_views(plan, prepared, key);
     }
@@ -140,6 +143,19 @@ fn calibrated(plan: &Plan<'_>, prepared: &Prepared<'_>, calibration: &Calibratio
     let job = Job { calibration, field, unit: *unit, camera, stations };
     trial.calibrations = network::calibrate(&job, &trial.points, &available, key);
     if key.trial > 0 && !calibration.keep_points {
+        trial.points.clear();
+    }
+    Ok(trial)
+}
+
+/// A trial whose points go through free networks.
+fn in_blocks(plan: &Plan<'_>, prepared: &Prepared<'_>, blocks: &Blocks, key: Key<'_>) -> Result<Trial, RunError> {
+    let subject = prepared.subject;
+    let mut trial = run_views(plan, prepared, key)?;
+    let available: Vec<usize> = (0..plan.methods.len()).filter(|&method| plan.methods[method].operator.is_ok()).collect();
+    let job = blocks::Job { blocks, field: &subject.field, unit: subject.unit, stations: &subject.stations };
+    trial.calibrations = blocks::adjust_blocks(&job, &trial.points, &available, key.trial == 0);
+    if key.trial > 0 && !blocks.keep_points {
         trial.points.clear();
     }
     Ok(trial)

@@ -8,6 +8,7 @@ use calibench_random::Key;
 use toml::Spanned;
 use toml::de::DeTable;
 
+use super::blocks;
 use super::calibration::{self, Seen};
 use super::methods::{check_kinds, methods};
 use super::section::Section;
@@ -20,10 +21,12 @@ use super::{Scenario, Subject, ViewsSubject, figure, photographs, scene};
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 14] = [
+pub const TOP_TABLES: [&str; 16] = [
     "sweep",
     "method",
     "calibration",
+    "blocks",
+    "block",
     "scene",
     "figure",
     "photographs",
@@ -132,6 +135,8 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let views = ViewTables::take(&mut root, problems);
     let imaging = ImagingTables::take(&mut root, problems);
     let calibration = root.take_table("calibration", "[calibration]", problems);
+    let blocks = root.take_table("blocks", "[blocks]", problems);
+    let listed_blocks = root.take_tables("block", "[[block]]", problems).unwrap_or_default();
     let start = root.span.clone();
     if methods_missing && problems.is_empty() {
         problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
@@ -146,6 +151,10 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     if let Some(stray) = calibration.as_ref().filter(|_| views.span().is_none()) {
         problems.push(Problem::new(stray.span.clone(), "[calibration] without [testfield]: expected one with [camera] and stations"));
     }
+    if let Some(stray) = blocks.as_ref().or(listed_blocks.first()).filter(|_| views.span().is_none()) {
+        problems.push(Problem::new(stray.span.clone(), "blocks without [testfield]: expected one with [camera] and stations"));
+    }
+    let adjusted = Adjusted { calibration, blocks, listed_blocks };
     let subject = match (scene, figure, photographs, views.span()) {
         (Some(section), None, None, None) => scene::read(section, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
         (None, Some(figure), None, None) => figure::read(figure, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
@@ -159,7 +168,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         }
         (None, None, None, Some(_)) => {
             let views = views.read(imaging, &start, folder, key, problems);
-            views.and_then(|views| with_calibration(views, calibration, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
+            views.and_then(|views| adjusted.read(views, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
         }
         (None, None, None, None) => {
             let problem = Problem::new(start, "the scenario has nothing to measure");
@@ -218,16 +227,38 @@ fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> Str
     value.into_inner()
 }
 
-/// `views` with what is done with their points, where `section` says it.
-fn with_calibration(
-    views: ViewsSubject,
-    section: Option<Section<'_>>,
-    methods: &[Configured],
-    problems: &mut Vec<Problem>,
-) -> Option<ViewsSubject> {
-    let Some(section) = section else { return Some(views) };
-    let ViewsSubject { camera, field, stations, redraw, .. } = &views;
-    let seen = Seen { camera, field, stations, redrawn: redraw.is_some() };
-    let calibration = calibration::read(section, &seen, methods, problems)?;
-    Some(ViewsSubject { calibration: Some(calibration), ..views })
+/// The tables that say what is adjusted.
+struct Adjusted<'i> {
+    calibration: Option<Section<'i>>,
+    blocks: Option<Section<'i>>,
+    listed_blocks: Vec<Section<'i>>,
+}
+
+impl Adjusted<'_> {
+    /// `views` with what is done with their points.
+    fn read(self, views: ViewsSubject, methods: &[Configured], problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
+        let ViewsSubject { camera, field, stations, redraw, .. } = &views;
+        let seen = Seen { camera, field, stations, redrawn: redraw.is_some() };
+        match (self.calibration, self.blocks, self.listed_blocks) {
+            (None, None, listed) if listed.is_empty() => Some(views),
+            (Some(section), None, listed) if listed.is_empty() => {
+                let calibration = calibration::read(section, &seen, methods, problems)?;
+                Some(ViewsSubject { calibration: Some(calibration), ..views })
+            }
+            (None, Some(section), listed) => {
+                let blocks = blocks::read(section, listed, &seen, methods, problems)?;
+                Some(ViewsSubject { blocks: Some(blocks), ..views })
+            }
+            (Some(_), blocks, listed) => {
+                let at = blocks.or_else(|| listed.into_iter().next()).map_or(0..0, |section| section.span);
+                problems.push(Problem::new(at, "blocks beside [calibration]: expected one of them"));
+                None
+            }
+            (None, None, listed) => {
+                let at = listed.into_iter().next().map_or(0..0, |section| section.span);
+                problems.push(Problem::new(at, "[[block]] without [blocks]").help("[blocks] says `c` and `sigma_px` of all blocks"));
+                None
+            }
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Scenarios: what is run, and why. TOML files, checked once into these types.
 
+pub mod blocks;
 pub mod calibration;
 pub mod camera;
 pub mod catalogue;
@@ -24,6 +25,7 @@ pub mod testfield;
 mod views;
 mod wire;
 
+pub use blocks::{Block, Blocks, ResidualPairs};
 pub use calibration::Calibration;
 pub use check::{parse, parse_cell};
 pub use imaging::Imaging;

@@ -7,6 +7,7 @@ use calibench_model::TargetKind;
 use schemars::{JsonSchema, schema_for};
 use serde_json::{Map, Value, json};
 
+use super::blocks::wire::{BlockWire, BlocksWire, ResidualsWire};
 use super::calibration::wire::{CalibrationWire, CheckWire};
 use super::camera::CameraWire;
 use super::figure::FigureWire;
@@ -45,6 +46,9 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["sensor"] = table::<SensorWire>();
     root["properties"]["calibration"] = table::<CalibrationWire>();
     root["properties"]["calibration"]["properties"]["check"] = table::<CheckWire>();
+    root["properties"]["blocks"] = table::<BlocksWire>();
+    root["properties"]["blocks"]["properties"]["residuals"] = table::<ResidualsWire>();
+    root["properties"]["block"] = list(&table::<BlockWire>());
     root["properties"]["pointing"] = pointing();
     let subjects = [vec!["scene"], vec!["figure"], vec!["camera", "testfield", "pointing"], vec!["photographs"]];
     root["oneOf"] = subjects.iter().map(|keys| json!({ "required": keys })).collect();

@@ -12,7 +12,7 @@ use calibench_synth::pointing::Hand;
 use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
-use crate::{Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, StationPlan, Unit};
+use crate::{Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, StationPlan, Unit};
 
 /// What a scenario measures.
 pub enum Subject {
@@ -94,6 +94,8 @@ pub struct ViewsSubject {
     pub detector: Option<Detector>,
     /// What is done with the measured points of every trial, if more than scoring them.
     pub calibration: Option<Calibration>,
+    /// The free networks that are made of them, in place of that.
+    pub blocks: Option<Blocks>,
 }
 
 impl ViewsSubject {

@@ -131,6 +131,7 @@ impl<'i> ViewTables<'i> {
             clipped,
             detector,
             calibration: None,
+            blocks: None,
         })
     }
 }

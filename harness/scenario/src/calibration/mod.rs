@@ -193,7 +193,7 @@ fn read_check(section: Section<'_>, views: &Seen<'_>, problems: &mut Vec<Problem
 }
 
 /// The places of names in a list; unknown names and names that stand twice are problems.
-fn places(what: &str, names: &[Spanned<String>], known: &[&str], problems: &mut Vec<Problem>) -> Vec<usize> {
+pub(crate) fn places(what: &str, names: &[Spanned<String>], known: &[&str], problems: &mut Vec<Problem>) -> Vec<usize> {
     let mut found = Vec::new();
     for name in names {
         match known.iter().position(|known| known == name.get_ref()) {

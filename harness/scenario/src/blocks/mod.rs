@@ -1,0 +1,266 @@
+//! The `[blocks]` and `[[block]]` tables: free networks of what every method measured.
+
+use calibench_diagnostics::Problem;
+use calibench_measure::Configured;
+use calibench_model::camera::{Camera, Ebner, Photogrammetric};
+use glob::Pattern;
+use toml::Spanned;
+
+use super::calibration::{Seen, places};
+use super::section::Section;
+
+pub mod wire;
+
+use wire::{BlockWire, BlocksWire, ResidualsWire};
+
+/// The name under which comparisons of residuals stand in the records.
+pub const RESIDUALS: &str = "residuals";
+/// Where gross errors begin if the scenario does not say, px.
+const GROSS: f64 = 1.0;
+/// Ebner's parameters.
+const PARAMETERS: [&str; 12] = ["e1", "e2", "e3", "e4", "e5", "e6", "e7", "e8", "e9", "e10", "e11", "e12"];
+/// Images that a network takes at least.
+const LEAST_IMAGES: usize = 2;
+
+/// Checked `[blocks]` and `[[block]]` tables.
+#[derive(Clone, Debug)]
+pub struct Blocks {
+    /// The camera that is held; its additional parameters are zero.
+    pub camera: Ebner,
+    /// A-priori standard deviation of an image coordinate, px.
+    pub sigma_px: f64,
+    /// Where gross errors begin, px.
+    pub gross_px: f64,
+    /// Whether the image points of every trial are kept.
+    pub keep_points: bool,
+    /// The blocks, in their order.
+    pub list: Vec<Block>,
+    /// What is compared of their residuals.
+    pub residuals: Option<ResidualPairs>,
+}
+
+/// A free network.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Its name.
+    pub name: String,
+    /// Its targets, by their places in the field.
+    pub targets: Vec<usize>,
+    /// Its images, by the places of their stations: a network for each choice.
+    pub images: Vec<Vec<usize>>,
+    /// Whether the file gives several choices of images.
+    pub several: bool,
+    /// Ebner's parameters that are solved for.
+    pub parameters: Vec<String>,
+    /// Of each station, the set of parameters that is its own, counted from 0.
+    pub groups: Vec<usize>,
+    /// The block whose parameters correct the image coordinates.
+    pub corrected_by: Option<usize>,
+    /// Standard deviation of every height, object units.
+    pub height_sigma: Option<f64>,
+    /// Over which distance from the middle the bend is reported, object units.
+    pub bend_over: Option<f64>,
+    /// The methods whose points are adjusted, by their places.
+    pub methods: Vec<usize>,
+}
+
+/// Residuals that are compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResidualPairs {
+    /// Of which blocks.
+    pub blocks: Vec<usize>,
+    /// In which pairs of images, by the places of their stations.
+    pub pairs: Vec<[usize; 2]>,
+}
+
+impl Blocks {
+    /// The names under which their figures stand in the records: those of the blocks, then [`RESIDUALS`] if residuals are compared.
+    pub fn names(&self) -> Vec<String> {
+        let compared = self.residuals.iter().map(|_| RESIDUALS.to_owned());
+        self.list.iter().map(|block| block.name.clone()).chain(compared).collect()
+    }
+}
+
+/// Reads the tables of a scenario of `views`, whose methods are `methods`.
+pub fn read(
+    mut section: Section<'_>,
+    listed: Vec<Section<'_>>,
+    views: &Seen<'_>,
+    methods: &[Configured],
+    problems: &mut Vec<Problem>,
+) -> Option<Blocks> {
+    let before = problems.len();
+    let span = section.span.clone();
+    let residuals = section.take_table("residuals", "[blocks.residuals]", problems);
+    let wire: Option<BlocksWire> = section.read(&["residuals"], problems);
+    let Camera::Photogrammetric(truth) = *views.camera else {
+        problems
+            .push(Problem::new(span, "[blocks] needs a camera of the photogrammetric model").help("write its `size`, `pitch` and `c` out"));
+        return None;
+    };
+    if views.redrawn {
+        problems.push(Problem::new(span.clone(), "[blocks] with stations that are drawn anew in each trial: expected the same in all"));
+    }
+    if listed.is_empty() {
+        problems.push(Problem::new(span, "[blocks] without a [[block]]: expected at least one"));
+    }
+    let names = Names::of(views, methods);
+    let mut list: Vec<Block> = Vec::new();
+    for section in listed {
+        list.extend(block(section, &names, &list, problems));
+    }
+    let residuals = residuals.map(|section| compared(section, &names, &list, problems));
+    let wire = wire?;
+    if problems.len() > before {
+        return None;
+    }
+    let width = f64::from(truth.size.width) * truth.pitch_um * 1e-3;
+    let base = Photogrammetric { c: wire.c.0, x0: 0.0, y0: 0.0, k: [0.0; 3], p: [0.0; 2], b: [0.0; 2], ..truth };
+    Some(Blocks {
+        camera: Ebner { base, b_mm: wire.grid.map_or(0.4 * width, |grid| grid.0), parameters: [0.0; 12] },
+        sigma_px: wire.sigma_px.0,
+        gross_px: wire.gross_px.map_or(GROSS, |sigma| sigma.0),
+        keep_points: wire.keep_points.unwrap_or(false),
+        list,
+        residuals: residuals.flatten(),
+    })
+}
+
+/// What a block may name.
+struct Names<'a> {
+    targets: Vec<&'a str>,
+    stations: Vec<&'a str>,
+    methods: Vec<&'a str>,
+}
+
+impl<'a> Names<'a> {
+    fn of(views: &Seen<'a>, methods: &'a [Configured]) -> Self {
+        Self {
+            targets: views.field.targets.iter().map(|target| target.id.as_str()).collect(),
+            stations: views.stations.iter().map(|station| station.name.as_str()).collect(),
+            methods: methods.iter().map(|method| method.label.as_str()).collect(),
+        }
+    }
+}
+
+fn block(section: Section<'_>, names: &Names<'_>, earlier: &[Block], problems: &mut Vec<Problem>) -> Option<Block> {
+    let before = problems.len();
+    let wire: BlockWire = section.read(&[], problems)?;
+    let name = wire.name.get_ref().clone();
+    if name == RESIDUALS || earlier.iter().any(|other| other.name == name) {
+        problems.push(Problem::new(wire.name.span(), format!("the name `{name}` is taken: expected each once, and not `{RESIDUALS}`")));
+    }
+    let all_images = || (0..names.stations.len()).collect::<Vec<_>>();
+    let (images, several) = match (&wire.images, &wire.each) {
+        (Some(_), Some(each)) => {
+            problems.push(Problem::new(each.span(), "`each` beside `images`: expected one of them"));
+            (Vec::new(), true)
+        }
+        (Some(images), None) => (vec![matched("station", images.get_ref(), &names.stations, problems)], false),
+        (None, Some(each)) => {
+            let choice = |patterns: &Spanned<Vec<Spanned<String>>>| matched("station", patterns.get_ref(), &names.stations, &mut *problems);
+            (each.get_ref().iter().map(choice).collect(), true)
+        }
+        (None, None) => (vec![all_images()], false),
+    };
+    let at = wire.each.as_ref().map(Spanned::span).or_else(|| wire.images.as_ref().map(Spanned::span)).unwrap_or_else(|| wire.name.span());
+    if images.iter().any(|choice| choice.len() < LEAST_IMAGES) {
+        problems.push(Problem::new(at, format!("a block takes at least {LEAST_IMAGES} images")));
+    }
+    let targets = match &wire.targets {
+        Some(patterns) => matched("target", patterns.get_ref(), &names.targets, problems),
+        None => (0..names.targets.len()).collect(),
+    };
+    let groups = match &wire.groups {
+        Some(groups) => grouped(groups, &images, names, problems),
+        None => vec![0; names.stations.len()],
+    };
+    let corrected_by = wire.corrected_by.as_ref().and_then(|other| {
+        let found = earlier.iter().position(|block| block.name == *other.get_ref());
+        if found.is_none() {
+            let message = format!("no earlier block is called `{}`", other.get_ref());
+            problems.push(Problem::new(other.span(), message).nearest(other.get_ref(), earlier.iter().map(|block| block.name.as_str())));
+        }
+        found
+    });
+    let chosen = wire.methods.as_ref().map(|listed| places("method", listed.get_ref(), &names.methods, problems));
+    let parameters = wire.parameters.as_ref().map(|listed| places("parameter", listed.get_ref(), &PARAMETERS, problems));
+    if let (Some(by), Some(listed)) = (&wire.corrected_by, &wire.parameters)
+        && !listed.get_ref().is_empty()
+    {
+        problems.push(Problem::new(by.span(), "`corrected_by` beside `parameters`: expected one of them"));
+    }
+    (problems.len() == before).then(|| Block {
+        name,
+        targets,
+        images,
+        several,
+        parameters: parameters.into_iter().flatten().map(|index| PARAMETERS[index].to_owned()).collect(),
+        groups,
+        corrected_by,
+        height_sigma: wire.height_sigma.map(|sigma| sigma.0),
+        bend_over: wire.bend_over.map(|over| over.0),
+        methods: chosen.unwrap_or_else(|| (0..names.methods.len()).collect()),
+    })
+}
+
+/// The group of each station; every image of the block must be in one group.
+fn grouped(
+    written: &Spanned<Vec<Spanned<Vec<Spanned<String>>>>>,
+    images: &[Vec<usize>],
+    names: &Names<'_>,
+    problems: &mut Vec<Problem>,
+) -> Vec<usize> {
+    let mut found = vec![None; names.stations.len()];
+    for (group, patterns) in written.get_ref().iter().enumerate() {
+        for station in matched("station", patterns.get_ref(), &names.stations, problems) {
+            if found[station].replace(group).is_some_and(|other| other != group) {
+                problems.push(Problem::new(patterns.span(), format!("image `{}` is in two groups", names.stations[station])));
+            }
+        }
+    }
+    if let Some(&lone) = images.iter().flatten().find(|&&image| found[image].is_none()) {
+        problems.push(Problem::new(written.span(), format!("image `{}` is in no group", names.stations[lone])));
+    }
+    found.into_iter().map(|group| group.unwrap_or(0)).collect()
+}
+
+fn compared(section: Section<'_>, names: &Names<'_>, blocks: &[Block], problems: &mut Vec<Problem>) -> Option<ResidualPairs> {
+    let before = problems.len();
+    let wire: ResidualsWire = section.read(&[], problems)?;
+    let known: Vec<&str> = blocks.iter().map(|block| block.name.as_str()).collect();
+    let of = places("block", wire.blocks.get_ref(), &known, problems);
+    let mut pairs = Vec::new();
+    for pair in wire.pairs.get_ref() {
+        let found = places("station", pair, &names.stations, problems);
+        if let [first, second] = found[..] {
+            pairs.push([first, second]);
+        }
+    }
+    if of.is_empty() || wire.pairs.get_ref().is_empty() {
+        problems.push(Problem::new(wire.pairs.span(), "[blocks.residuals]: expected at least one block and one pair"));
+    }
+    (problems.len() == before).then_some(ResidualPairs { blocks: of, pairs })
+}
+
+/// The places of names that match a pattern; a pattern that none matches is a problem.
+fn matched(what: &str, patterns: &[Spanned<String>], known: &[&str], problems: &mut Vec<Problem>) -> Vec<usize> {
+    let mut found: Vec<usize> = Vec::new();
+    for written in patterns {
+        let fits: Vec<usize> = match Pattern::new(written.get_ref()) {
+            Ok(pattern) => (0..known.len()).filter(|&i| pattern.matches(known[i])).collect(),
+            Err(error) => {
+                problems.push(Problem::new(written.span(), format!("`{}` is no pattern: {}", written.get_ref(), error.msg)));
+                continue;
+            }
+        };
+        if fits.is_empty() {
+            let problem = Problem::new(written.span(), format!("no {what} is called `{}`", written.get_ref()));
+            problems.push(problem.nearest(written.get_ref(), known.iter().copied()));
+        }
+        found.extend(fits);
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
