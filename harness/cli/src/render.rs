@@ -7,8 +7,10 @@ use calibench_random::Key;
 use calibench_records::names::kept_image_name;
 use calibench_run::views::{self, Prepared};
 use calibench_run::{RunError, VIEW, starts, trial_picture, trial_truth, truth};
-use calibench_scenario::stations::NOISE_FREE;
+use calibench_model::camera::CameraModel;
+use calibench_scenario::stations::{LOCAL_DISTORTION, NOISE_FREE};
 use calibench_scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
+use calibench_synth::local::LocalDesign;
 use calibench_synth::stations::Station;
 use clap::Args;
 
@@ -98,7 +100,7 @@ impl Render {
         }
         let chosen = |station: &&Station| self.stations.is_empty() || self.stations.contains(&station.name);
         let stations: Vec<Station> = drawn.iter().filter(chosen).cloned().collect();
-        let prepared = Prepared::of(subject, &stations)?;
+        let prepared = Prepared::of(subject, &stations, key)?;
         let progress = Progress::start(&scenario.name, stations.len() as u64, context.quiet);
         let (mut notes, mut rows, mut points) = (Vec::new(), Vec::new(), Points::default());
         for view in &prepared.views {
@@ -121,6 +123,12 @@ impl Render {
         truth::write_starts(folder, "starts.csv", &points)?;
         truth::write_control(folder, "control.csv", subject)?;
         truth::write_camera(folder, "camera", &subject.camera)?;
+        if let Some(local) = subject.local_of(key)? {
+            let name = format!("{LOCAL_DISTORTION}.csv");
+            truth::write_local(folder, &name, &local, subject.camera.size())?;
+            let LocalDesign { sigma, correlation } = local.design();
+            notes.push(format!("the camera's local distortion ({sigma} px, correlation {correlation} px) is in {name} and in no camera file"));
+        }
         progress.finish(&format!("{} images", stations.len()));
         Ok(notes)
     }

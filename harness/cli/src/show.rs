@@ -11,6 +11,7 @@ use calibench_random::Key;
 use calibench_report::preview;
 use calibench_run::views::{Prepared, is_pointed_at};
 use calibench_run::{trial_picture, trial_truth};
+use calibench_scenario::camera::LocalPlan;
 use calibench_scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, ViewsSubject};
 use calibench_synth::stations::sees;
 use clap::Args;
@@ -120,6 +121,9 @@ fn views(text: &mut String, subject: &ViewsSubject) {
     for parameter in subject.camera.parameters() {
         let _ = writeln!(text, "# {} = {} {}", parameter.name, parameter.value, parameter.unit);
     }
+    if let Some(LocalPlan { design, each_trial }) = subject.local {
+        let _ = writeln!(text, "\n[camera.local]\nsigma = {}\ncorrelation = {}\neach_trial = {each_trial}", design.sigma, design.correlation);
+    }
     let (plates, targets, unit) = (field.plates.len(), field.targets.len(), subject.unit.name());
     let _ = writeln!(text, "\n[testfield] # {plates} plates, {targets} targets, in {unit}");
     if let Some([low, high]) = field.extent() {
@@ -127,10 +131,14 @@ fn views(text: &mut String, subject: &ViewsSubject) {
     }
     for station in &subject.stations {
         let (at, angles) = (station.pose.centre, station.pose.angles().map(f64::to_degrees));
-        let seen = sees(&subject.camera, &station.pose, field) * targets as f64;
+        let seen = sees(&subject.camera, &station.pose, &station.field(field)) * targets as f64;
         let [omega, phi, kappa] = angles;
         let _ = writeln!(text, "\n[[station]]\nname = \"{}\" # sees {seen:.0} targets", station.name);
         let _ = writeln!(text, "at = [{}, {}, {}]\nangles = [{omega}, {phi}, {kappa}]", at.x, at.y, at.z);
+        if let Some(bend) = station.bend {
+            let across = bend.across.to_degrees();
+            let _ = writeln!(text, "# the stand bends the field by {} {unit} over {}, across {across} degrees of its own", bend.peak, bend.reach);
+        }
     }
     if let Some(detector) = &subject.detector {
         let _ = writeln!(text, "\n[pointing]\ndetector = \"harris\"\nwithin = {}", detector.within);
@@ -152,9 +160,10 @@ fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture,
             Ok(Ok((image, truth.targets.into_iter().map(|target| (target.id, target.at)).collect())))
         }
         Subject::Views(subject) => {
-            let prepared = Prepared::new(subject)?;
+            let key = Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: "", target: "" };
+            let prepared = Prepared::new(subject, key)?;
             let Some(view) = prepared.views.first() else { return Ok(Err("the scenario has no station".into())) };
-            let image = prepared.image(view, Key { seed: scenario.seed, scenario: &scenario.name, trial: 0, view: "", target: "" })?.image;
+            let image = prepared.image(view, key)?.image;
             let seen = subject.field.targets.iter().zip(&view.truth).filter(|(_, truth)| is_pointed_at(subject, truth));
             Ok(Ok((image, seen.filter_map(|(target, truth)| Some((target.id.clone(), truth.at?))).collect())))
         }

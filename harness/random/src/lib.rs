@@ -25,6 +25,8 @@ pub enum Purpose {
     RowNoise = 14,
     /// How far each row of an image is read out of its place.
     RowJitter = 15,
+    /// The local distortion of a camera: how its pixels lie beside their grid.
+    LocalDistortion = 16,
     /// Where a printed corner lies beside the one that was meant.
     PrintNoise = 32,
     /// The error of a target's surveyed position.

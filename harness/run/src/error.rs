@@ -2,6 +2,7 @@
 
 use calibench_exchange::PhotoError;
 use calibench_measure::KindsGap;
+use calibench_synth::local::LocalError;
 use calibench_synth::optics::OpticsError;
 use calibench_synth::sensor::SensorError;
 use calibench_synth::stations::StationError;
@@ -39,6 +40,9 @@ pub enum RunError {
     /// Stations of a trial that see too little.
     #[error(transparent)]
     Station(#[from] StationError),
+    /// A local distortion that cannot be.
+    #[error(transparent)]
+    Local(#[from] LocalError),
     /// A lens that cannot be.
     #[error(transparent)]
     Optics(#[from] OpticsError),

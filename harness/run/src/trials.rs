@@ -1,6 +1,7 @@
 //! All trials of a plan, in their order.
 
 use calibench_measure::kinds::cover;
+use calibench_random::Key;
 use calibench_records::results::Trial;
 use calibench_scenario::Subject;
 use rayon::prelude::*;
@@ -35,9 +36,10 @@ impl Plan<'_> {
                 // Drawn coordinates are those of no image.
                 let drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
                 let bounds = if self.bounds && !drawn { views::bounds(self, subject)? } else { None };
-                // Stations that are drawn anew have their bounds in each trial.
-                let fixed = bounds.as_ref().filter(|_| subject.redraw.is_none());
-                let prepared = views::Prepared::with_bounds(subject, fixed)?;
+                // What is drawn anew in each trial has its bounds there.
+                let fixed = bounds.as_ref().filter(|_| !subject.changes());
+                let key = Key { seed: self.seed, scenario: &self.scenario.name, trial: 0, view: "", target: "" };
+                let prepared = views::Prepared::with(subject, &subject.stations, key, fixed)?;
                 self.trials(step, sink, &|number| views::run_trial(self, &prepared, bounds.as_ref(), number))
             }
         }

@@ -4,10 +4,11 @@ use std::io;
 
 use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
 use calibench_exchange::{ControlDisc, ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
-use calibench_model::camera::Camera;
+use calibench_model::camera::{Camera, ImageSize};
 use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene, TargetKind};
 use calibench_records::names::kept_image_name;
 use calibench_scenario::ViewsSubject;
+use calibench_synth::local::LocalDistortion;
 use calibench_synth::sensor::Clipped;
 use calibench_synth::stations::Station;
 use calibench_synth::view::{Ellipse, TargetTruth, Visibility};
@@ -95,8 +96,7 @@ fn view_row(subject: &ViewsSubject, view: &PreparedView<'_>, target: &ObjectTarg
     numbers(&mut row, affine.as_ref().map(<[f64; 4]>::as_slice), 4);
     let ellipse = truth.ellipse.map(|Ellipse { centre, axes, angle }| [centre.x, centre.y, axes[0], axes[1], angle.to_degrees()]);
     numbers(&mut row, ellipse.as_ref().map(<[f64; 5]>::as_slice), 5);
-    let at = subject.field.position(target);
-    numbers(&mut row, Some(&[at.x, at.y, at.z]), 3);
+    numbers(&mut row, Some(&truth.object.coords.into()).map(<[f64; 3]>::as_slice), 3);
     numbers(&mut row, size_px(truth).map(|size| [size]).as_ref().map(<[f64; 1]>::as_slice), 1);
     row.push(warning(subject, truth).unwrap_or_default().to_owned());
     row
@@ -173,6 +173,31 @@ pub fn write_control(folder: &NewFolder, name: &str, subject: &ViewsSubject) -> 
     };
     let rows: Vec<ControlRow> = subject.field.targets.iter().map(row).collect();
     folder.write(name, |file| calibench_exchange::write_control(file, &rows))
+}
+
+/// Most places of the local distortion's table along a side.
+const MOST_PLACES: u32 = 128;
+
+/// What the camera distorts locally, on a grid over the frame: a point that the camera alone would picture at (x, y) is pictured at (x + dx, y + dy), px.
+///
+/// The grid has a quarter of a length of correlation, or what makes 128 places along a side if that is more.
+///
+/// # Errors
+/// What the file system refuses.
+pub fn write_local(folder: &NewFolder, name: &str, local: &LocalDistortion, size: ImageSize) -> io::Result<()> {
+    let side = size.width.max(size.height);
+    let step = (0.25 * local.design().correlation).max(f64::from(side) / f64::from(MOST_PLACES));
+    // From the frame's outer corner to the other: each side in equal steps.
+    let along = |side: u32| {
+        let count = (f64::from(side) / step).ceil().max(1.0);
+        (0..=count as u32).map(move |i| f64::from(side) * f64::from(i) / count - 0.5)
+    };
+    let places = along(size.height).flat_map(|y| along(size.width).map(move |x| PixelPoint::new(x, y)));
+    let row = |at: PixelPoint| {
+        let [dx, dy] = local.at(at).by;
+        [at.x, at.y, dx, dy].iter().map(f64::to_string).collect()
+    };
+    table(folder, name, &["x", "y", "dx", "dy"], places.map(row))
 }
 
 /// The camera as a file of the first format that holds it as it is; its ending is put to `stem`.

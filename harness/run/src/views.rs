@@ -44,37 +44,39 @@ pub struct PreparedView<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Projects the field for the stations of all trials, or of the first.
+    /// Projects the field for the stations of all trials, or of the first, with the camera of the trial of `key`.
     ///
     /// # Errors
     /// A view that cannot be pictured, by the name of its station.
-    pub fn new(subject: &'a ViewsSubject) -> Result<Self, RunError> {
-        Self::with(subject, &subject.stations, None)
+    pub fn new(subject: &'a ViewsSubject, key: Key<'_>) -> Result<Self, RunError> {
+        Self::with(subject, &subject.stations, key, None)
     }
 
     /// As [`Self::new`], for other stations.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn of(subject: &'a ViewsSubject, stations: &'a [Station]) -> Result<Self, RunError> {
-        Self::with(subject, stations, None)
+    pub fn of(subject: &'a ViewsSubject, stations: &'a [Station], key: Key<'_>) -> Result<Self, RunError> {
+        Self::with(subject, stations, key, None)
     }
 
-    /// As [`Self::new`], with the bounds of `plan`'s methods.
-    pub(super) fn with_bounds(subject: &'a ViewsSubject, bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
-        Self::with(subject, &subject.stations, bounds)
-    }
-
-    /// Projects the field for `stations`.
+    /// As [`Self::of`], with the bounds of methods.
     ///
     /// # Errors
     /// As [`Self::new`].
-    fn with(subject: &'a ViewsSubject, stations: &'a [Station], bounds: Option<&TargetBounds>) -> Result<Self, RunError> {
+    pub(super) fn with(
+        subject: &'a ViewsSubject,
+        stations: &'a [Station],
+        key: Key<'_>,
+        bounds: Option<&TargetBounds>,
+    ) -> Result<Self, RunError> {
         let size = subject.camera.size();
         let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
         let margin = subject.imaging.optics.reach();
+        let local = subject.local_of(key)?;
         let view = |station: &'a Station| {
-            let view = View { field: &subject.field, camera: &subject.camera, pose: &station.pose };
+            let field = station.field(&subject.field);
+            let view = View { field: &field, camera: &subject.camera, local: local.as_ref(), pose: &station.pose };
             let failed = |source| RunError::View { station: station.name.clone(), source };
             let seen = view.seen(margin).map_err(failed)?;
             let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
@@ -119,16 +121,19 @@ pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<T
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option<&TargetBounds>, number: u64) -> Result<Trial, RunError> {
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
     let subject = prepared.subject;
-    if let Some(calibration) = &subject.calibration {
-        return calibrated(plan, prepared, calibration, key);
+    if !subject.changes() {
+        return run_prepared(plan, prepared, key);
     }
-    if let Some(blocks) = &subject.blocks {
-        return in_blocks(plan, prepared, blocks, key);
+    run_prepared(plan, &Prepared::with(subject, &subject.stations_of(key)?, key, bounds)?, key)
+}
+
+fn run_prepared(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
+    let subject = prepared.subject;
+    match (&subject.calibration, &subject.blocks) {
+        (Some(calibration), _) => calibrated(plan, prepared, calibration, key),
+        (None, Some(blocks)) => in_blocks(plan, prepared, blocks, key),
+        (None, None) => run_views(plan, prepared, key),
     }
-    if subject.redraw.is_none() {
-        return run_views(plan, prepared, key);
-    }
-    run_views(plan, &Prepared::with(subject, &subject.stations_of(key)?, bounds)?, key)
 }
 
 /// A trial whose points go through the adjustment. Stations are the same in all of them.
@@ -216,7 +221,7 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
 pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<(Image, Vec<Start>), RunError> {
     let key = Key { seed, scenario, trial: 0, view: "", target: "" };
     let stations = subject.stations_of(key)?;
-    let prepared = Prepared::of(subject, &stations)?;
+    let prepared = Prepared::of(subject, &stations, key)?;
     let Some(view) = prepared.views.first() else { return Err(RunError::NothingToRender) };
     let starts = seen(&prepared, view, Key { view: &view.station.name, ..key }).into_iter().map(|point| point.start).collect();
     Ok((prepared.image(view, key)?.image, starts))

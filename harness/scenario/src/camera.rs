@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use calibench_diagnostics::Problem;
 use calibench_exchange::camera::{ReadOptions, read_camera_with};
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
+use calibench_synth::local::{LocalDesign, LocalError};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
@@ -21,6 +22,10 @@ bounded! {
     Place(f64), f64 "f64", -1e4, 1e4;
     /// A coefficient of distortion.
     Coefficient(f64), f64 "f64", -1e6, 1e6;
+    /// A standard deviation of a displacement, px.
+    LocalSigma(f64), f64 "f64", 0.0, 1e4;
+    /// A length of correlation, px.
+    Correlation(f64), f64 "f64", 0.1, 1e6;
 }
 
 /// The camera: a canonical interior orientation, or `file`.
@@ -59,6 +64,39 @@ pub struct CameraWire {
     pub b2: Option<Coefficient>,
 }
 
+/// The local distortion of the camera: a smooth random field over the sensor that is in the images and their truth, and in no model that is adjusted.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LocalWire {
+    /// Standard deviation of the displacement in x and in y, px; at most a tenth of `correlation`, so that the image cannot fold. 0: there is none.
+    #[schemars(with = "LocalSigma")]
+    pub sigma: Spanned<LocalSigma>,
+    /// Length of correlation, px: at a distance d the correlation is exp(-d^2 / (2 correlation^2)).
+    #[schemars(with = "Correlation")]
+    pub correlation: Spanned<Correlation>,
+    /// false: the same field in all trials. Default: drawn anew in each; it is the same in all images of a trial.
+    pub each_trial: Option<bool>,
+}
+
+/// A local distortion that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalPlan {
+    /// How large and how smooth it is.
+    pub design: LocalDesign,
+    /// Whether each trial has one of its own.
+    pub each_trial: bool,
+}
+
+/// A checked `[camera]` table.
+pub struct CameraPlan {
+    /// The interior orientation.
+    pub camera: Camera,
+    /// The file that it was read from.
+    pub file: Option<PathBuf>,
+    /// What it distorts beyond that.
+    pub local: Option<LocalPlan>,
+}
+
 /// The largest image, px: 400 megapixels take about 5 GB.
 const MOST_PIXELS: u64 = 400_000_000;
 
@@ -71,25 +109,46 @@ fn located(folder: &Path, file: &str) -> PathBuf {
     kept.filter(|kept| kept.is_file()).unwrap_or_else(|| folder.join(file))
 }
 
-/// Reads a `[camera]` table; `folder` is where the scenario's file is. With the camera comes the file that it was read from.
-pub fn read(section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<(Camera, Option<PathBuf>)> {
+/// Reads a `[camera]` table; `folder` is where the scenario's file is.
+pub fn read(mut section: Section<'_>, folder: &Path, problems: &mut Vec<Problem>) -> Option<CameraPlan> {
     let span = section.span.clone();
-    let wire: CameraWire = section.read(&[], problems)?;
-    let read = match &wire.file {
+    let local = section.take_table("local", "[camera.local]", problems);
+    let wire: Option<CameraWire> = section.read(&["local"], problems);
+    let local: Option<Option<LocalWire>> = local.map(|section| section.read(&[], problems));
+    let wire = wire?;
+    let (camera, file) = match &wire.file {
         Some(file) => {
             let path = located(folder, file.get_ref());
             of_file(&wire, file, &path, problems).map(|camera| (camera, Some(path)))
         }
         None => written_out(&wire, span.clone(), problems).map(|camera| (camera, None)),
     }?;
-    let size = read.0.size();
+    let size = camera.size();
     if u64::from(size.width) * u64::from(size.height) > MOST_PIXELS {
         let gigabytes = f64::from(size.width) * f64::from(size.height) * 12.0 / 1e9;
         let message =
             format!("an image of {} x {} px needs about {gigabytes:.0} GB: expected at most 400 megapixels", size.width, size.height);
         problems.push(Problem::new(wire.size.map_or(span, |size| size.span()), message));
     }
-    Some(read)
+    let local = match local {
+        Some(wire) => local_plan(&wire?, size, problems),
+        None => None,
+    };
+    Some(CameraPlan { camera, file, local })
+}
+
+/// What is drawn; `None` for no displacement, and with a problem for a field that cannot be.
+fn local_plan(wire: &LocalWire, size: ImageSize, problems: &mut Vec<Problem>) -> Option<LocalPlan> {
+    let design = LocalDesign { sigma: wire.sigma.get_ref().0, correlation: wire.correlation.get_ref().0 };
+    if design.sigma == 0.0 {
+        return None;
+    }
+    if let Err(error) = design.check(size) {
+        let span = if matches!(error, LocalError::Fine { .. }) { wire.correlation.span() } else { wire.sigma.span() };
+        problems.push(Problem::new(span, error.to_string()));
+        return None;
+    }
+    Some(LocalPlan { design, each_trial: wire.each_trial.unwrap_or(true) })
 }
 
 fn written_out(wire: &CameraWire, span: std::ops::Range<usize>, problems: &mut Vec<Problem>) -> Option<Camera> {

@@ -40,7 +40,7 @@ impl Scenario {
             }
             Subject::Views(views) => {
                 let still = views.calibration.as_ref().is_none_or(|calibration| !calibration.is_random());
-                still && views.hand.is_steady() && views.redraw.is_none() && !views.imaging.is_random()
+                still && views.hand.is_steady() && !views.changes() && !views.imaging.is_random()
             }
             Subject::Photographs(_) => true,
         }

@@ -9,13 +9,13 @@ use serde_json::{Map, Value, json};
 
 use super::blocks::wire::{BlockWire, BlocksWire, ResidualsWire};
 use super::calibration::wire::{CalibrationWire, CheckWire};
-use super::camera::CameraWire;
+use super::camera::{CameraWire, LocalWire};
 use super::figure::FigureWire;
 use super::judgement::JudgementWire;
 use super::optics::OpticsWire;
 use super::pointing::DetectorWire;
 use super::sensor::SensorWire;
-use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StationWire};
+use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::sweep::wire::SweepWire;
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
@@ -39,6 +39,7 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["figure"] = table::<FigureWire>();
     root["properties"]["figure"]["properties"]["pointing"] = pointing();
     root["properties"]["camera"] = table::<CameraWire>();
+    root["properties"]["camera"]["properties"]["local"] = table::<LocalWire>();
     root["properties"]["testfield"] = testfield();
     root["properties"]["stations"] = stations();
     root["properties"]["station"] = list(&table::<StationWire>());
@@ -86,6 +87,7 @@ fn stations() -> Value {
         ("arc", table::<ArcWire>()),
         ("board", table::<BoardWire>()),
         ("random", table::<RandomWire>()),
+        ("stand", table::<StandWire>()),
     ];
     one_of(kinds.into_iter().map(|(kind, mut schema)| {
         for (key, property) in common["properties"].as_object().into_iter().flatten() {

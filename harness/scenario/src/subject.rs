@@ -4,14 +4,16 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 use calibench_measure::Board;
-use calibench_model::camera::Camera;
+use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Scene, TargetKind, Testfield};
 use calibench_random::Key;
+use calibench_synth::local::{LocalDistortion, LocalError};
 use calibench_synth::optics::OpticsError;
 use calibench_synth::pointing::Hand;
 use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
+use crate::camera::LocalPlan;
 use crate::{Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, StationPlan, Unit};
 
 /// What a scenario measures.
@@ -80,6 +82,8 @@ pub struct ViewsSubject {
     pub camera: Camera,
     /// The file that it was read from.
     pub camera_file: Option<PathBuf>,
+    /// What the camera distorts beyond its interior orientation.
+    pub local: Option<LocalPlan>,
     /// From where, in the order of reports; those of the first trial if they change.
     pub stations: Vec<Station>,
     /// What draws other stations in each trial.
@@ -99,6 +103,21 @@ pub struct ViewsSubject {
 }
 
 impl ViewsSubject {
+    /// Whether the truth is another in each trial: stations that move, or a camera that distorts otherwise.
+    pub fn changes(&self) -> bool {
+        self.redraw.is_some() || self.local.is_some_and(|local| local.each_trial)
+    }
+
+    /// The local distortion of the camera in the trial of `key`.
+    ///
+    /// # Errors
+    /// None for a scenario that was checked.
+    pub fn local_of(&self, key: Key<'_>) -> Result<Option<LocalDistortion>, LocalError> {
+        let Some(LocalPlan { design, each_trial }) = self.local else { return Ok(None) };
+        let trial = if each_trial { key.trial } else { 0 };
+        LocalDistortion::draw(design, self.camera.size(), Key { trial, ..key }).map(Some)
+    }
+
     /// The stations of the trial of `key`.
     ///
     /// # Errors

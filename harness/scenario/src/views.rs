@@ -10,6 +10,7 @@ use calibench_random::Key;
 use calibench_synth::optics::Optics;
 use calibench_synth::pointing::{Hand, MapError};
 
+use super::camera::CameraPlan;
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
 use super::{Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};
@@ -105,7 +106,8 @@ impl<'i> ViewTables<'i> {
         let camera = self.camera.and_then(|section| camera::read(section, folder, problems));
         let pointing = self.pointing.and_then(|section| Pointing::read(section, problems));
         let plan = self.testfield.and_then(|section| testfield::read(section, key, problems));
-        let ((camera, camera_file), pointing, plan) = (camera?, pointing?, plan?);
+        let (camera, pointing, plan) = (camera?, pointing?, plan?);
+        let CameraPlan { camera, file: camera_file, local } = camera;
         let field = plan.generate(key).map_err(|error| problems.push(plan.problem(&error))).ok()?;
         let imaging = imaging.read(&surroundings(&camera, &field), problems);
         let plan_of_stations = stations::read(self.stations, self.explicit, problems)?;
@@ -124,6 +126,7 @@ impl<'i> ViewTables<'i> {
             unit,
             camera,
             camera_file,
+            local,
             stations,
             redraw,
             imaging,

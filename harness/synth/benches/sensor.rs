@@ -68,7 +68,7 @@ fn stages() -> Vec<(&'static str, Design)> {
             Design { converter: Some(12), ..with(Electrons { prnu: 0.01, dsnu: 2.0, row: 1.0, ..read }) },
         ),
         ("electrons counted (16 bit, no read noise)", Design { converter: Some(16), ..with(Electrons::of_well(1e4)) }),
-        ("white noise", Design { noise: Noise::White { sigma: 0.01 }, ..bare.clone() }),
+        ("white noise", Design { noise: Noise::White { sigma: 0.01, prnu: 0.0 }, ..bare.clone() }),
         ("vignetting, cos^4", Design { vignetting: vignetting(FallOff::Cos4 { c: 4000.0 }), ..bare.clone() }),
         ("vignetting, polynomial", Design { vignetting: vignetting(FallOff::Polynomial([-0.3, 0.05, 0.0])), ..bare.clone() }),
         ("gradient", Design { gradient: Some(Gradient { x: 0.2, y: 0.1, per: Per::Frame }), ..bare.clone() }),

@@ -1,10 +1,11 @@
 //! Scenes to images whose truth is known exactly.
 //!
 //! [`testfield`] makes what a camera is pointed at, [`stations`] where it stands, [`view`] brings the one before the other; [`raster`] integrates outlines over each
-//! photosite under the blur of [`optics`], [`sensor`] reads the light out. [`render()`] pictures a flat scene, [`noise`] spoils an image, [`pointing`] makes the
-//! approximate positions that a person would click. Every random number comes from [`calibench_random::stream`].
+//! photosite under the blur of [`optics`], [`sensor`] reads the light out. [`local`] distorts beyond what camera models hold. [`render()`] pictures a flat
+//! scene, [`noise`] spoils an image, [`pointing`] makes the approximate positions that a person would click. Every random number comes from [`calibench_random::stream`].
 
 pub mod bound;
+pub mod local;
 pub mod noise;
 pub mod optics;
 pub mod overlap;

@@ -82,7 +82,7 @@ impl Job {
 
     fn picture(&self) -> Picture {
         let pose = pose();
-        let view = View { field: &self.field, camera: &self.camera, pose: &pose };
+        let view = View { field: &self.field, camera: &self.camera, local: None, pose: &pose };
         view.picture(self.optics.reach()).expect("a board before the camera")
     }
 

@@ -24,7 +24,6 @@ const NOISES: [&[&str]; 4] = [
         "electrons",
         "photons",
         "quantum_efficiency",
-        "prnu",
         "dark_current",
         "exposure_time",
         "dsnu",
@@ -89,6 +88,10 @@ impl Keys {
         for other in described.iter().skip(1) {
             let problem = self.problem(other, format!("`{other}` beside `{}`: expected one description of the noise", described[0]));
             problems.push(problem.help("`grey_noise`, `snr_contrast_db`, `snr_mean_db`, or `full_well` with the other keys of electrons"));
+        }
+        if self.has("prnu") && described.is_empty() {
+            let problem = self.problem("prnu", "`prnu` without a description of the noise".to_owned());
+            problems.push(problem.help("beside `grey_noise`, `snr_contrast_db`, `snr_mean_db` or `full_well`"));
         }
         if let [key] = described[..]
             && NOISES[3].contains(&key)
@@ -170,8 +173,9 @@ fn gradient(wire: &SensorWire) -> Option<Gradient> {
 
 /// The noise that is described; `None` with a problem if the description refers to what is not known.
 fn noise(wire: &SensorWire, keys: &Keys, around: &Surroundings, exposure: f64, problems: &mut Vec<Problem>) -> Option<Noise> {
+    let prnu = wire.prnu.map_or(0.0, |percent| percent.0 / 100.0);
     if let Some(sigma) = wire.grey_noise {
-        return Some(Noise::White { sigma: sigma.0 });
+        return Some(Noise::White { sigma: sigma.0, prnu });
     }
     let ratios = [
         ("snr_contrast_db", wire.snr_contrast_db, around.contrast, "the targets' contrast"),
@@ -180,7 +184,7 @@ fn noise(wire: &SensorWire, keys: &Keys, around: &Surroundings, exposure: f64, p
     for (key, ratio, signal, what) in ratios {
         let Some(ratio) = ratio else { continue };
         match signal.filter(|&signal| signal > 0.0) {
-            Some(signal) => return Some(Noise::white_below(signal * exposure, ratio.0)),
+            Some(signal) => return Some(Noise::white_below(signal * exposure, ratio.0, prnu)),
             None => {
                 let problem = keys.problem(key, format!("`{key}`: {what} is not known here, or zero"));
                 problems.push(problem.help("describe the noise by `grey_noise` or `full_well`"));
@@ -188,15 +192,15 @@ fn noise(wire: &SensorWire, keys: &Keys, around: &Surroundings, exposure: f64, p
             }
         }
     }
-    Some(wire.full_well.map_or(Noise::None, |well| Noise::Electrons(electrons(wire, well.0))))
+    Some(wire.full_well.map_or(Noise::None, |well| Noise::Electrons(electrons(wire, well.0, prnu))))
 }
 
-fn electrons(wire: &SensorWire, full_well: f64) -> Electrons {
+fn electrons(wire: &SensorWire, full_well: f64, prnu: f64) -> Electrons {
     let of_photons = wire.photons.zip(wire.quantum_efficiency).map(|(photons, efficiency)| photons.0 * efficiency.0);
     Electrons {
         full_well,
         at_white: wire.electrons.map(|electrons| electrons.0).or(of_photons).unwrap_or(full_well),
-        prnu: wire.prnu.map_or(0.0, |percent| percent.0 / 100.0),
+        prnu,
         dark: wire.dark_current.zip(wire.exposure_time).map_or(0.0, |(current, time)| current.0 * time.0),
         dsnu: wire.dsnu.map_or(0.0, |electrons| electrons.0),
         read: wire.read_noise.map_or(0.0, |electrons| electrons.0),

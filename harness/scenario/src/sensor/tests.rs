@@ -80,9 +80,21 @@ fn every_key_reaches_its_stage() {
 #[test]
 fn decibels_are_below_what_their_key_names_after_exposure() {
     for (text, sigma) in [("snr_contrast_db = 40\nexposure = 0.5", 0.0035), ("snr_mean_db = 20", 0.05), ("grey_noise = 0.02", 0.02)] {
-        let Noise::White { sigma: found } = design(text).noise else { panic!("{text}") };
+        let Noise::White { sigma: found, prnu: 0.0 } = design(text).noise else { panic!("{text}") };
         assert!((found - sigma).abs() < 1e-12, "{text}: {found}");
     }
+}
+
+#[test]
+fn the_response_may_be_uneven_beside_any_noise() {
+    for text in ["snr_contrast_db = 46", "snr_mean_db = 46", "grey_noise = 0.02", "grey_noise = 0"] {
+        let Noise::White { prnu: 0.0, .. } = design(text).noise else { panic!("{text}") };
+        let Noise::White { prnu, sigma } = design(&format!("{text}\nprnu = 1.5")).noise else { panic!("{text}") };
+        let Noise::White { sigma: alone, .. } = design(text).noise else { panic!("{text}") };
+        assert!((prnu - 0.015).abs() < 1e-15 && sigma == alone, "{text}: {prnu} {sigma}");
+    }
+    let Noise::Electrons(electrons) = design("full_well = 1000\nprnu = 1.5").noise else { panic!("electrons") };
+    assert!((electrons.prnu - 0.015).abs() < 1e-15);
 }
 
 #[test]
@@ -100,6 +112,8 @@ fn each_mistake_stands_at_its_key() {
         ("snr_mean_db = 30\nsnr_contrast_db = 30", "snr_mean_db", "`snr_mean_db` beside `snr_contrast_db`"),
         ("snr_mean_db = 30\nread_noise = 3", "read_noise", "`read_noise` beside `snr_mean_db`"),
         ("read_noise = 3", "read_noise", "`read_noise` without `full_well`"),
+        ("prnu = 1", "prnu", "`prnu` without a description of the noise"),
+        ("prnu = 1\nread_noise = 3", "read_noise", "`read_noise` without `full_well`"),
         ("full_well = 100\nphotons = 5", "photons", "`photons` without `quantum_efficiency`"),
         ("full_well = 100\nquantum_efficiency = 0.5", "quantum_efficiency", "without `photons`"),
         ("full_well = 100\nelectrons = 5\nphotons = 5\nquantum_efficiency = 1", "photons", "`photons` beside `electrons`"),

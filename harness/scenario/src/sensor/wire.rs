@@ -45,7 +45,7 @@ pub struct SensorWire {
     pub photons: Option<Positive>,
     /// Electrons per photon, with `photons`.
     pub quantum_efficiency: Option<QuantumEfficiency>,
-    /// Photo response non-uniformity PRNU1288, %. The same in all views and trials.
+    /// Photo response non-uniformity PRNU1288, %, with any description of the noise. The same in all views and trials.
     pub prnu: Option<Percent>,
     /// Dark current, e-/s, with `exposure_time`. It has shot noise.
     pub dark_current: Option<Current>,

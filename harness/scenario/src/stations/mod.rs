@@ -4,7 +4,9 @@ use calibench_diagnostics::Problem;
 use calibench_model::camera::Camera;
 use calibench_model::{Pose, Testfield};
 use calibench_random::Key;
-use calibench_synth::stations::{Aim, Arc, BoardViews, RandomViews, Ring, Station, StationError, check_names, check_sight, sees};
+use calibench_synth::stations::{
+    Aim, Arc, BoardViews, RandomViews, Ring, Stand, StandBend, Station, StationError, check_names, check_sight, sees,
+};
 use nalgebra::{Point3, Vector3};
 use toml::de::DeTable;
 
@@ -16,14 +18,16 @@ pub const NOISE_FREE: &str = "-noise-free";
 
 pub mod wire;
 
-use wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StationWire};
+use wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 
 /// The kinds of generators.
-pub const KINDS: [&str; 4] = ["convergent", "arc", "board", "random"];
+pub const KINDS: [&str; 5] = ["convergent", "arc", "board", "random", "stand"];
 /// The keys of `[stations]` that every kind has.
 const COMMON: [&str; 5] = ["sees", "middle", "facing", "up", "each_trial"];
 /// The files that are written beside the images, without their endings.
-const TAKEN: [&str; 4] = ["stations", "control", "camera", "records"];
+const TAKEN: [&str; 6] = ["stations", "control", "camera", "starts", LOCAL_DISTORTION, "records"];
+/// The file of the camera's local distortion, without its ending.
+pub const LOCAL_DISTORTION: &str = "local-distortion";
 
 /// What makes stations.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +40,8 @@ pub enum Generator {
     Board(BoardViews),
     /// At random.
     Random(RandomViews),
+    /// Before a stand.
+    Stand(Stand),
 }
 
 /// How a given station is turned.
@@ -83,6 +89,7 @@ impl StationPlan {
                 Generator::Convergent(ring) => ring.generate(&aim)?,
                 Generator::Arc(arc) => arc.generate(&aim)?,
                 Generator::Board(views) => views.generate(&aim)?,
+                Generator::Stand(stand) => stand.generate(&aim, field)?,
                 Generator::Random(views) => views.generate(&aim, key, |pose| {
                     let seen = sees(camera, pose, field);
                     seen > 0.0 && seen >= least
@@ -97,7 +104,11 @@ impl StationPlan {
     /// An error of [`Self::generate`] at its place in the file.
     pub fn problem(&self, error: &StationError) -> Problem {
         let span = match error {
-            StationError::Parameter { parameter, .. } | StationError::Empty(parameter) => self.spans.of_key(parameter),
+            StationError::Parameter { parameter, .. } | StationError::Many { parameter, .. } | StationError::Empty(parameter) => {
+                self.spans.of_key(parameter)
+            }
+            StationError::Plates(_) => self.spans.of_key("kind"),
+            StationError::BentTwice(_) => self.spans.of_key("bend"),
             StationError::Undetermined(name)
             | StationError::Twice(name)
             | StationError::Unseen { name, .. }
@@ -127,7 +138,7 @@ impl Given {
             }
         };
         let pose = pose.ok_or_else(|| StationError::Undetermined(self.name.clone()))?;
-        Ok(Station { name: self.name.clone(), pose })
+        Ok(Station::new(self.name.clone(), pose))
     }
 }
 
@@ -153,6 +164,10 @@ pub fn read(stations: Option<Section<'_>>, given: Vec<Section<'_>>, problems: &m
         problems.push(Problem::new(spans.whole, "`each_trial` without `kind = \"random\"`: the stations are the same in every trial"));
         return None;
     }
+    if let (Some(Generator::Stand(_)), Some(span)) = (&generator, spans.of_key("facing")) {
+        problems.push(Problem::new(span, "`facing` with `kind = \"stand\"`: the field faces as its sheet does, expected none"));
+        return None;
+    }
     let aim = common.map_or([None; 3], |common| [common.middle, common.facing, common.up].map(|tuple| tuple.map(|tuple| tuple.0)));
     Some(StationPlan { generator, sees: least, each_trial, given, aim, spans })
 }
@@ -169,8 +184,7 @@ fn take_common<'i>(section: &mut Section<'i>) -> Section<'i> {
 }
 
 fn read_generator(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Generator> {
-    let radians = |angles: Option<Vec<Degrees>>| angles.map_or(vec![0.0], |all| all.iter().map(|angle| angle.0.to_radians()).collect());
-    let angle = |angle: Option<Degrees>| angle.map_or(0.0, |angle| angle.0.to_radians());
+    let angle = |angle: Option<Degrees>| angle.map_or(0.0, radian);
     match take_kind(&mut section, "[stations]", &KINDS, problems)? {
         "convergent" => {
             let wire: ConvergentWire = section.read(&COMMON, problems)?;
@@ -194,6 +208,7 @@ fn read_generator(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Opti
             let distances = wire.distances.iter().map(|length| length.0).collect();
             Some(Generator::Board(BoardViews { tilts, distances, rolls: radians(wire.rolls) }))
         }
+        "stand" => read_stand(section, problems).map(Generator::Stand),
         _ => {
             let wire: RandomWire = section.read(&COMMON, problems)?;
             Some(Generator::Random(RandomViews {
@@ -205,6 +220,33 @@ fn read_generator(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Opti
             }))
         }
     }
+}
+
+fn read_stand(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Stand> {
+    let spans = Spans::of(&section);
+    let wire: StandWire = section.read(&COMMON, problems)?;
+    let needs = [
+        ("bend", wire.bend.is_some(), "bend_reach", wire.bend_reach.is_some()),
+        ("bend_reach", wire.bend_reach.is_some(), "bend", wire.bend.is_some()),
+        ("bend_across", wire.bend_across.is_some(), "bend", wire.bend.is_some()),
+    ];
+    for (key, _, needed, _) in needs.into_iter().filter(|(_, given, _, there)| *given && !there) {
+        let span = spans.of_key(key).unwrap_or_else(|| spans.whole.clone());
+        problems.push(Problem::new(span, format!("`{key}` without `{needed}`: expected both or none")));
+    }
+    let across = wire.bend_across.map_or(0.0, radian);
+    let bend = wire.bend.zip(wire.bend_reach).filter(|(peak, _)| peak.0 != 0.0);
+    let bend = bend.map(|(peak, reach)| StandBend { peak: peak.0, reach: reach.0, across });
+    Some(Stand { phis: radians(Some(wire.phis)), turns: radians(wire.turns), rolls: radians(wire.rolls), distance: wire.distance.0, bend })
+}
+
+fn radian(angle: Degrees) -> f64 {
+    angle.0.to_radians()
+}
+
+/// Angles; 0 alone where the file gives none.
+fn radians(angles: Option<Vec<Degrees>>) -> Vec<f64> {
+    angles.map_or(vec![0.0], |all| all.into_iter().map(radian).collect())
 }
 
 /// Whether images can be called by this name on any file system.

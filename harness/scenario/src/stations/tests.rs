@@ -43,6 +43,7 @@ fn every_kind_is_read() {
     assert_eq!(count(ring), 16);
     assert_eq!(count("[stations]\nkind = \"arc\"\ncount = 3\nconvergence = 60\ndistances = [800]\nheights = [0, 50]"), 3);
     assert_eq!(count("[stations]\nkind = \"board\"\ntilts = [[0, 0], [30, -20]]\ndistances = [800, 1000]"), 4);
+    assert_eq!(count("[stations]\nkind = \"stand\"\nphis = [0, 30, 45]\nturns = [0, 90]\nrolls = [0, 90]\ndistance = 800"), 10);
     assert_eq!(count("[stations]\nkind = \"random\"\ncount = 25\ndistance = [700, 1200]\ntilt = 40\nroll = 180\naside = [50, 50]"), 25);
 }
 
@@ -80,7 +81,7 @@ middle = [130, -75, 0]
 fn mistakes_are_told_with_their_places() {
     let board = "[stations]\nkind = \"board\"\n";
     refused("[stations]\ncount = 3", "1:2: [stations] has no `kind`");
-    refused("[stations]\nkind = \"bord\"", "2:8: `kind` of [stations] is one of convergent, arc, board, random; found `bord`");
+    refused("[stations]\nkind = \"bord\"", "2:8: `kind` of [stations] is one of convergent, arc, board, random, stand; found `bord`");
     refused(&format!("{board}distances = [800]"), "[stations] has no `tilts`");
     refused(&format!("{board}tilts = [[0, 0]]\ndistances = []"), "4:13: `distances` is empty");
     refused(&format!("{board}tilts = [[0, 89]]\ndistances = [800]"), "3:9: `tilts` is 89: expected -85 to 85 degrees");
@@ -91,6 +92,32 @@ fn mistakes_are_told_with_their_places() {
     let random = "[stations]\nkind = \"random\"\ncount = 2\n";
     refused(&format!("{random}distance = [9, 5]\ntilt = 10"), "4:12: `distance` is 5: expected at least the first, 9");
     refused(&format!("{random}distance = [5, 9]\ntilt = 10"), "none of 1000 random poses within the bounds sees enough of the field");
+}
+
+#[test]
+fn a_stand_says_its_bend_in_degrees_and_object_units() {
+    let text = "[stations]\nkind = \"stand\"\nphis = [30]\nturns = [90]\ndistance = 800\nbend = 0.8\nbend_reach = 100\nbend_across = 30";
+    let station = stations(text).unwrap().remove(0);
+    let bend = station.bend.unwrap();
+    assert_eq!((station.name.as_str(), bend.peak, bend.reach, bend.middle), ("1111", 0.8, 100.0, [120.0, -75.0]));
+    assert!((bend.across + 60_f64.to_radians()).abs() < 1e-12, "{bend:?}");
+    assert!((station.pose.centre - Point3::new(120.0, -75.0, 0.0)).norm() - 800.0 < 1e-9);
+    assert_eq!(stations(&text.replace("0.8\n", "0\n")).unwrap()[0].bend, None, "none at all, for sweeps");
+}
+
+#[test]
+fn mistakes_of_a_stand_are_told_with_their_places() {
+    let stand = "[stations]\nkind = \"stand\"\nphis = [0, 30]\ndistance = 800\n";
+    refused("[stations]\nkind = \"stand\"\nphis = [0]", "[stations] has no `distance`");
+    refused(&stand.replace("[0, 30]", "[0, 86]"), "3:8: `phis` is 86: expected -85 to 85 degrees");
+    refused(&stand.replace("[0, 30]", "[]"), "3:8: `phis` is empty");
+    refused(&format!("{stand}turns = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]"), "5:9: `turns` has 10 values: expected at most 9");
+    refused(&format!("{stand}bend = 1"), "5:8: `bend` without `bend_reach`: expected both or none");
+    refused(&format!("{stand}bend_reach = 1"), "5:14: `bend_reach` without `bend`");
+    refused(&format!("{stand}bend_across = 1"), "5:15: `bend_across` without `bend`");
+    refused(&format!("{stand}bend = 100\nbend_reach = 100"), "5:8: `bend` is 100: expected at most");
+    refused(&format!("{stand}facing = [0, 0, 1]"), "5:10: `facing` with `kind = \"stand\"`");
+    refused(&format!("{stand}each_trial = true"), "`each_trial` without `kind = \"random\"`");
 }
 
 #[test]

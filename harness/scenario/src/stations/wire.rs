@@ -65,6 +65,26 @@ pub struct RandomWire {
     pub aside: Option<Tuple<2>>,
 }
 
+/// A field on a stand: turned in its own plane, tilted with the stand before the camera, and the camera rolled. Every tilt with every turn and roll.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StandWire {
+    /// Tilts phi of the stand about its upright axis, degrees, each within 85; at 0 the field is pictured with the first turn only. At most 9.
+    pub phis: Vec<Degrees>,
+    /// Turns of the field in its own plane, degrees, positive anticlockwise for the camera. At most 9. Default: 0 alone.
+    pub turns: Option<Vec<Degrees>>,
+    /// Rolls (kappa) of the camera, degrees. At most 9. Default: 0 alone.
+    pub rolls: Option<Vec<Degrees>>,
+    /// Distance from the field's middle, object units.
+    pub distance: Length,
+    /// Height of the stand's bend in the field's middle over that at `bend_reach`, object units: it stays on the stand when the field is turned. Default 0.
+    pub bend: Option<Height>,
+    /// With `bend`: how far from the middle it is meant, object units; beyond, the field goes on falling.
+    pub bend_reach: Option<Length>,
+    /// With `bend`: the direction across its crest, from the stand's right upwards, degrees. Default 0.
+    pub bend_across: Option<Degrees>,
+}
+
 /// A station.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

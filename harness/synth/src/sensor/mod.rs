@@ -79,6 +79,8 @@ pub enum Noise {
     White {
         /// Its standard deviation, fraction of full scale.
         sigma: f64,
+        /// Photo response non-uniformity PRNU1288: standard deviation of the response, as a fraction; on the light before the noise.
+        prnu: f64,
     },
     /// What electrons do.
     Electrons(Electrons),
@@ -86,9 +88,9 @@ pub enum Noise {
 
 impl Noise {
     /// White noise `decibel` dB below `signal`, a grey value: the difference of light and dark targets for a signal-to-noise ratio of contrast, the
-    /// mean grey value for one of the mean. `decibel` is 20 lg(signal / sigma).
-    pub fn white_below(signal: f64, decibel: f64) -> Self {
-        Noise::White { sigma: signal * 10_f64.powf(-decibel / 20.0) }
+    /// mean grey value for one of the mean. `decibel` is 20 lg(signal / sigma), `prnu` the response's standard deviation as a fraction.
+    pub fn white_below(signal: f64, decibel: f64, prnu: f64) -> Self {
+        Noise::White { sigma: signal * 10_f64.powf(-decibel / 20.0), prnu }
     }
 }
 
@@ -177,7 +179,10 @@ impl Sensor {
         check_bits("an image", design.output, &[8, 12, 16], "8, 12 or 16")?;
         match &design.noise {
             Noise::None => {}
-            Noise::White { sigma } => check("the noise", *sigma, 0.0, 10.0)?,
+            Noise::White { sigma, prnu } => {
+                check("the noise", *sigma, 0.0, 10.0)?;
+                check("PRNU", *prnu, 0.0, 1.0)?;
+            }
             Noise::Electrons(electrons) => electrons.check(design.converter)?,
         }
         if let Some(demosaic) = &design.demosaic {
@@ -205,7 +210,7 @@ impl Sensor {
 
     /// Whether nothing random is in what it does; row jitter is the renderer's.
     pub fn is_deterministic(&self) -> bool {
-        matches!(self.design.noise, Noise::None | Noise::White { sigma: 0.0 })
+        matches!(self.design.noise, Noise::None | Noise::White { sigma: 0.0, .. })
     }
 
     /// The image that the sensor takes of `irradiance`, in its place; `key` is the image's.

@@ -72,7 +72,10 @@ impl Sensor {
         scratch.full.fill(0);
         match &design.noise {
             Noise::None => {}
-            Noise::White { sigma } => add_normal(row, *sigma, &streams.noise, y, &mut scratch.normals),
+            Noise::White { sigma, prnu } => {
+                respond(row, *prnu, &streams.prnu, y, &mut scratch.normals);
+                add_normal(row, *sigma, &streams.noise, y, &mut scratch.normals);
+            }
             Noise::Electrons(electrons) => {
                 collect(electrons, electrons.wells(design.converter), row, y, streams, scratch);
                 (black, per_unit) = electrons.scale(design.converter);
@@ -131,11 +134,8 @@ impl Sensor {
 /// Light to electrons as they are read out of row `y`.
 fn collect(electrons: &Electrons, wells: Wells, row: &mut [f32], y: usize, streams: &Streams, scratch: &mut Scratch) {
     let Scratch { normals, read_out, full } = scratch;
-    let (at_white, dark, prnu) = (electrons.at_white as f32, electrons.dark as f32, electrons.prnu as f32);
-    if prnu > 0.0 {
-        fill_normal(&mut of_row(&streams.prnu, y), normals);
-        row.iter_mut().zip(&*normals).for_each(|(light, z)| *light = (*light * (1.0 + prnu * z)).max(0.0));
-    }
+    let (at_white, dark) = (electrons.at_white as f32, electrons.dark as f32);
+    respond(row, electrons.prnu, &streams.prnu, y, normals);
     row.iter_mut().for_each(|light| *light = light.max(0.0) * at_white + dark);
     fill_normal(&mut of_row(&streams.noise, y), normals);
     wells.fill(row, normals, full, &mut of_row(&streams.electrons, y), read_out);
@@ -144,6 +144,15 @@ fn collect(electrons: &Electrons, wells: Wells, row: &mut [f32], y: usize, strea
         let z: f64 = StandardNormal.sample(&mut of_row(&streams.rows, y));
         let offset = (electrons.row * z) as f32;
         row.iter_mut().for_each(|value| *value += offset);
+    }
+}
+
+/// Light as photosites of unequal response see it.
+fn respond(row: &mut [f32], prnu: f64, stream: &ChaCha8Rng, y: usize, normals: &mut [f32]) {
+    let prnu = prnu as f32;
+    if prnu > 0.0 {
+        fill_normal(&mut of_row(stream, y), normals);
+        row.iter_mut().zip(&*normals).for_each(|(light, z)| *light = (*light * (1.0 + prnu * z)).max(0.0));
     }
 }
 

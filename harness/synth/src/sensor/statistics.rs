@@ -39,7 +39,7 @@ impl Sensor {
         }
         let noise = match &design.noise {
             Noise::None => 0.0,
-            Noise::White { sigma } => sigma * sigma,
+            Noise::White { sigma, prnu } => sigma * sigma + if patterns { (prnu * grey.max(0.0)).powi(2) } else { 0.0 },
             Noise::Electrons(electrons) if electrons.row > 0.0 => return None,
             Noise::Electrons(electrons) => {
                 let (black, per_electron) = electrons.scale(design.converter);

@@ -39,7 +39,7 @@ impl BoardViews {
             for (k, &roll) in self.rolls.iter().enumerate() {
                 let name = named(i, k, self.rolls.len());
                 let pose = aim.view(&turn, distance, roll).ok_or_else(|| StationError::Undetermined(name.clone()))?;
-                stations.push(Station { name, pose });
+                stations.push(Station::new(name, pose));
             }
         }
         Ok(stations)

@@ -98,7 +98,7 @@ fn stations(aim: &Aim, places: impl Iterator<Item = Vector3<f64>>, turns: &[f64]
         for (k, &roll) in turns.iter().enumerate() {
             let name = named(i, k, turns.len());
             match calibench_model::Pose::looking_at(aim.middle + place, aim.middle, up.into_inner(), roll) {
-                Some(pose) => stations.push(Station { name, pose }),
+                Some(pose) => stations.push(Station::new(name, pose)),
                 None => return Err(StationError::Undetermined(name)),
             }
         }

@@ -7,15 +7,20 @@ pub mod aim;
 pub mod board;
 pub mod convergent;
 pub mod random;
+pub mod stand;
 mod visibility;
 
-use calibench_model::Pose;
+use std::borrow::Cow;
+
+use calibench_model::testfield::Bend;
+use calibench_model::{Plate, Pose, Testfield};
 use thiserror::Error;
 
 pub use aim::Aim;
 pub use board::BoardViews;
 pub use convergent::{Arc, Ring};
 pub use random::RandomViews;
+pub use stand::{Stand, StandBend};
 pub use visibility::{check_sight, sees};
 
 /// A camera's place, with a name for records and tables.
@@ -25,6 +30,24 @@ pub struct Station {
     pub name: String,
     /// Exterior orientation.
     pub pose: Pose,
+    /// How the field is bent before this camera, if what holds it bends it: in the axes of its one plate. `None` leaves the field as it is.
+    pub bend: Option<Bend>,
+}
+
+impl Station {
+    /// A station before a field as it is.
+    pub fn new(name: String, pose: Pose) -> Self {
+        Self { name, pose, bend: None }
+    }
+
+    /// The field as it is before this camera.
+    pub fn field<'a>(&self, field: &'a Testfield) -> Cow<'a, Testfield> {
+        if self.bend.is_none() {
+            return Cow::Borrowed(field);
+        }
+        let plates = field.plates.iter().map(|plate| Plate { bend: self.bend, ..plate.clone() }).collect();
+        Cow::Owned(Testfield { plates, targets: field.targets.clone(), background: field.background })
+    }
 }
 
 /// Why stations cannot be made or used.
@@ -40,6 +63,22 @@ pub enum StationError {
         /// Values that are allowed.
         expected: String,
     },
+    /// A list that is too long.
+    #[error("`{parameter}` has {found} values: expected at most {most}, each is one digit of the names of stations")]
+    Many {
+        /// Its name in scenarios.
+        parameter: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// A field of several sheets, or of none, on a stand.
+    #[error("a stand holds a testfield of one sheet: this one has {0}")]
+    Plates(usize),
+    /// A bent sheet on a stand that bends it.
+    #[error("the stand bends plate `{0}`, which is bent itself: expected one of them, `bend = 0` in [testfield] makes it flat")]
+    BentTwice(String),
     /// A list without elements.
     #[error("`{0}` is empty: expected at least one")]
     Empty(&'static str),

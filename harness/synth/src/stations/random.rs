@@ -37,7 +37,7 @@ impl RandomViews {
             let name = super::named(i, 0, 1);
             let mut rng = stream(Key { view: &name, ..key }, Purpose::Station);
             let pose = (0..TRIES).find_map(|_| self.pose(aim, &mut rng).filter(&accepts));
-            pose.map(|pose| Station { name: name.clone(), pose }).ok_or(StationError::NoneSees { name, tries: TRIES })
+            pose.map(|pose| Station::new(name.clone(), pose)).ok_or(StationError::NoneSees { name, tries: TRIES })
         };
         (0..self.count).map(station).collect()
     }

@@ -150,9 +150,8 @@ fn a_station_that_does_not_see_the_field_is_named() {
     let (field, camera) = (board(), camera());
     let aim = Aim::of(&field).unwrap();
     let good = BoardViews { tilts: vec![[0.2, 0.1]], distances: vec![800.0], rolls: vec![0.0] }.generate(&aim).unwrap().remove(0);
-    let away = |name: &str, centre: Point3<f64>, target: Point3<f64>| Station {
-        name: name.into(),
-        pose: Pose::looking_at(centre, target, Vector3::y(), 0.0).unwrap(),
+    let away = |name: &str, centre: Point3<f64>, target: Point3<f64>| {
+        Station::new(name.into(), Pose::looking_at(centre, target, Vector3::y(), 0.0).unwrap())
     };
     let front = aim.middle + Vector3::z() * 800.0;
     let bad = [

@@ -23,7 +23,7 @@ pub fn check_sight(camera: &Camera, stations: &[Station], field: &Testfield, lea
     let all = field.targets.len();
     let least = ((least * all as f64).ceil() as usize).clamp(1, all.max(1));
     for station in stations {
-        let seen = count(camera, &station.pose, field);
+        let seen = count(camera, &station.pose, &station.field(field));
         if seen < least {
             return Err(StationError::Unseen { name: station.name.clone(), seen, all, least });
         }

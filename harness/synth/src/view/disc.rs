@@ -1,11 +1,10 @@
 //! The picture of a disc.
 
-use calibench_model::camera::CameraModel;
 use calibench_model::{ObjectTarget, PixelPoint};
 use nalgebra::{Matrix2, Vector2};
 
 use super::View;
-use super::truth::{Ellipse, by_object, tangents};
+use super::truth::{Ellipse, tangents};
 
 /// Places around the outline: of a smooth closed curve the trapezoid's error falls faster than any power of their number.
 const PLACES: u32 = 64;
@@ -14,15 +13,15 @@ const PLACES: u32 = 64;
 pub(super) fn ellipse(view: &View<'_>, target: &ObjectTarget) -> Option<Ellipse> {
     let plate = &view.field.plates[target.plate];
     let (radius, step) = (0.5 * target.size, std::f64::consts::TAU / f64::from(PLACES));
-    let at = view.camera.project(view.pose.ray(&view.field.position(target))).ok()?;
+    let at = view.project(&view.field.position(target)).ok()?;
     let (mut area, mut first, mut second) = (0.0, Vector2::zeros(), Matrix2::zeros());
     for place in 0..PLACES {
         let (sine, cosine) = (f64::from(place) * step).sin_cos();
         let on = [target.at[0] + radius * cosine, target.at[1] + radius * sine];
         let point = plate.point(on);
         let [by_u, by_v] = tangents(plate, on, 1e-3 * target.size);
-        let along = by_object(view, &point)? * (by_v * cosine - by_u * sine) * (radius * step);
-        let seen = view.camera.project(view.pose.ray(&point)).ok()?;
+        let along = view.by_object(&point)? * (by_v * cosine - by_u * sine) * (radius * step);
+        let seen = view.project(&point).ok()?;
         let from = Vector2::new(seen.x - at.x, seen.y - at.y);
         // A triangle to the next place: its area, by which first moments are a third and second ones a quarter.
         let swept = 0.5 * (from.x * along.y - from.y * along.x);

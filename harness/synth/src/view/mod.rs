@@ -12,8 +12,10 @@ mod truth;
 
 use calibench_model::camera::{Camera, CameraModel, NoCounterpart, Ray, fold};
 use calibench_model::{PixelPoint, Pose, Testfield};
+use nalgebra::{Matrix2, Matrix2x3, Point3};
 use thiserror::Error;
 
+use crate::local::LocalDistortion;
 use crate::raster::Picture;
 use occlusion::Sheet;
 use polygon::Convex;
@@ -27,6 +29,8 @@ pub struct View<'a> {
     pub field: &'a Testfield,
     /// With which interior orientation.
     pub camera: &'a Camera,
+    /// What else displaces its images.
+    pub local: Option<&'a LocalDistortion>,
     /// From where.
     pub pose: &'a Pose,
 }
@@ -88,16 +92,45 @@ impl<'a> View<'a> {
         self.seen(margin)?.picture()
     }
 
+    /// Where the image of an object point is, px.
+    fn project(&self, point: &Point3<f64>) -> Result<PixelPoint, NoCounterpart> {
+        self.image(self.pose.ray(point), None)
+    }
+
+    /// Where the image of a ray is, px; `near` is the image of a ray nearby, if one is known.
+    fn image(&self, ray: Ray, near: Option<PixelPoint>) -> Result<PixelPoint, NoCounterpart> {
+        let at = match near {
+            Some(near) => self.camera.project_near(ray, near),
+            None => self.camera.project(ray),
+        }?;
+        Ok(self.local.map_or(at, |local| local.displaced(at)))
+    }
+
+    /// How long a piece of an outline may be, px, whatever its own points say.
+    fn longest(&self) -> f64 {
+        self.local.map_or(f64::INFINITY, |local| local.longest(trace::TOLERANCE))
+    }
+
+    /// d(pixel) / d(object), px per object unit.
+    fn by_object(&self, point: &Point3<f64>) -> Option<Matrix2x3<f64>> {
+        let derivatives = self.camera.derivatives(self.pose.ray(point)).ok()?;
+        let [[a, b, c], [d, e, f]] = derivatives.by_ray;
+        let by_object = Matrix2x3::new(a, b, c, d, e, f) * self.pose.rotation;
+        let Some(local) = self.local else { return Some(by_object) };
+        let [[xx, xy], [yx, yy]] = local.at(derivatives.point).slope;
+        Some(Matrix2::new(1.0 + xx, xy, yx, 1.0 + yy) * by_object)
+    }
+
     fn frame(&self, margin: f64) -> Result<Frame, ViewError> {
         let size = self.camera.size();
         if let Some(fold) = fold(self.camera) {
             return Err(ViewError::Fold { radius_px: fold.radius_px, margin_px: margin });
         }
-        // Two pixels more for the chords between the points of the border.
-        let margin = margin + 2.0;
+        // Two pixels more for the chords between the points of the border, and between them as much as the field displaces at most.
+        let margin = margin + 2.0 + self.local.map_or(0.0, LocalDistortion::reach);
         let (right, bottom) = (f64::from(size.width) - 0.5 + margin, f64::from(size.height) - 0.5 + margin);
         let sides = [-0.5 - margin, -0.5 - margin, right, bottom];
-        let directions = polygon::border(self.camera, sides).map_err(|at| {
+        let directions = polygon::border(self, sides).map_err(|at| {
             let middle = PixelPoint::new((f64::from(size.width) - 1.0) / 2.0, (f64::from(size.height) - 1.0) / 2.0);
             let axis = self.camera.project(Ray { x: 0.0, y: 0.0, z: -1.0 }).unwrap_or(middle);
             ViewError::Fold { radius_px: at.distance(axis), margin_px: margin }

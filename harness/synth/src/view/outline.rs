@@ -1,6 +1,6 @@
 //! A plate's outlines in the image.
 
-use calibench_model::camera::{CameraModel, NoCounterpart, Ray};
+use calibench_model::camera::{NoCounterpart, Ray};
 use calibench_model::{Outline, PixelPoint, Plate};
 
 use rayon::prelude::*;
@@ -77,11 +77,8 @@ fn is_free(view: &View<'_>, sheet: &Sheet<'_>, outline: &Outline) -> bool {
 fn whole(view: &View<'_>, plate: &Plate, frame: &Frame, outline: &Outline, pieces: &mut Vec<Piece>) -> Result<(), NoCounterpart> {
     let (first, mut near) = (pieces.len(), None);
     for curve in &outline.0 {
-        let project = |t: f64, near: Option<PixelPoint>| {
-            let ray = view.pose.ray(&plate.point(curve.at(t)));
-            near.map_or_else(|| view.camera.project(ray), |near| view.camera.project_near(ray, near))
-        };
-        near = Some(trace(&project, frame.sides, near, pieces)?);
+        let project = |t: f64, near: Option<PixelPoint>| view.image(view.pose.ray(&plate.point(curve.at(t))), near);
+        near = Some(trace(&project, frame.sides, view.longest(), near, pieces)?);
     }
     close(&mut pieces[first..]);
     Ok(())
@@ -93,10 +90,9 @@ fn polygon(view: &View<'_>, frame: &Frame, polygon: &[Tangent], pieces: &mut Vec
     for (i, a) in polygon.iter().enumerate() {
         let b = polygon[(i + 1) % polygon.len()];
         let project = |t: f64, near: Option<PixelPoint>| {
-            let ray = Ray::from_tangent(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]));
-            near.map_or_else(|| view.camera.project(ray), |near| view.camera.project_near(ray, near))
+            view.image(Ray::from_tangent(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])), near)
         };
-        near = Some(trace(&project, frame.sides, near, pieces)?);
+        near = Some(trace(&project, frame.sides, view.longest(), near, pieces)?);
     }
     close(&mut pieces[first..]);
     Ok(())

@@ -1,7 +1,9 @@
 //! Polygons in the plane of tangents.
 
 use calibench_model::PixelPoint;
-use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::camera::{CameraModel, Ray};
+
+use super::View;
 
 /// Tangents of a ray (right, up).
 pub(crate) type Tangent = [f64; 2];
@@ -110,7 +112,7 @@ fn half(polygon: &[Tangent], (a, b): (Tangent, Tangent), side: f64) -> Vec<Tange
 ///
 /// # Errors
 /// A point of the border that no ray comes to.
-pub(crate) fn border(camera: &Camera, [left, top, right, bottom]: [f64; 4]) -> Result<Convex, PixelPoint> {
+pub(super) fn border(view: &View<'_>, [left, top, right, bottom]: [f64; 4]) -> Result<Convex, PixelPoint> {
     let along = |i: usize, from: f64, to: f64| from + (to - from) * i as f64 / BORDER_POINTS as f64;
     let point = |i: usize| {
         [
@@ -120,7 +122,10 @@ pub(crate) fn border(camera: &Camera, [left, top, right, bottom]: [f64; 4]) -> R
             PixelPoint::new(left, along(i, bottom, top)),
         ]
     };
-    let tangent = |p: PixelPoint| camera.unproject(p).ok().and_then(calibench_model::camera::Ray::tangent).map(|(x, y)| [x, y]).ok_or(p);
+    let tangent = |p: PixelPoint| {
+        let at = view.local.map_or(p, |local| local.undisplaced(p));
+        view.camera.unproject(at).ok().and_then(Ray::tangent).map(|(x, y)| [x, y]).ok_or(p)
+    };
     let tangents = (0..BORDER_POINTS).flat_map(point).map(tangent).collect::<Result<Vec<_>, _>>()?;
     Ok(Convex::hull(tangents))
 }

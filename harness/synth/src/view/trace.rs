@@ -6,7 +6,7 @@ use calibench_model::camera::NoCounterpart;
 use crate::raster::Piece;
 
 /// How far a piece may lie off the curve that it stands for, px.
-const TOLERANCE: f64 = 1e-5;
+pub(super) const TOLERANCE: f64 = 1e-5;
 /// What estimated errors are multiplied by: terms that fall more slowly than expected were seen to add up to four times the estimate.
 const CAUTION: f64 = 4.0;
 /// Halvings at most: a curve of a million pixels in pieces of one.
@@ -22,10 +22,11 @@ struct Sample {
 /// Appends the image of a curve to `pieces`; `project(t, near)` is its point at parameter t from 0 to 1, given one nearby if there is one, `sides` the frame
 /// with its margin.
 ///
-/// Beyond the frame only the ends matter, and the curve is not followed. `near` is a point near its start, if one is known; its end is returned.
+/// Beyond the frame only the ends matter, and the curve is not followed. No piece within is longer than `longest`, px. `near` is a point near its start, if one is known; its end is returned.
 pub(super) fn trace(
     project: &impl Fn(f64, Option<PixelPoint>) -> Result<PixelPoint, NoCounterpart>,
     sides: [f64; 4],
+    longest: f64,
     near: Option<PixelPoint>,
     pieces: &mut Vec<Piece>,
 ) -> Result<PixelPoint, NoCounterpart> {
@@ -38,34 +39,40 @@ pub(super) fn trace(
     let middle = sample(0.5, Some(quarter))?;
     let third = sample(0.75, Some(middle))?;
     let end = sample(1.0, Some(third))?;
-    split(&sample, sides, [start, quarter, middle, third, end], DEEPEST, pieces)?;
+    split(&sample, sides, longest, [start, quarter, middle, third, end], DEEPEST, pieces)?;
     Ok(PixelPoint::new(end.at[0], end.at[1]))
 }
 
 fn split(
     sample: &impl Fn(f64, Option<Sample>) -> Result<Sample, NoCounterpart>,
     sides: [f64; 4],
+    longest: f64,
     samples: [Sample; 5],
     depth: u32,
     pieces: &mut Vec<Piece>,
 ) -> Result<(), NoCounterpart> {
     let points = samples.map(|sample| sample.at);
-    if depth == 0 || beyond(sides, &points) || error(&points) < TOLERANCE {
+    if depth == 0 || beyond(sides, &points) || (error(&points) < TOLERANCE && chord(&points) <= longest) {
         pieces.push(Piece { points, contrast: 0.0 });
         return Ok(());
     }
     let between = |a: Sample, b: Sample| sample(0.5 * (a.t + b.t), Some(a));
     let [a, c, e, g, i] = samples;
-    split(sample, sides, [a, between(a, c)?, c, between(c, e)?, e], depth - 1, pieces)?;
-    split(sample, sides, [e, between(e, g)?, g, between(g, i)?, i], depth - 1, pieces)
+    split(sample, sides, longest, [a, between(a, c)?, c, between(c, e)?, e], depth - 1, pieces)?;
+    split(sample, sides, longest, [e, between(e, g)?, g, between(g, i)?, i], depth - 1, pieces)
+}
+
+/// From the first to the last of five points, px.
+fn chord(points: &[[f64; 2]; 5]) -> f64 {
+    (points[4][0] - points[0][0]).hypot(points[4][1] - points[0][1])
 }
 
 /// An estimate of how far the quartic through five points of a smooth curve lies off it, px: the first terms that are left out, if they go on falling as those
 /// before them. Only what lies across the curve counts.
 fn error(points: &[[f64; 2]; 5]) -> f64 {
-    let chord = [points[4][0] - points[0][0], points[4][1] - points[0][1]];
-    let length = chord[0].hypot(chord[1]);
-    let (c, s) = if length > 0.0 { (chord[0] / length, chord[1] / length) } else { (1.0, 0.0) };
+    let length = chord(points);
+    let (c, s) =
+        if length > 0.0 { ((points[4][0] - points[0][0]) / length, (points[4][1] - points[0][1]) / length) } else { (1.0, 0.0) };
     let along = tail(points.map(|p| c * p[0] + s * p[1]));
     let across_values = points.map(|p| c * p[1] - s * p[0]);
     let (mut steepest, mut shortest) = (0.0_f64, f64::INFINITY);

@@ -49,6 +49,8 @@ pub struct Ellipse {
 /// A target in an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetTruth {
+    /// Where its reference point is in object space before this camera, object units.
+    pub object: Point3<f64>,
     /// Its reference point through the full camera model; `None` if it has no place in the image plane.
     pub at: Option<PixelPoint>,
     /// How much of it is in the image.
@@ -62,11 +64,11 @@ pub struct TargetTruth {
 /// The truth about `target`, which is on `sheet`, if that is in the image.
 pub(super) fn truth(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Sheet<'_>>) -> TargetTruth {
     let point = view.field.position(target);
-    let at = view.camera.project(view.pose.ray(&point)).ok();
+    let at = view.project(&point).ok();
     let visibility = at.map_or(Visibility::Hidden, |at| visibility(view, target, sheet, &point, at));
     let affine = at.and_then(|_| affine(view, target));
     let ellipse = if target.kind == TargetKind::Disc && at.is_some() { ellipse(view, target) } else { None };
-    TargetTruth { at, visibility, affine, ellipse }
+    TargetTruth { object: point, at, visibility, affine, ellipse }
 }
 
 fn visibility(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Sheet<'_>>, point: &Point3<f64>, at: PixelPoint) -> Visibility {
@@ -90,7 +92,7 @@ fn inside(view: &View<'_>, at: PixelPoint) -> bool {
 }
 
 fn is_in_frame(view: &View<'_>, point: &Point3<f64>) -> bool {
-    view.camera.project(view.pose.ray(point)).is_ok_and(|at| inside(view, at))
+    view.project(point).is_ok_and(|at| inside(view, at))
 }
 
 /// Points around the target, at half its size.
@@ -103,13 +105,6 @@ fn rim<'a>(view: &'a View<'_>, target: &'a ObjectTarget) -> impl Iterator<Item =
     })
 }
 
-/// d(pixel) / d(object), px per object unit.
-pub(super) fn by_object(view: &View<'_>, point: &Point3<f64>) -> Option<nalgebra::Matrix2x3<f64>> {
-    let derivatives = view.camera.derivatives(view.pose.ray(point)).ok()?;
-    let [[a, b, c], [d, e, f]] = derivatives.by_ray;
-    Some(nalgebra::Matrix2x3::new(a, b, c, d, e, f) * view.pose.rotation)
-}
-
 /// The directions along u and v of a plate's tangent plane at a place of it, by differences over `h` that are exact for the parabola of a bent one.
 pub(super) fn tangents(plate: &Plate, [u, v]: PlatePoint, h: f64) -> [Vector3<f64>; 2] {
     let along = |du: f64, dv: f64| (plate.point([u + du, v + dv]) - plate.point([u - du, v - dv])) / (2.0 * h);
@@ -118,7 +113,7 @@ pub(super) fn tangents(plate: &Plate, [u, v]: PlatePoint, h: f64) -> [Vector3<f6
 
 fn affine(view: &View<'_>, target: &ObjectTarget) -> Option<Affine> {
     let plate = &view.field.plates[target.plate];
-    let by_object = by_object(view, &view.field.position(target))?;
+    let by_object = view.by_object(&view.field.position(target))?;
     let [by_u, by_v] = tangents(plate, target.at, 1e-3 * target.size);
     let [own_u, own_v] = target.axes.map(|[u, v]| by_object * (by_u * u + by_v * v) * target.size);
     Some(Affine { axx: own_u.x, axy: own_v.x, ayx: own_u.y, ayy: own_v.y })

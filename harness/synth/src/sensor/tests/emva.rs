@@ -74,7 +74,7 @@ fn the_stated_variance_is_that_of_ten_million_pixels() {
 fn decibels_are_of_what_the_key_names() {
     // Targets of 0.2 and 0.8 at 26 dB of contrast; a mean of 0.5 at 40 dB.
     for (signal, decibel, low, high) in [(0.6, 26.0, 0.2, 0.8), (0.5, 40.0, 0.5, 0.5)] {
-        let design = Design { noise: Noise::white_below(signal, decibel), ..Design::default() };
+        let design = Design { noise: Noise::white_below(signal, decibel, 0.0), ..Design::default() };
         let errors = |light: f32| Errors::of(&expose(design.clone(), flat((1000, 1000), light), KEY).image, 0.0, 1.0);
         let (dark, light) = (errors(low), errors(high));
         let sigma = (light.moment(2) - light.moment(1).powi(2)).sqrt();

@@ -34,7 +34,7 @@ fn the_dark_signal_has_shot_noise_and_a_mean() {
 
 #[test]
 fn white_noise_is_white_and_stays_where_exposure_put_it() {
-    let design = Design { exposure: 0.5, noise: Noise::White { sigma: 0.01 }, ..Design::default() };
+    let design = Design { exposure: 0.5, noise: Noise::White { sigma: 0.01, prnu: 0.0 }, ..Design::default() };
     let exposure = expose(design, flat(SIZE, 0.8), KEY);
     Errors::of(&exposure.image, f64::from(0.8_f32) / 2.0, 100.0).assert_white(1.0, 0.0, 0.0);
 }
@@ -42,7 +42,7 @@ fn white_noise_is_white_and_stays_where_exposure_put_it() {
 #[test]
 fn the_converter_adds_a_twelfth_of_a_squared_step() {
     // A signal of 2 DN noise falls anywhere between the levels.
-    let design = Design { converter: Some(8), noise: Noise::White { sigma: 2.0 / 255.0 }, ..Design::default() };
+    let design = Design { converter: Some(8), noise: Noise::White { sigma: 2.0 / 255.0, prnu: 0.0 }, ..Design::default() };
     let exposure = expose(design, flat(SIZE, 0.4), KEY);
     let levels = |&grey: &f32| f64::from(grey) * 255.0;
     assert!(exposure.image.grey().iter().map(levels).all(|level| (level - level.round()).abs() < 1e-4));

@@ -27,6 +27,30 @@ fn response_non_uniformity_is_the_same_in_all_views() {
     assert_fixed(Electrons { prnu: 0.01, read: 3.0, ..Electrons::of_well(WELL) }, 2e4, 2e4 + 9.0, 200.0 * 200.0);
 }
 
+/// Beside white noise the response is what it is beside electrons, pixel by pixel, and the noise lies on top.
+#[test]
+fn response_non_uniformity_beside_white_noise_is_the_same_pattern() {
+    let (prnu, sigma, light) = (0.02, 0.01, 0.6);
+    let white = |prnu, key| {
+        let design = Design { exposure: 0.5, noise: Noise::White { sigma, prnu }, ..Design::default() };
+        Errors::of(&expose(design, flat(SIZE, light), key).image, 0.5 * f64::from(light), 100.0)
+    };
+    let (a, b) = (white(prnu, KEY), white(prnu, Key { view: "b", trial: 5, ..KEY }));
+    // In hundredths of full scale.
+    let (temporal, fixed) = (1.0, (100.0 * prnu * 0.5 * f64::from(light)).powi(2));
+    a.assert_white(temporal + fixed, 0.0, 0.0);
+    let product = a.product_with(&b);
+    let bound = 5.0 * (temporal + fixed) * 2_f64.sqrt() / a.count().sqrt();
+    assert!((product - fixed).abs() < bound, "what two views share: {product}, expected {fixed} +- {bound}");
+    let alone = Electrons { prnu, ..Electrons::of_well(1e9) };
+    let pattern = Errors::of(&expose(electrons(alone), flat(SIZE, light), KEY).image, f64::from(light), 100.0);
+    let (product, expected) = (pattern.product_with(&a), 2.0 * fixed);
+    assert!((product - expected).abs() < 0.02 * expected, "{product}, expected {expected}");
+    let design = Design { exposure: 0.5, noise: Noise::White { sigma, prnu }, ..Design::default() };
+    let told = Sensor::new(design).unwrap().variance(0.5 * f64::from(light)).unwrap();
+    assert!((told * 1e4 - temporal - fixed).abs() < 1e-6, "what the bound is told: {told}");
+}
+
 #[test]
 fn dark_signal_non_uniformity_is_the_same_in_all_views_and_at_any_light() {
     for mean in [0.0, 500.0] {

@@ -22,7 +22,7 @@ fn each_mistake_is_named() {
         (Design { gradient: Some(Gradient { x: 3.0, y: 0.0, per: Per::Frame }), ..bare() }, "gradient"),
         (Design { filter: filter(0.0), ..bare() }, "sensitivity"),
         (Design { demosaic, ..bare() }, "without a colour filter"),
-        (Design { noise: Noise::White { sigma: -0.1 }, ..bare() }, "the noise is -0.1"),
+        (Design { noise: Noise::White { sigma: -0.1, prnu: 0.0 }, ..bare() }, "the noise is -0.1"),
         (Design { converter: Some(9), ..bare() }, "9 bits"),
         (Design { output: Some(14), ..bare() }, "8, 12 or 16"),
         (Design { gamma: Some(Gamma::Power(0.0)), ..bare() }, "gamma"),

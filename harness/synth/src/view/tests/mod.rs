@@ -1,5 +1,6 @@
 //! Views against rays that are followed one by one, and truth against geometry.
 
+mod local;
 mod rays;
 
 use std::f64::consts::PI;
@@ -66,7 +67,7 @@ fn views_agree_with_rays() {
     let front = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, None)]);
     for (name, camera) in [("pinhole", camera([0.0; 3])), ("barrel", camera([-0.9, 0.4, 0.0])), ("pincushion", camera([0.7, 0.0, 0.0]))] {
         for pose in [pose(0.1, 0.2, 2.5, 0.4), pose(2.0, -0.9, 1.6, -1.3), pose(0.05, 0.1, 0.8, 2.0)] {
-            let view = View { field: &front, camera: &camera, pose: &pose };
+            let view = View { field: &front, camera: &camera, local: None, pose: &pose };
             let difference = difference(&view);
             assert!(difference < RAYS_ERROR, "{name} {pose:?}: {difference}");
         }
@@ -85,7 +86,7 @@ fn plates_hide_what_is_behind_them() {
     field.plates[3].v = -field.plates[3].v;
     let camera = camera([-0.9, 0.4, 0.0]);
     for pose in [pose(0.3, 0.2, 2.6, 0.1), pose(1.4, -0.9, 2.0, -0.7), pose(-0.6, 0.3, 1.8, 2.0)] {
-        let view = View { field: &field, camera: &camera, pose: &pose };
+        let view = View { field: &field, camera: &camera, local: None, pose: &pose };
         let difference = difference(&view);
         assert!(difference < RAYS_ERROR, "{pose:?}: {difference}");
     }
@@ -99,7 +100,7 @@ fn a_wall_that_runs_past_the_camera_is_cut() {
     let field = field(vec![wall]);
     let camera = camera([-0.9, 0.4, 0.0]);
     let pose = Pose::looking_at(Point3::new(2.0, 0.5, 1.0), Point3::new(6.0, 0.7, 0.2), Vector3::y(), 0.0).unwrap();
-    let difference = difference(&View { field: &field, camera: &camera, pose: &pose });
+    let difference = difference(&View { field: &field, camera: &camera, local: None, pose: &pose });
     assert!(difference < RAYS_ERROR, "{difference}");
 }
 
@@ -108,7 +109,7 @@ fn curves_are_followed_to_a_hundred_thousandth_of_a_pixel() {
     let bend = Bend { peak: 0.2, middle: [0.1, 0.0], across: 0.4, reach: 1.0 };
     let field = field(vec![plate("a", [0.0, 0.0, 0.0], 1.0, Some(bend))]);
     let (camera, pose) = (camera([-0.9, 0.4, 0.0]), pose(0.9, -0.5, 2.2, 0.4));
-    let view = View { field: &field, camera: &camera, pose: &pose };
+    let view = View { field: &field, camera: &camera, local: None, pose: &pose };
     let picture = view.picture(5.0).unwrap();
     let plate = &field.plates[0];
     // Every point of every outline lies on some piece.
@@ -136,7 +137,7 @@ fn a_disc_has_its_centre_and_its_ellipse() {
     let size = ImageSize { width: 1200, height: 900 };
     let camera = OpenCv { size, fx: 1000.0, fy: 990.0, cx: 590.0, cy: 460.0, distortion: [0.0; 14], coefficients: 5 }.into();
     let pose = pose(1.6, -0.9, 1.9, 0.4);
-    let view = View { field: &field, camera: &camera, pose: &pose };
+    let view = View { field: &field, camera: &camera, local: None, pose: &pose };
     let truth = &view.seen(5.0).unwrap().truth()[0];
     let at = camera.project(pose.ray(&field.position(&field.targets[0]))).unwrap();
     assert_eq!((truth.at, truth.visibility), (Some(at), Visibility::Visible));
@@ -179,7 +180,7 @@ fn a_disc_under_distortion_has_the_moments_of_its_picture() {
         distortion[..2].copy_from_slice(&[-0.4, 0.1]);
         let camera: Camera = OpenCv { size, fx: 700.0, fy: 690.0, cx: 390.0, cy: 460.0, distortion, coefficients: 5 }.into();
         let pose = pose(1.2, -0.9, 1.9, 0.4);
-        let view = View { field: &field, camera: &camera, pose: &pose };
+        let view = View { field: &field, camera: &camera, local: None, pose: &pose };
         let ellipse = view.seen(5.0).unwrap().truth()[0].ellipse.unwrap();
         let places: Vec<[f64; 2]> = (0..10_000)
             .map(|i| {
@@ -211,7 +212,7 @@ fn what_is_not_seen_is_said() {
     field.plates[1].areas.clear();
     field.targets.push(disc_target(0, 1.0));
     let camera = camera([0.0; 3]);
-    let seen = |pose: Pose| View { field: &field, camera: &camera, pose: &pose }.seen(3.0).unwrap().truth()[0].visibility;
+    let seen = |pose: Pose| View { field: &field, camera: &camera, local: None, pose: &pose }.seen(3.0).unwrap().truth()[0].visibility;
     assert_eq!(seen(pose(-0.4, 0.3, 2.0, 0.0)), Visibility::Hidden);
     assert_eq!(seen(pose(1.5, -1.5, 2.0, 0.0)), Visibility::Visible);
     assert_eq!(seen(pose(1.4, 0.3, 2.0, 0.0)), Visibility::Clipped, "the near plate hides a part");
@@ -223,7 +224,7 @@ fn what_is_not_seen_is_said() {
 fn views_that_cannot_be_pictured_are_named() {
     let wall = field(vec![plate("wall", [0.0, 0.0, 0.0], 1.0, None)]);
     let (plain, ahead) = (camera([0.0; 3]), pose(0.0, 0.1, 2.0, 0.0));
-    let picture = |field: &Testfield, camera: &Camera, pose: &Pose| View { field, camera, pose }.picture(4.0).unwrap_err();
+    let picture = |field: &Testfield, camera: &Camera, pose: &Pose| View { field, camera, local: None, pose }.picture(4.0).unwrap_err();
     let away = Pose::from_angles(Point3::new(0.0, 0.0, -2.0), [0.0; 3]);
     assert_eq!(picture(&wall, &plain, &away), ViewError::Behind);
     let folded = camera([9.0, 0.0, 0.0]);

@@ -19,7 +19,7 @@ pub fn image(view: &View<'_>, n: usize) -> Vec<f64> {
 }
 
 fn radiance(view: &View<'_>, at: PixelPoint) -> f64 {
-    let direction = view.pose.world_from_ray(view.camera.unproject(at).unwrap());
+    let direction = view.pose.world_from_ray(view.camera.unproject(view.local.map_or(at, |local| local.undisplaced(at))).unwrap());
     let mut nearest = (f64::INFINITY, view.field.background);
     for plate in &view.field.plates {
         let normal = plate.normal();
@@ -69,5 +69,5 @@ pub fn distance(piece: &Piece, at: [f64; 2]) -> f64 {
 fn the_mean_ray_of_an_empty_view_is_the_background() {
     let field = super::field(Vec::new());
     let (camera, pose) = (super::camera([0.0; 3]), super::pose(0.0, 0.1, 1.0, 0.0));
-    assert!(image(&View { field: &field, camera: &camera, pose: &pose }, 1).iter().all(|grey| *grey == 0.5));
+    assert!(image(&View { field: &field, camera: &camera, local: None, pose: &pose }, 1).iter().all(|grey| *grey == 0.5));
 }
