@@ -47,6 +47,8 @@ pub enum Purpose {
     Control = 61,
     /// The error of an image coordinate that is drawn and not measured.
     DrawnPoint = 62,
+    /// Which of an image's points a block leaves out.
+    LeftOut = 63,
 }
 
 /// Which stream.

@@ -124,6 +124,8 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option
     if !subject.changes() {
         return run_prepared(plan, prepared, key);
     }
+    // Of points that are not kept nobody asks for the bound.
+    let bounds = bounds.filter(|_| number == 0 || subject.blocks.as_ref().is_none_or(|blocks| blocks.keep_points));
     run_prepared(plan, &Prepared::with(subject, &subject.stations_of(key)?, key, bounds)?, key)
 }
 
@@ -158,7 +160,7 @@ fn in_blocks(plan: &Plan<'_>, prepared: &Prepared<'_>, blocks: &Blocks, key: Key
     let subject = prepared.subject;
     let mut trial = run_views(plan, prepared, key)?;
     let available: Vec<usize> = (0..plan.methods.len()).filter(|&method| plan.methods[method].operator.is_ok()).collect();
-    let job = blocks::Job { blocks, field: &subject.field, unit: subject.unit, stations: &subject.stations };
+    let job = blocks::Job { blocks, field: &subject.field, unit: subject.unit, stations: &subject.stations, key };
     trial.calibrations = blocks::adjust_blocks(&job, &trial.points, &available, key.trial == 0);
     if key.trial > 0 && !blocks.keep_points {
         trial.points.clear();

@@ -16,8 +16,8 @@ const LITTLE: f64 = 1e-10;
 const NOISE: f64 = 1e4;
 /// Share of the sum of squares by which rounding may raise it.
 const ROUNDING: f64 = 1e-12;
-/// Undamped steps beyond one that raised the sum of squares, before it is taken back.
-const AHEAD: usize = 2;
+/// Undamped steps beyond one that raised the sum of squares, while they lower it again, before all are taken back.
+const AHEAD: usize = 10;
 /// How often on a way it is looked ahead.
 const LOOKS: usize = 4;
 
@@ -83,10 +83,14 @@ impl<'e, 'n> Place<'e, 'n> {
     fn ahead(&mut self, mut state: State) -> Option<State> {
         self.looks -= 1;
         for _ in 0..AHEAD {
+            let raised = self.normals.cost;
             self.solve(&state, 0.0)?;
             state = self.moved(&state)?;
             if self.is_lower() {
                 return Some(state);
+            }
+            if self.normals.cost > raised {
+                return None;
             }
         }
         None

@@ -4,12 +4,14 @@
 
 mod figures;
 mod held;
+mod location;
 mod network;
 mod residuals;
 mod sights;
 
 use calibench_model::Testfield;
 use calibench_model::camera::Camera;
+use calibench_random::Key;
 use calibench_records::results::{Calibrated, Figure, PointResult};
 use calibench_scenario::{Block, Blocks, Unit};
 use calibench_synth::stations::Station;
@@ -29,6 +31,8 @@ pub struct Job<'a> {
     pub unit: Unit,
     /// The stations: their names alone.
     pub stations: &'a [Station],
+    /// The trial's.
+    pub key: Key<'a>,
 }
 
 /// Adjusts what each of `methods` measured in a trial. `first`: with every residual, and with heights where the bend is asked for.
@@ -59,7 +63,13 @@ fn of_method(job: &Job<'_>, points: &[PointResult], method: usize, first: bool) 
         });
         cameras.push(outcome.as_ref().ok().filter(|_| !block.several).map(|solved| solved[0].cameras.clone()));
         left.push(outcome.as_ref().map(|solved| residuals::of(solved)).unwrap_or_default());
-        let outcome = outcome.and_then(|solved| told(job, block, &solved, first));
+        let outcome = outcome.and_then(|solved| {
+            let mut found = told(job, block, &solved, first)?;
+            if let ([one], true) = (&solved[..], block.corrected_by.is_some()) {
+                found.extend(location::figures(job, block, one, points, method));
+            }
+            Ok(found)
+        });
         all.push(Calibrated { method, set, outcome, check_failed: None });
     }
     let compared = job.blocks.residuals.as_ref().filter(|plan| plan.blocks.iter().all(|&b| job.blocks.list[b].methods.contains(&method)));

@@ -1,6 +1,7 @@
 //! A block as a network, adjusted.
 
 use calibench_adjust::{Covariances, Datum, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Status, Variance, adjust};
+use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
 use calibench_scenario::Block;
 use nalgebra::Point3;
@@ -76,7 +77,7 @@ fn solve(job: &Job<'_>, block: &Block, sights: &Sights, corrected: Option<Correc
     used.iter().zip(solution.cameras()).for_each(|(&group, camera)| cameras[group] = *camera);
     let residuals = solution.each_residual().filter_map(|r| Some((images[r.image], targets[r.point], r.v?))).collect();
     let counts = solution.counts();
-    // What holds heights apart from the datum's own constraints is fixed and no unknown: the paper's way to count has it on both sides.
+    // Fixed coordinates are no unknowns: counted as unknowns and as constraints they are on both sides, as those of a minimal datum.
     let fixed = if block.height_sigma.is_some() { held } else { 0 };
     let sigma = |point: usize| std::array::from_fn(|axis| covariances.points[point][(axis, axis)].max(0.0).sqrt());
     Ok(Solved {
@@ -118,11 +119,12 @@ fn observe(job: &Job<'_>, block: &Block, sights: &Sights, images: &[usize], netw
     let count = job.field.targets.len();
     let (mut wanted, mut rays) = (vec![false; count], vec![0_usize; count]);
     block.targets.iter().for_each(|&target| wanted[target] = true);
-    let seen = |image: usize| sights.images[image].points.iter().copied();
-    images.iter().flat_map(|&image| seen(image)).for_each(|(target, _)| rays[target] += 1);
+    let choose = |&image: &usize| sights.images[image].chosen(job, image, &wanted, block.points_per_image);
+    let seen: Vec<Vec<(usize, PixelPoint)>> = images.iter().map(choose).collect();
+    seen.iter().flatten().for_each(|(target, _)| rays[*target] += 1);
     // A point of one ray is determined where its height is observed.
     let least = if block.height_sigma.is_some() { 1 } else { 2 };
-    let targets: Vec<usize> = (0..count).filter(|&target| wanted[target] && rays[target] >= least).collect();
+    let targets: Vec<usize> = (0..count).filter(|&target| rays[target] >= least).collect();
     let mut places = vec![None; count];
     for (place, &target) in targets.iter().enumerate() {
         places[target] = Some(place);
@@ -133,9 +135,9 @@ fn observe(job: &Job<'_>, block: &Block, sights: &Sights, images: &[usize], netw
         }
         network.points.push(point);
     }
-    for (image, &station) in images.iter().enumerate() {
-        let mine = seen(station).filter_map(|(target, at)| Some(ImageObservation::new(image, places[target]?, at, job.blocks.sigma_px)));
-        network.observations.extend(mine);
+    for (image, mine) in seen.iter().enumerate() {
+        let of = |&(target, at): &(usize, PixelPoint)| Some(ImageObservation::new(image, places[target]?, at, job.blocks.sigma_px));
+        network.observations.extend(mine.iter().filter_map(of));
     }
     targets
 }

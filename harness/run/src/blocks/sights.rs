@@ -6,7 +6,10 @@ use calibench_adjust::approximate::Control;
 use calibench_calibrate::robust_pose_of;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
+use calibench_random::{Key, Purpose, stream};
 use calibench_records::results::{Outcome, PointResult};
+
+use rand::RngExt;
 
 use super::Job;
 
@@ -49,6 +52,21 @@ impl Sights {
 }
 
 impl Sighted {
+    /// The points of some targets; of more than `most` a random choice that is the image's own, whatever the method.
+    pub fn chosen(&self, job: &Job<'_>, image: usize, wanted: &[bool], most: Option<usize>) -> Vec<(usize, PixelPoint)> {
+        let mut points: Vec<(usize, PixelPoint)> = self.points.iter().copied().filter(|(target, _)| wanted[*target]).collect();
+        if let Some(most) = most.filter(|most| *most < points.len()) {
+            let lot = |target: usize| -> u64 {
+                let key = Key { view: &job.stations[image].name, target: &job.field.targets[target].id, ..job.key };
+                stream(key, Purpose::LeftOut).random()
+            };
+            points.sort_by_cached_key(|(target, _)| lot(*target));
+            points.truncate(most);
+            points.sort_by_key(|(target, _)| *target);
+        }
+        points
+    }
+
     /// Finds the pose, and leaves out what lies far from where it pictures the survey.
     fn resect(&mut self, job: &Job<'_>) {
         if self.points.len() < LEAST_POINTS {

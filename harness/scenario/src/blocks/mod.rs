@@ -58,6 +58,8 @@ pub struct Block {
     pub corrected_by: Option<usize>,
     /// Standard deviation of every height, object units.
     pub height_sigma: Option<f64>,
+    /// How many of an image's points are used.
+    pub points_per_image: Option<usize>,
     /// Over which distance from the middle the bend is reported, object units.
     pub bend_over: Option<f64>,
     /// The methods whose points are adjusted, by their places.
@@ -199,6 +201,7 @@ fn block(section: Section<'_>, names: &Names<'_>, earlier: &[Block], problems: &
         groups,
         corrected_by,
         height_sigma: wire.height_sigma.map(|sigma| sigma.0),
+        points_per_image: wire.points_per_image.map(|count| count.0),
         bend_over: wire.bend_over.map(|over| over.0),
         methods: chosen.unwrap_or_else(|| (0..names.methods.len()).collect()),
     })

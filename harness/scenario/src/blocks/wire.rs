@@ -6,6 +6,12 @@ use toml::Spanned;
 
 use crate::calibration::wire::{PrincipalDistance, Sigma};
 use crate::testfield::wire::Distance as Length;
+use crate::wire::bounded;
+
+bounded! {
+    /// A number of points.
+    Count(usize), i64 "i64", 6, 1_000_000;
+}
 
 /// Free networks of what each method measured: what all `[[block]]`s have in common. Object points are unknown; two horizontal and three vertical control
 /// points hold the frame.
@@ -51,6 +57,8 @@ pub struct BlockWire {
     pub corrected_by: Option<Spanned<String>>,
     /// Every height is observed as that of the survey with this standard deviation, object units. Default: heights are free.
     pub height_sigma: Option<Length>,
+    /// How many of an image's points are used, chosen at random in each trial. Default: all.
+    pub points_per_image: Option<Count>,
     /// The bend of the object points is reported: their height in the middle over that at this distance from it along u, and along v, object units.
     pub bend_over: Option<Length>,
     /// Labels of the methods whose points are adjusted. Default: all.
