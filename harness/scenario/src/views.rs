@@ -10,9 +10,9 @@ use calibench_random::Key;
 use calibench_synth::optics::Optics;
 use calibench_synth::pointing::{Hand, MapError};
 
+use super::camera::CameraPlan;
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
-use super::camera::CameraPlan;
 use super::{Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};
 
 /// Lens and sensor as they stand in the file, not read yet: a sensor's contrast depends on what it sees.
