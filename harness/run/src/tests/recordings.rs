@@ -63,7 +63,7 @@ fn every_view_has_its_own_truth() {
             assert!(off < 0.05 && (size - 1.0).abs() < 0.01, "{name}: {off} {size} {row:?}");
         }
         let moved = rows.iter().zip(&flat[name]).map(|(a, b)| (number(a, "x") - number(b, "x")).hypot(number(a, "y") - number(b, "y")));
-        assert!(moved.fold(0.0, f64::max) > 1.0, "{name}: the bend moves pictures");
+        assert!(moved.fold(0.0, f64::max) > 0.3, "{name}: the bend moves pictures");
     }
 }
 

@@ -99,7 +99,7 @@ fn targets_that_the_image_cannot_show_are_warned_of() {
         assert_eq!(truth::warnings(subject, &prepared.views[0]), [format!("front: 12 of 12 targets: {word}")]);
     }
     let usual = scenario(&[]);
-    let prepared = Prepared::new(views(&usual)).unwrap();
+    let prepared = Prepared::new(views(&usual), KEY).unwrap();
     assert!(truth::warnings(views(&usual), &prepared.views[0]).is_empty());
 }
 
