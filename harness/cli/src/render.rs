@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use calibench_exchange::{NewFolder, Points, encode_png};
+use calibench_model::camera::CameraModel;
 use calibench_random::Key;
 use calibench_records::names::kept_image_name;
 use calibench_run::views::{self, Prepared};
 use calibench_run::{RunError, VIEW, starts, trial_picture, trial_truth, truth};
-use calibench_model::camera::CameraModel;
 use calibench_scenario::stations::{LOCAL_DISTORTION, NOISE_FREE};
 use calibench_scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
 use calibench_synth::local::LocalDesign;
@@ -127,7 +127,9 @@ impl Render {
             let name = format!("{LOCAL_DISTORTION}.csv");
             truth::write_local(folder, &name, &local, subject.camera.size())?;
             let LocalDesign { sigma, correlation } = local.design();
-            notes.push(format!("the camera's local distortion ({sigma} px, correlation {correlation} px) is in {name} and in no camera file"));
+            notes.push(format!(
+                "the camera's local distortion ({sigma} px, correlation {correlation} px) is in {name} and in no camera file"
+            ));
         }
         progress.finish(&format!("{} images", stations.len()));
         Ok(notes)

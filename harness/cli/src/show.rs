@@ -122,7 +122,8 @@ fn views(text: &mut String, subject: &ViewsSubject) {
         let _ = writeln!(text, "# {} = {} {}", parameter.name, parameter.value, parameter.unit);
     }
     if let Some(LocalPlan { design, each_trial }) = subject.local {
-        let _ = writeln!(text, "\n[camera.local]\nsigma = {}\ncorrelation = {}\neach_trial = {each_trial}", design.sigma, design.correlation);
+        let _ =
+            writeln!(text, "\n[camera.local]\nsigma = {}\ncorrelation = {}\neach_trial = {each_trial}", design.sigma, design.correlation);
     }
     let (plates, targets, unit) = (field.plates.len(), field.targets.len(), subject.unit.name());
     let _ = writeln!(text, "\n[testfield] # {plates} plates, {targets} targets, in {unit}");
@@ -137,7 +138,11 @@ fn views(text: &mut String, subject: &ViewsSubject) {
         let _ = writeln!(text, "at = [{}, {}, {}]\nangles = [{omega}, {phi}, {kappa}]", at.x, at.y, at.z);
         if let Some(bend) = station.bend {
             let across = bend.across.to_degrees();
-            let _ = writeln!(text, "# the stand bends the field by {} {unit} over {}, across {across} degrees of its own", bend.peak, bend.reach);
+            let _ = writeln!(
+                text,
+                "# the stand bends the field by {} {unit} over {}, across {across} degrees of its own",
+                bend.peak, bend.reach
+            );
         }
     }
     if let Some(detector) = &subject.detector {

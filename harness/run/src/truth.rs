@@ -96,7 +96,7 @@ fn view_row(subject: &ViewsSubject, view: &PreparedView<'_>, target: &ObjectTarg
     numbers(&mut row, affine.as_ref().map(<[f64; 4]>::as_slice), 4);
     let ellipse = truth.ellipse.map(|Ellipse { centre, axes, angle }| [centre.x, centre.y, axes[0], axes[1], angle.to_degrees()]);
     numbers(&mut row, ellipse.as_ref().map(<[f64; 5]>::as_slice), 5);
-    numbers(&mut row, Some(&truth.object.coords.into()).map(<[f64; 3]>::as_slice), 3);
+    row.extend(truth.object.iter().map(f64::to_string));
     numbers(&mut row, size_px(truth).map(|size| [size]).as_ref().map(<[f64; 1]>::as_slice), 1);
     row.push(warning(subject, truth).unwrap_or_default().to_owned());
     row

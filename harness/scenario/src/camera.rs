@@ -211,3 +211,50 @@ fn of_file(wire: &CameraWire, file: &Spanned<String>, path: &Path, problems: &mu
     }
     chosen.map(|camera| camera.camera)
 }
+
+#[cfg(test)]
+mod tests {
+    use toml::de::DeTable;
+
+    use super::*;
+
+    const CAMERA: &str = "size = [240, 240]\npitch = 27\nc = 57.5\n[local]\n";
+
+    /// The plan of a text, or its problem at its place.
+    fn local(keys: &str) -> Result<Option<LocalPlan>, String> {
+        let text = format!("{CAMERA}{keys}");
+        let table = DeTable::parse(&text).unwrap().into_inner();
+        let mut problems = Vec::new();
+        let plan = read(Section { name: "[camera]", span: 0..1, table }, Path::new(""), &mut problems);
+        match &problems[..] {
+            [] => Ok(plan.unwrap().local),
+            [problem] => Err(format!("{}: {}", &text[problem.span.clone()], problem.message)),
+            _ => panic!("{problems:?}"),
+        }
+    }
+
+    #[test]
+    fn a_local_distortion_is_read() {
+        let design = LocalDesign { sigma: 0.033, correlation: 15.0 };
+        assert_eq!(local("sigma = 0.033\ncorrelation = 15"), Ok(Some(LocalPlan { design, each_trial: true })));
+        assert_eq!(local("sigma = 0.033\ncorrelation = 15\neach_trial = false"), Ok(Some(LocalPlan { design, each_trial: false })));
+        assert_eq!(local("sigma = 0\ncorrelation = 15"), Ok(None), "none at all, for sweeps");
+    }
+
+    #[test]
+    fn a_local_distortion_that_cannot_be_is_refused_at_its_key() {
+        for (keys, message) in [
+            (
+                "sigma = 1.6\ncorrelation = 15",
+                "1.6: `sigma` is 1.6 px with a `correlation` of 15 px: the image would fold over; expected at most a tenth, 1.5",
+            ),
+            ("sigma = 0.01\ncorrelation = 0.1", "0.1: `correlation` is 0.1 px: too fine for a frame of 240 x 240 px, expected at least"),
+            ("sigma = -1\ncorrelation = 15", "-1: expected a number from 0 to 10000, found -1"),
+            ("sigma = 1", "local: [camera.local] has no `correlation`"),
+            ("sigma = 1\ncorrelation = 15\ntrial = 1", "trial: unknown key `trial` in [camera.local]"),
+        ] {
+            let found = local(keys).unwrap_err();
+            assert!(found.contains(message), "{keys}\n{found}\n{message}");
+        }
+    }
+}

@@ -2,18 +2,21 @@
 
 mod kinds;
 mod network;
+mod recordings;
 mod store;
 mod truth;
 
 use std::path::PathBuf;
 
 use calibench_measure::Registry;
+use calibench_random::Key;
 use calibench_records::results::Trial;
 use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
 
 use crate::Plan;
 
 const NAME: &str = "small/wall";
+const KEY: Key<'_> = Key { seed: 3, scenario: NAME, trial: 0, view: "", target: "" };
 
 /// A wall of 12 corners in the plane Z = 0, m, seen by a camera of c = 10 mm and 5 um: 2000 px per unit of slope. Its first station stands on the Z
 /// axis, 6 m off. Coordinates are drawn from the truth; `exact` has no error.

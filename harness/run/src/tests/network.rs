@@ -7,10 +7,8 @@ use calibench_records::results::{Calibrated, Figure, Group, PointResult};
 use calibench_scenario::Calibration;
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use super::{EXACT, NAME, scenario, trials, views};
+use super::{EXACT, KEY, scenario, trials, views};
 use crate::network::{Job, Observed, Wanted, adjusted, angles, check, control_point, draw, observe, resections};
-
-const KEY: Key<'_> = Key { seed: 3, scenario: NAME, trial: 0, view: "", target: "" };
 
 fn with_job(test: impl FnOnce(&Job<'_>, &[PointResult])) {
     let scenario = scenario(&[]);

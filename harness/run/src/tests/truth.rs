@@ -10,22 +10,22 @@ use calibench_model::TargetKind;
 use calibench_model::camera::CameraModel;
 use calibench_synth::sensor::Clipped;
 
-use super::{scenario, views};
+use super::{KEY, scenario, views};
 use crate::truth::{self, StationRow};
 use crate::views::Prepared;
 
-fn rows(path: &Path) -> Vec<HashMap<String, String>> {
+pub(super) fn rows(path: &Path) -> Vec<HashMap<String, String>> {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let header = lines.next().unwrap();
     lines.map(|cells| header.iter().cloned().zip(cells).collect()).collect()
 }
 
-fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+pub(super) fn number(row: &HashMap<String, String>, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
-fn fill(folder: &Path, write: impl FnOnce(&NewFolder) -> io::Result<()>) {
+pub(super) fn fill(folder: &Path, write: impl FnOnce(&NewFolder) -> io::Result<()>) {
     OutputFolder::open(folder).unwrap().replace(write).unwrap();
 }
 
@@ -35,7 +35,7 @@ fn a_view_s_table_is_the_drawing_on_paper() {
     let scenario = scenario(&[]);
     let subject = views(&scenario);
     let folder = tempfile::tempdir().unwrap();
-    let prepared = Prepared::new(subject).unwrap();
+    let prepared = Prepared::new(subject, KEY).unwrap();
     let path = folder.path().join("truth");
     fill(&path, |folder| truth::write_view(folder, "front.csv", subject, &prepared.views[0]));
     let found = rows(&path.join("front.csv"));
@@ -95,11 +95,11 @@ fn targets_that_the_image_cannot_show_are_warned_of() {
     for (size, blur, word) in [("0.001", "", "smaller than a pixel"), ("0.02", "\n[optics]\nblur = 4.0\n", "blurred beyond its own size")] {
         let changed = scenario(&[("size = 0.06", &format!("size = {size}")), ("\n[pointing]", &format!("{blur}\n[pointing]"))]);
         let subject = views(&changed);
-        let prepared = Prepared::new(subject).unwrap();
+        let prepared = Prepared::new(subject, KEY).unwrap();
         assert_eq!(truth::warnings(subject, &prepared.views[0]), [format!("front: 12 of 12 targets: {word}")]);
     }
     let usual = scenario(&[]);
-    let prepared = Prepared::new(views(&usual)).unwrap();
+    let prepared = Prepared::new(views(&usual), KEY).unwrap();
     assert!(truth::warnings(views(&usual), &prepared.views[0]).is_empty());
 }
 

@@ -19,6 +19,10 @@ fn camera() -> Camera {
 
 /// The stations of a text, or its problems as `line:column: message (help)`.
 fn stations(text: &str) -> Result<Vec<Station>, String> {
+    stations_before(&field(), text)
+}
+
+fn stations_before(field: &Testfield, text: &str) -> Result<Vec<Station>, String> {
     let (root, errors) = DeTable::parse_recoverable(text);
     assert!(errors.is_empty(), "{errors:?}");
     let mut root = Section { name: "the scenario", span: 0..1, table: root.into_inner() };
@@ -27,7 +31,7 @@ fn stations(text: &str) -> Result<Vec<Station>, String> {
     let section = root.take_table("stations", "[stations]", &mut problems);
     let plan = read(section, given, &mut problems);
     assert_eq!(plan.is_some(), problems.is_empty());
-    let made = plan.map(|plan| plan.generate(&field(), &camera(), KEY).map_err(|error| problems.push(plan.problem(&error))));
+    let made = plan.map(|plan| plan.generate(field, &camera(), KEY).map_err(|error| problems.push(plan.problem(&error))));
     made.and_then(Result::ok).ok_or_else(|| Problems { file: "f".into(), text: text.into(), problems }.to_string())
 }
 
@@ -117,6 +121,13 @@ fn mistakes_of_a_stand_are_told_with_their_places() {
     refused(&format!("{stand}bend_across = 1"), "5:15: `bend_across` without `bend`");
     refused(&format!("{stand}bend = 100\nbend_reach = 100"), "5:8: `bend` is 100: expected at most");
     refused(&format!("{stand}facing = [0, 0, 1]"), "5:10: `facing` with `kind = \"stand\"`");
+    let before = |field: &Testfield, text: &str| stations_before(field, text).unwrap_err();
+    let (mut two, mut bent) = (field(), field());
+    two.plates.push(two.plates[0].clone());
+    bent.plates[0].bend = Some(calibench_model::Bend { peak: 1.0, middle: [0.0, 0.0], across: 0.0, reach: 100.0 });
+    assert!(before(&two, stand).contains("2:8: a stand holds a testfield of one sheet: this one has 2"));
+    let found = before(&bent, &format!("{stand}bend = 1\nbend_reach = 100"));
+    assert!(found.contains("5:8: the stand bends plate `board`, which is bent itself"), "{found}");
     refused(&format!("{stand}each_trial = true"), "`each_trial` without `kind = \"random\"`");
 }
 

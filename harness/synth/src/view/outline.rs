@@ -89,9 +89,8 @@ fn polygon(view: &View<'_>, frame: &Frame, polygon: &[Tangent], pieces: &mut Vec
     let (first, mut near) = (pieces.len(), None);
     for (i, a) in polygon.iter().enumerate() {
         let b = polygon[(i + 1) % polygon.len()];
-        let project = |t: f64, near: Option<PixelPoint>| {
-            view.image(Ray::from_tangent(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])), near)
-        };
+        let project =
+            |t: f64, near: Option<PixelPoint>| view.image(Ray::from_tangent(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])), near);
         near = Some(trace(&project, frame.sides, view.longest(), near, pieces)?);
     }
     close(&mut pieces[first..]);

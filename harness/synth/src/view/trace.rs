@@ -71,8 +71,7 @@ fn chord(points: &[[f64; 2]; 5]) -> f64 {
 /// before them. Only what lies across the curve counts.
 fn error(points: &[[f64; 2]; 5]) -> f64 {
     let length = chord(points);
-    let (c, s) =
-        if length > 0.0 { ((points[4][0] - points[0][0]) / length, (points[4][1] - points[0][1]) / length) } else { (1.0, 0.0) };
+    let (c, s) = if length > 0.0 { ((points[4][0] - points[0][0]) / length, (points[4][1] - points[0][1]) / length) } else { (1.0, 0.0) };
     let along = tail(points.map(|p| c * p[0] + s * p[1]));
     let across_values = points.map(|p| c * p[1] - s * p[0]);
     let (mut steepest, mut shortest) = (0.0_f64, f64::INFINITY);

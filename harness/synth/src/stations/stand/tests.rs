@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
 use calibench_model::Pose;
+use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
 use calibench_model::testfield::Bend;
 use calibench_random::Key;
 use nalgebra::Point3;
@@ -162,7 +162,8 @@ fn the_bend_is_that_of_the_stand_whatever_the_sheets_axes() {
         target.surveyed = origin + up * target.at[0] - right * target.at[1];
     }
     let aim = Aim::new(Aim::of(&field).unwrap().middle, normal, up).unwrap();
-    let stand = Stand { phis: vec![0.3], turns: vec![0.0], rolls: vec![0.0], ..stand(Some(StandBend { peak: 2.0, reach: 300.0, across: 0.7 })) };
+    let stand =
+        Stand { phis: vec![0.3], turns: vec![0.0], rolls: vec![0.0], ..stand(Some(StandBend { peak: 2.0, reach: 300.0, across: 0.7 })) };
     let station = &stand.generate(&aim, &field).unwrap()[0];
     let bent = station.field(&field);
     for target in &bent.targets {
