@@ -41,7 +41,7 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(&'static str, Entry)> {
 
 /// Every figure but the residuals of single points, each in its unit.
 pub(super) fn figures(adjusted: &Calibrated) -> Vec<(FigureKey, Numbers)> {
-    let figures = adjusted.outcome.iter().flatten().filter(|figure| figure.group != Group::Point);
+    let figures = adjusted.outcome.iter().flatten().filter(|figure| !matches!(figure.group, Group::Point | Group::Object));
     figures
         .map(|figure| {
             let numbers = Numbers { value: figure.value, sigma: figure.sigma, error: figure.error };

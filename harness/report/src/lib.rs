@@ -2,6 +2,8 @@
 
 mod answer;
 pub mod atlas;
+mod axes;
+mod blocks;
 pub mod calibration;
 mod camera_card;
 mod canvas;

@@ -8,7 +8,7 @@ use calibench_records::description::{Description, Subject};
 use crate::answer::{Answers, heading};
 use crate::markdown::contents;
 use crate::places::PAGE;
-use crate::{Canvas, LoadError, Loaded, network, photographs, scene_figures, scores_section, sweep};
+use crate::{Canvas, LoadError, Loaded, blocks, network, photographs, scene_figures, scores_section, sweep};
 
 /// A page with its pictures, filled section by section.
 pub struct Page {
@@ -77,6 +77,11 @@ impl Page {
         let scenario = &loaded.scenario;
         let stem = self.head(&loaded.name, scenario, &deviations(loaded));
         if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&loaded.name)) {
+            self.text.push_str(&text);
+            self.pictures.extend(pictures);
+            return;
+        }
+        if let Some((text, pictures)) = blocks::section(loaded, &stem) {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
             return;

@@ -4,7 +4,7 @@ use calibench_measure::Configured;
 use calibench_model::camera::CameraModel;
 use calibench_records::description::{self, Adjustment, Axis, Cell, Description, Role, Station, Target, Value, Views, operator};
 use calibench_scenario::calibration::CheckPlan;
-use calibench_scenario::{Scenario, Subject, Sweep, ViewsSubject};
+use calibench_scenario::{Blocks, Scenario, Subject, Sweep, ViewsSubject};
 
 /// The description of `scenario`, which `methods` were run on: its own or others.
 pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
@@ -51,6 +51,17 @@ fn views(subject: &ViewsSubject) -> Views {
             .calibration
             .as_ref()
             .map(|calibration| Adjustment { pitch_um: calibration.start.pitch_um, drawn: calibration.drawn.is_some() }),
+        blocks: subject.blocks.as_ref().map(|blocks| in_blocks(subject, blocks)),
+    }
+}
+
+fn in_blocks(subject: &ViewsSubject, blocks: &Blocks) -> description::Blocks {
+    let name = |station: usize| subject.stations[station].name.clone();
+    let plan = blocks.residuals.as_ref();
+    description::Blocks {
+        pitch_um: blocks.camera.base.pitch_um,
+        pairs: plan.map(|plan| plan.pairs.iter().map(|pair| pair.map(name)).collect()).unwrap_or_default(),
+        compared: plan.map(|plan| plan.blocks.iter().map(|&block| blocks.list[block].name.clone()).collect()).unwrap_or_default(),
     }
 }
 

@@ -9,7 +9,7 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 
 pub use sweep::{Axis, Cell, Sweep, Value};
-pub use views::{Adjustment, Role, Station, Target, Views};
+pub use views::{Adjustment, Blocks, Role, Station, Target, Views};
 
 /// A scenario: its words, what was to be run, and what its pages draw. That of a sweep is of its first cell but for the sweep itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +57,12 @@ impl Description {
     pub fn adjusted(&self) -> Option<(&Views, &Adjustment)> {
         let Subject::Views(views) = &self.subject else { return None };
         Some((views, views.adjustment.as_ref()?))
+    }
+
+    /// The views of a scenario with free networks and what these are told.
+    pub fn in_blocks(&self) -> Option<(&Views, &Blocks)> {
+        let Subject::Views(views) = &self.subject else { return None };
+        Some((views, views.blocks.as_ref()?))
     }
 
     /// Whether `label` is that of an operator with all parameters at their defaults.
@@ -114,6 +120,7 @@ mod tests {
             stations: vec![station],
             targets: vec![target],
             adjustment: Some(Adjustment { pitch_um: 3.9, drawn: true }),
+            blocks: Some(Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }),
         };
         let description = Description {
             why: "To see \"this\".\n".into(),
@@ -146,6 +153,7 @@ mod tests {
             stations: Vec::new(),
             targets: Vec::new(),
             adjustment,
+            blocks: None,
         };
         let of = |subject| Description {
             why: String::new(),

@@ -20,6 +20,8 @@ pub struct Views {
     pub targets: Vec<Target>,
     /// What an adjustment of the measured points is told, if one is made.
     pub adjustment: Option<Adjustment>,
+    /// What free networks of the measured points are told, if there are any.
+    pub blocks: Option<Blocks>,
 }
 
 /// A station.
@@ -68,4 +70,16 @@ pub struct Adjustment {
     pub pitch_um: f64,
     /// Image coordinates are drawn at random, no image is rendered.
     pub drawn: bool,
+}
+
+/// What free networks of the measured points are told.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Blocks {
+    /// The pixel pitch, um.
+    pub pitch_um: f64,
+    /// Pairs of images whose residuals are compared, by their names.
+    pub pairs: Vec<[String; 2]>,
+    /// The blocks whose residuals these are.
+    pub compared: Vec<String>,
 }

@@ -48,6 +48,8 @@ pub struct Summaries {
     pub figures: BTreeMap<FigureKey, Summary>,
     /// Residuals of the first trial in the order of the file: method, image, point, axis, px.
     pub residuals: Vec<(String, String, f64)>,
+    /// The set of each residual.
+    pub sets_of_residuals: Vec<String>,
     /// Adjustments that failed, by method and set, with the first reason.
     pub failed: BTreeMap<(String, String, Group), (u64, String)>,
 }
@@ -88,7 +90,10 @@ impl Reader {
         remember(&mut self.found.sets, &row.set);
         match row.figure {
             Err(why) => self.found.failed.entry((row.method, row.set, row.group)).or_insert((0, why)).0 += 1,
-            Ok(numbers) if row.group == Group::Point => self.found.residuals.push((row.method, row.name, numbers.value)),
+            Ok(numbers) if row.group == Group::Point => {
+                self.found.residuals.push((row.method, row.name, numbers.value));
+                self.found.sets_of_residuals.push(row.set);
+            }
             Ok(numbers) => self.figure((row.method, row.set, row.group, row.name), numbers),
         }
     }

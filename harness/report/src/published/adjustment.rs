@@ -35,8 +35,25 @@ pub fn ours(found: &Summaries, cell: &Cell, default: &str, pitch_um: f64) -> Opt
             let against_truth = found.get(method, Group::Check, name.trim_end_matches("_survey"));
             Some(Ours { truth: against_truth.and_then(|s| s.values.ratio()), ..Ours::of(Some(one), &own.value_ratio)? })
         }
+        Metric::Figure => figure(found, [method, cell.set.as_deref()?, cell.of.as_deref()?], cell),
+        Metric::FigureRatio => {
+            let over = cell.over.as_ref()?;
+            let (set, name) = (cell.set.as_deref()?, cell.of.as_deref()?);
+            let below = [over.method.as_deref().unwrap_or(method), over.set.as_deref().unwrap_or(set), over.of.as_deref().unwrap_or(name)];
+            Some(figure(found, [method, set, name], cell)?.over(&figure(found, below, cell)?))
+        }
         _ => None,
     }
+}
+
+/// A figure by method, set and name, in the group of `cell`.
+fn figure(found: &Summaries, [method, set, name]: [&str; 3], cell: &Cell) -> Option<Ours> {
+    let group = match &cell.group {
+        Some(wanted) => Group::ALL.iter().find(|(_, name)| name == wanted)?.0,
+        None => Group::Network,
+    };
+    let summary = found.of_set(method, set, group, name)?;
+    Ours::of(summary.first.map(|numbers| numbers.value), &summary.value)
 }
 
 /// The paper's check coordinates are surveyed ones.

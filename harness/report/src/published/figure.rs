@@ -26,6 +26,19 @@ impl Ours {
         Some(Self { one: one?, mean: all.mean()?, half: all.half(), scatter: all.deviation(), truth: None })
     }
 
+    /// Over another figure of the same trials: the ratio of the means, whose relative spreads are added as if they were independent.
+    pub fn over(&self, other: &Self) -> Self {
+        let ratio = self.mean / other.mean;
+        let joined = |a: Option<f64>, b: Option<f64>| Some(ratio.abs() * (a? / self.mean).hypot(b? / other.mean));
+        Self {
+            one: self.one / other.one,
+            mean: ratio,
+            half: joined(self.half, other.half),
+            scatter: joined(self.scatter, other.scatter),
+            truth: None,
+        }
+    }
+
     /// In a unit that is `factor` times as small.
     pub fn scaled(self, factor: f64) -> Self {
         let by = |value: Option<f64>| value.map(|value| value * factor);

@@ -49,6 +49,10 @@ pub enum Metric {
     RelativeXyRatio,
     /// Altimetric RMSE over that of the reference method.
     RelativeZRatio,
+    /// Of an adjustment: the figure `of` of the group `group` in the set or block `set`.
+    Figure,
+    /// The same over the figure that `over` names.
+    FigureRatio,
 }
 
 impl Metric {
@@ -59,10 +63,23 @@ impl Metric {
 
     /// Whether it is a figure of adjustments.
     pub fn is_of_adjustment(self) -> bool {
-        use Metric::{IopSigma, IopSigmaPx, IopValue, MeanSigmaRatio, RelativeXy, RelativeXyRatio, RelativeZ, RelativeZRatio, SigmaRatio};
+        use Metric::{
+            Figure, FigureRatio, IopSigma, IopSigmaPx, IopValue, MeanSigmaRatio, RelativeXy, RelativeXyRatio, RelativeZ, RelativeZRatio,
+            SigmaRatio,
+        };
         matches!(
             self,
-            IopValue | IopSigma | IopSigmaPx | SigmaRatio | MeanSigmaRatio | RelativeXy | RelativeZ | RelativeXyRatio | RelativeZRatio
+            IopValue
+                | IopSigma
+                | IopSigmaPx
+                | SigmaRatio
+                | MeanSigmaRatio
+                | RelativeXy
+                | RelativeZ
+                | RelativeXyRatio
+                | RelativeZRatio
+                | Figure
+                | FigureRatio
         )
     }
 

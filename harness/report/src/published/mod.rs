@@ -109,12 +109,36 @@ pub struct Cell {
     /// The parameter of the interior orientation, for figures of adjustments; `c` by default.
     #[serde(default)]
     pub of: Option<String>,
+    /// The set of parameters or the block, for `figure`.
+    #[serde(default)]
+    pub set: Option<String>,
+    /// The group of figures, for `figure`: `network` by default.
+    #[serde(default)]
+    pub group: Option<String>,
+    /// What a `figure_ratio` is divided by.
+    #[serde(default)]
+    pub over: Option<Divisor>,
     /// The column of the table's `ensemble` that stands for the cell: what is printed must lie where 95 % of the experiments lie.
     #[serde(default)]
     pub predicted: Option<String>,
     /// Why the two cannot be compared, if so.
     #[serde(default)]
     pub not_comparable: Option<String>,
+}
+
+/// The figure below a ratio; what is not given is that of the cell.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Divisor {
+    /// The method by its label.
+    #[serde(default)]
+    pub method: Option<String>,
+    /// The set of parameters or the block.
+    #[serde(default)]
+    pub set: Option<String>,
+    /// The figure's name.
+    #[serde(default)]
+    pub of: Option<String>,
 }
 
 impl Table {
@@ -252,6 +276,9 @@ impl Cell {
             misprint: None,
             method: None,
             of: None,
+            set: None,
+            group: None,
+            over: None,
             predicted: None,
             not_comparable: None,
         }

@@ -13,7 +13,7 @@ use calibench_model::Testfield;
 use calibench_model::camera::Camera;
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, Figure, PointResult};
-use calibench_scenario::{Block, Blocks, Unit};
+use calibench_scenario::{Block, Blocks, ResidualPairs, Unit};
 use calibench_synth::stations::Station;
 
 use network::Solved;
@@ -87,7 +87,8 @@ fn told(job: &Job<'_>, block: &Block, solved: &[Solved], first: bool) -> Result<
     {
         found.extend(figures::parameters(one));
         found.extend(figures::by_image(job, one));
-        if first {
+        let is_compared = |plan: &ResidualPairs| plan.blocks.iter().any(|&other| job.blocks.list[other].name == block.name);
+        if first && job.blocks.residuals.as_ref().is_some_and(is_compared) {
             found.extend(figures::every_residual(job, one));
         }
         if let Some(over) = block.bend_over {

@@ -3,7 +3,7 @@
 use calibench_records::description::Views;
 use plotters::prelude::*;
 
-use super::axes::Axes;
+use crate::axes::Axes;
 use crate::canvas::{COLOURS, Canvas};
 use crate::load::Loaded;
 
@@ -30,7 +30,7 @@ pub fn distribution(loaded: &Loaded, views: &Views) -> Option<Canvas> {
         let values = crate::ticks::linear(0.0, height);
         for &value in &values {
             let (x, y) = flipped.place(-0.5, value);
-            crate::field::write(area, &super::axes::number(value, &values), (x - 8, y), plotters::style::text_anchor::HPos::Right);
+            crate::field::write(area, &crate::axes::number(value, &values), (x - 8, y), plotters::style::text_anchor::HPos::Right);
         }
         crate::field::write(area, "y, px", (70, 64), plotters::style::text_anchor::HPos::Left);
         for point in points {

@@ -3,7 +3,7 @@
 use calibench_records::results::Group;
 use plotters::prelude::*;
 
-use super::axes::{Axes, upright, whisker};
+use crate::axes::{Axes, upright, whisker};
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::load::adjustments::Summaries;
 

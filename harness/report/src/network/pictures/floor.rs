@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::axes::{Axes, whisker};
+use crate::axes::{Axes, whisker};
 use crate::canvas::{COLOURS, Canvas, METHOD_MARKS, Mark};
 
 /// Circles and crosses over what is swept.

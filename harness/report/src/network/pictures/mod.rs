@@ -1,6 +1,5 @@
 //! Pictures of a calibrated scenario.
 
-mod axes;
 pub mod distribution;
 pub mod factors;
 pub mod floor;

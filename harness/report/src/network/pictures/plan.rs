@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::axes::Axes;
+use crate::axes::Axes;
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::field::{arrow, write};
 

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::axes::{Axes, whisker};
+use crate::axes::{Axes, whisker};
 use crate::canvas::{COLOURS, Canvas, METHOD_MARKS};
 use crate::field::write;
 use crate::load::adjustments::Summaries;

@@ -8,13 +8,13 @@ use crate::ticks;
 
 /// Where a box lies in the picture and what it shows.
 #[derive(Clone, Copy)]
-pub(super) struct Axes {
+pub(crate) struct Axes {
     /// Left, top, width, height, px of the picture.
-    pub(super) at: [i32; 4],
+    pub(crate) at: [i32; 4],
     /// Left and right value.
-    pub(super) x: [f64; 2],
+    pub(crate) x: [f64; 2],
     /// Lower and upper value.
-    pub(super) y: [f64; 2],
+    pub(crate) y: [f64; 2],
 }
 
 /// Grey of grid lines.
@@ -22,14 +22,14 @@ const GRID: RGBColor = RGBColor(220, 220, 220);
 
 impl Axes {
     /// A place in the picture.
-    pub(super) fn place(&self, x: f64, y: f64) -> (i32, i32) {
+    pub(crate) fn place(&self, x: f64, y: f64) -> (i32, i32) {
         let [left, top, width, height] = self.at;
         let part = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
         (left + (part(x, self.x) * f64::from(width)).round() as i32, top + height - (part(y, self.y) * f64::from(height)).round() as i32)
     }
 
     /// The frame, grid lines and numbers at the left, and the title of the scale.
-    pub(super) fn vertical(&self, area: &Area<'_>, title: &str) {
+    pub(crate) fn vertical(&self, area: &Area<'_>, title: &str) {
         let [left, top, width, height] = self.at;
         let values = ticks::linear(self.y[0], self.y[1]);
         for &value in &values {
@@ -42,7 +42,7 @@ impl Axes {
     }
 
     /// Numbers below, and the title of the scale.
-    pub(super) fn horizontal(&self, area: &Area<'_>, title: &str) {
+    pub(crate) fn horizontal(&self, area: &Area<'_>, title: &str) {
         let [left, top, width, height] = self.at;
         let values = ticks::linear(self.x[0], self.x[1]);
         for &value in &values {
@@ -54,27 +54,27 @@ impl Axes {
     }
 
     /// A horizontal line at a value.
-    pub(super) fn level(&self, area: &Area<'_>, value: f64, colour: RGBColor) {
+    pub(crate) fn level(&self, area: &Area<'_>, value: f64, colour: RGBColor) {
         let (_, y) = self.place(self.x[0], value);
         area.draw(&PathElement::new([(self.at[0], y), (self.at[0] + self.at[2], y)], ShapeStyle::from(&colour).stroke_width(2))).ok();
     }
 }
 
 /// A tick's number with the decimals that the step between `ticks` needs.
-pub(super) fn number(value: f64, ticks: &[f64]) -> String {
+pub(crate) fn number(value: f64, ticks: &[f64]) -> String {
     let step = ticks.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(1.0);
     let decimals = (0..6).find(|&d| (step * 10_f64.powi(d) - (step * 10_f64.powi(d)).round()).abs() < 1e-6).unwrap_or(6);
     crate::markdown::fixed(value, decimals as usize)
 }
 
 /// Small text, read from below upwards, that ends at a place.
-pub(super) fn upright(area: &Area<'_>, text: &str, at: (i32, i32)) {
+pub(crate) fn upright(area: &Area<'_>, text: &str, at: (i32, i32)) {
     let style = ("sans-serif", 13).into_font().transform(FontTransform::Rotate270).color(&BLACK).pos(Pos::new(HPos::Right, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).ok();
 }
 
 /// A bar between two values with ends.
-pub(super) fn whisker(area: &Area<'_>, axes: &Axes, x: f64, (low, high): (f64, f64), colour: RGBColor) {
+pub(crate) fn whisker(area: &Area<'_>, axes: &Axes, x: f64, (low, high): (f64, f64), colour: RGBColor) {
     let clamp = |value: f64| value.clamp(axes.y[0], axes.y[1]);
     let (a, b) = (axes.place(x, clamp(low)), axes.place(x, clamp(high)));
     let style = ShapeStyle::from(&colour).stroke_width(1);

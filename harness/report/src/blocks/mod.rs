@@ -1,0 +1,33 @@
+//! Free networks of what was measured, in a report: what each block says, how well its points were located, what residuals have in common.
+
+mod pictures;
+mod tables;
+
+use crate::canvas::{Canvas, Pictures};
+use crate::load::Loaded;
+
+/// The text of a scenario with blocks and its pictures, whose names begin with `stem`; `None` for a scenario without blocks.
+pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
+    let found = loaded.calibrations.as_ref()?;
+    let (views, told) = loaded.scenario.in_blocks()?;
+    let mut text = tables::blocks(found);
+    text.push_str(&tables::location(found));
+    text.push_str(&tables::residuals(found, told));
+    text.push_str(&tables::failures(found));
+    let mut drawn: Pictures = Vec::new();
+    let mut add = |name: &str, caption: &str, canvas: Option<Canvas>| {
+        if let Some(canvas) = canvas {
+            let file = format!("{stem}-{name}.png");
+            text.push_str(&format!("{caption}:\n\n![{caption}]({file})\n\n"));
+            drawn.push((file, canvas));
+        }
+    };
+    add("stations", "Where the cameras stand, seen along the normal of the field", pictures::stations(views));
+    add("heights", "Heights of the object points in the first trial, with their standard deviations", pictures::heights(found, views));
+    add(
+        "residuals",
+        "Residuals of the first trial in a pair of images whose residuals are compared",
+        pictures::pair(loaded, found, views, told),
+    );
+    Some((text, drawn))
+}
