@@ -1,0 +1,15 @@
+//! The coded field in an image: its squares, its targets and their approximate positions, from the field's design alone.
+//!
+//! No pose, no camera, no truth. A [`Recogniser`] is made of a testfield and asked about images.
+//!
+//! Source: Vosselman & Förstner 1988, sections 3.1 to 3.3.
+
+mod design;
+mod error;
+mod found;
+mod recogniser;
+
+pub use design::NotCoded;
+pub use error::NotRecognised;
+pub use found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rejected, SizeGroup, SquareFound};
+pub use recogniser::{Classifier, Recogniser};
