@@ -2,6 +2,7 @@
 
 mod printed;
 
+use calibench_model::target::BAR;
 use calibench_model::testfield::PlatePoint;
 use calibench_model::{Plate, TargetKind, Testfield};
 use thiserror::Error;
@@ -93,6 +94,21 @@ impl Design {
         };
         let cells = cells.into_iter().enumerate().map(whole).collect::<Result<_, _>>()?;
         Ok(Self { squares, line: grid.line / grid.spacing, cells })
+    }
+
+    /// The area of the smallest target, in squares.
+    pub fn smallest(&self) -> f64 {
+        let area = |p: &Printed| {
+            let side = p.axes[0][0].hypot(p.axes[0][1]);
+            let share = match p.kind {
+                TargetKind::Triangle => 3_f64.sqrt() / 4.0,
+                TargetKind::Cross => BAR * (2.0 - BAR),
+                TargetKind::Disc => std::f64::consts::FRAC_PI_4,
+                _ => 1.0,
+            };
+            share * side * side
+        };
+        self.cells.iter().flatten().map(area).fold(1.0, f64::min)
     }
 
     /// The square at this row and column.

@@ -85,4 +85,19 @@ impl NotRecognised {
             Self::Ambiguous { .. } => "ambiguous",
         }
     }
+
+    /// How far the recognition came before it gave up: the farther, the more is said by the reason.
+    pub(crate) const fn stage(&self) -> usize {
+        match self {
+            Self::TooSmall { .. } | Self::NotFinite => 0,
+            Self::Blank => 1,
+            Self::TooFewLines { .. } => 2,
+            Self::NoGrid { .. } => 3,
+            Self::NoWholeSquare => 4,
+            Self::NoTargets { .. } => 5,
+            Self::OtherField { .. } => 6,
+            Self::Mirrored { .. } => 7,
+            Self::Ambiguous { .. } => 8,
+        }
+    }
 }

@@ -105,9 +105,9 @@ pub struct Blob {
 /// A line of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFound {
-    /// 0 for the lines along which the grid's columns lie side by side (upright as seen), 1 for those between its rows.
+    /// 0 for the lines between the field's columns, 1 for those between its rows.
     pub family: usize,
-    /// Which of its family, counted in squares; after the identification from the field's first line.
+    /// Which of its family, counted from 0 at the field's left or top border.
     pub index: i64,
     /// Where its found part begins and ends.
     pub ends: [PixelPoint; 2],
@@ -122,13 +122,20 @@ pub struct LineFound {
 /// How the grid lies in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridFound {
-    /// From the field's (column, row), in squares from its top left corner, to the image without its bend, row by row.
+    /// From the field's (column, row), in squares from its top left corner, to places q (px) of the image without its bend, row by row.
     pub homography: [[f64; 3]; 3],
-    /// The bend of straight lines: the image is at `c + (q - c) d(|q - c| / R)`, with q from the homography, c the middle and R half the diagonal of
-    /// the image, and d(r) = 2 / (1 + sqrt(1 - 4 bend r^2)) (division model).
+    /// The bend of straight lines: q is seen at `m + (q - m) 2 / (1 + sqrt(1 - 4 bend s^2))`, with s = |q - m| / `reach` (division model).
     pub bend: f64,
+    /// m: the middle of the image.
+    pub middle: PixelPoint,
+    /// Half the diagonal of the image, px.
+    pub reach: f64,
     /// The root mean square distance of the lines' points from the grid, px.
     pub rms: f64,
+    /// The blur of its lines: the standard deviation of a Gaussian that holds optics, photosites and interpolation, px.
+    pub blur: f64,
+    /// The image was looked at so many times smaller.
+    pub reduced: usize,
 }
 
 /// Something in a whole square that was not recognised.

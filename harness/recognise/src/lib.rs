@@ -4,10 +4,30 @@
 //!
 //! Source: Vosselman & Förstner 1988, sections 3.1 to 3.3.
 
+mod adjust;
+mod bank;
+mod blobs;
+mod contour;
 mod design;
 mod error;
 mod found;
+mod grid;
+mod groups;
+mod hough;
+mod identify;
+mod label;
+mod level;
+mod look;
+mod mapping;
+mod normal;
+mod number;
+mod order;
 mod recogniser;
+mod ridge;
+mod sharpness;
+mod smooth;
+mod square;
+mod table;
 
 pub use design::NotCoded;
 pub use error::NotRecognised;

@@ -2,19 +2,28 @@
 
 use calibench_model::{Image, Testfield};
 
+use crate::bank::Bank;
 use crate::design::{Design, NotCoded};
 use crate::error::NotRecognised;
 use crate::found::Recognition;
+use crate::identify::Places;
+use crate::level::{Level, factors};
+
+/// The shortest side of an image that may hold a square, px.
+const LEAST: usize = 32;
+/// Squares smaller than this, px, are looked at in more detail if there is more.
+const COARSE: f64 = 45.0;
 
 /// How shapes are told apart and squares identified.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Classifier {
     /// As in the paper: features of the contour, a table of likelihoods, the best of six decisions in each size group; squares by the code of their large
-    /// pairs, numbers by topology.
+    /// pairs, numbers by topology. What the design has elsewhere is rejected.
     ///
     /// Source: Vosselman & Förstner 1988, section 3.3.
     Contours,
-    /// Moments of the grey values for the decisions; squares and targets by all places of the design at once, each target held against its drawing.
+    /// Correlation with drawings under the blur of the grid's lines for the decisions; squares and targets by all places of the design at once, each target
+    /// held against its drawing.
     #[default]
     Modern,
 }
@@ -22,8 +31,10 @@ pub enum Classifier {
 /// Recognises one coded field in images.
 #[derive(Clone, Debug)]
 pub struct Recogniser {
-    design: Design,
-    classifier: Classifier,
+    pub(crate) design: Design,
+    pub(crate) places: Vec<Places>,
+    pub(crate) bank: Bank,
+    pub(crate) classifier: Classifier,
 }
 
 impl Recogniser {
@@ -32,7 +43,9 @@ impl Recogniser {
     /// # Errors
     /// A testfield that is not a coded one.
     pub fn new(field: &Testfield, classifier: Classifier) -> Result<Self, NotCoded> {
-        Ok(Self { design: Design::of(field)?, classifier })
+        let design = Design::of(field)?;
+        let (places, bank) = (Places::of(&design), Bank::of(&design));
+        Ok(Self { design, places, bank, classifier })
     }
 
     /// The field in `image`. Deterministic; whole squares only.
@@ -40,7 +53,37 @@ impl Recogniser {
     /// # Errors
     /// An image that does not show the field, or not a whole square of it.
     pub fn recognise(&self, image: &Image) -> Result<Recognition, NotRecognised> {
-        let _ = (&self.design, self.classifier, image);
-        Err(NotRecognised::TooFewLines { found: 0 })
+        let (width, height) = (image.width(), image.height());
+        if width.min(height) < LEAST {
+            return Err(NotRecognised::TooSmall { width, height, least: LEAST });
+        }
+        if !image.grey().iter().all(|grey| grey.is_finite()) {
+            return Err(NotRecognised::NotFinite);
+        }
+        let mut best: Option<Result<Recognition, NotRecognised>> = None;
+        for factor in factors(image) {
+            let level = Level::of(image, factor);
+            if level.image.width().min(level.image.height()) < LEAST {
+                continue;
+            }
+            let found = self.at(&level);
+            let enough = found.as_ref().is_ok_and(|(_, square)| *square >= COARSE);
+            let found = found.map(|(found, _)| found);
+            if best.as_ref().is_none_or(|best| rank(&found) > rank(best)) {
+                best = Some(found);
+            }
+            if enough {
+                break;
+            }
+        }
+        best.unwrap_or(Err(NotRecognised::TooSmall { width, height, least: LEAST }))
+    }
+}
+
+/// How much is known: more targets, then how far it came.
+fn rank(found: &Result<Recognition, NotRecognised>) -> usize {
+    match found {
+        Ok(found) => 10 + found.squares.iter().filter(|square| square.place.is_some()).count() * 16 + found.targets.len(),
+        Err(error) => error.stage(),
     }
 }

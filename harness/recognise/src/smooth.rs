@@ -61,7 +61,12 @@ mod tests {
         let image = smooth(&Image::from_fn(21, 17, |x, y| f32::from(u8::from(x == 10 && y == 8))), 1.5);
         let moment = |i: i32, j: i32| -> f64 {
             let at = |k: usize| (k % 21, k / 21);
-            image.grey().iter().enumerate().map(|(k, &g)| f64::from(g) * (at(k).0 as f64 - 10.0).powi(i) * (at(k).1 as f64 - 8.0).powi(j)).sum()
+            image
+                .grey()
+                .iter()
+                .enumerate()
+                .map(|(k, &g)| f64::from(g) * (at(k).0 as f64 - 10.0).powi(i) * (at(k).1 as f64 - 8.0).powi(j))
+                .sum()
         };
         assert!((moment(0, 0) - 1.0).abs() < 1e-5 && moment(1, 0).abs() < 1e-5 && moment(1, 1).abs() < 1e-5);
         assert!((moment(2, 0) - 2.25).abs() < 0.1 && (moment(0, 2) - 2.25).abs() < 0.1, "{} {}", moment(2, 0), moment(0, 2));
