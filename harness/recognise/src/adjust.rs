@@ -6,7 +6,7 @@ use crate::mapping::{Mapping, Unit, by_bend, by_place, straight};
 use crate::ridge::Ridge;
 
 /// How far from a line its points may be, px, step by step.
-const WITHIN: [f64; 6] = [3.0, 2.0, 1.5, 1.0, 1.0, 1.0];
+const WITHIN: [f64; 6] = [3.0, 2.0, 1.5, 1.0, 0.8, 0.8];
 /// The cosine of the angle between a point's direction and that of its line.
 const ALIGNED: f64 = 0.94;
 /// What is known of the bend beforehand: its standard deviation, and that of a point, px.

@@ -19,8 +19,10 @@ const ALIKE: f64 = 0.9;
 const ACROSS: f64 = 0.82;
 /// Pairs of directions that are tried.
 const PAIRS: usize = 4;
-/// The share of a side's length in which its line must be seen.
-pub(crate) const COVERED: f64 = 0.5;
+/// The share of a side's length in which its line must be seen: blurred lines beside targets are not seen everywhere, and where there is no line a twentieth is.
+const COVERED: f64 = 0.15;
+/// What the points of lines scatter, px: grids through others scatter more.
+const SCATTER: f64 = 0.2;
 /// Sides of squares are looked at in pieces of so many px.
 const PIECE: f64 = 2.5;
 /// A grid of which this share of the sides is seen needs no other try.
@@ -50,7 +52,7 @@ pub(crate) fn find(points: &[Ridge], size: [usize; 2]) -> Result<Grid, NotRecogn
         most = most.max(lines.len());
         for mapping in candidates(&lines, unit, bend) {
             let Some(grid) = Grid::adjusted(&mapping, points, size) else { continue };
-            let score = grid.sides.score();
+            let score = grid.sides.score() / (1.0 + (grid.adjusted.rms / SCATTER).powi(2));
             if best.as_ref().is_none_or(|(least, _)| score > *least) {
                 best = Some((score, grid));
             }
@@ -184,6 +186,8 @@ impl Sides {
         self.shares.get(&side).is_none_or(|share| *share >= COVERED)
     }
 
+    #[cfg(test)]
+    pub fn debug(&self) -> Vec<String> { self.shares.iter().map(|(s, v)| format!("{}:{},{}={:.2}", s.0, s.1, s.2, v)).collect() }
     /// How many sides are seen.
     pub fn seen(&self) -> usize {
         self.shares.values().filter(|share| **share >= COVERED).count()
@@ -212,9 +216,9 @@ impl Sides {
         if all > 0.0 { seen / all } else { 0.0 }
     }
 
-    /// Sides seen less half of those between them that are not.
+    /// What is seen of the sides between the outermost ones, beyond what is seen where there is no line.
     fn score(&self) -> f64 {
-        self.within().map(|share| if share >= COVERED { 1.0 } else { -0.5 }).sum()
+        self.within().map(|share| share - COVERED).sum()
     }
 }
 

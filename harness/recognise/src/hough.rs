@@ -10,13 +10,15 @@ const DIRECTIONS: usize = 180;
 const TURN: i64 = 10;
 /// How far, px, points of a line lie from it at most: at first, and once it is adjusted.
 const FIRST: f64 = 2.0;
-const ADJUSTED: f64 = 1.2;
+const ADJUSTED: f64 = 1.0;
 /// The shortest line, as a share of the image's shorter side and in px.
 const SHORTEST: f64 = 0.15;
 const SHORTEST_PX: f64 = 14.0;
 /// Votes of a line, as a share of the best line's and as a share of its length.
 const OF_BEST: f64 = 0.15;
-const FILLED: f64 = 0.45;
+const FILLED: f64 = 0.25;
+/// The root mean square distance of a line's points, px, at most: points that lie anywhere, or on rows of targets, come to 0.3 to 0.6, those of lines to 0.2.
+const SCATTER: f64 = 0.28;
 /// Lines at most.
 const MOST: usize = 60;
 
@@ -77,7 +79,7 @@ pub(crate) fn lines(points: &[Ridge], reach: f64, side: f64) -> Vec<Line> {
         }
         let Some(line) = line else { continue };
         let length = line.span[1] - line.span[0];
-        if length >= shortest && line.points as f64 >= FILLED * length {
+        if length >= shortest && line.points as f64 >= FILLED * length && line.rms <= SCATTER {
             found.push(line);
         }
     }

@@ -44,7 +44,7 @@ impl Recogniser {
         let (side, sides) = side(mapping, &squares);
         let blur = blur(&level.image, &grid, self.design.line, contrast);
         let bank = self.bank.blurred(sides.map(|side| blur * SIDE as f64 / side));
-        squares.iter_mut().for_each(|square| square.decide(self.classifier, &bank));
+        squares.iter_mut().for_each(|square| square.decide(self.classifier, &self.table, &bank));
         let seen: Vec<Seen> = squares
             .iter()
             .map(|square| Seen { square: square.at, at: square.places(), code: square.decisions.as_ref().map(|d| d.code) })
@@ -213,6 +213,7 @@ impl Look<'_> {
                 group: decisions.map(|d| d.groups[area]),
                 single: decisions.map(|d| d.single[area]),
                 joint: decisions.map(|d| d.joint[area]),
+                features: decisions.map(|d| d.features[area]),
                 target,
             })
         };

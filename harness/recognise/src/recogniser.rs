@@ -8,6 +8,7 @@ use crate::error::NotRecognised;
 use crate::found::Recognition;
 use crate::identify::Places;
 use crate::level::{Level, factors};
+use crate::table::ContourTable;
 
 /// The shortest side of an image that may hold a square, px.
 const LEAST: usize = 32;
@@ -35,6 +36,7 @@ pub struct Recogniser {
     pub(crate) places: Vec<Places>,
     pub(crate) bank: Bank,
     pub(crate) classifier: Classifier,
+    pub(crate) table: ContourTable,
 }
 
 impl Recogniser {
@@ -45,7 +47,13 @@ impl Recogniser {
     pub fn new(field: &Testfield, classifier: Classifier) -> Result<Self, NotCoded> {
         let design = Design::of(field)?;
         let (places, bank) = (Places::of(&design), Bank::of(&design));
-        Ok(Self { design, places, bank, classifier })
+        Ok(Self { design, places, bank, classifier, table: ContourTable::learned() })
+    }
+
+    /// The same with another table of likelihoods of contours.
+    #[must_use]
+    pub fn with_table(self, table: ContourTable) -> Self {
+        Self { table, ..self }
     }
 
     /// The field in `image`. Deterministic; whole squares only.

@@ -8,9 +8,9 @@ use crate::smooth::smooth;
 /// The Gaussian that the second derivatives are taken under, px: lines are about a pixel wide.
 const SIGMA: f64 = 0.9;
 /// Curvature, in its own standard deviations of noise, that counts.
-const ABOVE_NOISE: f32 = 2.2;
+const ABOVE_NOISE: f32 = 2.0;
 /// Curvature that counts, as a share of that of the sharpest fiftieth of the image, which is lines and edges.
-const OF_SHARPEST: f32 = 0.25;
+const OF_SHARPEST: f32 = 0.2;
 /// The largest thousandth of the curvature of an image that shows nothing, in standard deviations of its noise: of a normal distribution 3.1.
 const BLANK: f32 = 4.0;
 /// How far, px, the middle of a line may be from the pixel that it is found at.

@@ -5,13 +5,13 @@ use calibench_model::coded::code;
 
 use crate::bank::{Bank, KINDS};
 use crate::blobs::Areas;
-use crate::contour::features;
+use crate::contour::{Features, features};
 use crate::design::IN_SQUARE;
 use crate::found::SizeGroup;
 use crate::groups::{groups, joint};
 use crate::normal::{Normal, SIDE, to_square};
 use crate::recogniser::Classifier;
-use crate::table::Table;
+use crate::table::ContourTable;
 
 /// A square and its dark areas.
 #[derive(Clone, Debug)]
@@ -30,6 +30,7 @@ pub(crate) struct Decisions {
     pub groups: [SizeGroup; IN_SQUARE],
     pub single: [TargetKind; IN_SQUARE],
     pub joint: [TargetKind; IN_SQUARE],
+    pub features: [Features; IN_SQUARE],
     /// The code of the large pairs as decided jointly.
     pub code: u8,
 }
@@ -46,10 +47,11 @@ impl Square {
     }
 
     /// Decides about its areas.
-    pub fn decide(&mut self, classifier: Classifier, bank: &Bank) {
+    pub fn decide(&mut self, classifier: Classifier, table: &ContourTable, bank: &Bank) {
         let Some(groups) = groups(&self.areas.areas) else { return };
+        let features = std::array::from_fn(|index| features(&self.areas, index));
         let gain = |index: usize| match classifier {
-            Classifier::Contours => Table::learned().gain(groups[index], features(&self.areas, index)),
+            Classifier::Contours => table.gain(groups[index], features[index]),
             Classifier::Modern => {
                 let large = matches!(groups[index], SizeGroup::LargeAngular | SizeGroup::LargeRound);
                 let [first, second] = groups[index].kinds();
@@ -72,6 +74,6 @@ impl Square {
             let mut both = (0..IN_SQUARE).filter(large).map(|index| places[index]);
             [both.next().unwrap_or_default(), both.next().unwrap_or_default()]
         };
-        self.decisions = Some(Decisions { groups, single, joint: jointly, code: code(&KINDS.map(pair)) });
+        self.decisions = Some(Decisions { groups, single, joint: jointly, features, code: code(&KINDS.map(pair)) });
     }
 }

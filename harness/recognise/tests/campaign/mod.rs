@@ -5,7 +5,7 @@
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
 use calibench_model::{Image, PixelPoint, TargetKind, Testfield};
 use calibench_random::Key;
-use calibench_recognise::{Recognition, SizeGroup};
+use calibench_recognise::{Classifier, ContourTable, NotRecognised, Recogniser, Recognition, SizeGroup};
 use calibench_synth::optics::Optics;
 use calibench_synth::raster::Renderer;
 use calibench_synth::sensor::{Design, Noise, Sensor};
@@ -157,7 +157,7 @@ pub fn nearest(shot: &Shot, at: PixelPoint) -> Option<usize> {
 }
 
 impl Counts {
-    pub fn add(&mut self, field: &Testfield, shot: &Shot, found: &Result<Recognition, calibench_recognise::NotRecognised>) {
+    pub fn add(&mut self, field: &Testfield, shot: &Shot, found: &Result<Recognition, NotRecognised>) {
         self.targets += shot.whole.iter().filter(|whole| **whole).count();
         let found = match found {
             Ok(found) => found,
@@ -225,4 +225,30 @@ impl Counts {
             println!("    phi {phi:2}: {}", groups.iter().map(of).collect::<Vec<_>>().join("  | "));
         }
     }
+}
+
+/// The seeds that the table of contours is learned on; no test uses them.
+pub const LEARNED: [u64; 2] = [501, 502];
+/// Blurs, px, and contrasts over noise, dB.
+pub const SETTINGS: [(f64, f64); 5] = [(0.6, 46.0), (0.6, 26.0), (0.8, 30.0), (0.8, 26.0), (1.0, 26.0)];
+
+/// The table of contours of these seeds, over all settings, or of three sharp frontal images of each seed alone.
+pub fn learn(seeds: &[u64], few: bool) -> ContourTable {
+    let mut table = ContourTable::default();
+    let settings = if few { &SETTINGS[..1] } else { &SETTINGS[..] };
+    for (&seed, &(blur, decibel)) in seeds.iter().flat_map(|seed| settings.iter().map(move |setting| (seed, setting))) {
+        let setting = Setting::paper(seed, blur, decibel);
+        let field = setting.testfield();
+        let recogniser = Recogniser::new(&field, Classifier::Modern).expect("a coded field");
+        let (tilts, rolls) = if few { (vec![(0.0, [0.0, 0.0])], vec![0.0, 31.0, 62.0]) } else { (paper_tilts(), vec![0.0, 90.0, 180.0, 270.0]) };
+        for shot in shots(&setting, &field, &tilts, &rolls) {
+            let Ok(found) = recogniser.recognise(&shot.image) else { continue };
+            for blob in found.squares.iter().flat_map(|square| &square.blobs) {
+                if let (Some(target), Some(features)) = (nearest(&shot, blob.position), blob.features) {
+                    table.count(group(&field, target), field.targets[target].kind, features);
+                }
+            }
+        }
+    }
+    table
 }
