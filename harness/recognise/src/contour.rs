@@ -3,15 +3,14 @@
 use crate::blobs::Areas;
 use crate::normal::SIDE;
 
-/// Turns of the contour, degrees, that are features: sharp as of a triangle, right as of a square, concave as of a cross.
-const SHARP: f64 = 97.0;
-const RIGHT: f64 = 62.0;
-const CONCAVE: f64 = -25.0;
+/// Turns of the contour, degrees, that are features: from so many on blunt, right as of a square, sharp as of a triangle; below, concave as of a cross.
+const TURNS: [f64; 3] = [60.0, 80.0, 100.0];
+const CONCAVE: f64 = -15.0;
 /// The steps over which a turn is taken: this share of the contour's length, before and after.
-const STEP: f64 = 1.0 / 11.0;
+const STEP: f64 = 1.0 / 7.0;
 
-/// How often each feature is seen along a contour.
-pub(crate) type Features = [usize; 3];
+/// How often each feature is seen along a contour: blunt, right and sharp angles, and concave ones.
+pub(crate) type Features = [usize; 4];
 
 /// The features of the contour of an area.
 ///
@@ -19,18 +18,15 @@ pub(crate) type Features = [usize; 3];
 pub(crate) fn features(areas: &Areas, index: usize) -> Features {
     let contour = follow(areas, index);
     let n = contour.len();
-    let step = ((n as f64 * STEP).round() as usize).max(2);
-    let mut counts = [0; 3];
+    let step = ((n as f64 * STEP).round() as usize).max(1);
+    let mut counts = [0; 4];
     for i in 0..n {
         let [before, here, after] = [contour[(i + n - step % n) % n], contour[i], contour[(i + step) % n]];
         let (a, b) = (minus(here, before), minus(after, here));
         let turn = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]).to_degrees();
-        if turn > SHARP {
-            counts[0] += 1;
-        } else if turn > RIGHT {
-            counts[1] += 1;
-        } else if turn < CONCAVE {
-            counts[2] += 1;
+        match TURNS.iter().rposition(|least| turn > *least) {
+            Some(feature) => counts[feature] += 1,
+            None => counts[3] += usize::from(turn < CONCAVE),
         }
     }
     counts
@@ -44,7 +40,7 @@ fn minus(a: [i32; 2], b: [i32; 2]) -> [f64; 2] {
 const AROUND: [[i32; 2]; 8] = [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1]];
 
 /// The pixels along the outer border of an area, clockwise as displayed.
-fn follow(areas: &Areas, index: usize) -> Vec<[i32; 2]> {
+pub(crate) fn follow(areas: &Areas, index: usize) -> Vec<[i32; 2]> {
     let area = &areas.areas[index];
     let is = |[x, y]: [i32; 2]| {
         let inside = |v: i32| (0..SIDE as i32).contains(&v);
@@ -93,10 +89,10 @@ mod tests {
     fn a_pixel_and_a_thin_line_are_followed() {
         assert_eq!(follow(&areas(|x, y| x == 0.0 && y == 0.0), 0).len(), 1);
         assert_eq!(follow(&areas(|x, y| x.abs() <= 3.0 && y == 0.0), 0).len(), 12);
-        assert_eq!(features(&areas(|x, y| x == 0.0 && y == 0.0), 0), [0, 0, 0]);
+        assert_eq!(features(&areas(|x, y| x == 0.0 && y == 0.0), 0), [0; 4]);
     }
 
-    /// Corners of triangles are sharp, of squares right, crosses are concave, discs nothing.
+    /// Corners of triangles are sharp, of squares right, crosses are concave, discs nothing of all.
     #[test]
     fn shapes_have_their_features() {
         let half = 10.0;
@@ -112,8 +108,8 @@ mod tests {
             let bar = |a: f64, b: f64| a.abs() <= 12.0 && b.abs() <= 4.0;
             let cross = features(&areas(|x, y| bar(own(x, y).0, own(x, y).1) || bar(own(x, y).1, own(x, y).0)), 0);
             let disc = features(&areas(|x, y| x.hypot(y) <= half), 0);
-            assert!(triangle[0] > square[0] + 3 && square[1] > triangle[1], "{triangle:?} {square:?}");
-            assert!(cross[2] > 4 && disc == [0, 0, 0], "{cross:?} {disc:?}");
+            assert!(triangle[2] > square[2] + 3 && square[1] > triangle[1], "{triangle:?} {square:?}");
+            assert!(cross[3] > 4 && disc == [0; 4], "{cross:?} {disc:?}");
         }
     }
 }

@@ -98,8 +98,8 @@ pub struct Blob {
     pub single: Option<TargetKind>,
     /// What it is taken for together with the other three of its group, of which two are of either kind: the best of six.
     pub joint: Option<TargetKind>,
-    /// How often its contour turns sharply, at about a right angle, and inwards; `None` unless there are sixteen in the square.
-    pub features: Option<[usize; 3]>,
+    /// Along how many pixels of its contour it has a blunt, a right, a sharp and a concave angle; `None` unless there are sixteen in the square.
+    pub features: Option<[usize; 4]>,
     /// The target whose place on the design it has: an index into [`calibench_model::Testfield::targets`]; `None` without one, or one that is not listed.
     pub target: Option<usize>,
 }

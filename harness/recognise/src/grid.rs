@@ -23,6 +23,8 @@ const PAIRS: usize = 4;
 const COVERED: f64 = 0.15;
 /// What the points of lines scatter, px: grids through others scatter more.
 const SCATTER: f64 = 0.2;
+/// Sides of a square that must be seen, or lie at the border of the image.
+const SIDES: usize = 2;
 /// Sides of squares are looked at in pieces of so many px.
 const PIECE: f64 = 2.5;
 /// A grid of which this share of the sides is seen needs no other try.
@@ -120,7 +122,7 @@ impl Grid {
         Some(Self { adjusted, sides })
     }
 
-    /// The squares (column, row) that lie wholly in the image, row by row: their insides, `inset` squares from the lines' middles, and all sides that do are
+    /// The squares (column, row) that lie wholly in the image, row by row: their insides, `inset` squares from the lines' middles, and enough of their sides are
     /// seen.
     pub fn whole(&self, inset: f64, size: [usize; 2]) -> Vec<[i64; 2]> {
         let mapping = &self.adjusted.mapping;
@@ -129,7 +131,7 @@ impl Grid {
             let (x, y) = (column as f64, row as f64);
             let corners = [(inset, inset), (1.0 - inset, inset), (1.0 - inset, 1.0 - inset), (inset, 1.0 - inset)];
             let sides = [(0, column, row), (0, column + 1, row), (1, row, column), (1, row + 1, column)];
-            corners.iter().all(|(dx, dy)| inside(x + dx, y + dy)) && sides.iter().all(|side| self.sides.is_sound(*side))
+            corners.iter().all(|(dx, dy)| inside(x + dx, y + dy)) && sides.iter().filter(|side| self.sides.is_sound(**side)).count() >= SIDES
         };
         self.sides.squares.iter().copied().filter(whole).collect()
     }

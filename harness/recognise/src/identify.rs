@@ -113,7 +113,7 @@ pub(crate) fn identify(design: &Design, places: &[Places], seen: &[Seen], by_cod
         for (turns, mirrored) in (0..4).flat_map(|turns| [(turns, false), (turns, true)]) {
             let at = turned(&seen.at, turns, mirrored);
             for (index, of) in places.iter().enumerate() {
-                if by_code && !mirrored && seen.code != Some(of.code) {
+                if by_code && seen.code != Some(of.code) {
                     continue;
                 }
                 let matches = of.matches(&at);

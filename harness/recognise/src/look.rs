@@ -58,7 +58,7 @@ impl Recogniser {
         Ok((found, side))
     }
 
-    fn squares(&self, level: &Level<'_>, mapping: &Mapping, whole: &[[i64; 2]], inset: usize) -> Vec<Square> {
+    pub(crate) fn squares(&self, level: &Level<'_>, mapping: &Mapping, whole: &[[i64; 2]], inset: usize) -> Vec<Square> {
         let least = SMALLEST * self.design.smallest() * (SIDE * SIDE) as f64;
         let square = |&at: &[i64; 2]| {
             let normal = Normal::of(&level.image, mapping, at)?;

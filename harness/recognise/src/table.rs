@@ -10,7 +10,7 @@ use crate::found::SizeGroup;
 /// Numbers of a feature that the table tells apart; more are counted as the last.
 const COUNTS: usize = 24;
 /// The features, as the file calls them.
-const FEATURES: [&str; 3] = ["sharp", "right", "concave"];
+const FEATURES: [&str; 4] = ["blunt", "right", "sharp", "concave"];
 /// Added to every frequency: what was not seen is not impossible.
 const UNSEEN: f64 = 0.5;
 const HEADER: &str = "size_group,kind,feature,number,frequency";
@@ -69,7 +69,7 @@ impl ContourTable {
     }
 
     /// Counts a contour of a target of this kind; one that is not of the size group is not counted.
-    pub fn count(&mut self, group: SizeGroup, kind: TargetKind, features: [usize; 3]) {
+    pub fn count(&mut self, group: SizeGroup, kind: TargetKind, features: [usize; 4]) {
         let Some(kind) = group.kinds().iter().position(|known| *known == kind) else { return };
         for (feature, number) in features.into_iter().enumerate() {
             self.frequencies[group as usize][kind][feature][number.min(COUNTS - 1)] += 1.0;
@@ -92,7 +92,7 @@ impl ContourTable {
     }
 
     /// The logarithm of the likelihood of the first kind of the group less that of the second; features are taken as independent.
-    pub(crate) fn gain(&self, group: SizeGroup, features: [usize; 3]) -> f64 {
+    pub(crate) fn gain(&self, group: SizeGroup, features: [usize; 4]) -> f64 {
         let of = |kind: usize| -> f64 {
             let of_feature = |(feature, &count): (usize, &usize)| {
                 let frequencies = &self.frequencies[group as usize][kind][feature];
@@ -130,18 +130,18 @@ mod tests {
              small squares and triangles,triangle,sharp,7,20\n"
         );
         let table = ContourTable::parse(&text).unwrap();
-        let gain = table.gain(SizeGroup::SmallAngular, [2, 0, 0]);
+        let gain = table.gain(SizeGroup::SmallAngular, [0, 0, 2, 0]);
         assert!((gain - ((30.5_f64 / 42.0) / (10.5 / 42.0)).ln()).abs() < 1e-12, "{gain}");
-        assert!((table.gain(SizeGroup::SmallAngular, [7, 0, 0]) - ((0.5 / 42.0) / (20.5_f64 / 42.0)).ln()).abs() < 1e-12);
-        assert!(table.gain(SizeGroup::LargeRound, [2, 0, 0]).abs() < 1e-12, "nothing known of it");
+        assert!((table.gain(SizeGroup::SmallAngular, [0, 0, 7, 0]) - ((0.5 / 42.0) / (20.5_f64 / 42.0)).ln()).abs() < 1e-12);
+        assert!(table.gain(SizeGroup::LargeRound, [0, 0, 2, 0]).abs() < 1e-12, "nothing known of it");
     }
 
     #[test]
     fn what_was_counted_is_read_again_and_wrong_lines_are_named() {
         let mut table = ContourTable::default();
-        table.count(SizeGroup::LargeRound, TargetKind::Cross, [1, 2, 99]);
-        table.count(SizeGroup::LargeRound, TargetKind::Cross, [1, 0, 0]);
-        table.count(SizeGroup::LargeRound, TargetKind::Square, [1, 0, 0]);
+        table.count(SizeGroup::LargeRound, TargetKind::Cross, [0, 2, 1, 99]);
+        table.count(SizeGroup::LargeRound, TargetKind::Cross, [0, 0, 1, 0]);
+        table.count(SizeGroup::LargeRound, TargetKind::Square, [0, 0, 1, 0]);
         let text = table.to_csv();
         assert!(text.contains("large crosses and discs,cross,sharp,1,2\n") && text.contains("cross,concave,23,1\n") && !text.contains("square"));
         assert_eq!(ContourTable::parse(&text), Ok(table));
