@@ -23,6 +23,8 @@ const PAIRS: usize = 4;
 const COVERED: f64 = 0.15;
 /// What the points of lines scatter, px: grids through others scatter more.
 const SCATTER: f64 = 0.2;
+/// How far a square's inside may seem to leave the image, px.
+const BORDER: f64 = 0.3;
 /// Sides of a square that must be seen, or lie at the border of the image.
 const SIDES: usize = 2;
 /// Sides of squares are looked at in pieces of so many px.
@@ -126,7 +128,7 @@ impl Grid {
     /// seen.
     pub fn whole(&self, inset: f64, size: [usize; 2]) -> Vec<[i64; 2]> {
         let mapping = &self.adjusted.mapping;
-        let inside = |x: f64, y: f64| mapping.image([x, y]).is_some_and(|at| is_inside(at, size, 0.0));
+        let inside = |x: f64, y: f64| mapping.image([x, y]).is_some_and(|at| is_inside(at, size, -BORDER));
         let whole = |&[column, row]: &[i64; 2]| {
             let (x, y) = (column as f64, row as f64);
             let corners = [(inset, inset), (1.0 - inset, inset), (1.0 - inset, 1.0 - inset), (inset, 1.0 - inset)];

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, unreachable_pub)]
 
+use std::collections::BTreeMap;
+
 use calibench_model::camera::{Camera, CameraModel, ImageSize, Photogrammetric};
 use calibench_model::{Image, PixelPoint, TargetKind, Testfield};
 use calibench_random::Key;
@@ -137,6 +139,8 @@ pub struct Counts {
     /// Areas that belong to no target, or whose size group is wrong.
     pub stray: usize,
     pub other_group: usize,
+    /// Why targets and squares were rejected.
+    pub rejected: BTreeMap<&'static str, usize>,
 }
 
 fn group(field: &Testfield, target: usize) -> SizeGroup {
@@ -163,6 +167,9 @@ impl Counts {
             Ok(found) => found,
             Err(error) => return self.not_recognised.push(format!("{}: {error}", shot.name)),
         };
+        for rejected in &found.rejected {
+            *self.rejected.entry(rejected.reason.name()).or_default() += 1;
+        }
         for recognised in &found.targets {
             let truth = &shot.truth[recognised.target];
             let off = truth.at.map_or(f64::MAX, |at| at.distance(recognised.position));
@@ -216,6 +223,7 @@ impl Counts {
             self.other_group,
             self.not_recognised.len()
         );
+        println!("    rejected: {:?}", self.rejected);
         self.not_recognised.iter().take(2).for_each(|error| println!("    {error}"));
         for (phi, groups) in [0, 30, 45].iter().zip(&self.decisions) {
             let of = |[all, single, joint]: &[usize; 3]| {
