@@ -29,8 +29,8 @@ pub(crate) struct Bank {
 struct Shape {
     /// Pixels from the middle of a drawing to its border.
     half: usize,
-    /// Pixels that are compared: columns of each row, from the middle.
-    reach: f64,
+    /// Pixels that are compared: of each row from the top of a drawing the first, and how many.
+    rows: Vec<[usize; 2]>,
     /// After which turn it looks the same, radians.
     period: f64,
     /// Turned by equal parts of the period.
@@ -93,17 +93,21 @@ impl Bank {
     pub fn blurred(&self, sigmas: [f64; 2]) -> Self {
         let kernels = sigmas.map(gaussian);
         let shapes = self.shapes.iter().map(|shape| Shape {
-            drawings: shape.drawings.iter().map(|drawing| shape.normalised(shape.smoothed(drawing, &kernels))).collect(),
+            drawings: shape.drawings.iter().map(|drawing| normalised(shape.packed(&shape.smoothed(drawing, &kernels)))).collect(),
             ..shape.clone()
         });
         Self { shapes: shapes.collect() }
     }
 
-    /// The correlation of what is seen around a place with a kind that is turned so (radians), or in the turn that fits best. Of a blurred bank.
-    pub fn likeness(&self, normal: &Normal, centre: [f64; 2], (kind, large): (TargetKind, bool), turn: Option<f64>) -> f64 {
+    /// What is seen around a place, to be compared with the two kinds of a size group.
+    pub fn seen(&self, normal: &Normal, centre: [f64; 2], (kind, large): (TargetKind, bool)) -> Patch {
+        Patch(normalised(self.shapes[index(kind, large)].seen(normal, centre)))
+    }
+
+    /// The correlation of what is seen with a kind that is turned so (radians), or in the turn that fits best. Of a blurred bank.
+    pub fn likeness(&self, Patch(patch): &Patch, (kind, large): (TargetKind, bool), turn: Option<f64>) -> f64 {
         let shape = &self.shapes[index(kind, large)];
-        let patch = shape.normalised(shape.seen(normal, centre));
-        let compare = |drawing: &Vec<f32>| f64::from(dot(&patch, drawing));
+        let compare = |drawing: &Vec<f32>| f64::from(dot(patch, drawing));
         match turn {
             Some(turn) => {
                 let n = shape.drawings.len();
@@ -114,6 +118,9 @@ impl Bank {
         }
     }
 }
+
+/// The surroundings of a place, of mean 0 and length 1.
+pub(crate) struct Patch(Vec<f32>);
 
 impl Shape {
     fn drawn(kind: TargetKind, size: f64, reach: f64) -> Self {
@@ -130,58 +137,95 @@ impl Shape {
             };
             (0..(2 * half + 1).pow(2)).map(pixel).collect()
         };
-        Self { half, reach, period: period(kind), drawings: (0..turns).map(drawing).collect() }
+        let row = |j: usize| {
+            let off = j as f64 - half as f64;
+            let wide = (reach * reach - off * off).max(0.0).sqrt() as usize;
+            [half - wide, 2 * wide + 1]
+        };
+        Self { half, rows: (0..=2 * half).map(row).collect(), period: period(kind), drawings: (0..turns).map(drawing).collect() }
     }
 
     fn side(&self) -> usize {
         2 * self.half + 1
     }
 
+    /// Beyond a drawing is paper.
     fn smoothed(&self, drawing: &[f32], [along, across]: &[Vec<f32>; 2]) -> Vec<f32> {
         let side = self.side();
-        let pass = |values: &[f32], kernel: &[f32], step: usize| {
-            let reach = (kernel.len() / 2) as i64;
-            let mut out = vec![0.0_f32; values.len()];
-            for (at, sum) in out.iter_mut().enumerate() {
-                let place = (if step == 1 { at % side } else { at / side }) as i64;
-                for (k, weight) in kernel.iter().enumerate() {
-                    let from = place + k as i64 - reach;
-                    if (0..side as i64).contains(&from) {
-                        *sum += weight * values[(at as i64 + (from - place) * step as i64) as usize];
-                    }
+        let (reach, mut rows) = (along.len() / 2, vec![0.0_f32; drawing.len()]);
+        let mut padded = vec![0.0_f32; side + 2 * reach];
+        for (row, sums) in drawing.chunks_exact(side).zip(rows.chunks_exact_mut(side)) {
+            padded[reach..reach + side].copy_from_slice(row);
+            for (k, &weight) in along.iter().enumerate() {
+                sums.iter_mut().zip(&padded[k..]).for_each(|(sum, value)| *sum += weight * value);
+            }
+        }
+        let (reach, mut both) = ((across.len() / 2) as i64, vec![0.0_f32; drawing.len()]);
+        for (j, sums) in both.chunks_exact_mut(side).enumerate() {
+            for (k, &weight) in across.iter().enumerate() {
+                let from = j as i64 + k as i64 - reach;
+                if (0..side as i64).contains(&from) {
+                    sums.iter_mut().zip(&rows[from as usize * side..]).for_each(|(sum, value)| *sum += weight * value);
                 }
             }
-            out
-        };
-        pass(&pass(drawing, along, 1), across, side)
+        }
+        both
     }
 
+    /// The pixels that are compared, row by row.
+    fn packed(&self, drawing: &[f32]) -> Vec<f32> {
+        let row = |(j, [first, count]): (usize, &[usize; 2])| &drawing[j * self.side() + first..][..*count];
+        self.rows.iter().enumerate().flat_map(row).copied().collect()
+    }
+
+    /// The same of what is seen around a place, between pixels linearly; beyond the normal image paper.
     fn seen(&self, normal: &Normal, [x, y]: [f64; 2]) -> Vec<f32> {
-        let offset = |i: usize| i as f64 - self.half as f64;
-        (0..self.side()).flat_map(|j| (0..self.side()).map(move |i| normal.at(x + offset(i), y + offset(j)))).collect()
-    }
-
-    /// Of mean 0 and length 1 over the pixels that are compared, and 0 elsewhere.
-    fn normalised(&self, mut values: Vec<f32>) -> Vec<f32> {
-        let side = self.side();
-        let compared = |at: usize| {
-            let offset = |i: usize| i as f64 - self.half as f64;
-            offset(at % side).hypot(offset(at / side)) <= self.reach
+        let (left, top) = (x - self.half as f64, y - self.half as f64);
+        let (i, j) = (left.floor() as i64, top.floor() as i64);
+        let (a, b) = ((left - i as f64) as f32, (top - j as f64) as f32);
+        let at = |x: i64, y: i64| {
+            let inside = (0..SIDE as i64).contains(&x) && (0..SIDE as i64).contains(&y);
+            if inside { normal.dark[y as usize * SIDE + x as usize] } else { 0.0 }
         };
-        let (mut sum, mut count) = (0.0, 0.0);
-        for at in (0..values.len()).filter(|&at| compared(at)) {
-            sum += values[at];
-            count += 1.0;
+        let mut seen = Vec::with_capacity(self.side() * self.side());
+        for (row, [first, count]) in self.rows.iter().enumerate() {
+            let (x, y) = (i + *first as i64, j + row as i64);
+            let inside = x >= 0 && y >= 0 && x + (*count as i64) < SIDE as i64 && y + 1 < SIDE as i64;
+            if inside {
+                let from = y as usize * SIDE + x as usize;
+                let (upper, lower) = (&normal.dark[from..=from + count], &normal.dark[from + SIDE..=from + SIDE + count]);
+                let between = |(u, l): (&[f32], &[f32])| (1.0 - b) * ((1.0 - a) * u[0] + a * u[1]) + b * ((1.0 - a) * l[0] + a * l[1]);
+                seen.extend(upper.windows(2).zip(lower.windows(2)).map(between));
+            } else {
+                let between =
+                    |x: i64| (1.0 - b) * ((1.0 - a) * at(x, y) + a * at(x + 1, y)) + b * ((1.0 - a) * at(x, y + 1) + a * at(x + 1, y + 1));
+                seen.extend((x..x + *count as i64).map(between));
+            }
         }
-        let mut squares = 0.0;
-        for (at, value) in values.iter_mut().enumerate() {
-            *value = if compared(at) { *value - sum / count } else { 0.0 };
-            squares += *value * *value;
-        }
-        let length = squares.sqrt().max(1e-6);
-        values.iter_mut().for_each(|value| *value /= length);
-        values
+        seen
     }
+}
+
+/// Of mean 0 and length 1.
+fn normalised(mut values: Vec<f32>) -> Vec<f32> {
+    let mean = sum(&values) / values.len() as f32;
+    values.iter_mut().for_each(|value| *value -= mean);
+    let length = dot(&values, &values).sqrt().max(1e-6);
+    values.iter_mut().for_each(|value| *value /= length);
+    values
+}
+
+/// In eight sums side by side, as [`dot`].
+fn sum(values: &[f32]) -> f32 {
+    let mut sums = [0.0_f32; 8];
+    let parts = values.chunks_exact(8);
+    let rest: f32 = parts.remainder().iter().sum();
+    for part in parts {
+        for lane in 0..8 {
+            sums[lane] += part[lane];
+        }
+    }
+    sums.iter().sum::<f32>() + rest
 }
 
 /// In eight sums side by side.

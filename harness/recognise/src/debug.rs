@@ -1,6 +1,6 @@
 #[path = "../tests/campaign/mod.rs"]
 mod campaign;
-use crate::{grid, ridge, hough, mapping};
+use crate::{grid, hough, mapping, ridge};
 #[test]
 fn debug() {
     let blur: f64 = std::env::var("BLUR").unwrap().parse().unwrap();
@@ -9,14 +9,33 @@ fn debug() {
     let field = setting.testfield();
     for shot in campaign::shots(&setting, &field, &[(45.0, [0.0, tilt])], &[0.0, 90.0]) {
         let points = ridge::ridges(&shot.image);
-        let Ok(points) = points else { println!("{points:?}"); continue };
+        let Ok(points) = points else {
+            println!("{points:?}");
+            continue;
+        };
         let unit = mapping::Unit::of(240, 240);
         let s: Vec<_> = points.iter().map(|p| grid::straightened(p, unit, 0.0)).collect();
         let lines = hough::lines(&s, unit.reach * 1.5, 240.0);
         println!("{} points", points.len());
-        for l in &lines { println!("  {:?} r {:.1} span {:.0?} n {} rms {:.2}", l.normal[1].atan2(l.normal[0]).to_degrees().round(), l.r, l.span, l.points, l.rms); }
+        for l in &lines {
+            println!(
+                "  {:?} r {:.1} span {:.0?} n {} rms {:.2}",
+                l.normal[1].atan2(l.normal[0]).to_degrees().round(),
+                l.r,
+                l.span,
+                l.points,
+                l.rms
+            );
+        }
         match grid::find(&points, [240, 240]) {
-            Ok(g) => println!("grid rms {:.3} bend {:.4} n {} share {:.2} sides {:?}", g.adjusted.rms, g.adjusted.mapping.bend, g.adjusted.on.len(), g.sides.share(), g.sides.debug()),
+            Ok(g) => println!(
+                "grid rms {:.3} bend {:.4} n {} share {:.2} sides {:?}",
+                g.adjusted.rms,
+                g.adjusted.mapping.bend,
+                g.adjusted.on.len(),
+                g.sides.share(),
+                g.sides.debug()
+            ),
             Err(e) => println!("{e}"),
         }
     }
@@ -42,7 +61,16 @@ fn dump() {
                     let Some(t) = campaign::nearest(&shot, calibench_model::PixelPoint::new(at[0], at[1])) else { continue };
                     let c = crate::contour::follow(&square.areas, i);
                     let s: Vec<String> = c.iter().map(|p| format!("{},{}", p[0], p[1])).collect();
-                    writeln!(out, "{blur} {} {} {} {} {}", shot.phi, groups[i] as usize, field.targets[t].kind, square.areas.areas[i].size, s.join(";")).unwrap();
+                    writeln!(
+                        out,
+                        "{blur} {} {} {} {} {}",
+                        shot.phi,
+                        groups[i] as usize,
+                        field.targets[t].kind,
+                        square.areas.areas[i].size,
+                        s.join(";")
+                    )
+                    .unwrap();
                 }
             }
         }

@@ -133,7 +133,8 @@ impl Grid {
             let (x, y) = (column as f64, row as f64);
             let corners = [(inset, inset), (1.0 - inset, inset), (1.0 - inset, 1.0 - inset), (inset, 1.0 - inset)];
             let sides = [(0, column, row), (0, column + 1, row), (1, row, column), (1, row + 1, column)];
-            corners.iter().all(|(dx, dy)| inside(x + dx, y + dy)) && sides.iter().filter(|side| self.sides.is_sound(**side)).count() >= SIDES
+            corners.iter().all(|(dx, dy)| inside(x + dx, y + dy))
+                && sides.iter().filter(|side| self.sides.is_sound(**side)).count() >= SIDES
         };
         self.sides.squares.iter().copied().filter(whole).collect()
     }
@@ -191,7 +192,9 @@ impl Sides {
     }
 
     #[cfg(test)]
-    pub fn debug(&self) -> Vec<String> { self.shares.iter().map(|(s, v)| format!("{}:{},{}={:.2}", s.0, s.1, s.2, v)).collect() }
+    pub fn debug(&self) -> Vec<String> {
+        self.shares.iter().map(|(s, v)| format!("{}:{},{}={:.2}", s.0, s.1, s.2, v)).collect()
+    }
     /// How many sides are seen.
     pub fn seen(&self) -> usize {
         self.shares.values().filter(|share| **share >= COVERED).count()

@@ -91,6 +91,8 @@ struct Votes {
     counts: Vec<f32>,
     distances: usize,
     normals: Vec<[f64; 2]>,
+    /// For each direction the distance with the most votes, and these; `None` after a change.
+    most: Vec<Option<(usize, f32)>>,
 }
 
 impl Votes {
@@ -98,7 +100,7 @@ impl Votes {
         let distances = 2 * reach.ceil() as usize + 4;
         let normal = |degrees: usize| (degrees as f64 * PI / DIRECTIONS as f64).sin_cos();
         let normals = (0..DIRECTIONS).map(normal).map(|(sine, cosine)| [cosine, sine]).collect();
-        Self { counts: vec![0.0; DIRECTIONS * distances], distances, normals }
+        Self { counts: vec![0.0; DIRECTIONS * distances], distances, normals, most: vec![None; DIRECTIONS] }
     }
 
     /// Votes for all lines through a point that run about as it does.
@@ -111,27 +113,33 @@ impl Votes {
             let r = point.at[0] * nx + point.at[1] * ny + 0.5 * self.distances as f64;
             let (cell, part) = (r.floor(), r - r.floor());
             let first = direction * self.distances + (cell as usize).min(self.distances - 2);
+            self.most[direction] = None;
             self.counts[first] += (weight * (1.0 - part)) as f32;
             self.counts[first + 1] += (weight * part) as f32;
         }
     }
 
     /// The line with the most votes.
-    fn best(&self) -> ([f64; 2], f64, f64) {
-        let mut best = (0, f32::MIN);
-        for (index, &count) in self.counts.iter().enumerate() {
-            if count > best.1 {
-                best = (index, count);
+    fn best(&mut self) -> ([f64; 2], f64, f64) {
+        let mut best = (0, 0, f32::MIN);
+        for (direction, most) in self.most.iter_mut().enumerate() {
+            let of = &self.counts[direction * self.distances..(direction + 1) * self.distances];
+            let (cell, count) = *most.get_or_insert_with(|| {
+                let most = of.iter().fold(f32::MIN, |most, &count| most.max(count));
+                (of.iter().position(|&count| count == most).unwrap_or(0), most)
+            });
+            if count > best.2 {
+                best = (direction, cell, count);
             }
         }
-        let (direction, cell) = (best.0 / self.distances, best.0 % self.distances);
-        (self.normals[direction], cell as f64 - 0.5 * self.distances as f64, f64::from(best.1))
+        (self.normals[best.0], best.1 as f64 - 0.5 * self.distances as f64, f64::from(best.2))
     }
 
     /// Takes the votes of a line to which no points belong.
     fn clear(&mut self, [nx, ny]: [f64; 2], r: f64) -> Vec<usize> {
         let direction = (ny.atan2(nx).to_degrees().round() as usize) % DIRECTIONS;
         let cell = (r + 0.5 * self.distances as f64).round() as usize;
+        self.most[direction] = None;
         self.counts[direction * self.distances + cell.min(self.distances - 1)] = 0.0;
         Vec::new()
     }

@@ -46,12 +46,14 @@ impl Places {
 
     fn of_square(targets: &[Printed; IN_SQUARE], corner: [f64; 2]) -> Self {
         let mut cells = vec![0; FINE * FINE];
-        for (at, cell) in cells.iter_mut().enumerate() {
-            let place = [at % FINE, at / FINE].map(|i| (i as f64 + 0.5) / FINE as f64);
-            let off = |p: &Printed| (p.at[0] - corner[0] - place[0]).hypot(p.at[1] - corner[1] - place[1]);
-            let near = (0..IN_SQUARE).min_by(|&a, &b| off(&targets[a]).total_cmp(&off(&targets[b])));
-            if let Some(near) = near.filter(|&near| off(&targets[near]) < NEAR) {
-                *cell = near as u8 + 1;
+        let middle = |i: usize| (i as f64 + 0.5) / FINE as f64;
+        let around = |v: f64| ((v - NEAR) * FINE as f64).max(0.0) as usize..((v + NEAR) * FINE as f64 + 1.0).min(FINE as f64) as usize;
+        for (number, printed) in targets.iter().enumerate() {
+            let at = [printed.at[0] - corner[0], printed.at[1] - corner[1]];
+            for (x, y) in around(at[1]).flat_map(|y| around(at[0]).map(move |x| (x, y))) {
+                if (middle(x) - at[0]).powi(2) + (middle(y) - at[1]).powi(2) < NEAR * NEAR {
+                    cells[y * FINE + x] = number as u8 + 1;
+                }
             }
         }
         let pair = |kind: TargetKind| {
@@ -61,17 +63,10 @@ impl Places {
         Self { cells, code: code(&KINDS.map(pair)) }
     }
 
-    /// How many of its targets are seen at these places.
-    fn matches(&self, at: &[[f64; 2]]) -> usize {
-        let mut seen = 0_u32;
-        for place in at {
-            let [x, y] = place.map(|v| ((v * FINE as f64) as usize).min(FINE - 1));
-            let number = self.cells[y * FINE + x];
-            if number > 0 {
-                seen |= 1 << number;
-            }
-        }
-        seen.count_ones() as usize
+    /// How many of its targets are seen at these cells.
+    fn matches(&self, at: &[usize]) -> usize {
+        let seen = at.iter().fold(0_u32, |seen, &cell| seen | 1 << self.cells[cell]);
+        (seen >> 1).count_ones() as usize
     }
 }
 
@@ -83,10 +78,14 @@ pub(crate) struct Identified {
     pub explained: Vec<Option<bool>>,
 }
 
-/// The turn of places within a square.
-fn turned(at: &[[f64; 2]], turns: usize, mirrored: bool) -> Vec<[f64; 2]> {
+/// The cells of [`Places`] of places within a square that is turned.
+fn turned(at: &[[f64; 2]], turns: usize, mirrored: bool) -> Vec<usize> {
     let place = Place { turns, mirrored, shift: [0, 0] };
-    at.iter().map(|[x, y]| place.direction([x - 0.5, y - 0.5]).map(|v| v + 0.5)).collect()
+    let cell = |[x, y]: &[f64; 2]| {
+        let [x, y] = place.direction([x - 0.5, y - 0.5]).map(|v| (((v + 0.5) * FINE as f64) as usize).min(FINE - 1));
+        y * FINE + x
+    };
+    at.iter().map(cell).collect()
 }
 
 /// The place that brings a square of the grid to one of the field (row, column), turned so.

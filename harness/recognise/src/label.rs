@@ -59,7 +59,8 @@ pub(crate) fn label(square: &Square, design: &Design, place: &Place, classifier:
         };
         labels.by_place[area] = Some(index);
         let turn = printed.axes[0][1].atan2(printed.axes[0][0]) - place.turns as f64 * FRAC_PI_2;
-        let likeness = bank.likeness(&square.normal, square.areas.areas[area].centre, (printed.kind, printed.large), Some(turn));
+        let shape = (printed.kind, printed.large);
+        let likeness = bank.likeness(&bank.seen(&square.normal, square.areas.areas[area].centre, shape), shape, Some(turn));
         let wrong = match (&told, classifier) {
             (Some(told), _) => (told[area] != Some(index)).then(|| other(square, area)),
             (None, Classifier::Contours) => Some(Reason::Count { found: on_field.len() }),

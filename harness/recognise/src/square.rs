@@ -55,7 +55,8 @@ impl Square {
             Classifier::Modern => {
                 let large = matches!(groups[index], SizeGroup::LargeAngular | SizeGroup::LargeRound);
                 let [first, second] = groups[index].kinds();
-                let like = |kind: TargetKind| bank.likeness(&self.normal, self.areas.areas[index].centre, (kind, large), None);
+                let seen = bank.seen(&self.normal, self.areas.areas[index].centre, (first, large));
+                let like = |kind: TargetKind| bank.likeness(&seen, (kind, large), None);
                 like(first) - like(second)
             }
         };

@@ -143,7 +143,9 @@ mod tests {
         table.count(SizeGroup::LargeRound, TargetKind::Cross, [0, 0, 1, 0]);
         table.count(SizeGroup::LargeRound, TargetKind::Square, [0, 0, 1, 0]);
         let text = table.to_csv();
-        assert!(text.contains("large crosses and discs,cross,sharp,1,2\n") && text.contains("cross,concave,23,1\n") && !text.contains("square"));
+        assert!(
+            text.contains("large crosses and discs,cross,sharp,1,2\n") && text.contains("cross,concave,23,1\n") && !text.contains("square")
+        );
         assert_eq!(ContourTable::parse(&text), Ok(table));
         let error = ContourTable::parse(&text.replace("concave,23", "concave,24")).unwrap_err();
         assert_eq!(error.text, "large crosses and discs,cross,concave,24,1");

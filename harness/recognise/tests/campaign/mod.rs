@@ -248,7 +248,8 @@ pub fn learn(seeds: &[u64], few: bool) -> ContourTable {
         let setting = Setting::paper(seed, blur, decibel);
         let field = setting.testfield();
         let recogniser = Recogniser::new(&field, Classifier::Modern).expect("a coded field");
-        let (tilts, rolls) = if few { (vec![(0.0, [0.0, 0.0])], vec![0.0, 31.0, 62.0]) } else { (paper_tilts(), vec![0.0, 90.0, 180.0, 270.0]) };
+        let (tilts, rolls) =
+            if few { (vec![(0.0, [0.0, 0.0])], vec![0.0, 31.0, 62.0]) } else { (paper_tilts(), vec![0.0, 90.0, 180.0, 270.0]) };
         for shot in shots(&setting, &field, &tilts, &rolls) {
             let Ok(found) = recogniser.recognise(&shot.image) else { continue };
             for blob in found.squares.iter().flat_map(|square| &square.blobs) {
