@@ -1,6 +1,7 @@
 //! The vocabulary of calibench: frames, images, targets, observations. No I/O, no randomness.
 
 pub mod camera;
+pub mod coded;
 pub mod convert;
 pub mod eccentricity;
 pub mod escape;

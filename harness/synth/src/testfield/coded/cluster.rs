@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use calibench_model::coded::code;
 use calibench_model::testfield::PlatePoint;
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
@@ -86,25 +87,11 @@ fn order(places: &mut [[PlatePoint; 2]; PAIRS], clear: f64) -> bool {
     true
 }
 
-/// The code of a square from the places of its large pairs: squares, triangles, crosses, discs, in either order within a pair.
-///
-/// Bit 0 is set if the segment between the squares crosses that between the triangles, bit 1 for squares and crosses, bit 2 for squares and discs, bit 3 for
-/// triangles and crosses, bit 4 for triangles and discs, bit 5 for crosses and discs. Turning the field, and any perspective view, leaves it as it is.
-pub fn code(large: &[[PlatePoint; 2]; 4]) -> u8 {
-    let pairs = (0..4).flat_map(|i| (i + 1..4).map(move |j| (i, j)));
-    pairs.enumerate().map(|(bit, (i, j))| u8::from(cross(large[i], large[j])) << bit).sum()
-}
-
 /// The code, if no segment passes nearer than `clear` to an end of another.
 fn clear_code(large: &[[PlatePoint; 2]; 4], clear: f64) -> Option<u8> {
     let near = |a: usize, b: usize| large[b].iter().any(|&end| from_segment(end, large[a]) < clear);
     let close = (0..4).any(|a| (0..4).any(|b| a != b && near(a, b)));
     (!close).then(|| code(large))
-}
-
-fn cross([a, b]: [PlatePoint; 2], [c, d]: [PlatePoint; 2]) -> bool {
-    let side = |p: PlatePoint, q: PlatePoint, r: PlatePoint| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) > 0.0;
-    side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b)
 }
 
 fn distance(a: PlatePoint, b: PlatePoint) -> f64 {

@@ -10,8 +10,8 @@ use super::{FieldError, Levels, Shape, SheetBend, check};
 
 mod cluster;
 
+pub use calibench_model::coded::code;
 use cluster::Cluster;
-pub use cluster::code;
 
 /// The four shapes, in the order of sizes and codes. The bars of crosses are a third of their length wide.
 pub const SHAPES: [Shape; 4] = [Shape::Square, Shape::Triangle, Shape::Cross { bar: BAR }, Shape::Disc];

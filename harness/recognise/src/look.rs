@@ -1,0 +1,223 @@
+//! One look at an image: from grey values to what is found.
+
+use calibench_model::PixelPoint;
+
+use crate::adjust::OnLine;
+use crate::bank::Bank;
+use crate::blobs::Areas;
+use crate::design::Printed;
+use crate::error::NotRecognised;
+use crate::found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rejected, SquareFound};
+use crate::grid::{self, Grid, straightened};
+use crate::hough::fit;
+use crate::identify::{Identified, Seen, identify};
+use crate::label::{Labels, affine, label};
+use crate::level::Level;
+use crate::mapping::{Mapping, Place};
+use crate::normal::{Normal, SIDE};
+use crate::recogniser::{Classifier, Recogniser};
+use crate::ridge::{Ridge, ridges};
+use crate::sharpness::blur;
+use crate::square::Square;
+
+/// What lies nearer to the middle of a line than its half width and this, in squares, is the line's.
+const INSET: f64 = 0.011;
+/// The least contrast of a square, as a share of the best one's.
+const CONTRAST: f64 = 0.3;
+/// Dark areas smaller than this share of the smallest target are none.
+const SMALLEST: f64 = 0.2;
+
+impl Recogniser {
+    /// The field in one of the sizes of an image, and the side of a square in it, px.
+    pub(crate) fn at(&self, level: &Level<'_>) -> Result<(Recognition, f64), NotRecognised> {
+        let points = ridges(&level.image)?;
+        let grid = grid::find(&points, level.size())?;
+        let mapping = &grid.adjusted.mapping;
+        let inset = 0.5 * self.design.line + INSET;
+        let whole = grid.whole(inset, level.size());
+        if whole.is_empty() {
+            return Err(NotRecognised::NoWholeSquare);
+        }
+        let mut squares = self.squares(level, mapping, &whole, (inset * SIDE as f64).round() as usize);
+        let contrast = squares.iter().map(|square| square.normal.contrast).fold(0.0, f64::max);
+        squares.retain(|square| square.normal.contrast >= CONTRAST * contrast);
+        let (side, sides) = side(mapping, &squares);
+        let blur = blur(&level.image, &grid, self.design.line, contrast);
+        let bank = self.bank.blurred(sides.map(|side| blur * SIDE as f64 / side));
+        squares.iter_mut().for_each(|square| square.decide(self.classifier, &self.table, &bank));
+        let seen: Vec<Seen> = squares
+            .iter()
+            .map(|square| Seen { square: square.at, at: square.places(), code: square.decisions.as_ref().map(|d| d.code) })
+            .collect();
+        let identified = identify(&self.design, &self.places, &seen, self.classifier == Classifier::Contours)?;
+        let on_field = mapping.moved(&identified.place).ok_or(NotRecognised::NoWholeSquare)?;
+        let look = Look { recogniser: self, level, on_field, place: identified.place, bank: &bank };
+        let mut found = look.recognition(&grid, &points, blur);
+        look.squares(&squares, &identified, &mut found);
+        found.targets.sort_by_key(|recognised| recognised.target);
+        Ok((found, side))
+    }
+
+    pub(crate) fn squares(&self, level: &Level<'_>, mapping: &Mapping, whole: &[[i64; 2]], inset: usize) -> Vec<Square> {
+        let least = SMALLEST * self.design.smallest() * (SIDE * SIDE) as f64;
+        let square = |&at: &[i64; 2]| {
+            let normal = Normal::of(&level.image, mapping, at)?;
+            let areas = Areas::of(&normal, inset, least);
+            Some(Square { at, normal, areas, decisions: None })
+        };
+        whole.iter().filter_map(square).collect()
+    }
+}
+
+/// The side of a square in the mean of the squares, px; that along x and that along y of the grid.
+fn side(mapping: &Mapping, squares: &[Square]) -> (f64, [f64; 2]) {
+    let middle = |square: &Square| mapping.by_grid(square.at.map(|v| v as f64 + 0.5));
+    let all: Vec<[f64; 2]> = squares.iter().filter_map(middle).map(|by| [by.column(0).norm(), by.column(1).norm()]).collect();
+    let mean = [0, 1].map(|i| all.iter().map(|sides| sides[i]).sum::<f64>() / all.len().max(1) as f64);
+    ((mean[0] * mean[1]).sqrt(), mean.map(|side| side.max(1.0)))
+}
+
+/// What a look needs to tell what it sees.
+struct Look<'a> {
+    recogniser: &'a Recogniser,
+    level: &'a Level<'a>,
+    /// From the field to the image.
+    on_field: Mapping,
+    place: Place,
+    bank: &'a Bank,
+}
+
+impl Look<'_> {
+    fn original(&self, field: [f64; 2]) -> Option<PixelPoint> {
+        self.on_field.image(field).map(|at| self.level.original(at))
+    }
+
+    /// The grid and its lines; no squares yet.
+    fn recognition(&self, grid: &Grid, points: &[Ridge], blur: f64) -> Recognition {
+        let times = self.level.factor as f64;
+        let middle = self.level.original(self.on_field.unit.middle);
+        let (shift, h) = (self.level.original([0.0, 0.0]), self.on_field.homography());
+        let row = |i: usize, shift: f64| [0, 1, 2].map(|j| times * h[(i, j)] + shift * h[(2, j)]);
+        let homography = [row(0, shift.x), row(1, shift.y), [h[(2, 0)], h[(2, 1)], h[(2, 2)]]];
+        let found = GridFound {
+            homography,
+            bend: self.on_field.bend,
+            middle,
+            reach: self.on_field.unit.reach * times,
+            rms: grid.adjusted.rms * times,
+            blur: blur * times,
+            reduced: self.level.factor,
+        };
+        Recognition {
+            targets: Vec::new(),
+            squares: Vec::new(),
+            lines: self.lines(&grid.adjusted.on, points),
+            rejected: Vec::new(),
+            grid: found,
+        }
+    }
+
+    /// The grid's lines, each adjusted by itself.
+    fn lines(&self, on: &[OnLine], points: &[Ridge]) -> Vec<LineFound> {
+        let mut sorted: Vec<&OnLine> = on.iter().collect();
+        sorted.sort_by_key(|on| (on.family, on.number));
+        let of_line = sorted.chunk_by(|a, b| (a.family, a.number) == (b.family, b.number));
+        let mut lines: Vec<LineFound> = of_line.filter(|of| of.len() > 2).filter_map(|of| self.line(of, points)).collect();
+        lines.sort_by_key(|line| (line.family, line.index));
+        lines
+    }
+
+    fn line(&self, on: &[&OnLine], points: &[Ridge]) -> Option<LineFound> {
+        let (unit, bend) = (self.on_field.unit, self.on_field.bend);
+        let own: Vec<Ridge> = on.iter().map(|on| straightened(&points[on.point], unit, bend)).collect();
+        let all: Vec<usize> = (0..own.len()).collect();
+        let line = fit(&own, &all);
+        let times = self.level.factor as f64;
+        let end = |s: f64| {
+            let [x, y] = line.along(s);
+            self.on_field.bent([unit.middle[0] + x, unit.middle[1] + y]).map(|at| self.level.original(at))
+        };
+        let across = if on[0].family == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
+        let [x, y] = self.place.direction(across);
+        let number = on[0].number as f64;
+        let [px, py] = self.place.of(across.map(|v| v * number));
+        let (family, index) = if x.abs() > y.abs() { (0, px) } else { (1, py) };
+        let index = index.round() as i64;
+        let (sigma, rms) = (line.sigma() * times, line.rms * times);
+        Some(LineFound { family, index, ends: [end(line.span[0])?, end(line.span[1])?], sigma, rms, points: line.points })
+    }
+
+    fn squares(&self, squares: &[Square], identified: &Identified, found: &mut Recognition) {
+        for (square, explained) in squares.iter().zip(&identified.explained) {
+            let [row, column] = self.place.square(square.at);
+            let middle = self.original([column as f64 + 0.5, row as f64 + 0.5]);
+            let place = (*explained == Some(true)).then_some([row as usize, column as usize]);
+            let labels = place.and_then(|_| label(square, &self.recogniser.design, &self.place, self.recogniser.classifier, self.bank));
+            if let Some(at) = middle {
+                let reason = if explained.is_none() { Reason::Outside } else { Reason::Contradicts };
+                let count = square.areas.areas.len();
+                match (&labels, count) {
+                    (None, _) => found.rejected.push(Rejected { at, square: place, target: None, reason }),
+                    (Some(_), 16) => {}
+                    (Some(_), _) => {
+                        found.rejected.push(Rejected { at, square: place, target: None, reason: Reason::Count { found: count } })
+                    }
+                }
+            }
+            let cell = place.map(|[row, column]| self.recogniser.design.cell(row, column));
+            if let (Some(labels), Some(cell)) = (&labels, cell) {
+                self.targets(square, cell, labels, found);
+            }
+            found.squares.extend(self.square(square, [column, row], place, labels.as_ref(), cell));
+        }
+    }
+
+    fn targets(&self, square: &Square, cell: &[Printed; 16], labels: &Labels, found: &mut Recognition) {
+        let [row, column] = self.place.square(square.at).map(|v| v as usize);
+        for labelled in &labels.found {
+            let printed = &cell[labelled.printed];
+            let (Some(target), Some(position)) = (printed.target, self.position(square, labelled.area)) else { continue };
+            let Some(affine) = affine(&self.on_field, printed, self.level.factor as f64) else { continue };
+            found.targets.push(Recognised { target, position, affine, kind: printed.kind, likeness: labelled.likeness });
+        }
+        for lost in &labels.lost {
+            let printed = &cell[lost.printed];
+            if let Some(at) = self.original(printed.at) {
+                found.rejected.push(Rejected { at, square: Some([row, column]), target: printed.target, reason: lost.reason });
+            }
+        }
+    }
+
+    /// The centre of an area in the image.
+    fn position(&self, square: &Square, area: usize) -> Option<PixelPoint> {
+        let [x, y] = square.areas.areas[area].centre.map(crate::normal::to_square);
+        self.original(self.place.of([square.at[0] as f64 + x, square.at[1] as f64 + y]))
+    }
+
+    fn square(
+        &self,
+        square: &Square,
+        [column, row]: [i64; 2],
+        place: Option<[usize; 2]>,
+        labels: Option<&Labels>,
+        cell: Option<&[Printed; 16]>,
+    ) -> Option<SquareFound> {
+        let corner = |dx: f64, dy: f64| self.original([column as f64 + dx, row as f64 + dy]);
+        let corners = [corner(0.0, 0.0)?, corner(1.0, 0.0)?, corner(1.0, 1.0)?, corner(0.0, 1.0)?];
+        let decisions = square.decisions.as_ref();
+        let blob = |area: usize| {
+            let target = labels.and_then(|labels| labels.by_place[area]).zip(cell).and_then(|(index, cell)| cell[index].target);
+            Some(Blob {
+                position: self.position(square, area)?,
+                area: square.share(area),
+                group: decisions.map(|d| d.groups[area]),
+                single: decisions.map(|d| d.single[area]),
+                joint: decisions.map(|d| d.joint[area]),
+                features: decisions.map(|d| d.features[area]),
+                target,
+            })
+        };
+        let blobs = (0..square.areas.areas.len()).filter_map(blob).collect();
+        Some(SquareFound { place, corners, code: decisions.map(|d| d.code), blobs })
+    }
+}
