@@ -107,11 +107,10 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
 /// What writes the adjustments of `plan`, if it makes any.
 fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str) -> Result<Option<CalibrationWriter<NewFile>>, RunError> {
     let Subject::Views(views) = &plan.scenario.subject else { return Ok(None) };
-    let sets = match (&views.calibration, &views.blocks) {
-        (Some(calibration), _) => calibration.sets.iter().map(|set| set.name.clone()).collect(),
-        (None, Some(blocks)) => blocks.names(),
-        (None, None) => return Ok(None),
-    };
+    let sets = views.sets();
+    if sets.is_empty() {
+        return Ok(None);
+    }
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: None };
     let writer = CalibrationWriter::new(folder.create(CALIBRATIONS)?, info, plan.method_infos(), sets).map_err(io::Error::other)?;
     Ok(Some(writer))

@@ -16,6 +16,7 @@ use calibench_synth::view::{TargetTruth, View, Visibility};
 use rayon::prelude::*;
 
 use super::bounds::{BySet, TargetBounds};
+use super::recognition::{Counted, recognise};
 use super::{Plan, RunError};
 use crate::network::Job;
 use crate::{blocks, network};
@@ -134,7 +135,14 @@ fn run_prepared(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Resul
     match (&subject.calibration, &subject.blocks) {
         (Some(calibration), _) => calibrated(plan, prepared, calibration, key),
         (None, Some(blocks)) => in_blocks(plan, prepared, blocks, key),
-        (None, None) => run_views(plan, prepared, key),
+        (None, None) => {
+            let mut trial = run_views(plan, prepared, key)?;
+            if key.trial > 0 && subject.recognition.is_some() {
+                // What is counted of all trials is in their figures.
+                trial.points.clear();
+            }
+            Ok(trial)
+        }
     }
 }
 
@@ -161,7 +169,8 @@ fn in_blocks(plan: &Plan<'_>, prepared: &Prepared<'_>, blocks: &Blocks, key: Key
     let mut trial = run_views(plan, prepared, key)?;
     let available: Vec<usize> = (0..plan.methods.len()).filter(|&method| plan.methods[method].operator.is_ok()).collect();
     let job = blocks::Job { blocks, field: &subject.field, unit: subject.unit, stations: &subject.stations, key };
-    trial.calibrations = blocks::adjust_blocks(&job, &trial.points, &available, key.trial == 0);
+    let recognised = std::mem::replace(&mut trial.calibrations, blocks::adjust_blocks(&job, &trial.points, &available, key.trial == 0));
+    trial.calibrations.extend(recognised);
     if key.trial > 0 && !blocks.keep_points {
         trial.points.clear();
     }
@@ -195,14 +204,24 @@ fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Optio
 fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
     let number = key.trial;
     let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
-    for view in &prepared.views {
+    let subject = prepared.subject;
+    let mut counted = Counted::default();
+    for (place, view) in prepared.views.iter().enumerate() {
         let image = prepared.image(view, key)?.image;
         if let Some(folder) = plan.images.filter(|_| number == 0) {
             folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, prepared.is_deep()))?;
         }
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
         let kinds = seen.iter().map(|point| kind_of(prepared, point));
-        let to_measure: Vec<_> = kinds.zip(started(prepared, &image, &seen)).collect();
+        let starts = match &subject.recognition {
+            Some(recognition) => {
+                let recognised = recognise(recognition, &image, place, &view.truth, &subject.field);
+                counted.join(recognised.counted);
+                seen.iter().map(|point| recognised.starts.get(&point.target).copied()).collect()
+            }
+            None => started(prepared, &image, &seen),
+        };
+        let to_measure: Vec<_> = kinds.zip(starts).collect();
         for (method, results) in plan.measure(&image, &to_measure) {
             let unknowns = plan.unknowns(method);
             let points = seen.iter().zip(results).filter_map(|(point, result)| Some((point, result?))).map(|(point, result)| {
@@ -213,7 +232,11 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
             by_method[method].extend(points);
         }
     }
-    Ok(Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() })
+    let mut trial = Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() };
+    if let Some(recognition) = &subject.recognition {
+        trial.calibrations.push(counted.calibrated(recognition, subject.sets().len() - 1));
+    }
+    Ok(trial)
 }
 
 /// The image of the first view in the first trial, and where measuring starts in it.

@@ -11,6 +11,7 @@ use toml::de::DeTable;
 use super::blocks;
 use super::calibration::{self, Seen};
 use super::methods::{check_kinds, methods};
+use super::recognition;
 use super::section::Section;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
@@ -21,12 +22,13 @@ use super::{Scenario, Subject, ViewsSubject, figure, photographs, scene};
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 16] = [
+pub const TOP_TABLES: [&str; 17] = [
     "sweep",
     "method",
     "calibration",
     "blocks",
     "block",
+    "recognition",
     "scene",
     "figure",
     "photographs",
@@ -137,6 +139,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let calibration = root.take_table("calibration", "[calibration]", problems);
     let blocks = root.take_table("blocks", "[blocks]", problems);
     let listed_blocks = root.take_tables("block", "[[block]]", problems).unwrap_or_default();
+    let recognition = root.take_table("recognition", "[recognition]", problems);
     let start = root.span.clone();
     if methods_missing && problems.is_empty() {
         problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
@@ -154,7 +157,11 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     if let Some(stray) = blocks.as_ref().or(listed_blocks.first()).filter(|_| views.span().is_none()) {
         problems.push(Problem::new(stray.span.clone(), "blocks without [testfield]: expected one with [camera] and stations"));
     }
-    let adjusted = Adjusted { calibration, blocks, listed_blocks };
+    if let Some(stray) = recognition.as_ref().filter(|_| views.span().is_none()) {
+        problems
+            .push(Problem::new(stray.span.clone(), "[recognition] without [testfield]: expected a coded one with [camera] and stations"));
+    }
+    let adjusted = Adjusted { calibration, blocks, listed_blocks, recognition };
     let subject = match (scene, figure, photographs, views.span()) {
         (Some(section), None, None, None) => scene::read(section, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
         (None, Some(figure), None, None) => figure::read(figure, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
@@ -227,8 +234,9 @@ fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> Str
     value.into_inner()
 }
 
-/// The tables that say what is adjusted.
+/// The tables that say what is recognised and adjusted.
 struct Adjusted<'i> {
+    recognition: Option<Section<'i>>,
     calibration: Option<Section<'i>>,
     blocks: Option<Section<'i>>,
     listed_blocks: Vec<Section<'i>>,
@@ -237,6 +245,10 @@ struct Adjusted<'i> {
 impl Adjusted<'_> {
     /// `views` with what is done with their points.
     fn read(self, views: ViewsSubject, methods: &[Configured], problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
+        let ViewsSubject { field, stations, .. } = &views;
+        let recognition = self.recognition.map(|section| recognition::read(section, field, stations, problems));
+        let recognition = recognition.map_or(Some(None), |read| read.map(Some))?;
+        let views = ViewsSubject { recognition, ..views };
         let ViewsSubject { camera, field, stations, redraw, .. } = &views;
         let seen = Seen { camera, field, stations, redrawn: redraw.is_some() };
         match (self.calibration, self.blocks, self.listed_blocks) {

@@ -14,6 +14,7 @@ use super::figure::FigureWire;
 use super::judgement::JudgementWire;
 use super::optics::OpticsWire;
 use super::pointing::DetectorWire;
+use super::recognition::{ImagesWire, RecognitionWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::sweep::wire::SweepWire;
@@ -50,6 +51,8 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["blocks"] = table::<BlocksWire>();
     root["properties"]["blocks"]["properties"]["residuals"] = table::<ResidualsWire>();
     root["properties"]["block"] = list(&table::<BlockWire>());
+    root["properties"]["recognition"] = table::<RecognitionWire>();
+    root["properties"]["recognition"]["properties"]["images"] = list(&table::<ImagesWire>());
     root["properties"]["pointing"] = pointing();
     let subjects = [vec!["scene"], vec!["figure"], vec!["camera", "testfield", "pointing"], vec!["photographs"]];
     root["oneOf"] = subjects.iter().map(|keys| json!({ "required": keys })).collect();

@@ -14,7 +14,8 @@ use calibench_synth::raster::Renderer;
 use calibench_synth::stations::{Station, StationError};
 
 use crate::camera::LocalPlan;
-use crate::{Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, StationPlan, Unit};
+use crate::recognition::RECOGNITION;
+use crate::{Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, Recognition, StationPlan, Unit};
 
 /// What a scenario measures.
 pub enum Subject {
@@ -100,9 +101,19 @@ pub struct ViewsSubject {
     pub calibration: Option<Calibration>,
     /// The free networks that are made of them, in place of that.
     pub blocks: Option<Blocks>,
+    /// What recognises the field in its images, where measuring starts from that in place of a hand.
+    pub recognition: Option<Recognition>,
 }
 
 impl ViewsSubject {
+    /// The sets of figures that its records have, if they have any: of parameters, or of blocks and recognition.
+    pub fn sets(&self) -> Vec<String> {
+        let calibration = self.calibration.iter().flat_map(|calibration| calibration.sets.iter().map(|set| set.name.clone()));
+        let blocks = self.blocks.iter().flat_map(Blocks::names);
+        let recognition = self.recognition.iter().map(|_| RECOGNITION.to_owned());
+        calibration.chain(blocks).chain(recognition).collect()
+    }
+
     /// Whether the truth is another in each trial: stations that move, or a camera that distorts otherwise.
     pub fn changes(&self) -> bool {
         self.redraw.is_some() || self.local.is_some_and(|local| local.each_trial)

@@ -135,6 +135,7 @@ impl<'i> ViewTables<'i> {
             detector,
             calibration: None,
             blocks: None,
+            recognition: None,
         })
     }
 }

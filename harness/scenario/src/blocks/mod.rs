@@ -247,7 +247,7 @@ fn compared(section: Section<'_>, names: &Names<'_>, blocks: &[Block], problems:
 }
 
 /// The places of names that match a pattern; a pattern that none matches is a problem.
-fn matched(what: &str, patterns: &[Spanned<String>], known: &[&str], problems: &mut Vec<Problem>) -> Vec<usize> {
+pub(crate) fn matched(what: &str, patterns: &[Spanned<String>], known: &[&str], problems: &mut Vec<Problem>) -> Vec<usize> {
     let mut found: Vec<usize> = Vec::new();
     for written in patterns {
         let fits: Vec<usize> = match Pattern::new(written.get_ref()) {

@@ -1,0 +1,123 @@
+//! What a recogniser finds in the images of a trial, counted against the truth.
+//!
+//! A blob of a whole square is a target if the true place of one is nearest and within [`NEAR`]; how it was taken is compared with what it is.
+
+use std::collections::BTreeMap;
+
+use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
+use calibench_recognise::{Recognition as Found, SizeGroup};
+use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_scenario::Recognition;
+use calibench_synth::view::TargetTruth;
+
+/// How far a blob may lie from the target that it is, px.
+const NEAR: f64 = 2.0;
+/// How far a recognised target may lie from its true place, px: beyond, its label is wrong.
+const RIGHT: f64 = 2.0;
+
+/// What is counted, by classifier and name.
+#[derive(Clone, Debug, Default)]
+pub struct Counted(BTreeMap<(usize, String), f64>);
+
+/// Where measuring starts: of each target, by its place in the field; and what was counted.
+pub struct Recognised {
+    /// Starts by target.
+    pub starts: BTreeMap<usize, Start>,
+    /// Counts.
+    pub counted: Counted,
+}
+
+/// Recognises the field in an image, whose station has the place `view`, with every classifier.
+pub fn recognise(plan: &Recognition, image: &Image, view: usize, truth: &[TargetTruth], field: &Testfield) -> Recognised {
+    let kinds: Vec<TargetKind> = field.targets.iter().map(|target| target.kind).collect();
+    let mut recognised = Recognised { starts: BTreeMap::new(), counted: Counted::default() };
+    for (which, (_, recogniser)) in plan.recognisers.iter().enumerate() {
+        let found = recogniser.recognise(image).ok();
+        if which == 0 {
+            let targets = found.iter().flat_map(|found| &found.targets);
+            let start = |kind, affine, position| Start { kind: Some(kind), affine: Some(affine), ..Start::at(position) };
+            recognised.starts = targets.map(|t| (t.target, start(t.kind, t.affine, t.position))).collect();
+        }
+        for (name, _) in plan.images.iter().filter(|(_, images)| images.contains(&view)) {
+            recognised.counted.image(which, name, found.as_ref(), truth, &kinds);
+        }
+    }
+    recognised
+}
+
+impl Counted {
+    fn add(&mut self, which: usize, name: String, count: f64) {
+        *self.0.entry((which, name)).or_default() += count;
+    }
+
+    /// Adds what others have counted.
+    pub fn join(&mut self, other: Self) {
+        other.0.into_iter().for_each(|((which, name), count)| self.add(which, name, count));
+    }
+
+    fn image(&mut self, which: usize, images: &str, found: Option<&Found>, truth: &[TargetTruth], kinds: &[TargetKind]) {
+        self.add(which, format!("images/{images}"), 1.0);
+        let Some(found) = found else { return };
+        self.add(which, format!("grids/{images}"), 1.0);
+        let places: Vec<Option<PixelPoint>> = truth.iter().map(|truth| truth.at).collect();
+        let nearest = |at: PixelPoint| {
+            let distances = places.iter().enumerate().filter_map(|(i, place)| Some((place.as_ref()?.distance(at), i)));
+            distances.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(distance, _)| *distance <= NEAR).map(|(_, target)| target)
+        };
+        let recognised: BTreeMap<usize, PixelPoint> = found.targets.iter().map(|target| (target.target, target.position)).collect();
+        for target in &found.targets {
+            let right = places[target.target].is_some_and(|at| at.distance(target.position) <= RIGHT);
+            self.add(which, format!("labels/{images}"), 1.0);
+            self.add(which, format!("wrong labels/{images}"), f64::from(u8::from(!right)));
+        }
+        for (blob, target) in found.squares.iter().flat_map(|square| &square.blobs).filter_map(|blob| Some((blob, nearest(blob.position)?)))
+        {
+            self.add(which, format!("targets/{images}"), 1.0);
+            let labelled = recognised.get(&target).is_some_and(|at| places[target].is_some_and(|place| place.distance(*at) <= RIGHT));
+            self.add(which, format!("labelled/{images}"), f64::from(u8::from(labelled)));
+            let Some(group) = blob.group else { continue };
+            let (group, kind) = (group.name(), kinds[target]);
+            self.add(which, format!("{group}/{images}"), 1.0);
+            for (how, taken) in [("single", blob.single), ("joint", blob.joint)] {
+                let wrong = taken.is_some_and(|taken| taken != kind);
+                self.add(which, format!("{how} wrong, {group}/{images}"), f64::from(u8::from(wrong)));
+                if let (true, Some(taken)) = (wrong, taken) {
+                    self.add(which, format!("{how}, {kind} taken for {taken}/{images}"), 1.0);
+                }
+            }
+        }
+    }
+
+    /// The figures of a trial, under the set of place `set`, beside the first method.
+    pub fn calibrated(self, plan: &Recognition, set: usize) -> Calibrated {
+        let shares = self.shares(plan);
+        let name = |which: usize, what: &str| format!("{}/{what}", plan.recognisers[which].0);
+        let counts = self.0.into_iter().map(|((which, what), count)| Figure::plain(Group::Network, name(which, &what), count, ""));
+        let figures =
+            counts.chain(shares.into_iter().map(|(which, what, share)| Figure::plain(Group::Network, name(which, &what), share, "")));
+        Calibrated { method: 0, set, outcome: Ok(figures.collect()), check_failed: None }
+    }
+
+    /// Shares of all images together and of each group of images.
+    fn shares(&self, plan: &Recognition) -> Vec<(usize, String, f64)> {
+        let get = |which: usize, name: String| self.0.get(&(which, name)).copied().unwrap_or(0.0);
+        let mut shares = Vec::new();
+        for which in 0..plan.recognisers.len() {
+            for group in SizeGroup::ALL.map(SizeGroup::name) {
+                for how in ["single", "joint"] {
+                    let (mut wrong, mut all) = (0.0, 0.0);
+                    for (images, _) in &plan.images {
+                        let (w, a) = (get(which, format!("{how} wrong, {group}/{images}")), get(which, format!("{group}/{images}")));
+                        (wrong, all) = (wrong + w, all + a);
+                        if a > 0.0 {
+                            shares.push((which, format!("{how} wrong, %, {group}/{images}"), 100.0 * w / a));
+                        }
+                    }
+                    shares.push((which, format!("{how} wrong, {group}"), wrong));
+                    shares.push((which, format!("{how} of {group}"), all));
+                }
+            }
+        }
+        shares
+    }
+}
