@@ -22,6 +22,7 @@ mod page;
 mod photographs;
 mod places;
 pub mod published;
+mod recognition;
 mod scene_figures;
 mod scores_section;
 pub mod speeds;

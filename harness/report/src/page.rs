@@ -8,7 +8,7 @@ use calibench_records::description::{Description, Subject};
 use crate::answer::{Answers, heading};
 use crate::markdown::contents;
 use crate::places::PAGE;
-use crate::{Canvas, LoadError, Loaded, blocks, network, photographs, scene_figures, scores_section, sweep};
+use crate::{Canvas, LoadError, Loaded, blocks, network, photographs, recognition, scene_figures, scores_section, sweep};
 
 /// A page with its pictures, filled section by section.
 pub struct Page {
@@ -64,6 +64,10 @@ impl Page {
         if let Some((text, pictures)) = network::sweep(loaded, &stem, printed)? {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
+            return Ok(());
+        }
+        if let Some(text) = recognition::sweep(loaded)? {
+            self.text.push_str(&text);
             return Ok(());
         }
         self.answers.sweep(loaded);

@@ -10,7 +10,8 @@ use crate::load::Loaded;
 pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
     let found = loaded.calibrations.as_ref()?;
     let (views, told) = loaded.scenario.in_blocks()?;
-    let mut text = tables::blocks(found);
+    let mut text = crate::recognition::section(found).unwrap_or_default();
+    text.push_str(&tables::blocks(found));
     text.push_str(&tables::location(found));
     text.push_str(&tables::residuals(found, told));
     text.push_str(&tables::failures(found));

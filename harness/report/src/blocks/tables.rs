@@ -6,8 +6,9 @@ use calibench_records::results::Group;
 use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::{MarkdownTable, fixed};
 
-/// The name under which comparisons of residuals stand.
+/// The names under which other figures than those of blocks stand.
 const RESIDUALS: &str = "residuals";
+const RECOGNITION: &str = "recognition";
 
 /// A figure's mean over the trials with half its 95 % interval.
 fn mean(summary: Option<&Summary>, digits: usize) -> String {
@@ -37,7 +38,7 @@ impl<'a> Of<'a> {
 pub fn blocks(found: &Summaries) -> String {
     let names = ["block", "method", "networks", "images", "points", "observations", "unknowns", "redundancy", "sigma0, px", "sigma0, um"];
     let mut rows = MarkdownTable::new(&[&names[..], &["gross errors", "rows over columns"]].concat());
-    for set in found.sets.iter().filter(|set| *set != RESIDUALS) {
+    for set in found.sets.iter().filter(|set| *set != RESIDUALS && *set != RECOGNITION) {
         for method in &found.methods {
             let of = Of(found, method, set);
             let Some(_) = of.get("redundancy") else { continue };

@@ -53,7 +53,7 @@ fn figure(found: &Summaries, [method, set, name]: [&str; 3], cell: &Cell) -> Opt
         None => Group::Network,
     };
     let summary = found.of_set(method, set, group, name)?;
-    Ours::of(summary.first.map(|numbers| numbers.value), &summary.value)
+    Some(Ours::of(summary.first.map(|numbers| numbers.value), &summary.value)?.scaled(cell.times.unwrap_or(1.0)))
 }
 
 /// The paper's check coordinates are surveyed ones.

@@ -115,6 +115,9 @@ pub struct Cell {
     /// The group of figures, for `figure`: `network` by default.
     #[serde(default)]
     pub group: Option<String>,
+    /// What our `figure` is multiplied by: a length that was printed, where the figure is a scale. 1 by default.
+    #[serde(default)]
+    pub times: Option<f64>,
     /// What a `figure_ratio` is divided by.
     #[serde(default)]
     pub over: Option<Divisor>,
@@ -145,6 +148,11 @@ impl Table {
     /// Whether its figures are those of adjustments.
     pub fn is_of_adjustments(&self) -> bool {
         self.cells.iter().any(|cell| cell.metric.is_of_adjustment())
+    }
+
+    /// Whether any of its figures is one of measured points.
+    pub fn is_of_points(&self) -> bool {
+        self.cells.iter().any(|cell| !cell.metric.is_of_adjustment() && cell.metric != Metric::Unscored)
     }
 
     /// The labels of its rows, in their order, once each.
@@ -279,6 +287,7 @@ impl Cell {
             set: None,
             group: None,
             over: None,
+            times: None,
             predicted: None,
             not_comparable: None,
         }

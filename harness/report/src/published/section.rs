@@ -32,7 +32,7 @@ pub fn section(table: &Table, main: &Loaded, beside: &[&Loaded]) -> Result<Secti
         }
     };
     text.push_str(&findings(table));
-    if !table.is_of_adjustments() {
+    if table.is_of_points() {
         text.push_str(&every_method::section(table, main, beside));
     }
     Ok(Section { text, tally })

@@ -31,7 +31,9 @@ pub fn counted(job: &Job<'_>, block: &Block, solved: &[Solved]) -> Vec<Figure> {
     };
     let plain = |name: String, value: f64, unit: &'static str| Figure::plain(Group::Network, name, value, unit);
     if !block.several {
-        return solved.iter().flat_map(of).map(|(name, value, unit)| plain(name.into(), value, unit)).collect();
+        let counts = solved.iter().flat_map(of).map(|(name, value, unit)| plain(name.into(), value, unit));
+        // Pixels to an object unit.
+        return counts.chain(solved.iter().map(|one| plain("image scale".into(), one.scale, "px"))).collect();
     }
     let each: Vec<_> = solved.iter().map(of).collect();
     let mut figures = vec![plain("networks".into(), solved.len() as f64, "")];

@@ -1,10 +1,12 @@
 //! A block as a network, adjusted.
 
-use calibench_adjust::{Covariances, Datum, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Status, Variance, adjust};
+use calibench_adjust::{
+    Covariances, Datum, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Solution, Status, Variance, adjust,
+};
 use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
 use calibench_scenario::Block;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use super::Job;
 use super::held::held;
@@ -32,6 +34,8 @@ pub struct Solved {
     pub held: usize,
     /// Unknowns.
     pub unknowns: usize,
+    /// Mean over the images of how many pixels an object unit has at the distance of the points' middle, px.
+    pub scale: f64,
     /// Iterations.
     pub iterations: usize,
     /// Gross errors that were left out.
@@ -90,10 +94,19 @@ fn solve(job: &Job<'_>, block: &Block, sights: &Sights, corrected: Option<Correc
         observations: counts.observations() + fixed,
         held,
         unknowns: counts.unknowns + fixed,
+        scale: scale(job, &solution),
         iterations: solution.iterations(),
         gross,
         images,
     })
+}
+
+fn scale(job: &Job<'_>, solution: &Solution<'_>) -> f64 {
+    let sum = solution.points().iter().map(|point| point.coords).sum::<Vector3<f64>>();
+    let middle = sum / solution.points().len().max(1) as f64;
+    let camera = job.blocks.camera.base;
+    let of = |pose: &calibench_model::Pose| camera.c / (1e-3 * camera.pitch_um * (pose.centre.coords - middle).norm());
+    solution.poses().iter().map(of).sum::<f64>() / solution.poses().len().max(1) as f64
 }
 
 /// Of each station its group, and the groups of `images` in their order.
