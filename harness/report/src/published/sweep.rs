@@ -158,6 +158,10 @@ mod tests {
             misprint: None,
             method: None,
             of: None,
+            set: None,
+            group: None,
+            times: None,
+            over: None,
             predicted: None,
             not_comparable: None,
         }
