@@ -8,7 +8,7 @@ use calibench_model::{Covariance, Gradient, PixelPoint, Unknowns};
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
-use crate::raster::{Picture, Piece, Renderer};
+use crate::raster::{Picture, Piece, Renderer, join_left};
 
 /// Steps of the differences: px of a shift, and of a deformation at the window's edge.
 const STEP: f64 = 0.05;
@@ -66,13 +66,16 @@ impl Bounds {
         let right = (left + 2 * self.half) as f64 + reach_x + 3.0;
         // A deformation moves what is further off the further.
         let rate = STEP / self.half.max(1) as f64;
-        let kept = |piece: &&Piece| {
-            let [rows, columns] = [piece.rows(), piece.columns()];
+        let moved = |piece: &Piece| {
             let far = |[low, high]: [f64; 2], middle: f64| (low - middle).abs().max((high - middle).abs());
-            let moved = STEP + rate * far(rows, at.y).max(far(columns, at.x));
-            rows[1] + moved > low && rows[0] - moved < high && columns[0] - moved < right
+            STEP + rate * far(piece.rows(), at.y).max(far(piece.columns(), at.x))
         };
-        Picture { pieces: picture.pieces.iter().filter(kept).copied().collect(), ..*picture }
+        let pieces = join_left(&picture.pieces, |piece| piece.columns()[1] + moved(piece) < left as f64 - reach_x - 2.0);
+        let kept = |piece: &Piece| {
+            let (moved, rows) = (moved(piece), piece.rows());
+            rows[1] + moved > low && rows[0] - moved < high && piece.columns()[0] - moved < right
+        };
+        Picture { pieces: pieces.into_iter().filter(kept).collect(), ..*picture }
     }
 }
 
@@ -334,6 +337,25 @@ mod tests {
         let trace = |unknowns| bound(&disc, 0.7, 21, unknowns).map(|c| c.sxx + c.syy).unwrap();
         let ratio = trace(Unknowns { shape: true, levels: true, blur: true, gradient: Gradient::None }) / trace(Unknowns::default());
         assert!((1.0..1.02).contains(&ratio), "{ratio}");
+    }
+
+    /// Squares left of the window, wholly or in part, whose rows it shares: their light is the same in all of it, or none.
+    #[test]
+    fn what_is_far_left_of_the_window_takes_nothing() {
+        let square = |x: f64, y: f64| vec![(x, y), (x + 2.0, y), (x + 2.0, y + 2.5), (x, y + 2.5)];
+        let target = square(18.2, 18.4);
+        let others: Vec<_> = (0..5).map(|i| square(-1.0 + f64::from(i % 2), 3.0 * f64::from(i) + 12.1)).collect();
+        let unknowns = Unknowns { shape: true, levels: true, blur: true, gradient: Gradient::None };
+        let alone = bound(&scene(&[&target]), 0.6, 11, unknowns).unwrap();
+        let crowd: Vec<&[(f64, f64)]> = others.iter().chain([&target]).map(Vec::as_slice).collect();
+        let crowded = bound(&scene(&crowd), 0.6, 11, unknowns).unwrap();
+        for (a, b) in [(alone.sxx, crowded.sxx), (alone.sxy, crowded.sxy), (alone.syy, crowded.syy)] {
+            assert!((a - b).abs() < 1e-7 * (alone.sxx + alone.syy), "{alone:?} {crowded:?}");
+        }
+        // A wide bar from far left to behind the window does count.
+        let bar = vec![(-5.0, 14.0), (30.0, 14.0), (30.0, 16.0), (-5.0, 16.0)];
+        let barred = bound(&scene(&[&bar, &target]), 0.6, 11, unknowns).unwrap();
+        assert!((barred.syy / alone.syy - 1.0).abs() > 1e-3, "{barred:?} {alone:?}");
     }
 
     #[test]

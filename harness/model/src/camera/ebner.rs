@@ -3,7 +3,7 @@
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
-use super::plane_map::PlaneMap;
+use super::plane_map::{PlaneMap, is_one_to_one};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, Photogrammetric, named};
 
 /// [`Photogrammetric`] with Ebner's twelve additional parameters. Direction: **measured to ideal**; mm; y points up.
@@ -99,6 +99,16 @@ impl Ebner {
             [none, [2.0 * x * yy, 2.0 * y * xx]],
         ]
     }
+
+    /// What the Frobenius norm of each of [`Self::slopes`] does not exceed within `radius` (mm) of the principal point.
+    fn steepest(&self, radius: f64) -> [f64; 12] {
+        let (mean, rr) = (2.0 * self.b_mm * self.b_mm / 3.0, radius * radius);
+        // |X| and |Y|; 2 |x y| is at most r^2.
+        let form = mean.max(rr - mean);
+        let (linear, square, cubic) = (std::f64::consts::SQRT_2, 17.0_f64.sqrt() * radius, form + rr);
+        let product = 2.0 * radius * form;
+        [linear, linear, square, square, 2.0 * radius, 2.0 * radius, cubic, cubic, cubic, cubic, product, product]
+    }
 }
 
 impl PlaneMap for Ebner {
@@ -112,6 +122,12 @@ impl PlaneMap for Ebner {
             }
         }
         (value, by)
+    }
+
+    fn is_surely_one_to_one(&self, radius: f64) -> bool {
+        let Photogrammetric { k, p, b, .. } = self.base;
+        let rest: f64 = self.parameters.iter().zip(self.steepest(radius)).map(|(parameter, slope)| parameter.abs() * slope).sum();
+        is_one_to_one(radius, &k.map(|k| -k), &p, b[0].abs() + b[1].abs() + rest)
     }
 }
 
@@ -160,6 +176,42 @@ mod tests {
     #[test]
     fn conforms() {
         conformance::check(&camera(), Shape::Barrel);
+    }
+
+    #[test]
+    fn no_slope_is_steeper_than_its_bound_and_some_place_comes_near() {
+        let camera = Ebner { b_mm: 2.1, ..camera() };
+        for radius in [0.3, 1.0, 2.0, 3.5, 6.0] {
+            let mut most = [0.0_f64; 12];
+            for place in 0..3600 {
+                let (r, (sin, cos)) = (radius * f64::from(place % 10 + 1) / 10.0, (f64::from(place) * 0.01).sin_cos());
+                for (most, slope) in most.iter_mut().zip(camera.slopes([r * cos, r * sin])) {
+                    *most = most.max(slope.as_flattened().iter().map(|s| s * s).sum::<f64>().sqrt());
+                }
+            }
+            for (parameter, (most, bound)) in most.into_iter().zip(camera.steepest(radius)).enumerate() {
+                assert!(most <= bound * (1.0 + 1e-12) && most > 0.3 * bound, "e{} at {radius}: {most} of {bound}", parameter + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_surely_one_to_one_does_not_fold() {
+        let times = |scale: f64| Ebner { parameters: camera().parameters.map(|e| e * scale), ..camera() };
+        let (mut sure, mut folded) = (0, 0);
+        for scale in [0.0, 1.0, 10.0, 100.0, 300.0, 1000.0, 3000.0, 10_000.0] {
+            let camera = times(scale);
+            let folds = (0..360).any(|degrees| {
+                let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+                (0..=200).any(|i| {
+                    crate::camera::newton::determinant(camera.map([0.05 * f64::from(i) * cos, 0.05 * f64::from(i) * sin]).1) <= 0.0
+                })
+            });
+            let is_sure = camera.is_surely_one_to_one(10.0);
+            assert!(!(is_sure && folds), "at {scale} times its parameters");
+            (sure, folded) = (sure + i32::from(is_sure), folded + i32::from(folds));
+        }
+        assert!(sure >= 2 && folded >= 1, "{sure} are sure, {folded} fold");
     }
 
     #[test]

@@ -13,8 +13,8 @@ use crate::optics::{Levels, Optics, OpticsError};
 use strip::{Rules, Strip};
 
 pub use piece::Piece;
-pub(crate) use piece::orient;
 use piece::{at, polygon};
+pub(crate) use piece::{join_left, orient};
 
 /// Rows that are worked on together.
 pub const STRIP_ROWS: usize = 32;

@@ -88,6 +88,33 @@ pub(crate) fn orient(pieces: &mut [Piece], contrast: f64) {
     pieces.iter_mut().for_each(|piece| piece.contrast = contrast * area.signum());
 }
 
+/// The pieces, with each run of those that `is_left` names joined to one from its start to its end; a closed run is gone.
+///
+/// Of an outline that lies left of all pixels that are asked for, beyond the kernel's reach, only where it begins and ends counts: its integral of k(y) dy.
+pub(crate) fn join_left(pieces: &[Piece], is_left: impl Fn(&Piece) -> bool) -> Vec<Piece> {
+    let mut joined: Vec<Piece> = Vec::new();
+    let mut run: Option<Piece> = None;
+    let ends = |run: Option<Piece>| run.filter(|run| run.points[0] != run.points[4]);
+    for piece in pieces {
+        if !is_left(piece) {
+            joined.extend(ends(run.take()));
+            joined.push(*piece);
+            continue;
+        }
+        let goes_on = |run: &Piece| run.points[4] == piece.points[0] && run.contrast == piece.contrast;
+        let start = match run.take() {
+            Some(run) if goes_on(&run) => run.points[0],
+            other => {
+                joined.extend(ends(other));
+                piece.points[0]
+            }
+        };
+        run = Some(Piece::straight(start, piece.points[4], piece.contrast));
+    }
+    joined.extend(ends(run));
+    joined
+}
+
 /// The pieces of a polygon on a ground of grey value `ground`.
 pub(crate) fn polygon(polygon: &Polygon, ground: f64) -> Vec<Piece> {
     let mut pieces: Vec<Piece> = polygon.edges().map(|(a, b)| Piece::straight([a.x, a.y], [b.x, b.y], 0.0)).collect();
@@ -98,6 +125,25 @@ pub(crate) fn polygon(polygon: &Polygon, ground: f64) -> Vec<Piece> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn runs_on_the_left_are_joined_and_closed_ones_are_gone() {
+        let square = |x: f64, contrast: f64| {
+            let corners = [[x, 0.0], [x + 2.0, 0.0], [x + 2.0, 2.0], [x, 2.0]];
+            (0..4).map(move |i| Piece::straight(corners[i], corners[(i + 1) % 4], contrast))
+        };
+        let all: Vec<Piece> = square(0.0, 0.5).chain(square(3.0, 0.5)).chain(square(9.0, -0.5)).collect();
+        let found = join_left(&all, |piece| piece.columns()[1] < 4.0);
+        // Of the second square one edge is left of 4, and stays as it is.
+        assert_eq!(found, all[4..].to_vec());
+        let found = join_left(&all, |piece| piece.columns()[1] < 10.0 && piece.points[0] != [9.0, 0.0]);
+        assert_eq!(found, [all[8], all[9], all[10], all[11]]);
+        let found = join_left(&all[..3], |_| true);
+        assert_eq!(found, [Piece::straight([0.0, 0.0], [0.0, 2.0], 0.5)]);
+        // Another contrast is another outline.
+        let other = [Piece::straight([0.0, 0.0], [1.0, 1.0], 0.5), Piece::straight([1.0, 1.0], [0.0, 0.0], 0.25)];
+        assert_eq!(join_left(&other, |_| true), other);
+    }
 
     #[test]
     fn the_polynomial_runs_through_its_points() {
