@@ -16,10 +16,12 @@ const LITTLE: f64 = 1e-10;
 const NOISE: f64 = 1e4;
 /// Share of the sum of squares by which rounding may raise it.
 const ROUNDING: f64 = 1e-12;
-/// Undamped steps beyond one that raised the sum of squares, while they lower it again, before all are taken back.
+/// Undamped steps beyond one that raised the sum of squares, while none ends above the first, before all are taken back.
 const AHEAD: usize = 10;
 /// How often on a way it is looked ahead.
 const LOOKS: usize = 4;
+/// Steps after which it is looked ahead from a place that damped steps have crept to.
+const CREPT: usize = 8;
 
 /// The state, its normal equations and the step from it.
 pub(super) struct Place<'e, 'n> {
@@ -34,6 +36,8 @@ pub(super) struct Place<'e, 'n> {
     undamped: bool,
     /// How often it may still be looked ahead.
     looks: usize,
+    /// Steps since it was.
+    crept: usize,
     /// The sum of squares before the last step.
     before: f64,
     /// The normal equations, solved, where the last step needed that.
@@ -50,7 +54,7 @@ impl<'e, 'n> Place<'e, 'n> {
         engine.linearise(&state, &mut scratch, &mut normals).map_err(|lost| engine.not_pictured(&state, lost))?;
         let (step, before) = (engine.zero_step(), normals.cost);
         let (schur, factor, solved) = (Schur::default(), None, None);
-        Ok(Self { engine, state, normals, scratch, schur, step, factor, undamped: true, looks: LOOKS, before, solved })
+        Ok(Self { engine, state, normals, scratch, schur, step, factor, undamped: true, looks: LOOKS, crept: 0, before, solved })
     }
 
     /// Solves the normal equations made at `state` for the step.
@@ -71,6 +75,12 @@ impl<'e, 'n> Place<'e, 'n> {
         self.engine.linearise(&moved, &mut self.scratch, &mut self.normals).is_ok().then_some(moved)
     }
 
+    /// Makes the normal equations at `state` again.
+    fn again(&mut self, state: &State) -> Result<(), AdjustError> {
+        let Self { engine, scratch, normals, .. } = self;
+        engine.linearise(state, scratch, normals).map_err(|lost| engine.not_pictured(state, lost))
+    }
+
     /// Whether the sum of squares is not above that before the last step.
     fn is_lower(&self) -> bool {
         self.normals.cost <= self.before * (1.0 + ROUNDING) + NOISE * self.engine.floor
@@ -81,15 +91,15 @@ impl<'e, 'n> Place<'e, 'n> {
     ///
     /// Source: the watchdog technique of Chamberlain, Powell, Lemarechal & Pedersen 1982.
     fn ahead(&mut self, mut state: State) -> Option<State> {
-        self.looks -= 1;
+        (self.looks, self.crept) = (self.looks - 1, 0);
+        let mut first = None;
         for _ in 0..AHEAD {
-            let raised = self.normals.cost;
             self.solve(&state, 0.0)?;
             state = self.moved(&state)?;
             if self.is_lower() {
                 return Some(state);
             }
-            if self.normals.cost > raised {
+            if self.normals.cost > *first.get_or_insert(self.normals.cost) {
                 return None;
             }
         }
@@ -125,19 +135,25 @@ impl Descent for Place<'_, '_> {
 
     fn go(&mut self) -> Result<bool, AdjustError> {
         self.factor = None;
+        self.crept += 1;
         let from = std::mem::take(&mut self.state);
-        let moved = match self.moved(&from) {
+        let mut moved = match self.moved(&from) {
             Some(moved) if self.is_lower() => Some(moved),
             Some(moved) if self.undamped && self.looks > 0 => self.ahead(moved),
             _ => None,
         };
+        if moved.is_none() {
+            // Seldom, so that one set of equations is in memory and not two.
+            self.again(&from)?;
+            if !self.undamped && self.looks > 0 && self.crept >= CREPT {
+                moved = self.ahead(from.clone());
+                if moved.is_none() {
+                    self.again(&from)?;
+                }
+            }
+        }
         let lower = moved.is_some();
         self.state = moved.unwrap_or(from);
-        if !lower {
-            // Seldom, so that one set of equations is in memory and not two.
-            let Self { engine, state, scratch, normals, .. } = self;
-            engine.linearise(state, scratch, normals).map_err(|lost| engine.not_pictured(state, lost))?;
-        }
         Ok(lower)
     }
 

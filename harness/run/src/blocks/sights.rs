@@ -72,7 +72,8 @@ impl Sighted {
         if self.points.len() < LEAST_POINTS {
             return;
         }
-        let camera: Camera = job.blocks.camera.into();
+        // Ebner's parameters are zero yet.
+        let camera: Camera = job.blocks.camera.base.into();
         let surveyed = |target: usize| job.field.targets[target].surveyed;
         let control: Vec<Control> = self.points.iter().map(|&(target, image)| Control { object: surveyed(target), image }).collect();
         let Ok(pose) = robust_pose_of(&camera, &control) else { return };

@@ -185,10 +185,19 @@ impl LocalDistortion {
         shift
     }
 
-    /// Where the image of a point is that the camera alone would picture at `at`.
+    /// Where the image of a point is that the camera alone would picture at `at`: of [`Self::at`] what has no derivatives, in half the time.
     pub fn displaced(&self, at: PixelPoint) -> PixelPoint {
-        let [dx, dy] = self.at(at).by;
-        PixelPoint::new(at.x + dx, at.y + dy)
+        let (x, y) = (self.near(at.x, self.columns), self.near(at.y, self.rows));
+        let mut by = [0.0; 2];
+        for j in 0..y.count {
+            let start = (y.from + j) * self.columns + x.from;
+            let mut values = [0.0; 2];
+            for (value, weight) in x.values.iter().zip(&self.weights[start..start + x.count]) {
+                values = [values[0] + value * weight[0], values[1] + value * weight[1]];
+            }
+            by = [by[0] + y.values[j] * values[0], by[1] + y.values[j] * values[1]];
+        }
+        PixelPoint::new(at.x + by[0], at.y + by[1])
     }
 
     /// Where the camera alone would picture the point whose image is at `at`: the inverse of [`Self::displaced`], to 1e-10 px.
