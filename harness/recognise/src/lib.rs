@@ -27,12 +27,14 @@ mod ridge;
 mod sharpness;
 mod smooth;
 mod square;
+mod steps;
 mod table;
 
 pub use design::NotCoded;
 pub use error::NotRecognised;
 pub use found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rejected, SizeGroup, SquareFound};
 pub use recogniser::{Classifier, Recogniser};
+pub use steps::Steps;
 pub use table::{ContourTable, TableError};
 #[cfg(test)]
 extern crate self as calibench_recognise;

@@ -21,7 +21,7 @@ use crate::sharpness::blur;
 use crate::square::Square;
 
 /// What lies nearer to the middle of a line than its half width and this, in squares, is the line's.
-const INSET: f64 = 0.011;
+pub(crate) const INSET: f64 = 0.011;
 /// The least contrast of a square, as a share of the best one's.
 const CONTRAST: f64 = 0.3;
 /// Dark areas smaller than this share of the smallest target are none.

@@ -32,6 +32,11 @@ pub fn kept_image(folder: &Path, view: &str) -> PathBuf {
     folder.join(kept_image_name(view))
 }
 
+/// Under which view the picture of a step of recognition in view `view` is kept.
+pub fn recognition_step(view: &str, step: &str) -> String {
+    format!("recognition-{view}-{step}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

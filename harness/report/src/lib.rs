@@ -23,6 +23,7 @@ mod photographs;
 mod places;
 pub mod published;
 mod recognition;
+mod recognition_steps;
 mod scene_figures;
 mod scores_section;
 pub mod speeds;

@@ -4,11 +4,15 @@
 
 use std::collections::BTreeMap;
 
+use calibench_exchange::{NewFolder, encode_png};
 use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
 use calibench_recognise::{Recognition as Found, SizeGroup};
+use calibench_records::names::{kept_image_name, recognition_step};
 use calibench_records::results::{Calibrated, Figure, Group};
 use calibench_scenario::Recognition;
 use calibench_synth::view::TargetTruth;
+
+use crate::RunError;
 
 /// How far a blob may lie from the target that it is, px.
 const NEAR: f64 = 2.0;
@@ -25,6 +29,21 @@ pub struct Recognised {
     pub starts: BTreeMap<usize, Start>,
     /// Counts.
     pub counted: Counted,
+}
+
+/// Keeps the steps of recognition of an image beside it: the first one of the last group of images that are counted together. None where no grid is found.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn keep_steps(plan: &Recognition, image: &Image, (view, name): (usize, &str), folder: &NewFolder) -> Result<(), RunError> {
+    let shown = plan.images.last().and_then(|(_, images)| images.first());
+    let (Some((_, recogniser)), true) = (plan.recognisers.first(), shown == Some(&view)) else { return Ok(()) };
+    let Ok(steps) = recogniser.steps(image) else { return Ok(()) };
+    let pictures = [("normal", &steps.normal), ("enlarged", &steps.enlarged), ("binary", &steps.binary), ("contours", &steps.contours)];
+    for (step, picture) in pictures {
+        folder.write(&kept_image_name(&recognition_step(name, step)), |file| encode_png(file, picture, false))?;
+    }
+    Ok(())
 }
 
 /// Recognises the field in an image, whose station has the place `view`, with every classifier.

@@ -16,7 +16,7 @@ use calibench_synth::view::{TargetTruth, View, Visibility};
 use rayon::prelude::*;
 
 use super::bounds::{BySet, TargetBounds};
-use super::recognition::{Counted, recognise};
+use super::recognition::{Counted, keep_steps, recognise};
 use super::{Plan, RunError};
 use crate::network::Job;
 use crate::{blocks, network};
@@ -215,6 +215,9 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
         let kinds = seen.iter().map(|point| kind_of(prepared, point));
         let starts = match &subject.recognition {
             Some(recognition) => {
+                if let Some(folder) = plan.images.filter(|_| number == 0) {
+                    keep_steps(recognition, &image, (place, &view.station.name), folder)?;
+                }
                 let recognised = recognise(recognition, &image, place, &view.truth, &subject.field);
                 counted.join(recognised.counted);
                 seen.iter().map(|point| recognised.starts.get(&point.target).copied()).collect()

@@ -23,8 +23,13 @@ pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
             drawn.push((file, canvas));
         }
     };
+    add("recognition", "What recognition makes of an image on its way to its targets", crate::recognition_steps::steps(loaded));
     add("stations", "Where the cameras stand, seen along the normal of the field", pictures::stations(views));
-    add("heights", "Heights of the object points in the first trial, with their standard deviations", pictures::heights(found, views));
+    add(
+        "heights",
+        "Heights of the object points in the first trial, from the plane through the three that hold the frame, with their standard deviations",
+        pictures::heights(found, views),
+    );
     add(
         "residuals",
         "Residuals of the first trial in a pair of images whose residuals are compared",

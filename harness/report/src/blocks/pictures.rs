@@ -22,7 +22,7 @@ const ONE_PLACE: f64 = 1e-3;
 pub fn stations(views: &Views) -> Option<Canvas> {
     let [low, high] = views.extent?;
     let reach = views.stations.iter().flat_map(|station| [station.centre[0], station.centre[1]]).map(f64::abs).fold(0.0, f64::max);
-    let reach = 1.15 * reach.max(high[0].abs()).max(high[1].abs());
+    let reach = 1.25 * reach.max(high[0].abs()).max(high[1].abs());
     let axes = Axes { at: [90, 70, SIDE + 160, SIDE + 160], x: [-reach, reach], y: [-reach, reach] };
     let mut places: Vec<([f64; 3], Vec<&str>)> = Vec::new();
     for station in &views.stations {
