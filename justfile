@@ -79,7 +79,7 @@ deny:
 
 # Points per second of every operator, of cameras, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
-    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards
+    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench campaigns
 
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:

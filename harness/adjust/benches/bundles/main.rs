@@ -6,6 +6,8 @@
 mod ceres;
 #[path = "../../tests/adjustment/networks.rs"]
 mod networks;
+#[path = "../../tests/adjustment/stands.rs"]
+mod stands;
 
 use std::error::Error;
 use std::hint::black_box;
@@ -31,6 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (peer, mut required) = (ceres::Peer::compile(), Vec::new());
     beside(&peer, "36 images x 256 points, OpenCV's camera", || ring(networks::opencv(), &networks::FIVE), (9, 5.0), &mut required)?;
     beside(&peer, "200 images x 5000 points, OpenCV's camera", || flight(networks::opencv(), &networks::FIVE), (3, 2.0), &mut required)?;
+    race("32 images of a bent stand, eight sets of Ebner's (0.1 s asked)", || stands::block(0.8, stands::Sets::Eight), 50)?;
     let names = ["c", "x0", "y0", "k1", "k2", "p1", "p2"];
     race("36 images x 256 points, photogrammetric", || ring(networks::photogrammetric(), &names), 9)?;
     race("200 images x 5000 points, photogrammetric", || flight(networks::photogrammetric(), &names), 3)?;

@@ -9,5 +9,6 @@ mod quality;
 mod significance;
 mod stand;
 mod standard_deviations;
+mod stands;
 mod surfaces;
 mod undetermined;
