@@ -1,6 +1,5 @@
 //! images.txt and images.bin, an image at a time, with the list of cameras beside them.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
@@ -16,79 +15,87 @@ use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 /// Cameras that are kept as they are.
 const KEPT: usize = 4096;
 
-/// The list of cameras beside a list of images: where each camera stands, and the last of them that were asked for.
+/// The list of cameras beside a list of images.
 pub(super) struct Beside {
     path: PathBuf,
     options: ReadOptions,
     is_text: bool,
     /// Ids and the bytes at which their cameras begin, sorted.
     places: Vec<(u32, u64)>,
-    open: RefCell<Open>,
-}
-
-struct Open {
-    bytes: Bytes<BufReader<File>>,
-    kept: HashMap<u32, NamedCamera>,
 }
 
 impl Beside {
     /// That of the list of images at `images`.
     pub fn of(images: &Path, options: &ReadOptions) -> Result<Self, Stop> {
         let path = colmap_images::beside(images).ok_or_else(without_cameras)?;
-        let in_file = |stop| match stop {
-            Stop::Wrong(error) => Stop::Wrong(error.in_file(&path.display().to_string())),
-            Stop::Whole(why) => Stop::Whole(format!("{}: {why}", path.display())),
-        };
         let mut places = Vec::new();
         let looked_at = head(&path).and_then(|head| cameras::looked_at(&path, &head, options, |id, at| places.push((id, at))));
-        let (is_text, _) = looked_at.map_err(in_file)?;
+        let (is_text, _) = looked_at.map_err(|stop| match stop {
+            Stop::Wrong(error) => Stop::Wrong(error.in_file(&path.display().to_string())),
+            Stop::Whole(why) => Stop::Whole(format!("{}: {why}", path.display())),
+        })?;
         places.sort_unstable();
-        let (source, length) = opened(&path)?;
-        let open = Open { bytes: Bytes::of(source, length), kept: HashMap::new() };
-        Ok(Self { path, options: *options, is_text, places, open: RefCell::new(open) })
+        Ok(Self { path, options: *options, is_text, places })
     }
 
     pub fn format(&self) -> &'static CameraFormat {
         if self.is_text { &colmap::FORMAT } else { &colmap_bin::FORMAT }
     }
 
+    /// The byte at which a camera begins.
+    fn place(&self, id: u32) -> Option<u64> {
+        let found = self.places.binary_search_by_key(&id, |(id, _)| *id).ok()?;
+        Some(self.places[found].1)
+    }
+}
+
+/// The cameras of that list, of which the last that were asked for are kept.
+struct Cameras<'l> {
+    beside: &'l Beside,
+    list: String,
+    bytes: Bytes<BufReader<File>>,
+    kept: HashMap<u32, NamedCamera>,
+}
+
+impl<'l> Cameras<'l> {
+    fn open(beside: &'l Beside) -> Result<Self, Stop> {
+        let (source, length) = opened(&beside.path)?;
+        Ok(Self { beside, list: beside.path.display().to_string(), bytes: Bytes::of(source, length), kept: HashMap::new() })
+    }
+
     /// The image with its camera and pose.
-    fn posed(&self, image: Image) -> Result<NamedCamera, CameraFileError> {
-        let (id, list) = (image.camera, self.path.display().to_string());
-        let Some(at) = self.places.binary_search_by_key(&id, |(id, _)| *id).ok().map(|place| self.places[place].1) else {
-            return image.posed(None, &list);
-        };
-        let open = &mut *self.open.borrow_mut();
-        if !open.kept.contains_key(&id) {
-            if open.kept.len() >= KEPT {
-                open.kept.clear();
+    fn posed(&mut self, image: Image) -> Result<NamedCamera, CameraFileError> {
+        let id = image.camera;
+        if let Some(at) = self.beside.place(id).filter(|_| !self.kept.contains_key(&id)) {
+            if self.kept.len() >= KEPT {
+                self.kept.clear();
             }
-            let camera = self.read(&mut open.bytes, at).map_err(|error| error.in_file(&list))?;
-            open.kept.insert(id, camera);
+            let camera = self.read(at).map_err(|error| error.in_file(&self.list))?;
+            self.kept.insert(id, camera);
         }
-        image.posed(open.kept.get(&id), &list)
+        image.posed(self.kept.get(&id), &self.list)
     }
 
     /// The camera that begins at a byte.
-    fn read(&self, bytes: &mut Bytes<BufReader<File>>, at: u64) -> Result<NamedCamera, CameraFileError> {
+    fn read(&mut self, at: u64) -> Result<NamedCamera, CameraFileError> {
         let wrong = |error: std::io::Error| CameraFileError::new(error.to_string());
-        let source = bytes.source();
+        let source = self.bytes.source();
         let before = source.stream_position().map_err(wrong)?;
         // What is buffered stays, where it lies in that.
         source.seek_relative(at.cast_signed() - before.cast_signed()).map_err(wrong)?;
-        if !self.is_text {
-            bytes.stands_at(at);
-            return colmap_bin::camera(bytes, &self.options);
+        if !self.beside.is_text {
+            self.bytes.stands_at(at);
+            return colmap_bin::camera(&mut self.bytes, &self.beside.options);
         }
         let mut line = String::new();
         source.read_line(&mut line).map_err(wrong)?;
-        colmap::camera(line.trim_start_matches('\u{feff}').trim(), &self.options)
+        colmap::camera(line.trim_start_matches('\u{feff}').trim(), &self.beside.options)
     }
 }
 
 /// The images of a list.
 pub(super) struct Images<'l> {
-    beside: &'l Beside,
+    cameras: Cameras<'l>,
     source: ImageSource,
 }
 
@@ -106,7 +113,7 @@ impl<'l> Images<'l> {
             let mut bytes = Bytes::of(file, length);
             ImageSource::Bytes { count: bytes.u64()?, bytes, index: 0 }
         };
-        Ok(Self { beside, source })
+        Ok(Self { cameras: Cameras::open(beside)?, source })
     }
 
     /// The next image; the inner error is of its camera or its pose.
@@ -119,7 +126,7 @@ impl<'l> Images<'l> {
                 Some(colmap_images::in_bytes(bytes).map_err(|error| of_image(*index, *count, error))?)
             }
         };
-        Ok(image.map(|image| self.beside.posed(image)))
+        Ok(image.map(|image| self.cameras.posed(image)))
     }
 }
 
