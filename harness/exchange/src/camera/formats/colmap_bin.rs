@@ -58,9 +58,7 @@ fn is_big_endian(bytes: &[u8]) -> bool {
 }
 
 fn read(bytes: &[u8], options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
-    if is_big_endian(bytes) {
-        return Err(big_endian());
-    }
+    has_least_byte_first(bytes)?;
     let (mut records, mut ids, mut cameras) = (Records::new(Bytes::new(bytes))?, Ids::default(), Vec::new());
     while let Some(named) = records.next(options)? {
         ids.take(&named.name, cameras.len() + 1).map_err(|_| twice(records.index, records.count, &named.name))?;
@@ -69,9 +67,10 @@ fn read(bytes: &[u8], options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraF
     Ok(cameras)
 }
 
-/// The error of numbers that are the other way round.
-fn big_endian() -> CameraFileError {
-    CameraFileError::new("its numbers have the greatest byte first; expected the least first, as COLMAP writes them")
+/// Refuses a file that begins with numbers that are the other way round.
+pub(in crate::camera) fn has_least_byte_first(head: &[u8]) -> Result<(), CameraFileError> {
+    let wrong = "its numbers have the greatest byte first; expected the least first, as COLMAP writes them";
+    if is_big_endian(head) { Err(CameraFileError::new(wrong)) } else { Ok(()) }
 }
 
 /// The error of an id that an earlier camera has.

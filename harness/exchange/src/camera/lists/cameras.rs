@@ -52,6 +52,7 @@ pub(super) fn looked_at(path: &Path, head: &[u8], options: &ReadOptions, seen: i
     let may_be = |format: &CameraFormat| options.from.is_none_or(|from| from == format);
     // Four of the eight bytes of a count are zero, which no text has.
     if may_be(&colmap_bin::FORMAT) && colmap_bin::recognise(head).is_ok() {
+        colmap_bin::has_least_byte_first(head)?;
         return Ok((false, in_bytes(path, options, seen)?));
     }
     let source = whole_lines(head).and_then(|text| Source::new(text.as_bytes()).ok());

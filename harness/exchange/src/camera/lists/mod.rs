@@ -142,7 +142,7 @@ impl CameraList {
     /// A file that cannot be read any more.
     pub fn pieces(&self, most: usize) -> Result<Pieces<'_>, CameraFileError> {
         let records = self.records().map_err(|stop| self.changed(stop))?;
-        Ok(Pieces { list: self, records, most: most.max(1), left: self.count })
+        Ok(Pieces { list: self, records, most: most.max(1), left: self.count, ended: false })
     }
 
     fn records(&self) -> Result<Box<dyn Records + '_>, Stop> {
@@ -176,36 +176,39 @@ pub struct Pieces<'l> {
     records: Box<dyn Records + 'l>,
     most: usize,
     left: usize,
+    ended: bool,
 }
 
 impl Iterator for Pieces<'_> {
     type Item = Result<Vec<NamedCamera>, CameraFileError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let mut piece = Vec::with_capacity(self.most.min(self.left));
-        while piece.len() < self.most {
-            match self.records.next() {
-                Ok(Some(_)) if self.left == 0 => return self.ends("it has more cameras"),
-                Ok(Some(camera)) => {
-                    self.left -= 1;
-                    piece.push(camera);
-                }
-                Ok(None) if self.left > 0 => return self.ends("it has fewer cameras"),
-                Ok(None) => break,
-                Err(stop) => {
-                    self.left = 0;
-                    return Some(Err(self.list.changed(stop)));
-                }
-            }
+        if self.ended {
+            return None;
         }
-        (!piece.is_empty()).then_some(Ok(piece))
+        let piece = self.piece();
+        self.ended = piece.as_ref().map_or(true, |piece| piece.len() < self.most);
+        piece.map(|piece| (!piece.is_empty()).then_some(piece)).transpose()
     }
 }
 
 impl Pieces<'_> {
-    fn ends(&mut self, why: &str) -> Option<<Self as Iterator>::Item> {
-        self.left = 0;
-        Some(Err(self.list.changed(Stop::Whole(why.to_owned()))))
+    /// The next cameras; fewer at the end.
+    fn piece(&mut self) -> Result<Vec<NamedCamera>, CameraFileError> {
+        let other = |what: &str| self.list.changed(Stop::Whole(format!("it has {what} cameras than the {} that it had", self.list.count)));
+        let mut piece = Vec::with_capacity(self.most.min(self.left));
+        while piece.len() < self.most {
+            match self.records.next().map_err(|stop| self.list.changed(stop))? {
+                Some(_) if self.left == 0 => return Err(other("more")),
+                Some(camera) => {
+                    self.left -= 1;
+                    piece.push(camera);
+                }
+                None if self.left > 0 => return Err(other("fewer")),
+                None => break,
+            }
+        }
+        Ok(piece)
     }
 }
 
