@@ -84,10 +84,26 @@ impl Convert {
 
 /// What is written, in a file without a name.
 fn aside(write: impl FnOnce(&mut dyn Write) -> Result<(), Failure>) -> Result<File, Failure> {
-    let wrong = |error: io::Error| Failure::input(format!("a temporary file: {error}"));
-    let mut file = BufWriter::new(tempfile::tempfile().map_err(wrong)?);
+    let mut file = BufWriter::new(Aside(tempfile::tempfile().map_err(in_aside)?));
     write(&mut file)?;
-    let mut file = file.into_inner().map_err(|error| wrong(error.into_error()))?;
-    file.rewind().map_err(wrong)?;
+    let mut file = file.into_inner().map_err(io::IntoInnerError::into_error)?.0;
+    file.rewind().map_err(in_aside)?;
     Ok(file)
+}
+
+/// A file whose errors say what it is.
+struct Aside(File);
+
+impl Write for Aside {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes).map_err(in_aside)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush().map_err(in_aside)
+    }
+}
+
+fn in_aside(error: io::Error) -> io::Error {
+    if error.kind() == io::ErrorKind::Interrupted { error } else { io::Error::new(error.kind(), format!("a temporary file: {error}")) }
 }
