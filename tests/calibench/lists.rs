@@ -95,7 +95,12 @@ fn what_is_wrong_late_is_named_and_nothing_is_written() {
             "old.txt",
             "list:29993, `17`: the id of two cameras, first on line 20",
         ),
-        (changed(29_990, &line(29_990).replace("OPENCV", "OPENGL")), "colmap", "new.txt", "list:29993: model `OPENGL` is not known"),
+        (
+            changed(29_990, &line(29_990).replace("OPENCV", "OPENGL")),
+            "colmap",
+            "new.txt",
+            "list:29993, `OPENGL`: model `OPENGL` is not known",
+        ),
         (bytes[..bytes.len() - 1].to_vec(), "colmap", "new.txt", "list, `camera 30000 of 30000, PARAMS[]`: the file of "),
         (
             changed(29_990, &line(29_990).replace("OPENCV", "DIVISION").replace(" 0.0625 0.001 -0.002", "")),

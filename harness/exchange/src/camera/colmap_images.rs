@@ -76,6 +76,9 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 
 /// The image of a line.
 pub(super) fn in_text(line: &str) -> Result<Image, CameraFileError> {
+    if line.contains('\0') {
+        return Err(CameraFileError::new("expected text, found a zero byte"));
+    }
     let wrong = || CameraFileError::new("expected IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME");
     let mut rest = line;
     let mut word = || {
@@ -115,9 +118,8 @@ pub(super) fn in_bytes<R: Stream>(rest: &mut Bytes<R>) -> Result<Image, CameraFi
 }
 
 fn images(bytes: &[u8]) -> Result<Vec<Image>, CameraFileError> {
-    if let Ok(text) = std::str::from_utf8(bytes)
-        && !bytes.contains(&0)
-    {
+    if !are_in_bytes(bytes) {
+        let text = std::str::from_utf8(bytes).map_err(|_| CameraFileError::new("expected text in UTF-8, found other bytes"))?;
         return lines(text).map(|(line, text)| in_text(text).map_err(|error| error.on_line(line))).collect();
     }
     let mut rest = Bytes::new(bytes);

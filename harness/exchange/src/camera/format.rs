@@ -3,7 +3,7 @@
 use calibench_model::camera::Convention;
 
 use super::fit::{Keeps, KeptCovariance, KeptPose, Model};
-use super::lists::Numbering;
+use super::numbering::Numbering;
 use super::source::Source;
 use super::{CameraFileError, NamedCamera, ReadOptions};
 

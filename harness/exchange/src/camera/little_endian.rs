@@ -77,7 +77,7 @@ impl<R: Stream> Bytes<R> {
     /// A file that ends before.
     pub fn pass(&mut self, count: u64) -> Result<(), CameraFileError> {
         self.expect(count)?;
-        self.rest.pass(count).map_err(unreadable)?;
+        self.rest.pass(count).map_err(|error| unreadable(&error))?;
         self.at += count;
         Ok(())
     }
@@ -95,7 +95,7 @@ impl<R: Stream> Bytes<R> {
     fn array<const N: usize>(&mut self) -> Result<[u8; N], CameraFileError> {
         self.expect(N as u64)?;
         let mut bytes = [0; N];
-        self.rest.read_exact(&mut bytes).map_err(unreadable)?;
+        self.rest.read_exact(&mut bytes).map_err(|error| unreadable(&error))?;
         self.at += N as u64;
         Ok(bytes)
     }
@@ -124,7 +124,7 @@ impl<R: Stream> Bytes<R> {
     /// A file that ends before, a text of more than 65,536 bytes, bytes that are not UTF-8.
     pub fn text(&mut self) -> Result<String, CameraFileError> {
         let mut bytes = Vec::new();
-        let found = self.rest.by_ref().take(LONGEST_NAME + 1).read_until(0, &mut bytes).map_err(unreadable)?;
+        let found = self.rest.by_ref().take(LONGEST_NAME + 1).read_until(0, &mut bytes).map_err(|error| unreadable(&error))?;
         self.at += found as u64;
         if bytes.pop() != Some(0) {
             return Err(CameraFileError::new("expected a name that ends with a zero byte"));
@@ -133,6 +133,6 @@ impl<R: Stream> Bytes<R> {
     }
 }
 
-fn unreadable(error: io::Error) -> CameraFileError {
+fn unreadable(error: &io::Error) -> CameraFileError {
     CameraFileError::new(error.to_string())
 }

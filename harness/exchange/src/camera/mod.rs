@@ -19,6 +19,7 @@ mod json;
 mod lists;
 mod little_endian;
 mod number;
+mod numbering;
 pub mod open_points;
 mod opencv;
 mod opencv_storage;

@@ -6,9 +6,9 @@ use super::PLAIN;
 use crate::camera::fit::Keeps;
 use crate::camera::format::{Binary, Parts};
 use crate::camera::ids::Ids;
-use crate::camera::lists::Numbering;
 use crate::camera::little_endian::{Bytes, Stream};
 use crate::camera::number::pixels;
+use crate::camera::numbering::Numbering;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
 
 pub(in crate::camera) static FORMAT: CameraFormat = CameraFormat {

@@ -6,8 +6,8 @@ use super::PLAIN;
 use crate::camera::fit::Keeps;
 use crate::camera::format::Parts;
 use crate::camera::ids::Ids;
-use crate::camera::lists::Numbering;
 use crate::camera::number::{finite, pixels, shortest};
+use crate::camera::numbering::Numbering;
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models, noted};
 

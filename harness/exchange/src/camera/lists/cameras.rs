@@ -5,7 +5,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 use super::lines::Lines;
-use super::numbering::Numbers;
+use super::numbers::Numbers;
 use super::{Records, Stop, opened, whole_lines};
 use crate::camera::formats::{FORMATS, colmap, colmap_bin};
 use crate::camera::ids;
@@ -17,6 +17,7 @@ use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions};
 const OTHERS: usize = 1 << 20;
 
 /// A line of cameras.txt.
+#[expect(clippy::large_enum_variant, reason = "one at a time")]
 enum Line<'a> {
     /// A camera and its id.
     Camera(u32, NamedCamera),

@@ -7,7 +7,7 @@
 mod cameras;
 mod images;
 mod lines;
-mod numbering;
+mod numbers;
 mod writer;
 
 use std::fs::File;
@@ -18,7 +18,6 @@ use super::formats::{colmap, colmap_bin};
 use super::source::{self, LARGEST_FILE};
 use super::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_images};
 use images::{Beside, Images};
-pub(in crate::camera) use numbering::Numbering;
 pub use writer::ListWriter;
 
 /// Bytes at the beginning of a file by which it is known.
@@ -107,7 +106,7 @@ impl CameraList {
             Kind::Text | Kind::Bytes => return Ok(self),
         };
         // A line that is wrong stands before an image without a camera, as where all is read.
-        let (mut names, mut without) = (numbering::Names::default(), None);
+        let (mut names, mut without) = (numbers::Names::default(), None);
         loop {
             match images.next()? {
                 None => break,

@@ -255,6 +255,8 @@ fn images_in_pieces_are_those_of_the_whole() {
         let found = said(&folder, "images.txt", text.replacen(from, to, 1));
         assert!(found.contains(expected), "{found}\nexpected {expected}");
     }
+    let zero = text.replacen("0.6 0 0.8 0 99", "0.6 0 0.8\0 0 99", 1);
+    assert!(said(&folder, "images.txt", zero).contains("images.txt:200: expected text, found a zero byte"));
     // A line that is wrong stands before a camera that is not there.
     let both = text.replacen(" 8 left/a 1.jpg", " 101 left/a 1.jpg", 1).replacen("0.6 0 0.8 0 99", "0.6 0 x 0 99", 1);
     assert!(said(&folder, "images.txt", both).contains("images.txt:200: "));

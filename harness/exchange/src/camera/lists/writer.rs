@@ -1,7 +1,8 @@
 //! A list of cameras, written in pieces.
 
-use super::{CameraList, Numbering};
+use super::CameraList;
 use crate::camera::format::Parts;
+use crate::camera::numbering::Numbering;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, checked_for, is_readable};
 
 /// The bytes of a list, a piece after the other: together they are those of [`super::super::camera_bytes`].
