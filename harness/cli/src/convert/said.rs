@@ -25,14 +25,14 @@ pub struct Said {
 
 struct Text {
     camera: Option<String>,
-    text: String,
+    words: String,
     count: usize,
 }
 
 impl Said {
     /// A text about a camera, or about any.
     pub fn add(&mut self, camera: Option<&str>, text: &str) {
-        let new = || Text { camera: camera.map(str::to_owned), text: text.to_owned(), count: 1 };
+        let new = || Text { camera: camera.map(str::to_owned), words: text.to_owned(), count: 1 };
         self.count += 1;
         if self.first.len() < TOLD_APART {
             self.first.push(new());
@@ -55,7 +55,7 @@ impl Said {
     fn lines(&self) -> Vec<String> {
         if self.count <= TOLD_APART && self.first.iter().any(|text| text.camera.is_some()) {
             // What is about no camera alone is told once.
-            let again = |at: usize| self.first[..at].iter().any(|before| before.camera.is_none() && before.text == self.first[at].text);
+            let again = |at: usize| self.first[..at].iter().any(|before| before.camera.is_none() && before.words == self.first[at].words);
             let told = self.first.iter().enumerate().filter(|(at, text)| text.camera.is_some() || !again(*at));
             return told.map(|(_, text)| text.line(1)).collect();
         }
@@ -71,7 +71,7 @@ impl Said {
 
 impl Text {
     fn line(&self, count: usize) -> String {
-        let (camera, text) = (self.camera.as_ref().map(|camera| escape::name(camera)), &self.text);
+        let (camera, text) = (self.camera.as_ref().map(|camera| escape::name(camera)), &self.words);
         match (camera, count) {
             (None, 1) => text.clone(),
             (None, count) => format!("{text} ({count} cameras)"),
