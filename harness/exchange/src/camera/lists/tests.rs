@@ -114,6 +114,7 @@ fn a_mistake_is_the_same_wherever_it_stands() {
         (vec![(4990, twice.as_str())], "a.txt:4990, `17`: the id of two cameras, first on line 17;"),
         (vec![(4000, twice.as_str()), (4990, "nonsense")], "a.txt:4000, `17`: the id of two cameras"),
         (vec![(4990, twice.as_str()), (4000, "nonsense")], "a.txt:4000: expected CAMERA_ID"),
+        (vec![(4000, twice.as_str()), (4990, "3 PINHOLE 9 9 9 9 9 9")], "a.txt:4000, `17`: the id of two cameras, first on line 17;"),
         (vec![(4990, twice.as_str()), (4980, "3 PINHOLE 9 9 9 9 9 9")], "a.txt:4980, `3`: the id of two cameras, first on line 3;"),
         (vec![(4990, "4990 PINHOLE 640\0 480 500 501 320 240")], "a.txt:4990: expected text, found a zero byte"),
     ] {
@@ -213,10 +214,10 @@ fn a_file_beyond_the_limit_is_a_list_or_refused_with_the_reason() {
 }
 
 /// Images whose cameras are in another order; `points` of every second one.
-fn images(count: usize) -> (String, Vec<u8>) {
+fn images(count: usize, cameras: usize) -> (String, Vec<u8>) {
     let (mut text, mut bytes) = (String::from("# Image list\n"), (count as u64).to_le_bytes().to_vec());
     for i in 0..count {
-        let (id, camera, name) = (i as u32 + 1, (i * 7 % 100) as u32 + 1, format!("left/a {i}.jpg"));
+        let (id, camera, name) = (i as u32 + 1, (i * 7 % cameras) as u32 + 1, format!("left/a {i}.jpg"));
         let t = [i as f64, 0.5, -1.0];
         let points = if i % 2 == 0 { "" } else { "1.5 2.5 -1 3 4 -1" };
         text += &format!("{id} 0.6 0 0.8 0 {} {} {} {camera} {name}\n{points}\n", t[0], t[1], t[2]);
@@ -234,7 +235,7 @@ fn images(count: usize) -> (String, Vec<u8>) {
 #[test]
 fn images_in_pieces_are_those_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();
-    let (text, bytes) = images(120);
+    let (text, bytes) = images(120, 100);
     let cameras = self::text(100);
     let [images_text, images_bytes] =
         [("images.txt", text.clone().into_bytes()), ("images.bin", bytes.clone())].map(|(name, b)| file(&folder, name, b));
@@ -266,6 +267,33 @@ fn images_in_pieces_are_those_of_the_whole() {
     }
     file(&folder, "cameras.txt", cameras.replacen("2 PINHOLE 640 480", "2 PINHOLE 640 x", 1));
     assert!(said(&folder, "images.txt", text).contains("cameras.txt:2, `HEIGHT`: "));
+}
+
+#[test]
+fn images_of_more_cameras_than_are_kept_have_theirs() {
+    let folder = tempfile::tempdir().unwrap();
+    let (text, bytes) = images(11_000, 5000);
+    for (cameras, beside) in [("cameras.txt", self::text(5000).into_bytes()), ("cameras.bin", self::bytes(&self::text(5000)))] {
+        file(&folder, cameras, beside);
+        for (name, images) in [("images.txt", text.as_bytes()), ("images.bin", &bytes)] {
+            let path = file(&folder, name, images);
+            let list = CameraList::open(&path, &ReadOptions::default()).unwrap().unwrap();
+            assert!(all(&list, 1000) == read_camera_with(&path, &ReadOptions::default()).unwrap().cameras, "{name} by {cameras}");
+            fs::remove_file(path).unwrap();
+        }
+        fs::remove_file(folder.path().join(cameras)).unwrap();
+    }
+}
+
+#[test]
+fn lines_are_numbered_and_their_bytes_are_counted() {
+    let mut lines = lines::Lines::new(&b"ab\r\ncd\n\nlast"[..]);
+    let place = |lines: &lines::Lines<&[u8]>| (lines.number(), lines.at());
+    assert!(matches!(lines.next(), Ok(Some("ab\r\n"))) && place(&lines) == (1, 4));
+    assert!(lines.pass().is_ok() && place(&lines) == (2, 7));
+    assert!(matches!(lines.next(), Ok(Some("\n"))) && place(&lines) == (3, 8));
+    assert!(matches!(lines.next(), Ok(Some("last"))) && place(&lines) == (4, 12));
+    assert!(matches!(lines.next(), Ok(None)));
 }
 
 #[test]
