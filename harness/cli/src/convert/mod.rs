@@ -139,7 +139,7 @@ impl Convert {
         let options =
             ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
         let found = converted(source, &goal, self.model.as_deref(), self.pitch, &options);
-        let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error))?;
+        let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error, label))?;
         let mut said = Vec::new();
         if !quiet {
             let model = model.map_or(String::new(), |model| format!("{model}: "));
@@ -159,12 +159,16 @@ impl Convert {
         Ok(Answer { camera, format: goal.format, said })
     }
 
-    fn refused(&self, error: &ConversionError) -> Failure {
+    /// Why a camera is not converted, with its name where there are several.
+    fn refused(&self, error: &ConversionError, label: Option<&str>) -> Failure {
+        let name = label.map_or(String::new(), |label| format!("{}: ", escape::name(label)));
         match error {
             ConversionError::ModelNamed => Failure::input(format!("--to {} names the model already: no --model", self.to)),
-            ConversionError::Convert(error) => advise(error),
-            ConversionError::Fit(FitError::Refused { why, .. }) => Failure::input(format!("{error}{}", flag(why))),
-            _ => Failure::input(error.to_string()),
+            // Of the command, and not of a camera.
+            ConversionError::Fit(FitError::NoModels { .. } | FitError::UnknownModel { .. }) => Failure::input(error.to_string()),
+            ConversionError::Convert(error) => Failure::input(format!("{name}{error}{}", flag(error))),
+            ConversionError::Fit(FitError::Refused { why, .. }) => Failure::input(format!("{name}{error}{}", flag(why))),
+            _ => Failure::input(format!("{name}{error}")),
         }
     }
 
