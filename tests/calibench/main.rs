@@ -20,6 +20,7 @@ mod judge;
 mod judge_field;
 mod judge_points;
 mod killed;
+mod lists;
 mod measure;
 mod messages;
 mod models;

@@ -127,6 +127,27 @@ fn pycolmap_reads_both_of_colmap_s_lists_in_every_model() {
 }
 
 #[test]
+#[cfg_attr(not(peer_pycolmap), ignore = "no pycolmap")]
+fn pycolmap_reads_lists_that_were_written_in_pieces() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let line = |id: usize| format!("{id} OPENCV 1200 900 {} 1403 610.5 440.5 -0.08 0.02 0.0003 -0.0006\n", 1400.0 + 0.01 * id as f64);
+    std::fs::write(at("list.txt"), (1..=9000).map(line).collect::<String>()).unwrap();
+    for (from, to, file) in [("list.txt", "colmap-bin", "cameras.bin"), ("cameras.bin", "colmap", "cameras.txt")] {
+        let output = crate::project::run(folder.path(), &["convert", from, "--all", "--to", to, "-o", file]);
+        assert!(output.status.success(), "{}", crate::project::stderr(&output));
+        for id in [1, 4096, 4097, 9000] {
+            let Camera::OpenCv(camera) = opencv(4) else { panic!() };
+            let camera = OpenCv { fx: 1400.0 + 0.01 * f64::from(id), ..camera }.into();
+            let (points, expected) = sights(&camera);
+            let found = asked(&own(), "colmap", &at(file), &points, &[("CAMERA", &id.to_string())]);
+            let off = found.iter().zip(&expected).map(|(a, b)| PixelPoint::new(a[0], a[1]).distance(*b)).fold(0.0, f64::max);
+            assert!(found.len() == points.len() && off < 1e-8, "{file}, camera {id}: {off} px");
+        }
+    }
+}
+
+#[test]
 #[cfg_attr(not(all(peer_kapture, peer_pycolmap)), ignore = "no kapture or no pycolmap")]
 fn kapture_reads_its_sensors() {
     let wide = wide();

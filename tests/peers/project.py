@@ -16,7 +16,7 @@ import numpy as np
 
 
 def colmap(path, points):
-    """pycolmap reads a model's folder: cameras.txt or cameras.bin; its origin is the corner of the first pixel."""
+    """pycolmap reads a model's folder: cameras.txt or cameras.bin, of several the CAMERA of that id; its origin is the corner of the first pixel."""
     import pycolmap
 
     ending = path.rsplit(".", 1)[-1]
@@ -27,7 +27,7 @@ def colmap(path, points):
                 empty.write(b"\0" * 8 if ending == "bin" else b"")
         model = pycolmap.Reconstruction()
         (model.read_binary if ending == "bin" else model.read_text)(folder)
-    (camera,) = model.cameras.values()
+    (camera,) = [c for c in model.cameras.values() if str(c.camera_id) == os.environ.get("CAMERA", str(c.camera_id))]
     return camera.img_from_cam(points) - 0.5
 
 

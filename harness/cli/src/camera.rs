@@ -22,8 +22,8 @@ pub struct CameraCommand {
 
 impl CameraCommand {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = self.reading.file(&self.file)?;
-        let (format, count) = (file.format, file.cameras.len());
+        let (file, count) = self.reading.file(&self.file, MOST_LISTED)?;
+        let format = file.format;
         let camera = self.reading.one(&self.file)?;
         let verified = format.verified.map_or("unverified".to_owned(), |proof| format!("verified: {proof}"));
         let cameras = if count == 1 { "1 camera".to_owned() } else { format!("{count} cameras") };
@@ -34,7 +34,7 @@ impl CameraCommand {
             format.tool,
             format.versions
         );
-        text.push_str(&index(&file.cameras));
+        text.push_str(&index(&file.cameras, count));
         text.push_str(&camera_card(&camera));
         print(&text)
     }
@@ -44,8 +44,8 @@ impl CameraCommand {
 const MOST_LISTED: usize = 200;
 
 /// Place, name and model of each camera of a file that holds several.
-fn index(cameras: &[NamedCamera]) -> String {
-    if cameras.len() < 2 {
+fn index(cameras: &[NamedCamera], count: usize) -> String {
+    if count < 2 {
         return String::new();
     }
     let line = |(place, named): (usize, &NamedCamera)| {
@@ -54,8 +54,8 @@ fn index(cameras: &[NamedCamera]) -> String {
         format!("  {:>9}   {name}: {}, {} x {} px\n", place + 1, named.camera.convention().name, size.width, size.height)
     };
     let mut text: String = cameras.iter().enumerate().take(MOST_LISTED).map(line).collect();
-    if cameras.len() > MOST_LISTED {
-        text.push_str(&format!("        ...   and {} more\n", cameras.len() - MOST_LISTED));
+    if count > MOST_LISTED {
+        text.push_str(&format!("        ...   and {} more\n", count - MOST_LISTED));
     }
     text
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use calibench_exchange::camera::CameraList;
 use calibench_exchange::points::{Check, read_points_checked};
 use calibench_exchange::{PointFile, Points, ReadOptions, read_camera_with};
 use calibench_model::camera::{Camera, ImageSize};
@@ -32,13 +33,21 @@ pub fn checked(path: &Path, check: Check<'_>) -> Result<PointFile, Failure> {
 
 /// The first camera of a file.
 pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
-    let file = read_camera_with(path, &ReadOptions { size, fisheye: None, lens: None, from: None })?;
-    if file.cameras.len() > 1 {
-        say!("{}: the first of {} cameras", path.display(), file.cameras.len());
+    let options = ReadOptions { size, fisheye: None, lens: None, from: None };
+    let (cameras, count) = match CameraList::open(path, &options)? {
+        Some(list) => (list.pieces(1)?.next().transpose()?.unwrap_or_default(), list.len()),
+        None => {
+            let file = read_camera_with(path, &options)?;
+            let count = file.cameras.len();
+            (file.cameras, count)
+        }
+    };
+    if count > 1 {
+        say!("{}: the first of {count} cameras", path.display());
     }
-    if let Some(doubt) = file.cameras.first().and_then(|named| named.splines.as_ref()?.doubt()) {
+    let first = cameras.first().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))?;
+    if let Some(doubt) = first.splines.as_ref().and_then(|splines| splines.doubt()) {
         return Err(Failure::input(format!("{}: {doubt}", path.display())));
     }
-    let first = file.cameras.first().map(|named| named.camera);
-    first.ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))
+    Ok(first.camera)
 }

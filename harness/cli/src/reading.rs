@@ -5,12 +5,17 @@ use std::path::Path;
 
 use calibench_diagnostics::nearest;
 use calibench_exchange::camera::open_points::{self, OpenPoints};
-use calibench_exchange::camera::{self, CameraFile, CameraFormat, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with};
+use calibench_exchange::camera::{
+    self, CameraFile, CameraFileError, CameraFormat, CameraList, FORMATS, NamedCamera, ReadOptions, format_named, read_camera_with,
+};
 use calibench_model::camera::{Camera, ImageSize, TangentialOrder, Verification};
 use calibench_model::escape;
 use clap::{Args, ValueEnum};
 
 use crate::failure::Failure;
+
+/// Cameras of a long list that are in memory while one of them is looked for.
+const AT_A_TIME: usize = 4096;
 
 /// What a camera file may leave open.
 #[derive(Args)]
@@ -98,42 +103,82 @@ impl Reading {
         Some(format!("unverified: {}: {open}{flag}", camera.convention().name))
     }
 
-    pub fn file(&self, path: &Path) -> Result<CameraFile, Failure> {
+    fn options(&self) -> ReadOptions {
         let lens = self.lens.map(|lens| match lens {
             Lens::Brown => camera::Lens::Brown,
             Lens::Division => camera::Lens::Division,
         });
-        let options = ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from };
-        Ok(read_camera_with(path, &options)?)
+        ReadOptions { size: self.size, fisheye: self.fisheye.then_some(true), lens, from: self.from }
+    }
+
+    /// A file as it is, of a long list its first `most` cameras; and how many it holds.
+    pub fn file(&self, path: &Path, most: usize) -> Result<(CameraFile, usize), Failure> {
+        if let Some(list) = CameraList::open(path, &self.options())? {
+            let cameras = list.pieces(most)?.next().transpose()?.unwrap_or_default();
+            return Ok((CameraFile { format: list.format(), cameras }, list.len()));
+        }
+        let file = read_camera_with(path, &self.options())?;
+        let count = file.cameras.len();
+        Ok((file, count))
     }
 
     /// The camera that is meant, with a word on standard error about what was assumed and left out.
     pub fn one(&self, path: &Path) -> Result<NamedCamera, Failure> {
-        let mut file = self.file(path)?;
-        let chosen = self.choose(path, &file.cameras)?;
-        if file.cameras.len() > 1 && self.camera.is_none() {
-            let (count, name) = (file.cameras.len(), escape::name(&file.cameras[chosen].name));
-            say!("{}: the first of {count} cameras, `{name}`; choose with --camera NAME", shown(path));
+        let (format, count, chosen) = match CameraList::open(path, &self.options())? {
+            Some(list) => (list.format(), list.len(), self.choose(list.pieces(AT_A_TIME)?)?),
+            None => {
+                let file = read_camera_with(path, &self.options())?;
+                (file.format, file.cameras.len(), self.choose([Ok(file.cameras)])?)
+            }
+        };
+        let chosen = chosen.ok_or_else(|| match &self.camera {
+            Some(name) => Failure::input(format!("{}: no camera is called {}", shown(path), escape::name(name))),
+            None => Failure::input(format!("{}: holds no camera", shown(path))),
+        })?;
+        if count > 1 && self.camera.is_none() {
+            say!("{}: the first of {count} cameras, `{}`; choose with --camera NAME", shown(path), escape::name(&chosen.name));
         }
-        let one = vec![file.cameras.swap_remove(chosen)];
-        let one = self.decided(path, CameraFile { cameras: one, ..file });
+        let one = self.decided(path, CameraFile { format, cameras: vec![chosen] });
         one.into_iter().next().ok_or_else(|| Failure::input(format!("{}: holds no camera", shown(path))))
     }
 
     /// All cameras, with the same words, each once.
     pub fn all(&self, path: &Path) -> Result<Vec<NamedCamera>, Failure> {
-        if self.camera.is_some() {
-            return Err(Failure::input("--all and --camera NAME exclude each other"));
-        }
-        Ok(self.decided(path, self.file(path)?))
+        self.is_of_all()?;
+        Ok(self.decided(path, read_camera_with(path, &self.options())?))
     }
 
-    /// The place of the camera that is meant.
-    fn choose(&self, path: &Path, cameras: &[NamedCamera]) -> Result<usize, Failure> {
-        let Some(name) = &self.camera else { return Ok(0) };
-        let by_name = cameras.iter().position(|camera| camera.name == *name);
-        let by_place = || name.parse::<usize>().ok().filter(|place| (1..=cameras.len()).contains(place)).map(|place| place - 1);
-        by_name.or_else(by_place).ok_or_else(|| Failure::input(format!("{}: no camera is called {}", shown(path), escape::name(name))))
+    /// All cameras of a list that is read in pieces, with the same words; `None` for other files.
+    pub fn list(&self, path: &Path) -> Result<Option<CameraList>, Failure> {
+        self.is_of_all()?;
+        let list = CameraList::open(path, &self.options())?;
+        list.iter().for_each(|list| self.warn_of_format(list.format()));
+        Ok(list)
+    }
+
+    fn is_of_all(&self) -> Result<(), Failure> {
+        if self.camera.is_some() { Err(Failure::input("--all and --camera NAME exclude each other")) } else { Ok(()) }
+    }
+
+    /// The camera that is meant: the first of that name, or else the one in that place; without a name the first.
+    fn choose(&self, pieces: impl IntoIterator<Item = Result<Vec<NamedCamera>, CameraFileError>>) -> Result<Option<NamedCamera>, Failure> {
+        let place = self.camera.as_ref().map_or(Some(1), |name| name.parse::<usize>().ok());
+        let (mut count, mut in_place) = (0, None);
+        for piece in pieces {
+            for camera in piece? {
+                count += 1;
+                if self.camera.as_ref().is_some_and(|name| camera.name == *name) {
+                    return Ok(Some(camera));
+                }
+                if place == Some(count) {
+                    in_place = Some(camera);
+                }
+            }
+            if self.camera.is_none() {
+                break;
+            }
+        }
+        Ok(in_place)
     }
 
     /// The cameras as the user decided open points; says what is unverified, assumed and left out.

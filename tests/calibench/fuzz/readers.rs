@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::camera::{ReadOptions, camera_bytes, format_named, parse_camera};
+use calibench_exchange::camera::{CameraList, ListWriter, ReadOptions, camera_bytes, format_named, parse_camera, read_camera_with};
 use calibench_exchange::control::{parse_control, write_control};
 use calibench_exchange::photo::parse_photo;
 use calibench_exchange::points::parse_points;
@@ -28,9 +28,10 @@ pub struct Reader {
 }
 
 /// All of them.
-pub const READERS: [Reader; 16] = [
+pub const READERS: [Reader; 17] = [
     Reader { name: "cameras", seeds: "cameras", read: camera },
     Reader { name: "cameras-sized", seeds: "cameras", read: camera_of_size },
+    Reader { name: "camera-lists", seeds: "camera-lists", read: camera_list },
     Reader { name: "points", seeds: "points", read: points },
     Reader { name: "control", seeds: "control", read: control },
     Reader { name: "stations", seeds: "stations", read: |bytes, _| words(parse_stations(FILE, bytes)) },
@@ -96,6 +97,35 @@ fn read_camera(bytes: &[u8], options: ReadOptions) -> Result<(), String> {
         assert!(again.is_ok_and(|again| again.cameras.len() == found.cameras.len()), "{}", String::from_utf8_lossy(&bytes));
     }
     assert!(format_named(found.format.name).is_some());
+    Ok(())
+}
+
+/// A list in pieces holds the cameras of the whole, its mistake, and what it writes.
+fn camera_list(bytes: &[u8], folder: &Path) -> Result<(), String> {
+    let path = file(bytes, folder);
+    std::fs::write(folder.join("cameras.txt"), "1 PINHOLE 640 480 500 501 320 240\n7 FOV 640 480 500 501 320 240 0.8\n").expect("a file");
+    let options = ReadOptions::default();
+    let whole = read_camera_with(&path, &options);
+    let list = match CameraList::open(&path, &options) {
+        Ok(Some(list)) => list,
+        Ok(None) => return words(whole),
+        Err(error) => {
+            // What is no text is so before any of its lines is wrong.
+            assert!(whole.is_err() && (std::str::from_utf8(bytes).is_err() || whole == Err(error.clone())), "{whole:?}\nin pieces {error}");
+            return Err(error.to_string());
+        }
+    };
+    let whole = whole.unwrap_or_else(|error| panic!("right in pieces: {error}"));
+    let pieces: Vec<_> = list.pieces(2).and_then(Iterator::collect).unwrap_or_else(|error| panic!("right at first: {error}"));
+    assert!(pieces.concat() == whole.cameras && list.format() == whole.format, "other cameras in pieces");
+    for format in ["colmap", "colmap-bin", "kapture"].map(|name| format_named(name).expect("a format")) {
+        let (mut writer, mut out) = ListWriter::new(format, &list).expect("a list");
+        let written = pieces.iter().try_for_each(|piece| writer.piece(piece).map(|bytes| out.extend(bytes)));
+        match camera_bytes(format, &whole.cameras) {
+            Ok(bytes) => assert!(written.is_ok() && out == bytes, "{}: other bytes in pieces", format.name),
+            Err(error) => assert!(written.is_err(), "{}: {error}", format.name),
+        }
+    }
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 use calibench_model::camera::Convention;
 
 use super::fit::{Keeps, KeptCovariance, KeptPose, Model};
+use super::numbering::Numbering;
 use super::source::Source;
 use super::{CameraFileError, NamedCamera, ReadOptions};
 
@@ -15,6 +16,14 @@ pub(super) struct Binary {
     pub recognise: fn(&[u8]) -> Result<(), String>,
     pub read: fn(&[u8], &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError>,
     pub write: fn(&[NamedCamera]) -> Result<Vec<u8>, CameraFileError>,
+}
+
+/// How a file that is written in pieces is put together.
+pub(super) struct Parts {
+    /// What stands before the cameras, for their number.
+    pub head: fn(usize) -> Vec<u8>,
+    /// Some of the cameras.
+    pub body: fn(&[NamedCamera], Numbering) -> Result<Vec<u8>, CameraFileError>,
 }
 
 /// A format of camera files.
@@ -40,6 +49,8 @@ pub struct CameraFormat {
     pub(super) write: Option<Writer>,
     /// In place of the three before, where its files are no text.
     pub(super) binary: Option<Binary>,
+    /// Its lists may be written in pieces, and are then as long as they need be.
+    pub(super) parts: Option<Parts>,
     /// The convention of its numbers, where the cameras read from it are of another.
     pub convention: Option<&'static Convention>,
     /// The models that it holds, the leanest first, for a pixel pitch in um if one is known; empty for a format that is written through its convention.
@@ -65,6 +76,7 @@ pub(super) const PLAIN: CameraFormat = CameraFormat {
     read: |_, _| Ok(Vec::new()),
     write: None,
     binary: None,
+    parts: None,
     convention: None,
     models: |_| Vec::new(),
     keeps: Keeps { splines: false, name: false, pitch: false, pose: KeptPose::None, covariance: KeptCovariance::None },
@@ -76,6 +88,11 @@ impl CameraFormat {
     /// Whether it can be written.
     pub fn is_written(&self) -> bool {
         self.write.is_some() || self.binary.is_some()
+    }
+
+    /// Whether its lists can be written in pieces: [`super::ListWriter`].
+    pub fn is_written_in_pieces(&self) -> bool {
+        self.parts.is_some()
     }
 
     /// The error for a camera whose model the format does not hold.

@@ -18,10 +18,13 @@ impl Ids {
         let key = id.parse::<u64>().map_or_else(|_| id.to_owned(), |number| number.to_string());
         match self.0.insert(key, line) {
             None => Ok(()),
-            Some(first) => {
-                let problem = format!("the id of two cameras, first on line {first}; expected each id once: rename or remove one");
-                Err(CameraFileError::new(problem).on_line(line).of(shortened(id)))
-            }
+            Some(first) => Err(twice(id, first, line)),
         }
     }
+}
+
+/// The error of an id that stands on two lines.
+pub(super) fn twice(id: &str, first: usize, line: usize) -> CameraFileError {
+    let problem = format!("the id of two cameras, first on line {first}; expected each id once: rename or remove one");
+    CameraFileError::new(problem).on_line(line).of(shortened(id))
 }

@@ -16,8 +16,10 @@ mod format;
 pub mod formats;
 mod ids;
 mod json;
+mod lists;
 mod little_endian;
 mod number;
+mod numbering;
 pub mod open_points;
 mod opencv;
 mod opencv_storage;
@@ -42,6 +44,7 @@ pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;
 pub use format::CameraFormat;
 pub use formats::{FORMATS, format_named};
+pub use lists::{CameraList, ListWriter, Pieces};
 pub use pose::{Pose, PoseFrame};
 pub use source::LARGEST_FILE;
 use source::Source;
@@ -214,24 +217,32 @@ pub fn camera_bytes(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Ve
     if cameras.len() > 1 && !format.many {
         return Err(CameraFileError::new(format!("{} holds one camera, found {}", format.name, cameras.len())));
     }
-    for camera in cameras {
-        check(camera)?;
-    }
-    let options = ReadOptions::of_written(format, cameras[0].camera.size());
-    let unreadable = |error: CameraFileError| {
-        let problem = format!("cannot be written as {}: {}", format.name, error.problem);
-        CameraFileError { element: error.element, ..CameraFileError::new(problem) }
-    };
+    let options = checked_for(format, cameras)?;
     // Parts of a long list are lists too, and take less memory to be read again.
     if cameras.len() > READ_AT_A_TIME {
         for part in cameras.chunks(READ_AT_A_TIME) {
-            parse(&written(format, part)?, &options).map_err(unreadable)?;
+            is_readable(format, &written(format, part)?, &options)?;
         }
         return written(format, cameras);
     }
     let bytes = written(format, cameras)?;
-    parse(&bytes, &options).map_err(unreadable)?;
+    is_readable(format, &bytes, &options)?;
     Ok(bytes)
+}
+
+/// What reads cameras of finite numbers again from a file of `format`.
+fn checked_for(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<ReadOptions, CameraFileError> {
+    cameras.iter().try_for_each(check)?;
+    let first = cameras.first().ok_or_else(|| CameraFileError::new("no camera to write"))?;
+    Ok(ReadOptions::of_written(format, first.camera.size()))
+}
+
+/// What was written can be read.
+fn is_readable(format: &CameraFormat, bytes: &[u8], options: &ReadOptions) -> Result<(), CameraFileError> {
+    parse(bytes, options).map(drop).map_err(|error| {
+        let problem = format!("cannot be written as {}: {}", format.name, error.problem);
+        CameraFileError { element: error.element, ..CameraFileError::new(problem) }
+    })
 }
 
 fn written(format: &CameraFormat, cameras: &[NamedCamera]) -> Result<Vec<u8>, CameraFileError> {

@@ -54,12 +54,21 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, CameraFileError> {
     }
     let file = File::open(path).map_err(unreadable)?;
     let length = file.metadata().map_err(unreadable)?.len();
-    let too_large = || CameraFileError::new(format!("is larger than {} MB; expected a camera file", LARGEST_FILE >> 20));
     if length > LARGEST_FILE {
-        return Err(too_large());
+        return Err(too_large(None));
     }
     // What is no ordinary file has no length: it is read up to the limit.
     let mut bytes = Vec::with_capacity(length as usize);
     file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > LARGEST_FILE { Err(too_large()) } else { Ok(bytes) }
+    if bytes.len() as u64 > LARGEST_FILE { Err(too_large(None)) } else { Ok(bytes) }
+}
+
+/// The error of a file that is larger than [`LARGEST_FILE`], with why it is not read in pieces where that was tried.
+pub(super) fn too_large(why: Option<&str>) -> CameraFileError {
+    let why = why.map_or(String::new(), |why| format!(": {why}"));
+    CameraFileError::new(format!(
+        "is larger than {} MB; expected a camera file. Longer ones are lists of COLMAP's alone (cameras.txt, cameras.bin, images.txt, images.bin), which `camera` \
+         and `convert` read in pieces{why}; split this one",
+        LARGEST_FILE >> 20
+    ))
 }

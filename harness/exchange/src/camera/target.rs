@@ -10,7 +10,7 @@ use super::fit::Model;
 use super::{CameraFormat, FORMATS, NamedCamera, format_named};
 
 /// The names of conventions, besides those of formats with models of their own, with what they mean.
-pub const TARGETS: [(&str, &str); 15] = [
+pub const TARGETS: [(&str, &str); 17] = [
     ("photogrammetric", "c, x0, y0, k1 to k3, p1, p2, b1, b2 in mm, y up (needs the pixel pitch)"),
     ("ebner", "Ebner's twelve parameters (needs the pixel pitch and --base)"),
     ("opencv", "OpenCV with the fewest coefficients that are exact, or that fit best; also opencv4, opencv5, opencv8, opencv12, opencv14"),
@@ -21,11 +21,13 @@ pub const TARGETS: [(&str, &str); 15] = [
     ("opencv-fisheye", "OpenCV's fisheye"),
     ("opencv-omnidir", "cv2.omnidir's camera of Mei: xi, k1, k2, p1, p2"),
     ("metashape", "Metashape, PhotoScan from 1.2: a frame camera, with k4, p3, p4 where it needs them, or a fisheye"),
+    ("metashape-cameras", "the same as camera XML, which holds several"),
     ("metashape-fisheye", "Metashape's equidistant fisheye"),
     ("photoscan", "PhotoScan before 1.2: cameras XML with fx, fy, cx, cy, skew"),
     ("agisoft-lens", "Agisoft Lens: calibration XML with fx, fy, cx, cy, skew"),
     ("pix4d", "Pix4D's .cam (needs the pixel pitch)"),
     ("pix4d-inpho", "Pix4D's .cam for INPHO (needs the pixel pitch)"),
+    ("pix4d-parameters", "Pix4D's calibrated_camera_parameters.txt, of cameras with poses"),
 ];
 
 /// How a format's model is chosen.
@@ -141,9 +143,14 @@ pub fn goal(name: &str, given: &Given<'_>) -> Result<Goal, TargetError> {
         }
         "opencv-fisheye" => (Target::OpenCvFisheye, opencv),
         "opencv-omnidir" => (Target::Omni { distortion: true }, opencv),
-        "metashape" => return any_of(of_metashape(given.source), "metashape"),
+        "metashape" | "metashape-cameras" => return any_of(of_metashape(given.source), name),
         "metashape-fisheye" => (Target::MetashapeFisheye { projection: FisheyeProjection::Equidistant }, "metashape"),
         "pix4d" | "pix4d-inpho" => (Target::Pix4d { sensor_width_mm: sensor_width(given.pitch(name)?), order: given.order }, name),
+        // In px: the width of the sensor is not in the file.
+        "pix4d-parameters" => {
+            let pitch_um = given.pitch(name).unwrap_or(1.0);
+            (Target::Pix4d { sensor_width_mm: sensor_width(pitch_um), order: given.order }, name)
+        }
         "photoscan" => (older(AgisoftVersion::PhotoScan), "photoscan-cameras"),
         "agisoft-lens" => (older(AgisoftVersion::Lens), "metashape"),
         "opencv" => return any_of(of_opencv(given.source), opencv),
@@ -169,4 +176,30 @@ fn older(version: AgisoftVersion) -> Target {
 fn unknown(name: &str) -> TargetError {
     let formats = FORMATS.iter().filter(|format| !format.models(None).is_empty()).map(|format| format.name);
     TargetError::Unknown { name: name.to_owned(), known: TARGETS.iter().map(|(name, _)| *name).chain(formats).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibench_model::camera::{ImageSize, OpenCv};
+
+    #[test]
+    fn every_format_that_is_written_is_a_target() {
+        let size = ImageSize { width: 640, height: 480 };
+        let camera = OpenCv { size, fx: 500.0, fy: 500.0, cx: 320.0, cy: 240.0, distortion: [0.0; 14], coefficients: 5 };
+        let source = NamedCamera::new("", camera.into());
+        let names = TARGETS.iter().map(|(name, _)| *name).chain(FORMATS.iter().map(|format| format.name));
+        let mut reached: Vec<&str> = Vec::new();
+        for name in names {
+            for output in [None, Some(Path::new("c.xml"))] {
+                let given = Given { source: &source, pitch_um: Some(4.0), base_mm: Some(2.0), order: TangentialOrder::OpenCv, output };
+                reached.extend(goal(name, &given).ok().map(|goal| goal.format.name));
+            }
+        }
+        for format in FORMATS.iter().filter(|format| format.is_written()) {
+            assert!(reached.contains(&format.name), "{}", format.name);
+        }
+        let given = Given { source: &source, pitch_um: None, base_mm: None, order: TangentialOrder::OpenCv, output: None };
+        assert!(goal("pix4d-parameters", &given).is_ok() && goal("pix4d", &given).is_err());
+    }
 }

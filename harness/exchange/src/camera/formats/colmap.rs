@@ -1,17 +1,17 @@
 //! COLMAP's cameras.txt.
 
-use std::collections::HashSet;
-
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
 use crate::camera::fit::Keeps;
+use crate::camera::format::Parts;
 use crate::camera::ids::Ids;
 use crate::camera::number::{finite, pixels, shortest};
+use crate::camera::numbering::Numbering;
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
 
-pub(super) static FORMAT: CameraFormat = CameraFormat {
+pub(in crate::camera) static FORMAT: CameraFormat = CameraFormat {
     name: "colmap",
     tool: "COLMAP",
     versions: "cameras.txt of 3.x and 4.x",
@@ -21,6 +21,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise,
     read,
     write: Some(write),
+    parts: Some(Parts { head, body }),
     convention: Some(&tool_conventions::COLMAP),
     models: colmap_models::models,
     keeps: Keeps { name: true, ..PLAIN.keeps },
@@ -34,7 +35,7 @@ fn lines<'a>(source: &Source<'a>) -> impl Iterator<Item = (usize, &'a str)> + us
     numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
 }
 
-fn recognise(source: &Source<'_>) -> Result<(), String> {
+pub(in crate::camera) fn recognise(source: &Source<'_>) -> Result<(), String> {
     let first: Vec<&str> = lines(source).next().map_or(Vec::new(), |(_, line)| line.split_whitespace().collect());
     let is_name = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_uppercase() || b == b'_');
     let is_number = |text: &&str| text.bytes().all(|b| b.is_ascii_digit());
@@ -54,7 +55,8 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
     lines(source).map(one).collect()
 }
 
-fn camera(text: &str, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
+/// The camera of a line.
+pub(in crate::camera) fn camera(text: &str, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
     let mut words = text.split_whitespace();
     let (Some(id), Some(model), Some(width), Some(height)) = (words.next(), words.next(), words.next(), words.next()) else {
         return Err(CameraFileError::new("expected CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]"));
@@ -67,22 +69,22 @@ fn camera(text: &str, options: &ReadOptions) -> Result<NamedCamera, CameraFileEr
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
-    let mut out = format!(
-        "# Camera list with one line of data per camera:\n#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n# Number of cameras: {}\n",
-        cameras.len()
-    );
-    for (named, id) in cameras.iter().zip(ids(cameras)) {
+    let bytes = [head(cameras.len()), body(cameras, Numbering::of(cameras))?].concat();
+    String::from_utf8(bytes).map_err(|_| CameraFileError::new("is no text"))
+}
+
+fn head(count: usize) -> Vec<u8> {
+    let columns = "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]";
+    format!("# Camera list with one line of data per camera:\n{columns}\n# Number of cameras: {count}\n").into_bytes()
+}
+
+fn body(cameras: &[NamedCamera], numbering: Numbering) -> Result<Vec<u8>, CameraFileError> {
+    let mut out = String::new();
+    for (index, named) in cameras.iter().enumerate() {
         let (model, values) = colmap_models::written(&named.camera, &FORMAT)?;
         let ImageSize { width, height } = named.camera.size();
         let values: Vec<String> = values.into_iter().map(shortest).collect();
-        out.push_str(&format!("{id} {model} {width} {height} {}\n", values.join(" ")));
+        out.push_str(&format!("{} {model} {width} {height} {}\n", numbering.id(index, named)?, values.join(" ")));
     }
-    Ok(out)
-}
-
-/// The names where they are numbers that differ, or else 1, 2, ...
-pub(super) fn ids(cameras: &[NamedCamera]) -> Vec<u32> {
-    let own: Option<Vec<u32>> = cameras.iter().map(|camera| camera.name.parse().ok()).collect();
-    let differ = |ids: &Vec<u32>| ids.iter().collect::<HashSet<_>>().len() == ids.len();
-    own.filter(differ).unwrap_or_else(|| (1..).take(cameras.len()).collect())
+    Ok(out.into_bytes())
 }

@@ -2,15 +2,16 @@
 
 use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
-use super::{PLAIN, colmap};
+use super::PLAIN;
 use crate::camera::fit::Keeps;
-use crate::camera::format::Binary;
+use crate::camera::format::{Binary, Parts};
 use crate::camera::ids::Ids;
-use crate::camera::little_endian::Bytes;
+use crate::camera::little_endian::{Bytes, Stream};
 use crate::camera::number::pixels;
+use crate::camera::numbering::Numbering;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models};
 
-pub(super) static FORMAT: CameraFormat = CameraFormat {
+pub(in crate::camera) static FORMAT: CameraFormat = CameraFormat {
     name: "colmap-bin",
     tool: "COLMAP",
     versions: "cameras.bin of 3.x and 4.x",
@@ -18,6 +19,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     verified: Some("pycolmap 4.2.1 reads what is written and projects alike in every model, to 1e-8 px"),
     many: true,
     binary: Some(Binary { recognise, read, write }),
+    parts: Some(Parts { head, body }),
     convention: Some(&tool_conventions::COLMAP),
     models: colmap_models::models,
     keeps: Keeps { name: true, ..PLAIN.keeps },
@@ -30,7 +32,7 @@ const HEAD: usize = 24;
 const LARGEST_SIDE: u64 = 1 << 28;
 
 /// A count, then an id, a model that may be one and sides that may be those of an image.
-fn recognise(bytes: &[u8]) -> Result<(), String> {
+pub(in crate::camera) fn recognise(bytes: &[u8]) -> Result<(), String> {
     let no = || "no count of cameras before a camera's id, model, columns and rows".to_owned();
     let count = bytes.first_chunk().map(|count| u64::from_le_bytes(*count)).ok_or_else(no)?;
     if is_big_endian(bytes) {
@@ -56,29 +58,73 @@ fn is_big_endian(bytes: &[u8]) -> bool {
 }
 
 fn read(bytes: &[u8], options: &ReadOptions) -> Result<Vec<NamedCamera>, CameraFileError> {
-    if is_big_endian(bytes) {
-        return Err(CameraFileError::new("its numbers have the greatest byte first; expected the least first, as COLMAP writes them"));
-    }
-    let mut rest = Bytes::new(bytes);
-    let (count, mut ids, mut cameras) = (rest.u64()?, Ids::default(), Vec::new());
-    for index in 1..=count {
-        let place = |error: CameraFileError| {
-            let element = error.element.as_ref().map_or(String::new(), |element| format!(", {element}"));
-            error.of(format!("camera {index} of {count}{element}"))
-        };
-        let named = camera(&mut rest, options).map_err(place)?;
-        ids.take(&named.name, cameras.len() + 1)
-            .map_err(|_| place(CameraFileError::new(format!("the id {} is another camera's", named.name))))?;
+    has_least_byte_first(bytes)?;
+    let (mut records, mut ids, mut cameras) = (Records::new(Bytes::new(bytes))?, Ids::default(), Vec::new());
+    while let Some(named) = records.next(options)? {
+        ids.take(&named.name, cameras.len() + 1).map_err(|_| twice(records.index, records.count, &named.name))?;
         cameras.push(named);
-    }
-    if rest.left() > 0 {
-        let problem = format!("{} bytes follow the last of {count} cameras; expected none", rest.left());
-        return Err(CameraFileError::new(problem));
     }
     Ok(cameras)
 }
 
-fn camera(rest: &mut Bytes<'_>, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
+/// Refuses a file that begins with numbers that are the other way round.
+pub(in crate::camera) fn has_least_byte_first(head: &[u8]) -> Result<(), CameraFileError> {
+    let wrong = "its numbers have the greatest byte first; expected the least first, as COLMAP writes them";
+    if is_big_endian(head) { Err(CameraFileError::new(wrong)) } else { Ok(()) }
+}
+
+/// The error of an id that an earlier camera has.
+pub(in crate::camera) fn twice(index: u64, count: u64, id: &str) -> CameraFileError {
+    of_camera(index, count, &CameraFileError::new(format!("the id {id} is another camera's")))
+}
+
+fn of_camera(index: u64, count: u64, error: &CameraFileError) -> CameraFileError {
+    let element = error.element.as_ref().map_or(String::new(), |element| format!(", {element}"));
+    error.clone().of(format!("camera {index} of {count}{element}"))
+}
+
+/// The cameras of a file one after the other, whose ids may be the same.
+pub(in crate::camera) struct Records<R> {
+    bytes: Bytes<R>,
+    /// How many cameras there are.
+    pub count: u64,
+    /// How many of them have been read.
+    pub index: u64,
+}
+
+impl<R: Stream> Records<R> {
+    /// Those of a file, from its beginning.
+    ///
+    /// # Errors
+    /// A file without a count.
+    pub fn new(mut bytes: Bytes<R>) -> Result<Self, CameraFileError> {
+        Ok(Self { count: bytes.u64()?, bytes, index: 0 })
+    }
+
+    /// The byte at which the next camera begins.
+    pub fn at(&self) -> u64 {
+        self.bytes.at()
+    }
+
+    /// The next camera.
+    ///
+    /// # Errors
+    /// The first mistake, with the place of the camera; bytes after the last one.
+    pub fn next(&mut self, options: &ReadOptions) -> Result<Option<NamedCamera>, CameraFileError> {
+        if self.index < self.count {
+            self.index += 1;
+            let place = |error| of_camera(self.index, self.count, &error);
+            return camera(&mut self.bytes, options).map(Some).map_err(place);
+        }
+        match self.bytes.left() {
+            0 => Ok(None),
+            left => Err(CameraFileError::new(format!("{left} bytes follow the last of {} cameras; expected none", self.count))),
+        }
+    }
+}
+
+/// The camera that begins here.
+pub(in crate::camera) fn camera<R: Stream>(rest: &mut Bytes<R>, options: &ReadOptions) -> Result<NamedCamera, CameraFileError> {
     let (id, number) = (rest.u32()?, rest.i32()?);
     let known = usize::try_from(number).ok().and_then(|number| colmap_models::MODELS.get(number));
     let Some((model, length)) = known else {
@@ -93,12 +139,20 @@ fn camera(rest: &mut Bytes<'_>, options: &ReadOptions) -> Result<NamedCamera, Ca
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<Vec<u8>, CameraFileError> {
-    let mut out = (cameras.len() as u64).to_le_bytes().to_vec();
-    for (named, id) in cameras.iter().zip(colmap::ids(cameras)) {
+    Ok([head(cameras.len()), body(cameras, Numbering::of(cameras))?].concat())
+}
+
+fn head(count: usize) -> Vec<u8> {
+    (count as u64).to_le_bytes().to_vec()
+}
+
+fn body(cameras: &[NamedCamera], numbering: Numbering) -> Result<Vec<u8>, CameraFileError> {
+    let mut out = Vec::new();
+    for (index, named) in cameras.iter().enumerate() {
         let (model, values) = colmap_models::written(&named.camera, &FORMAT)?;
         let number = colmap_models::MODELS.iter().position(|(known, _)| *known == model).unwrap_or_default();
         let ImageSize { width, height } = named.camera.size();
-        out.extend(id.to_le_bytes());
+        out.extend(numbering.id(index, named)?.to_le_bytes());
         out.extend((number as i32).to_le_bytes());
         out.extend([width, height].into_iter().flat_map(|side| u64::from(side).to_le_bytes()));
         out.extend(values.into_iter().flat_map(f64::to_le_bytes));

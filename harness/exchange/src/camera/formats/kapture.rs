@@ -4,8 +4,10 @@ use calibench_model::camera::{CameraModel, ImageSize, tool_conventions};
 
 use super::PLAIN;
 use crate::camera::fit::Keeps;
+use crate::camera::format::Parts;
 use crate::camera::ids::Ids;
 use crate::camera::number::{finite, pixels, shortest};
+use crate::camera::numbering::Numbering;
 use crate::camera::source::Source;
 use crate::camera::{CameraFileError, CameraFormat, NamedCamera, ReadOptions, colmap_models, noted};
 
@@ -19,6 +21,7 @@ pub(super) static FORMAT: CameraFormat = CameraFormat {
     recognise,
     read,
     write: Some(write),
+    parts: Some(Parts { head, body }),
     convention: Some(&tool_conventions::KAPTURE),
     models: colmap_models::classic_models,
     keeps: Keeps { name: true, ..PLAIN.keeps },
@@ -57,13 +60,22 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 }
 
 fn write(cameras: &[NamedCamera]) -> Result<String, CameraFileError> {
-    let mut out = String::from("# kapture format: 1.1\n# sensor_id, name, sensor_type, [sensor_params]+\n");
+    let bytes = [head(cameras.len()), body(cameras, Numbering::of(cameras))?].concat();
+    String::from_utf8(bytes).map_err(|_| CameraFileError::new("is no text"))
+}
+
+fn head(_: usize) -> Vec<u8> {
+    b"# kapture format: 1.1\n# sensor_id, name, sensor_type, [sensor_params]+\n".to_vec()
+}
+
+fn body(cameras: &[NamedCamera], numbering: Numbering) -> Result<Vec<u8>, CameraFileError> {
+    let mut out = String::new();
     for (index, named) in cameras.iter().enumerate() {
         let (model, values) = colmap_models::written_classic(&named.camera, &FORMAT)?;
         let ImageSize { width, height } = named.camera.size();
         let values: Vec<String> = values.into_iter().map(shortest).collect();
-        let name = named.name.replace([',', '\n', '\r'], "_");
-        out.push_str(&format!("cam{index}, {name}, camera, {model}, {width}, {height}, {}\n", values.join(", ")));
+        let (id, name) = (numbering.first + index, named.name.replace([',', '\n', '\r'], "_"));
+        out.push_str(&format!("cam{id}, {name}, camera, {model}, {width}, {height}, {}\n", values.join(", ")));
     }
-    Ok(out)
+    Ok(out.into_bytes())
 }

@@ -1,6 +1,8 @@
 //! `calibench convert`: cameras from one convention, or one tool's file, to another.
 
-use std::collections::HashMap;
+mod list;
+mod said;
+
 use std::io;
 use std::path::PathBuf;
 
@@ -24,6 +26,7 @@ use super::output;
 use super::reading::Reading;
 use crate::deliver::stream;
 use crate::failure::Failure;
+use said::Said;
 
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
@@ -80,21 +83,31 @@ impl Convert {
         let inputs = Inputs::new([&self.file]);
         let cameras_file = self.cameras_file(&inputs)?;
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
+        if self.in_pieces(&cameras_file, context.quiet)? {
+            return Ok(());
+        }
         let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
         let many = sources.len() > 1;
         let one = |(index, source): (usize, NamedCamera)| {
-            let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
-            self.converted(&source, many.then_some(place).as_deref(), plot.as_ref(), context.quiet)
+            if many {
+                self.one_of_many(index, &source, many, context.quiet)
+            } else {
+                self.converted(&source, None, plot.as_ref(), context.quiet)
+            }
         };
-        let results: Vec<Answer> = sources.into_par_iter().enumerate().map(one).collect::<Result<_, _>>()?;
-        say_all(results.iter().flat_map(|answer| &answer.said).map(|(label, text)| (label.as_deref(), text.as_str())));
+        // The first that is refused is named, on any number of threads.
+        let results: Vec<Result<Answer, Failure>> = sources.into_par_iter().enumerate().map(one).collect();
+        let results: Vec<Answer> = results.into_iter().collect::<Result<_, _>>()?;
+        let mut said = Said::default();
+        results.iter().flat_map(|answer| &answer.said).for_each(|(label, text)| said.add(label.as_deref(), text));
+        said.say();
         let Some(&Answer { format, .. }) = results.first() else { return Err(Failure::input("the file holds no camera")) };
         let mut cameras: Vec<NamedCamera> = results.into_iter().map(|answer| answer.camera).collect();
         self.reading.open_points().written(format, &mut cameras);
         self.reading.warn_of_format(format);
-        let lost: Vec<String> = cameras.iter().flat_map(|camera| losses(format, camera)).collect();
-        let words: Vec<String> = lost.iter().map(|what| format!("warning: lost: {}", escape::name(what))).collect();
-        say_all(words.iter().map(|text| (None, text.as_str())));
+        let mut words = Said::default();
+        cameras.iter().flat_map(|camera| lost(format, camera)).for_each(|text| words.add(None, &text));
+        words.say();
         cameras_file.write(format, &cameras)
     }
 
@@ -105,6 +118,12 @@ impl Convert {
             Some(path) if self.all && !output::is_camera_name(path) => CamerasFile::Folder(output::folder("-o", path, inputs)?),
             Some(path) => CamerasFile::File(output::camera("-o", path, true, inputs)?),
         })
+    }
+
+    /// One of a file's cameras, which is named by what is said of it.
+    fn one_of_many(&self, index: usize, source: &NamedCamera, many: bool, quiet: bool) -> Result<Answer, Failure> {
+        let place = if source.name.is_empty() { format!("camera {}", index + 1) } else { source.name.clone() };
+        self.converted(source, many.then_some(place.as_str()), None, quiet)
     }
 
     /// A camera in the new convention, and the format of its file.
@@ -120,7 +139,7 @@ impl Convert {
         let options =
             ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
         let found = converted(source, &goal, self.model.as_deref(), self.pitch, &options);
-        let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error))?;
+        let Converted { camera, conversion, model } = found.map_err(|error| self.refused(&error, label))?;
         let mut said = Vec::new();
         if !quiet {
             let model = model.map_or(String::new(), |model| format!("{model}: "));
@@ -140,12 +159,16 @@ impl Convert {
         Ok(Answer { camera, format: goal.format, said })
     }
 
-    fn refused(&self, error: &ConversionError) -> Failure {
+    /// Why a camera is not converted, with its name where there are several.
+    fn refused(&self, error: &ConversionError, label: Option<&str>) -> Failure {
+        let name = label.map_or(String::new(), |label| format!("{}: ", escape::name(label)));
         match error {
             ConversionError::ModelNamed => Failure::input(format!("--to {} names the model already: no --model", self.to)),
-            ConversionError::Convert(error) => advise(error),
-            ConversionError::Fit(FitError::Refused { why, .. }) => Failure::input(format!("{error}{}", flag(why))),
-            _ => Failure::input(error.to_string()),
+            // Of the command, and not of a camera.
+            ConversionError::Fit(FitError::NoModels { .. } | FitError::UnknownModel { .. }) => Failure::input(error.to_string()),
+            ConversionError::Convert(error) => Failure::input(format!("{name}{error}{}", flag(error))),
+            ConversionError::Fit(FitError::Refused { why, .. }) => Failure::input(format!("{name}{error}{}", flag(why))),
+            _ => Failure::input(format!("{name}{error}")),
         }
     }
 
@@ -180,34 +203,9 @@ struct Answer {
     said: Vec<(Option<String>, String)>,
 }
 
-/// Cameras of which each is told apart.
-const TOLD_APART: usize = 20;
-
-/// Says each text once; of many cameras how many a text is about, and the first of them.
-fn say_all<'a>(said: impl Iterator<Item = (Option<&'a str>, &'a str)>) {
-    let all: Vec<_> = said.collect();
-    let told_apart = all.len() <= TOLD_APART;
-    let mut counts: HashMap<&str, usize> = HashMap::new();
-    all.iter().for_each(|(_, text)| *counts.entry(text).or_default() += 1);
-    let mut told = 0;
-    for &(label, text) in &all {
-        let name = label.map_or(String::new(), |label| format!("{}: ", escape::name(label)));
-        match counts.get(text).copied().unwrap_or(0) {
-            0 => continue,
-            _ if told_apart && label.is_some() => say!("{name}{text}"),
-            1 => say!("{name}{text}"),
-            count if label.is_some() => say!("{name}{text} (so are {} more)", count - 1),
-            _ => say!("{text}"),
-        }
-        if !(told_apart && label.is_some()) {
-            counts.remove(text);
-        }
-        told += 1;
-        if told > TOLD_APART && counts.len() > 1 {
-            say!("... and {} more of these", counts.len());
-            return;
-        }
-    }
+/// What of a camera a format has no place for, as a warning.
+fn lost(format: &CameraFormat, camera: &NamedCamera) -> impl Iterator<Item = String> {
+    losses(format, camera).into_iter().map(|what| format!("warning: lost: {}", escape::name(&what)))
 }
 
 /// Where converted cameras go.
