@@ -2,6 +2,7 @@
 
 mod area;
 mod bank;
+mod beside;
 mod border;
 mod curves;
 mod fit;
@@ -157,7 +158,7 @@ impl Lsm {
         let shapes = start::shapes(mask, start.affine, self.size, area.as_ref(), self.window as f64);
         let at = [position.x - left, position.y - top];
         let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
-        let fitted = work.fit(mask, begin, self.limits)?;
+        let fitted = beside::fit(work, mask, begin, self.limits)?;
         if !(fitted.covariance.sxx + fitted.covariance.syy).is_finite() {
             return Err(Rejection::NotConverged);
         }
