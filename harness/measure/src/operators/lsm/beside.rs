@@ -1,16 +1,19 @@
 //! What stands beside a target does not count: the pixels that do are around its outline, as far as the fit predicts it, and away from what else is seen there.
 
-use calibench_model::Rejection;
+use calibench_model::{Image, Rejection};
 
+use super::area::WIDEST;
 use super::fit::{Fitted, Limits, Parameters, Work};
 use super::mask::{Mask, Rule};
 use super::planes::Derivatives;
 
 /// Rows of bits, a pixel each, of the largest window.
-type Words = [u64; 48];
+type Words = [u64; WIDEST];
 
 /// Choices of pixels, at most, each followed by a fit: after the last, nothing more is changed.
 const ROUNDS: usize = 4;
+/// The window follows what is further than this from its middle pixel, px.
+const BEYOND: f64 = 0.6;
 /// By what factor the blur is widened to see which pixels are around an outline, and the least coverage there of those that are.
 const AROUND: (f64, f32) = (1.5, 0.01);
 /// Standard deviation of a uniform distribution over a pixel, px.
@@ -19,71 +22,120 @@ const PIXEL: f64 = 0.29;
 const APART: f32 = 0.02;
 /// From how many standard deviations of the noise on something is seen, and between which parts of the contrast that is.
 const SEEN: f64 = 5.0;
-const BOUNDS: (f64, f64) = (0.08, 0.5);
+const BOUNDS: (f64, f64) = (0.04, 0.5);
 /// The part of the ground's pixels that lie closest together: most of the others may be something else.
-const CLOSEST: f64 = 0.35;
+const CLOSEST: f64 = 0.4;
 /// A blur, px, under which a target is where it is within the errors of a start.
 const ASTRAY: f64 = 1.2;
 
-/// The least-squares fit from `begin` on; where more than noise is left in the window of a target that is whole in itself, over the pixels that belong to it.
+/// A window in an image.
+pub(super) struct Laid<'a> {
+    /// The image.
+    pub(super) image: &'a Image,
+    /// The window's middle pixel.
+    pub(super) centre: (i64, i64),
+    /// Half its width, px.
+    pub(super) half: i64,
+}
+
+impl Laid<'_> {
+    /// Lays the window around the pose, where that is not in its middle; whether it did.
+    fn follow(&mut self, work: &mut Work, at: &mut Parameters) -> bool {
+        let off = at.pose.at.map(|p| p - self.half as f64);
+        let [dx, dy] = off.map(f64::round);
+        let next = (self.centre.0 + dx as i64, self.centre.1 + dy as i64);
+        if off.iter().all(|d| d.abs() < BEYOND) || work.observe(self.image, next, self.half).is_err() {
+            return false;
+        }
+        self.centre = next;
+        at.pose.at = [at.pose.at[0] - dx, at.pose.at[1] - dy];
+        true
+    }
+}
+
+/// The least-squares fit from `begin` on. Where more than noise is left in the window of a target that is whole in itself, the window is laid around what is found,
+/// and the fit goes on over the pixels that belong to the target.
 ///
 /// # Errors
 /// Those of [`Work::fit`].
-pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
+pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limits, laid: &mut Laid<'_>) -> Result<Fitted, Rejection> {
     let whole = work.fit(mask, begin, limits);
     if mask.is_open() || whole.is_ok() && work.planes.structure_of_all().is_white() {
         return whole;
     }
-    let (mut found, mut last) = (whole, None);
+    let (mut found, mut counted) = (whole, None);
     for _ in 0..ROUNDS {
-        let (at, noise, blur) = match &found {
-            Ok(fitted) => (fitted.parameters, last.map(|_| fitted.noise), fitted.parameters.sigma),
-            Err(_) if last.is_none() => (begin, None, ASTRAY.max(begin.sigma)),
+        let next = match found {
+            Ok(Fitted { mut parameters, noise, .. }) => {
+                let followed = laid.follow(work, &mut parameters);
+                let pixels = choose(work, mask, &parameters, counted.map(|_| noise));
+                if !followed && counted == pixels {
+                    break;
+                }
+                work.count(pixels.as_ref());
+                (pixels, again(work, mask, parameters, limits, Work::fit_again))
+            }
+            Err(_) if counted.is_none() => {
+                let pixels = choose(work, mask, &Parameters { sigma: ASTRAY.max(begin.sigma), ..begin }, None);
+                if pixels.is_none() {
+                    break;
+                }
+                work.count(pixels.as_ref());
+                (pixels, again(work, mask, begin, limits, Work::fit))
+            }
             Err(_) => break,
         };
-        let Some(pixels) = choose(work, mask, &Parameters { sigma: blur, ..at }, noise) else { break };
-        if last == Some(pixels) {
-            break;
-        }
-        work.planes.count_only(&pixels);
-        found = if found.is_ok() { work.fit_again(mask, at, limits) } else { work.fit(mask, at, limits) };
-        last = Some(pixels);
+        (counted, found) = next;
     }
     found
+}
+
+/// A fit over what is left of the pixels: where these do not tell the blur, it stays as it is.
+fn again(
+    work: &mut Work,
+    mask: &Mask,
+    begin: Parameters,
+    limits: Limits,
+    fit: fn(&mut Work, &Mask, Parameters, Limits) -> Result<Fitted, Rejection>,
+) -> Result<Fitted, Rejection> {
+    match fit(work, mask, begin, limits) {
+        Err(_) if limits.blur => fit(work, mask, begin, Limits { blur: false, ..limits }),
+        found => found,
+    }
 }
 
 /// The pixels around the target's outline from which nothing else is seen; `None` if nothing else is seen in the window. Without a `noise`, its standard deviation
 /// is taken from the ground.
 fn choose(work: &mut Work, mask: &Mask, at: &Parameters, noise: Option<f64>) -> Option<Words> {
     work.planes.count_all();
+    let wide = Parameters { sigma: AROUND.0 * at.sigma.hypot(PIXEL), ..*at };
+    work.draw(mask, &wide, (Derivatives::None, Rule::Coarse));
+    let around = words(work, |_, coverage| coverage > AROUND.1);
     work.draw(mask, at, (Derivatives::None, Rule::Coarse));
-    let ground = Ground::of(work)?;
-    let inside = inside(work)?;
-    let contrast = (inside - ground.level).abs();
-    let noise = noise.unwrap_or(ground.noise) / contrast;
-    let seen = (SEEN * noise).clamp(BOUNDS.0, BOUNDS.1) * contrast;
-    let mut others = [0; 48];
-    for (word, (grey, coverage)) in others.iter_mut().zip(work.planes.rows()) {
-        for (column, (grey, coverage)) in grey.iter().zip(coverage).enumerate() {
-            let other = *coverage < APART && (f64::from(*grey) - ground.level).abs() > seen;
-            *word |= u64::from(other) << column;
-        }
-    }
+    let ground = Ground::of(work, &around)?;
+    let contrast = inside(work)? - ground.level;
+    let noise = noise.unwrap_or(ground.noise) / contrast.abs();
+    let seen = ((SEEN * noise).clamp(BOUNDS.0, BOUNDS.1) * contrast.abs()) as f32;
+    let (level, contrast) = (ground.level as f32, contrast as f32);
+    let others = words(work, |grey, coverage| coverage < APART && (grey - level - contrast * coverage).abs() > seen);
     if others.iter().all(|word| *word == 0) {
         return None;
     }
-    let shadow = widened(&others, if noise > 0.02 { 2 } else { 4 });
-    let wide = Parameters { sigma: AROUND.0 * at.sigma.hypot(PIXEL), ..*at };
-    work.draw(mask, &wide, (Derivatives::None, Rule::Coarse));
-    let mut chosen = [0; 48];
-    for ((word, shadow), (_, coverage)) in chosen.iter_mut().zip(shadow).zip(work.planes.rows()) {
-        let around = coverage.iter().enumerate().fold(0, |word, (column, coverage)| word | u64::from(*coverage > AROUND.1) << column);
-        *word = around & !shadow;
-    }
-    Some(chosen)
+    let shadow = widened(&others);
+    Some(std::array::from_fn(|row| around[row] & !shadow[row]))
 }
 
-/// The grey value of the target itself, as the mean where it covers all.
+/// The pixels of which this holds, by grey value and coverage.
+fn words(work: &Work, holds: impl Fn(f32, f32) -> bool) -> Words {
+    let mut words = [0; WIDEST];
+    for (word, (grey, coverage)) in words.iter_mut().zip(work.planes.rows()) {
+        let pixels = grey.iter().zip(coverage).enumerate();
+        *word = pixels.fold(0, |word, (column, (grey, coverage))| word | u64::from(holds(*grey, *coverage)) << column);
+    }
+    words
+}
+
+/// The grey value of the target itself, as the mean where it covers most.
 fn inside(work: &Work) -> Option<f64> {
     let most = work.planes.rows().flat_map(|(_, coverage)| coverage).fold(0.0_f32, |most, c| most.max(*c));
     let (mut sum, mut count) = (0.0, 0.0);
@@ -106,10 +158,13 @@ struct Ground {
 }
 
 impl Ground {
-    /// The middle of the [`CLOSEST`] grey values apart from the target; `None` if there are too few.
-    fn of(work: &Work) -> Option<Self> {
-        let pixels = work.planes.rows().flat_map(|(grey, coverage)| grey.iter().zip(coverage));
-        let mut grey: Vec<f32> = pixels.filter(|(_, coverage)| **coverage < APART).map(|(grey, _)| *grey).collect();
+    /// The middle of the [`CLOSEST`] grey values around the target; `None` if there are too few.
+    fn of(work: &Work, around: &Words) -> Option<Self> {
+        let mut grey: Vec<f32> = Vec::new();
+        for (word, (values, coverage)) in around.iter().zip(work.planes.rows()) {
+            let pixels = values.iter().zip(coverage).enumerate();
+            grey.extend(pixels.filter(|(column, (_, coverage))| word >> column & 1 == 1 && **coverage < APART).map(|(_, (grey, _))| *grey));
+        }
         grey.sort_unstable_by(f32::total_cmp);
         let count = (CLOSEST * grey.len() as f64).ceil() as usize;
         if count < 4 {
@@ -122,18 +177,8 @@ impl Ground {
     }
 }
 
-/// With the pixels up to a distance, of this square, away.
-fn widened(words: &Words, square: i32) -> Words {
-    let mut wide = [0; 48];
-    for (row, to) in wide.iter_mut().enumerate() {
-        for down in -2_i32..=2 {
-            let Some(word) = usize::try_from(row as i32 + down).ok().and_then(|row| words.get(row)) else { continue };
-            for across in 0_i32..=2 {
-                if across * across + down * down <= square {
-                    *to |= word << across | word >> across;
-                }
-            }
-        }
-    }
-    wide
+/// With the eight pixels around each.
+fn widened(words: &Words) -> Words {
+    let across = words.map(|word| word << 1 | word | word >> 1);
+    std::array::from_fn(|row| across[row.saturating_sub(1)..(row + 2).min(WIDEST)].iter().fold(0, |sum, word| sum | word))
 }

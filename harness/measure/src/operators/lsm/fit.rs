@@ -2,7 +2,7 @@
 
 use calibench_model::{Affine, Covariance, Image, Rejection, TargetKind};
 
-use super::area;
+use super::area::{self, WIDEST};
 use super::mask::{Mask, Rule};
 use super::planes::{BLUR, COVERAGE, Derivatives, GROUND, Planes, Pose, UNKNOWNS};
 use super::profile::Profile;
@@ -70,6 +70,14 @@ impl Work {
     pub(super) fn observe(&mut self, image: &Image, (x, y): (i64, i64), half: i64) -> Result<(f32, f32), Rejection> {
         self.planes.observe(image.rows_around(x, y, half).ok_or(Rejection::Border)?);
         area::range(self.planes.grey())
+    }
+
+    /// Only these pixels count, as in [`Planes::count_only`], or all.
+    pub(super) fn count(&mut self, pixels: Option<&[u64; WIDEST]>) {
+        match pixels {
+            Some(pixels) => self.planes.count_only(pixels),
+            None => self.planes.count_all(),
+        }
     }
 
     /// Draws the mask and takes the levels that fit best; the sum of squared residuals with them. `None` if the mask has no contrast in the window.

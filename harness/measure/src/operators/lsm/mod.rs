@@ -14,6 +14,7 @@ mod sweep;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind};
 
+use self::beside::Laid;
 use self::fit::{Limits, Work};
 use self::mask::Mask;
 use self::planes::Planes;
@@ -158,7 +159,9 @@ impl Lsm {
         let shapes = start::shapes(mask, start.affine, self.size, area.as_ref(), self.window as f64);
         let at = [position.x - left, position.y - top];
         let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
-        let fitted = beside::fit(work, mask, begin, self.limits)?;
+        let mut laid = Laid { image, centre, half };
+        let fitted = beside::fit(work, mask, begin, self.limits, &mut laid)?;
+        let (left, top) = corner(laid.centre);
         if !(fitted.covariance.sxx + fitted.covariance.syy).is_finite() {
             return Err(Rejection::NotConverged);
         }
