@@ -18,8 +18,11 @@ const BEYOND: f64 = 0.6;
 const AROUND: (f64, f32) = (1.5, 0.01);
 /// Standard deviation of a uniform distribution over a pixel, px.
 const PIXEL: f64 = 0.29;
-/// The largest coverage, by the target, of a pixel at which something else can be seen.
+/// The largest coverage, by the target, of a pixel at which something else can be seen: around what is only roughly known, and around what was fitted without
+/// what stands beside it. There, what is seen must be more by this part of the coverage.
 const APART: f32 = 0.02;
+const NEAR: f32 = 0.6;
+const TOLERANCE: f32 = 0.15;
 /// From how many standard deviations of the noise on something is seen, and between which parts of the contrast that is.
 const SEEN: f64 = 5.0;
 const BOUNDS: (f64, f64) = (0.04, 0.5);
@@ -63,12 +66,14 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
     if mask.is_open() || whole.is_ok() && work.planes.structure_of_all().is_white() {
         return whole;
     }
-    let (mut found, mut counted) = (whole, None);
+    let (mut found, mut counted, mut least) = (whole, None, f64::INFINITY);
     for _ in 0..ROUNDS {
         let next = match found {
             Ok(Fitted { mut parameters, noise, .. }) => {
                 let followed = laid.follow(work, &mut parameters);
-                let pixels = choose(work, mask, &parameters, counted.map(|_| noise));
+                // A fit over pixels that do not all belong to the target leaves more than noise.
+                least = if counted.is_some() { noise.min(least) } else { least };
+                let pixels = choose(work, mask, &parameters, counted.map(|_| least));
                 if !followed && counted == pixels {
                     break;
                 }
@@ -114,10 +119,10 @@ fn choose(work: &mut Work, mask: &Mask, at: &Parameters, noise: Option<f64>) -> 
     work.draw(mask, at, (Derivatives::None, Rule::Coarse));
     let ground = Ground::of(work, &around)?;
     let contrast = inside(work)? - ground.level;
-    let noise = noise.unwrap_or(ground.noise) / contrast.abs();
-    let seen = ((SEEN * noise).clamp(BOUNDS.0, BOUNDS.1) * contrast.abs()) as f32;
+    let seen = ((SEEN * noise.unwrap_or(ground.noise) / contrast.abs()).clamp(BOUNDS.0, BOUNDS.1) * contrast.abs()) as f32;
     let (level, contrast) = (ground.level as f32, contrast as f32);
-    let others = words(work, |grey, coverage| coverage < APART && (grey - level - contrast * coverage).abs() > seen);
+    let (apart, more) = (if noise.is_some() { NEAR } else { APART }, TOLERANCE * contrast.abs());
+    let others = words(work, |grey, coverage| coverage < apart && (grey - level - contrast * coverage).abs() > seen + more * coverage);
     if others.iter().all(|word| *word == 0) {
         return None;
     }
