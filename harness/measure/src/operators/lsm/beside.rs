@@ -6,6 +6,7 @@ use super::area::WIDEST;
 use super::fit::{Fitted, Limits, Parameters, Work};
 use super::mask::{Mask, Rule};
 use super::planes::Derivatives;
+use super::start::inside;
 
 /// Rows of bits, a pixel each, of the largest window.
 type Words = [u64; WIDEST];
@@ -45,13 +46,20 @@ impl Laid<'_> {
     /// Lays the window around the pose, where that is not in its middle; whether it did.
     fn follow(&mut self, work: &mut Work, at: &mut Parameters) -> bool {
         let off = at.pose.at.map(|p| p - self.half as f64);
-        let [dx, dy] = off.map(f64::round);
-        let next = (self.centre.0 + dx as i64, self.centre.1 + dy as i64);
-        if off.iter().all(|d| d.abs() < BEYOND) || work.observe(self.image, next, self.half).is_err() {
+        if off.iter().all(|d| d.abs() < BEYOND) {
             return false;
         }
+        let (x, y) = self.centre;
+        let Some(next) = inside(self.image, (x + off[0].round() as i64, y + off[1].round() as i64), self.half) else { return false };
+        if next == self.centre {
+            return false;
+        }
+        if work.observe(self.image, next, self.half).is_err() {
+            // Not all of the next window is numbers: the old one again, in which they were.
+            return work.observe(self.image, self.centre, self.half).is_err();
+        }
         self.centre = next;
-        at.pose.at = [at.pose.at[0] - dx, at.pose.at[1] - dy];
+        at.pose.at = [at.pose.at[0] - (next.0 - x) as f64, at.pose.at[1] - (next.1 - y) as f64];
         true
     }
 }
@@ -73,7 +81,7 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
                 let followed = laid.follow(work, &mut parameters);
                 // A fit over pixels that do not all belong to the target leaves more than noise.
                 least = if counted.is_some() { noise.min(least) } else { least };
-                let pixels = choose(work, mask, &parameters, counted.map(|_| least));
+                let pixels = choose(work, mask, &parameters, (begin.sigma, counted.map(|_| least)));
                 if !followed && counted == pixels {
                     break;
                 }
@@ -81,7 +89,7 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
                 (pixels, again(work, mask, parameters, limits, Work::fit_again))
             }
             Err(_) if counted.is_none() => {
-                let pixels = choose(work, mask, &Parameters { sigma: ASTRAY.max(begin.sigma), ..begin }, None);
+                let pixels = choose(work, mask, &Parameters { sigma: ASTRAY.max(begin.sigma), ..begin }, (begin.sigma, None));
                 if pixels.is_none() {
                     break;
                 }
@@ -110,15 +118,15 @@ fn again(
 }
 
 /// The pixels around the target's outline from which nothing else is seen; `None` if nothing else is seen in the window. Without a `noise`, its standard deviation
-/// is taken from the ground.
-fn choose(work: &mut Work, mask: &Mask, at: &Parameters, noise: Option<f64>) -> Option<Words> {
+/// is taken from the ground; `blur` is the least, px, by which the outline is spread.
+fn choose(work: &mut Work, mask: &Mask, at: &Parameters, (blur, noise): (f64, Option<f64>)) -> Option<Words> {
     work.planes.count_all();
-    let wide = Parameters { sigma: AROUND.0 * at.sigma.hypot(PIXEL), ..*at };
+    let wide = Parameters { sigma: AROUND.0 * at.sigma.max(blur).hypot(PIXEL), ..*at };
     work.draw(mask, &wide, (Derivatives::None, Rule::Coarse));
     let around = words(work, |_, coverage| coverage > AROUND.1);
     work.draw(mask, at, (Derivatives::None, Rule::Coarse));
     let ground = Ground::of(work, &around)?;
-    let contrast = inside(work)? - ground.level;
+    let contrast = own_level(work)? - ground.level;
     let seen = ((SEEN * noise.unwrap_or(ground.noise) / contrast.abs()).clamp(BOUNDS.0, BOUNDS.1) * contrast.abs()) as f32;
     let (level, contrast) = (ground.level as f32, contrast as f32);
     let (apart, more) = (if noise.is_some() { NEAR } else { APART }, TOLERANCE * contrast.abs());
@@ -141,7 +149,7 @@ fn words(work: &Work, holds: impl Fn(f32, f32) -> bool) -> Words {
 }
 
 /// The grey value of the target itself, as the mean where it covers most.
-fn inside(work: &Work) -> Option<f64> {
+fn own_level(work: &Work) -> Option<f64> {
     let most = work.planes.rows().flat_map(|(_, coverage)| coverage).fold(0.0_f32, |most, c| most.max(*c));
     let (mut sum, mut count) = (0.0, 0.0);
     for (grey, coverage) in work.planes.rows() {

@@ -143,7 +143,8 @@ impl Lsm {
 
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
-        let first = window_centre(image, start, half)?;
+        let whole = start.affine.is_some() && self.mask(start).is_ok_and(|mask| !mask.is_open());
+        let first = start::centre(image, start, half, whole)?;
         let range = work.observe(image, first, half)?;
         let mask = self.mask(start)?;
         let corner = |(x, y): (i64, i64)| ((x - half) as f64, (y - half) as f64);
