@@ -29,6 +29,10 @@ const SEEN: f64 = 5.0;
 const BOUNDS: (f64, f64) = (0.04, 0.5);
 /// The part of the ground's pixels that lie closest together: most of the others may be something else.
 const CLOSEST: f64 = 0.4;
+/// How far a fit may be from its start to be believed where something stands beside the target: px, and a factor of its area.
+const FAR: (f64, f64) = (2.0, 2.5);
+/// A blur that is not sought may be wrong by this factor.
+const UNKNOWN: f64 = 2.0;
 /// A blur, px, under which a target is where it is within the errors of a start.
 const ASTRAY: f64 = 1.2;
 
@@ -74,14 +78,29 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
     if mask.is_open() || whole.is_ok() && work.planes.structure_of_all().is_white() {
         return whole;
     }
+    // Where much else is in the window, the fit may have gone anywhere.
+    let whole = whole.and_then(|fitted| if fitted.parameters.is_near(&begin) { Ok(fitted) } else { Err(Rejection::NotConverged) });
     let (mut found, mut counted, mut least) = (whole, None, f64::INFINITY);
     for _ in 0..ROUNDS {
         let next = match found {
             Ok(Fitted { mut parameters, noise, .. }) => {
+                let first = counted.is_none();
+                if first {
+                    parameters.sigma = if limits.blur { parameters.sigma.max(begin.sigma) } else { begin.sigma };
+                } else {
+                    // A fit over pixels that do not all belong to the target leaves more than noise.
+                    least = noise.min(least);
+                }
+                let known = Known { blur: begin.sigma, noise: (!first).then_some(least), sought: limits.blur };
+                let mut pixels = choose(work, mask, &parameters, &known);
+                if first && pixels.is_none() {
+                    work.count(None);
+                    return work.fit(mask, begin, limits);
+                }
                 let followed = laid.follow(work, &mut parameters);
-                // A fit over pixels that do not all belong to the target leaves more than noise.
-                least = if counted.is_some() { noise.min(least) } else { least };
-                let pixels = choose(work, mask, &parameters, (begin.sigma, counted.map(|_| least)));
+                if followed {
+                    pixels = choose(work, mask, &parameters, &known);
+                }
                 if !followed && counted == pixels {
                     break;
                 }
@@ -89,7 +108,7 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
                 (pixels, again(work, mask, parameters, limits, Work::fit_again))
             }
             Err(_) if counted.is_none() => {
-                let pixels = choose(work, mask, &Parameters { sigma: ASTRAY.max(begin.sigma), ..begin }, (begin.sigma, None));
+                let pixels = choose(work, mask, &Parameters { sigma: ASTRAY.max(begin.sigma), ..begin }, &Known { blur: begin.sigma, noise: None, sought: limits.blur });
                 if pixels.is_none() {
                     break;
                 }
@@ -101,6 +120,15 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
         (counted, found) = next;
     }
     found
+}
+
+impl Parameters {
+    /// Whether these are within the errors of a start.
+    fn is_near(&self, start: &Self) -> bool {
+        let [dx, dy] = [0, 1].map(|i| self.pose.at[i] - start.pose.at[i]);
+        let determinant = |of: &Self| of.pose.affine.axx * of.pose.affine.ayy - of.pose.affine.axy * of.pose.affine.ayx;
+        dx.hypot(dy) < FAR.0 && (determinant(self) / determinant(start)).ln().abs() < FAR.1.ln()
+    }
 }
 
 /// A fit over what is left of the pixels: where these do not tell the blur, it stays as it is.
@@ -117,19 +145,29 @@ fn again(
     }
 }
 
-/// The pixels around the target's outline from which nothing else is seen; `None` if nothing else is seen in the window. Without a `noise`, its standard deviation
-/// is taken from the ground; `blur` is the least, px, by which the outline is spread.
-fn choose(work: &mut Work, mask: &Mask, at: &Parameters, (blur, noise): (f64, Option<f64>)) -> Option<Words> {
+/// What is known before pixels are chosen.
+struct Known {
+    /// The least blur, px, that spreads the outline.
+    blur: f64,
+    /// Standard deviation of a grey value, if pixels of the target alone were fitted before: otherwise it is taken from the ground.
+    noise: Option<f64>,
+    /// The blur is an unknown.
+    sought: bool,
+}
+
+/// The pixels around the target's outline from which nothing else is seen; `None` if nothing else is seen in the window.
+fn choose(work: &mut Work, mask: &Mask, at: &Parameters, known: &Known) -> Option<Words> {
     work.planes.count_all();
-    let wide = Parameters { sigma: AROUND.0 * at.sigma.max(blur).hypot(PIXEL), ..*at };
+    let wide = Parameters { sigma: AROUND.0 * at.sigma.max(known.blur).hypot(PIXEL), ..*at };
     work.draw(mask, &wide, (Derivatives::None, Rule::Coarse));
     let around = words(work, |_, coverage| coverage > AROUND.1);
-    work.draw(mask, at, (Derivatives::None, Rule::Coarse));
+    let sigma = if known.sought { at.sigma } else { UNKNOWN * at.sigma };
+    work.draw(mask, &Parameters { sigma, ..*at }, (Derivatives::None, Rule::Coarse));
     let ground = Ground::of(work, &around)?;
     let contrast = own_level(work)? - ground.level;
-    let seen = ((SEEN * noise.unwrap_or(ground.noise) / contrast.abs()).clamp(BOUNDS.0, BOUNDS.1) * contrast.abs()) as f32;
+    let seen = ((SEEN * known.noise.unwrap_or(ground.noise) / contrast.abs()).clamp(BOUNDS.0, BOUNDS.1) * contrast.abs()) as f32;
     let (level, contrast) = (ground.level as f32, contrast as f32);
-    let (apart, more) = (if noise.is_some() { NEAR } else { APART }, TOLERANCE * contrast.abs());
+    let (apart, more) = (if known.noise.is_some() && known.sought { NEAR } else { APART }, TOLERANCE * contrast.abs());
     let others = words(work, |grey, coverage| coverage < apart && (grey - level - contrast * coverage).abs() > seen + more * coverage);
     if others.iter().all(|word| *word == 0) {
         return None;
