@@ -12,7 +12,7 @@ use super::start::inside;
 type Words = [u64; WIDEST];
 
 /// Choices of pixels, at most, each followed by a fit: after the last, nothing more is changed.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 /// The window follows what is further than this from its middle pixel, px.
 const BEYOND: f64 = 0.6;
 /// By what factor the blur is widened to see which pixels are around an outline, and the least coverage there of those that are.
@@ -31,6 +31,8 @@ const BOUNDS: (f64, f64) = (0.04, 0.5);
 const CLOSEST: f64 = 0.4;
 /// How far a fit may be from its start to be believed where something stands beside the target: px, and a factor of its area.
 const FAR: (f64, f64) = (2.0, 2.5);
+/// The blur may be less than its start by this factor: a fit beside something else may make it too small.
+const SHARPER: f64 = 0.8;
 /// A blur that is not sought may be wrong by this factor.
 const UNKNOWN: f64 = 2.0;
 /// A blur, px, under which a target is where it is within the errors of a start.
@@ -86,12 +88,12 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
             Ok(Fitted { mut parameters, noise, .. }) => {
                 let first = counted.is_none();
                 if first {
-                    parameters.sigma = if limits.blur { parameters.sigma.max(begin.sigma) } else { begin.sigma };
+                    parameters.sigma = if limits.blur { parameters.sigma.max(SHARPER * begin.sigma) } else { begin.sigma };
                 } else {
                     // A fit over pixels that do not all belong to the target leaves more than noise.
                     least = noise.min(least);
                 }
-                let known = Known { blur: begin.sigma, noise: (!first).then_some(least), sought: limits.blur };
+                let known = Known { blur: SHARPER * begin.sigma, noise: (!first).then_some(least), sought: limits.blur };
                 let mut pixels = choose(work, mask, &parameters, &known);
                 if first && pixels.is_none() {
                     work.count(None);
@@ -108,7 +110,7 @@ pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limit
                 (pixels, again(work, mask, parameters, limits, Work::fit_again))
             }
             Err(_) if counted.is_none() => {
-                let pixels = choose(work, mask, &Parameters { sigma: ASTRAY.max(begin.sigma), ..begin }, &Known { blur: begin.sigma, noise: None, sought: limits.blur });
+                let pixels = choose(work, mask, &Parameters { sigma: ASTRAY.max(begin.sigma), ..begin }, &Known { blur: SHARPER * begin.sigma, noise: None, sought: limits.blur });
                 if pixels.is_none() {
                     break;
                 }
