@@ -4,6 +4,7 @@ mod area;
 mod bank;
 mod beside;
 mod border;
+mod chosen;
 mod curves;
 mod fit;
 mod mask;
