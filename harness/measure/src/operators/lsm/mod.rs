@@ -201,4 +201,6 @@ impl Operator for Lsm {
 }
 
 #[cfg(test)]
+mod crowded;
+#[cfg(test)]
 mod tests;
