@@ -48,6 +48,11 @@ impl Structure {
         of_outline(by, residual, shows, (stride, inverse as f32))
     }
 
+    /// Of all residuals that count: rows of `stride`, which end with zeros; `ones` is one for each that counts, and zero elsewhere, as the residual there.
+    pub(crate) fn of_all(residual: &[f32], ones: &[f32], stride: usize) -> Self {
+        of_all(residual, ones, stride)
+    }
+
     /// Whether there is more than noise has, and than `most`, the root of the covariance of neighbours, in units of half the contrast: a lens, a
     /// print or a light that is not even leave some.
     pub(crate) fn is_no_noise(&self, most: f64) -> bool {
@@ -55,7 +60,7 @@ impl Structure {
     }
 
     /// Whether the residuals are white noise, as far as neighbours tell.
-    fn is_white(&self) -> bool {
+    pub(crate) fn is_white(&self) -> bool {
         self.significance() < WHITE
     }
 
@@ -107,6 +112,16 @@ fn of_outline([by_x, by_y]: [&[f32]; 2], residual: &mut [f32], shows: &mut [f32]
         pairs: shifted(shows, 1) + shifted(shows, stride),
         square: shifted(residual, 0),
         count: shifted(shows, 0),
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn of_all(residual: &[f32], ones: &[f32], stride: usize) -> Structure {
+    Structure {
+        product: shifted(residual, 1) + shifted(residual, stride),
+        pairs: shifted(ones, 1) + shifted(ones, stride),
+        square: shifted(residual, 0),
+        count: shifted(ones, 0),
     }
 }
 

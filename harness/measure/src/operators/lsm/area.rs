@@ -6,7 +6,7 @@ use multiversion::multiversion;
 use super::profile::LANES;
 
 /// The largest window, px; a row fits into a word.
-const WIDEST: usize = 48;
+pub(super) const WIDEST: usize = 48;
 /// Most thresholds that are tried, and the change, as a part of the range of grey values, that ends it.
 const THRESHOLDS: (usize, f32) = (8, 0.01);
 /// How far around the pixels beyond the threshold a blurred edge still shows, px.

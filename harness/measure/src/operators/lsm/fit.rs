@@ -2,7 +2,7 @@
 
 use calibench_model::{Affine, Covariance, Image, Rejection, TargetKind};
 
-use super::area;
+use super::area::{self, WIDEST};
 use super::mask::{Mask, Rule};
 use super::planes::{BLUR, COVERAGE, Derivatives, GROUND, Planes, Pose, UNKNOWNS};
 use super::profile::Profile;
@@ -50,6 +50,8 @@ pub(super) struct Fitted {
     pub(super) parameters: Parameters,
     /// Covariance of the position, px^2.
     pub(super) covariance: Covariance,
+    /// Standard deviation of a grey value, from the residuals.
+    pub(super) noise: f64,
 }
 
 /// Memory of one fit, used again for the next.
@@ -70,6 +72,14 @@ impl Work {
         area::range(self.planes.grey())
     }
 
+    /// Only these pixels count, as in [`Planes::count_only`], or all.
+    pub(super) fn count(&mut self, pixels: Option<&[u64; WIDEST]>) {
+        match pixels {
+            Some(pixels) => self.planes.count_only(pixels),
+            None => self.planes.count_all(),
+        }
+    }
+
     /// Draws the mask and takes the levels that fit best; the sum of squared residuals with them. `None` if the mask has no contrast in the window.
     pub(super) fn levels(&mut self, mask: &Mask, parameters: &mut Parameters) -> Option<f64> {
         self.draw(mask, parameters, (Derivatives::None, Rule::Coarse));
@@ -77,7 +87,7 @@ impl Work {
         Some(self.planes.compare(parameters.ground, parameters.contrast))
     }
 
-    fn draw(&mut self, mask: &Mask, parameters: &Parameters, wanted: (Derivatives, Rule)) {
+    pub(super) fn draw(&mut self, mask: &Mask, parameters: &Parameters, wanted: (Derivatives, Rule)) {
         self.profile.set(parameters.sigma);
         self.planes.draw(mask, &parameters.pose, &self.profile, wanted);
     }
@@ -94,23 +104,36 @@ impl Work {
     /// # Errors
     /// [`Rejection::NoCorner`] for a window in which the parameters cannot be told apart, [`Rejection::LeftWindow`], [`Rejection::NotConverged`].
     pub(super) fn fit(&mut self, mask: &Mask, start: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
+        // The first drawing only leads to the next: no result comes of it.
+        self.fit_from(mask, start, limits, (Rule::Coarse, COARSE))
+    }
+
+    /// As [`Self::fit`], from a `start` that is near.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub(super) fn fit_again(&mut self, mask: &Mask, start: Parameters, limits: Limits) -> Result<Fitted, Rejection> {
+        self.fit_from(mask, start, limits, (Rule::Exact, EXACT))
+    }
+
+    fn fit_from(&mut self, mask: &Mask, start: Parameters, limits: Limits, (rule, slack): (Rule, f64)) -> Result<Fitted, Rejection> {
         let all = if limits.blur { Derivatives::PoseAndBlur } else { Derivatives::Pose };
         let mut at = start;
-        // The first drawing only leads to the next: no result comes of it.
-        self.draw(mask, &at, (all, Rule::Coarse));
+        self.draw(mask, &at, (all, rule));
         (at.ground, at.contrast) = self.planes.levels().ok_or(Rejection::NoCorner)?;
         let omega = self.planes.compare(at.ground, at.contrast);
         let system = self.system(mask, &at, limits.blur)?;
-        descend(&mut Fit { work: self, mask, limits, at, omega, slack: COARSE, system }, &DAMPING, limits.iterations)
+        descend(&mut Fit { work: self, mask, limits, at, omega, slack, system }, &DAMPING, limits.iterations)
     }
 
     fn conclude(&self, parameters: Parameters, system: &System, omega: f64) -> Result<Fitted, Rejection> {
-        let last = (self.planes.count() as f64).sqrt() - 1.0;
+        let last = self.planes.side() as f64 - 1.0;
         if parameters.pose.at.iter().any(|&p| p < 0.0 || p > last) {
             return Err(Rejection::LeftWindow);
         }
-        let variance = omega / (self.planes.count() - system.columns.count) as f64;
-        Ok(Fitted { parameters, covariance: system.covariance(variance) })
+        let redundancy = self.planes.count().checked_sub(system.columns.count).filter(|r| *r > 0).ok_or(Rejection::NoCorner)?;
+        let variance = omega / redundancy as f64;
+        Ok(Fitted { parameters, covariance: system.covariance(variance), noise: variance.sqrt() })
     }
 }
 

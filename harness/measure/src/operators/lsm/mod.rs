@@ -2,7 +2,9 @@
 
 mod area;
 mod bank;
+mod beside;
 mod border;
+mod chosen;
 mod curves;
 mod fit;
 mod mask;
@@ -13,6 +15,7 @@ mod sweep;
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind};
 
+use self::beside::Laid;
 use self::fit::{Limits, Work};
 use self::mask::Mask;
 use self::planes::Planes;
@@ -141,7 +144,8 @@ impl Lsm {
 
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
-        let first = window_centre(image, start, half)?;
+        let whole = start.affine.is_some() && self.mask(start).is_ok_and(|mask| !mask.is_open());
+        let first = start::centre(image, start, half, whole)?;
         let range = work.observe(image, first, half)?;
         let mask = self.mask(start)?;
         let corner = |(x, y): (i64, i64)| ((x - half) as f64, (y - half) as f64);
@@ -157,7 +161,9 @@ impl Lsm {
         let shapes = start::shapes(mask, start.affine, self.size, area.as_ref(), self.window as f64);
         let at = [position.x - left, position.y - top];
         let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
-        let fitted = work.fit(mask, begin, self.limits)?;
+        let mut laid = Laid { image, centre, half };
+        let fitted = beside::fit(work, mask, begin, self.limits, &mut laid)?;
+        let (left, top) = corner(laid.centre);
         if !(fitted.covariance.sxx + fitted.covariance.syy).is_finite() {
             return Err(Rejection::NotConverged);
         }
@@ -194,5 +200,7 @@ impl Operator for Lsm {
     }
 }
 
+#[cfg(test)]
+mod crowded;
 #[cfg(test)]
 mod tests;

@@ -12,7 +12,7 @@ use crate::residuals::Structure;
 
 /// Unknowns of the model, in this order: x, y, axx, axy, ayx, ayy, grey value of the ground, contrast, blur.
 pub(super) const UNKNOWNS: usize = 9;
-/// Plane of ones, the derivative by the ground's grey value.
+/// Plane of ones, the derivative by the ground's grey value; zeros at pixels that do not count, as in all other planes.
 pub(super) const GROUND: usize = 6;
 /// Plane of coverages, the derivative by the contrast.
 pub(super) const COVERAGE: usize = 7;
@@ -32,6 +32,10 @@ pub(super) struct Planes {
     stride: usize,
     values: Vec<f32>,
     grey: Vec<f32>,
+    /// For each column of a row one, or zero where it is padded.
+    inside: Vec<f32>,
+    /// Pixels that count.
+    counted: usize,
     /// 1 where the mask's place shows, and 0 elsewhere, as of the last question.
     shows: Vec<f32>,
     bank: Bank,
@@ -71,26 +75,56 @@ impl Planes {
     /// For a window of `pixels` px on a side.
     pub(super) fn new(pixels: usize) -> Self {
         let stride = pixels.next_multiple_of(LANES);
-        let mut values = vec![0.0; (RESIDUAL + 1) * pixels * stride];
-        let ones = values[GROUND * pixels * stride..].chunks_exact_mut(stride).take(pixels);
-        ones.for_each(|row| row[..pixels].fill(1.0));
-        Self {
+        let mut inside = vec![0.0; stride];
+        inside[..pixels].fill(1.0);
+        let mut planes = Self {
             pixels,
             stride,
-            values,
+            values: vec![0.0; (RESIDUAL + 1) * pixels * stride],
             grey: vec![0.0; pixels * stride],
+            inside,
+            counted: 0,
             shows: vec![0.0; pixels * stride],
             bank: Bank::new(pixels, stride),
-        }
+        };
+        planes.count_all();
+        planes
     }
 
-    /// Pixels in the window.
+    /// Pixels on a side of the window.
+    pub(super) fn side(&self) -> usize {
+        self.pixels
+    }
+
+    /// Pixels that count.
     pub(super) fn count(&self) -> usize {
-        self.pixels * self.pixels
+        self.counted
     }
 
-    /// Takes the window's grey values.
+    /// All pixels of the window count.
+    pub(super) fn count_all(&mut self) {
+        if self.counted == self.pixels * self.pixels {
+            return;
+        }
+        let ones = self.values[GROUND * self.pixels * self.stride..].chunks_exact_mut(self.stride).take(self.pixels);
+        ones.for_each(|row| row.copy_from_slice(&self.inside));
+        self.counted = self.pixels * self.pixels;
+    }
+
+    /// Only these pixels count, until others are chosen: for each row a word, from the lowest bit on. All planes are to be drawn anew.
+    pub(super) fn count_only(&mut self, pixels: &[u64]) {
+        let ones = self.values[GROUND * self.pixels * self.stride..].chunks_exact_mut(self.stride).take(self.pixels);
+        for (row, word) in ones.zip(pixels) {
+            for (column, one) in row[..self.pixels].iter_mut().enumerate() {
+                *one = (word >> column & 1) as f32;
+            }
+        }
+        self.counted = pixels.iter().take(self.pixels).map(|word| word.count_ones() as usize).sum();
+    }
+
+    /// Takes the window's grey values; all pixels count.
     pub(super) fn observe<'a>(&mut self, rows: impl Iterator<Item = &'a [f32]>) {
+        self.count_all();
         for (row, line) in rows.zip(self.grey.chunks_exact_mut(self.stride)) {
             copy(line, row);
         }
@@ -98,7 +132,7 @@ impl Planes {
 
     /// The window's grey values.
     pub(super) fn grey(&self) -> Grey<'_> {
-        Grey { side: self.pixels, stride: self.stride, values: &self.grey, inside: &self.plane(GROUND)[..self.stride] }
+        Grey { side: self.pixels, stride: self.stride, values: &self.grey, inside: &self.inside }
     }
 
     fn area(&self) -> usize {
@@ -153,6 +187,17 @@ impl Planes {
         products(self, unknowns)
     }
 
+    /// The structure of all residuals of the last comparison.
+    pub(super) fn structure_of_all(&self) -> Structure {
+        Structure::of_all(self.plane(RESIDUAL), self.plane(GROUND), self.stride)
+    }
+
+    /// Row by row, the grey values and the coverages.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (&[f32], &[f32])> {
+        let rows = self.grey.chunks_exact(self.stride).zip(self.plane(COVERAGE).chunks_exact(self.stride));
+        rows.map(|(grey, coverage)| (&grey[..self.pixels], &coverage[..self.pixels]))
+    }
+
     /// The value of `plane` at a pixel.
     #[cfg(test)]
     pub(super) fn at(&self, plane: usize, column: usize, row: usize) -> f64 {
@@ -173,7 +218,7 @@ fn copy(to: &mut [f32], row: &[f32]) {
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, contrast]: [f32; 2]) -> f64 {
     for (((to, grey), one), c) in residual.iter_mut().zip(grey).zip(ones).zip(coverage) {
-        *to = grey - ground * one - contrast * c;
+        *to = (grey - ground) * one - contrast * c;
     }
     dot(residual, residual)
 }

@@ -1,11 +1,12 @@
 //! Where the fit starts: from what is given, and for the rest from the image.
 
-use calibench_model::Affine;
+use calibench_model::{Affine, Image, Rejection, Start};
 
 use super::area::{self, Area, Grey};
 use super::fit::{Parameters, Work};
 use super::mask::Mask;
 use super::planes::Pose;
+use crate::operator::window_centre;
 
 /// Directions that are tried over one period of the mask's symmetry.
 const TURNS: u32 = 6;
@@ -17,6 +18,26 @@ const FEWEST: usize = 8;
 /// The target's pixels around `start`, if they can be told from the ground and the window holds all of them.
 pub(super) fn area(mask: &Mask, grey: Grey<'_>, range: (f32, f32), start: [f64; 2]) -> Option<Area> {
     if mask.is_open() { None } else { area::of(grey, range, start, FEWEST) }
+}
+
+/// The middle pixel of the window around a start; next to the image's border the window is laid inside the image if that shows the `whole` target.
+///
+/// # Errors
+/// Those of [`window_centre`].
+pub(super) fn centre(image: &Image, start: &Start, half: i64, whole: bool) -> Result<(i64, i64), Rejection> {
+    match window_centre(image, start, half) {
+        Err(Rejection::Border) if whole => {
+            let pixel = window_centre(image, start, 0)?;
+            inside(image, pixel, half).ok_or(Rejection::Border)
+        }
+        centre => centre,
+    }
+}
+
+/// The pixel nearest to another around which a window is inside the image; `None` if the image is too small.
+pub(super) fn inside(image: &Image, (x, y): (i64, i64), half: i64) -> Option<(i64, i64)> {
+    let [right, bottom] = [image.width(), image.height()].map(|side| side as i64 - 1 - half);
+    (right >= half && bottom >= half).then(|| (x.clamp(half, right), y.clamp(half, bottom)))
 }
 
 /// The shapes to try, each an affine map: the given one, or else, turned in steps, one of the given size, one with the pixels' moments, or one that
@@ -95,8 +116,6 @@ fn turned([xx, xy, yy]: [f64; 3], angle: f64) -> Affine {
 
 #[cfg(test)]
 mod tests {
-    use calibench_model::Image;
-
     use super::*;
     use crate::lsm::planes::Planes;
 

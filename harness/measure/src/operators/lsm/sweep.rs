@@ -2,7 +2,7 @@
 
 use super::bank::{Bank, Stretch};
 use super::curves::{self, Expansion, MOVING};
-use super::planes::{BLUR, COVERAGE, Window};
+use super::planes::{BLUR, COVERAGE, GROUND, Window};
 use super::profile::LANES;
 
 /// A row of `LANES` pixels: coverage, its derivatives by position and shape, and by the blur.
@@ -61,10 +61,9 @@ pub(super) fn sweep<const LINE: usize, const ARC: usize, const MOVED: bool, cons
 #[inline(always)]
 fn store<const MOVED: bool, const BLURRED: bool>(window: &mut Window<'_>, sums: &Sums, (row, column): (usize, usize), sigma: f32) {
     let area = window.pixels * window.stride;
-    // Nothing lies behind the window's last column.
-    let mut inside = [0.0; LANES];
-    inside[..LANES.min(window.pixels - column)].fill(1.0);
     let start = row * window.stride + column;
+    // What does not count is left out, as is what lies behind the window's last column.
+    let inside: [f32; LANES] = window.values[GROUND * area + start..][..LANES].try_into().expect("a slice of that length");
     put(&mut window.values[COVERAGE * area + start..], &sums.coverage, &inside);
     if MOVED {
         for (plane, lanes) in sums.moving.iter().enumerate() {
