@@ -34,7 +34,3 @@ pub use error::NotRecognised;
 pub use found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rejected, SizeGroup, SquareFound};
 pub use recogniser::{Classifier, Recogniser};
 pub use table::{ContourTable, TableError};
-#[cfg(test)]
-extern crate self as calibench_recognise;
-#[cfg(test)]
-mod debug;
