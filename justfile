@@ -77,9 +77,9 @@ deny:
         echo "advisories NOT CHECKED: their database cannot be reached (target/advisories.log)"
     fi
 
-# Points per second of every operator, of cameras, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
+# Points per second of every operator, of cameras, milliseconds of the recognition, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
-    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench campaigns
+    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns
 
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:

@@ -8,6 +8,7 @@ mod cameras;
 mod cameras_of_tools;
 mod cli;
 mod covariance;
+mod detect;
 mod determinism;
 mod diagnostics;
 mod doubts;

@@ -1,12 +1,16 @@
-//! `calibench detect`: a chessboard's corners as approximate positions.
+//! `calibench detect`: a chessboard's corners, or the targets of a coded field, as approximate positions.
 
 use std::path::PathBuf;
 
-use calibench_exchange::{Inputs, PointRef, write_points};
+use calibench_exchange::{Inputs, PointRef, PointRow, write_points};
 use calibench_measure::Board;
+use calibench_photographs::coded::{Coded, recognise_coded};
 use calibench_photographs::corners::detect_corners;
 use calibench_photographs::names::once;
-use clap::Args;
+use calibench_recognise::{Classifier, NotRecognised, Recogniser};
+use calibench_scenario::catalogue::is_toml;
+use calibench_scenario::{Scenario, Subject, ViewsSubject};
+use clap::{Args, ValueEnum};
 
 use super::context::Context;
 use super::output;
@@ -21,32 +25,110 @@ pub struct Detect {
     #[arg(required = true, value_name = "PHOTO")]
     photos: Vec<PathBuf>,
     /// The chessboard's inner corners, as in 9x6
-    #[arg(long, value_name = "COLUMNSxROWS")]
-    chessboard: Board,
+    #[arg(long, value_name = "COLUMNSxROWS", required_unless_present = "testfield", conflicts_with = "testfield")]
+    chessboard: Option<Board>,
+    /// The coded field that a scenario describes, by its name or TOML file: the targets of its whole squares in view
+    #[arg(long, value_name = "SCENARIO")]
+    testfield: Option<String>,
+    /// What tells the shapes of a coded field's targets apart
+    #[arg(long, value_enum, default_value_t, conflicts_with = "chessboard")]
+    classifier: Shapes,
     /// Where the points go [default: standard output]
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
 }
 
+/// A classifier, as an option.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Shapes {
+    /// Drawings of the targets, under the blur of the grid's lines
+    #[default]
+    Modern,
+    /// Angles along the contour and the best of six decisions (Vosselman & Förstner 1988)
+    Contours,
+}
+
 impl Detect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        match (&self.testfield, self.chessboard) {
+            (Some(name), _) => self.field(context, name),
+            (None, Some(board)) => self.board(context, board),
+            (None, None) => Err(Failure::input("expected --chessboard or --testfield")),
+        }
+    }
+
+    fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {
         let output = output::table("-o", self.output.as_deref(), &Inputs::new(&self.photos))?;
         let detector = context.toolbox.detector.as_deref();
         let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
         say_turns(&self.photos)?;
-        let found = detect_corners(&self.photos, self.chessboard, detector, &|| progress.step())?;
+        let found = detect_corners(&self.photos, board, detector, &|| progress.step())?;
         let seen = found.iter().filter(|rows| !rows.is_empty()).count();
         progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
         for (path, rows) in self.photos.iter().zip(&found) {
             if rows.is_empty() {
-                say!("{}: no board of {} x {} inner corners found", path.display(), self.chessboard.columns, self.chessboard.rows);
+                say!("{}: no board of {} x {} inner corners found", path.display(), board.columns, board.rows);
             }
         }
         if seen == 0 {
             return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
         }
         deliver(output.as_ref(), |file| write_points(file, found.iter().flatten().map(PointRef::from)))
+    }
+
+    fn field(&self, context: &Context<'_>, name: &str) -> Result<(), Failure> {
+        let scenario = context.scenario(name)?;
+        let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
+        let read = Inputs::new(self.photos.iter().cloned().chain(file));
+        let output = output::table("-o", self.output.as_deref(), &read)?;
+        let subject = views(&scenario)?;
+        let classifier = match self.classifier {
+            Shapes::Modern => Classifier::Modern,
+            Shapes::Contours => Classifier::Contours,
+        };
+        let recogniser = Recogniser::new(&subject.field, classifier)
+            .map_err(|error| Failure::input(format!("--testfield {name}: {error}; its [testfield] must have kind = \"coded\"")))?;
+        let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
+        once(&self.photos)?;
+        say_turns(&self.photos)?;
+        let found = recognise_coded(&self.photos, &subject.field, &recogniser, &|| progress.step())?;
+        let rows: Vec<&PointRow> = found.iter().flatten().flat_map(|coded| &coded.rows).collect();
+        let seen = found.iter().flatten().count();
+        progress.finish(&format!("the field was recognised in {seen} of {} photographs, {} targets", found.len(), rows.len()));
+        self.photos.iter().zip(&found).filter_map(|(path, found)| Some((path, remark(found)?))).for_each(|(path, remark)| {
+            say!("{}: {remark}", path.display());
+        });
+        if rows.is_empty() {
+            return Err(Failure::input(format!(
+                "no target was recognised; expected photographs of the field of `{}` that show at least one whole square with its lines",
+                scenario.name
+            )));
+        }
+        deliver(output.as_ref(), |file| write_points(file, rows.into_iter().map(PointRef::from)))
+    }
+}
+
+/// The views of a scenario that has a testfield.
+fn views(scenario: &Scenario) -> Result<&ViewsSubject, Failure> {
+    match &scenario.subject {
+        Subject::Views(subject) => Ok(subject),
+        Subject::Scene(_) | Subject::Photographs(_) => Err(Failure::input(format!(
+            "--testfield: `{}` has no testfield; expected a scenario with [testfield] kind = \"coded\"",
+            scenario.name
+        ))),
+    }
+}
+
+/// What is to be said of a photograph, if anything: why it does not show the field, or what was not recognised of its whole squares.
+fn remark(found: &Result<Coded, NotRecognised>) -> Option<String> {
+    match found {
+        Err(error) => Some(format!("not recognised ({}): {error}", error.name())),
+        Ok(coded) if coded.rows.is_empty() && coded.lost.is_empty() => {
+            Some(format!("{} whole squares of the field, of which the scenario lists no target", coded.squares))
+        }
+        Ok(coded) if coded.lost.is_empty() => None,
+        Ok(coded) => Some(format!("{} targets of {} whole squares recognised, {}", coded.rows.len(), coded.squares, coded.lost)),
     }
 }

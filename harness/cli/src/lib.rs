@@ -95,7 +95,7 @@ enum Command {
     Speed(speed::SpeedCommand),
     /// Measure points in photographs
     Measure(measure::Measure),
-    /// Find a chessboard's corners in photographs: approximate positions for `measure`
+    /// Find a chessboard's corners, or the targets of a coded field, in photographs: approximate positions for `measure`
     Detect(detect::Detect),
     /// Write the control file of a chessboard, for `calibrate` and `resect`
     Control(control::Control),

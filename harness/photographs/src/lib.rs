@@ -1,6 +1,7 @@
 //! Photographs and approximate positions to measured points: what a user's own photographs go through before a calibration.
 
 pub mod chessboard;
+pub mod coded;
 pub mod corners;
 mod error;
 mod measured_board;

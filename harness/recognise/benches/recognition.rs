@@ -39,7 +39,7 @@ fn main() {
     refused("blank, 240 x 240 px", Image::from_fn(240, 240, |_, _| 0.5));
     refused("noise, 240 x 240 px", noise(240, 240));
     refused("noise, 4000 x 3000 px", noise(4000, 3000));
-    refused("chessboard, 4000 x 3000 px", Image::from_fn(4000, 3000, |x, y| if (x / 170 + y / 170) % 2 == 0 { 0.1 } else { 0.9 }));
+    refused("chessboard, 4000 x 3000 px", Image::from_fn(4000, 3000, |x, y| if (x / 170 + y / 170).is_multiple_of(2) { 0.1 } else { 0.9 }));
 }
 
 fn noise(width: usize, height: usize) -> Image {

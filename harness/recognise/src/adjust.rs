@@ -48,7 +48,7 @@ struct Seen {
 }
 
 fn seen(mapping: &Mapping, at: [f64; 2], family: usize) -> Option<Seen> {
-    let p = mapping.unit.from_px(at);
+    let p = mapping.unit.of_px(at);
     let straight = straight(p, mapping.bend);
     let q = Vector3::new(straight.x, straight.y, 1.0);
     let h = mapping.to_grid * q;
@@ -104,7 +104,7 @@ fn step(mapping: &Mapping, points: &[Ridge], on: &[OnLine]) -> Option<Mapping> {
         for column in 0..2 {
             row[6 + column] = -scale * seen.value * seen.q[column] / seen.depth;
         }
-        let bend = by_bend(mapping.unit.from_px(point.at), mapping.bend);
+        let bend = by_bend(mapping.unit.of_px(point.at), mapping.bend);
         row[8] = scale * (seen.by_straight[0] * bend.x + seen.by_straight[1] * bend.y);
         let residual = scale * (seen.value - on.number as f64);
         normal += row * row.transpose() * point.weight;

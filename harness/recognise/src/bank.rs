@@ -35,6 +35,8 @@ struct Shape {
     period: f64,
     /// Turned by equal parts of the period.
     drawings: Vec<Vec<f32>>,
+    /// How many of their pixels are nearer to ink than to paper, in the mean.
+    dark: f64,
 }
 
 fn index(kind: TargetKind, large: bool) -> usize {
@@ -92,11 +94,17 @@ impl Bank {
     /// The same drawings under a Gaussian blur, px of the normal image along its rows and columns, ready to be compared.
     pub fn blurred(&self, sigmas: [f64; 2]) -> Self {
         let kernels = sigmas.map(gaussian);
-        let shapes = self.shapes.iter().map(|shape| Shape {
-            drawings: shape.drawings.iter().map(|drawing| normalised(shape.packed(&shape.smoothed(drawing, &kernels)))).collect(),
-            ..shape.clone()
-        });
-        Self { shapes: shapes.collect() }
+        let blurred = |shape: &Shape| {
+            let smoothed: Vec<Vec<f32>> = shape.drawings.iter().map(|drawing| shape.smoothed(drawing, &kernels)).collect();
+            let dark = dark(&smoothed);
+            Shape { drawings: smoothed.iter().map(|drawing| normalised(shape.packed(drawing))).collect(), dark, ..shape.clone() }
+        };
+        Self { shapes: self.shapes.iter().map(blurred).collect() }
+    }
+
+    /// The area of a target, as a fraction of a square, that is nearer to ink than to paper.
+    pub fn area(&self, (kind, large): (TargetKind, bool)) -> f64 {
+        self.shapes[index(kind, large)].dark / (SIDE * SIDE) as f64
     }
 
     /// What is seen around a place, to be compared with the two kinds of a size group.
@@ -142,7 +150,8 @@ impl Shape {
             let wide = (reach * reach - off * off).max(0.0).sqrt() as usize;
             [half - wide, 2 * wide + 1]
         };
-        Self { half, rows: (0..=2 * half).map(row).collect(), period: period(kind), drawings: (0..turns).map(drawing).collect() }
+        let drawings: Vec<Vec<f32>> = (0..turns).map(drawing).collect();
+        Self { half, rows: (0..=2 * half).map(row).collect(), period: period(kind), dark: dark(&drawings), drawings }
     }
 
     fn side(&self) -> usize {
@@ -204,6 +213,11 @@ impl Shape {
         }
         seen
     }
+}
+
+/// The mean number of pixels that are nearer to ink than to paper.
+fn dark(drawings: &[Vec<f32>]) -> f64 {
+    drawings.iter().flatten().filter(|value| **value > 0.5).count() as f64 / drawings.len() as f64
 }
 
 /// Of mean 0 and length 1.

@@ -61,7 +61,7 @@ impl Areas {
             }
             let at_border = (0..2).any(|i| low[i] == inset || high[i] == SIDE - 1 - inset);
             let thin = (0..2).any(|i| high[i] - low[i] < 3);
-            if size as f64 >= least && !(at_border && thin) {
+            if f64::from(size) >= least && !(at_border && thin) {
                 let centre = sum.map(|sum| sum / f64::from(size));
                 areas.push(Area { label, size: size as usize, centre, first: [first % SIDE, first / SIDE] });
             }

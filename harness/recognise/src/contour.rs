@@ -92,7 +92,8 @@ mod tests {
         assert_eq!(features(&areas(|x, y| x == 0.0 && y == 0.0), 0), [0; 4]);
     }
 
-    /// Corners of triangles are sharp, of squares right, crosses are concave, discs nothing of all.
+    /// Corners of triangles are sharp, of squares at most right; the ends of crosses are sharp, and what is between them is concave where the bars are narrow;
+    /// discs have hardly a corner.
     #[test]
     fn shapes_have_their_features() {
         let half = 10.0;
@@ -105,11 +106,15 @@ mod tests {
                 c * x + s * y <= 8.0
             };
             let triangle = features(&areas(|x, y| (0..3).all(|k| within(x, y, f64::from(k)))), 0);
-            let bar = |a: f64, b: f64| a.abs() <= 12.0 && b.abs() <= 4.0;
-            let cross = features(&areas(|x, y| bar(own(x, y).0, own(x, y).1) || bar(own(x, y).1, own(x, y).0)), 0);
+            let cross = |wide: f64| {
+                let bar = |a: f64, b: f64| a.abs() <= 12.0 && b.abs() <= wide;
+                features(&areas(|x, y| bar(own(x, y).0, own(x, y).1) || bar(own(x, y).1, own(x, y).0)), 0)
+            };
+            let (printed, narrow) = (cross(4.0), cross(1.5));
             let disc = features(&areas(|x, y| x.hypot(y) <= half), 0);
-            assert!(triangle[2] > square[2] + 3 && square[1] > triangle[1], "{triangle:?} {square:?}");
-            assert!(cross[3] > 4 && disc == [0; 4], "{cross:?} {disc:?}");
+            assert!(triangle[2] > square[2] + 3 && square[0] + square[1] > 8, "{triangle:?} {square:?}");
+            assert!(printed[2] > disc[2] + 8 && disc[1..] == [0; 3], "{printed:?} {disc:?}");
+            assert!(narrow[3] > 4 && square[3] == 0 && triangle[3] == 0, "{narrow:?}");
         }
     }
 }

@@ -67,6 +67,20 @@ pub(crate) struct Printed {
     pub target: Option<usize>,
 }
 
+impl Printed {
+    /// Its area, in squares.
+    pub fn area(&self) -> f64 {
+        let side = self.axes[0][0].hypot(self.axes[0][1]);
+        let share = match self.kind {
+            TargetKind::Triangle => 3_f64.sqrt() / 4.0,
+            TargetKind::Cross => BAR * (2.0 - BAR),
+            TargetKind::Disc => std::f64::consts::FRAC_PI_4,
+            _ => 1.0,
+        };
+        share * side * side
+    }
+}
+
 impl Design {
     pub fn of(field: &Testfield) -> Result<Self, NotCoded> {
         let [plate] = field.plates.as_slice() else { return Err(NotCoded::Sheets(field.plates.len())) };
@@ -98,17 +112,7 @@ impl Design {
 
     /// The area of the smallest target, in squares.
     pub fn smallest(&self) -> f64 {
-        let area = |p: &Printed| {
-            let side = p.axes[0][0].hypot(p.axes[0][1]);
-            let share = match p.kind {
-                TargetKind::Triangle => 3_f64.sqrt() / 4.0,
-                TargetKind::Cross => BAR * (2.0 - BAR),
-                TargetKind::Disc => std::f64::consts::FRAC_PI_4,
-                _ => 1.0,
-            };
-            share * side * side
-        };
-        self.cells.iter().flatten().map(area).fold(1.0, f64::min)
+        self.cells.iter().flatten().map(Printed::area).fold(1.0, f64::min)
     }
 
     /// The square at this row and column.

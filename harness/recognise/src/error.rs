@@ -51,13 +51,21 @@ pub enum NotRecognised {
     /// Coded squares that contradict the design.
     #[error(
         "another field: no place of the {squares} whole squares on the field's design explains them (the best explains {explained}); the \
-         image is of a field made with another seed or other sizes"
+         image is of a field made with another seed or other sizes, or too blurred or bent for its lines to be told from others"
     )]
     OtherField {
         /// Whole squares with targets.
         squares: usize,
         /// How many of them the best place explains.
         explained: usize,
+    },
+    /// Targets that are where the design has them, in other sizes.
+    #[error(
+        "another field: its targets have {times:.2} times the area of those of the field; the image is of a field made with other sizes"
+    )]
+    OtherSizes {
+        /// By how much they are larger, in the median.
+        times: f64,
     },
     /// More than one place on the design explains the squares.
     #[error("ambiguous: {places} places on the field's design explain the {squares} squares seen equally well")]
@@ -82,6 +90,7 @@ impl NotRecognised {
             Self::NoTargets { .. } => "no_targets",
             Self::Mirrored { .. } => "mirrored",
             Self::OtherField { .. } => "other_field",
+            Self::OtherSizes { .. } => "other_sizes",
             Self::Ambiguous { .. } => "ambiguous",
         }
     }
@@ -95,7 +104,7 @@ impl NotRecognised {
             Self::NoGrid { .. } => 3,
             Self::NoWholeSquare => 4,
             Self::NoTargets { .. } => 5,
-            Self::OtherField { .. } => 6,
+            Self::OtherField { .. } | Self::OtherSizes { .. } => 6,
             Self::Mirrored { .. } => 7,
             Self::Ambiguous { .. } => 8,
         }

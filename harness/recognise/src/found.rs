@@ -140,6 +140,25 @@ pub struct GridFound {
     pub reduced: usize,
 }
 
+impl GridFound {
+    /// Where a place of the field, in squares from its top left corner (column, row), is seen, px; `None` beyond the horizon or the bend.
+    pub fn image(&self, [x, y]: [f64; 2]) -> Option<PixelPoint> {
+        let row = |h: [f64; 3]| h[0] * x + h[1] * y + h[2];
+        let [a, b, depth] = self.homography.map(row);
+        let (qx, qy) = (a / depth - self.middle.x, b / depth - self.middle.y);
+        let root = 1.0 - 4.0 * self.bend * (qx * qx + qy * qy) / (self.reach * self.reach);
+        let times = 2.0 / (1.0 + root.sqrt());
+        (depth > 0.0 && root >= 0.0).then(|| PixelPoint::new(self.middle.x + times * qx, self.middle.y + times * qy))
+    }
+
+    /// Where a point of the image, px, would be without the bend; the inverse of the bend in [`Self::image`].
+    pub fn straight(&self, at: PixelPoint) -> PixelPoint {
+        let (x, y) = (at.x - self.middle.x, at.y - self.middle.y);
+        let times = 1.0 / (1.0 + self.bend * (x * x + y * y) / (self.reach * self.reach));
+        PixelPoint::new(self.middle.x + times * x, self.middle.y + times * y)
+    }
+}
+
 /// Something in a whole square that was not recognised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rejected {

@@ -12,7 +12,10 @@ use crate::order::{Numbered, numbered};
 use crate::ridge::Ridge;
 
 /// Bends that are tried, the likely ones first.
-const BENDS: [f64; 6] = [0.0, -0.06, 0.06, -0.14, 0.14, -0.24];
+const BENDS: [f64; 7] = [0.0, -0.06, 0.06, -0.14, 0.14, -0.24, 0.2];
+/// So often the bend of the best grid is tried too, unless it is this near to one that was.
+const AGAIN: usize = 2;
+const SAME_BEND: f64 = 0.008;
 /// Lines of a direction: the cosine of the angle between them, for the perspective.
 const ALIKE: f64 = 0.9;
 /// Directions of the two sets of lines: the cosine of the angle between them at most.
@@ -29,8 +32,9 @@ const BORDER: f64 = 0.3;
 const SIDES: usize = 2;
 /// Sides of squares are looked at in pieces of so many px.
 const PIECE: f64 = 2.5;
-/// A grid of which this share of the sides is seen needs no other try.
+/// A grid of which this share of the sides is seen, and whose points scatter no more than this, px, needs no other try: one that is bent otherwise comes to 0.25.
 const ENOUGH: f64 = 0.85;
+const SHARP: f64 = 0.2;
 /// Squares of a grid, from the middle of the image in any direction.
 const FARTHEST: f64 = 40.0;
 /// The smallest square, px.
@@ -45,36 +49,77 @@ pub(crate) struct Grid {
 
 /// The grid through the points of lines of an image of `size` px.
 ///
+/// Where the bend is far from those tried, some lines are not found straight, and the others may be those of a grid two or three times as wide. It has the right
+/// bend: with that all lines are found.
+///
 /// # Errors
 /// Too few lines; no grid among them.
 pub(crate) fn find(points: &[Ridge], size: [usize; 2]) -> Result<Grid, NotRecognised> {
-    let unit = Unit::of(size[0], size[1]);
-    let (mut best, mut most) = (None::<(f64, Grid)>, 0);
+    let mut search = Search { points, size, best: None, most: 0, tried: Vec::new() };
     for bend in BENDS {
-        let straightened: Vec<Ridge> = points.iter().map(|point| straightened(point, unit, bend)).collect();
-        let lines = lines(&straightened, unit.reach * 1.5, size[0].min(size[1]) as f64);
-        most = most.max(lines.len());
-        for mapping in candidates(&lines, unit, bend) {
-            let Some(grid) = Grid::adjusted(&mapping, points, size) else { continue };
-            let score = grid.sides.score() / (1.0 + (grid.adjusted.rms / SCATTER).powi(2));
-            if best.as_ref().is_none_or(|(least, _)| score > *least) {
-                best = Some((score, grid));
-            }
-        }
-        if best.as_ref().is_some_and(|(_, grid)| grid.sides.share() > ENOUGH && grid.sides.seen() >= 12) {
+        search.with(bend);
+        if search.is_enough() {
             break;
         }
     }
-    match best {
+    for _ in 0..AGAIN {
+        let Some(bend) = search.best.as_ref().map(|(_, grid)| grid.adjusted.mapping.bend) else { break };
+        if search.tried.iter().any(|other| (other - bend).abs() < SAME_BEND) {
+            break;
+        }
+        search.with(bend);
+    }
+    match search.best {
         Some((score, grid)) if score > 0.0 => Ok(grid),
-        _ if most < 4 => Err(NotRecognised::TooFewLines { found: most }),
-        _ => Err(NotRecognised::NoGrid { found: most }),
+        _ if search.most < 4 => Err(NotRecognised::TooFewLines { found: search.most }),
+        _ => Err(NotRecognised::NoGrid { found: search.most }),
+    }
+}
+
+/// The best grid so far, with its score, the most lines that any bend showed, and the bends.
+struct Search<'a> {
+    points: &'a [Ridge],
+    size: [usize; 2],
+    best: Option<(f64, Grid)>,
+    most: usize,
+    tried: Vec<f64>,
+}
+
+impl Search<'_> {
+    /// Looks for straight lines once the image is bent back so.
+    fn with(&mut self, bend: f64) {
+        self.tried.push(bend);
+        let unit = Unit::of(self.size[0], self.size[1]);
+        let straightened: Vec<Ridge> = self.points.iter().map(|point| straightened(point, unit, bend)).collect();
+        let lines = lines(&straightened, unit.reach * 1.5, self.size[0].min(self.size[1]) as f64);
+        self.most = self.most.max(lines.len());
+        self.consider(candidates(&lines, unit, bend));
+        if !self.is_enough() {
+            // A false line may spoil the grid through the others.
+            let sharp: Vec<Line> = lines.into_iter().filter(|line| line.rms < SHARP).collect();
+            self.consider(candidates(&sharp, unit, bend));
+        }
+    }
+
+    fn consider(&mut self, mappings: Vec<Mapping>) {
+        for mapping in mappings {
+            let Some(grid) = Grid::adjusted(&mapping, self.points, self.size) else { continue };
+            let score = grid.sides.score() / (1.0 + (grid.adjusted.rms / SCATTER).powi(2));
+            if self.best.as_ref().is_none_or(|(least, _)| score > *least) {
+                self.best = Some((score, grid));
+            }
+        }
+    }
+
+    /// Whether no other bend need be tried.
+    fn is_enough(&self) -> bool {
+        self.best.as_ref().is_some_and(|(_, grid)| grid.is_enough())
     }
 }
 
 /// A point where it were without the bend, in px from the middle.
 pub(crate) fn straightened(point: &Ridge, unit: Unit, bend: f64) -> Ridge {
-    let p = unit.from_px(point.at);
+    let p = unit.of_px(point.at);
     let q = straight(p, bend) * unit.reach;
     let turned = by_place(p, bend).transpose().try_inverse().map(|inverse| (inverse * Vector2::from(point.normal)).normalize());
     Ridge { at: [q.x, q.y], normal: turned.map_or(point.normal, Into::into), weight: point.weight }
@@ -122,6 +167,11 @@ impl Grid {
         let adjusted = adjust(start, points)?;
         let sides = Sides::of(&adjusted, size)?;
         Some(Self { adjusted, sides })
+    }
+
+    /// Whether it needs no other try.
+    fn is_enough(&self) -> bool {
+        self.sides.share() > ENOUGH && self.sides.seen() >= 12 && self.adjusted.rms < SHARP
     }
 
     /// The squares (column, row) that lie wholly in the image, row by row: their insides, `inset` squares from the lines' middles, and enough of their sides are
@@ -191,10 +241,6 @@ impl Sides {
         self.shares.get(&side).is_none_or(|share| *share >= COVERED)
     }
 
-    #[cfg(test)]
-    pub fn debug(&self) -> Vec<String> {
-        self.shares.iter().map(|(s, v)| format!("{}:{},{}={:.2}", s.0, s.1, s.2, v)).collect()
-    }
     /// How many sides are seen.
     pub fn seen(&self) -> usize {
         self.shares.values().filter(|share| **share >= COVERED).count()

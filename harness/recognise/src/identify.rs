@@ -1,6 +1,7 @@
 //! Where the squares seen lie on the field.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use calibench_model::TargetKind;
 use calibench_model::coded::code;
@@ -10,15 +11,18 @@ use crate::design::{Design, IN_SQUARE, Printed};
 use crate::error::NotRecognised;
 use crate::mapping::Place;
 
-/// How far from its place on the design a target may be, in squares.
-pub(crate) const NEAR: f64 = 0.035;
+/// How far from its place on the design a target may be, in squares: a pixel in images of 50 px a square.
+pub(crate) const NEAR: f64 = 0.02;
+/// And its area beside the design's. Large targets leave little room in their quarter of a row: by place alone every field has squares that look like another's
+/// mirror image.
+const ALIKE: RangeInclusive<f64> = 0.5..=1.6;
 /// Targets of a square that are where the design has them: of so many it is explained, of so few contradicted.
-const EXPLAINED: usize = 11;
+const EXPLAINED: usize = 12;
 const CONTRADICTED: usize = 7;
 /// Cells of [`Places`] to a side.
 const FINE: usize = 100;
 /// Dark areas of a square that may be a coded one.
-const FEWEST: usize = 8;
+pub(crate) const FEWEST: usize = 8;
 
 /// A square as it is seen, for the identification.
 #[derive(Clone, Debug)]
@@ -27,6 +31,8 @@ pub(crate) struct Seen {
     pub square: [i64; 2],
     /// The places of its dark areas, from its top left corner, squares.
     pub at: Vec<[f64; 2]>,
+    /// Their areas, as fractions of the square's.
+    pub areas: Vec<f64>,
     /// Its code, if a classifier reads one.
     pub code: Option<u8>,
 }
@@ -35,6 +41,8 @@ pub(crate) struct Seen {
 #[derive(Clone, Debug)]
 pub(crate) struct Places {
     cells: Vec<u8>,
+    /// Their areas, in squares.
+    areas: [f64; IN_SQUARE],
     code: u8,
 }
 
@@ -60,13 +68,16 @@ impl Places {
             let mut both = targets.iter().filter(|p| p.kind == kind && p.large).map(|p| p.at);
             [both.next().unwrap_or_default(), both.next().unwrap_or_default()]
         };
-        Self { cells, code: code(&KINDS.map(pair)) }
+        Self { cells, areas: targets.each_ref().map(Printed::area), code: code(&KINDS.map(pair)) }
     }
 
-    /// How many of its targets are seen at these cells.
-    fn matches(&self, at: &[usize]) -> usize {
-        let seen = at.iter().fold(0_u32, |seen, &cell| seen | 1 << self.cells[cell]);
-        (seen >> 1).count_ones() as usize
+    /// How many of its targets are seen at these cells, with these areas.
+    fn matches(&self, at: &[usize], areas: &[f64]) -> usize {
+        let of = |(&cell, area): (&usize, &f64)| match usize::from(self.cells[cell]) {
+            0 => 0,
+            number => u32::from(ALIKE.contains(&(area / self.areas[number - 1]))) << number,
+        };
+        at.iter().zip(areas).map(of).fold(0, |seen, one| seen | one).count_ones() as usize
     }
 }
 
@@ -101,7 +112,8 @@ type Votes = BTreeMap<Place, (usize, usize)>;
 /// Where the squares seen lie on the field, by the places of all their targets.
 ///
 /// # Errors
-/// No square with targets; none that the design explains; the mirror image; more than one place.
+/// No square with targets; none that the design explains; the mirror image; more than one place. Squares of another field may be explained by chance: what they hold is
+/// to be held against the design.
 pub(crate) fn identify(design: &Design, places: &[Places], seen: &[Seen], by_code: bool) -> Result<Identified, NotRecognised> {
     let with_targets: Vec<&Seen> = seen.iter().filter(|seen| seen.at.len() >= FEWEST).collect();
     if with_targets.is_empty() {
@@ -115,7 +127,7 @@ pub(crate) fn identify(design: &Design, places: &[Places], seen: &[Seen], by_cod
                 if by_code && seen.code != Some(of.code) {
                     continue;
                 }
-                let matches = of.matches(&at);
+                let matches = of.matches(&at, &seen.areas);
                 if matches >= EXPLAINED {
                     let on_field = [index / design.squares, index % design.squares].map(|v| v as i64);
                     let vote = votes.entry(place_of(seen.square, on_field, turns, mirrored)).or_default();
@@ -130,7 +142,12 @@ pub(crate) fn identify(design: &Design, places: &[Places], seen: &[Seen], by_cod
 fn decide(design: &Design, places: &[Places], seen: &[Seen], squares: usize, votes: &Votes) -> Result<Identified, NotRecognised> {
     let best = votes.iter().max_by_key(|(place, votes)| (**votes, std::cmp::Reverse(**place)));
     let Some((&place, &(explained, matches))) = best else { return Err(NotRecognised::OtherField { squares, explained: 0 }) };
+    // A few squares of any field are like some of the design.
+    let most = 2 * explained > squares;
     let alike = votes.values().filter(|vote| **vote == (explained, matches)).count();
+    if !most && (alike > 1 || place.mirrored) {
+        return Err(NotRecognised::OtherField { squares, explained: 0 });
+    }
     if alike > 1 {
         return Err(NotRecognised::Ambiguous { places: alike, squares: explained });
     }
@@ -141,13 +158,7 @@ fn decide(design: &Design, places: &[Places], seen: &[Seen], squares: usize, vot
         let [row, column] = place.square(seen.square);
         let inside = |v: i64| usize::try_from(v).ok().filter(|v| *v < design.squares);
         let of = &places[inside(row)? * design.squares + inside(column)?];
-        Some(of.matches(&turned(&seen.at, place.turns, false)) > CONTRADICTED || seen.at.len() < FEWEST)
+        Some(of.matches(&turned(&seen.at, place.turns, false), &seen.areas) > CONTRADICTED || seen.at.len() < FEWEST)
     };
-    let all: Vec<Option<bool>> = seen.iter().map(explains).collect();
-    // A square with targets that are not the field's, or where the field has none, speaks against it.
-    let against = all.iter().zip(seen).filter(|(explained, seen)| **explained != Some(true) && seen.at.len() >= FEWEST).count();
-    if explained <= against {
-        return Err(NotRecognised::OtherField { squares, explained });
-    }
-    Ok(Identified { place, explained: all })
+    Ok(Identified { place, explained: seen.iter().map(explains).collect() })
 }

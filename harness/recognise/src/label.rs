@@ -7,15 +7,16 @@ use calibench_model::{Affine, TargetKind};
 use crate::bank::Bank;
 use crate::design::{Design, Printed};
 use crate::found::{Reason, SizeGroup};
+use crate::identify::NEAR;
 use crate::mapping::{Mapping, Place};
 use crate::number::seconds;
 use crate::recogniser::Classifier;
 use crate::square::Square;
 
-/// How far from its place on the design a labelled target may be, in squares.
-const PLACE: f64 = 0.02;
 /// The least correlation with its drawing of what is taken for a target.
 const LIKE: f64 = 0.75;
+/// The share of a square's dark areas that must be targets of its place on the design.
+const AGREEING: f64 = 0.6;
 
 /// A target of the design and the area that it is.
 #[derive(Clone, Copy, Debug)]
@@ -35,11 +36,21 @@ pub(crate) struct Lost {
 }
 
 /// What the areas of a square are.
+#[derive(Default)]
 pub(crate) struct Labels {
     pub found: Vec<Labelled>,
     pub lost: Vec<Lost>,
     /// For each area the target of the cell whose place it has.
     pub by_place: Vec<Option<usize>>,
+    /// Of the areas that have the place of a target and look like it, how much larger they are than it under the same blur.
+    pub sizes: Vec<f64>,
+}
+
+impl Labels {
+    /// Whether the areas of the square are those of the design, most of them by place and looks: of a square elsewhere a tenth is, by chance.
+    pub fn agrees(&self) -> bool {
+        self.sizes.len() as f64 >= AGREEING * self.by_place.len() as f64
+    }
 }
 
 /// The targets of a square of which the place on the field is known: by its place, held against its drawing; of the contours also by kind and number.
@@ -49,11 +60,11 @@ pub(crate) fn label(square: &Square, design: &Design, place: &Place, classifier:
     let on_field: Vec<[f64; 2]> =
         square.places().iter().map(|[x, y]| place.of([square.at[0] as f64 + x, square.at[1] as f64 + y])).collect();
     let off = |area: usize, printed: &Printed| (on_field[area][0] - printed.at[0]).hypot(on_field[area][1] - printed.at[1]);
-    let mut labels = Labels { found: Vec::new(), lost: Vec::new(), by_place: vec![None; on_field.len()] };
+    let mut labels = Labels { by_place: vec![None; on_field.len()], ..Labels::default() };
     let told = if classifier == Classifier::Contours { told(square, cell, &on_field) } else { None };
     for (index, printed) in cell.iter().enumerate() {
         let nearest = (0..on_field.len()).min_by(|&a, &b| off(a, printed).total_cmp(&off(b, printed)));
-        let Some(area) = nearest.filter(|&area| off(area, printed) < PLACE) else {
+        let Some(area) = nearest.filter(|&area| off(area, printed) < NEAR) else {
             labels.lost.push(Lost { printed: index, reason: Reason::Missing });
             continue;
         };
@@ -66,6 +77,9 @@ pub(crate) fn label(square: &Square, design: &Design, place: &Place, classifier:
             (None, Classifier::Contours) => Some(Reason::Count { found: on_field.len() }),
             (None, Classifier::Modern) => None,
         };
+        if likeness >= LIKE {
+            labels.sizes.push(square.share(area) / bank.area(shape));
+        }
         let unlike = (likeness < LIKE).then_some(Reason::Unlike { likeness });
         match wrong.or(unlike) {
             Some(reason) => labels.lost.push(Lost { printed: index, reason }),

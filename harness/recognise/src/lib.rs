@@ -36,7 +36,3 @@ pub use found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rej
 pub use recogniser::{Classifier, Recogniser};
 pub use steps::Steps;
 pub use table::{ContourTable, TableError};
-#[cfg(test)]
-extern crate self as calibench_recognise;
-#[cfg(test)]
-mod debug;

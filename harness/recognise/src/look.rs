@@ -1,16 +1,18 @@
 //! One look at an image: from grey values to what is found.
 
+use std::ops::RangeInclusive;
+
 use calibench_model::PixelPoint;
 
 use crate::adjust::OnLine;
 use crate::bank::Bank;
 use crate::blobs::Areas;
-use crate::design::Printed;
+use crate::design::{IN_SQUARE, Printed};
 use crate::error::NotRecognised;
 use crate::found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rejected, SquareFound};
 use crate::grid::{self, Grid, straightened};
 use crate::hough::fit;
-use crate::identify::{Identified, Seen, identify};
+use crate::identify::{FEWEST, Identified, Seen, identify};
 use crate::label::{Labels, affine, label};
 use crate::level::Level;
 use crate::mapping::{Mapping, Place};
@@ -24,6 +26,8 @@ use crate::square::Square;
 pub(crate) const INSET: f64 = 0.011;
 /// The least contrast of a square, as a share of the best one's.
 const CONTRAST: f64 = 0.3;
+/// The areas of the field's targets beside those of the design under the same blur, in the median: 0.95 to 1.00 in renders; ink spreads.
+const SIZES: RangeInclusive<f64> = 0.8..=1.25;
 /// Dark areas smaller than this share of the smallest target are none.
 const SMALLEST: f64 = 0.2;
 
@@ -47,13 +51,19 @@ impl Recogniser {
         squares.iter_mut().for_each(|square| square.decide(self.classifier, &self.table, &bank));
         let seen: Vec<Seen> = squares
             .iter()
-            .map(|square| Seen { square: square.at, at: square.places(), code: square.decisions.as_ref().map(|d| d.code) })
+            .map(|square| Seen {
+                square: square.at,
+                at: square.places(),
+                areas: (0..square.areas.areas.len()).map(|area| square.share(area)).collect(),
+                code: square.decisions.as_ref().map(|d| d.code),
+            })
             .collect();
         let identified = identify(&self.design, &self.places, &seen, self.classifier == Classifier::Contours)?;
         let on_field = mapping.moved(&identified.place).ok_or(NotRecognised::NoWholeSquare)?;
         let look = Look { recogniser: self, level, on_field, place: identified.place, bank: &bank };
+        let labels = look.labels(&squares, &identified)?;
         let mut found = look.recognition(&grid, &points, blur);
-        look.squares(&squares, &identified, &mut found);
+        look.squares(&squares, &labels, &identified, &mut found);
         found.targets.sort_by_key(|recognised| recognised.target);
         Ok((found, side))
     }
@@ -147,25 +157,48 @@ impl Look<'_> {
         Some(LineFound { family, index, ends: [end(line.span[0])?, end(line.span[1])?], sigma, rms, points: line.points })
     }
 
-    fn squares(&self, squares: &[Square], identified: &Identified, found: &mut Recognition) {
-        for (square, explained) in squares.iter().zip(&identified.explained) {
+    /// What the areas of each square are; `None` of a square that is not the design's.
+    ///
+    /// # Errors
+    /// Another field: its squares are mostly not the design's, or its targets have other sizes.
+    fn labels(&self, squares: &[Square], identified: &Identified) -> Result<Vec<Option<Labels>>, NotRecognised> {
+        let Recogniser { design, classifier, .. } = self.recogniser;
+        let of = |(square, explained): (&Square, &Option<bool>)| {
+            let labels = (*explained == Some(true)).then(|| label(square, design, &self.place, *classifier, self.bank))??;
+            labels.agrees().then_some(labels)
+        };
+        let labels: Vec<Option<Labels>> = squares.iter().zip(&identified.explained).map(of).collect();
+        let explained = labels.iter().flatten().count();
+        let with_targets = squares.iter().filter(|square| square.areas.areas.len() >= FEWEST).count();
+        // A square with targets that are not the field's, or where the field has none, speaks against it.
+        if explained == 0 || 2 * explained <= with_targets {
+            return Err(NotRecognised::OtherField { squares: with_targets, explained });
+        }
+        let mut sizes: Vec<f64> = labels.iter().flatten().flat_map(|labels| labels.sizes.iter().copied()).collect();
+        let middle = sizes.len() / 2;
+        let times = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+        if SIZES.contains(&times) { Ok(labels) } else { Err(NotRecognised::OtherSizes { times }) }
+    }
+
+    fn squares(&self, squares: &[Square], labels: &[Option<Labels>], identified: &Identified, found: &mut Recognition) {
+        for ((square, labels), explained) in squares.iter().zip(labels).zip(&identified.explained) {
+            let count = square.areas.areas.len();
+            // Beside the field, where nothing is printed.
+            if explained.is_none() && count < FEWEST {
+                continue;
+            }
             let [row, column] = self.place.square(square.at);
-            let middle = self.original([column as f64 + 0.5, row as f64 + 0.5]);
-            let place = (*explained == Some(true)).then_some([row as usize, column as usize]);
-            let labels = place.and_then(|_| label(square, &self.recogniser.design, &self.place, self.recogniser.classifier, self.bank));
-            if let Some(at) = middle {
-                let reason = if explained.is_none() { Reason::Outside } else { Reason::Contradicts };
-                let count = square.areas.areas.len();
-                match (&labels, count) {
-                    (None, _) => found.rejected.push(Rejected { at, square: place, target: None, reason }),
-                    (Some(_), 16) => {}
-                    (Some(_), _) => {
-                        found.rejected.push(Rejected { at, square: place, target: None, reason: Reason::Count { found: count } })
-                    }
-                }
+            let place = labels.as_ref().map(|_| [row as usize, column as usize]);
+            let reason = match (explained, labels) {
+                (None, _) => Some(Reason::Outside),
+                (_, None) => Some(Reason::Contradicts),
+                (_, Some(_)) => (count != IN_SQUARE).then_some(Reason::Count { found: count }),
+            };
+            if let (Some(reason), Some(at)) = (reason, self.original([column as f64 + 0.5, row as f64 + 0.5])) {
+                found.rejected.push(Rejected { at, square: place, target: None, reason });
             }
             let cell = place.map(|[row, column]| self.recogniser.design.cell(row, column));
-            if let (Some(labels), Some(cell)) = (&labels, cell) {
+            if let (Some(labels), Some(cell)) = (labels, cell) {
                 self.targets(square, cell, labels, found);
             }
             found.squares.extend(self.square(square, [column, row], place, labels.as_ref(), cell));

@@ -17,11 +17,11 @@ impl Unit {
         Self { middle: [0.5 * w, 0.5 * h], reach: 0.5 * w.hypot(h) }
     }
 
-    pub fn from_px(&self, [x, y]: [f64; 2]) -> Vector2<f64> {
+    pub fn of_px(&self, [x, y]: [f64; 2]) -> Vector2<f64> {
         Vector2::new(x - self.middle[0], y - self.middle[1]) / self.reach
     }
 
-    pub fn to_px(&self, p: Vector2<f64>) -> [f64; 2] {
+    pub fn px(&self, p: Vector2<f64>) -> [f64; 2] {
         [self.middle[0] + p.x * self.reach, self.middle[1] + p.y * self.reach]
     }
 }
@@ -69,7 +69,7 @@ impl Mapping {
 
     /// The place on the grid of a point of the image (px); `None` beyond the horizon.
     pub fn grid(&self, at: [f64; 2]) -> Option<[f64; 2]> {
-        let q = straight(self.unit.from_px(at), self.bend);
+        let q = straight(self.unit.of_px(at), self.bend);
         let h = self.to_grid * Vector3::new(q.x, q.y, 1.0);
         (h.z > 1e-3).then(|| [h.x / h.z, h.y / h.z])
     }
@@ -77,7 +77,7 @@ impl Mapping {
     /// The point of the image, px, of a place on the grid; `None` beyond the horizon.
     pub fn image(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let q = self.flat([x, y])?;
-        bent(q, self.bend).map(|p| self.unit.to_px(p))
+        bent(q, self.bend).map(|p| self.unit.px(p))
     }
 
     fn flat(&self, [x, y]: [f64; 2]) -> Option<Vector2<f64>> {
@@ -89,7 +89,7 @@ impl Mapping {
 
     /// Where a straight place, px, is seen in the bent image; `None` beyond the places that it comes to.
     pub fn bent(&self, at: [f64; 2]) -> Option<[f64; 2]> {
-        bent(self.unit.from_px(at), self.bend).map(|p| self.unit.to_px(p))
+        bent(self.unit.of_px(at), self.bend).map(|p| self.unit.px(p))
     }
 
     /// The derivatives of the image by the place on the grid, px per square.

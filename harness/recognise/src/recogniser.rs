@@ -77,7 +77,8 @@ impl Recogniser {
             let found = self.at(&level);
             let enough = found.as_ref().is_ok_and(|(_, square)| *square >= COARSE);
             let found = found.map(|(found, _)| found);
-            if best.as_ref().is_none_or(|best| rank(&found) > rank(best)) {
+            // Of equals the one that was seen in more detail.
+            if best.as_ref().is_none_or(|best| rank(&found) >= rank(best)) {
                 best = Some(found);
             }
             if enough {

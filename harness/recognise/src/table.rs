@@ -41,7 +41,7 @@ impl Default for ContourTable {
 }
 
 impl ContourTable {
-    /// The table of the repository, `data/contours.csv`, made by the example `learn`.
+    /// The table of the repository, `data/contours.csv`, made by the example `learn_contours`.
     ///
     /// # Panics
     /// Never: the tests read it.

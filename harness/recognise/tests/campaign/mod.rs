@@ -60,6 +60,8 @@ pub struct Shot {
     pub truth: Vec<TargetTruth>,
     /// For each target of the field whether its square lies wholly in the image.
     pub whole: Vec<bool>,
+    /// Where the middles of the grid's lines meet, row by row: (column, row) from the top left corner, counted from 0, and the place in the image.
+    pub nodes: Vec<([usize; 2], PixelPoint)>,
 }
 
 /// The nine positions with four rolls each: phi 0 once, 30 and 45 degrees towards each side.
@@ -74,9 +76,9 @@ pub fn shots(setting: &Setting, field: &Testfield, tilts: &[(f64, [f64; 2])], ro
     let optics = Optics { blur: setting.blur, aperture: 0.8, ..Optics::default() };
     let size = setting.camera.size;
     let renderer = Renderer::new(&optics, size.width as usize, size.height as usize).expect("optics");
-    let noise = if setting.decibel.is_finite() { Noise::white_below(CONTRAST, setting.decibel) } else { Noise::None };
+    let noise = if setting.decibel.is_finite() { Noise::white_below(CONTRAST, setting.decibel, 0.0) } else { Noise::None };
     let sensor = Sensor::new(Design { noise, converter: Some(8), ..Design::default() }).expect("a sensor");
-    let camera: Camera = setting.camera.clone().into();
+    let camera: Camera = setting.camera.into();
     let mut shots = Vec::new();
     for &(phi, tilt) in tilts {
         let views = BoardViews {
@@ -85,14 +87,14 @@ pub fn shots(setting: &Setting, field: &Testfield, tilts: &[(f64, [f64; 2])], ro
             rolls: rolls.iter().map(|roll| (roll + setting.roll).to_radians()).collect(),
         };
         for station in views.generate(&aim).expect("stations") {
-            let view = View { field, camera: &camera, pose: &station.pose };
+            let view = View { field, camera: &camera, pose: &station.pose, local: None };
             let seen = view.seen(optics.reach()).expect("a view");
             let name = format!("{phi}-{tilt:?}-{}", station.name);
             let picture = seen.picture().expect("a picture");
             let key = Key { view: &name, ..setting.key() };
             let image = sensor.expose(renderer.render(&picture, &[]), key).expect("an exposure").image;
-            let whole = whole(setting, field, &view);
-            shots.push(Shot { phi, name: name.clone(), image, truth: seen.truth(), whole });
+            let (whole, nodes) = (whole(setting, field, &view), nodes(setting, field, &view));
+            shots.push(Shot { phi, name: name.clone(), image, truth: seen.truth(), whole, nodes });
         }
     }
     shots
@@ -116,6 +118,20 @@ fn whole(setting: &Setting, field: &Testfield, view: &View<'_>) -> Vec<bool> {
         })
     };
     field.targets.iter().map(of).collect()
+}
+
+/// The grid's nodes that the image shows.
+fn nodes(setting: &Setting, field: &Testfield, view: &View<'_>) -> Vec<([usize; 2], PixelPoint)> {
+    let (n, size) = (setting.field.squares, setting.camera.size);
+    let all = (0..=n).flat_map(|row| (0..=n).map(move |column| [column, row]));
+    let of = |[column, row]: [usize; 2]| {
+        let (x, y) = (column as f64 - 0.5 * n as f64, 0.5 * n as f64 - row as f64);
+        let object = field.plates[0].point([x * setting.field.spacing, y * setting.field.spacing]);
+        let at = view.camera.project(view.pose.ray(&object)).ok()?;
+        let within = |v: f64, side: u32| v >= 0.0 && v <= f64::from(side) - 1.0;
+        (within(at.x, size.width) && within(at.y, size.height)).then_some(([column, row], at))
+    };
+    all.filter_map(of).collect()
 }
 
 /// What is counted over images.
@@ -210,8 +226,9 @@ impl Counts {
     }
 
     pub fn print(&self, title: &str) {
+        let [low, high] = interval(self.right, self.targets).map(|share| 100.0 * share);
         println!(
-            "{title}: {} of {} right, {} wrong, {} beyond; rms {:.3} px, farthest {:.3} px, affine {:.4}; stray {}, other group {}; not recognised {}",
+            "{title}: {} of {} right ({low:.2} to {high:.2} %), {} wrong, {} beyond; rms {:.3} px, farthest {:.3} px, affine {:.4}; stray {}, other group {}; not recognised {}",
             self.right,
             self.targets,
             self.wrong,
@@ -233,6 +250,16 @@ impl Counts {
             println!("    phi {phi:2}: {}", groups.iter().map(of).collect::<Vec<_>>().join("  | "));
         }
     }
+}
+
+/// The 95 % interval of a share, of independent ones.
+///
+/// Source: Wilson 1927.
+fn interval(count: usize, of: usize) -> [f64; 2] {
+    let (n, z) = (of.max(1) as f64, 1.96_f64);
+    let share = count as f64 / n;
+    let (middle, half) = (share + z * z / (2.0 * n), z * (share * (1.0 - share) / n + z * z / (4.0 * n * n)).sqrt());
+    [-half, half].map(|half| (middle + half) / (1.0 + z * z / n))
 }
 
 /// The seeds that the table of contours is learned on; no test uses them.

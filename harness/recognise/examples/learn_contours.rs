@@ -1,5 +1,5 @@
 //! Learns the table of likelihoods of contours from rendered campaigns, and writes it where the crate reads it:
-//! `cargo run --release -p calibench-recognise --example learn`. With `few`, from three frontal images alone, to standard output.
+//! `cargo run --release -p calibench-recognise --example learn_contours`. With `few`, from three frontal images alone, to standard output.
 
 #![allow(clippy::print_stdout)]
 
