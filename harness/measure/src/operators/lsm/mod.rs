@@ -49,6 +49,8 @@ pub struct Lsm {
     size: f64,
     sigma: f64,
     limits: Limits,
+    /// What stands beside a target is left out.
+    beside: bool,
     /// Masks of all kinds, in the order of [`TargetKind::ALL`].
     masks: Vec<Option<Mask>>,
     profile: Profile,
@@ -91,6 +93,13 @@ const PARAMETERS: &[Parameter] = &[
         default: 1.0,
         always_shown: false,
     },
+    Parameter {
+        name: "neighbours",
+        about: "what stands beside a closed target: 0 counts with the window, 1 is left out",
+        domain: Domain::Whole { min: 0, max: 1 },
+        default: 1.0,
+        always_shown: false,
+    },
     Parameter { name: "iterations", about: "most steps", domain: Domain::Whole { min: 1, max: 100 }, default: 30.0, always_shown: false },
     Parameter {
         name: "epsilon",
@@ -126,6 +135,7 @@ impl Lsm {
             size: settings.get("size"),
             sigma,
             limits,
+            beside: settings.whole("neighbours") > 0,
             masks: TargetKind::ALL.into_iter().map(Mask::new).collect(),
             profile: Profile::new(sigma),
             misfit: settings.get("misfit"),
@@ -144,7 +154,7 @@ impl Lsm {
 
     fn measure_with(&self, work: &mut Work, image: &Image, start: &Start) -> Result<Measurement, Rejection> {
         let half = self.window as i64 / 2;
-        let whole = start.affine.is_some() && self.mask(start).is_ok_and(|mask| !mask.is_open());
+        let whole = self.beside && start.affine.is_some() && self.mask(start).is_ok_and(|mask| !mask.is_open());
         let first = start::centre(image, start, half, whole)?;
         let range = work.observe(image, first, half)?;
         let mask = self.mask(start)?;
@@ -162,7 +172,8 @@ impl Lsm {
         let at = [position.x - left, position.y - top];
         let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
         let mut laid = Laid { image, centre, half };
-        let fitted = beside::fit(work, mask, begin, self.limits, &mut laid)?;
+        let fitted =
+            if self.beside { beside::fit(work, mask, begin, self.limits, &mut laid)? } else { work.fit(mask, begin, self.limits)? };
         let (left, top) = corner(laid.centre);
         if !(fitted.covariance.sxx + fitted.covariance.syy).is_finite() {
             return Err(Rejection::NotConverged);
