@@ -1,7 +1,7 @@
 //! Which pixels of a window belong to a target: those around its outline, as far as a fit predicts it, and away from what else is seen there.
 
 use super::area::WIDEST;
-use super::fit::{Parameters, Work};
+use super::fit::{BLURS, Parameters, Work};
 use super::mask::{Mask, Rule};
 use super::planes::Derivatives;
 
@@ -42,11 +42,11 @@ pub(super) struct Known {
 pub(super) fn choose(work: &mut Work, mask: &Mask, at: &Parameters, known: &Known) -> Option<Words> {
     work.planes.count_all();
     let [next, around] = AROUND.map(|factor| {
-        let wide = Parameters { sigma: factor * at.sigma.max(known.blur).hypot(PIXEL), ..*at };
+        let wide = Parameters { sigma: (factor * at.sigma.max(known.blur).hypot(PIXEL)).min(BLURS.1), ..*at };
         work.draw(mask, &wide, (Derivatives::None, Rule::Coarse));
         words(work, |_, coverage| coverage > LEAST)
     });
-    let sigma = if known.sought { at.sigma } else { UNKNOWN * at.sigma };
+    let sigma = if known.sought { at.sigma } else { (UNKNOWN * at.sigma).min(BLURS.1) };
     work.draw(mask, &Parameters { sigma, ..*at }, (Derivatives::None, Rule::Coarse));
     let ground = Ground::of(work, &next)?;
     let contrast = own_level(work)? - ground.level;
