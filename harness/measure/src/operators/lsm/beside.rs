@@ -6,6 +6,7 @@ use super::chosen::{Known, Words, choose};
 use super::fit::{Fitted, Limits, Parameters, Work};
 use super::mask::Mask;
 use super::start::inside;
+use super::vague;
 
 /// Fits over chosen pixels, at most: after the last, nothing more is changed.
 const ROUNDS: usize = 6;
@@ -51,14 +52,29 @@ impl Laid<'_> {
 }
 
 /// The least-squares fit from `begin` on. Where more than noise is left in the window of a target that is whole in itself, and something else is seen there, the
-/// window is laid around what is found, and the fit goes on over the pixels that belong to the target.
+/// window is laid around what is found, and the fit goes on over the pixels that belong to the target; not where the residuals at its outline are a `misfit`.
 ///
 /// # Errors
-/// Those of [`Work::fit`].
-pub(super) fn fit(work: &mut Work, mask: &Mask, begin: Parameters, limits: Limits, laid: &mut Laid<'_>) -> Result<Fitted, Rejection> {
+/// Those of [`Work::fit`]; [`Rejection::Misfit`].
+pub(super) fn fit(
+    work: &mut Work,
+    mask: &Mask,
+    begin: Parameters,
+    (limits, misfit): (Limits, f64),
+    laid: &mut Laid<'_>,
+) -> Result<Fitted, Rejection> {
     let whole = work.fit(mask, begin, limits);
-    if mask.is_open() || whole.is_ok() && work.planes.structure_of_all().is_white() {
+    if mask.is_open() {
         return whole;
+    }
+    if let Ok(fitted) = whole {
+        if vague(&fitted).is_some() || work.planes.structure_of_all().is_white() {
+            return whole;
+        }
+        // What hides a part of the target is not beside it.
+        if work.planes.structure(0.5 * fitted.parameters.contrast).is_no_noise(misfit) {
+            return Err(Rejection::Misfit);
+        }
     }
     let known = Known { blur: SHARPER * begin.sigma, noise: None, sought: limits.blur };
     let mut course = Course { mask, begin, limits, known, counted: None };

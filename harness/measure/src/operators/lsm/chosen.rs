@@ -1,15 +1,17 @@
 //! Which pixels of a window belong to a target: those around its outline, as far as a fit predicts it, and away from what else is seen there.
 
 use super::area::WIDEST;
-use super::fit::{Parameters, Work};
+use super::fit::{BLURS, Parameters, Work};
 use super::mask::{Mask, Rule};
 use super::planes::Derivatives;
 
 /// Rows of bits, a pixel each, of the largest window.
 pub(super) type Words = [u64; WIDEST];
 
-/// By what factor the blur is widened to see which pixels are around an outline, and the least coverage there of those that are.
-const AROUND: (f64, f32) = (1.5, 0.01);
+/// By what factors the blur is widened to see which pixels are around an outline, those of the ground next to it and all that count, and the least coverage there
+/// of those that are.
+const AROUND: [f64; 2] = [1.5, 3.0];
+const LEAST: f32 = 0.01;
 /// Standard deviation of a uniform distribution over a pixel, px.
 const PIXEL: f64 = 0.29;
 /// The largest coverage, by the target, of a pixel at which something else can be seen while the outline is known roughly,
@@ -39,12 +41,14 @@ pub(super) struct Known {
 /// The pixels around the target's outline from which nothing else is seen; `None` if nothing else is seen in the window.
 pub(super) fn choose(work: &mut Work, mask: &Mask, at: &Parameters, known: &Known) -> Option<Words> {
     work.planes.count_all();
-    let wide = Parameters { sigma: AROUND.0 * at.sigma.max(known.blur).hypot(PIXEL), ..*at };
-    work.draw(mask, &wide, (Derivatives::None, Rule::Coarse));
-    let around = words(work, |_, coverage| coverage > AROUND.1);
-    let sigma = if known.sought { at.sigma } else { UNKNOWN * at.sigma };
+    let [next, around] = AROUND.map(|factor| {
+        let wide = Parameters { sigma: (factor * at.sigma.max(known.blur).hypot(PIXEL)).min(BLURS.1), ..*at };
+        work.draw(mask, &wide, (Derivatives::None, Rule::Coarse));
+        words(work, |_, coverage| coverage > LEAST)
+    });
+    let sigma = if known.sought { at.sigma } else { (UNKNOWN * at.sigma).min(BLURS.1) };
     work.draw(mask, &Parameters { sigma, ..*at }, (Derivatives::None, Rule::Coarse));
-    let ground = Ground::of(work, &around)?;
+    let ground = Ground::of(work, &next)?;
     let contrast = own_level(work)? - ground.level;
     let seen = ((SEEN * known.noise.unwrap_or(ground.noise) / contrast.abs()).clamp(BOUNDS.0, BOUNDS.1) * contrast.abs()) as f32;
     let (level, contrast) = (ground.level as f32, contrast as f32);

@@ -10,7 +10,7 @@ use crate::cholesky::{self, Factor};
 use crate::marquardt::descent::{Damping, Descent, Gone, descend};
 
 /// The blur that is sought, px.
-const BLURS: (f64, f64) = (0.15, 5.0);
+pub(super) const BLURS: (f64, f64) = (0.15, 5.0);
 /// Affine terms may still move the edge of the mask by this many times the last step of the position; where the blur is sought, edge and blur only by as
 /// much as the position: what is left goes with the square of the whole step.
 const SHAPE: f64 = 3.0;

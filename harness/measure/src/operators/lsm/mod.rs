@@ -16,7 +16,7 @@ mod sweep;
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind};
 
 use self::beside::Laid;
-use self::fit::{Limits, Work};
+use self::fit::{Fitted, Limits, Work};
 use self::mask::Mask;
 use self::planes::Planes;
 use self::profile::Profile;
@@ -172,14 +172,14 @@ impl Lsm {
         let at = [position.x - left, position.y - top];
         let begin = start::best(work, mask, at, &shapes, self.sigma).ok_or(Rejection::NoCorner)?;
         let mut laid = Laid { image, centre, half };
-        let fitted =
-            if self.beside { beside::fit(work, mask, begin, self.limits, &mut laid)? } else { work.fit(mask, begin, self.limits)? };
+        let fitted = if self.beside {
+            beside::fit(work, mask, begin, (self.limits, self.misfit), &mut laid)?
+        } else {
+            work.fit(mask, begin, self.limits)?
+        };
         let (left, top) = corner(laid.centre);
-        if !(fitted.covariance.sxx + fitted.covariance.syy).is_finite() {
-            return Err(Rejection::NotConverged);
-        }
-        if fitted.covariance.sxx.max(fitted.covariance.syy) > LARGEST * LARGEST {
-            return Err(Rejection::ErrorEllipse);
+        if let Some(why) = vague(&fitted) {
+            return Err(why);
         }
         if work.planes.structure(0.5 * fitted.parameters.contrast).is_no_noise(self.misfit) {
             return Err(Rejection::Misfit);
@@ -187,6 +187,15 @@ impl Lsm {
         let [dx, dy] = fitted.parameters.pose.at;
         Ok(Measurement { position: PixelPoint::new(left + dx, top + dy), covariance: Some(fitted.covariance) })
     }
+}
+
+/// Why a position is not known well enough, if it is not.
+fn vague(fitted: &Fitted) -> Option<Rejection> {
+    let covariance = &fitted.covariance;
+    if !(covariance.sxx + covariance.syy).is_finite() {
+        return Some(Rejection::NotConverged);
+    }
+    (covariance.sxx.max(covariance.syy) > LARGEST * LARGEST).then_some(Rejection::ErrorEllipse)
 }
 
 impl Operator for Lsm {
