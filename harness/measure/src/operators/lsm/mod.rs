@@ -118,7 +118,7 @@ pub fn method() -> Method {
         name: "lsm",
         about: "least-squares matching with an artificial mask: six affine parameters, two of grey values, the blur if wanted",
         source: "Vosselman & Förstner 1988, Sect. 3.4; Thurgood & Mikhail 1982 (blur)",
-        version: "1".into(),
+        version: "2".into(),
         parameters: PARAMETERS,
         build: Build::With(|settings| Box::new(Lsm::new(settings))),
     }
