@@ -198,3 +198,18 @@ fn memory_does_not_grow_with_the_cameras() {
         assert!(grown < 40.0, "{from}: {grown} bytes a camera, {less} and {more} in all");
     }
 }
+
+/// The list of cameras beside a list of images is read, too, and is not written over, under whatever name the images stand.
+#[test]
+fn the_list_beside_a_list_of_images_is_an_input() {
+    let folder = folder(2);
+    let image = |i: usize| format!("{i} 1 0 0 0 0.5 0.25 1 {i} {i}.jpg\n\n");
+    for name in ["images.txt", "mine.txt"] {
+        fs::write(folder.path().join(name), (1..=2).map(image).collect::<String>()).unwrap();
+        let before = fs::read(folder.path().join("cameras.txt")).unwrap();
+        let output = convert(folder.path(), name, "colmap", "cameras.txt");
+        assert!(output.status.code() == Some(2) && stderr(&output).contains("cameras.txt"), "{name}: {}", stderr(&output));
+        assert!(fs::read(folder.path().join("cameras.txt")).unwrap() == before);
+        good(&convert(folder.path(), name, "colmap", "others.txt"));
+    }
+}

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::camera::read_beside;
+
 /// The files and folders that a command reads.
 ///
 /// Compared are real paths and, where the system numbers files, these numbers: a link to a file, hard or symbolic, is that file, and so is one to a file in a
@@ -20,14 +22,15 @@ struct Input {
 }
 
 impl Inputs {
-    /// Those of `paths` that are there and are regular files or folders.
+    /// Those of `paths` that are there and are regular files or folders, and the lists of cameras that are read with COLMAP's lists of images.
     pub fn new<P: AsRef<Path>>(paths: impl IntoIterator<Item = P>) -> Self {
-        let input = |path: P| {
-            let about = fs::metadata(&path).ok().filter(|about| about.is_file() || about.is_dir())?;
-            let real = path.as_ref().canonicalize().ok()?;
-            Some(Input { given: path.as_ref().to_owned(), real, number: number(&about) })
+        let input = |given: PathBuf| {
+            let about = fs::metadata(&given).ok().filter(|about| about.is_file() || about.is_dir())?;
+            let real = given.canonicalize().ok()?;
+            Some(Input { given, real, number: number(&about) })
         };
-        Self { read: paths.into_iter().filter_map(input).collect() }
+        let with_beside = |path: P| [Some(path.as_ref().to_owned()), read_beside(path.as_ref())];
+        Self { read: paths.into_iter().flat_map(with_beside).flatten().filter_map(input).collect() }
     }
 
     /// The input, as it was given, that would be lost or changed by writing the file `path`: the same file, or a folder that holds it.

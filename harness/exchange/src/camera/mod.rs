@@ -44,6 +44,7 @@ pub use covariance::ParameterCovariance;
 pub use error::CameraFileError;
 pub use format::CameraFormat;
 pub use formats::{FORMATS, format_named};
+pub(crate) use lists::read_beside;
 pub use lists::{CameraList, ListWriter, Pieces};
 pub use pose::{Pose, PoseFrame};
 pub use source::LARGEST_FILE;

@@ -211,6 +211,15 @@ impl Pieces<'_> {
     }
 }
 
+/// The list of cameras that is read with the file at `path`, if that is one of COLMAP's lists of images.
+pub(crate) fn read_beside(path: &Path) -> Option<PathBuf> {
+    // A pipe is read once.
+    std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+    let head = head(path).ok()?;
+    let are_images = colmap_images::are_in_bytes(&head) || whole_lines(&head).is_some_and(colmap_images::are_in_text);
+    are_images.then(|| colmap_images::beside(path)).flatten()
+}
+
 /// The beginning of a file.
 fn head(path: &Path) -> Result<Vec<u8>, Stop> {
     let mut head = Vec::new();
