@@ -140,3 +140,86 @@ impl Counted {
         shares
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_model::Affine;
+    use calibench_recognise::{Blob, GridFound, Recognised, SquareFound};
+    use calibench_synth::view::Visibility;
+    use nalgebra::Point3;
+
+    use super::*;
+
+    const KINDS: [TargetKind; 4] = [TargetKind::Square, TargetKind::Triangle, TargetKind::Square, TargetKind::Triangle];
+
+    fn place(target: usize) -> PixelPoint {
+        PixelPoint::new(10.0 + 20.0 * target as f64, 30.0)
+    }
+
+    fn truth() -> Vec<TargetTruth> {
+        let of = |target| TargetTruth {
+            object: Point3::origin(),
+            at: Some(place(target)),
+            visibility: Visibility::Visible,
+            affine: None,
+            ellipse: None,
+        };
+        (0..KINDS.len()).map(of).collect()
+    }
+
+    /// All four targets where they are, `taken[i]` for what the i-th is.
+    fn found(taken: [usize; 4]) -> Found {
+        let affine = Affine { axx: 5.0, axy: 0.0, ayx: 0.0, ayy: 5.0 };
+        let label = |i: usize| Recognised { target: taken[i], position: place(i), affine, kind: KINDS[taken[i]], likeness: 1.0 };
+        let blob = |i: usize| Blob {
+            position: place(i),
+            area: 0.01,
+            group: Some(SizeGroup::SmallAngular),
+            single: Some(KINDS[i]),
+            joint: Some(KINDS[taken[i]]),
+            features: None,
+            target: Some(taken[i]),
+        };
+        let square = SquareFound { place: Some([0, 0]), corners: [place(0); 4], code: None, blobs: (0..4).map(blob).collect() };
+        let grid = GridFound {
+            homography: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            bend: 0.0,
+            middle: place(0),
+            reach: 100.0,
+            rms: 0.0,
+            blur: 0.6,
+            reduced: 1,
+        };
+        Found { targets: (0..4).map(label).collect(), squares: vec![square], lines: Vec::new(), rejected: Vec::new(), grid }
+    }
+
+    fn counted(found: Option<&Found>) -> impl Fn(&str) -> Option<f64> + use<> {
+        let mut counted = Counted::default();
+        counted.image(0, "all", found, &truth(), &KINDS);
+        move |name| counted.0.get(&(0, format!("{name}/all"))).copied()
+    }
+
+    #[test]
+    fn what_is_right_is_counted_right_and_an_image_without_grid_has_nothing() {
+        let right = counted(Some(&found([0, 1, 2, 3])));
+        for (name, count) in [("images", 1.0), ("grids", 1.0), ("labels", 4.0), ("wrong labels", 0.0), ("targets", 4.0), ("labelled", 4.0)]
+        {
+            assert_eq!(right(name), Some(count), "{name}");
+        }
+        assert_eq!(right("joint wrong, small squares and triangles"), Some(0.0));
+        let none = counted(None);
+        assert_eq!((none("images"), none("grids"), none("labels")), (Some(1.0), None, None));
+    }
+
+    /// A square and a triangle are taken for each other: two labels, and two joint decisions; the single ones are right.
+    #[test]
+    fn a_swap_is_two_wrong_labels_and_two_wrong_decisions() {
+        let swapped = counted(Some(&found([1, 0, 2, 3])));
+        assert_eq!([swapped("labels"), swapped("wrong labels"), swapped("labelled")], [Some(4.0), Some(2.0), Some(2.0)]);
+        assert_eq!(swapped("joint wrong, small squares and triangles"), Some(2.0));
+        assert_eq!(swapped("single wrong, small squares and triangles"), Some(0.0));
+        assert_eq!(swapped("small squares and triangles"), Some(4.0));
+        assert_eq!(swapped("joint, square taken for triangle"), Some(1.0));
+        assert_eq!(swapped("joint, triangle taken for square"), Some(1.0));
+    }
+}

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::blocks::matched;
+use super::blocks::{filled, matched};
 use super::section::Section;
 
 /// The name under which counts of recognition stand in the records.
@@ -79,6 +79,7 @@ pub fn read(mut section: Section<'_>, field: &Testfield, stations: &[Station], p
         if images.iter().any(|(other, _)| other == name) {
             problems.push(Problem::new(wire.name.span(), format!("`{name}` stands twice: expected each name once")));
         }
+        filled("images", Some(&wire.images), problems);
         images.push((name.clone(), matched("station", wire.images.get_ref(), &names, problems)));
     }
     if images.is_empty() {

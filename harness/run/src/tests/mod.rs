@@ -1,5 +1,6 @@
 //! Runs of a small wall whose figures have closed forms.
 
+mod blocks;
 mod kinds;
 mod network;
 mod recordings;

@@ -18,7 +18,7 @@ const BEND: &str = "bend = 0.02\nbend_reach = 0.5\n";
 const LOCAL: &str = "c = 10.0\n[camera.local]\nsigma = 0.5\ncorrelation = 40\n";
 
 /// The wall on a stand, whose keys are followed by `more`, its corners drawn from the truth by a steady hand.
-fn on_stand(more: &str, changes: &[(&str, &str)]) -> Scenario {
+pub(super) fn on_stand(more: &str, changes: &[(&str, &str)]) -> Scenario {
     let (first, listed) = (SCENARIO.find("[[station]]").unwrap(), SCENARIO.find("[pointing]").unwrap());
     let (calibration, methods) = (SCENARIO.find("[calibration]").unwrap(), SCENARIO.find("[[method]]").unwrap());
     let stand = format!("{STAND}{more}");

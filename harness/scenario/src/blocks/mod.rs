@@ -106,10 +106,10 @@ pub fn read(
     if listed.is_empty() {
         problems.push(Problem::new(span, "[blocks] without a [[block]]: expected at least one"));
     }
-    let names = Names::of(views, methods);
+    let mut names = Names::of(views, methods);
     let mut list: Vec<Block> = Vec::new();
     for section in listed {
-        list.extend(block(section, &names, &list, problems));
+        list.extend(block(section, &mut names, &list, problems));
     }
     let residuals = residuals.map(|section| compared(section, &names, &list, problems));
     let wire = wire?;
@@ -133,6 +133,8 @@ struct Names<'a> {
     targets: Vec<&'a str>,
     stations: Vec<&'a str>,
     methods: Vec<&'a str>,
+    /// Blocks that have problems of their own: who names them has none.
+    broken: Vec<String>,
 }
 
 impl<'a> Names<'a> {
@@ -141,17 +143,22 @@ impl<'a> Names<'a> {
             targets: views.field.targets.iter().map(|target| target.id.as_str()).collect(),
             stations: views.stations.iter().map(|station| station.name.as_str()).collect(),
             methods: methods.iter().map(|method| method.label.as_str()).collect(),
+            broken: Vec::new(),
         }
     }
 }
 
-fn block(section: Section<'_>, names: &Names<'_>, earlier: &[Block], problems: &mut Vec<Problem>) -> Option<Block> {
+fn block(section: Section<'_>, names: &mut Names<'_>, earlier: &[Block], problems: &mut Vec<Problem>) -> Option<Block> {
     let before = problems.len();
     let wire: BlockWire = section.read(&[], problems)?;
     let name = wire.name.get_ref().clone();
     if name == RESIDUALS || earlier.iter().any(|other| other.name == name) {
         problems.push(Problem::new(wire.name.span(), format!("the name `{name}` is taken: expected each once, and not `{RESIDUALS}`")));
     }
+    filled("targets", wire.targets.as_ref(), problems);
+    filled("methods", wire.methods.as_ref(), problems);
+    filled("each", wire.each.as_ref(), problems);
+    let before_images = problems.len();
     let all_images = || (0..names.stations.len()).collect::<Vec<_>>();
     let (images, several) = match (&wire.images, &wire.each) {
         (Some(_), Some(each)) => {
@@ -166,7 +173,7 @@ fn block(section: Section<'_>, names: &Names<'_>, earlier: &[Block], problems: &
         (None, None) => (vec![all_images()], false),
     };
     let at = wire.each.as_ref().map(Spanned::span).or_else(|| wire.images.as_ref().map(Spanned::span)).unwrap_or_else(|| wire.name.span());
-    if images.iter().any(|choice| choice.len() < LEAST_IMAGES) {
+    if problems.len() == before_images && images.iter().any(|choice| choice.len() < LEAST_IMAGES) {
         problems.push(Problem::new(at, format!("a block takes at least {LEAST_IMAGES} images")));
     }
     let targets = match &wire.targets {
@@ -179,7 +186,7 @@ fn block(section: Section<'_>, names: &Names<'_>, earlier: &[Block], problems: &
     };
     let corrected_by = wire.corrected_by.as_ref().and_then(|other| {
         let found = earlier.iter().position(|block| block.name == *other.get_ref());
-        if found.is_none() {
+        if found.is_none() && !names.broken.contains(other.get_ref()) {
             let message = format!("no earlier block is called `{}`", other.get_ref());
             problems.push(Problem::new(other.span(), message).nearest(other.get_ref(), earlier.iter().map(|block| block.name.as_str())));
         }
@@ -192,7 +199,11 @@ fn block(section: Section<'_>, names: &Names<'_>, earlier: &[Block], problems: &
     {
         problems.push(Problem::new(by.span(), "`corrected_by` beside `parameters`: expected one of them"));
     }
-    (problems.len() == before).then(|| Block {
+    if problems.len() > before {
+        names.broken.push(name);
+        return None;
+    }
+    Some(Block {
         name,
         targets,
         images,
@@ -232,7 +243,10 @@ fn compared(section: Section<'_>, names: &Names<'_>, blocks: &[Block], problems:
     let before = problems.len();
     let wire: ResidualsWire = section.read(&[], problems)?;
     let known: Vec<&str> = blocks.iter().map(|block| block.name.as_str()).collect();
-    let of = places("block", wire.blocks.get_ref(), &known, problems);
+    filled("blocks", Some(&wire.blocks), problems);
+    filled("pairs", Some(&wire.pairs), problems);
+    let whole = wire.blocks.get_ref().iter().filter(|name| !names.broken.contains(name.get_ref())).cloned();
+    let of = places("block", &whole.collect::<Vec<_>>(), &known, problems);
     let mut pairs = Vec::new();
     for pair in wire.pairs.get_ref() {
         let found = places("station", pair, &names.stations, problems);
@@ -240,10 +254,14 @@ fn compared(section: Section<'_>, names: &Names<'_>, blocks: &[Block], problems:
             pairs.push([first, second]);
         }
     }
-    if of.is_empty() || wire.pairs.get_ref().is_empty() {
-        problems.push(Problem::new(wire.pairs.span(), "[blocks.residuals]: expected at least one block and one pair"));
-    }
     (problems.len() == before).then_some(ResidualPairs { blocks: of, pairs })
+}
+
+/// A list that is there and empty is a problem.
+pub(crate) fn filled<T>(key: &str, list: Option<&Spanned<Vec<T>>>, problems: &mut Vec<Problem>) {
+    if let Some(empty) = list.filter(|list| list.get_ref().is_empty()) {
+        problems.push(Problem::new(empty.span(), format!("`{key}` is empty: expected at least one")));
+    }
 }
 
 /// The places of names that match a pattern; a pattern that none matches is a problem.
@@ -267,3 +285,6 @@ pub(crate) fn matched(what: &str, patterns: &[Spanned<String>], known: &[&str], 
     found.dedup();
     found
 }
+
+#[cfg(test)]
+mod tests;
