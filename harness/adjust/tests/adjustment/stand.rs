@@ -1,6 +1,6 @@
 //! The block of Vosselman and Förstner as its text has it: a field on a bent stand, turned and tilted before a rolled camera.
 
-use calibench_adjust::{AdjustError, Datum, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Variance, adjust};
+use calibench_adjust::{AdjustError, Exterior, ImageObservation, Interior, Network, Options, Variance, adjust};
 use calibench_model::Pose;
 use calibench_model::camera::CameraModel;
 use nalgebra::{DMatrix, DVector, Point3, Vector3};

@@ -2,7 +2,7 @@
 
 use calibench_model::{Image, Rejection};
 
-use super::chosen::{Known, Words, choose};
+use super::chosen::{Chosen, Known, choose};
 use super::fit::{Fitted, Limits, Parameters, Work};
 use super::mask::Mask;
 use super::start::inside;
@@ -16,6 +16,8 @@ const BEYOND: f64 = 0.6;
 const FAR: (f64, f64) = (2.0, 2.5);
 /// The blur may be less than its start by this factor: a fit beside something else may make it too small.
 const SHARPER: f64 = 0.8;
+/// The least share of the outline that must be seen where the whole window led nowhere: something may stand before the target.
+const OUTLINE: f32 = 0.8;
 /// A blur, px, under which a target is where it is within the errors of a start.
 const ASTRAY: f64 = 1.2;
 
@@ -77,7 +79,7 @@ pub(super) fn fit(
         }
     }
     let known = Known { blur: SHARPER * begin.sigma, noise: None, sought: limits.blur };
-    let mut course = Course { mask, begin, limits, known, counted: None };
+    let mut course = Course { mask, begin, limits, known, counted: None, astray: false };
     let Some(mut found) = course.first(work, laid, whole.ok()) else {
         work.count(None);
         return work.fit(mask, begin, limits);
@@ -87,6 +89,10 @@ pub(super) fn fit(
             Some(next) => found = next,
             None => break,
         }
+    }
+    // What hides a part of the outline is not beside it.
+    if course.astray && course.counted.is_some_and(|chosen| chosen.outline < OUTLINE) {
+        return Err(Rejection::Misfit);
     }
     found
 }
@@ -98,13 +104,16 @@ struct Course<'a> {
     limits: Limits,
     known: Known,
     /// The pixels of the last fit, if these are not all.
-    counted: Option<Words>,
+    counted: Option<Chosen>,
+    /// The fit of the whole window led nowhere.
+    astray: bool,
 }
 
 impl Course<'_> {
     /// The first fit without what stands beside the target; `None` if nothing does. Where much does, the fit of the `whole` window may have gone anywhere.
     fn first(&mut self, work: &mut Work, laid: &mut Laid<'_>, whole: Option<Fitted>) -> Option<Result<Fitted, Rejection>> {
         let Some(mut at) = whole.map(|fitted| fitted.parameters).filter(|at| at.is_near(&self.begin)) else {
+            self.astray = true;
             let astray = Parameters { sigma: ASTRAY.max(self.begin.sigma), ..self.begin };
             self.counted = Some(choose(work, self.mask, &astray, &self.known)?);
             return Some(self.again(work, self.begin, Work::fit));
@@ -124,7 +133,7 @@ impl Course<'_> {
         self.known.noise = Some(self.known.noise.map_or(found.noise, |least| least.min(found.noise)));
         let followed = laid.follow(work, &mut at);
         let pixels = choose(work, self.mask, &at, &self.known);
-        if !followed && pixels == self.counted {
+        if !followed && pixels.map(|chosen| chosen.pixels) == self.counted.map(|chosen| chosen.pixels) {
             return None;
         }
         self.counted = pixels;
@@ -133,7 +142,7 @@ impl Course<'_> {
 
     /// A fit over the pixels that count: where these do not tell the blur, it stays as it is.
     fn again(&self, work: &mut Work, begin: Parameters, fit: Fit) -> Result<Fitted, Rejection> {
-        work.count(self.counted.as_ref());
+        work.count(self.counted.as_ref().map(|chosen| &chosen.pixels));
         match fit(work, self.mask, begin, self.limits) {
             Err(_) if self.limits.blur => fit(work, self.mask, begin, Limits { blur: false, ..self.limits }),
             found => found,

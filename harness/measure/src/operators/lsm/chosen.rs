@@ -38,8 +38,16 @@ pub(super) struct Known {
     pub(super) sought: bool,
 }
 
+/// Pixels that are chosen.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Chosen {
+    pub(super) pixels: Words,
+    /// The share of the target's outline that is in them.
+    pub(super) outline: f32,
+}
+
 /// The pixels around the target's outline from which nothing else is seen; `None` if nothing else is seen in the window.
-pub(super) fn choose(work: &mut Work, mask: &Mask, at: &Parameters, known: &Known) -> Option<Words> {
+pub(super) fn choose(work: &mut Work, mask: &Mask, at: &Parameters, known: &Known) -> Option<Chosen> {
     work.planes.count_all();
     let [next, around] = AROUND.map(|factor| {
         let wide = Parameters { sigma: (factor * at.sigma.max(known.blur).hypot(PIXEL)).min(BLURS.1), ..*at };
@@ -58,7 +66,21 @@ pub(super) fn choose(work: &mut Work, mask: &Mask, at: &Parameters, known: &Know
         return None;
     }
     let shadow = widened(&others);
-    Some(std::array::from_fn(|row| around[row] & !shadow[row]))
+    let pixels = std::array::from_fn(|row| around[row] & !shadow[row]);
+    Some(Chosen { pixels, outline: of_outline(work, &pixels) })
+}
+
+/// The share of the outline that lies in `pixels`: where they are covered in part.
+fn of_outline(work: &Work, pixels: &Words) -> f32 {
+    let (mut inside, mut all) = (0.0, f32::MIN_POSITIVE);
+    for (word, (_, coverage)) in pixels.iter().zip(work.planes.rows()) {
+        for (column, covered) in coverage.iter().enumerate() {
+            let edge = covered * (1.0 - covered);
+            all += edge;
+            inside += if word >> column & 1 == 1 { edge } else { 0.0 };
+        }
+    }
+    inside / all
 }
 
 /// The pixels of which something holds, by grey value and coverage.
