@@ -236,10 +236,10 @@ fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> Str
 
 /// The tables that say what is recognised and adjusted.
 struct Adjusted<'i> {
-    recognition: Option<Section<'i>>,
     calibration: Option<Section<'i>>,
     blocks: Option<Section<'i>>,
     listed_blocks: Vec<Section<'i>>,
+    recognition: Option<Section<'i>>,
 }
 
 impl Adjusted<'_> {

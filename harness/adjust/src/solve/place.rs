@@ -16,12 +16,14 @@ const LITTLE: f64 = 1e-10;
 const NOISE: f64 = 1e4;
 /// Share of the sum of squares by which rounding may raise it.
 const ROUNDING: f64 = 1e-12;
-/// Undamped steps beyond one that raised the sum of squares, while none ends above the first, before all are taken back.
-const AHEAD: usize = 10;
+/// Undamped steps beyond one that raised the sum of squares, while none ends far above the first, before all are taken back.
+const AHEAD: usize = 20;
+/// By how much the sum of one of them may exceed that of the first.
+const WILD: f64 = 10.0;
 /// How often on a way it is looked ahead.
-const LOOKS: usize = 4;
+const LOOKS: usize = 5;
 /// Steps after which it is looked ahead from a place that damped steps have crept to.
-const CREPT: usize = 8;
+const CREPT: usize = 6;
 
 /// The state, its normal equations and the step from it.
 pub(super) struct Place<'e, 'n> {
@@ -99,7 +101,7 @@ impl<'e, 'n> Place<'e, 'n> {
             if self.is_lower() {
                 return Some(state);
             }
-            if self.normals.cost > *first.get_or_insert(self.normals.cost) {
+            if self.normals.cost > WILD * *first.get_or_insert(self.normals.cost) {
                 return None;
             }
         }

@@ -92,3 +92,61 @@ fn mean_ratio(found: &Summaries, method: &str, reference: &str) -> Option<Ours> 
         truth,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_records::adjustments::Numbers;
+
+    use super::*;
+
+    /// Two trials of sigma0 of `small` (2, 4) and `large` (1, 2) by `lsm`, of `large` (3, 3) by `centroid`; a height of another group.
+    fn summaries() -> Summaries {
+        let mut found = Summaries { methods: vec!["lsm".into(), "centroid".into()], trials: 2, ..Summaries::default() };
+        let mut add = |method: &str, set: &str, group: Group, values: [f64; 2]| {
+            let numbers = values.map(|value| Numbers { value, sigma: None, error: None });
+            let mut summary = Summary { first: Some(numbers[0]), ..Summary::default() };
+            values.into_iter().for_each(|value| summary.value.add(value));
+            found.figures.insert((method.into(), set.into(), group, "sigma0".into()), summary);
+        };
+        add("lsm", "small", Group::Network, [2.0, 4.0]);
+        add("lsm", "large", Group::Network, [1.0, 2.0]);
+        add("centroid", "large", Group::Network, [3.0, 3.0]);
+        add("lsm", "small", Group::Object, [70.0, 90.0]);
+        found
+    }
+
+    /// First trial and mean behind a cell with `keys`, by `lsm` unless they say otherwise.
+    fn of(keys: &str) -> Option<(f64, f64)> {
+        let text = format!("row = \"a\"\ncolumn = \"b\"\nprinted = \"1\"\nof = \"sigma0\"\n{keys}");
+        let cell: Cell = toml::from_str(&text).unwrap();
+        ours(&summaries(), &cell, "lsm", 27.0).map(|ours| (ours.one, ours.mean))
+    }
+
+    #[test]
+    fn a_figure_is_that_of_its_set_group_and_method() {
+        let object = Group::ALL.iter().find(|(group, _)| *group == Group::Object).unwrap().1;
+        assert_eq!(of("metric = \"figure\"\nset = \"small\""), Some((2.0, 3.0)));
+        assert_eq!(of("metric = \"figure\"\nset = \"large\"\ntimes = 10"), Some((10.0, 15.0)));
+        assert_eq!(of("metric = \"figure\"\nset = \"large\"\nmethod = \"centroid\""), Some((3.0, 3.0)));
+        assert_eq!(of(&format!("metric = \"figure\"\nset = \"small\"\ngroup = \"{object}\"")), Some((70.0, 80.0)));
+    }
+
+    #[test]
+    fn a_ratio_is_over_what_it_names_and_has_the_rest_in_common() {
+        assert_eq!(of("metric = \"figure_ratio\"\nset = \"small\"\nover = { set = \"large\" }"), Some((2.0, 2.0)));
+        let methods = "metric = \"figure_ratio\"\nset = \"large\"\nmethod = \"centroid\"\nover = { method = \"lsm\" }";
+        assert_eq!(of(methods), Some((3.0, 2.0)));
+    }
+
+    #[test]
+    fn what_is_missing_has_no_figure() {
+        for keys in [
+            "metric = \"figure\"\nset = \"absent\"",
+            "metric = \"figure\"\nset = \"small\"\nmethod = \"centroid\"",
+            "metric = \"figure_ratio\"\nset = \"small\"\nover = { set = \"absent\" }",
+            "metric = \"figure_ratio\"\nset = \"small\"\nover = { method = \"centroid\" }",
+        ] {
+            assert_eq!(of(keys), None, "{keys}");
+        }
+    }
+}

@@ -8,6 +8,9 @@ use crate::calibration::wire::{PrincipalDistance, Sigma};
 use crate::testfield::wire::Distance as Length;
 use crate::wire::bounded;
 
+/// Lists of patterns.
+type Lists = Spanned<Vec<Spanned<Vec<Spanned<String>>>>>;
+
 bounded! {
     /// A number of points.
     Count(usize), i64 "i64", 6, 1_000_000;
@@ -45,13 +48,13 @@ pub struct BlockWire {
     pub images: Option<Spanned<Vec<Spanned<String>>>>,
     /// Several choices of images in place of one: a network for each of them.
     #[schemars(with = "Option<Vec<Vec<String>>>")]
-    pub each: Option<Spanned<Vec<Spanned<Vec<Spanned<String>>>>>>,
+    pub each: Option<Lists>,
     /// Ebner's parameters that are solved for, of e1 to e12. Default: none.
     #[schemars(with = "Option<Vec<String>>")]
     pub parameters: Option<Spanned<Vec<Spanned<String>>>>,
     /// Groups of images with parameters of their own. Default: one set for all.
     #[schemars(with = "Option<Vec<Vec<String>>>")]
-    pub groups: Option<Spanned<Vec<Spanned<Vec<Spanned<String>>>>>>,
+    pub groups: Option<Lists>,
     /// An earlier block by whose parameters image coordinates are corrected.
     #[schemars(with = "Option<String>")]
     pub corrected_by: Option<Spanned<String>>,
