@@ -1,9 +1,10 @@
 //! Adjustments as the gate compares them: as if they were points, one pair of figures each, trial by trial; and figure by figure.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use calibench_model::Rejection;
-use calibench_records::results::{Calibrated, Group};
+use calibench_records::results::{Calibrated, Figure, Group};
 
 use super::point_entry::{Entry, Found, rounded};
 
@@ -24,19 +25,51 @@ pub type FigureKey = (usize, Group, Arc<str>);
 /// The view under which they stand.
 pub(super) const VIEW: &str = "adjustment";
 
-/// The camera over the frame and, where there is a second step, the check points. An adjustment that failed is a rejected one.
-pub(super) fn entries(adjusted: &Calibrated) -> Vec<(&'static str, Entry)> {
+/// The camera over the frame and, where there is a second step, the check points, of the first set of parameters; of a free network its sigma0, of every set;
+/// of a recognition what was not labelled and what was labelled wrongly, as shares. An adjustment that failed is a rejected one.
+pub(super) fn entries(adjusted: &Calibrated) -> Vec<(Arc<str>, Entry)> {
     let failed = Entry::Rejected(Rejection::NotConverged);
-    let Ok(figures) = &adjusted.outcome else { return vec![("camera", failed), ("check points", failed)] };
-    let find = |group: Group, name: &str| figures.iter().find(|figure| figure.group == group && &*figure.name == name);
-    let mm = |name: &str| find(Group::Check, name).map(|figure| if figure.unit == "m" { 1e3 * figure.value } else { figure.value });
+    let first = adjusted.set == 0;
+    let Ok(figures) = &adjusted.outcome else {
+        return if first { vec![("camera".into(), failed), ("check points".into(), failed)] } else { Vec::new() };
+    };
     let measured = |x: f64, y: f64| Entry::Measured(Found::bare([rounded(x), rounded(y)]));
-    let camera = find(Group::Frame, "rms").map_or(failed, |figure| measured(figure.value, 0.0));
+    let find = |group: Group, name: &str| figures.iter().find(|figure| figure.group == group && &*figure.name == name);
+    let Some(frame) = find(Group::Frame, "rms") else {
+        let sigma0 = find(Group::Network, "sigma0").map(|figure| (format!("sigma0 {}", adjusted.set).into(), measured(figure.value, 0.0)));
+        let recognised = recognised(figures).into_iter().map(|(name, [lost, wrong])| (name, measured(lost, wrong)));
+        let found: Vec<(Arc<str>, Entry)> = sigma0.into_iter().chain(recognised).collect();
+        return if found.is_empty() && first { vec![("camera".into(), failed)] } else { found };
+    };
+    if !first {
+        return Vec::new();
+    }
+    let mm = |name: &str| find(Group::Check, name).map(|figure| if figure.unit == "m" { 1e3 * figure.value } else { figure.value });
     let check = match (mm("rmse_xy"), mm("rmse_z")) {
         (Some(xy), Some(z)) => Some(measured(xy, z)),
         _ => adjusted.check_failed.as_ref().map(|_| failed),
     };
-    [("camera", Some(camera)), ("check points", check)].into_iter().filter_map(|(name, entry)| Some((name, entry?))).collect()
+    let camera = ("camera".into(), measured(frame.value, 0.0));
+    [camera].into_iter().chain(check.map(|entry| ("check points".into(), entry))).collect()
+}
+
+/// Of each classifier the share of the targets without a right label, and of the labels that are wrong.
+fn recognised(figures: &[Figure]) -> Vec<(Arc<str>, [f64; 2])> {
+    let mut counts: BTreeMap<&str, BTreeMap<&str, f64>> = BTreeMap::new();
+    for figure in figures.iter().filter(|figure| figure.group == Group::Network) {
+        let mut parts = figure.name.split('/');
+        if let (Some(classifier), Some(what), Some(_), None) = (parts.next(), parts.next(), parts.next(), parts.next()) {
+            *counts.entry(classifier).or_default().entry(what).or_default() += figure.value;
+        }
+    }
+    let shares = |(classifier, counts): (&str, BTreeMap<&str, f64>)| {
+        let count = |what: &str| counts.get(what).copied();
+        let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 1.0 };
+        let (targets, labelled) = (count("targets")?, count("labelled")?);
+        let wrong = share(count("wrong labels").unwrap_or(0.0), count("labels").unwrap_or(0.0).max(1.0));
+        Some((format!("recognition {classifier}").into(), [share(targets - labelled, targets), wrong]))
+    };
+    counts.into_iter().filter_map(shares).collect()
 }
 
 /// Every figure but the residuals of single points, each in its unit.
@@ -48,4 +81,44 @@ pub(super) fn figures(adjusted: &Calibrated) -> Vec<(FigureKey, Numbers)> {
             ((adjusted.set, figure.group, figure.name.clone()), numbers)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn calibrated(set: usize, figures: &[(Group, &str, f64)]) -> Calibrated {
+        let figures = figures.iter().map(|(group, name, value)| Figure::plain(*group, *name, *value, "")).collect();
+        Calibrated { method: 0, set, outcome: Ok(figures), check_failed: None }
+    }
+
+    fn found(adjusted: &Calibrated) -> Vec<(String, Entry)> {
+        entries(adjusted).into_iter().map(|(name, entry)| (name.to_string(), entry)).collect()
+    }
+
+    #[test]
+    fn a_free_network_is_judged_by_its_sigma0_in_every_set() {
+        let measured = |x: f64, y: f64| Entry::Measured(Found::bare([x, y]));
+        let block = |set| calibrated(set, &[(Group::Network, "sigma0", 0.25), (Group::Network, "redundancy", 7.0)]);
+        assert_eq!(found(&block(0)), [("sigma0 0".to_owned(), measured(0.25, 0.0))]);
+        assert_eq!(found(&block(3)), [("sigma0 3".to_owned(), measured(0.25, 0.0))]);
+        let camera = |set| calibrated(set, &[(Group::Frame, "rms", 0.5), (Group::Network, "sigma0", 0.25)]);
+        assert_eq!(found(&camera(0)), [("camera".to_owned(), measured(0.5, 0.0))]);
+        assert!(found(&camera(1)).is_empty(), "of cameras the first set alone");
+    }
+
+    #[test]
+    fn a_recognition_is_judged_by_what_it_missed_and_mistook() {
+        let n = Group::Network;
+        let of = |classifier: &str, images: &str, [targets, labelled, labels, wrong]: [f64; 4]| {
+            [("targets", targets), ("labelled", labelled), ("labels", labels), ("wrong labels", wrong)]
+                .map(|(what, value)| (n, format!("{classifier}/{what}/{images}"), value))
+        };
+        let all =
+            [of("modern", "a", [100.0, 90.0, 95.0, 5.0]), of("modern", "b", [100.0, 100.0, 105.0, 5.0]), of("contours", "a", [0.0; 4])];
+        let figures: Vec<(Group, &str, f64)> = all.iter().flatten().map(|(group, name, value)| (*group, name.as_str(), *value)).collect();
+        let measured = |x: f64, y: f64| Entry::Measured(Found::bare([x, y]));
+        let expected = [("recognition contours".to_owned(), measured(1.0, 0.0)), ("recognition modern".to_owned(), measured(0.05, 0.05))];
+        assert_eq!(found(&calibrated(4, &figures)), expected);
+    }
 }

@@ -97,8 +97,8 @@ impl Table {
             for (key, numbers) in adjusted::figures(adjusted) {
                 method.figures.entry(key).or_default().insert(trial.number, numbers);
             }
-            for (target, entry) in adjusted::entries(adjusted).into_iter().filter(|_| adjusted.set == 0) {
-                let place = Place { trial: trial.number, view: adjusted::VIEW.into(), target: target.into() };
+            for (target, entry) in adjusted::entries(adjusted) {
+                let place = Place { trial: trial.number, view: adjusted::VIEW.into(), target };
                 method.points.insert(place, entry);
             }
         }
