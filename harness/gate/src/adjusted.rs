@@ -36,7 +36,9 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(Arc<str>, Entry)> {
     let measured = |x: f64, y: f64| Entry::Measured(Found::bare([rounded(x), rounded(y)]));
     let find = |group: Group, name: &str| figures.iter().find(|figure| figure.group == group && &*figure.name == name);
     let Some(frame) = find(Group::Frame, "rms") else {
-        let sigma0 = find(Group::Network, "sigma0").map(|figure| (format!("sigma0 {}", adjusted.set).into(), measured(figure.value, 0.0)));
+        // Counted with what holds its frame: a free network, and not one of a camera's further sets.
+        let sigma0 = find(Group::Network, "sigma0").filter(|_| find(Group::Network, "of them held").is_some());
+        let sigma0 = sigma0.map(|figure| (format!("sigma0 {}", adjusted.set).into(), measured(figure.value, 0.0)));
         let recognised = recognised(figures).into_iter().map(|(name, [lost, wrong])| (name, measured(lost, wrong)));
         let found: Vec<(Arc<str>, Entry)> = sigma0.into_iter().chain(recognised).collect();
         return if found.is_empty() && first { vec![("camera".into(), failed)] } else { found };
@@ -99,12 +101,16 @@ mod tests {
     #[test]
     fn a_free_network_is_judged_by_its_sigma0_in_every_set() {
         let measured = |x: f64, y: f64| Entry::Measured(Found::bare([x, y]));
-        let block = |set| calibrated(set, &[(Group::Network, "sigma0", 0.25), (Group::Network, "redundancy", 7.0)]);
+        let block = |set| calibrated(set, &[(Group::Network, "sigma0", 0.25), (Group::Network, "of them held", 7.0)]);
         assert_eq!(found(&block(0)), [("sigma0 0".to_owned(), measured(0.25, 0.0))]);
         assert_eq!(found(&block(3)), [("sigma0 3".to_owned(), measured(0.25, 0.0))]);
         let camera = |set| calibrated(set, &[(Group::Frame, "rms", 0.5), (Group::Network, "sigma0", 0.25)]);
         assert_eq!(found(&camera(0)), [("camera".to_owned(), measured(0.5, 0.0))]);
         assert!(found(&camera(1)).is_empty(), "of cameras the first set alone");
+        assert!(
+            found(&calibrated(1, &[(Group::Network, "sigma0", 0.25)])).is_empty(),
+            "a set of which no camera is compared over the frame"
+        );
     }
 
     #[test]
