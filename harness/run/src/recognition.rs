@@ -1,6 +1,6 @@
 //! What a recogniser finds in the images of a trial, counted against the truth.
 //!
-//! A blob of a whole square is a target if the true place of one is nearest and within [`NEAR`]; how it was taken is compared with what it is.
+//! A blob of a whole square is a target if the true place of one is nearest and within 2 px; how it was taken is compared with what it is.
 
 use std::collections::BTreeMap;
 
