@@ -88,7 +88,7 @@ impl<'e, 'n> Place<'e, 'n> {
         self.normals.cost <= self.before * (1.0 + ROUNDING) + NOISE * self.engine.floor
     }
 
-    /// From a state with a higher sum: the first of the next undamped ones whose sum is lower than before. Where unknowns bend the way together (the form of an
+    /// From a state with a higher sum, or one to which damped steps have crept: the first of the next undamped ones whose sum is lower than before. Where unknowns bend the way together (the form of an
     /// object, and parameters of many cameras that do the like to its images) a step may lead far up a side of the valley, and the next one to its floor.
     ///
     /// Source: the watchdog technique of Chamberlain, Powell, Lemarechal & Pedersen 1982.

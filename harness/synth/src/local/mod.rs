@@ -165,6 +165,17 @@ impl LocalDistortion {
 
     /// What it does at `at`, where the camera alone would picture a point.
     pub fn at(&self, at: PixelPoint) -> Shift {
+        self.shift::<true>(at)
+    }
+
+    /// Where the image of a point is that the camera alone would picture at `at`.
+    pub fn displaced(&self, at: PixelPoint) -> PixelPoint {
+        let [dx, dy] = self.shift::<false>(at).by;
+        PixelPoint::new(at.x + dx, at.y + dy)
+    }
+
+    /// The shift at `at`; without `SLOPES` its derivatives are left zero, in half the time.
+    fn shift<const SLOPES: bool>(&self, at: PixelPoint) -> Shift {
         let (x, y) = (self.near(at.x, self.columns), self.near(at.y, self.rows));
         let mut shift = Shift::default();
         for j in 0..y.count {
@@ -173,31 +184,20 @@ impl LocalDistortion {
             for (i, weight) in self.weights[start..start + x.count].iter().enumerate() {
                 for axis in 0..2 {
                     values[axis] += x.values[i] * weight[axis];
-                    slopes[axis] += x.slopes[i] * weight[axis];
+                    if SLOPES {
+                        slopes[axis] += x.slopes[i] * weight[axis];
+                    }
                 }
             }
             for axis in 0..2 {
                 shift.by[axis] += y.values[j] * values[axis];
-                shift.slope[axis][0] += y.values[j] * slopes[axis];
-                shift.slope[axis][1] += y.slopes[j] * values[axis];
+                if SLOPES {
+                    shift.slope[axis][0] += y.values[j] * slopes[axis];
+                    shift.slope[axis][1] += y.slopes[j] * values[axis];
+                }
             }
         }
         shift
-    }
-
-    /// Where the image of a point is that the camera alone would picture at `at`: of [`Self::at`] what has no derivatives, in half the time.
-    pub fn displaced(&self, at: PixelPoint) -> PixelPoint {
-        let (x, y) = (self.near(at.x, self.columns), self.near(at.y, self.rows));
-        let mut by = [0.0; 2];
-        for j in 0..y.count {
-            let start = (y.from + j) * self.columns + x.from;
-            let mut values = [0.0; 2];
-            for (value, weight) in x.values.iter().zip(&self.weights[start..start + x.count]) {
-                values = [values[0] + value * weight[0], values[1] + value * weight[1]];
-            }
-            by = [by[0] + y.values[j] * values[0], by[1] + y.values[j] * values[1]];
-        }
-        PixelPoint::new(at.x + by[0], at.y + by[1])
     }
 
     /// Where the camera alone would picture the point whose image is at `at`: the inverse of [`Self::displaced`], to 1e-10 px.
