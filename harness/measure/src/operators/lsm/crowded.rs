@@ -180,3 +180,28 @@ fn a_target_in_view_needs_no_window_around_it() {
         assert_eq!(operator.measure(&cut, &off).unwrap_err(), calibench_model::Rejection::Border);
     }
 }
+
+/// Something between ink and paper covers half of a disc of 14 px, or a little less: what stands before a target is not beside it.
+#[test]
+fn no_disc_that_is_half_covered_is_a_pixel_off_without_a_word() {
+    let operator = operator("lsm:window=15");
+    let mut noise = Noise(14);
+    let square = |side: f64| Affine { axx: side, axy: 0.0, ayx: 0.0, ayy: side };
+    let picture = |kind, at, side| Picture { kind, at, affine: square(side), sigma: 0.7, ground: 0.0, contrast: 1.0 };
+    let mut found = 0;
+    for place in 0..300 {
+        let border = 1.0 + f64::from(place % 3);
+        let at = [0.618_034, 0.754_878].map(|step| 19.5 + (f64::from(place) * step).fract());
+        let disc = picture(TargetKind::Disc, at, 14.0);
+        let cover = picture(TargetKind::Square, [at[0] + border + 30.0, at[1]], 60.0);
+        let light =
+            disc.grey(SIDE).into_iter().zip(cover.grey(SIDE)).map(|(disc, cover)| (0.85 - 0.8 * disc) * (1.0 - cover) + 0.45 * cover);
+        let image = noise.on(&Image::new(SIDE, SIDE, light.map(|grey| grey as f32).collect()), 0.02);
+        if let Ok(measured) = operator.measure(&image, &start(&disc, &mut noise)) {
+            let off = measured.position.distance(PixelPoint::new(at[0], at[1]));
+            assert!(off < 1.0, "{off} px, covered from {border} px on");
+            found += 1;
+        }
+    }
+    assert!(found < 15, "{found} of 300 are measured");
+}
