@@ -42,7 +42,7 @@ pub enum NotCoded {
 }
 
 /// The design: what is where, in squares from the field's top left corner, x to the right and y down.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Design {
     /// Squares to a side.
     pub squares: usize,

@@ -1,4 +1,4 @@
-//! One look at an image: from grey values to what is found.
+//! One look at an image: from its grid and dark areas to what is found.
 
 use std::ops::RangeInclusive;
 
@@ -6,49 +6,29 @@ use calibench_model::PixelPoint;
 
 use crate::adjust::OnLine;
 use crate::bank::Bank;
-use crate::blobs::Areas;
 use crate::design::{IN_SQUARE, Printed};
 use crate::error::NotRecognised;
 use crate::found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rejected, SquareFound};
-use crate::grid::{self, Grid, straightened};
+use crate::grid::{Grid, straightened};
+use crate::ground::Ground;
 use crate::hough::fit;
 use crate::identify::{FEWEST, Identified, Seen, identify};
 use crate::label::{Labels, affine, label};
 use crate::level::Level;
 use crate::mapping::{Mapping, Place};
-use crate::normal::{Normal, SIDE};
 use crate::recogniser::{Classifier, Recogniser};
-use crate::ridge::{Ridge, ridges};
-use crate::sharpness::blur;
+use crate::ridge::Ridge;
 use crate::square::Square;
 
-/// What lies nearer to the middle of a line than its half width and this, in squares, is the line's.
-pub(crate) const INSET: f64 = 0.011;
-/// The least contrast of a square, as a share of the best one's.
-const CONTRAST: f64 = 0.3;
 /// The areas of the field's targets beside those of the design under the same blur, in the median: 0.95 to 1.00 in renders; ink spreads.
 const SIZES: RangeInclusive<f64> = 0.8..=1.25;
-/// Dark areas smaller than this share of the smallest target are none.
-const SMALLEST: f64 = 0.2;
 
 impl Recogniser {
-    /// The field in one of the sizes of an image, and the side of a square in it, px.
-    pub(crate) fn at(&self, level: &Level<'_>) -> Result<(Recognition, f64), NotRecognised> {
-        let points = ridges(&level.image)?;
-        let grid = grid::find(&points, level.size())?;
-        let mapping = &grid.adjusted.mapping;
-        let inset = 0.5 * self.design.line + INSET;
-        let whole = grid.whole(inset, level.size());
-        if whole.is_empty() {
-            return Err(NotRecognised::NoWholeSquare);
-        }
-        let mut squares = self.squares(level, mapping, &whole, (inset * SIDE as f64).round() as usize);
-        let contrast = squares.iter().map(|square| square.normal.contrast).fold(0.0, f64::max);
-        squares.retain(|square| square.normal.contrast >= CONTRAST * contrast);
-        let (side, sides) = side(mapping, &squares);
-        let blur = blur(&level.image, &grid, self.design.line, contrast);
-        let bank = self.bank.blurred(sides.map(|side| blur * SIDE as f64 / side));
-        squares.iter_mut().for_each(|square| square.decide(self.classifier, &self.table, &bank));
+    /// The field on a ground of its design, and the side of a square there, px.
+    pub(crate) fn on(&self, ground: &Ground<'_>) -> Result<(Recognition, f64), NotRecognised> {
+        let Ground { level, points, grid, bank, blur, .. } = ground;
+        let mut squares = ground.squares.clone();
+        squares.iter_mut().for_each(|square| square.decide(self.classifier, &self.table, bank));
         let seen: Vec<Seen> = squares
             .iter()
             .map(|square| Seen {
@@ -59,32 +39,14 @@ impl Recogniser {
             })
             .collect();
         let identified = identify(&self.design, &self.places, &seen, self.classifier == Classifier::Contours)?;
-        let on_field = mapping.moved(&identified.place).ok_or(NotRecognised::NoWholeSquare)?;
-        let look = Look { recogniser: self, level, on_field, place: identified.place, bank: &bank };
+        let on_field = grid.adjusted.mapping.moved(&identified.place).ok_or(NotRecognised::NoWholeSquare)?;
+        let look = Look { recogniser: self, level, on_field, place: identified.place, bank };
         let labels = look.labels(&squares, &identified)?;
-        let mut found = look.recognition(&grid, &points, blur);
+        let mut found = look.recognition(grid, points, *blur);
         look.squares(&squares, &labels, &identified, &mut found);
         found.targets.sort_by_key(|recognised| recognised.target);
-        Ok((found, side))
+        Ok((found, ground.side))
     }
-
-    pub(crate) fn squares(&self, level: &Level<'_>, mapping: &Mapping, whole: &[[i64; 2]], inset: usize) -> Vec<Square> {
-        let least = SMALLEST * self.design.smallest() * (SIDE * SIDE) as f64;
-        let square = |&at: &[i64; 2]| {
-            let normal = Normal::of(&level.image, mapping, at)?;
-            let areas = Areas::of(&normal, inset, least);
-            Some(Square { at, normal, areas, decisions: None })
-        };
-        whole.iter().filter_map(square).collect()
-    }
-}
-
-/// The side of a square in the mean of the squares, px; that along x and that along y of the grid.
-fn side(mapping: &Mapping, squares: &[Square]) -> (f64, [f64; 2]) {
-    let middle = |square: &Square| mapping.by_grid(square.at.map(|v| v as f64 + 0.5));
-    let all: Vec<[f64; 2]> = squares.iter().filter_map(middle).map(|by| [by.column(0).norm(), by.column(1).norm()]).collect();
-    let mean = [0, 1].map(|i| all.iter().map(|sides| sides[i]).sum::<f64>() / all.len().max(1) as f64);
-    ((mean[0] * mean[1]).sqrt(), mean.map(|side| side.max(1.0)))
 }
 
 /// What a look needs to tell what it sees.

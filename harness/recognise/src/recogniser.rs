@@ -6,6 +6,7 @@ use crate::bank::Bank;
 use crate::design::{Design, NotCoded};
 use crate::error::NotRecognised;
 use crate::found::Recognition;
+use crate::ground::Ground;
 use crate::identify::Places;
 use crate::level::{Level, factors};
 use crate::table::ContourTable;
@@ -56,36 +57,67 @@ impl Recogniser {
         Self { table, ..self }
     }
 
+    /// The same field with another classifier and table.
+    #[must_use]
+    pub fn with_classifier(self, classifier: Classifier) -> Self {
+        Self { classifier, ..self }
+    }
+
     /// The field in `image`. Deterministic; whole squares only.
     ///
     /// # Errors
     /// An image that does not show the field, or not a whole square of it.
     pub fn recognise(&self, image: &Image) -> Result<Recognition, NotRecognised> {
-        let (width, height) = (image.width(), image.height());
-        if width.min(height) < LEAST {
-            return Err(NotRecognised::TooSmall { width, height, least: LEAST });
+        recognise_each(std::slice::from_ref(self), image).swap_remove(0)
+    }
+}
+
+/// What each of several recognisers finds in `image`, in their order. The grid is looked for once for those of one design.
+#[must_use]
+pub fn recognise_each(recognisers: &[Recogniser], image: &Image) -> Vec<Result<Recognition, NotRecognised>> {
+    let (width, height) = (image.width(), image.height());
+    let too_small = NotRecognised::TooSmall { width, height, least: LEAST };
+    if width.min(height) < LEAST {
+        return recognisers.iter().map(|_| Err(too_small.clone())).collect();
+    }
+    if !image.grey().iter().all(|grey| grey.is_finite()) {
+        return recognisers.iter().map(|_| Err(NotRecognised::NotFinite)).collect();
+    }
+    let mut kept: Vec<Kept<'_>> = recognisers.iter().map(|recogniser| Kept { recogniser, best: None, enough: false }).collect();
+    for factor in factors(image) {
+        let level = Level::of(image, factor);
+        if level.image.width().min(level.image.height()) >= LEAST {
+            look(&mut kept, &level);
         }
-        if !image.grey().iter().all(|grey| grey.is_finite()) {
-            return Err(NotRecognised::NotFinite);
+    }
+    kept.into_iter().map(|kept| kept.best.unwrap_or_else(|| Err(too_small.clone()))).collect()
+}
+
+/// A recogniser and the best that it has found so far.
+struct Kept<'a> {
+    recogniser: &'a Recogniser,
+    best: Option<Result<Recognition, NotRecognised>>,
+    /// More detail is not asked for.
+    enough: bool,
+}
+
+/// One look of all that have not seen enough.
+fn look(kept: &mut [Kept<'_>], level: &Level<'_>) {
+    let mut grounds: Vec<(&Design, Result<Ground<'_>, NotRecognised>)> = Vec::new();
+    for kept in kept.iter_mut().filter(|kept| !kept.enough) {
+        let design = &kept.recogniser.design;
+        let known = grounds.iter().position(|(other, _)| *other == design);
+        let place = known.unwrap_or_else(|| {
+            grounds.push((design, kept.recogniser.ground(level.clone())));
+            grounds.len() - 1
+        });
+        let found = grounds[place].1.as_ref().map_err(Clone::clone).and_then(|ground| kept.recogniser.on(ground));
+        kept.enough = found.as_ref().is_ok_and(|(_, square)| *square >= COARSE);
+        let found = found.map(|(found, _)| found);
+        // Of equals the one that was seen in more detail.
+        if kept.best.as_ref().is_none_or(|best| rank(&found) >= rank(best)) {
+            kept.best = Some(found);
         }
-        let mut best: Option<Result<Recognition, NotRecognised>> = None;
-        for factor in factors(image) {
-            let level = Level::of(image, factor);
-            if level.image.width().min(level.image.height()) < LEAST {
-                continue;
-            }
-            let found = self.at(&level);
-            let enough = found.as_ref().is_ok_and(|(_, square)| *square >= COARSE);
-            let found = found.map(|(found, _)| found);
-            // Of equals the one that was seen in more detail.
-            if best.as_ref().is_none_or(|best| rank(&found) >= rank(best)) {
-                best = Some(found);
-            }
-            if enough {
-                break;
-            }
-        }
-        best.unwrap_or(Err(NotRecognised::TooSmall { width, height, least: LEAST }))
     }
 }
 

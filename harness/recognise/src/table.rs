@@ -49,6 +49,14 @@ impl ContourTable {
         Self::parse(include_str!("../data/contours.csv")).expect("the table of the repository")
     }
 
+    /// The table of three sharp frontal images, `data/contours-few.csv`, made by the same example: what a table from "a few test images" may be like.
+    ///
+    /// # Panics
+    /// Never: the tests read it.
+    pub fn learned_on_few() -> Self {
+        Self::parse(include_str!("../data/contours-few.csv")).expect("the table of the repository")
+    }
+
     /// From lines of size group, kind, feature, number and frequency under a header.
     ///
     /// # Errors

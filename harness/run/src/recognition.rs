@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use calibench_exchange::{NewFolder, encode_png};
 use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
-use calibench_recognise::{Recognition as Found, SizeGroup};
+use calibench_recognise::{Recognition as Found, SizeGroup, recognise_each};
 use calibench_records::names::{kept_image_name, recognition_step};
 use calibench_records::results::{Calibrated, Figure, Group};
 use calibench_scenario::Recognition;
@@ -37,7 +37,7 @@ pub struct Recognised {
 /// A folder that cannot be written.
 pub fn keep_steps(plan: &Recognition, image: &Image, (view, name): (usize, &str), folder: &NewFolder) -> Result<(), RunError> {
     let shown = plan.images.last().and_then(|(_, images)| images.first());
-    let (Some((_, recogniser)), true) = (plan.recognisers.first(), shown == Some(&view)) else { return Ok(()) };
+    let (Some(recogniser), true) = (plan.recognisers.first(), shown == Some(&view)) else { return Ok(()) };
     let Ok(steps) = recogniser.steps(image) else { return Ok(()) };
     let pictures = [("normal", &steps.normal), ("enlarged", &steps.enlarged), ("binary", &steps.binary), ("contours", &steps.contours)];
     for (step, picture) in pictures {
@@ -50,8 +50,8 @@ pub fn keep_steps(plan: &Recognition, image: &Image, (view, name): (usize, &str)
 pub fn recognise(plan: &Recognition, image: &Image, view: usize, truth: &[TargetTruth], field: &Testfield) -> Recognised {
     let kinds: Vec<TargetKind> = field.targets.iter().map(|target| target.kind).collect();
     let mut recognised = Recognised { starts: BTreeMap::new(), counted: Counted::default() };
-    for (which, (_, recogniser)) in plan.recognisers.iter().enumerate() {
-        let found = recogniser.recognise(image).ok();
+    for (which, found) in recognise_each(&plan.recognisers, image).into_iter().enumerate() {
+        let found = found.ok();
         if which == 0 {
             let targets = found.iter().flat_map(|found| &found.targets);
             let start = |kind, affine, position| Start { kind: Some(kind), affine: Some(affine), ..Start::at(position) };
@@ -110,7 +110,7 @@ impl Counted {
     /// The figures of a trial, under the set of place `set`, beside the first method.
     pub fn calibrated(self, plan: &Recognition, set: usize) -> Calibrated {
         let shares = self.shares(plan);
-        let name = |which: usize, what: &str| format!("{}/{what}", plan.recognisers[which].0);
+        let name = |which: usize, what: &str| format!("{}/{what}", plan.classifiers[which]);
         let counts = self.0.into_iter().map(|((which, what), count)| Figure::plain(Group::Network, name(which, &what), count, ""));
         let figures =
             counts.chain(shares.into_iter().map(|(which, what, share)| Figure::plain(Group::Network, name(which, &what), share, "")));

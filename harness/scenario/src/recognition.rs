@@ -2,7 +2,7 @@
 
 use calibench_diagnostics::Problem;
 use calibench_model::Testfield;
-use calibench_recognise::{Classifier, Recogniser};
+use calibench_recognise::{Classifier, ContourTable, Recogniser};
 use calibench_synth::stations::Station;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -18,7 +18,8 @@ pub const RECOGNITION: &str = "recognition";
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionWire {
-    /// Who tells the shapes apart: `modern` or `contours`. Measuring starts from the first; all are counted.
+    /// Who tells the shapes apart: `modern`, `contours`, or `contours_few`, whose table was learned on three sharp frontal images alone. Measuring starts
+    /// from the first; all are counted.
     #[schemars(with = "Vec<String>")]
     pub classifiers: Spanned<Vec<Spanned<String>>>,
 }
@@ -38,21 +39,26 @@ pub struct ImagesWire {
 /// A checked `[recognition]` table.
 #[derive(Clone, Debug)]
 pub struct Recognition {
-    /// Name and recogniser of each classifier; measuring starts from the first.
-    pub recognisers: Vec<(String, Recogniser)>,
+    /// The classifiers' names.
+    pub classifiers: Vec<String>,
+    /// The recogniser of each classifier; measuring starts from the first.
+    pub recognisers: Vec<Recogniser>,
     /// Images that are counted together: a name, and the places of stations.
     pub images: Vec<(String, Vec<usize>)>,
 }
 
 /// The classifiers by name.
-const CLASSIFIERS: [(&str, Classifier); 2] = [("modern", Classifier::Modern), ("contours", Classifier::Contours)];
+const CLASSIFIERS: [(&str, Classifier); 3] =
+    [("modern", Classifier::Modern), ("contours", Classifier::Contours), (FEW, Classifier::Contours)];
+/// The classifier by contours whose table is of few images.
+const FEW: &str = "contours_few";
 
 /// Reads the table.
 pub fn read(mut section: Section<'_>, field: &Testfield, stations: &[Station], problems: &mut Vec<Problem>) -> Option<Recognition> {
     let (before, span) = (problems.len(), section.span.clone());
     let listed = section.take_tables("images", "[[recognition.images]]", problems).unwrap_or_default();
     let wire: RecognitionWire = section.read(&["images"], problems)?;
-    let mut recognisers = Vec::new();
+    let (mut classifiers, mut recognisers) = (Vec::<String>::new(), Vec::new());
     for name in wire.classifiers.get_ref() {
         let known = CLASSIFIERS.iter().find(|(known, _)| known == name.get_ref());
         let Some((_, classifier)) = known else {
@@ -60,16 +66,21 @@ pub fn read(mut section: Section<'_>, field: &Testfield, stations: &[Station], p
             problems.push(problem.nearest(name.get_ref(), CLASSIFIERS.iter().map(|(known, _)| *known)));
             continue;
         };
-        if recognisers.iter().any(|(other, _)| other == name.get_ref()) {
+        if classifiers.contains(name.get_ref()) {
             problems.push(Problem::new(name.span(), format!("`{}` stands twice: expected each classifier once", name.get_ref())));
         }
         match Recogniser::new(field, *classifier) {
-            Ok(recogniser) => recognisers.push((name.get_ref().clone(), recogniser)),
+            Ok(recogniser) => {
+                let of_few = name.get_ref() == FEW;
+                let recogniser = if of_few { recogniser.with_table(ContourTable::learned_on_few()) } else { recogniser };
+                classifiers.push(name.get_ref().clone());
+                recognisers.push(recogniser);
+            }
             Err(error) => problems.push(Problem::new(span.clone(), format!("[recognition] needs a coded field: {error}"))),
         }
     }
     if wire.classifiers.get_ref().is_empty() {
-        problems.push(Problem::new(wire.classifiers.span(), "`classifiers` is empty: expected `modern`, `contours` or both"));
+        problems.push(Problem::new(wire.classifiers.span(), "`classifiers` is empty: expected `modern`, `contours` or others"));
     }
     let names: Vec<&str> = stations.iter().map(|station| station.name.as_str()).collect();
     let mut images: Vec<(String, Vec<usize>)> = Vec::new();
@@ -85,5 +96,5 @@ pub fn read(mut section: Section<'_>, field: &Testfield, stations: &[Station], p
     if images.is_empty() {
         images.push(("all".to_owned(), (0..names.len()).collect()));
     }
-    (problems.len() == before).then_some(Recognition { recognisers, images })
+    (problems.len() == before).then_some(Recognition { classifiers, recognisers, images })
 }

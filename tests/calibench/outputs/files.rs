@@ -29,6 +29,8 @@ fn writers() -> Vec<FileWriter> {
         new(&["measure", "wall/s01-r1.png", "-q", "--points", "starts.csv", "-m", "pixel"], "-o", "csv", "wall/s01-r1.png"),
         new(&["measure", "wall/s01-r1.png", "-q", "--points", "starts.csv", "-m", "pixel"], "--output", "csv", "starts.csv"),
         new(&["detect", "board/s01-r1.png", "-q", "--chessboard", "9x6"], "-o", "csv", "board/s01-r1.png"),
+        new(&["detect", "field/s01.png", "-q", "--testfield", "field.toml"], "-o", "csv", "field/s01.png"),
+        new(&["detect", "field/s01.png", "-q", "--testfield", "field.toml"], "-o", "csv", "field.toml"),
         new(&WALL, "-o", "toml", "points.csv"),
         new(&[&WALL[..], &["--start", "wall/camera.toml"]].concat(), "-o", "toml", "wall/camera.toml"),
         new(&[&["resect", "-q", "--control", "control.csv"][..], &points, &camera].concat(), "-o", "csv", "control.csv"),

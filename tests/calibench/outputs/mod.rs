@@ -4,6 +4,7 @@ mod files;
 mod folders;
 mod names;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -22,6 +23,8 @@ fn workshop() -> tempfile::TempDir {
     write(path, "sweep.toml", &BOARD.replacen("[camera]", &format!("{SWEEP}[camera]"), 1));
     let root = root();
     good(path, &["--root", root.to_str().unwrap(), "render", "testfields/chessboard", "-o", "board", "-q"]);
+    fs::copy(root.join("scenarios/testfields/coded.toml"), path.join("field.toml")).unwrap();
+    good(path, &["render", "field.toml", "-o", "field", "-q"]);
     good(path, &["run", "sweep.toml", "-q"]);
     good(path, &[&WALL[..], &["-o", "found.toml"]].concat());
     folder

@@ -267,16 +267,39 @@ pub const LEARNED: [u64; 2] = [501, 502];
 /// Blurs, px, and contrasts over noise, dB.
 pub const SETTINGS: [(f64, f64); 5] = [(0.6, 46.0), (0.6, 26.0), (0.8, 30.0), (0.8, 26.0), (1.0, 26.0)];
 
-/// The table of contours of these seeds, over all settings, or of three sharp frontal images of each seed alone.
-pub fn learn(seeds: &[u64], few: bool) -> ContourTable {
+/// Images that a table of contours is learned on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lesson {
+    /// All positions of the paper at every setting.
+    All,
+    /// The frontal position alone, at every setting.
+    Frontal,
+    /// Three sharp frontal images, as one "examining a few test images" might take.
+    Few,
+}
+
+impl Lesson {
+    fn settings(self) -> &'static [(f64, f64)] {
+        if self == Self::Few { &SETTINGS[..1] } else { &SETTINGS }
+    }
+
+    fn positions(self) -> (Vec<(f64, [f64; 2])>, Vec<f64>) {
+        match self {
+            Self::All => (paper_tilts(), vec![0.0, 90.0, 180.0, 270.0]),
+            Self::Frontal => (paper_tilts()[..1].to_vec(), vec![0.0, 31.0, 62.0, 90.0]),
+            Self::Few => (paper_tilts()[..1].to_vec(), vec![0.0, 31.0, 62.0]),
+        }
+    }
+}
+
+/// The table of contours of these seeds.
+pub fn learn(seeds: &[u64], lesson: Lesson) -> ContourTable {
     let mut table = ContourTable::default();
-    let settings = if few { &SETTINGS[..1] } else { &SETTINGS[..] };
-    for (&seed, &(blur, decibel)) in seeds.iter().flat_map(|seed| settings.iter().map(move |setting| (seed, setting))) {
+    for (&seed, &(blur, decibel)) in seeds.iter().flat_map(|seed| lesson.settings().iter().map(move |setting| (seed, setting))) {
         let setting = Setting::paper(seed, blur, decibel);
         let field = setting.testfield();
         let recogniser = Recogniser::new(&field, Classifier::Modern).expect("a coded field");
-        let (tilts, rolls) =
-            if few { (vec![(0.0, [0.0, 0.0])], vec![0.0, 31.0, 62.0]) } else { (paper_tilts(), vec![0.0, 90.0, 180.0, 270.0]) };
+        let (tilts, rolls) = lesson.positions();
         for shot in shots(&setting, &field, &tilts, &rolls) {
             let Ok(found) = recogniser.recognise(&shot.image) else { continue };
             for blob in found.squares.iter().flat_map(|square| &square.blobs) {

@@ -2,7 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use crate::campaign::{Counts, LEARNED, Setting, paper_tilts, shots};
+use calibench_recognise::{Classifier, ContourTable, SizeGroup, recognise_each};
+
+use crate::campaign::{Counts, LEARNED, Lesson, Setting, learn, paper_tilts, shots};
 use crate::{BOTH, recogniser};
 
 const ROLLS: [f64; 4] = [0.0, 90.0, 180.0, 270.0];
@@ -90,4 +92,36 @@ fn the_best_of_six_makes_fewer_mistakes_than_single_decisions() {
     }
     let wrong = |counts: &Counts| counts.decisions.iter().flatten().map(|of| of[2]).sum::<usize>();
     assert!(wrong(&modern) < wrong(&contours), "drawings tell more than contours");
+}
+
+/// The tables of the repository are what their command makes.
+#[test]
+fn tables_are_learned_from_their_images() {
+    assert_eq!(learn(&LEARNED[..1], Lesson::Few), ContourTable::learned_on_few());
+}
+
+#[test]
+#[ignore = "a minute"]
+fn the_table_of_all_positions_is_learned_from_its_images() {
+    assert_eq!(learn(&LEARNED, Lesson::All), ContourTable::learned());
+}
+
+/// A table of few images is the worse the more its squares are tilted; one classifier beside another changes nothing.
+#[test]
+fn a_table_of_three_frontal_images_fails_at_45_degrees() {
+    let setting = Setting::paper(2003, 0.8, 30.0);
+    let field = setting.testfield();
+    let recognisers =
+        [ContourTable::learned(), ContourTable::learned_on_few()].map(|table| recogniser(&field, Classifier::Contours).with_table(table));
+    let mut counts = [Counts::default(), Counts::default()];
+    for shot in shots(&setting, &field, &paper_tilts(), &ROLLS) {
+        for ((found, recogniser), counts) in recognise_each(&recognisers, &shot.image).iter().zip(&recognisers).zip(&mut counts) {
+            assert_eq!(*found, recogniser.recognise(&shot.image));
+            counts.add(&field, &shot, found);
+        }
+    }
+    let wrong = counts
+        .map(|counts| counts.decisions.map(|of| of[SizeGroup::SmallAngular as usize]).map(|[all, _, wrong]| wrong as f64 / all as f64));
+    let [[_, _, all], [front, middle, few]] = wrong;
+    assert!(few > 1.5 * all && few > 1.5 * middle && middle > front, "{wrong:?}");
 }

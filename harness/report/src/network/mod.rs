@@ -2,6 +2,7 @@
 
 mod pictures;
 mod sweep;
+mod sweep_orientation;
 mod tables;
 
 pub use sweep::section as sweep;

@@ -4,6 +4,7 @@ use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
 
 use super::pictures::floor::{Curve, floor};
+use super::sweep_orientation;
 use super::tables::with_half;
 use crate::LoadError;
 use crate::canvas::Pictures;
@@ -58,13 +59,17 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
     let picture = floor(&curves, &format!("{axis}: standard deviation per axis of the common error, px"), printed);
     let caption = "The reduction factor over the noise floor";
     let file = format!("{stem}.png");
-    let mut text = format!(
-        "Reduction factors against `{}`, mean over the parameters of `{}`, ± half their 95 % interval over {} trials.\n\n{}\n",
-        first.methods.first().map_or("", String::as_str),
-        first.sets.first().map_or("", String::as_str),
-        first.trials,
-        rows.render()
-    );
+    let with_names: Vec<(String, &Summaries)> = cells.iter().map(|(value, found)| (value.text.clone(), found)).collect();
+    let mut text = sweep_orientation::table(&axis, &with_names);
+    if !methods.is_empty() {
+        text.push_str(&format!(
+            "Reduction factors against `{}`, mean over the parameters of `{}`, ± half their 95 % interval over {} trials.\n\n{}\n",
+            first.methods.first().map_or("", String::as_str),
+            first.sets.first().map_or("", String::as_str),
+            first.trials,
+            rows.render()
+        ));
+    }
     if picture.is_some() {
         text.push_str(&format!("![{caption}]({file})\n\n"));
     }

@@ -72,7 +72,7 @@ fn average(found: &Summaries, method: &str, of: impl Fn(&Summary) -> Option<(f64
     with_half(all.iter().map(|v| v.0).sum::<f64>() / n, Some(all.iter().map(|v| v.1).sum::<f64>() / n), 3)
 }
 
-fn mean(summary: Option<&Summary>, digits: usize) -> String {
+pub(super) fn mean(summary: Option<&Summary>, digits: usize) -> String {
     summary.and_then(|s| Some(with_half(s.value.mean()?, s.value.half(), digits))).unwrap_or_default()
 }
 

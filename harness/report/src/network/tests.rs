@@ -113,3 +113,15 @@ fn the_table_of_methods() {
 fn the_table_of_sets() {
     insta::assert_snapshot!(tables::sets(&summaries()));
 }
+
+/// Of `pixel`: sigmas 0.02, 0.02, 0.04, 0.02; squared errors 4, 1, 4, 0 of (0.001 mm)^2, whose deviation is 2.0616: t(0.975, 3) = 3.182446.
+#[test]
+fn a_cell_of_a_sweep_has_sigmas_true_errors_and_check_points() {
+    let found = summaries();
+    let text = super::sweep_orientation::table("depth", &[("7".to_owned(), &found)]);
+    let row = text.lines().find(|line| line.starts_with("| 7 ")).unwrap();
+    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+    let half = 0.5 * 3.182446 * 2.061553 / 2.0 / 1.5;
+    assert_eq!(cells, ["", "7", "25.0", &format!("1.5 ± {half:.1}"), "", "0.0035 ± 0.0016", "", "0", ""]);
+    assert!(text.contains("set `c`") && text.contains("| `depth` | sigma of c | true error of c |"), "{text}");
+}

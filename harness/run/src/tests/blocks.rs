@@ -1,34 +1,40 @@
 //! Free blocks of a wall on a stand whose corners are drawn from the truth without error: what the figures of each block must be is known.
 
 use calibench_records::results::{Calibrated, Figure, Group};
+use calibench_scenario::Scenario;
 
 use super::recordings::on_stand;
 use super::trials;
 
 /// Two tilts, four turns, two rolls: 16 images of 25 points.
 const STAND: &str = "phis = [30, 45]\nturns = [0, 90, 180, 270]\nrolls = [0, 90]\n";
-const BEND: &str = "bend = 0.002\nbend_reach = 0.5\n";
-const HEAD: &str = "[blocks]\nc = 10.0\nsigma_px = 0.5\ngross_px = 20\n";
-const SETS: &str = r#"
+pub(super) const BEND: &str = "bend = 0.002\nbend_reach = 0.5\n";
+pub(super) const HEAD: &str = "[blocks]\nc = 10.0\nsigma_px = 0.5\ngross_px = 20\n";
+pub(super) const SETS: &str = r#"
 parameters = ["e1", "e2", "e3", "e4", "e5", "e6", "e7", "e8", "e9", "e10", "e11", "e12"]
 groups = [["11?1"], ["11?2"], ["12?1"], ["12?2"]]
 "#;
 const IMAGES: f64 = 16.0;
 const POINTS: f64 = 25.0;
 
-/// The blocks `listed` of the first trial.
-fn blocks(bend: &str, camera: &str, listed: &str) -> Vec<Calibrated> {
-    let listed = format!("{HEAD}{listed}\n[pointing]");
+/// The stand with the blocks `listed`, under their head, and a hand of this sigma, px.
+pub(super) fn stand(bend: &str, camera: &str, listed: &str, sigma: &str) -> Scenario {
+    let (listed, hand) = (format!("{listed}\n[pointing]"), format!("sigma = {sigma}"));
     let changes = [
         ("phis = [0, 30]\nturns = [0, 90]\nrolls = [0, 90]\n", STAND),
         ("rows = 4\ncolumns = 3\n", "rows = 5\ncolumns = 5\n"),
         ("c = 10.0\n", camera),
-        ("sigma = 0.4", "sigma = 0.0"),
+        ("sigma = 0.4", &*hand),
         ("trials = 2", "trials = 1"),
         ("[pointing]", &*listed),
     ];
+    on_stand(bend, &changes)
+}
+
+/// The blocks `listed` of the first trial, without noise.
+fn blocks(bend: &str, camera: &str, listed: &str) -> Vec<Calibrated> {
     // Without any motion or noise nothing but local distortion changes from trial to trial.
-    trials(&on_stand(bend, &changes), 1).swap_remove(0).calibrations
+    trials(&stand(bend, camera, &format!("{HEAD}{listed}"), "0.0"), 1).swap_remove(0).calibrations
 }
 
 fn figures(found: &[Calibrated], set: usize) -> &[Figure] {

@@ -4,6 +4,7 @@ mod blocks;
 mod kinds;
 mod network;
 mod recordings;
+mod second_solver;
 mod store;
 mod truth;
 

@@ -88,12 +88,22 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
         ("name = \"tilted\"\nimages = [\"11??\"]", "name = \"tilted\"\nimages = []", "24:10", &["`images` is empty"]),
         ("sigma_px = 0.04", "sigma_pxx = 0.04", "27:1", &["unknown key `sigma_pxx`", "did you mean `sigma_px`"]),
         ("[\"modern\"]", "[\"modren\"]", "21:16", &["no classifier is called `modren`", "did you mean `modern`"]),
-        ("[\"modern\"]", "[]", "21:15", &["`classifiers` is empty", "`modern`, `contours` or both"]),
+        ("[\"modern\"]", "[]", "21:15", &["`classifiers` is empty", "`modern`, `contours` or others"]),
         ("[\"modern\"]", "[\"modern\", \"modern\"]", "21:26", &["`modern` stands twice"]),
         ("name = \"tilted\"\nimages = [\"11??\"]", "name = \"tilted\"\nimages = [\"19??\"]", "24:11", &["no station is called `19??`"]),
     ];
     let wrong: Vec<String> = cases.iter().filter_map(|(old, new, place, parts)| wrong(&diagnostics(old, new), new, place, parts)).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_field_without_codes_is_not_recognised() {
+    let text = GOOD.replace("kind = \"coded\"\nunit = \"mm\"", "kind = \"chessboard\"\nunit = \"mm\"\nrows = 6\ncolumns = 9\nsquare = 100");
+    let text = text.replace("targets = [\"*-large-disc-*\"]\n", "");
+    let found = parse("family/test", "test.toml", &text, &Registry::builtin()).err().unwrap().to_string();
+    let expected =
+        "test.toml:23:2: [recognition] needs a coded field: the testfield's sheet has no square grid of lines: expected a coded field";
+    assert_eq!(found, expected);
 }
 
 /// What is wrong with the diagnostics `found`, if anything.

@@ -107,8 +107,7 @@ impl StationPlan {
             StationError::Parameter { parameter, .. } | StationError::Many { parameter, .. } | StationError::Empty(parameter) => {
                 self.spans.of_key(parameter)
             }
-            StationError::Plates(_) => self.spans.of_key("kind"),
-            StationError::BentTwice(_) => self.spans.of_key("bend"),
+            StationError::Plates(_) | StationError::BentTwice(_) => self.spans.of_key("bend"),
             StationError::Undetermined(name)
             | StationError::Twice(name)
             | StationError::Unseen { name, .. }

@@ -125,7 +125,9 @@ fn mistakes_of_a_stand_are_told_with_their_places() {
     let (mut two, mut bent) = (field(), field());
     two.plates.push(two.plates[0].clone());
     bent.plates[0].bend = Some(calibench_model::Bend { peak: 1.0, middle: [0.0, 0.0], across: 0.0, reach: 100.0 });
-    assert!(before(&two, stand).contains("2:8: a stand holds a testfield of one sheet: this one has 2"));
+    assert!(
+        before(&two, &format!("{stand}bend = 1\nbend_reach = 100")).contains("5:8: a stand bends a testfield of one sheet: this one has 2")
+    );
     let found = before(&bent, &format!("{stand}bend = 1\nbend_reach = 100"));
     assert!(found.contains("5:8: the stand bends plate `board`, which is bent itself"), "{found}");
     refused(&format!("{stand}each_trial = true"), "`each_trial` without `kind = \"random\"`");

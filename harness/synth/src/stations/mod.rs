@@ -74,7 +74,7 @@ pub enum StationError {
         most: usize,
     },
     /// A field of several sheets, or of none, on a stand.
-    #[error("a stand holds a testfield of one sheet: this one has {0}")]
+    #[error("a stand bends a testfield of one sheet: this one has {0}")]
     Plates(usize),
     /// A bent sheet on a stand that bends it.
     #[error("the stand bends plate `{0}`, which is bent itself: expected one of them, `bend = 0` in [testfield] makes it flat")]

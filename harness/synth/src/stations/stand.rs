@@ -48,19 +48,16 @@ impl Stand {
     /// turn and roll, counted from 1.
     ///
     /// # Errors
-    /// A parameter out of its range; a field that is not one sheet, or one that is bent itself on a stand that bends it.
+    /// A parameter out of its range; on a stand that bends, a field that is not one sheet or is bent itself.
     pub fn generate(&self, aim: &Aim, field: &Testfield) -> Result<Vec<Station>, StationError> {
         self.check()?;
-        let [plate] = &field.plates[..] else { return Err(StationError::Plates(field.plates.len())) };
-        if self.bend.is_some() && plate.bend.is_some() {
-            return Err(StationError::BentTwice(plate.id.clone()));
-        }
+        let bent = self.bend.map(|bend| Ok((bend, bendable(field)?))).transpose()?;
         let mut stations = Vec::new();
         for (i, &phi) in self.phis.iter().enumerate() {
             let turns = if phi == 0.0 { &self.turns[..1] } else { &self.turns[..] };
             for (j, &turn) in turns.iter().enumerate() {
                 let turned = Rotation3::from_axis_angle(&Vector3::y_axis(), phi) * Rotation3::from_axis_angle(&Vector3::z_axis(), turn);
-                let bend = self.bend.map(|bend| bend.on(aim, plate, turn)).transpose()?;
+                let bend = bent.map(|(bend, plate)| bend.on(aim, plate, turn)).transpose()?;
                 for (k, &roll) in self.rolls.iter().enumerate() {
                     let name = format!("1{}{}{}", i + 1, j + 1, k + 1);
                     let pose = aim.view(&turned, self.distance, roll).ok_or_else(|| StationError::Undetermined(name.clone()))?;
@@ -89,6 +86,12 @@ impl Stand {
         within("bend", bend.peak, -1e6, 1e6)?;
         angle("bend_across", bend.across, -360.0, 360.0)
     }
+}
+
+/// The sheet of a field that a stand can bend.
+fn bendable(field: &Testfield) -> Result<&Plate, StationError> {
+    let [plate] = &field.plates[..] else { return Err(StationError::Plates(field.plates.len())) };
+    if plate.bend.is_some() { Err(StationError::BentTwice(plate.id.clone())) } else { Ok(plate) }
 }
 
 impl StandBend {

@@ -208,7 +208,8 @@ fn what_a_stand_cannot_hold_is_named() {
     assert!(peak(most * 0.97).is_ok() && peak(most * 1.05).is_err() && peak(-most * 1.05).is_err());
     let mut two = field.clone();
     two.plates.push(two.plates[0].clone());
-    assert_eq!(stations(&good(), &two), Err(StationError::Plates(2)));
+    assert_eq!(stations(&stand(Some(bend)), &two), Err(StationError::Plates(2)));
+    assert_eq!(stations(&stand(None), &two), stations(&stand(None), &field), "without a bend the field may have any form");
     let bent = Coded { bend: Some(SheetBend { peak: 0.8, across: 0.0 }), ..Coded::paper() }.generate(KEY).unwrap();
     assert_eq!(stations(&good(), &bent), Err(StationError::BentTwice("field".into())));
     // A stand that bends nothing holds a sheet that is bent itself, which then turns with the field.
