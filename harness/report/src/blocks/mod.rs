@@ -2,6 +2,8 @@
 
 mod pictures;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 use crate::canvas::{Canvas, Pictures};
 use crate::load::Loaded;
