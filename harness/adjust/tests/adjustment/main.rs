@@ -1,6 +1,7 @@
 //! What the adjustment must hold, by networks whose truth is known.
 
 mod counts;
+mod crept;
 mod datum;
 mod networks;
 mod noise_free;
