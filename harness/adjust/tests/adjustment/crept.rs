@@ -16,7 +16,8 @@ fn noisy(seed: u64, sigma: f64) -> Network {
 }
 
 fn converges(seed: u64, sigma: f64) {
-    let solution = adjust(&noisy(seed, sigma), &Options::default());
+    let network = noisy(seed, sigma);
+    let solution = adjust(&network, &Options::default());
     let solution = solution.unwrap_or_else(|error| panic!("{seed}, {sigma} px: {error}"));
     let sigma0 = solution.sigma0().unwrap();
     assert!((sigma0 / sigma - 1.0).abs() < 0.1, "{seed}, {sigma} px: {sigma0}");
@@ -28,10 +29,10 @@ fn blocks_of_eight_sets_converge_under_noise() {
     (0..40).for_each(|seed| converges(seed, 0.1));
 }
 
-/// Nine times the noise: from where damped steps have crept to, undamped ones find the way.
+/// Nine times these: of sixty such blocks thirty converge, ten of them because undamped steps find the way from where damped ones have crept to.
 #[test]
 fn what_creeps_looks_ahead() {
-    for seed in [16, 17, 21, 25, 27, 28] {
+    for seed in [1, 4, 10, 19, 28, 34, 36, 39, 49, 59] {
         converges(seed, 0.3);
     }
 }
