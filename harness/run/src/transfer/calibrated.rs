@@ -10,6 +10,9 @@ use calibench_scenario::transfer::{Calibrates, Conditions, Method};
 use super::Campaign;
 use super::drawn::Drawn;
 
+/// Control points from which an image is resected for a start.
+const ENOUGH: usize = 12;
+
 /// A calibrated camera.
 #[derive(Clone, Debug)]
 pub struct Calibration {
@@ -67,7 +70,7 @@ fn from_control(
         Some(poses) => poses.to_vec(),
         None => {
             let pose = |(place, station): (usize, &calibench_synth::stations::Station)| {
-                pose_of(&method.start, &drawn.control(place, conditions)).map_err(|why| format!("image {}: {why}", station.name))
+                pose_of(&method.start, &some(&drawn.control(place, conditions))).map_err(|why| format!("image {}: {why}", station.name))
             };
             stations.iter().enumerate().map(pose).collect::<Result<_, _>>()?
         }
@@ -89,6 +92,11 @@ fn from_control(
         network.observations.extend(seen.filter_map(of));
     }
     solved(&network, transfer.pitch_um)
+}
+
+/// Some of many control points, spread over their order: start values need no more.
+fn some(control: &[Control]) -> Vec<Control> {
+    control.iter().step_by(control.len().div_ceil(ENOUGH).max(1)).copied().collect()
 }
 
 fn from_board(method: &Method, views: &[Vec<Control>], sigma_px: f64, pitch_um: f64) -> Result<Calibration, String> {

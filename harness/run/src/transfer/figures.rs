@@ -10,16 +10,16 @@ use super::calibrated::Calibration;
 use super::camera::interior;
 use super::points::Checked;
 
-/// Columns of the grid on which cameras are compared: twice as many change the root mean square by less than a hundredth.
+/// Columns of the grid on which cameras are compared: twice as many change the root mean square by 0.3 % in the median, and by 13 % where nearly all of it lies in the corners.
 const COLUMNS: usize = 21;
 
-/// How far `camera` is from the true one, px: the root mean square over the frame after the best rotation.
+/// How far `camera` is from the `truth`, px: the root mean square over the frame after the best rotation.
 ///
 /// # Errors
 /// In words: cameras that cannot be compared.
-pub fn over_frame(campaign: &Campaign<'_>, camera: &Camera) -> Result<f64, String> {
+pub fn over_frame(truth: &Camera, camera: &Camera) -> Result<f64, String> {
     let options = DifferenceOptions { columns: COLUMNS, ..DifferenceOptions::default() };
-    difference(&campaign.subject.camera, camera, &options).map(|found| found.spread.rms_px).map_err(|error| error.to_string())
+    difference(truth, camera, &options).map(|found| found.spread.rms_px).map_err(|error| error.to_string())
 }
 
 /// Principal distance and point of what is applied, mm, beside the truth; all parameters of a photogrammetric camera; sigma0 of the calibration.

@@ -16,8 +16,10 @@ mod trial;
 mod tests;
 
 use calibench_model::PixelPoint;
+use calibench_model::camera::Camera;
 use calibench_random::Key;
 use calibench_records::results::Trial;
+use calibench_scenario::transfer::Calibrates;
 use calibench_scenario::{Transfer, ViewsSubject};
 use calibench_synth::view::View;
 use nalgebra::Point3;
@@ -37,6 +39,8 @@ pub struct Campaign<'a> {
     images: Vec<Vec<(usize, PixelPoint)>>,
     /// Principal distance and point of the true camera, mm.
     interior: [f64; 3],
+    /// How far the cameras that are never calibrated are from the true one, px, or why they cannot be compared.
+    compared: Vec<(Camera, Result<f64, String>)>,
 }
 
 impl<'a> Campaign<'a> {
@@ -58,7 +62,9 @@ impl<'a> Campaign<'a> {
         let images = subject.stations.iter().map(image).collect::<Result<_, RunError>>()?;
         let truth = field.targets.iter().map(|target| field.position(target)).collect();
         let interior = camera::interior(&subject.camera, transfer.pitch_um).map_err(std::io::Error::other)?;
-        Ok(Self { subject, transfer, truth, is_control, images, interior })
+        let never = transfer.methods.iter().filter(|method| method.calibrates == Calibrates::Never);
+        let compared = never.map(|method| (method.start, figures::over_frame(&subject.camera, &method.start))).collect();
+        Ok(Self { subject, transfer, truth, is_control, images, interior, compared })
     }
 
     /// The trial of `key`: every case of every method, then the splits.

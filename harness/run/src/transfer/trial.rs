@@ -85,10 +85,11 @@ impl Bench<'_> {
     }
 
     fn over_frame(&mut self, camera: &Camera) -> Result<f64, String> {
-        if let Some((_, known)) = self.compared.iter().find(|(other, _)| other == camera) {
+        let known = self.campaign.compared.iter().chain(&self.compared);
+        if let Some((_, known)) = known.into_iter().find(|(other, _)| other == camera) {
             return known.clone();
         }
-        let found = figures::over_frame(self.campaign, camera);
+        let found = figures::over_frame(&self.campaign.subject.camera, camera);
         self.compared.push((*camera, found.clone()));
         found
     }
@@ -100,10 +101,13 @@ impl Bench<'_> {
         if let Some((_, known)) = self.calibrations.iter().find(|(other, _)| *other == key) {
             return known.clone();
         }
-        // Another calibration from the same control starts where the first ended: from nothing but the same observations.
+        // Another calibration from the same control starts where one ended: from nothing but the same images.
         let near = match plan.calibrates {
             Calibrates::FromControl if method != transfer.poses_of => self.calibration(transfer.poses_of, conditions).ok(),
-            _ => None,
+            Calibrates::FromControl => {
+                self.calibrations.iter().find(|((other, _), _)| *other == method).and_then(|(_, known)| known.clone().ok())
+            }
+            Calibrates::FromBoard { .. } | Calibrates::Never => None,
         };
         let found = calibration(self.campaign, &self.drawn, plan, conditions, near.as_ref().map(|near| near.poses.as_slice()));
         self.calibrations.push((key, found.clone()));
