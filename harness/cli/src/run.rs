@@ -90,6 +90,12 @@ impl Run {
         if !methods.is_empty() {
             plan.methods = methods;
         }
+        if let Some(transfer) = plan.transfer() {
+            own_methods(scenario, methods)?;
+            if let Some(warning) = transfer.warning() {
+                say!("{}: {warning}", scenario.name);
+            }
+        }
         plan.seed = self.changes.seed.unwrap_or(scenario.seed);
         plan.trials = trials(scenario, self.changes.trials)?;
         if let (Subject::Photographs(subject), None) = (&scenario.subject, plan.missing()) {
@@ -114,6 +120,9 @@ impl Run {
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
         }
+        if matches!(&scenario.subject, Subject::Views(views) if views.transfer.is_some()) {
+            own_methods(scenario, methods)?;
+        }
         let Changes { seed, trials, .. } = self.changes;
         let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
         let plan = SweepPlan { scenario, sweep, methods, seed, trials, detector, data: context.data()?, registry };
@@ -124,6 +133,12 @@ impl Run {
         progress.finish(&format!("{cells} cells of {trials} trials in {:.1} s", started.elapsed().as_secs_f64()));
         Ok(measured)
     }
+}
+
+/// Calibrations that are applied are a scenario's own: none of the methods that measure takes their place.
+fn own_methods(scenario: &Scenario, methods: &[Configured]) -> Result<(), Failure> {
+    let message = || format!("-m: `{}` applies calibrations, whose methods are its own; leave out -m", scenario.name);
+    if methods.is_empty() { Ok(()) } else { Err(Failure::input(message())) }
 }
 
 fn trials(scenario: &Scenario, asked: Option<u64>) -> Result<u64, Failure> {
@@ -141,7 +156,7 @@ fn summary(plan: &Plan<'_>, seconds: f64) -> String {
         return format!("unavailable: {why}");
     }
     let missing = plan.method_infos().into_iter().filter_map(|m| m.unavailable.map(|why| format!("; {} unavailable: {why}", m.label)));
-    let (count, steps) = (plan.methods.len(), plan.steps());
+    let (count, steps) = (plan.method_infos().len(), plan.steps());
     let unit = if matches!(plan.scenario.subject, Subject::Photographs(_)) { "photograph" } else { "trial" };
     let plural = |n: u64, noun: &str| if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") };
     format!("{} of {} in {seconds:.1} s{}", plural(steps, unit), plural(count as u64, "method"), missing.collect::<String>())

@@ -21,10 +21,22 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         seed: scenario.seed,
         trials: scenario.trials,
         bound_window: scenario.bound_window,
-        methods: scenario.methods.iter().map(|method| method.label.clone()).collect(),
+        methods: labels(scenario),
         defaults: scenario.methods.iter().chain(methods).map(default).collect(),
         subject,
         sweep: scenario.sweep.as_ref().map(sweep),
+    }
+}
+
+/// Those of methods that measure, or of calibrations that are applied.
+fn labels(scenario: &Scenario) -> Vec<String> {
+    let transfer = match &scenario.subject {
+        Subject::Views(views) => views.transfer.as_ref(),
+        Subject::Scene(_) | Subject::Photographs(_) => None,
+    };
+    match transfer {
+        Some(transfer) => transfer.methods.iter().map(|method| method.name.clone()).collect(),
+        None => scenario.methods.iter().map(|method| method.label.clone()).collect(),
     }
 }
 
@@ -71,13 +83,17 @@ fn stations(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<Station> {
         centre: station.pose.centre.coords.into(),
         // A camera looks along its -z.
         sight: (-station.pose.rotation.row(2).transpose()).into(),
-        second_step: check.is_some_and(|check| check.views.contains(&index)),
+        second_step: check.is_some_and(|check| check.views.contains(&index))
+            || subject.transfer.as_ref().is_some_and(|transfer| transfer.stations.contains(&index)),
     };
     subject.stations.iter().enumerate().map(station).collect()
 }
 
 fn targets(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<Target> {
+    let transfer = subject.transfer.as_ref();
     let role = |index: &usize| match check {
+        None if transfer.is_some_and(|transfer| transfer.control.contains(index)) => Some(Role::Control),
+        None if transfer.is_some_and(|transfer| transfer.check.contains(index)) => Some(Role::Check),
         Some(check) if check.control.contains(index) => Some(Role::Control),
         Some(check) if check.points.contains(index) => Some(Role::Check),
         _ => None,

@@ -12,6 +12,7 @@ pub mod recognition;
 mod scene;
 pub mod store;
 mod theory;
+pub mod transfer;
 mod trials;
 pub mod truth;
 pub mod views;

@@ -6,7 +6,10 @@ use calibench_exchange::NewFolder;
 use calibench_measure::{BoardDetector, Configured, Operator};
 use calibench_model::{Image, Measurement, Rejection, Start, TargetKind, Unknowns};
 use calibench_records::results::MethodInfo;
-use calibench_scenario::{PhotographsSubject, Scenario, Subject};
+use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
+
+/// The version of calibration methods: raised when their numbers change on purpose.
+const TRANSFER_VERSION: &str = "1";
 
 /// How a scenario is run.
 pub struct Plan<'a> {
@@ -45,6 +48,14 @@ impl<'a> Plan<'a> {
 
     /// The methods as results list them.
     pub fn method_infos(&self) -> Vec<MethodInfo> {
+        if let Some(transfer) = self.transfer() {
+            let info = |method: &calibench_scenario::transfer::Method| MethodInfo {
+                label: method.name.as_str().into(),
+                version: TRANSFER_VERSION.into(),
+                unavailable: None,
+            };
+            return transfer.methods.iter().map(info).collect();
+        }
         let missing = self.missing();
         let info = |method: &Configured| MethodInfo {
             label: method.label.as_str().into(),
@@ -52,6 +63,12 @@ impl<'a> Plan<'a> {
             unavailable: missing.clone().or_else(|| method.operator.as_ref().err().map(|why| (*why).to_owned())),
         };
         self.methods.iter().map(info).collect()
+    }
+
+    /// The calibrations that are applied, where those are the methods.
+    pub fn transfer(&self) -> Option<&'a Transfer> {
+        let Subject::Views(views) = &self.scenario.subject else { return None };
+        views.transfer.as_ref()
     }
 
     /// Name and version of the detector that gives the approximate positions, if one does.

@@ -3,9 +3,10 @@
 use calibench_measure::kinds::cover;
 use calibench_random::Key;
 use calibench_records::results::Trial;
-use calibench_scenario::Subject;
+use calibench_scenario::{Subject, ViewsSubject};
 use rayon::prelude::*;
 
+use super::transfer::Campaign;
 use super::{Plan, RunError, photographs, scene, views};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
@@ -32,6 +33,7 @@ impl Plan<'_> {
                 let prepared = scene::Prepared::new(self, subject)?;
                 self.trials(step, sink, &|number| scene::run_trial(self, &prepared, number))
             }
+            Subject::Views(subject) if subject.transfer.is_some() => self.transferred(subject, step, sink),
             Subject::Views(subject) => {
                 // Drawn coordinates are those of no image.
                 let drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
@@ -43,6 +45,19 @@ impl Plan<'_> {
                 self.trials(step, sink, &|number| views::run_trial(self, &prepared, bounds.as_ref(), number))
             }
         }
+    }
+
+    /// Calibrations that are applied: coordinates are drawn, nothing is measured.
+    fn transferred(
+        &self,
+        subject: &ViewsSubject,
+        step: &(dyn Fn() + Sync),
+        sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
+    ) -> Result<(), RunError> {
+        let Some(transfer) = &subject.transfer else { return Ok(()) };
+        let campaign = Campaign::new(subject, transfer)?;
+        let key = |trial| Key { seed: self.seed, scenario: &self.scenario.name, trial, view: "", target: "" };
+        self.trials(step, sink, &|number| Ok(campaign.trial(key(number))))
     }
 
     /// Runs trials in batches and hands them on in their order.

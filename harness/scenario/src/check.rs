@@ -1,5 +1,6 @@
 //! From the tables of a file to a checked scenario. All mistakes that can be told apart are reported together.
 
+use std::ops::Range;
 use std::path::Path;
 
 use calibench_diagnostics::{Problem, Problems};
@@ -13,6 +14,7 @@ use super::calibration::{self, Seen};
 use super::methods::{check_kinds, methods};
 use super::recognition;
 use super::section::Section;
+use super::site::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::Head;
@@ -22,13 +24,14 @@ use super::{Scenario, Subject, ViewsSubject, figure, photographs, scene};
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 17] = [
+pub const TOP_TABLES: [&str; 18] = [
     "sweep",
     "method",
     "calibration",
     "blocks",
     "block",
     "recognition",
+    "transfer",
     "scene",
     "figure",
     "photographs",
@@ -140,8 +143,9 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let blocks = root.take_table("blocks", "[blocks]", problems);
     let listed_blocks = root.take_tables("block", "[[block]]", problems).unwrap_or_default();
     let recognition = root.take_table("recognition", "[recognition]", problems);
+    let transfer = root.take_table("transfer", "[transfer]", problems);
     let start = root.span.clone();
-    if methods_missing && problems.is_empty() {
+    if methods_missing && transfer.is_none() && problems.is_empty() {
         problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
     }
     let listed = listed.unwrap_or_default();
@@ -151,17 +155,13 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let seed = head.as_ref().map_or(0, |head| head.seed.0);
     let key = Key { seed, scenario: name, trial: 0, view: "", target: "" };
     let stray = views.span().or_else(|| imaging.span());
-    if let Some(stray) = calibration.as_ref().filter(|_| views.span().is_none()) {
-        problems.push(Problem::new(stray.span.clone(), "[calibration] without [testfield]: expected one with [camera] and stations"));
-    }
-    if let Some(stray) = blocks.as_ref().or(listed_blocks.first()).filter(|_| views.span().is_none()) {
-        problems.push(Problem::new(stray.span.clone(), "blocks without [testfield]: expected one with [camera] and stations"));
-    }
-    if let Some(stray) = recognition.as_ref().filter(|_| views.span().is_none()) {
-        problems
-            .push(Problem::new(stray.span.clone(), "[recognition] without [testfield]: expected a coded one with [camera] and stations"));
-    }
+    let others = [&scene, &figure, &photographs, &judged, &calibration, &blocks, &recognition];
+    let other = others.into_iter().flatten().next().map(|section| section.span.clone()).or_else(|| stray.clone());
+    alone(transfer.as_ref(), other.or_else(|| listed_at.first().cloned()), problems)?;
     let adjusted = Adjusted { calibration, blocks, listed_blocks, recognition };
+    if views.span().is_none() {
+        adjusted.without_field(problems);
+    }
     let subject = match (scene, figure, photographs, views.span()) {
         (Some(section), None, None, None) => scene::read(section, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
         (None, Some(figure), None, None) => figure::read(figure, imaging, problems).map(|scene| Subject::Scene(Box::new(scene))),
@@ -177,10 +177,14 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
             let views = views.read(imaging, &start, folder, key, problems);
             views.and_then(|views| adjusted.read(views, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
         }
+        (None, None, None, None) if transfer.is_some() => transfer
+            .and_then(|section| Surroundings { name, folder, registry, parse }.read(section, problems))
+            .map(|views| Subject::Views(Box::new(views))),
         (None, None, None, None) => {
             let problem = Problem::new(start, "the scenario has nothing to measure");
-            problems
-                .push(problem.help("add a [scene] or [figure] table, [camera] with [testfield] and [stations], or a [photographs] table"));
+            problems.push(problem.help(
+                "add a [scene] or [figure] table, [camera] with [testfield] and [stations], a [photographs] table, or a [transfer] table",
+            ));
             None
         }
         (scene, figure, photographs, _) => {
@@ -227,6 +231,14 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     Some(Scenario { trials, ..scenario })
 }
 
+/// Whether nothing stands beside `[transfer]`.
+fn alone(transfer: Option<&Section<'_>>, beside: Option<Range<usize>>, problems: &mut Vec<Problem>) -> Option<()> {
+    let Some(beside) = transfer.and(beside) else { return Some(()) };
+    let problem = Problem::new(beside, "beside [transfer]: its scenarios say what is pictured, and [[transfer.method]] what calibrates");
+    problems.push(problem.help("expected [transfer] and its tables alone"));
+    None
+}
+
 fn stated(key: &str, value: Spanned<String>, problems: &mut Vec<Problem>) -> String {
     if value.get_ref().trim().is_empty() {
         problems.push(Problem::new(value.span(), format!("`{key}` is empty: expected a sentence")));
@@ -243,6 +255,17 @@ struct Adjusted<'i> {
 }
 
 impl Adjusted<'_> {
+    /// Says what cannot be without a field.
+    fn without_field(&self, problems: &mut Vec<Problem>) {
+        let blocks = self.blocks.as_ref().or(self.listed_blocks.first());
+        let needs = [
+            (self.calibration.as_ref(), "[calibration] without [testfield]: expected one with [camera] and stations"),
+            (blocks, "blocks without [testfield]: expected one with [camera] and stations"),
+            (self.recognition.as_ref(), "[recognition] without [testfield]: expected a coded one with [camera] and stations"),
+        ];
+        problems.extend(needs.into_iter().filter_map(|(section, message)| Some(Problem::new(section?.span.clone(), message))));
+    }
+
     /// `views` with what is done with their points.
     fn read(self, views: ViewsSubject, methods: &[Configured], problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
         let ViewsSubject { field, stations, .. } = &views;

@@ -19,10 +19,12 @@ mod scene;
 pub mod schema;
 mod section;
 pub mod sensor;
+mod site;
 pub mod stations;
 mod subject;
 pub mod sweep;
 pub mod testfield;
+pub mod transfer;
 mod views;
 mod wire;
 
@@ -38,4 +40,5 @@ pub use stations::StationPlan;
 pub use subject::{PhotographsSubject, SceneSubject, Starts, Subject, ViewsSubject};
 pub use sweep::Sweep;
 pub use testfield::Unit;
+pub use transfer::Transfer;
 pub use wire::{Phase, Pixels};

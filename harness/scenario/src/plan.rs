@@ -40,7 +40,7 @@ impl Scenario {
             }
             Subject::Views(views) => {
                 let still = views.calibration.as_ref().is_none_or(|calibration| !calibration.is_random());
-                still && views.hand.is_steady() && !views.changes() && !views.imaging.is_random()
+                still && views.transfer.is_none() && views.hand.is_steady() && !views.changes() && !views.imaging.is_random()
             }
             Subject::Photographs(_) => true,
         }
@@ -54,7 +54,8 @@ impl Scenario {
     /// The pixel pitch of the adjusted camera, um.
     pub fn pitch_um(&self) -> Option<f64> {
         let Subject::Views(views) = &self.subject else { return None };
-        views.calibration.as_ref().map(|calibration| calibration.start.pitch_um)
+        let calibrated = views.calibration.as_ref().map(|calibration| calibration.start.pitch_um);
+        calibrated.or_else(|| views.transfer.as_ref().map(|transfer| transfer.pitch_um))
     }
 
     /// The part of the name before the first `/`: the folder, and the report.

@@ -19,6 +19,7 @@ use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::sweep::wire::SweepWire;
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
+use super::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
 
 /// The schema, with the methods of `registry` and their parameters.
@@ -35,7 +36,6 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["photographs"] = table::<PhotographsWire>();
     root["properties"]["judgement"] = table::<JudgementWire>();
     root["properties"]["method"] = list(&json!({ "oneOf": registry.methods().iter().map(method).collect::<Vec<_>>() }));
-    require(&mut root, &["method"]);
     root["properties"]["sweep"] = table::<SweepWire>();
     root["properties"]["figure"] = table::<FigureWire>();
     root["properties"]["figure"]["properties"]["pointing"] = pointing();
@@ -53,8 +53,15 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["block"] = list(&table::<BlockWire>());
     root["properties"]["recognition"] = table::<RecognitionWire>();
     root["properties"]["recognition"]["properties"]["images"] = list(&table::<ImagesWire>());
+    root["properties"]["transfer"] = transfer();
     root["properties"]["pointing"] = pointing();
-    let subjects = [vec!["scene"], vec!["figure"], vec!["camera", "testfield", "pointing"], vec!["photographs"]];
+    let subjects = [
+        vec!["scene", "method"],
+        vec!["figure", "method"],
+        vec!["camera", "testfield", "pointing", "method"],
+        vec!["photographs", "method"],
+        vec!["transfer"],
+    ];
     root["oneOf"] = subjects.iter().map(|keys| json!({ "required": keys })).collect();
     root
 }
@@ -62,6 +69,16 @@ pub fn schema(registry: &Registry) -> Value {
 /// A hand, or a detector.
 fn pointing() -> Value {
     json!({ "oneOf": [table::<PointingWire>(), table::<DetectorWire>()] })
+}
+
+fn transfer() -> Value {
+    let mut transfer = table::<TransferWire>();
+    transfer["properties"]["board"] = table::<TransferBoardWire>();
+    transfer["properties"]["method"] = list(&table::<MethodWire>());
+    transfer["properties"]["case"] = list(&table::<CaseWire>());
+    transfer["properties"]["decomposition"] = list(&table::<DecompositionWire>());
+    require(&mut transfer, &["method", "case"]);
+    transfer
 }
 
 fn testfield() -> Value {

@@ -15,7 +15,7 @@ use calibench_synth::stations::{Station, StationError};
 
 use crate::camera::LocalPlan;
 use crate::recognition::RECOGNITION;
-use crate::{Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, Recognition, StationPlan, Unit};
+use crate::{Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, Recognition, StationPlan, Transfer, Unit};
 
 /// What a scenario measures.
 pub enum Subject {
@@ -28,10 +28,11 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// The kind of every target that may be measured.
+    /// The kind of every target that may be measured: none where coordinates are drawn for calibrations that are applied elsewhere.
     pub fn kinds(&self) -> Vec<TargetKind> {
         match self {
             Self::Scene(subject) => subject.scene.targets.iter().map(|target| target.kind).collect(),
+            Self::Views(subject) if subject.transfer.is_some() => Vec::new(),
             Self::Views(subject) => subject.field.targets.iter().map(|target| target.kind).collect(),
             Self::Photographs(_) => vec![TargetKind::ChessCorner],
         }
@@ -103,15 +104,18 @@ pub struct ViewsSubject {
     pub blocks: Option<Blocks>,
     /// What recognises the field in its images, where measuring starts from that in place of a hand.
     pub recognition: Option<Recognition>,
+    /// The calibrations that are applied here, in place of measuring.
+    pub transfer: Option<Transfer>,
 }
 
 impl ViewsSubject {
-    /// The sets of figures that its records have, if they have any: of parameters, or of blocks and recognition.
+    /// The sets of figures that its records have, if they have any: of parameters, of blocks and recognition, or of ways to apply calibrations.
     pub fn sets(&self) -> Vec<String> {
         let calibration = self.calibration.iter().flat_map(|calibration| calibration.sets.iter().map(|set| set.name.clone()));
         let blocks = self.blocks.iter().flat_map(Blocks::names);
         let recognition = self.recognition.iter().map(|_| RECOGNITION.to_owned());
-        calibration.chain(blocks).chain(recognition).collect()
+        let transfer = self.transfer.iter().flat_map(Transfer::sets);
+        calibration.chain(blocks).chain(recognition).chain(transfer).collect()
     }
 
     /// Whether the truth is another in each trial: stations that move, or a camera that distorts otherwise.

@@ -136,6 +136,7 @@ impl<'i> ViewTables<'i> {
             calibration: None,
             blocks: None,
             recognition: None,
+            transfer: None,
         })
     }
 }

@@ -1,0 +1,145 @@
+//! The `[transfer]` tables: calibrate here, apply there.
+
+mod board;
+mod conditions;
+mod model;
+mod read;
+pub mod wire;
+
+use calibench_model::Testfield;
+use calibench_model::camera::Camera;
+use calibench_synth::stations::{Aim, RandomViews, Station};
+use toml::Spanned;
+
+pub use conditions::{Conditions, Switch};
+pub use model::Model;
+pub(crate) use read::read;
+
+/// Checked `[transfer]` tables. What is said of the field where calibrations are applied stands beside them, in the subject.
+#[derive(Clone, Debug)]
+pub struct Transfer {
+    /// The stations from which check points are intersected, by their places.
+    pub stations: Vec<usize>,
+    /// Control points, by their places in the field.
+    pub control: Vec<usize>,
+    /// Check points, by their places in the field.
+    pub check: Vec<usize>,
+    /// Standard deviation per axis of the image coordinates of the field's targets, px.
+    pub sigma_px: f64,
+    /// Standard deviation per axis of the survey, object units.
+    pub survey_sigma: f64,
+    /// Pixel pitch, um.
+    pub pitch_um: f64,
+    /// The pitch that a stated width of the sensor makes, um.
+    pub other_pitch_um: Option<f64>,
+    /// The board, where a method calibrates from one.
+    pub board: Option<Board>,
+    /// The methods, at least one.
+    pub methods: Vec<Method>,
+    /// The method whose exterior orientations are held: the place of one that calibrates from control.
+    pub poses_of: usize,
+    /// How calibrations are applied, at least one way.
+    pub cases: Vec<Case>,
+    /// How errors are split, if they are.
+    pub decompositions: Vec<Decomposition>,
+}
+
+/// A field and what pictures it, as another scenario has them.
+#[derive(Clone, Debug)]
+pub struct Site {
+    /// The interior orientation.
+    pub camera: Camera,
+    /// What is seen.
+    pub field: Testfield,
+    /// From where.
+    pub stations: Vec<Station>,
+}
+
+/// Reads the scenario of a file that is named, or says what is wrong with it.
+pub(crate) type Sites<'a> = dyn FnMut(&Spanned<String>) -> Result<Site, String> + 'a;
+
+/// A chessboard and its views.
+#[derive(Clone, Debug)]
+pub struct Board {
+    /// The board; its bend is that of [`Conditions::bend`].
+    pub field: Testfield,
+    /// What makes its views, the board's units.
+    pub views: RandomViews,
+    /// What they look at.
+    pub aim: Aim,
+    /// The middle part of the frame's width and height that holds all corners.
+    pub within: f64,
+}
+
+/// From what a method calibrates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Calibrates {
+    /// The control points.
+    FromControl,
+    /// The board, whose corners have coordinates of this standard deviation per axis, px.
+    FromBoard {
+        /// px.
+        sigma_px: f64,
+    },
+    /// Nothing.
+    Never,
+}
+
+/// A calibration method.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Method {
+    /// Its name.
+    pub name: String,
+    /// From what.
+    pub calibrates: Calibrates,
+    /// Start values: a data sheet's camera.
+    pub start: Camera,
+    /// The parameters that are solved for.
+    pub parameters: Vec<String>,
+}
+
+/// A way to apply calibrations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Its name.
+    pub name: String,
+    /// The methods that it is for, by their places.
+    pub methods: Vec<usize>,
+    /// How.
+    pub conditions: Conditions,
+    /// Whether the errors of each check point are kept of all trials.
+    pub points: bool,
+}
+
+/// How errors of check points are split.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decomposition {
+    /// Its name.
+    pub name: String,
+    /// The methods, by their places.
+    pub methods: Vec<usize>,
+    /// With every switch on.
+    pub on: Conditions,
+    /// With every switch off.
+    pub off: Conditions,
+    /// The switches.
+    pub switches: Vec<Switch>,
+}
+
+impl Transfer {
+    /// The names under which figures stand in the records: those of the cases, then those of the decompositions.
+    pub fn sets(&self) -> Vec<String> {
+        let splits = self.decompositions.iter().map(|split| split.name.clone());
+        self.cases.iter().map(|case| case.name.clone()).chain(splits).collect()
+    }
+
+    /// What is doubtful of it: a pitch and a width of the sensor that disagree by more than a thousandth.
+    pub fn warning(&self) -> Option<String> {
+        let other = self.other_pitch_um.filter(|other| (other / self.pitch_um - 1.0).abs() > 1e-3)?;
+        let percent = 100.0 * (other / self.pitch_um - 1.0);
+        Some(format!("`pitch` is {} um, `sensor_width` makes it {other:.5} um, {percent:+.2} %: the pitch holds", self.pitch_um))
+    }
+}
+
+#[cfg(test)]
+mod tests;
