@@ -53,6 +53,30 @@ impl Axes {
         write(area, title, (left + width / 2, top + height + 38), HPos::Center);
     }
 
+    /// The frame, a line and a number at each power of ten of a logarithmic scale, and the title.
+    pub(crate) fn decades(&self, area: &Area<'_>, title: &str) {
+        let [left, top, width, height] = self.at;
+        for power in self.y[0].ceil() as i32..=self.y[1].floor() as i32 {
+            let (_, y) = self.place(self.x[0], f64::from(power));
+            area.draw(&PathElement::new([(left, y), (left + width, y)], GRID)).ok();
+            let decimals = (-power).max(0) as usize;
+            write(area, &crate::markdown::fixed(10_f64.powi(power), decimals), (left - 8, y), HPos::Right);
+        }
+        area.draw(&Rectangle::new([(left, top), (left + width, top + height)], BLACK)).ok();
+        write(area, title, (left, top - 14), HPos::Left);
+    }
+
+    /// Numbers below a logarithmic scale where these values are, and the title.
+    pub(crate) fn values(&self, area: &Area<'_>, title: &str, values: &[f64]) {
+        let [left, top, width, height] = self.at;
+        for value in values {
+            let (x, _) = self.place(value.log10(), self.y[0]);
+            area.draw(&PathElement::new([(x, top + height), (x, top + height + 5)], BLACK)).ok();
+            write(area, &value.to_string(), (x, top + height + 16), HPos::Center);
+        }
+        write(area, title, (left + width / 2, top + height + 38), HPos::Center);
+    }
+
     /// A horizontal line at a value.
     pub(crate) fn level(&self, area: &Area<'_>, value: f64, colour: RGBColor) {
         let (_, y) = self.place(self.x[0], value);

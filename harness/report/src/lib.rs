@@ -29,6 +29,7 @@ mod scores_section;
 pub mod speeds;
 pub mod sweep;
 pub(crate) mod ticks;
+mod transfer;
 pub mod verdicts;
 mod zhu;
 

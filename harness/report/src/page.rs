@@ -8,7 +8,7 @@ use calibench_records::description::{Description, Subject};
 use crate::answer::{Answers, heading};
 use crate::markdown::contents;
 use crate::places::PAGE;
-use crate::{Canvas, LoadError, Loaded, blocks, network, photographs, recognition, scene_figures, scores_section, sweep};
+use crate::{Canvas, LoadError, Loaded, blocks, network, photographs, recognition, scene_figures, scores_section, sweep, transfer};
 
 /// A page with its pictures, filled section by section.
 pub struct Page {
@@ -59,9 +59,15 @@ impl Page {
     /// Records that do not belong together.
     pub fn sweep(&mut self, loaded: &sweep::LoadedSweep, printed: &[(String, f64)]) -> Result<(), LoadError> {
         // The points of adjusted scenarios are those of the first trial: how many there were is in their tables.
-        let deviations = if loaded.scenario.adjusted().is_some() { String::new() } else { sweep::deviations(loaded) };
+        let without = loaded.scenario.adjusted().is_some() || loaded.methods.is_empty();
+        let deviations = if without { String::new() } else { sweep::deviations(loaded) };
         let stem = self.head(&loaded.name, &loaded.scenario, &deviations);
         if let Some((text, pictures)) = network::sweep(loaded, &stem, printed)? {
+            self.text.push_str(&text);
+            self.pictures.extend(pictures);
+            return Ok(());
+        }
+        if let Some((text, pictures)) = transfer::sweep(loaded, &stem)? {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
             return Ok(());
@@ -79,13 +85,19 @@ impl Page {
 
     pub fn scenario(&mut self, loaded: &Loaded) {
         let scenario = &loaded.scenario;
-        let stem = self.head(&loaded.name, scenario, &deviations(loaded));
+        let told = if transfer::is_of(loaded) { String::new() } else { deviations(loaded) };
+        let stem = self.head(&loaded.name, scenario, &told);
         if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&loaded.name)) {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
             return;
         }
         if let Some((text, pictures)) = blocks::section(loaded, &stem) {
+            self.text.push_str(&text);
+            self.pictures.extend(pictures);
+            return;
+        }
+        if let Some((text, pictures)) = transfer::section(loaded, &stem) {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
             return;

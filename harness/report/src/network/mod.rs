@@ -3,7 +3,7 @@
 mod pictures;
 mod sweep;
 mod sweep_orientation;
-mod tables;
+pub mod tables;
 
 pub use sweep::section as sweep;
 

@@ -76,7 +76,7 @@ pub(super) fn mean(summary: Option<&Summary>, digits: usize) -> String {
     summary.and_then(|s| Some(with_half(s.value.mean()?, s.value.half(), digits))).unwrap_or_default()
 }
 
-pub(super) fn with_half(value: f64, half: Option<f64>, digits: usize) -> String {
+pub fn with_half(value: f64, half: Option<f64>, digits: usize) -> String {
     half.map_or_else(|| fixed(value, digits), |half| format!("{} ± {}", fixed(value, digits), fixed(half, digits)))
 }
 

@@ -1,0 +1,177 @@
+//! A sweep of calibrations that are applied elsewhere: how many views, how tilted, where.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use calibench_records::adjustments::{CALIBRATIONS, Numbers, Row, read};
+use calibench_records::results::Group;
+use plotters::prelude::*;
+
+use super::cases::hundredths;
+use crate::LoadError;
+use crate::axes::Axes;
+use crate::canvas::{COLOURS, Canvas, METHOD_MARKS};
+use crate::load::adjustments::{Summaries, Summary};
+use crate::markdown::{MarkdownTable, fixed};
+
+/// What was found under one combination of swept values.
+pub struct Cell {
+    /// The values, as they stand in the file, in the order of the axes.
+    pub values: Vec<String>,
+    /// The figures.
+    pub found: Summaries,
+    /// The median distance from the true camera over the frame, px, by method.
+    pub medians: BTreeMap<String, f64>,
+}
+
+/// Median distance from the true camera by method, px, of the first set that has one. A few trials stand in each cell: they are kept together.
+///
+/// # Errors
+/// Records that cannot be read.
+pub fn medians(folder: &Path) -> Result<BTreeMap<String, f64>, LoadError> {
+    let path = folder.join(CALIBRATIONS);
+    let file = File::open(&path).map_err(|source| LoadError::File { path: path.clone(), source })?;
+    let (mut values, mut sets): (BTreeMap<String, Vec<f64>>, BTreeMap<String, String>) = Default::default();
+    let add = |row: Row| {
+        let Row { method, set, group: Group::Frame, figure: Ok(Numbers { value, .. }), .. } = row else { return };
+        if *sets.entry(method.clone()).or_insert_with(|| set.clone()) == set {
+            values.entry(method).or_default().push(value);
+        }
+    };
+    read(BufReader::new(file), add).map_err(|source| LoadError::Records { path, source })?;
+    Ok(values.into_iter().map(|(method, values)| (method, median(values))).collect())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
+}
+
+/// A row a cell and method: the camera, its own opinion of c beside the truth, and check points under every case.
+pub fn table(axes: &[String], cells: &[Cell]) -> String {
+    let Some(first) = cells.first() else { return String::new() };
+    let cases: Vec<&String> =
+        first.found.sets.iter().filter(|set| first.found.figures.keys().any(|(_, s, g, _)| s == *set && *g == Group::Check)).collect();
+    let mut header: Vec<String> = axes.iter().map(|axis| format!("`{axis}`")).collect();
+    header.extend(["method", "camera, px: median", "mean", "sigma of c, um", "true error of c, um"].map(str::to_owned));
+    header.extend(cases.iter().map(|case| format!("planimetric, {case}")));
+    header.push("failed".into());
+    let mut rows = MarkdownTable::new(&header.iter().map(String::as_str).collect::<Vec<_>>());
+    // What the axes do not touch is told once.
+    let same = |method: &&String| cells.len() > 1 && cells.iter().all(|cell| cell.medians.get(*method) == first.medians.get(*method));
+    let (fixed_ones, changing): (Vec<&String>, Vec<&String>) = first.found.methods.iter().partition(same);
+    for cell in cells {
+        for &method in &changing {
+            let get = |group, name| cell.found.get(method, group, name);
+            let um = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(1e3 * value, 1));
+            let c = get(Group::Iop, "c");
+            let mut row = cell.values.clone();
+            row.push(method.clone());
+            row.push(cell.medians.get(method).map_or_else(String::new, |value| fixed(*value, 2)));
+            row.push(get(Group::Frame, "rms").and_then(|s| s.value.mean()).map_or_else(String::new, |value| fixed(value, 2)));
+            row.push(um(c.and_then(|c: &Summary| c.sigma.mean())));
+            row.push(um(c.and_then(|c| c.square.mean()).map(f64::sqrt)));
+            row.extend(cases.iter().map(|case| hundredths(cell.found.of_set(method, case, Group::Check, "rmse_xy"))));
+            let failed: u64 = cell.found.failed.iter().filter(|((m, ..), _)| m == method).map(|(_, (count, _))| count).sum();
+            row.push(failed.to_string());
+            rows.row(row);
+        }
+    }
+    format!(
+        "The camera over the frame: distance from the true one after the best rotation, root mean square in px, median and mean of {} trials. Check points: root mean square in hundredths of the object unit, mean ± half its 95 % interval.{}\n\n{}\n",
+        first.found.trials,
+        untouched(first, &cases, &fixed_ones),
+        rows.render()
+    )
+}
+
+/// A sentence on the methods that no axis touches.
+fn untouched(cell: &Cell, cases: &[&String], methods: &[&String]) -> String {
+    let of = |method: &&String| {
+        let errors = cases.iter().map(|case| format!("{} ({case})", hundredths(cell.found.of_set(method, case, Group::Check, "rmse_xy"))));
+        let median = cell.medians.get(*method).map_or_else(String::new, |value| fixed(*value, 2));
+        format!(" The same everywhere: {method}, {median} px in the median, planimetric {}.", errors.collect::<Vec<_>>().join(", "))
+    };
+    methods.iter().map(of).collect()
+}
+
+/// The median over the first axis, a curve for each value of the others and each method; `None` where the first axis has fewer than two numbers.
+pub fn picture(axes: &[String], cells: &[Cell]) -> Option<Canvas> {
+    let mut curves: BTreeMap<(String, String), Vec<(f64, f64)>> = BTreeMap::new();
+    for cell in cells {
+        let x: f64 = cell.values.first()?.parse().ok()?;
+        let others = axes.iter().zip(&cell.values).skip(1).map(|(axis, value)| format!("{axis} {value}")).collect::<Vec<_>>().join(", ");
+        for (method, median) in cell.medians.iter().filter(|(_, median)| **median > 0.0) {
+            // What the axes do not touch is the same everywhere.
+            curves.entry((others.clone(), method.clone())).or_default().push((x, *median));
+        }
+    }
+    let changing = |points: &[(f64, f64)]| points.windows(2).any(|pair| (pair[0].1 / pair[1].1 - 1.0).abs() > 1e-9);
+    let panels: Vec<String> =
+        curves.keys().map(|(others, _)| others.clone()).collect::<std::collections::BTreeSet<_>>().into_iter().collect();
+    let methods: Vec<String> = {
+        let mut known: Vec<String> = Vec::new();
+        cells
+            .first()?
+            .found
+            .methods
+            .iter()
+            .filter(|m| curves.iter().any(|((_, method), points)| method == *m && changing(points)))
+            .for_each(|m| known.push(m.clone()));
+        known
+    };
+    let all: Vec<(f64, f64)> =
+        curves.iter().filter(|((_, method), _)| methods.contains(method)).flat_map(|(_, points)| points.clone()).collect();
+    let span = |of: fn(&(f64, f64)) -> f64| all.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+    let ([left, right], [low, high]) = (span(|p| p.0), span(|p| p.1));
+    if methods.is_empty() || right <= left {
+        return None;
+    }
+    Some(drawn(&axes[0], &panels, &methods, &curves, ([left, right], [low, high])))
+}
+
+const PANEL: [i32; 2] = [330, 260];
+const COLUMNS: usize = 3;
+
+fn drawn(
+    axis: &str,
+    panels: &[String],
+    methods: &[String],
+    curves: &BTreeMap<(String, String), Vec<(f64, f64)>>,
+    ([left, right], [low, high]): ([f64; 2], [f64; 2]),
+) -> Canvas {
+    let rows = panels.len().div_ceil(COLUMNS) as i32;
+    let columns = panels.len().min(COLUMNS) as i32;
+    let (width, height) = (columns * (PANEL[0] + 90) + 20, 60 + rows * (PANEL[1] + 100) + 26 * methods.len() as i32);
+    let mut canvas = Canvas::new(width as u32, height as u32);
+    canvas.text("Error of the camera over the frame, px (median; both scales logarithmic)", 19, (20, 14));
+    let (x, y) = ([left.log10() - 0.05, right.log10() + 0.05], [low.log10().floor(), high.log10().ceil()]);
+    let look = |i: usize| (METHOD_MARKS[i % METHOD_MARKS.len()], COLOURS[i % COLOURS.len()]);
+    let mut marks = Vec::new();
+    for (place, panel) in panels.iter().enumerate() {
+        let at = [60 + (place % COLUMNS) as i32 * (PANEL[0] + 90), 80 + (place / COLUMNS) as i32 * (PANEL[1] + 100), PANEL[0], PANEL[1]];
+        let axes = Axes { at, x, y };
+        let xs: std::collections::BTreeSet<u64> =
+            curves.iter().filter(|((others, _), _)| others == panel).flat_map(|(_, points)| points.iter().map(|p| p.0.to_bits())).collect();
+        canvas.paint(|area| {
+            axes.decades(area, panel);
+            axes.values(area, axis, &xs.into_iter().map(f64::from_bits).collect::<Vec<_>>());
+            for (i, method) in methods.iter().enumerate() {
+                let Some(points) = curves.get(&(panel.clone(), method.clone())) else { continue };
+                let line: Vec<(i32, i32)> = points.iter().map(|(x, y)| axes.place(x.log10(), y.log10())).collect();
+                marks.extend(line.iter().map(|(x, y)| (look(i).0, look(i).1, (f64::from(*x), f64::from(*y)))));
+                area.draw(&PathElement::new(line, ShapeStyle::from(&look(i).1).stroke_width(2))).ok();
+            }
+        });
+    }
+    for (i, method) in methods.iter().enumerate() {
+        let y = 60 + rows * (PANEL[1] + 100) + 26 * i as i32;
+        marks.push((look(i).0, look(i).1, (40.0, f64::from(y - 4))));
+        canvas.text(method, 16, (58, (y - 4) as u32));
+    }
+    canvas.marks(&marks);
+    canvas
+}

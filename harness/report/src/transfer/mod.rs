@@ -1,0 +1,68 @@
+//! Calibrated here, applied there, in a report: what check points make of each calibration under each condition, and which cause makes how much of it.
+
+mod boards;
+mod cases;
+mod decomposition;
+mod errors;
+#[cfg(test)]
+mod tests;
+
+use calibench_records::names::cell_folder;
+use calibench_records::results::Group;
+
+use crate::LoadError;
+use crate::canvas::Pictures;
+use crate::load::Loaded;
+use crate::load::adjustments::{Summaries, load};
+use crate::sweep::LoadedSweep;
+
+/// The text of a scenario whose calibrations are applied elsewhere and its pictures, whose names begin with `stem`; `None` for another scenario.
+pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
+    let found = loaded.calibrations.as_ref().filter(|_| is_of(loaded))?;
+    let mut text = cases::table(found);
+    text.push_str(&decomposition::tables(found));
+    let mut pictures: Pictures = Vec::new();
+    for (place, (case, canvas)) in errors::pictures(found).into_iter().enumerate() {
+        let file = format!("{stem}-errors-{}.png", place + 1);
+        text.push_str(&format!(
+            "Errors of the check points in the first trial, case *{case}*:\n\n![Errors of the check points, {case}]({file})\n\n"
+        ));
+        pictures.push((file, canvas));
+    }
+    Some((text, pictures))
+}
+
+/// The text of a sweep of such a scenario and its pictures; `None` for another one.
+///
+/// # Errors
+/// Records that cannot be read.
+pub fn sweep(loaded: &LoadedSweep, stem: &str) -> Result<Option<(String, Pictures)>, LoadError> {
+    let mut cells = Vec::new();
+    for index in 0..loaded.cells.len() {
+        let folder = cell_folder(&loaded.folder, index);
+        let Some(found) = load(&folder)? else { return Ok(None) };
+        if !is_transfer(&found) {
+            return Ok(None);
+        }
+        let values = loaded.sweep.values(index).iter().map(|value| value.text.clone()).collect();
+        cells.push(boards::Cell { values, found, medians: boards::medians(&folder)? });
+    }
+    let axes: Vec<String> = loaded.sweep.axes.iter().map(|axis| axis.name.clone()).collect();
+    let mut text = boards::table(&axes, &cells);
+    let file = format!("{stem}.png");
+    let picture = boards::picture(&axes, &cells);
+    if picture.is_some() {
+        text.push_str(&format!("![Error of the camera over the frame]({file})\n\n"));
+    }
+    Ok(Some((text, picture.map(|picture| (file, picture)).into_iter().collect())))
+}
+
+/// Whether a scenario's calibrations are applied elsewhere: its coordinates are drawn, and its records of points are empty.
+pub fn is_of(loaded: &Loaded) -> bool {
+    loaded.calibrations.as_ref().is_some_and(is_transfer)
+}
+
+/// Scenarios that are adjusted where they are measured have no error in space.
+fn is_transfer(found: &Summaries) -> bool {
+    found.figures.keys().any(|(.., group, name)| *group == Group::Check && name == "rmse_xyz")
+}
