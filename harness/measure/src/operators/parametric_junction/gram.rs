@@ -11,25 +11,30 @@ pub(super) type Columns = [Wide; WIDEST];
 
 /// The upper triangle row by row, the right-hand side and the squares of the residuals, in lanes.
 pub(super) struct Gram {
-    count: usize,
     products: [Wide; WIDEST * (WIDEST + 1) / 2],
     b: Columns,
     omega: Wide,
 }
 
 impl Gram {
-    /// Of `count` unknowns.
-    pub(super) fn new(count: usize) -> Self {
-        Self { count, products: [[0.0; WIDE]; WIDEST * (WIDEST + 1) / 2], b: [[0.0; WIDE]; WIDEST], omega: [0.0; WIDE] }
+    pub(super) fn new() -> Self {
+        Self { products: [[0.0; WIDE]; WIDEST * (WIDEST + 1) / 2], b: [[0.0; WIDE]; WIDEST], omega: [0.0; WIDE] }
     }
 
-    /// Adds the rows of one chunk: `j` the derivatives, those by unknowns before `first` all zero, `r` the residuals.
+    /// Of nothing yet, for so many unknowns.
     #[inline(always)]
-    pub(super) fn add(&mut self, j: &Columns, r: &Wide, first: usize) {
-        let n = self.count;
-        for row in first..n {
-            let start = row * n - row * (row + 1) / 2;
-            for column in row..n {
+    pub(super) fn clear(&mut self, count: usize) {
+        self.products[..count * (count + 1) / 2].fill([0.0; WIDE]);
+        self.b[..count].fill([0.0; WIDE]);
+        self.omega = [0.0; WIDE];
+    }
+
+    /// Adds the rows of one chunk: `j` the derivatives by `count` unknowns, `r` the residuals.
+    #[inline(always)]
+    pub(super) fn add(&mut self, j: &Columns, r: &Wide, count: usize) {
+        for row in 0..count {
+            let start = row * count - row * (row + 1) / 2;
+            for column in row..count {
                 add_products(&mut self.products[start + column], &j[row], &j[column]);
             }
             add_products(&mut self.b[row], &j[row], r);
@@ -38,11 +43,13 @@ impl Gram {
     }
 
     pub(super) fn normal<const P: usize>(&self) -> Normal<P> {
-        let at = |i: usize, j: usize| i * P - i * (i + 1) / 2 + j;
-        Normal {
-            n: SMatrix::from_fn(|i, j| sum(&self.products[at(i.min(j), i.max(j))])),
-            b: SVector::from_fn(|i, _| sum(&self.b[i])),
-            omega: sum(&self.omega),
+        let mut normal = Normal { n: SMatrix::zeros(), b: SVector::from_fn(|i, _| sum(&self.b[i])), omega: sum(&self.omega) };
+        for row in 0..P {
+            for column in row..P {
+                let product = sum(&self.products[row * P - row * (row + 1) / 2 + column]);
+                (normal.n[(row, column)], normal.n[(column, row)]) = (product, product);
+            }
         }
+        normal
     }
 }

@@ -5,6 +5,7 @@ mod arms;
 mod evidence;
 mod gram;
 mod lists;
+mod rows;
 mod sectors;
 mod unknowns;
 mod window;

@@ -73,6 +73,7 @@ impl Unknowns {
 }
 
 /// The sectors' grey values and how they change over the window.
+#[derive(Clone, Copy)]
 pub(super) struct Levels {
     pub(super) unknowns: Unknowns,
     /// At the point where arms meet.
