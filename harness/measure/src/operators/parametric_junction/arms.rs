@@ -130,6 +130,12 @@ impl<T: Real> Model<T> {
     /// How much of each sector is seen from pixels at (`x`, `y`) from the point where arms meet, px; `NEAR` if that point itself may be seen.
     #[inline(always)]
     pub(super) fn shares<const N: usize, const NEAR: bool>(&self, x: &[T; N], y: &[T; N]) -> [[T; N]; MOST] {
+        self.shares_of::<N, NEAR>(self.count, x, y)
+    }
+
+    /// The same of so many arms: all that there are.
+    #[inline(always)]
+    pub(super) fn shares_of<const N: usize, const NEAR: bool>(&self, count: usize, x: &[T; N], y: &[T; N]) -> [[T; N]; MOST] {
         let mut sum = [[T::of(0.0); N]; MOST];
         for node in &self.nodes[..self.gaussians] {
             let moved = |place: &[T; N], by: T| {
@@ -137,8 +143,8 @@ impl<T: Real> Model<T> {
                 moved.iter_mut().for_each(|place| *place += by);
                 moved
             };
-            let shares = self.field::<N, NEAR>(&moved(x, node.x), &moved(y, node.y)).shares;
-            for (sum, share) in sum[..self.count].iter_mut().zip(&shares) {
+            let shares = self.field_of::<N, NEAR>(count, &moved(x, node.x), &moved(y, node.y)).shares;
+            for (sum, share) in sum[..count].iter_mut().zip(&shares) {
                 for i in 0..N {
                     sum[i] += node.weight * share[i];
                 }
@@ -147,16 +153,10 @@ impl<T: Real> Model<T> {
         sum
     }
 
-    /// The same with its derivatives, of a Gaussian at the pixel itself.
+    /// The same with its derivatives, of a Gaussian at the pixel itself and of so many arms: all that there are.
     ///
     /// Sector k's share is the mass of the Gaussian in it. From where the pixel lies each arm takes the mass beside it, which [`Owen`] tells, from
     /// one of its sides to the other: no angle is too wide or too narrow for that.
-    #[inline(always)]
-    pub(super) fn field<const N: usize, const NEAR: bool>(&self, x: &[T; N], y: &[T; N]) -> Field<T, N> {
-        self.field_of::<N, NEAR>(self.count, x, y)
-    }
-
-    /// The same of so many arms: all that there are.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
     pub(super) fn field_of<const N: usize, const NEAR: bool>(&self, count: usize, x: &[T; N], y: &[T; N]) -> Field<T, N> {

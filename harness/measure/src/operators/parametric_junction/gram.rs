@@ -32,6 +32,9 @@ impl Gram {
     /// Adds the rows of one chunk: `j` the derivatives by `count` unknowns, `r` the residuals.
     #[inline(always)]
     pub(super) fn add(&mut self, j: &Columns, r: &Wide, count: usize) {
+        if count == 7 {
+            return self.add_seven(j, r);
+        }
         for row in 0..count {
             let start = row * count - row * (row + 1) / 2;
             for column in row..count {
@@ -40,6 +43,27 @@ impl Gram {
             add_products(&mut self.b[row], &j[row], r);
         }
         add_products(&mut self.omega, r, r);
+    }
+
+    /// The same of seven unknowns, without any loop.
+    #[inline(always)]
+    fn add_seven(&mut self, j: &Columns, r: &Wide) {
+        self.add_row::<0, 7>(j, r);
+        self.add_row::<1, 7>(j, r);
+        self.add_row::<2, 7>(j, r);
+        self.add_row::<3, 7>(j, r);
+        self.add_row::<4, 7>(j, r);
+        self.add_row::<5, 7>(j, r);
+        self.add_row::<6, 7>(j, r);
+        add_products(&mut self.omega, r, r);
+    }
+
+    #[inline(always)]
+    fn add_row<const ROW: usize, const COUNT: usize>(&mut self, j: &Columns, r: &Wide) {
+        for column in ROW..COUNT {
+            add_products(&mut self.products[ROW * COUNT - ROW * (ROW + 1) / 2 + column], &j[ROW], &j[column]);
+        }
+        add_products(&mut self.b[ROW], &j[ROW], r);
     }
 
     pub(super) fn normal<const P: usize>(&self) -> Normal<P> {

@@ -12,7 +12,9 @@ pub(super) const ALONG: usize = 1;
 /// ... or one sector.
 pub(super) const AREAS: usize = 2;
 /// The lists hold for as long as nothing has moved by more than this, px.
-const MARGIN: f32 = 0.25;
+const MARGIN: f32 = 0.12;
+/// Of the side of the window: how far from the point an arm ends there, at most, while the point is near its middle.
+const FARTHEST: f32 = 0.75;
 /// They are made anew where they look so much further than needed, px.
 const WASTEFUL: f32 = 0.75;
 
@@ -50,6 +52,8 @@ pub(super) struct Lists {
     /// What [`codes_of_row`] tells of each pixel.
     codes: Vec<f32>,
     sorted: Option<Sorted>,
+    /// Every other pixel is left out.
+    pub(super) thin: bool,
 }
 
 impl Lists {
@@ -57,7 +61,7 @@ impl Lists {
     pub(super) fn new(side: usize) -> Self {
         let zero = Chunk { x: [1.0; WIDE], y: [1.0; WIDE], grey: [0.0; WIDE], index: [0; WIDE], which: [0.0; WIDE] };
         let chunks = [(); 3].map(|()| vec![zero; (side * side).div_ceil(WIDE)]);
-        Self { chunks, counts: [0; 3], plain: [Plain::default(); MOST], codes: vec![0.0; side * side], sorted: None }
+        Self { chunks, counts: [0; 3], plain: [Plain::default(); MOST], codes: vec![0.0; side * side], sorted: None, thin: false }
     }
 
     /// Every chunk of a list, and how many of its pixels count: beyond the last lies what an earlier, longer list has left.
@@ -91,12 +95,12 @@ impl Lists {
     /// Whether the lists are those of such a model still.
     fn holds(&self, model: &Model<f32>, reach: f32, (side, centre): (usize, [f32; 2])) -> bool {
         let Some(sorted) = &self.sorted else { return false };
-        if self.counts[NEAR] == side * side {
+        if self.counts[ALONG] + self.counts[AREAS] == 0 {
             return true;
         }
         let turned =
             model.arms().iter().zip(&sorted.arms).map(|(arm, was)| (arm.x - was[0]).abs() + (arm.y - was[1]).abs()).fold(0.0, f32::max);
-        let moved = (centre[0] - sorted.centre[0]).abs() + (centre[1] - sorted.centre[1]).abs() + turned * side as f32;
+        let moved = (centre[0] - sorted.centre[0]).abs() + (centre[1] - sorted.centre[1]).abs() + turned * FARTHEST * side as f32;
         let room = sorted.reach - reach - moved;
         moved <= MARGIN && (0.0..=WASTEFUL).contains(&room)
     }
@@ -116,7 +120,8 @@ fn sort(lists: &mut Lists, (model, reach): (&Model<f32>, f32), (grey, side): (&[
     let mut ends = [0; 3];
     for (row, (line, codes)) in grey.chunks_exact(side).zip(lists.codes.chunks_exact(side)).enumerate() {
         let y = row as f32 - half;
-        for (column, (grey, code)) in line.iter().zip(codes).enumerate() {
+        let (first, by) = if lists.thin { (row % 2, 2) } else { (0, 1) };
+        for (column, (grey, code)) in line.iter().zip(codes).enumerate().skip(first).step_by(by) {
             let code = *code as i32 as usize;
             let kind = code % 4;
             let at = ends[kind % 3];

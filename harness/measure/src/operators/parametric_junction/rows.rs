@@ -22,21 +22,37 @@ pub(super) struct Place<'a> {
 }
 
 /// Takes from the grey values, in the lists and row by row, what `place` leaves out of the `full` model.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(super) fn correct(place: Place<'_>, full: &Model<f32>, lists: &mut Lists, grey: &mut [f32]) {
+    if place.levels.unknowns == CORNER { correct_corner(place, full, lists, grey) } else { correct_any(place, full, lists, grey) }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn correct_corner(place: Place<'_>, full: &Model<f32>, lists: &mut Lists, grey: &mut [f32]) {
+    // What is known when this is compiled is done side by side.
+    let levels = Levels { unknowns: CORNER, ..*place.levels };
+    correct_all(Place { levels: &levels, ..place }, (full, CORNER.arms), lists, grey);
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn correct_any(place: Place<'_>, full: &Model<f32>, lists: &mut Lists, grey: &mut [f32]) {
+    correct_all(place, (full, place.model.count), lists, grey);
+}
+
+#[inline(always)]
+fn correct_all(place: Place<'_>, (full, arms): (&Model<f32>, usize), lists: &mut Lists, grey: &mut [f32]) {
     let Place { model, levels, centre } = place;
     for kind in [NEAR, ALONG] {
         for (chunk, count) in lists.chunks_mut(kind) {
             let (x, y) = from_point(chunk, centre);
             let (there, here) = if kind == NEAR {
-                (full.shares::<WIDE, true>(&x, &y), model.shares::<WIDE, true>(&x, &y))
+                (full.shares_of::<WIDE, true>(arms, &x, &y), model.field_of::<WIDE, true>(arms, &x, &y).shares)
             } else {
-                let one = model.one_arm(model.count, &chunk.which, &x, &y);
+                let one = model.one_arm(arms, &chunk.which, &x, &y);
                 let after = full.after_one(&one.across, &one.cos, &one.sin);
-                (shares(&chunk.which, &after, model.count), shares(&chunk.which, &one.after, model.count))
+                (shares(&chunk.which, &after, arms), shares(&chunk.which, &one.after, arms))
             };
             let mut left_out = [0.0; WIDE];
-            for sector in 0..model.count {
+            for sector in 0..arms {
                 for i in 0..WIDE {
                     let level = levels.of_sector(sector, x[i], y[i]) * (1.0 + levels.common(x[i], y[i]).1);
                     left_out[i] += level * (there[sector][i] - here[sector][i]);
@@ -73,13 +89,11 @@ pub(super) fn leave(place: Place<'_>, lists: &Lists, into: &mut [f32]) {
 
 /// Adds up the normal equations; without what pixels say that see one sector alone, where nothing changes over the window.
 pub(super) fn add(place: Place<'_>, lists: &Lists, gram: &mut Gram) {
-    let Unknowns { arms, gradient } = place.levels.unknowns;
-    if arms == CORNER.arms && gradient == CORNER.gradient { add_corner(place, lists, gram) } else { add_any(place, lists, gram) }
+    if place.levels.unknowns == CORNER { add_corner(place, lists, gram) } else { add_any(place, lists, gram) }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn add_corner(place: Place<'_>, lists: &Lists, gram: &mut Gram) {
-    // What is known when this is compiled is done side by side.
     let levels = Levels { unknowns: CORNER, ..*place.levels };
     add_all(Place { levels: &levels, ..place }, CORNER, lists, gram);
 }

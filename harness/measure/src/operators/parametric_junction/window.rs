@@ -89,6 +89,12 @@ impl<const P: usize> Laid<P> for Window<'_, P> {
         self.lists.forget();
     }
 
+    fn thin(&mut self, thin: bool) -> bool {
+        (self.lists.thin, self.patience) = (thin, EVALUATIONS);
+        self.lists.forget();
+        true
+    }
+
     fn correct(&mut self, x: &SVector<f64, P>) -> Option<()> {
         let (rough, full) = (self.model(x, Fidelity::Rough)?, self.model(x, Fidelity::Full)?);
         self.greys.read();
@@ -126,7 +132,8 @@ impl<const P: usize> Problem<P> for Window<'_, P> {
     }
 
     fn redundancy(&self) -> f64 {
-        (self.greys.side * self.greys.side - P) as f64
+        let pixels = self.greys.side * self.greys.side;
+        (if self.lists.thin { pixels.div_ceil(2) } else { pixels } - P) as f64
     }
 
     fn same(&self, omega: f64) -> f64 {
