@@ -29,6 +29,10 @@ pub(crate) trait Laid<const P: usize>: Problem<P> {
     /// It is at most a few hundredths of the contrast and hardly changes with the unknowns: a fit, a correction anew, and so on come to the same
     /// place as a fit of the whole model.
     fn correct(&mut self, x: &SVector<f64, P>) -> Option<()>;
+    /// Takes every other pixel only, or again all; `false` for a window that cannot do that.
+    fn thin(&mut self, _thin: bool) -> bool {
+        false
+    }
 }
 
 /// What was found in the window's middle pixel.
@@ -50,6 +54,12 @@ pub(crate) fn follow<const P: usize>(
     mut at: [f64; 2],
     mut x: SVector<f64, P>,
 ) -> Result<Rest<P>, Rejection> {
+    if window.thin(true) {
+        if let Some((there, near)) = approach(window, (image, half), at, x) {
+            (at, x) = (there, near);
+        }
+        window.thin(false);
+    }
     for beyond in BEYOND {
         let follow = 0.5 + beyond;
         let centre = at.map(|c| c.round() as i64);
@@ -74,6 +84,24 @@ pub(crate) fn follow<const P: usize>(
         }
     }
     Err(Rejection::NotConverged)
+}
+
+/// Near to what is found, by every other pixel: where that is (px, in the image) and the other unknowns. `None` where this does not lead there.
+fn approach<const P: usize>(
+    window: &mut impl Laid<P>,
+    (image, half): (&Image, i64),
+    at: [f64; 2],
+    mut x: SVector<f64, P>,
+) -> Option<([f64; 2], SVector<f64, P>)> {
+    let centre = at.map(|c| c.round() as i64);
+    if !image.holds(centre[0], centre[1], half) {
+        return None;
+    }
+    window.centre_on((centre[0], centre[1]));
+    (x[0], x[1]) = (at[0] - centre[0] as f64, at[1] - centre[1] as f64);
+    let found = minimise(window, x, ROUGHLY).ok()?.x;
+    let near = found[0].abs().max(found[1].abs()) <= half as f64;
+    near.then(|| ([centre[0] as f64 + found[0], centre[1] as f64 + found[1]], found))
 }
 
 /// The fit of the whole model, from a fit of the quick one on.

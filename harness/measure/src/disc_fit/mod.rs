@@ -160,6 +160,12 @@ impl<'a> Rough<'a> {
         if self.noise() < LOUD { FINE } else { NOISY }
     }
 
+    /// The picture whose derivatives led there, and whether these are those of what was found.
+    pub(crate) fn into_planes(self) -> (Planes<f32>, bool) {
+        let stands = !has_moved(&self.disc.at, &self.near.x);
+        (self.disc.planes, stands)
+    }
+
     /// The noise in units of the contrast.
     fn noise(&self) -> f64 {
         (self.near.normal.omega / self.disc.redundancy).sqrt() / self.near.x[7].abs()
@@ -168,9 +174,7 @@ impl<'a> Rough<'a> {
     /// The derivatives near by: those of the last place, unless the outline has moved since.
     fn normal(&mut self) -> Option<Normal<UNKNOWNS>> {
         let x = &self.near.x;
-        let (blur, by) = (x[BLUR].sqrt(), x - self.disc.at);
-        let moved = by.fixed_rows::<5>(0).amax().max(0.5 * by[BLUR].abs() / blur);
-        if moved > NEAR * blur { self.disc.normal(x) } else { Some(self.near.normal.clone()) }
+        if has_moved(&self.disc.at, x) { self.disc.normal(x) } else { Some(self.near.normal.clone()) }
     }
 
     /// Steps by the same derivatives, or almost; `None` where these do not lead there.
@@ -209,6 +213,12 @@ impl<'a> Rough<'a> {
         }
         None
     }
+}
+
+/// Whether an outline is so far from another that its derivatives are others.
+pub(crate) fn has_moved(from: &Unknowns, to: &Unknowns) -> bool {
+    let (blur, by) = (to[BLUR].sqrt(), to - from);
+    by.fixed_rows::<5>(0).amax().max(0.5 * by[BLUR].abs() / blur) > NEAR * blur
 }
 
 /// The fit from a start, in the window's frame.

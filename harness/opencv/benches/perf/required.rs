@@ -112,7 +112,7 @@ fn points(image: &Image, starts: &[Start]) {
             "lsm:window=15,sigma=0.7,sharpness=0",
             (&squares, &targets),
             Some(&large),
-            0.5,
+            1.0,
         ),
     ];
     for (name, text, (image, starts), rival, least) in rows {

@@ -7,7 +7,7 @@ mod sectors;
 use super::parametric_circle::MISFIT;
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 
-use crate::blurred_ellipse::{FINE, MARGIN};
+use crate::blurred_ellipse::{FINE, MARGIN, Planes};
 use crate::disc_fit::{Grey, Rough, UNKNOWNS, Unknowns, fit, start};
 use crate::ellipse::seek;
 use crate::marquardt::{Solution, covariance};
@@ -15,7 +15,7 @@ use crate::operator::Operator;
 use crate::parameter::Parameter;
 use crate::registry::{Build, Method};
 use crate::residuals::{Structure, misfit};
-use search::search;
+use search::{search, settle};
 use sectors::Window;
 
 const PARAMETERS: &[Parameter] = &[misfit(MISFIT)];
@@ -47,7 +47,7 @@ pub fn method() -> Method {
         name: "ellipse_edges",
         about: "ellipse through the points where the edge of a disc is in each sector of its outline",
         source: "calibench",
-        version: "2".into(),
+        version: "3".into(),
         parameters: PARAMETERS,
         build: Build::With(|settings| Box::new(EllipseEdges { misfit: settings.get("misfit") })),
     }
@@ -63,8 +63,8 @@ impl Operator for EllipseEdges {
         let half = (guess.ellipse.extent() + MARGIN).ceil() as i64;
         let grey = Grey::new(image, guess.ellipse.position.map(|c| c.round() as i64), half)?;
         let start = start(&grey, &guess);
-        let rough = Rough::new(&grey, &start).ok();
-        let found = rough.as_ref().and_then(|rough| near_picture(&grey, rough));
+        let rough = Rough::new(&grey, &start).ok().filter(|rough| !rough.is_quiet());
+        let found = rough.and_then(|rough| near_picture(&grey, rough));
         let (found, structure) = found.map_or_else(|| in_two_steps(&grey, &start), Ok)?;
         // The position may stand before blur and contrast do: what the best picture leaves decides.
         let doubtful = structure.is_no_noise(self.misfit);
@@ -79,13 +79,13 @@ impl Operator for EllipseEdges {
     }
 }
 
-/// With the outline parted around the ellipse of the best picture; `None` where single precision is seen, or this does not lead there.
-fn near_picture(grey: &Grey, rough: &Rough<'_>) -> Option<(Measurement, Structure)> {
-    if rough.is_quiet() {
-        return None;
-    }
-    let mut window = Window::<f32>::new(grey, rough.fineness());
-    let found = search(&mut window, rough.near.x, NEARLY).ok()?;
+/// With the outline parted around the ellipse of the best picture; `None` where this does not lead there.
+fn near_picture(grey: &Grey, rough: Rough<'_>) -> Option<(Measurement, Structure)> {
+    let (near, fineness) = (rough.near.x, rough.fineness());
+    let (planes, stands) = rough.into_planes();
+    let mut window = Window::new(grey, planes, fineness);
+    let found = settle(&mut window, near, stands, NEARLY);
+    let found = found.map_or_else(|| search(&mut window, near, NEARLY).ok(), Some)?;
     let structure = window.structure(found.x[6], found.x[7]);
     Some((conclude(grey, &found, window.redundancy()).ok()?, structure))
 }
@@ -95,7 +95,7 @@ fn near_picture(grey: &Grey, rough: &Rough<'_>) -> Option<(Measurement, Structur
 /// # Errors
 /// Those of [`search`] and [`conclude`].
 fn in_two_steps(grey: &Grey, start: &Unknowns) -> Result<(Measurement, Structure), Rejection> {
-    let mut window = Window::<f64>::new(grey, FINE);
+    let mut window = Window::<f64>::new(grey, Planes::new(grey.side), FINE);
     let rough = search(&mut window, *start, ROUGHLY)?;
     let found = search(&mut window, rough.x, NEARLY)?;
     let structure = window.structure(found.x[6], found.x[7]);

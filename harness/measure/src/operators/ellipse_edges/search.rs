@@ -6,6 +6,7 @@ use nalgebra::SVector;
 use super::conic::{self, UNKNOWNS};
 use super::sectors::{Disc, Sectored, Window};
 use crate::blurred_ellipse::{Picture, Planes, SHARPEST, is_pictured};
+use crate::disc_fit::has_moved;
 use crate::ellipse::Ellipse;
 use crate::lanes::Real;
 use crate::marquardt::descent::{Damping, Descent, Gone, descend};
@@ -21,6 +22,9 @@ const BETTER: f64 = 0.97;
 const SEARCHES: usize = 60;
 /// From so many searches on only the position need stand: a small, soft disc hardly tells its size from its blur and contrast.
 const PATIENCE: usize = 6;
+/// Steps by the same derivatives, and how much shorter, squared, each is to be.
+const STEPS: usize = 6;
+const SHORTER: f64 = 0.1;
 const DAMPING: Damping = Damping { first: 0.0, again: 1e-3, least: 5e-4, rest: 0.0, most: 1e3 };
 
 /// Centre, shape, variance of the blur, grey value outside and contrast.
@@ -49,6 +53,43 @@ where
 {
     let normal = normal(window, &start, true).ok_or(Rejection::NotConverged)?;
     descend(&mut Search { window, x: start, normal, short }, &DAMPING, SEARCHES)
+}
+
+/// Steps from a start that is near, by the derivatives there (which the window's planes hold already if `stands`) unless the outline moves on; until one moves the position by less than `short` standard
+/// deviations: it is still taken. `None` where they do not become shorter.
+pub(super) fn settle<T: Real>(window: &mut Window<T>, start: Unknowns, stands: bool, short: f64) -> Option<Solution<UNKNOWNS>>
+where
+    Planes<T>: Picture,
+    Window<T>: Sectored,
+{
+    let (mut at, mut x, mut last) = (start, start, f64::INFINITY);
+    let disc = pictured(window, &start)?;
+    if stands {
+        window.cover(&disc);
+    } else {
+        window.picture(&disc);
+    }
+    window.part(&disc.ellipse);
+    let mut normal = of_edge(window, &disc);
+    for _ in 0..STEPS {
+        let (_, step, square) = normal.step(0.0, |i, b| is_pressed(i, b, &x)).ok()?;
+        let next = bounded(&x, &(x + step));
+        let variance = normal.omega / window.redundancy();
+        let is_short = || square <= variance && normal.position_rests(&step, short * short * variance);
+        if step[0].hypot(step[1]) < STILL || is_short() {
+            return Some(Solution { x: next, normal });
+        }
+        if square > SHORTER * last {
+            return None;
+        }
+        (x, last) = (next, square);
+        if has_moved(&at, &x) {
+            (at, normal) = (x, self::normal(window, &x, false)?);
+        } else {
+            (normal.b, normal.omega) = window.gradient(&pictured(window, &x)?);
+        }
+    }
+    None
 }
 
 struct Search<'a, T> {
@@ -97,17 +138,29 @@ where
     Planes<T>: Picture,
     Window<T>: Sectored,
 {
-    let disc =
-        Disc { ellipse: Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] }, variance: x[5], ground: x[6], contrast: x[7] };
-    if !x.iter().all(|value| value.is_finite()) || !is_pictured(&disc.ellipse, disc.variance, window.side) {
-        return None;
-    }
+    let disc = pictured(window, x)?;
     window.picture(&disc);
     if part {
         window.part(&disc.ellipse);
     }
-    let (points, common) = window.edge(&disc);
-    Some(conic::normal(&points, &common))
+    Some(of_edge(window, &disc))
+}
+
+/// The normal equations of the edge of the disc that was pictured.
+fn of_edge<T: Real>(window: &mut Window<T>, disc: &Disc) -> Normal<UNKNOWNS>
+where
+    Planes<T>: Picture,
+    Window<T>: Sectored,
+{
+    let (points, common) = window.edge(disc);
+    conic::normal(&points, &common)
+}
+
+/// The disc of these unknowns; `None` where they have no meaning.
+fn pictured<T>(window: &Window<T>, x: &Unknowns) -> Option<Disc> {
+    let ellipse = Ellipse { position: [x[0], x[1]], shape: [x[2], x[3], x[4]] };
+    let sane = x.iter().all(|value| value.is_finite()) && is_pictured(&ellipse, x[BLUR], window.side);
+    sane.then_some(Disc { ellipse, variance: x[BLUR], ground: x[6], contrast: x[7] })
 }
 
 fn bounded(from: &Unknowns, to: &Unknowns) -> Unknowns {

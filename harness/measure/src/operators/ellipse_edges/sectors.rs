@@ -50,6 +50,8 @@ pub(super) struct Window<T> {
     /// 1 for pixels of the band, 0 for others.
     taken: Vec<f64>,
     sector: Vec<u16>,
+    /// How much the grey value changes by a shift of the edge, 1/px.
+    slope: Vec<f64>,
     sums: Vec<Sums>,
     planes: Planes<T>,
     fineness: Fineness,
@@ -64,20 +66,25 @@ where
     Planes<T>: Picture,
     Self: Sectored,
 {
-    /// Of these grey values, with outlines followed so closely.
-    pub(super) fn new(from: &Grey, fineness: Fineness) -> Self {
-        let (side, planes) = (from.side, Planes::new(from.side));
+    /// Of these grey values, with outlines followed so closely; pictured are these planes.
+    pub(super) fn new(from: &Grey, planes: Planes<T>, fineness: Fineness) -> Self {
+        let side = from.side;
         let mut grey = vec![0.0; side * planes.stride];
         for (line, row) in grey.chunks_exact_mut(planes.stride).zip(from.rows()) {
             line.iter_mut().zip(row).for_each(|(grey, from)| *grey = f64::from(*from));
         }
-        let (taken, sector) = (vec![0.0; grey.len()], vec![0; grey.len()]);
-        Self { side, grey, taken, sector, sums: Vec::new(), planes, fineness }
+        let (taken, sector, slope) = (vec![0.0; grey.len()], vec![0; grey.len()], vec![0.0; grey.len()]);
+        Self { side, grey, taken, sector, slope, sums: Vec::new(), planes, fineness }
     }
 
     /// Fills the planes for a disc whose position is taken from the window's first pixel.
     pub(super) fn picture(&mut self, disc: &Disc) {
         self.planes.fill(&disc.ellipse, disc.variance, self.fineness);
+    }
+
+    /// Fills the plane of what is covered alone: the derivatives are those of a disc near by.
+    pub(super) fn cover(&mut self, disc: &Disc) {
+        self.planes.cover(&disc.ellipse, disc.variance, self.fineness);
     }
 
     /// Tells every pixel whether it is taken, and its sector: by the direction in which the edge is steepest there.
@@ -113,9 +120,28 @@ where
     pub(super) fn edge(&mut self, disc: &Disc) -> (Vec<EdgePoint>, Common) {
         self.sums.iter_mut().for_each(|sums| *sums = [0.0; RESIDUAL + 1]);
         let common = self.add_up(disc);
+        (self.points().collect(), common)
+    }
+
+    /// Where the edge of a disc is that is so near to the one that was pictured that all derivatives are those of that one: the right-hand side of the normal
+    /// equations, and the sum of the squared residuals.
+    pub(super) fn gradient(&mut self, disc: &Disc) -> (SVector<f64, UNKNOWNS>, f64) {
+        self.cover(disc);
+        self.sums.iter_mut().for_each(|sums| sums[RESIDUAL] = 0.0);
+        let (common, omega) = self.shift(disc);
+        let mut b = SVector::<f64, UNKNOWNS>::zeros();
+        b.fixed_rows_mut::<3>(5).copy_from(&common);
+        for point in self.points() {
+            for row in 0..5 {
+                b[row] += point.weight * point.offset * point.moves[row];
+            }
+        }
+        (b, omega)
+    }
+
+    fn points(&self) -> impl Iterator<Item = EdgePoint> {
         let heaviest = self.sums.iter().map(|sums| sums[0]).fold(0.0, f64::max);
-        let heavy = self.sums.iter().filter(|sums| sums[0] > WEIGHTLESS * heaviest);
-        (heavy.map(edge_point).collect(), common)
+        self.sums.iter().filter(move |sums| sums[0] > WEIGHTLESS * heaviest).map(edge_point)
     }
 }
 
@@ -123,7 +149,7 @@ where
 fn edge_point(sums: &Sums) -> EdgePoint {
     let by: &[f64; 8] = sums[1..RESIDUAL].try_into().expect("as many");
     // With the normal a unit vector the edge is shifted as far as the disc would be.
-    let gain = by[0].hypot(by[1]);
+    let gain = (by[0] * by[0] + by[1] * by[1]).sqrt();
     let moves = SVector::from_fn(|i, _| by[i] / gain);
     EdgePoint { moves, offset: sums[RESIDUAL] / gain, weight: gain * gain / sums[0], common: Vector3::new(by[5], by[6], by[7]) / gain }
 }
@@ -142,6 +168,8 @@ pub(super) trait Sectored {
     fn sort(&mut self, ellipse: &Ellipse);
     /// Adds up the sectors' sums, and those of what all have in common.
     fn add_up(&mut self, disc: &Disc) -> Common;
+    /// Adds up what residuals say of the edge; by what all have in common, and the sum of their squares.
+    fn shift(&mut self, disc: &Disc) -> (Vector3<f64>, f64);
 }
 
 impl Sectored for Window<f32> {
@@ -152,6 +180,10 @@ impl Sectored for Window<f32> {
     fn add_up(&mut self, disc: &Disc) -> Common {
         add_up_quick(self, disc)
     }
+
+    fn shift(&mut self, disc: &Disc) -> (Vector3<f64>, f64) {
+        shift_quick(self, disc)
+    }
 }
 
 impl Sectored for Window<f64> {
@@ -161,6 +193,10 @@ impl Sectored for Window<f64> {
 
     fn add_up(&mut self, disc: &Disc) -> Common {
         add_up_exact(self, disc)
+    }
+
+    fn shift(&mut self, disc: &Disc) -> (Vector3<f64>, f64) {
+        shift_exact(self, disc)
     }
 }
 
@@ -180,8 +216,18 @@ fn add_up_quick(window: &mut Window<f32>, disc: &Disc) -> Common {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn shift_quick(window: &mut Window<f32>, disc: &Disc) -> (Vector3<f64>, f64) {
+    shift(window, disc)
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn add_up_exact(window: &mut Window<f64>, disc: &Disc) -> Common {
     add_up(window, disc)
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn shift_exact(window: &mut Window<f64>, disc: &Disc) -> (Vector3<f64>, f64) {
+    shift(window, disc)
 }
 
 #[inline(always)]
@@ -189,23 +235,26 @@ fn sort<T: Real>(window: &mut Window<T>, ellipse: &Ellipse) {
     let Window { side, taken, sector, sums, planes, .. } = window;
     let [a, b, c] = ellipse.shape;
     let inverse = 1.0 / (a * c - b * b);
-    let [by_x, by_y] = blurred_ellipse::CENTRE.map(|plane| &planes.values[plane]);
-    let eighth = sums.len() as f64 / 8.0;
+    let (eighth, last) = (sums.len() as f64 / 8.0, sums.len() as u16 - 1);
     for row in 0..*side {
         let v = row as f64 - ellipse.position[1];
         for from in (0..*side).step_by(LANES) {
             let at = row * planes.stride + from;
+            let (by_x, by_y) = (double(planes, blurred_ellipse::CENTRE[0], at), double(planes, blurred_ellipse::CENTRE[1], at));
+            let (mut turns, mut near) = ([0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
                 let u = (from + i) as f64 - ellipse.position[0];
                 // In the frame where the ellipse is the unit circle; then its gradient, and the distance of first order.
                 let (p, q) = ((c * u - b * v) * inverse, (a * v - b * u) * inverse);
                 let radius = (p * p + q * q).sqrt();
                 let (s, t) = ((c * p - b * q) * inverse, (a * q - b * p) * inverse);
-                let near = (radius - 1.0).abs() * radius <= BAND * (s * s + t * t).sqrt();
-                taken[at + i] = if near && from + i < *side { 1.0 } else { 0.0 };
-                let (gx, gy): (f64, f64) = (by_x[at + i].into(), by_y[at + i].into());
-                let turn = octants(a * gx + b * gy, b * gx + c * gy) * eighth;
-                sector[at + i] = (turn as i32 as u16).min(sums.len() as u16 - 1);
+                let is_near = (radius - 1.0).abs() * radius <= BAND * (s * s + t * t).sqrt();
+                near[i] = if is_near && from + i < *side { 1.0 } else { 0.0 };
+                turns[i] = octants(a * by_x[i] + b * by_y[i], b * by_x[i] + c * by_y[i]) * eighth;
+            }
+            taken[at..][..LANES].copy_from_slice(&near);
+            for (sector, turn) in sector[at..][..LANES].iter_mut().zip(&turns) {
+                *sector = (*turn as i32 as u16).min(last);
             }
         }
     }
@@ -234,7 +283,7 @@ fn double<T: Real>(planes: &Planes<T>, plane: usize, at: usize) -> Lanes {
 
 #[inline(always)]
 fn add_up<T: Real>(window: &mut Window<T>, disc: &Disc) -> Common {
-    let Window { side, grey, taken, sector, sums, planes, .. } = window;
+    let Window { side, grey, taken, sector, slope: slopes, sums, planes, .. } = window;
     let mut all = [[0.0; LANES]; 10];
     for row in 0..*side {
         for from in (0..*side).step_by(LANES) {
@@ -245,7 +294,7 @@ fn add_up<T: Real>(window: &mut Window<T>, disc: &Disc) -> Common {
             let [a, b, c] = blurred_ellipse::SHAPE;
             let by_shape = [double(planes, a, at), double(planes, b, at), double(planes, c, at)];
             let mut terms = [[0.0; LANES]; RESIDUAL + 1];
-            let mut steep = 0.0;
+            let (mut steep, mut of_edge) = (0.0, [0.0; LANES]);
             for i in 0..LANES {
                 let square = taken[i] * (by_x[i] * by_x[i] + by_y[i] * by_y[i]);
                 let (outline, contrast) = (square.sqrt(), disc.contrast);
@@ -254,6 +303,7 @@ fn add_up<T: Real>(window: &mut Window<T>, disc: &Disc) -> Common {
                 let r = grey[i] - disc.ground - contrast * covered[i];
                 let (one_v, one_c, one_r) = (taken[i] * v, taken[i] * covered[i], taken[i] * r);
                 steep += square;
+                of_edge[i] = slope;
                 terms[0][i] = slope * slope;
                 let geometric = slope * contrast;
                 terms[1][i] = geometric * by_x[i];
@@ -276,6 +326,7 @@ fn add_up<T: Real>(window: &mut Window<T>, disc: &Disc) -> Common {
                 all[8][i] += one_c * r;
                 all[9][i] += one_r * r;
             }
+            slopes[at..][..LANES].copy_from_slice(&of_edge);
             if steep > 0.0 {
                 for (i, sector) in sector[at..][..LANES].iter().enumerate() {
                     let sums = &mut sums[usize::from(*sector)];
@@ -288,4 +339,34 @@ fn add_up<T: Real>(window: &mut Window<T>, disc: &Disc) -> Common {
     }
     let [vv, v1, vc, n11, c1, cc, vr, r1, cr, omega] = all.map(|lanes| lanes.iter().sum::<f64>());
     Common { n: Matrix3::new(vv, v1, vc, v1, n11, c1, vc, c1, cc), b: Vector3::new(vr, r1, cr), omega }
+}
+
+#[inline(always)]
+fn shift<T: Real>(window: &mut Window<T>, disc: &Disc) -> (Vector3<f64>, f64) {
+    let Window { side, grey, taken, sector, slope, sums, planes, .. } = window;
+    let mut all = [[0.0; LANES]; 4];
+    for row in 0..*side {
+        for from in (0..*side).step_by(LANES) {
+            let at = row * planes.stride + from;
+            let (covered, by_variance) = (double(planes, blurred_ellipse::COVERED, at), double(planes, blurred_ellipse::VARIANCE, at));
+            let (taken, grey, slope) = (lanes::<_, LANES>(taken, at), lanes::<_, LANES>(grey, at), lanes::<_, LANES>(slope, at));
+            let (mut of_edge, mut steep) = ([0.0; LANES], 0.0);
+            for i in 0..LANES {
+                let r = taken[i] * (grey[i] - disc.ground - disc.contrast * covered[i]);
+                of_edge[i] = slope[i] * r;
+                steep += slope[i];
+                all[0][i] += r * disc.contrast * by_variance[i];
+                all[1][i] += r;
+                all[2][i] += r * covered[i];
+                all[3][i] += r * r;
+            }
+            if steep > 0.0 {
+                for (of_edge, sector) in of_edge.iter().zip(&sector[at..]) {
+                    sums[usize::from(*sector)][RESIDUAL] += of_edge;
+                }
+            }
+        }
+    }
+    let [vr, r1, cr, omega] = all.map(|lanes| lanes.iter().sum::<f64>());
+    (Vector3::new(vr, r1, cr), omega)
 }

@@ -64,6 +64,19 @@ pub(super) struct Field<T, const N: usize> {
     pub(super) across: [[T; N]; MOST],
 }
 
+/// Of `N` pixels, each of which sees one arm alone.
+pub(super) struct OneArm<T, const N: usize> {
+    /// How much of the sector after it is seen; the rest is of the one before.
+    pub(super) after: [T; N],
+    /// As in [`Field`].
+    pub(super) slopes: [T; N],
+    pub(super) turns: [T; N],
+    pub(super) across: [T; N],
+    /// The arm's direction.
+    pub(super) cos: [T; N],
+    pub(super) sin: [T; N],
+}
+
 impl<T: Real> Model<T> {
     /// `None` for arms that are not in order or nearly touch.
     pub(super) fn new(shape: &Shape, fidelity: Fidelity) -> Option<Self> {
@@ -117,6 +130,12 @@ impl<T: Real> Model<T> {
     /// How much of each sector is seen from pixels at (`x`, `y`) from the point where arms meet, px; `NEAR` if that point itself may be seen.
     #[inline(always)]
     pub(super) fn shares<const N: usize, const NEAR: bool>(&self, x: &[T; N], y: &[T; N]) -> [[T; N]; MOST] {
+        self.shares_of::<N, NEAR>(self.count, x, y)
+    }
+
+    /// The same of so many arms: all that there are.
+    #[inline(always)]
+    pub(super) fn shares_of<const N: usize, const NEAR: bool>(&self, count: usize, x: &[T; N], y: &[T; N]) -> [[T; N]; MOST] {
         let mut sum = [[T::of(0.0); N]; MOST];
         for node in &self.nodes[..self.gaussians] {
             let moved = |place: &[T; N], by: T| {
@@ -124,8 +143,8 @@ impl<T: Real> Model<T> {
                 moved.iter_mut().for_each(|place| *place += by);
                 moved
             };
-            let shares = self.field::<N, NEAR>(&moved(x, node.x), &moved(y, node.y)).shares;
-            for (sum, share) in sum[..self.count].iter_mut().zip(&shares) {
+            let shares = self.field_of::<N, NEAR>(count, &moved(x, node.x), &moved(y, node.y)).shares;
+            for (sum, share) in sum[..count].iter_mut().zip(&shares) {
                 for i in 0..N {
                     sum[i] += node.weight * share[i];
                 }
@@ -134,60 +153,101 @@ impl<T: Real> Model<T> {
         sum
     }
 
-    /// The same with its derivatives, of a Gaussian at the pixel itself.
+    /// The same with its derivatives, of a Gaussian at the pixel itself and of so many arms: all that there are.
     ///
     /// Sector k's share is the mass of the Gaussian in it. From where the pixel lies each arm takes the mass beside it, which [`Owen`] tells, from
     /// one of its sides to the other: no angle is too wide or too narrow for that.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
-    pub(super) fn field<const N: usize, const NEAR: bool>(&self, x: &[T; N], y: &[T; N]) -> Field<T, N> {
+    pub(super) fn field_of<const N: usize, const NEAR: bool>(&self, count: usize, x: &[T; N], y: &[T; N]) -> Field<T, N> {
         let zero = [[T::of(0.0); N]; MOST];
         let mut field = Field { shares: zero, slopes: zero, turns: zero, across: zero };
-        let mut along = zero;
-        for k in 0..self.count {
-            let arm = self.arms[k];
-            let (mut a, mut b) = ([T::of(0.0); N], [T::of(0.0); N]);
-            for i in 0..N {
-                a[i] = arm.x * y[i] - arm.y * x[i];
-                b[i] = arm.x * x[i] + arm.y * y[i];
-            }
-            (field.across[k], along[k]) = (a, b);
-        }
-        self.own_sector(&mut field, &along);
-        for k in 0..self.count {
-            self.add_arm::<N, NEAR>(k, &along[k], &mut field);
-        }
-        field
-    }
-
-    /// Gives each pixel to the sector in which it lies: that of the arm from which the least turn leads to it.
-    #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
-    fn own_sector<const N: usize>(&self, field: &mut Field<T, N>, along: &[[T; N]; MOST]) {
-        let mut least = [T::of(5.0); N];
-        let mut own = [T::of(0.0); N];
-        for k in 0..self.count {
-            for i in 0..N {
-                let (a, b) = (field.across[k][i], along[k][i]);
-                // Grows with the angle, from 0 to 4.
-                let cosine = b / (a.magnitude() + b.magnitude() + T::of(1e-30));
-                let turn = if a < T::of(0.0) { T::of(3.0) + cosine } else { T::of(1.0) - cosine };
-                let nearer = turn < least[i];
-                least[i] = if nearer { turn } else { least[i] };
-                own[i] = if nearer { T::of(k as f64) } else { own[i] };
-            }
-        }
-        for k in 0..self.count {
+        let (across, along) = self.places(count, x, y);
+        field.across = across;
+        let own = nearest_arm(count, &across, &along);
+        for k in 0..count {
             for i in 0..N {
                 field.shares[k][i] = if own[i] == T::of(k as f64) { T::of(1.0) } else { T::of(0.0) };
             }
         }
+        for k in 0..count {
+            self.add_arm::<N, NEAR>((k, count), &along[k], &mut field);
+        }
+        field
+    }
+
+    /// The sector in which each pixel lies.
+    #[inline(always)]
+    pub(super) fn own_sector<const N: usize>(&self, x: &[T; N], y: &[T; N]) -> [T; N] {
+        let (across, along) = self.places(self.count, x, y);
+        nearest_arm(self.count, &across, &along)
+    }
+
+    /// Where pixels lie across and along each arm.
+    #[inline(always)]
+    fn places<const N: usize>(&self, count: usize, x: &[T; N], y: &[T; N]) -> ([[T; N]; MOST], [[T; N]; MOST]) {
+        let zero = [[T::of(0.0); N]; MOST];
+        let (mut across, mut along) = (zero, zero);
+        for k in 0..count {
+            let arm = self.arms[k];
+            for i in 0..N {
+                across[k][i] = arm.x * y[i] - arm.y * x[i];
+                along[k][i] = arm.x * x[i] + arm.y * y[i];
+            }
+        }
+        (across, along)
+    }
+
+    /// Of pixels that see one arm alone, and not its end: by the number of this arm.
+    #[inline(always)]
+    pub(super) fn one_arm<const N: usize>(&self, count: usize, which: &[T; N], x: &[T; N], y: &[T; N]) -> OneArm<T, N> {
+        let zero = [T::of(0.0); N];
+        let (mut cos, mut sin, mut a, mut b, mut across) = (zero, zero, zero, zero, zero);
+        for k in 0..count {
+            let arm = self.arms[k];
+            for i in 0..N {
+                let its = which[i] == T::of(k as f64);
+                cos[i] = if its { arm.x } else { cos[i] };
+                sin[i] = if its { arm.y } else { sin[i] };
+            }
+        }
+        for i in 0..N {
+            across[i] = cos[i] * y[i] - sin[i] * x[i];
+            a[i] = across[i] * self.inverse;
+            b[i] = (cos[i] * x[i] + sin[i] * y[i]) * self.inverse;
+        }
+        let (edge, bell) = step(&a);
+        let (mut after, mut slopes, mut turns) = (zero, zero, zero);
+        for i in 0..N {
+            let dense = T::of(DENSITY) * bell[i];
+            after[i] = T::of(0.5) + T::of(0.5) * edge[i];
+            slopes[i] = dense * self.inverse;
+            turns[i] = dense * b[i];
+        }
+        OneArm { after, slopes, turns, across, cos, sin }
+    }
+
+    /// How much of the sector after their one arm is seen from pixels so far across it, at an arm of this direction; averaged over the photosite.
+    #[inline(always)]
+    pub(super) fn after_one<const N: usize>(&self, across: &[T; N], cos: &[T; N], sin: &[T; N]) -> [T; N] {
+        let mut sum = [T::of(0.0); N];
+        for node in &self.nodes[..self.gaussians] {
+            let mut a = *across;
+            for i in 0..N {
+                a[i] = (a[i] + cos[i] * node.y - sin[i] * node.x) * self.inverse;
+            }
+            let (edge, _) = step(&a);
+            for i in 0..N {
+                sum[i] += node.weight * (T::of(0.5) + T::of(0.5) * edge[i]);
+            }
+        }
+        sum
     }
 
     #[inline(always)]
-    fn add_arm<const N: usize, const NEAR: bool>(&self, k: usize, along: &[T; N], field: &mut Field<T, N>) {
+    fn add_arm<const N: usize, const NEAR: bool>(&self, (k, count): (usize, usize), along: &[T; N], field: &mut Field<T, N>) {
         let (zero, half) = (T::of(0.0), T::of(0.5));
-        let before = if k == 0 { self.count - 1 } else { k - 1 };
+        let before = if k == 0 { count - 1 } else { k - 1 };
         let (mut a, mut b) = ([zero; N], [zero; N]);
         for i in 0..N {
             a[i] = field.across[k][i] * self.inverse;
@@ -220,6 +280,25 @@ impl<T: Real> Model<T> {
         moved.iter_mut().for_each(|moved| *moved = -*moved);
         plus(&mut field.shares[before], &moved);
     }
+}
+
+/// The arm from which the least turn leads to each pixel.
+#[inline(always)]
+fn nearest_arm<T: Real, const N: usize>(count: usize, across: &[[T; N]; MOST], along: &[[T; N]; MOST]) -> [T; N] {
+    let mut least = [T::of(5.0); N];
+    let mut own = [T::of(0.0); N];
+    for k in 0..count {
+        for i in 0..N {
+            let (a, b) = (across[k][i], along[k][i]);
+            // Grows with the angle, from 0 to 4.
+            let cosine = b / (a.magnitude() + b.magnitude() + T::of(1e-30));
+            let turn = if a < T::of(0.0) { T::of(3.0) + cosine } else { T::of(1.0) - cosine };
+            let nearer = turn < least[i];
+            least[i] = if nearer { turn } else { least[i] };
+            own[i] = if nearer { T::of(k as f64) } else { own[i] };
+        }
+    }
+    own
 }
 
 #[inline(always)]

@@ -5,6 +5,7 @@ mod arms;
 mod evidence;
 mod gram;
 mod lists;
+mod rows;
 mod sectors;
 mod unknowns;
 mod window;
@@ -111,7 +112,7 @@ pub fn method() -> Method {
         name: "parametric_junction",
         about: "least-squares fit of the grey values of two, three or four sectors that meet: position, directions, blur, grey values",
         source: "calibench; cf. Rohr 1992, Deriche & Giraudon 1993",
-        version: "1".into(),
+        version: "2".into(),
         parameters: PARAMETERS,
         build: Build::With(|settings| Box::new(ParametricJunction::new(settings))),
     }

@@ -59,15 +59,19 @@ impl Circle {
         Some(Self { count, sum, all })
     }
 
-    /// What the mean of a sector takes of the sum of squares, by its first direction and how many there are.
-    fn taken(&self) -> Taken {
+    /// The cuts that leave least, and what the means of the sectors between them take of the sum of squares.
+    fn cut(&self, arms: usize) -> ([usize; MOST], f32) {
+        if arms == 2 {
+            let ([first, second], most) = cut_in_two(&self.count, &self.sum);
+            return ([first, second, 0, 0], most);
+        }
         let mut taken = [[0.0; BINS]; BINS];
         fill_taken(&self.count, &self.sum, &mut taken);
-        taken
+        cut(&taken, arms)
     }
 }
 
-/// A sector by how many directions it holds, and its first.
+/// What the mean of a sector takes of the sum of squares, by how many directions it holds, and its first.
 type Taken = [[f32; BINS]; BINS];
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
@@ -99,8 +103,30 @@ fn bins_of_row(left: f32, y: f32, into: &mut [f32]) {
     }
 }
 
+/// The two cuts that leave least, and what they take of the sum of squares.
+///
+/// Both sectors are told by the narrower: of every width all first directions are seen side by side.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn cut_in_two(count: &[f32; 2 * BINS + 1], sum: &[f32; 2 * BINS + 1]) -> ([usize; 2], f32) {
+    let (of_all, sum_of_all) = (count[BINS], sum[BINS]);
+    let (mut most, mut widths) = ([f32::NEG_INFINITY; BINS], [0.0; BINS]);
+    for width in 1..=HALF {
+        for first in 0..BINS {
+            let (n, s) = (count[first + width] - count[first], sum[first + width] - sum[first]);
+            let (rest, sum_of_rest) = (of_all - n, sum_of_all - s);
+            let value = s * s / if n > 1.0 { n } else { 1.0 } + sum_of_rest * sum_of_rest / if rest > 1.0 { rest } else { 1.0 };
+            let more = value > most[first];
+            most[first] = if more { value } else { most[first] };
+            widths[first] = if more { width as f32 } else { widths[first] };
+        }
+    }
+    let best = (1..BINS).fold(0, |best, first| if most[first] > most[best] { first } else { best });
+    let other = (best + widths[best] as usize) % BINS;
+    ([best.min(other), best.max(other)], most[best])
+}
+
 /// The cuts that leave least.
-fn cut(taken: &Taken, arms: usize) -> [usize; MOST] {
+fn cut(taken: &Taken, arms: usize) -> ([usize; MOST], f32) {
     let (mut most, mut best) = (f32::NEG_INFINITY, [0; MOST]);
     let mut see = |value: f32, cuts: &[usize]| {
         if value > most {
@@ -112,7 +138,6 @@ fn cut(taken: &Taken, arms: usize) -> [usize; MOST] {
         for j in i + 1..BINS {
             let first = taken[j - i][i];
             match arms {
-                2 => see(first + taken[BINS + i - j][j], &[i, j]),
                 3 => (j + 1..BINS).for_each(|k| see(first + taken[k - j][j] + taken[BINS + i - k][k], &[i, j, k])),
                 _ if j < HALF => {
                     let (width, rest) = (j - i, HALF + i - j);
@@ -123,20 +148,18 @@ fn cut(taken: &Taken, arms: usize) -> [usize; MOST] {
             }
         }
     }
-    best
+    (best, most)
 }
 
 /// The best sectors of `arms` arms around a position, in the window of `half` px around a pixel. Four arms are two lines. `None` where a sector has no pixel.
 pub(super) fn sectors(image: &Image, pixel: (i64, i64), half: i64, position: [f64; 2], arms: usize) -> Option<Guess> {
     let zero = image.row(pixel.1 as usize)[pixel.0 as usize];
     let circle = Circle::new(image, pixel, half, position, zero)?;
-    let taken = circle.taken();
-    let cuts = cut(&taken, arms);
-    let mut guess = Guess { position, directions: [0.0; MOST], grey: [0.0; MOST], left: circle.all };
+    let (cuts, taken) = circle.cut(arms);
+    let mut guess = Guess { position, directions: [0.0; MOST], grey: [0.0; MOST], left: circle.all - taken };
     for k in 0..arms {
         let to = if k + 1 < arms { cuts[k + 1] } else { cuts[0] + BINS };
         let (count, sum) = (circle.count[to] - circle.count[cuts[k]], circle.sum[to] - circle.sum[cuts[k]]);
-        guess.left -= taken[to - cuts[k]][cuts[k]];
         guess.grey[k] = f64::from(zero) + f64::from(sum / count);
         guess.directions[k] = cuts[k] as f64 * (std::f64::consts::TAU / BINS as f64);
     }

@@ -10,7 +10,7 @@ pub(super) const WIDEST: usize = 17;
 
 /// In this order: position x, y (px), directions (rad; of four arms those of the two lines), variance of the blur (px^2), the sectors' grey values, and how
 /// they change.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Unknowns {
     pub(super) arms: usize,
     pub(super) gradient: u8,
@@ -73,6 +73,7 @@ impl Unknowns {
 }
 
 /// The sectors' grey values and how they change over the window.
+#[derive(Clone, Copy)]
 pub(super) struct Levels {
     pub(super) unknowns: Unknowns,
     /// At the point where arms meet.

@@ -94,7 +94,7 @@ fn derivatives_are_those_of_differences() {
         let shape = shape_of(&junction);
         for at in [(0.3, 0.4), (-0.9, 0.2), (1.4, -1.1), (0.2, -2.3)] {
             let model = Model::<f64>::new(&shape, Fidelity::Rough).unwrap();
-            let field = model.field::<LANES, true>(&[at.0; LANES], &[at.1; LANES]);
+            let field = model.field_of::<LANES, true>(shape.arms, &[at.0; LANES], &[at.1; LANES]);
             let value = |shape: &Shape, at: (f64, f64)| -> f64 {
                 shares(shape, Fidelity::Rough, at, true).iter().zip(&junction.grey).map(|(s, g)| s * g).sum()
             };
@@ -126,6 +126,31 @@ fn derivatives_are_those_of_differences() {
                 (by_variance, by_blur),
             ] {
                 assert!((by - difference).abs() < 4e-6, "{widths:?} {at:?}: {by} {difference}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_arm_alone_is_seen_as_all_are() {
+    for (index, widths) in KINDS.iter().enumerate() {
+        let shape = shape_of(&junction(widths, 0.3 + 0.9 * index as f64, 0.4, [0.0; 2]));
+        let (rough, full) = (Model::<f64>::new(&shape, Fidelity::Rough).unwrap(), Model::<f64>::new(&shape, Fidelity::Full).unwrap());
+        for k in 0..shape.arms {
+            let (sin, cos) = shape.directions[k].sin_cos();
+            for across in [-1.1, -0.2, 0.0, 0.7] {
+                let (x, y) = ([11.0 * cos - across * sin; LANES], [11.0 * sin + across * cos; LANES]);
+                let one = rough.one_arm(shape.arms, &[k as f64; LANES], &x, &y);
+                let field = rough.field_of::<LANES, true>(shape.arms, &x, &y);
+                let exact = full.shares::<LANES, true>(&x, &y);
+                let found = [
+                    (one.after[0], field.shares[k][0]),
+                    (one.slopes[0], field.slopes[k][0]),
+                    (one.turns[0], field.turns[k][0]),
+                    (one.across[0], field.across[k][0]),
+                    (full.after_one(&one.across, &one.cos, &one.sin)[0], exact[k][0]),
+                ];
+                assert!(found.iter().all(|(one, of_all)| (one - of_all).abs() < 2e-6), "{widths:?}, arm {k}, {across}: {found:?}");
             }
         }
     }
