@@ -12,7 +12,7 @@ use calibench_report::preview;
 use calibench_run::views::{Prepared, is_pointed_at};
 use calibench_run::{trial_picture, trial_truth};
 use calibench_scenario::camera::LocalPlan;
-use calibench_scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, ViewsSubject};
+use calibench_scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, Transfer, ViewsSubject};
 use calibench_synth::stations::sees;
 use clap::Args;
 
@@ -66,7 +66,12 @@ fn card(scenario: &Scenario) -> String {
     }
     match &scenario.subject {
         Subject::Scene(subject) => scene(&mut text, subject),
-        Subject::Views(subject) => views(&mut text, subject),
+        Subject::Views(subject) => {
+            if let Some(plan) = &subject.transfer {
+                transfer(&mut text, plan);
+            }
+            views(&mut text, subject);
+        }
         Subject::Photographs(subject) => {
             let _ = writeln!(text, "\n[photographs]\nfolder = {}\nfiles = {:?}", quoted(&subject.folder), subject.files);
             let _ = writeln!(text, "board = \"{}x{}\"", subject.board.columns, subject.board.rows);
@@ -86,6 +91,26 @@ fn card(scenario: &Scenario) -> String {
         }
     }
     text
+}
+
+/// What is calibrated and applied.
+fn transfer(text: &mut String, plan: &Transfer) {
+    let (control, check, stations) = (plan.control.len(), plan.check.len(), plan.stations.len());
+    let _ = writeln!(
+        text,
+        "\n[transfer] # {control} control points, {check} check points, {stations} stations: what follows is where they are"
+    );
+    let _ = writeln!(text, "sigma_px = {}\nsurvey_sigma = {}\npitch = {}", plan.sigma_px, plan.survey_sigma, plan.pitch_um);
+    let _ = writeln!(text, "poses_of = \"{}\"", plan.methods[plan.poses_of].name);
+    if let Some(board) = &plan.board {
+        let _ = writeln!(text, "# {} views of a board of {} corners", board.views.count, board.field.targets.len());
+    }
+    for method in &plan.methods {
+        let _ = writeln!(text, "# method `{}`: {}", method.name, method.parameters.join(", "));
+    }
+    for name in plan.sets() {
+        let _ = writeln!(text, "# figures `{name}`");
+    }
 }
 
 fn scene(text: &mut String, subject: &SceneSubject) {

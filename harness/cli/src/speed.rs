@@ -55,6 +55,10 @@ impl SpeedCommand {
             let Subject::Views(subject) = &scenario.subject else {
                 return Err(Failure::input(format!("`{}` has no [testfield]; expected a scenario with views of one", scenario.name)));
             };
+            if subject.transfer.is_some() && methods.is_empty() {
+                let message = format!("`{}` applies calibrations and measures nothing: name methods with -m", scenario.name);
+                return Err(Failure::input(message));
+            }
             let (image, starts) = first_image(&scenario.name, scenario.seed, subject)?;
             let methods = if methods.is_empty() { &scenario.methods } else { &methods };
             all_busy(methods, starts.iter().filter_map(|start| start.kind))

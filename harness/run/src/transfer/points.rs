@@ -1,6 +1,6 @@
 //! Check points from a camera that is applied: exterior orientations, then intersections.
 
-use calibench_adjust::approximate::{Sight, fit_pose, intersect};
+use calibench_adjust::approximate::{ApproximateError, Sight, fit_pose, intersect};
 use calibench_calibrate::pose_of;
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
@@ -55,12 +55,26 @@ pub fn checked(
         }
     }
     let point = |&target: &usize| {
-        let found = intersect(&sights[target], PARALLEL, None)
-            .map_err(|error| format!("point {}: {error}", campaign.subject.field.targets[target].id))?;
+        let found = intersect(&sights[target], PARALLEL, None).map_err(|error| told(campaign, target, &error))?;
         let (at, surveyed) = (found.point, drawn.surveyed(target, conditions.survey));
         Ok(Checked { target, at, error: at - campaign.truth[target], to_survey: at - surveyed })
     };
     transfer.check.iter().filter(|target| sights[**target].len() > 1).map(point).collect()
+}
+
+/// Why a check point is not intersected, with the image that it is about.
+fn told(campaign: &Campaign<'_>, target: usize, error: &ApproximateError) -> String {
+    let name = &campaign.subject.field.targets[target].id;
+    let image = |index: usize| {
+        let mut stations =
+            campaign.transfer.stations.iter().filter(|&&station| campaign.images[station].iter().any(|seen| seen.0 == target));
+        stations.nth(index).map_or("", |&station| &campaign.subject.stations[station].name)
+    };
+    match *error {
+        ApproximateError::NotInCamera { index } => format!("point {name} in image {}: the camera pictures nothing there", image(index)),
+        ApproximateError::Behind { index } => format!("point {name}: the rays meet behind image {}", image(index)),
+        _ => format!("point {name}: {error}"),
+    }
 }
 
 fn resected(

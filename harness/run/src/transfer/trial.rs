@@ -41,10 +41,13 @@ struct Bench<'a> {
 impl Bench<'_> {
     fn case(&mut self, method: usize, set: usize, case: &Case, first: bool) -> Calibrated {
         let unit = self.campaign.subject.unit.name();
-        let mut check_failed = None;
+        let mut failed = Vec::new();
         let outcome = self.applied(method, &case.conditions).and_then(|(calibration, camera)| {
             let mut found = figures::of_camera(self.campaign, &calibration, &camera)?;
-            found.push(Figure::plain(Group::Frame, "rms", self.over_frame(&camera)?, "px"));
+            match self.over_frame(&camera) {
+                Ok(rms) => found.push(Figure::plain(Group::Frame, "rms", rms, "px")),
+                Err(why) => failed.push(format!("over the frame: {why}")),
+            }
             match self.checked(&camera, &case.conditions) {
                 Ok(points) => {
                     found.extend(figures::of_points(&points, unit));
@@ -52,10 +55,11 @@ impl Bench<'_> {
                         found.extend(figures::every_point(self.campaign, &points, unit));
                     }
                 }
-                Err(why) => check_failed = Some(why),
+                Err(why) => failed.push(why),
             }
             Ok(found)
         });
+        let check_failed = (!failed.is_empty()).then(|| failed.join("; "));
         Calibrated { method, set, outcome, check_failed }
     }
 
