@@ -114,13 +114,14 @@ impl Page {
                 self.answers.scenario(loaded);
                 self.text.push_str(&scores_section::section(loaded));
                 self.text.push('\n');
-                if let Some((overview, panels)) = scene_figures::figures(loaded) {
+                if let Some(figures) = scene_figures::figures(loaded) {
                     self.text.push_str(&format!(
-                        "The image of the first trial with truth, approximate positions and the results of one method, and 11 x 11 px around each target, enlarged 28 times, with all results:\n\n\
-                         ![Image, approximations and truth]({stem}.png)\n\n![Each target with all results]({stem}-targets.png)\n\n"
+                        "The image of the first trial with truth, approximate positions and the results of one method, and {}, with all results:\n\n\
+                         ![Image, approximations and truth]({stem}.png)\n\n![Targets with all results]({stem}-targets.png)\n\n",
+                        figures.shown
                     ));
-                    self.pictures.push((format!("{stem}.png"), overview));
-                    self.pictures.push((format!("{stem}-targets.png"), panels));
+                    self.pictures.push((format!("{stem}.png"), figures.overview));
+                    self.pictures.push((format!("{stem}-targets.png"), figures.panels));
                 }
             }
         }

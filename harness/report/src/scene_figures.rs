@@ -1,6 +1,9 @@
 //! The pictures of a rendered scene's first trial: the image with approximations and results, and a panel a target.
 
-use calibench_model::{Image, PixelPoint};
+use std::collections::{BTreeMap, BTreeSet};
+
+use calibench_model::{CornerPoint, Image, PixelPoint};
+use calibench_records::description::Subject;
 use calibench_records::results::{MethodInfo, Outcome};
 
 use super::canvas::Canvas;
@@ -13,6 +16,12 @@ const MOST_LABELS: usize = 24;
 const CROWD: usize = 120;
 /// Targets that get a panel of their own.
 const MOST_PANELS: usize = 12;
+/// The least and the most side of the window of a panel, px.
+const WINDOW: [f64; 2] = [11.0, 61.0];
+/// The side of a panel, px of the picture, about.
+const PANEL: u32 = 308;
+/// Images with a longer side, px, are reduced for an overview.
+const LARGE: usize = 1600;
 
 /// The first layers, which an overview shows.
 const OVERVIEW: usize = 3;
@@ -27,7 +36,7 @@ pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
     let marks: Vec<MarkAt> = targets.iter().map(|(_, at)| MarkAt { layer: 0, at: *at }).collect();
     let mark = if targets.len() > CROWD { Layer::truth_of_a_crowd() } else { Layer::truth() };
     let layer = Layer { name: "target".into(), ..mark };
-    overview(image, zoom_for(image), &[layer], &marks, &labelled(targets))
+    whole(image, &[layer], &marks, &labelled(targets))
 }
 
 /// The targets that are labelled. Many labels would hide each other: the first and the last say which way the names run.
@@ -36,8 +45,18 @@ fn labelled(targets: &[(String, PixelPoint)]) -> Vec<(String, PixelPoint)> {
     if targets.len() > MOST_LABELS { ends.cloned().collect() } else { targets.to_vec() }
 }
 
-/// Overview and panels, or `None` where no image was kept or nothing was measured.
-pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
+/// The pictures of a scene.
+pub struct SceneFigures {
+    /// The whole image with truth, approximations and one method.
+    pub overview: Canvas,
+    /// Windows around targets.
+    pub panels: Canvas,
+    /// What the panels show, for a sentence.
+    pub shown: String,
+}
+
+/// The pictures, or `None` where no image was kept or nothing was measured.
+pub fn figures(loaded: &Loaded) -> Option<SceneFigures> {
     let first = loaded.first.points.first()?;
     let image = loaded.image(&first.view)?;
     let targets = targets(loaded, &first.view);
@@ -56,19 +75,83 @@ pub fn figures(loaded: &Loaded) -> Option<(Canvas, Canvas)> {
     let of_all = if targets.len() > CROWD { vec![Layer::truth_of_a_crowd()] } else { layers[..OVERVIEW.min(layers.len())].to_vec() };
     let shown = of_all.len();
     let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < shown).map(|(_, mark)| mark.clone()).collect();
-    let whole = overview(&image, zoom_for(&image), &of_all, &few, &labelled(&targets));
+    let overview = whole(&image, &of_all, &few, &labelled(&targets));
+    let kinds = kinds(loaded);
+    let chosen = chosen(&targets, &kinds);
+    let side = window(&targets, &chosen);
+    let several = kinds.values().collect::<BTreeSet<_>>().len() > 1;
+    let title = |target: &str, truth: &PixelPoint| match kinds.get(target) {
+        Some(kind) if several => format!("{}: {target}", kind.replace('_', " ")),
+        _ => format!("{target}: ({}, {}) px", round(truth.x), round(truth.y)),
+    };
+    let panel = |(target, truth): &&(String, PixelPoint)| Panel {
+        title: title(target, truth),
+        image: &image,
+        centre: *truth,
+        marks: marks.iter().filter(|(id, _)| id == target).map(|(_, mark)| mark.clone()).collect(),
+    };
+    let close: Vec<Panel<'_>> = chosen.iter().map(panel).collect();
+    let zoom = (PANEL / side).max(1);
+    let which = match (several, close.len() < targets.len()) {
+        (true, true) => "a target of each kind",
+        (false, true) => "some of the targets",
+        (_, false) => "each target",
+    };
+    let shown = format!("{side} x {side} px around {which}, enlarged {zoom} times");
+    Some(SceneFigures { overview, panels: panels(&close, &layers, side, zoom, 5), shown })
+}
+
+/// The kind of each target, where the records tell it.
+fn kinds(loaded: &Loaded) -> BTreeMap<&str, &str> {
+    let Subject::Views(views) = &loaded.scenario.subject else { return BTreeMap::new() };
+    views.targets.iter().map(|target| (target.id.as_str(), target.kind.as_str())).collect()
+}
+
+/// The first target of each kind; of one kind, or where kinds are not known, some of all.
+fn chosen<'a>(targets: &'a [(String, PixelPoint)], kinds: &BTreeMap<&str, &str>) -> Vec<&'a (String, PixelPoint)> {
+    let mut seen = BTreeSet::new();
+    let first: Vec<&(String, PixelPoint)> =
+        targets.iter().filter(|(id, _)| kinds.get(id.as_str()).is_some_and(|kind| seen.insert(*kind))).collect();
+    if first.len() > 1 {
+        return first;
+    }
     // One further at each step, so that targets that come in turn all get a panel.
     let step = targets.len().div_ceil(MOST_PANELS).max(1);
-    let chosen = (0..targets.len().min(MOST_PANELS)).map(|i| &targets[(i * step + if step > 1 { i } else { 0 }) % targets.len()]);
-    let close: Vec<Panel<'_>> = chosen
-        .map(|(target, truth)| Panel {
-            title: format!("{target}: ({}, {}) px", round(truth.x), round(truth.y)),
-            image: &image,
-            centre: *truth,
-            marks: marks.iter().filter(|(id, _)| id == target).map(|(_, mark)| mark.clone()).collect(),
-        })
-        .collect();
-    Some((whole, panels(&close, &layers, 11, 28, 5)))
+    (0..targets.len().min(MOST_PANELS)).map(|i| &targets[(i * step + if step > 1 { i } else { 0 }) % targets.len()]).collect()
+}
+
+/// The side of a window that holds any of `chosen`: targets lie apart, and none is larger than its distance from the next. Odd.
+fn window(targets: &[(String, PixelPoint)], chosen: &[&(String, PixelPoint)]) -> u32 {
+    let nearest = |(id, at): &(String, PixelPoint)| {
+        let others = targets.iter().filter(|(other, _)| other != id);
+        others.map(|(_, other)| at.distance(*other)).fold(f64::INFINITY, f64::min)
+    };
+    let widest = chosen.iter().map(|target| nearest(target)).filter(|distance| distance.is_finite()).fold(0.0, f64::max);
+    (widest.clamp(WINDOW[0], WINDOW[1]) / 2.0).floor() as u32 * 2 + 1
+}
+
+/// The overview; a large image is reduced by whole pixels, and everything on it.
+fn whole(image: &Image, layers: &[Layer], marks: &[MarkAt], labels: &[(String, PixelPoint)]) -> Canvas {
+    let factor = image.width().max(image.height()).div_ceil(LARGE);
+    if factor == 1 {
+        return overview(image, zoom_for(image), layers, marks, labels);
+    }
+    let at = |at: PixelPoint| {
+        let corner = at.to_corner();
+        CornerPoint { x: corner.x / factor as f64, y: corner.y / factor as f64 }.to_pixel()
+    };
+    let marks: Vec<MarkAt> = marks.iter().map(|mark| MarkAt { at: at(mark.at), ..mark.clone() }).collect();
+    let labels: Vec<(String, PixelPoint)> = labels.iter().map(|(text, place)| (text.clone(), at(*place))).collect();
+    overview(&reduced(image, factor), 1, layers, &marks, &labels)
+}
+
+/// Means of squares of `factor` px a side; what is left over at the right and below is left out.
+fn reduced(image: &Image, factor: usize) -> Image {
+    let area = (factor * factor) as f32;
+    Image::from_fn(image.width() / factor, image.height() / factor, |x, y| {
+        let rows = (factor * y..factor * (y + 1)).flat_map(|row| (factor * x..factor * (x + 1)).map(move |column| (column, row)));
+        rows.map(|(column, row)| image.at(column, row)).sum::<f32>() / area
+    })
 }
 
 fn round(value: f64) -> f64 {

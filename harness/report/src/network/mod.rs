@@ -1,6 +1,6 @@
 //! Adjustments within a run, in a report: published tables, every method, sets of parameters, the network and its residuals.
 
-mod pictures;
+pub mod pictures;
 mod sweep;
 mod sweep_orientation;
 pub mod tables;

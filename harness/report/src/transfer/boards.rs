@@ -53,8 +53,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 /// A row a cell and method: the camera, its own opinion of c beside the truth, and check points under every case.
 pub fn table(axes: &[String], cells: &[Cell]) -> String {
     let Some(first) = cells.first() else { return String::new() };
-    let cases: Vec<&String> =
-        first.found.sets.iter().filter(|set| first.found.figures.keys().any(|(_, s, g, _)| s == *set && *g == Group::Check)).collect();
+    let is_case = |set: &&String| first.found.figures.keys().any(|(_, s, _, name)| s == *set && name == "rmse_xy");
+    let cases: Vec<&String> = first.found.sets.iter().filter(is_case).collect();
     let mut header: Vec<String> = axes.iter().map(|axis| format!("`{axis}`")).collect();
     header.extend(["method", "camera, px: median", "mean", "sigma of c, um", "true error of c, um"].map(str::to_owned));
     header.extend(cases.iter().map(|case| format!("planimetric, {case}")));

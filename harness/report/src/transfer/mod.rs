@@ -7,6 +7,7 @@ mod errors;
 #[cfg(test)]
 mod tests;
 
+use calibench_records::description::Subject;
 use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
 
@@ -14,6 +15,7 @@ use crate::LoadError;
 use crate::canvas::Pictures;
 use crate::load::Loaded;
 use crate::load::adjustments::{Summaries, load};
+use crate::network::pictures::plan::plan;
 use crate::sweep::LoadedSweep;
 
 /// The text of a scenario whose calibrations are applied elsewhere and its pictures, whose names begin with `stem`; `None` for another scenario.
@@ -22,6 +24,15 @@ pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
     let mut text = cases::table(found);
     text.push_str(&decomposition::tables(found));
     let mut pictures: Pictures = Vec::new();
+    if let Subject::Views(views) = &loaded.scenario.subject
+        && let Some(canvas) = plan(views)
+    {
+        let file = format!("{stem}-plan.png");
+        text.push_str(&format!(
+            "Where calibrations are applied: stations, control and check points:\n\n![Stations, control and check points]({file})\n\n"
+        ));
+        pictures.push((file, canvas));
+    }
     for (place, (case, canvas)) in errors::pictures(found).into_iter().enumerate() {
         let file = format!("{stem}-errors-{}.png", place + 1);
         text.push_str(&format!(
