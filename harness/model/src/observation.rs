@@ -40,6 +40,8 @@ pub struct Unknowns {
     pub shape: bool,
     /// The two grey levels.
     pub levels: bool,
+    /// The grey value of each area that the window shows, beside these two.
+    pub areas: bool,
     /// The standard deviation of the blur.
     pub blur: bool,
     /// A linear change over the window.

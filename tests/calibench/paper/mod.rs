@@ -56,7 +56,7 @@ fn the_findings_stand_in_the_reports() {
     let readme = Page::read("README.md");
     let section = readme.text.split("## What was found").nth(1).unwrap().split("\n## ").next().unwrap();
     let findings: Vec<&str> = section.split("\n- ").skip(1).collect();
-    assert_eq!(findings.len(), 7);
+    assert_eq!(findings.len(), 8);
     for finding in findings {
         let linked = readme.links().into_iter().filter(|link| finding.contains(&format!("]({link})")));
         let text: String = linked.map(|link| std::fs::read_to_string(root().join(link)).unwrap()).collect();
