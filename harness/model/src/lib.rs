@@ -16,7 +16,7 @@ pub mod testfield;
 
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
 pub use image::Image;
-pub use observation::{Gradient, Measurement, Rejection, Start, Unknowns};
+pub use observation::{Gradient, Levels, Measurement, Rejection, Start, Unknowns};
 pub use pose::Pose;
 pub use scene::{Polygon, Scene, SceneTarget};
 pub use target::{Affine, TargetKind, UnknownKind};

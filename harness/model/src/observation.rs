@@ -38,14 +38,24 @@ pub struct Measurement {
 pub struct Unknowns {
     /// The other four parameters of an affine map: directions and sizes.
     pub shape: bool,
-    /// The two grey levels.
-    pub levels: bool,
-    /// The grey value of each area that the window shows, beside these two.
-    pub areas: bool,
+    /// Grey levels.
+    pub levels: Levels,
     /// The standard deviation of the blur.
     pub blur: bool,
     /// A linear change over the window.
     pub gradient: Gradient,
+}
+
+/// The grey levels that are estimated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Levels {
+    /// None.
+    #[default]
+    None,
+    /// A dark and a light one.
+    Two,
+    /// One for each area that the window shows.
+    Areas,
 }
 
 /// What is estimated to change linearly over a window, beside the pattern itself.

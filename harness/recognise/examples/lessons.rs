@@ -14,7 +14,7 @@ const SETTINGS: [(f64, f64); 8] = [(0.6, 46.0), (0.6, 26.0), (0.7, 30.0), (0.8, 
 fn main() {
     let seeds: Vec<u64> = std::env::args().skip(1).filter_map(|seed| seed.parse().ok()).collect();
     let seeds = if seeds.is_empty() { (1001..=1005).collect() } else { seeds };
-    let lessons = [
+    let lessons = vec![
         ("all positions and settings", learn(&LEARNED, Lesson::All)),
         ("frontal, all settings", learn(&LEARNED, Lesson::Frontal)),
         ("three sharp frontal images", learn(&LEARNED[..1], Lesson::Few)),
@@ -33,8 +33,8 @@ fn main() {
     }
 }
 
-fn counted(seeds: &[u64], (blur, decibel): (f64, f64), lessons: &[(&str, ContourTable); 4]) -> [Counts; 4] {
-    let mut counts: [Counts; 4] = Default::default();
+fn counted(seeds: &[u64], (blur, decibel): (f64, f64), lessons: &[(&str, ContourTable)]) -> Vec<Counts> {
+    let mut counts = vec![Counts::default(); lessons.len()];
     for &seed in seeds {
         let setting = Setting::paper(seed, blur, decibel);
         let field = setting.testfield();

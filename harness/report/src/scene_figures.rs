@@ -18,6 +18,8 @@ const CROWD: usize = 120;
 const MOST_PANELS: usize = 12;
 /// The least and the most side of the window of a panel, px.
 const WINDOW: [f64; 2] = [11.0, 61.0];
+/// Kinds of targets that are points where edges meet.
+const POINTS: [&str; 3] = ["chess_corner", "corner", "junction"];
 /// The side of a panel, px of the picture, about.
 const PANEL: u32 = 308;
 /// Images with a longer side, px, are reduced for an overview.
@@ -78,7 +80,7 @@ pub fn figures(loaded: &Loaded) -> Option<SceneFigures> {
     let overview = whole(&image, &of_all, &few, &labelled(&targets));
     let kinds = kinds(loaded);
     let chosen = chosen(&targets, &kinds);
-    let side = window(&targets, &chosen);
+    let side = window(&targets, &chosen, &kinds);
     let several = kinds.values().collect::<BTreeSet<_>>().len() > 1;
     let title = |target: &str, truth: &PixelPoint| match kinds.get(target) {
         Some(kind) if several => format!("{}: {target}", kind.replace('_', " ")),
@@ -116,17 +118,27 @@ fn chosen<'a>(targets: &'a [(String, PixelPoint)], kinds: &BTreeMap<&str, &str>)
         return first;
     }
     // One further at each step, so that targets that come in turn all get a panel.
-    let step = targets.len().div_ceil(MOST_PANELS).max(1);
-    (0..targets.len().min(MOST_PANELS)).map(|i| &targets[(i * step + if step > 1 { i } else { 0 }) % targets.len()]).collect()
+    let (all, count) = (targets.len(), targets.len().min(MOST_PANELS));
+    let mut taken = BTreeSet::new();
+    for i in 0..count {
+        let mut place = (i * all / count + if all > count { i } else { 0 }) % all;
+        while !taken.insert(place) {
+            place = (place + 1) % all;
+        }
+    }
+    taken.into_iter().map(|place| &targets[place]).collect()
 }
 
-/// The side of a window that holds any of `chosen`: targets lie apart, and none is larger than its distance from the next. Odd.
-fn window(targets: &[(String, PixelPoint)], chosen: &[&(String, PixelPoint)]) -> u32 {
+/// The side of a window that holds any of `chosen`: targets lie apart, and none is larger than its distance from the next. Odd. A point where edges meet has
+/// no size.
+fn window(targets: &[(String, PixelPoint)], chosen: &[&(String, PixelPoint)], kinds: &BTreeMap<&str, &str>) -> u32 {
+    let sized = |id: &str| kinds.get(id).is_some_and(|kind| !POINTS.contains(kind));
     let nearest = |(id, at): &(String, PixelPoint)| {
         let others = targets.iter().filter(|(other, _)| other != id);
         others.map(|(_, other)| at.distance(*other)).fold(f64::INFINITY, f64::min)
     };
-    let widest = chosen.iter().map(|target| nearest(target)).filter(|distance| distance.is_finite()).fold(0.0, f64::max);
+    let widest =
+        chosen.iter().filter(|(id, _)| sized(id)).map(|target| nearest(target)).filter(|distance| distance.is_finite()).fold(0.0, f64::max);
     (widest.clamp(WINDOW[0], WINDOW[1]) / 2.0).floor() as u32 * 2 + 1
 }
 

@@ -4,7 +4,7 @@
 //! has a smaller covariance than `(J^T S^-1 J)^-1`. What an operator has to estimate beside the position (directions and sizes, grey levels, sharpness)
 //! widens the bound of the position.
 
-use calibench_model::{Covariance, Gradient, PixelPoint, Unknowns};
+use calibench_model::{Covariance, Gradient, Levels, PixelPoint, Unknowns};
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
@@ -153,7 +153,7 @@ impl Window<'_> {
         columns[4] = vec![ramp(|i, side| i % side), ramp(|i, side| i / side)];
         // As operators take it: grey values are zero without light. A black level would be one more plane.
         columns[5] = columns[4].iter().map(|ramp| ramp.iter().zip(grey).map(|(d, grey)| d * grey).collect()).collect();
-        if wanted(|set| set.areas) {
+        if wanted(|set| set.levels == Levels::Areas) {
             columns[AREAS] = self.areas(mean)?;
         }
         Some(columns)
@@ -193,7 +193,7 @@ fn slope(high: &[f64], low: &[f64], step: f64, mean: &impl Fn(f64) -> Option<f64
 fn chosen(groups: [usize; 7], set: Unknowns) -> (Vec<usize>, Vec<usize>) {
     let added = matches!(set.gradient, Gradient::Added | Gradient::Both);
     let light = matches!(set.gradient, Gradient::Light | Gradient::Both);
-    let members = [true, set.shape, set.blur, set.levels, added, light, set.areas];
+    let members = [true, set.shape, set.blur, set.levels != Levels::None, added, light, set.levels == Levels::Areas];
     let mut first = 0;
     let (mut chosen, mut shared) = (Vec::new(), Vec::new());
     for (group, (count, member)) in groups.into_iter().zip(members).enumerate() {

@@ -76,7 +76,7 @@ fn gradients_take_what_they_take_of_closed_forms() {
         let product = |i: usize, j: usize| columns[unknowns[i]].iter().zip(&columns[unknowns[j]]).map(|(a, b)| a * b).sum::<f64>();
         let inverse = DMatrix::from_fn(unknowns.len(), unknowns.len(), product).try_inverse().unwrap();
         let expected = (inverse[(0, 0)] + inverse[(1, 1)]) * SIGMA * SIGMA;
-        let found = bound(&chess(), 0.8, 15, Unknowns { levels: true, blur: true, gradient, ..Unknowns::default() }).unwrap();
+        let found = bound(&chess(), 0.8, 15, Unknowns { levels: Levels::Two, blur: true, gradient, ..Unknowns::default() }).unwrap();
         let ratio = (found.sxx + found.syy) / expected;
         assert!((ratio - 1.0).abs() < 2e-3, "{gradient:?}: {ratio}");
     }
@@ -114,7 +114,7 @@ fn the_grey_value_of_each_area_takes_what_it_takes() {
     let product = |i: usize, j: usize| columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum::<f64>();
     let inverse = DMatrix::from_fn(5, 5, product).try_inverse().unwrap();
     let expected = (inverse[(0, 0)] + inverse[(1, 1)]) * SIGMA * SIGMA;
-    let (two, each) = (Unknowns { levels: true, ..Unknowns::default() }, Unknowns { levels: true, areas: true, ..Unknowns::default() });
+    let (two, each) = (Unknowns { levels: Levels::Two, ..Unknowns::default() }, Unknowns { levels: Levels::Areas, ..Unknowns::default() });
     let trace = |picture: &Picture, set| bound(picture, 0.8, 15, set).map(|c| c.sxx + c.syy).unwrap();
     let junction = picture(greys, [0.0; 2]);
     assert!((trace(&junction, each) / expected - 1.0).abs() < 5e-3, "{} {expected}", trace(&junction, each));
@@ -127,7 +127,7 @@ fn unknowns_widen_the_bound_and_never_narrow_it() {
     let trace = |unknowns| bound(&chess(), 0.7, 15, unknowns).map(|c| c.sxx + c.syy).unwrap();
     let alone = trace(Unknowns::default());
     let shape = trace(Unknowns { shape: true, ..Unknowns::default() });
-    let all = Unknowns { shape: true, levels: true, blur: true, areas: false, gradient: Gradient::Both };
+    let all = Unknowns { shape: true, levels: Levels::Two, blur: true, gradient: Gradient::Both };
     assert!(alone <= shape && shape <= trace(all), "{alone} {shape} {}", trace(all));
     let even = trace(Unknowns { gradient: Gradient::None, ..all });
     for gradient in [Gradient::Added, Gradient::Light] {
@@ -138,7 +138,7 @@ fn unknowns_widen_the_bound_and_never_narrow_it() {
     // A triangle is not: up to sqrt 2 wider.
     let triangle = scene(&[&[(20.2, 12.9), (26.26, 23.4), (14.14, 23.4)]]);
     let trace = |unknowns| bound(&triangle, 0.7, 21, unknowns).map(|c| c.sxx + c.syy).unwrap();
-    let ratio = (trace(Unknowns { shape: true, levels: true, ..Unknowns::default() }) / trace(Unknowns::default())).sqrt();
+    let ratio = (trace(Unknowns { shape: true, levels: Levels::Two, ..Unknowns::default() }) / trace(Unknowns::default())).sqrt();
     assert!(ratio > 1.02 && ratio < 1.6, "{ratio}");
 }
 
@@ -151,7 +151,7 @@ fn the_rotation_of_a_disc_takes_nothing() {
     let vertices: Vec<_> = (0..512).map(vertex).collect();
     let disc = scene(&[&vertices]);
     let trace = |unknowns| bound(&disc, 0.7, 21, unknowns).map(|c| c.sxx + c.syy).unwrap();
-    let ratio = trace(Unknowns { shape: true, levels: true, blur: true, ..Unknowns::default() }) / trace(Unknowns::default());
+    let ratio = trace(Unknowns { shape: true, levels: Levels::Two, blur: true, ..Unknowns::default() }) / trace(Unknowns::default());
     assert!((1.0..1.02).contains(&ratio), "{ratio}");
 }
 
@@ -161,7 +161,7 @@ fn what_is_far_left_of_the_window_takes_nothing() {
     let square = |x: f64, y: f64| vec![(x, y), (x + 2.0, y), (x + 2.0, y + 2.5), (x, y + 2.5)];
     let target = square(18.2, 18.4);
     let others: Vec<_> = (0..5).map(|i| square(-1.0 + f64::from(i % 2), 3.0 * f64::from(i) + 12.1)).collect();
-    let unknowns = Unknowns { shape: true, levels: true, blur: true, ..Unknowns::default() };
+    let unknowns = Unknowns { shape: true, levels: Levels::Two, blur: true, ..Unknowns::default() };
     let alone = bound(&scene(&[&target]), 0.6, 11, unknowns).unwrap();
     let crowd: Vec<&[(f64, f64)]> = others.iter().chain([&target]).map(Vec::as_slice).collect();
     let crowded = bound(&scene(&crowd), 0.6, 11, unknowns).unwrap();
@@ -191,7 +191,7 @@ fn an_edge_or_nothing_has_no_bound() {
 /// a trace, and that is to take nothing, however soft it is.
 #[test]
 fn a_corner_has_about_one_bound_at_any_roll() {
-    let all = Unknowns { shape: true, levels: true, blur: true, ..Unknowns::default() };
+    let all = Unknowns { shape: true, levels: Levels::Two, blur: true, ..Unknowns::default() };
     for blur in [0.7, 1.5, 3.0] {
         let sigma = |roll: f64| {
             let (sin, cos) = roll.to_radians().sin_cos();

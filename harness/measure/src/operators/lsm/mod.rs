@@ -216,7 +216,7 @@ impl Operator for Lsm {
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, blur: self.limits.blur, ..Default::default() }
+        calibench_model::Unknowns { shape: true, levels: calibench_model::Levels::Two, blur: self.limits.blur, ..Default::default() }
     }
 }
 

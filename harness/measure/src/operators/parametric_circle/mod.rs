@@ -77,7 +77,7 @@ impl Operator for ParametricCircle {
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, blur: true, ..Default::default() }
+        calibench_model::Unknowns { shape: true, levels: calibench_model::Levels::Two, blur: true, ..Default::default() }
     }
 }
 

@@ -195,7 +195,7 @@ impl Operator for ParametricCorner {
     }
 
     fn unknowns(&self) -> Unknowns {
-        Unknowns { shape: true, levels: true, areas: false, blur: true, gradient: estimated(self.gradient) }
+        Unknowns { shape: true, levels: calibench_model::Levels::Two, blur: true, gradient: estimated(self.gradient) }
     }
 }
 

@@ -243,7 +243,7 @@ impl Operator for ParametricJunction {
     }
 
     fn unknowns(&self) -> calibench_model::Unknowns {
-        calibench_model::Unknowns { shape: true, levels: true, areas: true, blur: true, gradient: estimated(self.gradient) }
+        calibench_model::Unknowns { shape: true, levels: calibench_model::Levels::Areas, blur: true, gradient: estimated(self.gradient) }
     }
 }
 
