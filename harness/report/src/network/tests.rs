@@ -121,7 +121,7 @@ fn a_cell_of_a_sweep_has_sigmas_true_errors_and_check_points() {
     let text = super::sweep_orientation::table("depth", &[("7".to_owned(), &found)]);
     let row = text.lines().find(|line| line.starts_with("| 7 ")).unwrap();
     let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-    let half = 0.5 * 3.182446 * 2.061553 / 2.0 / 1.5;
+    let half = 0.5 * 3.182_446 * 2.061_553 / 2.0 / 1.5;
     assert_eq!(cells, ["", "7", "25.0", &format!("1.5 ± {half:.1}"), "", "0.0035 ± 0.0016", "", "0", ""]);
     assert!(text.contains("set `c`") && text.contains("| `depth` | sigma of c | true error of c |"), "{text}");
 }

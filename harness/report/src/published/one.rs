@@ -6,8 +6,12 @@ use super::{Cell, Printed, Table, Tally, Verdict};
 use crate::load::Loaded;
 use crate::markdown::{MarkdownTable, fixed, fraction};
 
-/// The table beside the first trial, one row of print a row.
-pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
+/// What is told where a model predicts.
+const CONSISTENT: &str = " Where ours is predicted by a model that was fitted to other printed figures, a cell is *consistent* within what its table allows for the model's own \
+                          misfit, and *inconsistent* beyond.";
+
+/// The table beside the first trial, one row of print a row; `ours` holds our figure for every cell or none.
+pub fn comparison(table: &Table, ours: &[Option<f64>]) -> (String, Tally) {
     let mut header = vec!["row".to_owned()];
     for column in &table.columns {
         header.extend([format!("{column} printed"), format!("{column} ours")]);
@@ -19,11 +23,11 @@ pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
         let mut cells = vec![label.to_owned()];
         let (mut verdicts, mut misprints) = (Vec::new(), String::new());
         for column in &table.columns {
-            let Some(cell) = table.cells.iter().find(|cell| cell.row == label && cell.column == *column) else {
+            let of = |(cell, _): &(&Cell, &Option<f64>)| cell.row == label && cell.column == *column;
+            let Some((cell, &ours)) = table.cells.iter().zip(ours).find(of) else {
                 cells.extend([String::new(), String::new()]);
                 continue;
             };
-            let ours = figure(table, main, cell);
             let verdict = cell.verdict(ours);
             tally.count(&verdict);
             cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);
@@ -37,9 +41,10 @@ pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
     }
     let text = format!(
         "Printed beside ours (`{}`, `{}`). A coordinate *reproduces* when ours is within half a unit of the last printed digit; what the paper computed from rounded \
-         figures, within one unit. A row has the verdict of its gravest cell.\n\n{}\n{}{}\n\n",
+         figures, within one unit.{} A row has the verdict of its gravest cell.\n\n{}\n{}{}\n\n",
         table.method,
         table.scenario,
+        if tally.consistent + tally.inconsistent > 0 { CONSISTENT } else { "" },
         rows.render(),
         notes.render(),
         tally.sentence()
