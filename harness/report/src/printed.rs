@@ -102,3 +102,60 @@ fn failures(found: &Summaries) -> String {
     let lines: String = found.failed.iter().map(|((_, set, _), (_, why))| format!("- `{set}` has no predictions: {why}.\n")).collect();
     if lines.is_empty() { lines } else { lines + "\n" }
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_records::adjustments::Numbers;
+
+    use super::*;
+    use crate::load::adjustments::Summary;
+
+    /// Cameras `a` (c 1, RMSE 2) and `b` (c 3), a network of two stations.
+    fn summaries() -> Summaries {
+        let mut found = Summaries { methods: vec!["print".into()], trials: 1, ..Summaries::default() };
+        let mut add = |set: &str, group: Group, name: &str, value: f64| {
+            let first = Some(Numbers { value, sigma: None, error: None });
+            found.figures.insert(("print".into(), set.into(), group, name.into()), Summary { first, ..Summary::default() });
+        };
+        add("a", Group::Network, "c, mm", 1.0);
+        add("b", Group::Network, "c, mm", 3.0);
+        add("a", Group::Check, "RMSE X, m", 2.0);
+        add("a", Group::Object, "V1/X", 7.0);
+        add("net", Group::Eop, "height, m", 5.0);
+        for (station, height) in [("1", 10.0), ("2", 20.0)] {
+            add("net", Group::Eop, &format!("{station}/X"), height);
+            add("net", Group::Eop, &format!("{station}/Y"), 0.0);
+            add("net", Group::Eop, &format!("{station}/Z"), height);
+        }
+        found
+    }
+
+    /// Cells between bars, without blanks.
+    fn cells(table: &str) -> Vec<Vec<String>> {
+        let rows = table.lines().filter(|line| !line.contains("--"));
+        rows.map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
+    }
+
+    #[test]
+    fn figures_stand_by_set_and_what_a_set_lacks_is_empty() {
+        let sets = ["a".to_owned(), "b".to_owned()];
+        let found = cells(&by_figure(&summaries(), &sets, &[Group::Network, Group::Check]));
+        assert_eq!(found, [["figure", "a", "b"], ["c, mm", "1.00", "3.00"], ["RMSE X, m, of printed errors", "2.00", ""]]);
+        assert_eq!(cells(&by_set(&summaries(), &sets)), [["camera", "c, mm"], ["a", "1.00"], ["b", "3.00"]]);
+    }
+
+    #[test]
+    fn a_network_is_its_numbers_and_its_stations() {
+        assert_eq!(cells(&numbers(&summaries(), "net")), [["number", "value"], ["height, m", "5.00"]]);
+        let stations = cells(&stations(&summaries(), "net"));
+        assert_eq!(stations, [["station", "X", "Y", "Z"], ["1", "10.00", "0.00", "10.00"], ["2", "20.00", "0.00", "20.00"]]);
+    }
+
+    #[test]
+    fn what_has_no_predictions_is_said_with_its_reason() {
+        let mut found = summaries();
+        assert_eq!(failures(&found), "");
+        found.failed.insert(("print".into(), "a".into(), Group::Check), (1, "rays are parallel".into()));
+        assert_eq!(failures(&found), "- `a` has no predictions: rays are parallel.\n\n");
+    }
+}

@@ -11,7 +11,9 @@ const CONSISTENT: &str = " Where ours is predicted by a model that was fitted to
                           misfit, and *inconsistent* beyond.";
 
 /// The table beside the first trial, one row of print a row; `ours` holds our figure for every cell or none.
-pub fn comparison(table: &Table, ours: &[Option<f64>]) -> (String, Tally) {
+///
+/// Where `named`, a verdict names the columns that it holds for, unless it holds for all of its row.
+pub fn comparison(table: &Table, ours: &[Option<f64>], named: bool) -> (String, Tally) {
     let mut header = vec!["row".to_owned()];
     for column in &table.columns {
         header.extend([format!("{column} printed"), format!("{column} ours")]);
@@ -31,12 +33,14 @@ pub fn comparison(table: &Table, ours: &[Option<f64>]) -> (String, Tally) {
             let verdict = cell.verdict(ours);
             tally.count(&verdict);
             cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);
-            verdicts.push(verdict);
+            verdicts.push((column.as_str(), verdict));
             if let Some(misprint) = &cell.misprint {
                 misprints.push_str(&notes.mark(&format!("misprint in {column}: {misprint}")));
             }
         }
-        cells.push(gravest(verdicts, &mut notes) + &misprints);
+        let columns = if named { columns_of_gravest(&verdicts) } else { String::new() };
+        let verdicts = verdicts.into_iter().map(|(_, verdict)| verdict).collect();
+        cells.push(gravest(verdicts, &mut notes) + &columns + &misprints);
         rows.row(cells);
     }
     let text = format!(
@@ -56,6 +60,13 @@ pub fn comparison(table: &Table, ours: &[Option<f64>]) -> (String, Tally) {
 pub fn figure(table: &Table, main: &Loaded, cell: &Cell) -> Option<f64> {
     let method = main.method(cell.method.as_deref().unwrap_or(&table.method))?;
     of_points(&main.first.points, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus)
+}
+
+/// The columns of the gravest verdicts of a row, as in ": x, y"; nothing where all are as grave.
+fn columns_of_gravest(verdicts: &[(&str, Verdict)]) -> String {
+    let gravest = verdicts.iter().map(|(_, verdict)| verdict.gravity()).max();
+    let of: Vec<&str> = verdicts.iter().filter(|(_, verdict)| Some(verdict.gravity()) == gravest).map(|(column, _)| *column).collect();
+    if of.len() == verdicts.len() { String::new() } else { format!(": {}", of.join(", ")) }
 }
 
 /// The gravest of some cells' verdicts in words; its reason goes below the table.
@@ -88,6 +99,14 @@ mod tests {
         assert_eq!(of(&[Reproduces, Differs, Reproduces]), "differs");
         assert_eq!(of(&[why(), Differs, Reproduces]), "differs");
         assert_eq!(of(&[Reproduces, why()]), "not comparable (a)");
+    }
+
+    #[test]
+    fn a_row_names_the_columns_of_its_gravest_verdicts_unless_all_are_as_grave() {
+        use Verdict::{Consistent, Differs, Inconsistent, Reproduces};
+        let of = |verdicts: &[(&str, Verdict)]| columns_of_gravest(verdicts);
+        assert_eq!(of(&[("x", Reproduces), ("y", Differs), ("z", Inconsistent)]), ": y, z");
+        assert_eq!(of(&[("x", Reproduces), ("y", Consistent)]) + &of(&[("x", Differs)]) + &of(&[]), "");
     }
 
     #[test]

@@ -53,7 +53,7 @@ fn points(table: &Table, main: &Loaded) -> Result<Compared, LoadError> {
         return Ok(Err(no_method(table)));
     }
     if main.scores.trials < 2 {
-        return Ok(Ok(one::comparison(table, &of_one(table, main))));
+        return Ok(Ok(one::comparison(table, &of_one(table, main), false)));
     }
     Ok(Ok(many::comparison(table, &many::of_all_trials(table, main)?, main.scores.trials)))
 }
@@ -63,7 +63,7 @@ fn adjustments(table: &Table, main: &Loaded) -> Compared {
         return Err(no_adjustments(table));
     };
     if is_of_print(main) {
-        return Ok(one::comparison(table, &first(&of_adjustments(table, main, found))));
+        return Ok(one::comparison(table, &first(&of_adjustments(table, main, found)), true));
     }
     Ok(many::comparison(table, &of_adjustments(table, main, found), found.trials))
 }

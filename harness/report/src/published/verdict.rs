@@ -226,6 +226,23 @@ mod tests {
         assert_eq!(told.verdict_within(2.0, 1.0), Verdict::NotComparable("another axis".into()));
     }
 
+    /// A model's prediction is consistent within what the cell allows, whatever the digits; a count is met or not.
+    #[test]
+    fn predictions_are_consistent_and_counts_are_met() {
+        let predicted = |ours| Cell { consistent_within: Some(0.25), ..cell("1.5", Metric::Figure) }.verdict(Some(ours));
+        assert_eq!(
+            [1.25, 1.75, 1.8, 1.2].map(predicted),
+            [Verdict::Consistent, Verdict::Consistent, Verdict::Inconsistent, Verdict::Inconsistent]
+        );
+        let counted = |ours| Cell { units: Some(0.5), ..cell("4", Metric::Figure) }.verdict(Some(ours));
+        assert_eq!([4.0, 3.6, 5.0].map(counted), [Verdict::Reproduces, Verdict::Reproduces, Verdict::Differs]);
+        assert_eq!(cell("4", Metric::Figure).verdict(Some(5.0)), Verdict::Reproduces, "computed from rounded figures");
+        let mut tally = Tally::default();
+        [1.5, 2.0, 2.0].into_iter().for_each(|ours| tally.count(&predicted(ours)));
+        assert_eq!(tally.sentence(), "Of 3 cells, 0 reproduce, 0 differ, 1 are consistent, 2 inconsistent and 0 are not comparable.");
+        assert_eq!((Verdict::Consistent.gravity(), Verdict::Inconsistent.gravity()), (0, 2));
+    }
+
     #[test]
     fn cells_are_tallied_by_verdict() {
         let mut tally = Tally::default();

@@ -4,18 +4,16 @@ use nalgebra::{SMatrix, SVector};
 
 /// Steps at most.
 const STEPS: usize = 200;
-/// A step that lowers the sum of squares by less, as a part of it, is the last.
-const SMALL: f64 = 1e-7;
 /// Damping at first, and at most.
 const DAMPING: (f64, f64) = (1e-3, 1e12);
 
 /// The least sum of squares of `residuals` from `start` downhill, with the place of it: Levenberg and Marquardt, derivatives by forward differences of
-/// `difference`.
+/// `difference`. A step that lowers the sum of squares by less than `small`, as a part of it, is the last.
 ///
 /// `residuals` are as many everywhere, `None` where there are none. `None` where there are none at the start.
 pub fn least_squares<const N: usize>(
     start: [f64; N],
-    difference: f64,
+    (difference, small): (f64, f64),
     residuals: impl Fn(&[f64; N]) -> Option<Vec<f64>>,
 ) -> Option<([f64; N], f64)> {
     let squares = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
@@ -41,7 +39,7 @@ pub fn least_squares<const N: usize>(
                 _ => damping *= 5.0,
             }
         }
-        if before - cost <= SMALL * before {
+        if before - cost <= small * before {
             break;
         }
     }

@@ -5,6 +5,8 @@ mod errors;
 mod fit;
 mod network;
 mod predicted;
+#[cfg(test)]
+mod tests;
 
 use calibench_records::results::{Calibrated, Figure, Group, Trial};
 use calibench_scenario::Printed;

@@ -16,8 +16,12 @@ use super::{figure, with_unit};
 
 /// Length of a difference, as a part of the distance.
 const DIFFERENCE: f64 = 1e-6;
+/// Every start ends where a step lowers the sum of squares by less, as a part of it, and the best of them is then followed further.
+const ROUGH: f64 = 1e-3;
+/// Where the best ends.
+const FINE: f64 = 1e-9;
 /// Starts whose misfit is within this factor of the least one end at the same network.
-const SAME: f64 = 1.001;
+const SAME: f64 = 1.01;
 
 /// A fitted network.
 struct Fitted {
@@ -129,8 +133,9 @@ fn fit(printed: &Printed, plan: &NetworkPlan, site: &Site, cameras: &[Photogramm
     let truth = from_naive(&cameras[plan.truth], tool, Tangential::Converted).map_err(|why| why.to_string())?;
     let residuals = |numbers: &[f64; NUMBERS]| residuals(printed, plan, site, (cameras, &truth), numbers);
     let starts: Vec<[f64; NUMBERS]> = starts(plan);
-    let found: Vec<_> = starts.par_iter().map(|start| least_squares(*start, DIFFERENCE * start[0], residuals)).collect();
+    let found: Vec<_> = starts.par_iter().map(|start| least_squares(*start, (DIFFERENCE * start[0], ROUGH), residuals)).collect();
     let best = found.iter().flatten().min_by(|a, b| a.1.total_cmp(&b.1)).ok_or("no start sees every point from two stations")?;
+    let best = least_squares(best.0, (DIFFERENCE * best.0[0], FINE), residuals).ok_or("the least misfit is none")?;
     let same = found.iter().flatten().filter(|(_, cost)| cost.sqrt() <= SAME * best.1.sqrt()).count();
     let poses = site.poses(&best.0).ok_or("a station looks along the vertical")?;
     let count = (3 * printed.points.len() * plan.fitted.len()) as f64;

@@ -7,6 +7,8 @@ use nalgebra::{Point3, Vector3};
 use crate::Unit;
 
 mod read;
+#[cfg(test)]
+mod tests;
 pub mod wire;
 
 pub use read::read;

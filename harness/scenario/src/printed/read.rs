@@ -38,9 +38,10 @@ pub fn read(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Pri
         return None;
     }
     let mut point_names = Names::default();
+    let listed = points.len();
     let points: Vec<_> = points.into_iter().filter_map(|section| point(section, &cameras, &mut point_names, problems)).collect();
     let variants: Vec<_> = variants.into_iter().filter_map(|section| variant(section, &cameras, &mut names, problems)).collect();
-    let network = network.map(|section| network_plan(section, &cameras, &points, problems));
+    let network = network.map(|section| network_plan(section, &cameras, listed, problems));
     if let (None, Some(stray)) = (&network, variants.iter().find(|variant| variant.refit)) {
         let message = format!("`{}` is to be fitted again, and there is no network: expected [printed.network]", stray.name);
         problems.push(Problem::new(span, message));
@@ -172,7 +173,7 @@ fn variant(section: Section<'_>, cameras: &[Column], names: &mut Names, problems
     Some(Variant { name, of, camera, refit: wire.refit.unwrap_or(false) })
 }
 
-fn network_plan(section: Section<'_>, cameras: &[Column], points: &[CheckPoint], problems: &mut Vec<Problem>) -> Option<NetworkPlan> {
+fn network_plan(section: Section<'_>, cameras: &[Column], points: usize, problems: &mut Vec<Problem>) -> Option<NetworkPlan> {
     let (before, span) = (problems.len(), section.span.clone());
     let wire: NetworkWire = section.read(&[], problems)?;
     let truth = place(&wire.truth, cameras, problems);
@@ -180,8 +181,8 @@ fn network_plan(section: Section<'_>, cameras: &[Column], points: &[CheckPoint],
     if wire.fitted.get_ref().is_empty() {
         problems.push(Problem::new(wire.fitted.span(), "`fitted` is empty: expected cameras whose errors determine the network"));
     }
-    if points.len() < 3 {
-        problems.push(Problem::new(span, format!("a network takes 3 check points at least, found {}", points.len())));
+    if points < 3 {
+        problems.push(Problem::new(span, format!("a network takes 3 check points at least, found {points}")));
     }
     one_to_one(truth.map(|truth| &cameras[truth]), wire.truth.span(), problems);
     let from = unit(&wire.from, "from", problems);
