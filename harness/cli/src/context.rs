@@ -119,7 +119,7 @@ impl Context<'_> {
         let file = Some(PathBuf::from(name)).filter(|path| is_toml(path));
         let camera = match &scenario.subject {
             Subject::Views(views) => views.camera_file.clone(),
-            Subject::Scene(_) | Subject::Photographs(_) => None,
+            Subject::Scene(_) | Subject::Photographs(_) | Subject::Printed(_) => None,
         };
         let photographs = match (&scenario.subject, self.data()) {
             (Subject::Photographs(found), Ok(data)) => found.files.iter().map(|file| data.join(&found.folder).join(file)).collect(),

@@ -114,7 +114,7 @@ impl Detect {
 fn views(scenario: &Scenario) -> Result<&ViewsSubject, Failure> {
     match &scenario.subject {
         Subject::Views(subject) => Ok(subject),
-        Subject::Scene(_) | Subject::Photographs(_) => Err(Failure::input(format!(
+        Subject::Scene(_) | Subject::Photographs(_) | Subject::Printed(_) => Err(Failure::input(format!(
             "--testfield: `{}` has no testfield; expected a scenario with [testfield] kind = \"coded\"",
             scenario.name
         ))),

@@ -210,6 +210,7 @@ pub fn folder_of(records: &Path, scenario: &Scenario, cell: Option<usize>) -> Pa
 pub fn unit(scenario: &Scenario) -> &'static str {
     match &scenario.subject {
         Subject::Views(views) => views.unit.name(),
+        Subject::Printed(printed) => printed.unit.name(),
         Subject::Scene(_) | Subject::Photographs(_) => "",
     }
 }

@@ -52,7 +52,7 @@ impl Render {
             notes = match &scenario.subject {
                 Subject::Views(subject) => self.views(context, &scenario, subject, key, folder)?,
                 Subject::Scene(subject) => self.scene(subject, key, folder)?,
-                Subject::Photographs(_) => return Err(RunError::NothingToRender),
+                Subject::Photographs(_) | Subject::Printed(_) => return Err(RunError::NothingToRender),
             };
             Ok(())
         })?;

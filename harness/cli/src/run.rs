@@ -90,6 +90,9 @@ impl Run {
         if !methods.is_empty() {
             plan.methods = methods;
         }
+        if matches!(scenario.subject, Subject::Printed(_)) {
+            own_methods(scenario, methods)?;
+        }
         if let Some(transfer) = plan.transfer() {
             own_methods(scenario, methods)?;
             if let Some(warning) = transfer.warning() {
@@ -135,9 +138,9 @@ impl Run {
     }
 }
 
-/// Calibrations that are applied are a scenario's own: none of the methods that measure takes their place.
+/// Calibrations that are applied, and printed figures, are a scenario's own: none of the methods that measure takes their place.
 fn own_methods(scenario: &Scenario, methods: &[Configured]) -> Result<(), Failure> {
-    let message = || format!("-m: `{}` applies calibrations, whose methods are its own; leave out -m", scenario.name);
+    let message = || format!("-m: `{}` measures nothing: its calibrations or printed figures are its own; leave out -m", scenario.name);
     if methods.is_empty() { Ok(()) } else { Err(Failure::input(message())) }
 }
 

@@ -12,6 +12,7 @@ use calibench_report::preview;
 use calibench_run::views::{Prepared, is_pointed_at};
 use calibench_run::{trial_picture, trial_truth};
 use calibench_scenario::camera::LocalPlan;
+use calibench_scenario::printed::{Column, Printed};
 use calibench_scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, Transfer, ViewsSubject};
 use calibench_synth::stations::sees;
 use clap::Args;
@@ -76,6 +77,7 @@ fn card(scenario: &Scenario) -> String {
             let _ = writeln!(text, "\n[photographs]\nfolder = {}\nfiles = {:?}", quoted(&subject.folder), subject.files);
             let _ = writeln!(text, "board = \"{}x{}\"", subject.board.columns, subject.board.rows);
         }
+        Subject::Printed(subject) => printed(&mut text, subject),
     }
     for method in &scenario.methods {
         let name = method.label.split(':').next().unwrap_or_default();
@@ -110,6 +112,20 @@ fn transfer(text: &mut String, plan: &Transfer) {
     }
     for name in plan.sets() {
         let _ = writeln!(text, "# figures `{name}`");
+    }
+}
+
+fn printed(text: &mut String, subject: &Printed) {
+    let (points, variants) = (subject.points.len(), subject.variants.len());
+    let _ =
+        writeln!(text, "\n[printed] # {} pitches, {points} points, {variants} variants, in {}", subject.pitches.len(), subject.unit.name());
+    for Column { name, camera, .. } in &subject.cameras {
+        let values: Vec<String> = camera.parameters().iter().map(|parameter| format!("{} {}", parameter.name, parameter.value)).collect();
+        let _ = writeln!(text, "# {name}: {}", values.join(", "));
+    }
+    if let Some(network) = &subject.network {
+        let fitted: Vec<&str> = network.fitted.iter().map(|&column| subject.cameras[column].name.as_str()).collect();
+        let _ = writeln!(text, "# network of {} stations, fitted to {}", network.stations, fitted.join(", "));
     }
 }
 
@@ -197,6 +213,7 @@ fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture,
             let seen = subject.field.targets.iter().zip(&view.truth).filter(|(_, truth)| is_pointed_at(subject, truth));
             Ok(Ok((image, seen.filter_map(|(target, truth)| Some((target.id.clone(), truth.at?))).collect())))
         }
+        Subject::Printed(_) => Ok(Err("the scenario is of printed figures: there is no image".into())),
         Subject::Photographs(subject) => {
             let path = context.data()?.join(&subject.folder).join(&subject.files[0]);
             if !path.is_file() {

@@ -85,11 +85,7 @@ impl Answers {
         let mut total = Tally::default();
         self.tables.iter().for_each(|(_, tally)| total += *tally);
         if total.cells() > 0 {
-            let Tally { reproduce, differ, not_comparable } = total;
-            sentences.push(format!(
-                "Of {} printed figures {reproduce} reproduce, {differ} differ and {not_comparable} are not comparable.",
-                total.cells()
-            ));
+            sentences.push(format!("Of {} printed figures {}.", total.cells(), total.words()));
         }
         sentences.extend(self.leaders());
         sentences.join(" ")
@@ -121,10 +117,15 @@ impl Answers {
     pub fn tables(&self) -> String {
         let mut text = String::new();
         if !self.tables.is_empty() {
-            let mut rows = MarkdownTable::new(&["printed table", "reproduce", "differ", "not comparable"]);
-            for (title, Tally { reproduce, differ, not_comparable }) in &self.tables {
-                let counts = [reproduce, differ, not_comparable].map(ToString::to_string);
-                rows.row(std::iter::once(format!("[{title}](#{})", anchor(title))).chain(counts));
+            let fitted = self.tables.iter().any(|(_, tally)| tally.consistent + tally.inconsistent > 0);
+            let mut header = vec!["printed table", "reproduce", "differ", "consistent", "inconsistent", "not comparable"];
+            header.retain(|name| fitted || !name.ends_with("consistent"));
+            let mut rows = MarkdownTable::new(&header);
+            for (title, tally) in &self.tables {
+                let mut counts = vec![tally.reproduce, tally.differ];
+                counts.extend([tally.consistent, tally.inconsistent].into_iter().filter(|_| fitted));
+                counts.push(tally.not_comparable);
+                rows.row(std::iter::once(format!("[{title}](#{})", anchor(title))).chain(counts.iter().map(ToString::to_string)));
             }
             text.push_str(&format!("{}\n", rows.render()));
         }
@@ -231,8 +232,8 @@ mod tests {
     #[test]
     fn a_paragraph_counts_figures_and_scenarios() {
         let mut answers = Answers::default();
-        answers.table("Table 1: x", Tally { reproduce: 2, differ: 1, not_comparable: 0 });
-        answers.table("Table 2", Tally { reproduce: 1, differ: 0, not_comparable: 4 });
+        answers.table("Table 1: x", Tally { reproduce: 2, differ: 1, ..Tally::default() });
+        answers.table("Table 2", Tally { reproduce: 1, not_comparable: 4, ..Tally::default() });
         for (scenario, method, rmse) in [("f/a", "one:window=9", 0.12), ("f/b", "one", 0.1), ("f/c", "two", 0.3)] {
             let row = vec!["0.1".into()];
             answers.winners.push(Winner { scenario: scenario.into(), cells: 1, method: method.into(), least: vec![rmse], row });

@@ -21,6 +21,7 @@ pub mod orientation;
 mod page;
 mod photographs;
 mod places;
+mod printed;
 pub mod published;
 mod recognition;
 mod recognition_steps;

@@ -8,7 +8,9 @@ use calibench_records::description::{Description, Subject};
 use crate::answer::{Answers, heading};
 use crate::markdown::contents;
 use crate::places::PAGE;
-use crate::{Canvas, LoadError, Loaded, blocks, network, photographs, recognition, scene_figures, scores_section, sweep, transfer};
+use crate::{
+    Canvas, LoadError, Loaded, blocks, network, photographs, printed, recognition, scene_figures, scores_section, sweep, transfer,
+};
 
 /// A page with its pictures, filled section by section.
 pub struct Page {
@@ -103,6 +105,7 @@ impl Page {
             return;
         }
         match &scenario.subject {
+            Subject::Printed(sets) => self.text.push_str(&printed::section(loaded, sets)),
             Subject::Photographs { .. } => {
                 photographs::answer(loaded).into_iter().for_each(|answer| self.answers.say(answer));
                 let (text, pictures) = photographs::section(loaded);
@@ -152,7 +155,8 @@ impl Page {
 /// In what a run was not the scenario of the file: other trials, seed or methods.
 fn deviations(loaded: &Loaded) -> String {
     let (scenario, head) = (&loaded.scenario, &loaded.head);
-    if loaded.unavailable().is_some() {
+    // Nothing is drawn or measured with printed figures.
+    if loaded.unavailable().is_some() || matches!(scenario.subject, Subject::Printed(_)) {
         return String::new();
     }
     let mut found = Vec::new();

@@ -4,7 +4,10 @@ use calibench_measure::Configured;
 use calibench_model::camera::CameraModel;
 use calibench_records::description::{self, Adjustment, Axis, Cell, Description, Role, Station, Target, Value, Views, operator};
 use calibench_scenario::calibration::CheckPlan;
-use calibench_scenario::{Blocks, Scenario, Subject, Sweep, ViewsSubject};
+use calibench_scenario::printed::{NETWORK, SENSOR};
+use calibench_scenario::{Blocks, Printed, Scenario, Subject, Sweep, ViewsSubject};
+
+use crate::printed::PRINT;
 
 /// The description of `scenario`, which `methods` were run on: its own or others.
 pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
@@ -12,6 +15,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     let subject = match &scenario.subject {
         Subject::Scene(_) => description::Subject::Scene,
         Subject::Views(subject) => description::Subject::Views(Box::new(views(subject))),
+        Subject::Printed(printed) => description::Subject::Printed(of_print(printed)),
         Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
     };
     Description {
@@ -32,11 +36,26 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
 fn labels(scenario: &Scenario) -> Vec<String> {
     let transfer = match &scenario.subject {
         Subject::Views(views) => views.transfer.as_ref(),
+        Subject::Printed(_) => return vec![PRINT.to_owned()],
         Subject::Scene(_) | Subject::Photographs(_) => None,
     };
     match transfer {
         Some(transfer) => transfer.methods.iter().map(|method| method.name.clone()).collect(),
         None => scenario.methods.iter().map(|method| method.label.clone()).collect(),
+    }
+}
+
+fn of_print(printed: &Printed) -> description::Printed {
+    let variants = |again: bool| {
+        let chosen = printed.variants.iter().filter(move |variant| variant.refit == again);
+        chosen.map(|variant| variant.name.clone()).collect()
+    };
+    description::Printed {
+        sensor: SENSOR.to_owned(),
+        cameras: printed.cameras.iter().map(|column| column.name.clone()).collect(),
+        network: printed.network.as_ref().map(|_| NETWORK.to_owned()),
+        variants: variants(false),
+        again: variants(true),
     }
 }
 

@@ -15,8 +15,8 @@ pub enum RunError {
     /// A photograph that is there and cannot be read, or an image that cannot be written.
     #[error(transparent)]
     Photo(#[from] PhotoError),
-    /// Photographs are not rendered.
-    #[error("the scenario is of photographs: there is nothing to render; expected one with [scene] or [testfield]")]
+    /// Photographs and printed figures are not rendered.
+    #[error("the scenario is of photographs or printed figures: there is nothing to render; expected one with [scene] or [testfield]")]
     NothingToRender,
     /// A station that the scenario does not have.
     #[error("no station is called `{name}`; expected one of {known}")]

@@ -8,6 +8,7 @@ pub mod judgement;
 pub mod network;
 mod photographs;
 mod plan;
+pub mod printed;
 pub mod recognition;
 mod scene;
 pub mod store;

@@ -8,6 +8,8 @@ use calibench_model::{Image, Measurement, Rejection, Start, TargetKind, Unknowns
 use calibench_records::results::MethodInfo;
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 
+use crate::printed::PRINT;
+
 /// The version of calibration methods: raised when their numbers change on purpose.
 const TRANSFER_VERSION: &str = "1";
 
@@ -48,6 +50,9 @@ impl<'a> Plan<'a> {
 
     /// The methods as results list them.
     pub fn method_infos(&self) -> Vec<MethodInfo> {
+        if let Subject::Printed(_) = self.scenario.subject {
+            return vec![MethodInfo { label: PRINT.into(), version: "1".into(), unavailable: None }];
+        }
         if let Some(transfer) = self.transfer() {
             let info = |method: &calibench_scenario::transfer::Method| MethodInfo {
                 label: method.name.as_str().into(),
@@ -80,7 +85,7 @@ impl<'a> Plan<'a> {
     /// Why nothing at all can be measured, if so.
     pub fn missing(&self) -> Option<String> {
         match &self.scenario.subject {
-            Subject::Scene(_) | Subject::Views(_) => None,
+            Subject::Scene(_) | Subject::Views(_) | Subject::Printed(_) => None,
             Subject::Photographs(subject) => missing(self, subject),
         }
     }

@@ -71,7 +71,7 @@ impl RecordsFolder {
 }
 
 /// Runs `plan` and puts its records, its scenario and the first trial's images in the place of older ones, all at once, when it is done. Returns how many
-/// points were measured, by all methods in all trials, or how often a calibration was applied.
+/// points were measured, by all methods in all trials, or how often a calibration was applied, or how many sets of printed figures were recomputed.
 ///
 /// # Errors
 /// What the run or the file system refuses; older records are then as they were.
@@ -94,7 +94,8 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
         if let Some(writer) = &mut calibrations {
             writer.trial(trial.number, &trial.calibrations).map_err(io::Error::other)?;
         }
-        measured += trial.calibrations.iter().filter(|_| plan.transfer().is_some()).filter(|one| one.outcome.is_ok()).count() as u64;
+        let counted = plan.transfer().is_some() || matches!(plan.scenario.subject, Subject::Printed(_));
+        measured += trial.calibrations.iter().filter(|one| counted && one.outcome.is_ok()).count() as u64;
         measured += trial.points.iter().filter(|point| matches!(point.outcome, Outcome::Measured { .. })).count() as u64;
         records.trial(&trial).map_err(io::Error::other)?;
         write_judgement(folder, plan, &info, &trial)
@@ -107,8 +108,7 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
 
 /// What writes the adjustments of `plan`, if it makes any.
 fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str) -> Result<Option<CalibrationWriter<NewFile>>, RunError> {
-    let Subject::Views(views) = &plan.scenario.subject else { return Ok(None) };
-    let sets = views.sets();
+    let sets = plan.scenario.subject.sets();
     if sets.is_empty() {
         return Ok(None);
     }

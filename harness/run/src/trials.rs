@@ -7,7 +7,7 @@ use calibench_scenario::{Subject, ViewsSubject};
 use rayon::prelude::*;
 
 use super::transfer::Campaign;
-use super::{Plan, RunError, photographs, scene, views};
+use super::{Plan, RunError, photographs, printed, scene, views};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 const BATCH: u64 = 32;
@@ -16,7 +16,7 @@ impl Plan<'_> {
     /// How many steps [`Plan::run`] reports.
     pub fn steps(&self) -> u64 {
         match &self.scenario.subject {
-            Subject::Scene(_) | Subject::Views(_) => self.trials,
+            Subject::Scene(_) | Subject::Views(_) | Subject::Printed(_) => self.trials,
             Subject::Photographs(photographs) => photographs.files.len() as u64,
         }
     }
@@ -29,6 +29,11 @@ impl Plan<'_> {
         cover(self.methods, self.scenario.subject.kinds().iter().copied())?;
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
+            Subject::Printed(printed) => {
+                let trial = printed::run(printed);
+                step();
+                sink(trial)
+            }
             Subject::Scene(subject) => {
                 let prepared = scene::Prepared::new(self, subject)?;
                 self.trials(step, sink, &|number| scene::run_trial(self, &prepared, number))

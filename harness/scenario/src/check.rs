@@ -18,13 +18,13 @@ use super::site::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::Head;
-use super::{Scenario, Subject, ViewsSubject, figure, photographs, scene};
+use super::{Scenario, Subject, ViewsSubject, figure, photographs, printed, scene};
 
 /// Side of the bound's window where the file gives none, px.
 const BOUND_WINDOW: usize = 15;
 
 /// The keys of the file's top level that are tables of their own.
-pub const TOP_TABLES: [&str; 18] = [
+pub const TOP_TABLES: [&str; 19] = [
     "sweep",
     "method",
     "calibration",
@@ -35,6 +35,7 @@ pub const TOP_TABLES: [&str; 18] = [
     "scene",
     "figure",
     "photographs",
+    "printed",
     "judgement",
     "camera",
     "testfield",
@@ -136,6 +137,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let scene = root.take_table("scene", "[scene]", problems);
     let figure = root.take_table("figure", "[figure]", problems);
     let photographs = root.take_table("photographs", "[photographs]", problems);
+    let print = root.take_table("printed", "[printed]", problems);
     let judged = root.take_table("judgement", "[judgement]", problems);
     let views = ViewTables::take(&mut root, problems);
     let imaging = ImagingTables::take(&mut root, problems);
@@ -145,7 +147,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let recognition = root.take_table("recognition", "[recognition]", problems);
     let transfer = root.take_table("transfer", "[transfer]", problems);
     let start = root.span.clone();
-    if methods_missing && transfer.is_none() && problems.is_empty() {
+    if methods_missing && transfer.is_none() && print.is_none() && problems.is_empty() {
         problems.push(Problem::new(start.clone(), "the scenario lists no method").help("add a [[method]] table with a `name`"));
     }
     let listed = listed.unwrap_or_default();
@@ -157,7 +159,9 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let stray = views.span().or_else(|| imaging.span());
     let others = [&scene, &figure, &photographs, &judged, &calibration, &blocks, &recognition];
     let other = others.into_iter().flatten().next().map(|section| section.span.clone()).or_else(|| stray.clone());
-    alone(transfer.as_ref(), other.or_else(|| listed_at.first().cloned()), problems)?;
+    let other = other.or_else(|| listed_at.first().cloned());
+    alone(transfer.as_ref(), [print.as_ref().map(|print| print.span.clone()), other.clone()], BESIDE_TRANSFER, problems)?;
+    alone(print.as_ref(), [None, other], "nothing is measured there", problems)?;
     let adjusted = Adjusted { calibration, blocks, listed_blocks, recognition };
     if views.span().is_none() {
         adjusted.without_field(problems);
@@ -180,21 +184,17 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         (None, None, None, None) if transfer.is_some() => transfer
             .and_then(|section| Surroundings { name, folder, registry, parse }.read(section, problems))
             .map(|views| Subject::Views(Box::new(views))),
+        (None, None, None, None) if print.is_some() => {
+            print.and_then(|section| printed::read(section, problems)).map(|read| Subject::Printed(Box::new(read)))
+        }
         (None, None, None, None) => {
-            let problem = Problem::new(start, "the scenario has nothing to measure");
-            problems.push(problem.help(
-                "add a [scene] or [figure] table, [camera] with [testfield] and [stations], a [photographs] table, or a [transfer] table",
-            ));
+            problems.push(nothing(start));
             None
         }
         (scene, figure, photographs, _) => {
             let subjects = [scene, figure, photographs].into_iter().flatten().map(|section| section.span);
             let second = subjects.chain(stray).nth(1).unwrap_or(start);
-            let message = "more than one of [scene], [figure], [photographs] and [testfield] with its tables: expected one of them";
-            let problem = Problem::new(second, message);
-            problems.push(problem.help(
-                "photographs have no camera, testfield, optics or sensor; a scene has no [camera] and no [pointing] of its own level",
-            ));
+            problems.push(several(second));
             None
         }
     };
@@ -231,11 +231,26 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     Some(Scenario { trials, ..scenario })
 }
 
-/// Whether nothing stands beside `[transfer]`.
-fn alone(transfer: Option<&Section<'_>>, beside: Option<Range<usize>>, problems: &mut Vec<Problem>) -> Option<()> {
-    let Some(beside) = transfer.and(beside) else { return Some(()) };
-    let problem = Problem::new(beside, "beside [transfer]: its scenarios say what is pictured, and [[transfer.method]] what calibrates");
-    problems.push(problem.help("expected [transfer] and its tables alone"));
+fn nothing(start: Range<usize>) -> Problem {
+    Problem::new(start, "the scenario has nothing to measure").help(
+        "add a [scene] or [figure] table, [camera] with [testfield] and [stations], a [photographs] table, a [transfer] table, or a [printed] table",
+    )
+}
+
+fn several(second: Range<usize>) -> Problem {
+    let message = "more than one of [scene], [figure], [photographs] and [testfield] with its tables: expected one of them";
+    Problem::new(second, message)
+        .help("photographs have no camera, testfield, optics or sensor; a scene has no [camera] and no [pointing] of its own level")
+}
+
+/// What else would say what stands beside `[transfer]`.
+const BESIDE_TRANSFER: &str = "its scenarios say what is pictured, and [[transfer.method]] what calibrates";
+
+/// Whether nothing stands beside a table that must be alone, with the reason `why` it must.
+fn alone(table: Option<&Section<'_>>, beside: [Option<Range<usize>>; 2], why: &str, problems: &mut Vec<Problem>) -> Option<()> {
+    let (Some(table), Some(beside)) = (table, beside.into_iter().flatten().next()) else { return Some(()) };
+    let problem = Problem::new(beside, format!("beside {}: {why}", table.name));
+    problems.push(problem.help(format!("expected {} and its tables alone", table.name)));
     None
 }
 

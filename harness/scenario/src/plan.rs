@@ -42,7 +42,7 @@ impl Scenario {
                 let still = views.calibration.as_ref().is_none_or(|calibration| !calibration.is_random());
                 still && views.transfer.is_none() && views.hand.is_steady() && !views.changes() && !views.imaging.is_random()
             }
-            Subject::Photographs(_) => true,
+            Subject::Photographs(_) | Subject::Printed(_) => true,
         }
     }
 

@@ -14,6 +14,7 @@ use super::figure::FigureWire;
 use super::judgement::JudgementWire;
 use super::optics::OpticsWire;
 use super::pointing::DetectorWire;
+use super::printed::wire as printed_wire;
 use super::recognition::{ImagesWire, RecognitionWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
@@ -54,6 +55,7 @@ pub fn schema(registry: &Registry) -> Value {
     root["properties"]["recognition"] = table::<RecognitionWire>();
     root["properties"]["recognition"]["properties"]["images"] = list(&table::<ImagesWire>());
     root["properties"]["transfer"] = transfer();
+    root["properties"]["printed"] = printed();
     root["properties"]["pointing"] = pointing();
     let subjects = [
         vec!["scene", "method"],
@@ -61,6 +63,7 @@ pub fn schema(registry: &Registry) -> Value {
         vec!["camera", "testfield", "pointing", "method"],
         vec!["photographs", "method"],
         vec!["transfer"],
+        vec!["printed"],
     ];
     root["oneOf"] = subjects.iter().map(|keys| json!({ "required": keys })).collect();
     root
@@ -79,6 +82,17 @@ fn transfer() -> Value {
     transfer["properties"]["decomposition"] = list(&table::<DecompositionWire>());
     require(&mut transfer, &["method", "case"]);
     transfer
+}
+
+fn printed() -> Value {
+    let mut all = table::<printed_wire::PrintedWire>();
+    all["properties"]["pixel"] = list(&table::<printed_wire::PixelWire>());
+    all["properties"]["camera"] = list(&table::<printed_wire::CameraWire>());
+    all["properties"]["point"] = list(&table::<printed_wire::PointWire>());
+    all["properties"]["network"] = table::<printed_wire::NetworkWire>();
+    all["properties"]["variant"] = list(&table::<printed_wire::VariantWire>());
+    require(&mut all, &["camera"]);
+    all
 }
 
 fn testfield() -> Value {

@@ -15,7 +15,9 @@ use calibench_synth::stations::{Station, StationError};
 
 use crate::camera::LocalPlan;
 use crate::recognition::RECOGNITION;
-use crate::{Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, Recognition, StationPlan, Transfer, Unit};
+use crate::{
+    Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, Printed, Recognition, StationPlan, Transfer, Unit,
+};
 
 /// What a scenario measures.
 pub enum Subject {
@@ -25,6 +27,8 @@ pub enum Subject {
     Views(Box<ViewsSubject>),
     /// Photographs, of which no truth is known.
     Photographs(PhotographsSubject),
+    /// Figures that were printed: nothing is measured.
+    Printed(Box<Printed>),
 }
 
 impl Subject {
@@ -35,6 +39,16 @@ impl Subject {
             Self::Views(subject) if subject.transfer.is_some() => Vec::new(),
             Self::Views(subject) => subject.field.targets.iter().map(|target| target.kind).collect(),
             Self::Photographs(_) => vec![TargetKind::ChessCorner],
+            Self::Printed(_) => Vec::new(),
+        }
+    }
+
+    /// The sets of figures that its records have, if they have any.
+    pub fn sets(&self) -> Vec<String> {
+        match self {
+            Self::Views(subject) => subject.sets(),
+            Self::Printed(printed) => printed.sets(),
+            Self::Scene(_) | Self::Photographs(_) => Vec::new(),
         }
     }
 }

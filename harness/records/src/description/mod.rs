@@ -50,6 +50,24 @@ pub enum Subject {
         /// Calibrations from them are judged.
         judged: bool,
     },
+    /// Figures that were printed: nothing is measured.
+    Printed(Printed),
+}
+
+/// What printed figures are of, by the names of their sets.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Printed {
+    /// Of the sensor.
+    pub sensor: String,
+    /// Cameras, in the order of their columns.
+    pub cameras: Vec<String>,
+    /// The network, if one is fitted.
+    pub network: Option<String>,
+    /// Changed cameras in that network.
+    pub variants: Vec<String>,
+    /// Changed cameras with which it is fitted again.
+    pub again: Vec<String>,
 }
 
 impl Description {

@@ -124,6 +124,13 @@ pub struct Cell {
     /// The column of the table's `ensemble` that stands for the cell: what is printed must lie where 95 % of the experiments lie.
     #[serde(default)]
     pub predicted: Option<String>,
+    /// By how many units of the last digit ours may differ, where the usual rule does not hold: 0.5 for counts.
+    #[serde(default)]
+    pub units: Option<f64>,
+    /// How far ours may be from print, in its unit, where ours is predicted by a model that was fitted to other printed figures. The verdict is then
+    /// *consistent* or *inconsistent*.
+    #[serde(default)]
+    pub consistent_within: Option<f64>,
     /// Why the two cannot be compared, if so.
     #[serde(default)]
     pub not_comparable: Option<String>,
@@ -289,6 +296,8 @@ impl Cell {
             over: None,
             times: None,
             predicted: None,
+            units: None,
+            consistent_within: None,
             not_comparable: None,
         }
     }
@@ -313,6 +322,8 @@ mod tests {
     fn a_coordinate_reproduces_within_half_a_unit_of_its_last_digit() {
         let cell = |printed: &str, why: Option<&str>| Cell {
             target: Some("1".into()),
+            units: None,
+            consistent_within: None,
             not_comparable: why.map(str::to_owned),
             ..Cell::bare(printed, Metric::X)
         };

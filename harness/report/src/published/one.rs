@@ -6,8 +6,14 @@ use super::{Cell, Printed, Table, Tally, Verdict};
 use crate::load::Loaded;
 use crate::markdown::{MarkdownTable, fixed, fraction};
 
-/// The table beside the first trial, one row of print a row.
-pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
+/// What is told where a model predicts.
+const CONSISTENT: &str = " Where ours is predicted by a model that was fitted to other printed figures, a cell is *consistent* within what its table allows for the model's own \
+                          misfit, and *inconsistent* beyond.";
+
+/// The table beside the first trial, one row of print a row; `ours` holds our figure for every cell or none.
+///
+/// Where `named`, a verdict names the columns that it holds for, unless it holds for all of its row.
+pub fn comparison(table: &Table, ours: &[Option<f64>], named: bool) -> (String, Tally) {
     let mut header = vec!["row".to_owned()];
     for column in &table.columns {
         header.extend([format!("{column} printed"), format!("{column} ours")]);
@@ -19,27 +25,30 @@ pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
         let mut cells = vec![label.to_owned()];
         let (mut verdicts, mut misprints) = (Vec::new(), String::new());
         for column in &table.columns {
-            let Some(cell) = table.cells.iter().find(|cell| cell.row == label && cell.column == *column) else {
+            let of = |(cell, _): &(&Cell, &Option<f64>)| cell.row == label && cell.column == *column;
+            let Some((cell, &ours)) = table.cells.iter().zip(ours).find(of) else {
                 cells.extend([String::new(), String::new()]);
                 continue;
             };
-            let ours = figure(table, main, cell);
             let verdict = cell.verdict(ours);
             tally.count(&verdict);
             cells.extend([cell.printed.clone(), ours.map_or("none".to_owned(), |value| like(cell, value))]);
-            verdicts.push(verdict);
+            verdicts.push((column.as_str(), verdict));
             if let Some(misprint) = &cell.misprint {
                 misprints.push_str(&notes.mark(&format!("misprint in {column}: {misprint}")));
             }
         }
-        cells.push(gravest(verdicts, &mut notes) + &misprints);
+        let columns = if named { columns_of_gravest(&verdicts) } else { String::new() };
+        let verdicts = verdicts.into_iter().map(|(_, verdict)| verdict).collect();
+        cells.push(gravest(verdicts, &mut notes) + &columns + &misprints);
         rows.row(cells);
     }
     let text = format!(
         "Printed beside ours (`{}`, `{}`). A coordinate *reproduces* when ours is within half a unit of the last printed digit; what the paper computed from rounded \
-         figures, within one unit. A row has the verdict of its gravest cell.\n\n{}\n{}{}\n\n",
+         figures, within one unit.{} A row has the verdict of its gravest cell.\n\n{}\n{}{}\n\n",
         table.method,
         table.scenario,
+        if tally.consistent + tally.inconsistent > 0 { CONSISTENT } else { "" },
         rows.render(),
         notes.render(),
         tally.sentence()
@@ -51,6 +60,13 @@ pub fn comparison(table: &Table, main: &Loaded) -> (String, Tally) {
 pub fn figure(table: &Table, main: &Loaded, cell: &Cell) -> Option<f64> {
     let method = main.method(cell.method.as_deref().unwrap_or(&table.method))?;
     of_points(&main.first.points, method, cell.metric, cell.target.as_deref(), &cell.except).map(|ours| ours + cell.plus)
+}
+
+/// The columns of the gravest verdicts of a row, as in ": x, y"; nothing where all are as grave.
+fn columns_of_gravest(verdicts: &[(&str, Verdict)]) -> String {
+    let gravest = verdicts.iter().map(|(_, verdict)| verdict.gravity()).max();
+    let of: Vec<&str> = verdicts.iter().filter(|(_, verdict)| Some(verdict.gravity()) == gravest).map(|(column, _)| *column).collect();
+    if of.len() == verdicts.len() { String::new() } else { format!(": {}", of.join(", ")) }
 }
 
 /// The gravest of some cells' verdicts in words; its reason goes below the table.
@@ -83,6 +99,14 @@ mod tests {
         assert_eq!(of(&[Reproduces, Differs, Reproduces]), "differs");
         assert_eq!(of(&[why(), Differs, Reproduces]), "differs");
         assert_eq!(of(&[Reproduces, why()]), "not comparable (a)");
+    }
+
+    #[test]
+    fn a_row_names_the_columns_of_its_gravest_verdicts_unless_all_are_as_grave() {
+        use Verdict::{Consistent, Differs, Inconsistent, Reproduces};
+        let of = |verdicts: &[(&str, Verdict)]| columns_of_gravest(verdicts);
+        assert_eq!(of(&[("x", Reproduces), ("y", Differs), ("z", Inconsistent)]), ": y, z");
+        assert_eq!(of(&[("x", Reproduces), ("y", Consistent)]) + &of(&[("x", Differs)]) + &of(&[]), "");
     }
 
     #[test]

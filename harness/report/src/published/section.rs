@@ -1,5 +1,7 @@
 //! The section of a published table: its cells beside ours, what was found out, every method.
 
+use calibench_records::description::Subject;
+
 use super::adjustment::ours;
 use super::figure::Ours;
 use super::{Table, Tally, Verdict, every_method, many, one};
@@ -51,7 +53,7 @@ fn points(table: &Table, main: &Loaded) -> Result<Compared, LoadError> {
         return Ok(Err(no_method(table)));
     }
     if main.scores.trials < 2 {
-        return Ok(Ok(one::comparison(table, main)));
+        return Ok(Ok(one::comparison(table, &of_one(table, main), false)));
     }
     Ok(Ok(many::comparison(table, &many::of_all_trials(table, main)?, main.scores.trials)))
 }
@@ -60,7 +62,24 @@ fn adjustments(table: &Table, main: &Loaded) -> Compared {
     let Some(found) = &main.calibrations else {
         return Err(no_adjustments(table));
     };
+    if is_of_print(main) {
+        return Ok(one::comparison(table, &first(&of_adjustments(table, main, found)), true));
+    }
     Ok(many::comparison(table, &of_adjustments(table, main, found), found.trials))
+}
+
+/// Whether nothing was measured, so that there are no runs which differ.
+fn is_of_print(main: &Loaded) -> bool {
+    matches!(main.scenario.subject, Subject::Printed(_))
+}
+
+fn first(figures: &[Option<Ours>]) -> Vec<Option<f64>> {
+    figures.iter().map(|ours| Some(ours.as_ref()?.one)).collect()
+}
+
+/// Our figure for each cell in the first trial.
+fn of_one(table: &Table, main: &Loaded) -> Vec<Option<f64>> {
+    table.cells.iter().map(|cell| one::figure(table, main, cell)).collect()
 }
 
 /// Our figure for each cell.
@@ -74,8 +93,12 @@ fn of_adjustments(table: &Table, main: &Loaded, found: &Summaries) -> Vec<Option
 /// # Errors
 /// Records that cannot be read.
 pub fn verdicts(table: &Table, main: &Loaded) -> Result<Option<Vec<Verdict>>, LoadError> {
+    let of_one_run = |figures: &[Option<f64>]| table.cells.iter().zip(figures).map(|(cell, ours)| cell.verdict(*ours)).collect();
     let of_many =
         |figures: &[Option<Ours>]| table.cells.iter().zip(figures).map(|(cell, ours)| many::verdict(table, cell, ours.as_ref())).collect();
+    if table.is_of_adjustments() && is_of_print(main) {
+        return Ok(main.calibrations.as_ref().map(|found| of_one_run(&first(&of_adjustments(table, main, found)))));
+    }
     if table.is_of_adjustments() {
         return Ok(main.calibrations.as_ref().map(|found| of_many(&of_adjustments(table, main, found))));
     }
@@ -83,7 +106,7 @@ pub fn verdicts(table: &Table, main: &Loaded) -> Result<Option<Vec<Verdict>>, Lo
         return Ok(None);
     }
     if main.scores.trials < 2 {
-        return Ok(Some(table.cells.iter().map(|cell| cell.verdict(one::figure(table, main, cell))).collect()));
+        return Ok(Some(of_one_run(&of_one(table, main))));
     }
     Ok(Some(of_many(&many::of_all_trials(table, main)?)))
 }

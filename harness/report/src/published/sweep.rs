@@ -163,6 +163,8 @@ mod tests {
             times: None,
             over: None,
             predicted: None,
+            units: None,
+            consistent_within: None,
             not_comparable: None,
         }
     }
@@ -207,7 +209,7 @@ mod tests {
         assert_eq!(row(&text, &["2"]), ["2", "3.5", "3.50", "", "75.0 %", "", "", "", "", yes]);
         assert_eq!(row(&text, &["3"]), ["3", "0.5", "0.50", "", "0.0 %", "0.7", "-0.25", "", "50.0 %", no]);
         assert_eq!(row(&text, &["4"]), ["4", "0.7", "none", "", "", "", "", "", "", "not comparable (a)"]);
-        assert_eq!(tally, Tally { reproduce: 4, differ: 1, not_comparable: 3 });
+        assert_eq!(tally, Tally { reproduce: 4, differ: 1, not_comparable: 3, ..Tally::default() });
         assert!(text.starts_with("## T\n\nS. Unit: px.\n\n") && text.contains(", 2 trials a cell."), "{text}");
     }
 

@@ -39,6 +39,10 @@ pub enum Verdict {
     Reproduces,
     /// Further off.
     Differs,
+    /// Within what the cell allows of a model that was fitted to other printed figures.
+    Consistent,
+    /// Further off than that.
+    Inconsistent,
     /// Not the same thing, and why.
     NotComparable(String),
 }
@@ -49,6 +53,8 @@ impl Verdict {
         match self {
             Self::Reproduces => "reproduces",
             Self::Differs => "differs",
+            Self::Consistent => "consistent",
+            Self::Inconsistent => "inconsistent",
             Self::NotComparable(_) => "not comparable",
         }
     }
@@ -56,9 +62,9 @@ impl Verdict {
     /// Rank by gravity: a row of cells is as good as its gravest.
     pub fn gravity(&self) -> u8 {
         match self {
-            Self::Reproduces => 0,
+            Self::Reproduces | Self::Consistent => 0,
             Self::NotComparable(_) => 1,
-            Self::Differs => 2,
+            Self::Differs | Self::Inconsistent => 2,
         }
     }
 }
@@ -70,6 +76,10 @@ pub struct Tally {
     pub reproduce: usize,
     /// Cells that differ.
     pub differ: usize,
+    /// Cells that are consistent with a model that was fitted to others.
+    pub consistent: usize,
+    /// Cells that are not.
+    pub inconsistent: usize,
     /// Cells that are not comparable.
     pub not_comparable: usize,
 }
@@ -80,19 +90,31 @@ impl Tally {
         match verdict {
             Verdict::Reproduces => self.reproduce += 1,
             Verdict::Differs => self.differ += 1,
+            Verdict::Consistent => self.consistent += 1,
+            Verdict::Inconsistent => self.inconsistent += 1,
             Verdict::NotComparable(_) => self.not_comparable += 1,
         }
     }
 
     /// All cells.
     pub fn cells(&self) -> usize {
-        self.reproduce + self.differ + self.not_comparable
+        self.reproduce + self.differ + self.consistent + self.inconsistent + self.not_comparable
+    }
+
+    /// What became of the cells, as in "18 reproduce, 16 differ and 48 are not comparable"; consistent and inconsistent ones where there are any.
+    pub fn words(&self) -> String {
+        let Self { reproduce, differ, consistent, inconsistent, not_comparable } = self;
+        let fitted = if consistent + inconsistent > 0 {
+            format!(", {consistent} are consistent, {inconsistent} inconsistent")
+        } else {
+            String::new()
+        };
+        format!("{reproduce} reproduce, {differ} differ{fitted} and {not_comparable} are not comparable")
     }
 
     /// The closing line of a table.
     pub fn sentence(&self) -> String {
-        let Self { reproduce, differ, not_comparable } = self;
-        format!("Of {} cells, {reproduce} reproduce, {differ} differ and {not_comparable} are not comparable.", self.cells())
+        format!("Of {} cells, {}.", self.cells(), self.words())
     }
 }
 
@@ -100,11 +122,18 @@ impl AddAssign for Tally {
     fn add_assign(&mut self, other: Self) {
         self.reproduce += other.reproduce;
         self.differ += other.differ;
+        self.consistent += other.consistent;
+        self.inconsistent += other.inconsistent;
         self.not_comparable += other.not_comparable;
     }
 }
 
 impl Cell {
+    /// By how many units of the last digit ours may differ.
+    fn units(&self) -> f64 {
+        self.units.unwrap_or_else(|| self.metric.units())
+    }
+
     /// Compares `ours` with this cell.
     pub fn verdict(&self, ours: Option<f64>) -> Verdict {
         if let Some(why) = &self.not_comparable {
@@ -113,8 +142,15 @@ impl Cell {
         match (Printed::parse(&self.printed), ours) {
             (None, _) => Verdict::NotComparable("the printed figure cannot be read".into()),
             (_, None) => Verdict::NotComparable("no record of ours".into()),
+            (Some(printed), Some(ours)) if let Some(within) = self.consistent_within => {
+                if (ours - printed.value).abs() <= within {
+                    Verdict::Consistent
+                } else {
+                    Verdict::Inconsistent
+                }
+            }
             // Rounding of the decimal text itself must not decide.
-            (Some(printed), Some(ours)) if (ours - printed.value).abs() <= printed.unit * self.metric.units() * (1.0 + 1e-6) => {
+            (Some(printed), Some(ours)) if (ours - printed.value).abs() <= printed.unit * self.units() * (1.0 + 1e-6) => {
                 Verdict::Reproduces
             }
             _ => Verdict::Differs,
@@ -190,14 +226,31 @@ mod tests {
         assert_eq!(told.verdict_within(2.0, 1.0), Verdict::NotComparable("another axis".into()));
     }
 
+    /// A model's prediction is consistent within what the cell allows, whatever the digits; a count is met or not.
+    #[test]
+    fn predictions_are_consistent_and_counts_are_met() {
+        let predicted = |ours| Cell { consistent_within: Some(0.25), ..cell("1.5", Metric::Figure) }.verdict(Some(ours));
+        assert_eq!(
+            [1.25, 1.75, 1.8, 1.2].map(predicted),
+            [Verdict::Consistent, Verdict::Consistent, Verdict::Inconsistent, Verdict::Inconsistent]
+        );
+        let counted = |ours| Cell { units: Some(0.5), ..cell("4", Metric::Figure) }.verdict(Some(ours));
+        assert_eq!([4.0, 3.6, 5.0].map(counted), [Verdict::Reproduces, Verdict::Reproduces, Verdict::Differs]);
+        assert_eq!(cell("4", Metric::Figure).verdict(Some(5.0)), Verdict::Reproduces, "computed from rounded figures");
+        let mut tally = Tally::default();
+        [1.5, 2.0, 2.0].into_iter().for_each(|ours| tally.count(&predicted(ours)));
+        assert_eq!(tally.sentence(), "Of 3 cells, 0 reproduce, 0 differ, 1 are consistent, 2 inconsistent and 0 are not comparable.");
+        assert_eq!((Verdict::Consistent.gravity(), Verdict::Inconsistent.gravity()), (0, 2));
+    }
+
     #[test]
     fn cells_are_tallied_by_verdict() {
         let mut tally = Tally::default();
         let why = || Verdict::NotComparable(String::new());
         let verdicts = [Verdict::Reproduces, Verdict::Differs, why(), Verdict::Reproduces, why(), Verdict::Reproduces];
         verdicts.iter().for_each(|verdict| tally.count(verdict));
-        assert_eq!((tally, tally.cells()), (Tally { reproduce: 3, differ: 1, not_comparable: 2 }, 6));
-        tally += Tally { reproduce: 4, differ: 5, not_comparable: 7 };
+        assert_eq!((tally, tally.cells()), (Tally { reproduce: 3, differ: 1, not_comparable: 2, ..Tally::default() }, 6));
+        tally += Tally { reproduce: 4, differ: 5, not_comparable: 7, ..Tally::default() };
         assert_eq!(tally.sentence(), "Of 22 cells, 7 reproduce, 6 differ and 9 are not comparable.");
         assert_eq!(
             verdicts.map(|verdict| (verdict.word(), verdict.gravity()))[..3],

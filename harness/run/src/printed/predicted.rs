@@ -1,0 +1,172 @@
+//! The network that the errors of some columns determine, and what it predicts of the others.
+
+use calibench_model::Frame;
+use calibench_model::camera::{Camera, Photogrammetric};
+use calibench_model::convert::{Tangential, from_naive};
+use calibench_records::results::{Figure, Group};
+use calibench_scenario::Printed;
+use calibench_scenario::printed::{NetworkPlan, Variant};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::errors::{AXES, root_mean_squares};
+use super::fit::least_squares;
+use super::network::{NAMES, NUMBERS, Pictures, Site};
+use super::{figure, with_unit};
+
+/// Length of a difference, as a part of the distance.
+const DIFFERENCE: f64 = 1e-6;
+/// Every start ends where a step lowers the sum of squares by less, as a part of it, and the best of them is then followed further.
+const ROUGH: f64 = 1e-3;
+/// Where the best ends.
+const FINE: f64 = 1e-9;
+/// Starts whose misfit is within this factor of the least one end at the same network.
+const SAME: f64 = 1.01;
+
+/// A fitted network.
+struct Fitted {
+    numbers: [f64; NUMBERS],
+    /// Root mean square of the fitted errors' misfits, object units.
+    misfit: f64,
+    /// How many starts there were, and how many of them ended here.
+    starts: [usize; 2],
+    pictures: Pictures,
+}
+
+/// What a fitted network says of all columns.
+pub struct Predictions<'a> {
+    printed: &'a Printed,
+    plan: &'a NetworkPlan,
+    site: Site,
+    fitted: Fitted,
+}
+
+impl<'a> Predictions<'a> {
+    /// Fits the network of `plan`.
+    ///
+    /// # Errors
+    /// In words: no start from which every point is seen.
+    pub fn new(printed: &'a Printed, plan: &'a NetworkPlan) -> Result<Self, String> {
+        let cameras: Vec<Photogrammetric> = printed.cameras.iter().map(|column| column.camera).collect();
+        let Photogrammetric { size, pitch_um, .. } = cameras[plan.truth];
+        let frame = Frame::new(size.width, size.height, pitch_um).map_err(|why| why.to_string())?;
+        let site = Site::new(plan, &printed.points, frame);
+        let fitted = fit(printed, plan, &site, &cameras)?;
+        Ok(Self { printed, plan, site, fitted })
+    }
+
+    /// The network itself: its numbers, its stations, how well it fits.
+    pub fn network(&self) -> Vec<Figure> {
+        let unit = self.printed.unit.name();
+        let numbers =
+            NAMES.iter().zip(self.fitted.numbers).map(|(name, value)| Figure::plain(Group::Eop, with_unit(name, unit), value, unit));
+        let stations = self.fitted.pictures.iter().enumerate().flat_map(|(index, (pose, _))| {
+            let centre = self.site.middle() + pose.centre.coords;
+            (0..3).map(move |axis| Figure::plain(Group::Eop, format!("{}/{}", index + 1, AXES[axis]), centre[axis], unit))
+        });
+        let [starts, same] = self.fitted.starts.map(|count| count as f64);
+        let seen = self.fitted.pictures.iter().flat_map(|(_, seen)| seen).flatten().count() as f64;
+        let whole = [
+            figure("misfit of what is fitted", self.fitted.misfit, unit),
+            figure("starts", starts, ""),
+            figure("starts that end here", same, ""),
+            figure("image points", seen, ""),
+        ];
+        whole.into_iter().chain(numbers).chain(stations).collect()
+    }
+
+    /// What is predicted of a column.
+    ///
+    /// # Errors
+    /// In words: points whose rays do not meet.
+    pub fn column(&self, column: usize) -> Result<Vec<Figure>, String> {
+        let camera = &self.printed.cameras[column].camera;
+        let errors = self.site.errors(&self.fitted.pictures, camera)?;
+        let unit = self.printed.unit.name();
+        let points = self.printed.points.iter().zip(&errors).flat_map(|(point, error)| {
+            (0..3).map(move |axis| Figure::plain(Group::Object, format!("{}/{}", point.name, AXES[axis]), error[axis].abs(), unit))
+        });
+        Ok(self.means("", column, &errors).into_iter().chain(points).collect())
+    }
+
+    /// What is predicted of a changed camera in this network; or, in one that is fitted again, of all columns.
+    ///
+    /// # Errors
+    /// In words: points whose rays do not meet.
+    pub fn variant(&self, variant: &Variant) -> Result<Vec<Figure>, String> {
+        if !variant.refit {
+            return Ok(self.means("", variant.of, &self.site.errors(&self.fitted.pictures, &variant.camera)?));
+        }
+        let mut cameras: Vec<Photogrammetric> = self.printed.cameras.iter().map(|column| column.camera).collect();
+        cameras[variant.of] = variant.camera;
+        let again = fit(self.printed, self.plan, &self.site, &cameras)?;
+        let mut all = vec![
+            figure("misfit of what is fitted", again.misfit, self.printed.unit.name()),
+            figure("misfit over that of the printed cameras", again.misfit / self.fitted.misfit, ""),
+        ];
+        for (index, (column, camera)) in self.printed.cameras.iter().zip(&cameras).enumerate() {
+            let errors = self.site.errors(&again.pictures, camera)?;
+            all.extend(self.means(&format!("{}: ", column.name), index, &errors));
+        }
+        Ok(all)
+    }
+
+    /// Root mean squares of predicted errors, and of their misfits to the printed ones of `column`; names begin with `begin`.
+    fn means(&self, begin: &str, column: usize, errors: &[Vector3<f64>]) -> Vec<Figure> {
+        let unit = self.printed.unit.name();
+        let means = root_mean_squares(errors).map(|(name, value)| figure(format!("{begin}predicted {name}"), value, unit));
+        let misfits = misfits(self.printed, column, errors);
+        let misfit = (misfits.iter().map(|m| m * m).sum::<f64>() / misfits.len() as f64).sqrt();
+        means.into_iter().chain([figure(format!("{begin}misfit"), misfit, unit)]).collect()
+    }
+}
+
+/// Predicted less printed absolute errors of a column, object units.
+fn misfits(printed: &Printed, column: usize, errors: &[Vector3<f64>]) -> Vec<f64> {
+    let pairs = printed.points.iter().map(|point| point.errors[column]).zip(errors);
+    pairs.flat_map(|(given, error)| [0, 1, 2].map(|axis| error[axis].abs() - given[axis])).collect()
+}
+
+/// The network whose errors of the fitted columns are nearest to the printed ones, over all starts.
+fn fit(printed: &Printed, plan: &NetworkPlan, site: &Site, cameras: &[Photogrammetric]) -> Result<Fitted, String> {
+    let tool = printed.cameras[plan.truth].tool.ok_or("the true camera has no tool")?;
+    let truth = from_naive(&cameras[plan.truth], tool, Tangential::Converted).map_err(|why| why.to_string())?;
+    let residuals = |numbers: &[f64; NUMBERS]| residuals(printed, plan, site, (cameras, &truth), numbers);
+    let starts: Vec<[f64; NUMBERS]> = starts(plan);
+    let found: Vec<_> = starts.par_iter().map(|start| least_squares(*start, (DIFFERENCE * start[0], ROUGH), residuals)).collect();
+    let best = found.iter().flatten().min_by(|a, b| a.1.total_cmp(&b.1)).ok_or("no start sees every point from two stations")?;
+    let best = least_squares(best.0, (DIFFERENCE * best.0[0], FINE), residuals).ok_or("the least misfit is none")?;
+    let same = found.iter().flatten().filter(|(_, cost)| cost.sqrt() <= SAME * best.1.sqrt()).count();
+    let poses = site.poses(&best.0).ok_or("a station looks along the vertical")?;
+    let count = (3 * printed.points.len() * plan.fitted.len()) as f64;
+    let (numbers, misfit) = (best.0, (best.1 / count).sqrt());
+    Ok(Fitted { numbers, misfit, starts: [starts.len(), same], pictures: site.pictured(poses, &truth) })
+}
+
+fn residuals(
+    printed: &Printed,
+    plan: &NetworkPlan,
+    site: &Site,
+    (cameras, truth): (&[Photogrammetric], &Camera),
+    numbers: &[f64; NUMBERS],
+) -> Option<Vec<f64>> {
+    let pictures = site.pictured(site.poses(numbers)?, truth);
+    let mut all = Vec::new();
+    for &column in &plan.fitted {
+        all.extend(misfits(printed, column, &site.nearly(&pictures, &cameras[column])?));
+    }
+    Some(all)
+}
+
+/// Every distance with every base, straight and bent to the points, looking at their middle.
+fn starts(plan: &NetworkPlan) -> Vec<[f64; NUMBERS]> {
+    let mut all = Vec::new();
+    for &distance in &plan.distances {
+        for &base in &plan.bases {
+            for curve in [0.0, -0.5 * base * base / distance] {
+                all.push([distance, curve, base, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            }
+        }
+    }
+    all
+}
