@@ -111,6 +111,8 @@ pub struct Row {
     pub name: String,
     /// Value, sigma and error, where they are; the reason of a failure otherwise.
     pub figure: Result<Numbers, String>,
+    /// The seed of the run.
+    pub seed: u64,
 }
 
 /// The numbers of a row.
@@ -146,5 +148,5 @@ fn row(record: &StringRecord) -> Result<Row, RecordError> {
         "failed" => Err(text(11)),
         _ => return Err(cells.bad(10)),
     };
-    Ok(Row { trial: cells.parse(1)?, method: text(2), set: text(3), group, name: text(5), figure })
+    Ok(Row { trial: cells.parse(1)?, method: text(2), set: text(3), group, name: text(5), figure, seed: cells.parse(12)? })
 }

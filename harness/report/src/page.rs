@@ -87,8 +87,7 @@ impl Page {
 
     pub fn scenario(&mut self, loaded: &Loaded) {
         let scenario = &loaded.scenario;
-        let told = if transfer::is_of(loaded) { String::new() } else { deviations(loaded) };
-        let stem = self.head(&loaded.name, scenario, &told);
+        let stem = self.head(&loaded.name, scenario, &deviations(loaded));
         if let Some((text, pictures)) = network::section(loaded, &stem, self.illustrated.contains(&loaded.name)) {
             self.text.push_str(&text);
             self.pictures.extend(pictures);
@@ -155,8 +154,7 @@ impl Page {
 /// In what a run was not the scenario of the file: other trials, seed or methods.
 fn deviations(loaded: &Loaded) -> String {
     let (scenario, head) = (&loaded.scenario, &loaded.head);
-    // Nothing is drawn or measured with printed figures.
-    if loaded.unavailable().is_some() || matches!(scenario.subject, Subject::Printed(_)) {
+    if loaded.unavailable().is_some() {
         return String::new();
     }
     let mut found = Vec::new();

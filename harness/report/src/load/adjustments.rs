@@ -44,6 +44,8 @@ pub struct Summaries {
     pub sets: Vec<String>,
     /// How many trials.
     pub trials: u64,
+    /// The seed of the run.
+    pub seed: u64,
     /// Every figure.
     pub figures: BTreeMap<FigureKey, Summary>,
     /// Residuals of the first trial in the order of the file: method, image, point, axis, px.
@@ -78,7 +80,7 @@ impl Reader {
     fn add(&mut self, row: Row) {
         if self.trial != Some(row.trial) {
             self.trial = Some(row.trial);
-            self.found.trials += 1;
+            (self.found.trials, self.found.seed) = (self.found.trials + 1, row.seed);
             self.reference.clear();
         }
         let remember = |list: &mut Vec<String>, name: &str| {
@@ -134,6 +136,12 @@ impl Summaries {
         self.figures.get(&(method.to_owned(), set.to_owned(), group, name.to_owned()))
     }
 
+    /// How many adjustments of a method failed, in one set or in all.
+    pub fn failures(&self, method: &str, set: Option<&str>) -> u64 {
+        let meant = |(m, s, _): &(String, String, Group)| m == method && set.is_none_or(|set| s == set);
+        self.failed.iter().filter(|(key, _)| meant(key)).map(|(_, (count, _))| count).sum()
+    }
+
     /// The parameters of a set.
     pub fn parameters(set: &str) -> impl Iterator<Item = &str> {
         set.split(',')
@@ -151,7 +159,7 @@ mod tests {
 
     fn row(trial: u64, method: &str, name: &str, figure: Result<(f64, f64, f64), &str>) -> Row {
         let figure = figure.map(|(value, sigma, error)| Numbers { value, sigma: Some(sigma), error: Some(error) }).map_err(str::to_owned);
-        Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, name: name.into(), figure }
+        Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, name: name.into(), figure, seed: 7 }
     }
 
     fn close(found: Option<f64>, expected: f64) {
@@ -172,7 +180,7 @@ mod tests {
         reader.add(row(4, "good", "c", Err("two")));
         reader.add(Row { group: Group::Point, ..row(4, "good", "6/left/3/x", Ok((0.5, 0.0, 0.0))) });
         let found = reader.found;
-        assert_eq!((found.trials, found.methods.len(), found.sets.len(), found.scored()), (5, 2, 1, vec!["c", "b1"]));
+        assert_eq!((found.trials, found.seed, found.methods.len(), found.sets.len(), found.scored()), (5, 7, 2, 1, vec!["c", "b1"]));
         let c = found.get("good", Group::Iop, "c").unwrap();
         assert_eq!(c.first, Some(Numbers { value: 3.0, sigma: Some(1.5), error: Some(3.0) }));
         assert_eq!((c.value.count, c.sigma_ratio.count, c.value_ratio.count), (4, 2, 2));
@@ -185,6 +193,7 @@ mod tests {
         close(c.errors.ratio().map(|ratio| ratio.0), (11.0_f64 / 9.0).sqrt());
         close(c.values.ratio().map(|ratio| ratio.0), (38.0_f64 / 20.0).sqrt());
         let failed = |method: &str| found.failed.get(&(method.to_owned(), "c,b1".to_owned(), Group::Iop)).cloned();
+        assert_eq!((found.failures("good", None), found.failures("good", Some("c,b1")), found.failures("good", Some("c"))), (2, 2, 0));
         assert_eq!((failed("good"), failed("pixel")), (Some((2, "one".into())), Some((1, "no convergence".into()))));
         assert_eq!(found.residuals, [("good".to_owned(), "6/left/3/x".to_owned(), 0.5)]);
     }

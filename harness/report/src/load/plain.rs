@@ -9,7 +9,7 @@ use calibench_model::Image;
 use calibench_records::description::{Description, looks};
 use calibench_records::names::{RECORDS, SCENARIO, kept_image};
 use calibench_records::points::{RecordHead, read_records};
-use calibench_records::results::Trial;
+use calibench_records::results::{MethodInfo, Trial};
 use calibench_records::score::Scores;
 
 use super::LoadError;
@@ -56,9 +56,14 @@ pub fn load(records: &Path, name: &str) -> Result<Loaded, LoadError> {
         scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
         first.get_or_insert(trial);
     });
-    let head = head.map_err(|source| LoadError::Records { path, source })?;
+    let mut head = head.map_err(|source| LoadError::Records { path, source })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
     let calibrations = adjustments::load(&folder)?;
+    if let Some(found) = calibrations.as_ref().filter(|_| head.methods.is_empty()) {
+        // Records without points say nothing of their run.
+        let info = |label: &String| MethodInfo { label: label.as_str().into(), version: "".into(), unavailable: None };
+        (head.run.seed, head.methods) = (found.seed, found.methods.iter().map(info).collect());
+    }
     Ok(Loaded { name: name.to_owned(), calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
 }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod small;
 
+use calibench_records::adjustments::CALIBRATIONS;
 use small::{Family, line, row};
 
 use crate::verdicts;
@@ -116,4 +117,23 @@ fn verdicts_are_those_of_the_page() {
     assert_eq!(row(&page, &["near", "0.04"]), ["near", "0.04", "0.030", "reproduces"]);
     std::fs::remove_file(&scene).unwrap();
     assert_eq!(verdicts::verdicts(records, &published).unwrap(), []);
+}
+
+/// Records without a point, as of coordinates that are drawn, say nothing of their run: its adjustments do.
+#[test]
+fn a_run_without_points_is_known_by_its_adjustments() {
+    let family = Family::new();
+    let text = std::fs::read_to_string(family.records()).unwrap();
+    std::fs::write(family.records(), format!("{}\n", text.lines().next().unwrap())).unwrap();
+    let header = calibench_records::adjustments::COLUMNS.join(",");
+    let row = |trial: u64, method: &str, seed: u64| format!("small/scene,{trial},{method},c,iop,c,1.0,0.1,0.0,mm,adjusted,,{seed}\n");
+    let rows = |methods: &[&str], seed: u64| -> String { (0..2).flat_map(|t| methods.iter().map(move |m| row(t, m, seed))).collect() };
+    let said = |rows: String| {
+        std::fs::write(family.records().with_file_name(CALIBRATIONS), format!("{header}\n{rows}")).unwrap();
+        family.page().lines().find(|line| line.contains("Not the scenario")).map(str::to_owned)
+    };
+    let methods = ["pixel", "centroid:window=15"];
+    assert_eq!(said(rows(&methods, 5)), None);
+    assert_eq!(said(rows(&methods, 6)).unwrap(), "**Not the scenario as its file says: seed 6 in place of 5.**");
+    assert_eq!(said(rows(&methods[..1], 5)).unwrap(), "**Not the scenario as its file says: other methods.**");
 }

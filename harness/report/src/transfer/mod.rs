@@ -20,7 +20,7 @@ use crate::sweep::LoadedSweep;
 
 /// The text of a scenario whose calibrations are applied elsewhere and its pictures, whose names begin with `stem`; `None` for another scenario.
 pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
-    let found = loaded.calibrations.as_ref().filter(|_| is_of(loaded))?;
+    let found = loaded.calibrations.as_ref().filter(|found| is_transfer(found))?;
     let mut text = cases::table(found);
     text.push_str(&decomposition::tables(found));
     let mut pictures: Pictures = Vec::new();
@@ -66,11 +66,6 @@ pub fn sweep(loaded: &LoadedSweep, stem: &str) -> Result<Option<(String, Picture
         text.push_str(&format!("![Error of the camera over the frame]({file})\n\n"));
     }
     Ok(Some((text, picture.map(|picture| (file, picture)).into_iter().collect())))
-}
-
-/// Whether a scenario's calibrations are applied elsewhere: its coordinates are drawn, and its records of points are empty.
-pub fn is_of(loaded: &Loaded) -> bool {
-    loaded.calibrations.as_ref().is_some_and(is_transfer)
 }
 
 /// Scenarios that are adjusted where they are measured have no error in space.
