@@ -90,11 +90,8 @@ impl Run {
         if !methods.is_empty() {
             plan.methods = methods;
         }
-        if matches!(scenario.subject, Subject::Printed(_)) {
-            own_methods(scenario, methods)?;
-        }
+        own_methods(scenario, methods)?;
         if let Some(transfer) = plan.transfer() {
-            own_methods(scenario, methods)?;
             if let Some(warning) = transfer.warning() {
                 say!("{}: {warning}", scenario.name);
             }
@@ -123,9 +120,7 @@ impl Run {
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
         }
-        if matches!(&scenario.subject, Subject::Views(views) if views.transfer.is_some()) {
-            own_methods(scenario, methods)?;
-        }
+        own_methods(scenario, methods)?;
         let Changes { seed, trials, .. } = self.changes;
         let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
         let plan = SweepPlan { scenario, sweep, methods, seed, trials, detector, data: context.data()?, registry };
@@ -140,8 +135,12 @@ impl Run {
 
 /// Calibrations that are applied, and printed figures, are a scenario's own: none of the methods that measure takes their place.
 fn own_methods(scenario: &Scenario, methods: &[Configured]) -> Result<(), Failure> {
+    let own = match &scenario.subject {
+        Subject::Views(views) => views.transfer.is_some(),
+        subject => matches!(subject, Subject::Printed(_)),
+    };
     let message = || format!("-m: `{}` measures nothing: its calibrations or printed figures are its own; leave out -m", scenario.name);
-    if methods.is_empty() { Ok(()) } else { Err(Failure::input(message())) }
+    if own && !methods.is_empty() { Err(Failure::input(message())) } else { Ok(()) }
 }
 
 fn trials(scenario: &Scenario, asked: Option<u64>) -> Result<u64, Failure> {

@@ -87,6 +87,21 @@ impl Image {
     pub fn to_u8(&self) -> Vec<u8> {
         self.grey.iter().map(|&g| (g.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
     }
+
+    /// The image `factor` times smaller: means of whole squares of `factor` px; what is left over at the right and at the bottom is not used.
+    #[must_use]
+    pub fn reduced(&self, factor: usize) -> Self {
+        let (width, height) = (self.width() / factor, self.height() / factor);
+        let share = 1.0 / (factor * factor) as f32;
+        let mut grey = vec![0.0_f32; width * height];
+        for y in 0..height * factor {
+            let sums = &mut grey[(y / factor) * width..(y / factor + 1) * width];
+            for (sum, block) in sums.iter_mut().zip(self.row(y).chunks_exact(factor)) {
+                *sum += share * block.iter().sum::<f32>();
+            }
+        }
+        Self::new(width, height, grey)
+    }
 }
 
 #[cfg(test)]
@@ -100,5 +115,12 @@ mod tests {
         assert!(image.rows_around(3, 3, 1).is_none());
         let rows: Vec<_> = image.rows_around(3, 2, 1).unwrap().collect();
         assert_eq!(rows, [[12.0, 13.0, 14.0], [22.0, 23.0, 24.0], [32.0, 33.0, 34.0]]);
+    }
+
+    #[test]
+    fn reduced_pixels_are_means_of_their_squares() {
+        let reduced = Image::from_fn(7, 5, |x, y| (10 * y + x) as f32).reduced(2);
+        assert_eq!((reduced.width(), reduced.height()), (3, 2));
+        assert_eq!(reduced.grey(), [5.5, 7.5, 9.5, 25.5, 27.5, 29.5]);
     }
 }

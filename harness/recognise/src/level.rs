@@ -4,8 +4,6 @@ use std::borrow::Cow;
 
 use calibench_model::{CornerPoint, Image, PixelPoint};
 
-use crate::smooth::reduce;
-
 /// The longer side of the smallest image that is looked at first, px at most.
 const FIRST: usize = 640;
 /// The longer side beyond which no more detail is looked at, px.
@@ -20,7 +18,7 @@ pub(crate) struct Level<'a> {
 
 impl<'a> Level<'a> {
     pub fn of(image: &'a Image, factor: usize) -> Self {
-        let image = if factor == 1 { Cow::Borrowed(image) } else { Cow::Owned(reduce(image, factor)) };
+        let image = if factor == 1 { Cow::Borrowed(image) } else { Cow::Owned(image.reduced(factor)) };
         Self { image, factor }
     }
 

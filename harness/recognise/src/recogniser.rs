@@ -57,12 +57,6 @@ impl Recogniser {
         Self { table, ..self }
     }
 
-    /// The same field with another classifier and table.
-    #[must_use]
-    pub fn with_classifier(self, classifier: Classifier) -> Self {
-        Self { classifier, ..self }
-    }
-
     /// The field in `image`. Deterministic; whole squares only.
     ///
     /// # Errors

@@ -38,20 +38,6 @@ pub(crate) fn gaussian(sigma: f64) -> Vec<f32> {
     weights.into_iter().map(|weight| (weight / sum) as f32).collect()
 }
 
-/// The image `factor` times smaller: means of whole squares of `factor` px; what is left over at the right and at the bottom is not used.
-pub(crate) fn reduce(image: &Image, factor: usize) -> Image {
-    let (width, height) = (image.width() / factor, image.height() / factor);
-    let share = 1.0 / (factor * factor) as f32;
-    let mut grey = vec![0.0_f32; width * height];
-    for y in 0..height * factor {
-        let sums = &mut grey[(y / factor) * width..(y / factor + 1) * width];
-        for (sum, block) in sums.iter_mut().zip(image.row(y).chunks_exact(factor)) {
-            *sum += share * block.iter().sum::<f32>();
-        }
-    }
-    Image::new(width, height, grey)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,12 +58,5 @@ mod tests {
         assert!((moment(2, 0) - 2.25).abs() < 0.1 && (moment(0, 2) - 2.25).abs() < 0.1, "{} {}", moment(2, 0), moment(0, 2));
         let constant = smooth(&Image::from_fn(5, 3, |_, _| 0.3), 2.0);
         assert!(constant.grey().iter().all(|g| (g - 0.3).abs() < 1e-6));
-    }
-
-    #[test]
-    fn reduced_pixels_are_means_of_their_squares() {
-        let reduced = reduce(&Image::from_fn(7, 5, |x, y| (10 * y + x) as f32), 2);
-        assert_eq!((reduced.width(), reduced.height()), (3, 2));
-        assert_eq!(reduced.grey(), [5.5, 7.5, 9.5, 25.5, 27.5, 29.5]);
     }
 }

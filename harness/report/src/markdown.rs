@@ -109,6 +109,11 @@ pub fn fraction(px: f64) -> String {
     }
 }
 
+/// A value, and where it is known half of its interval.
+pub fn with_half(value: f64, half: Option<f64>, digits: usize) -> String {
+    half.map_or_else(|| fixed(value, digits), |half| format!("{} ± {}", fixed(value, digits), fixed(half, digits)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

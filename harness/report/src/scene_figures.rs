@@ -154,16 +154,7 @@ fn whole(image: &Image, layers: &[Layer], marks: &[MarkAt], labels: &[(String, P
     };
     let marks: Vec<MarkAt> = marks.iter().map(|mark| MarkAt { at: at(mark.at), ..mark.clone() }).collect();
     let labels: Vec<(String, PixelPoint)> = labels.iter().map(|(text, place)| (text.clone(), at(*place))).collect();
-    overview(&reduced(image, factor), 1, layers, &marks, &labels)
-}
-
-/// Means of squares of `factor` px a side; what is left over at the right and below is left out.
-fn reduced(image: &Image, factor: usize) -> Image {
-    let area = (factor * factor) as f32;
-    Image::from_fn(image.width() / factor, image.height() / factor, |x, y| {
-        let rows = (factor * y..factor * (y + 1)).flat_map(|row| (factor * x..factor * (x + 1)).map(move |column| (column, row)));
-        rows.map(|(column, row)| image.at(column, row)).sum::<f32>() / area
-    })
+    overview(&image.reduced(factor), 1, layers, &marks, &labels)
 }
 
 fn round(value: f64) -> f64 {

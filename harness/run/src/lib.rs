@@ -10,6 +10,7 @@ mod photographs;
 mod plan;
 pub mod printed;
 pub mod recognition;
+mod rmse;
 mod scene;
 pub mod store;
 mod theory;

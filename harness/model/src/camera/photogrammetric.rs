@@ -61,6 +61,15 @@ pub const CONVENTION: Convention = Convention {
     verification: Verification::Definition,
 };
 
+impl Photogrammetric {
+    /// The ideal place of a measured one, both mm from the principal point: by formula alone, where the camera folds over too.
+    ///
+    /// Source: Brown 1971.
+    pub fn corrected(&self, measured: [f64; 2]) -> [f64; 2] {
+        self.map(measured).0
+    }
+}
+
 impl PlaneMap for Photogrammetric {
     fn map(&self, [x, y]: [f64; 2]) -> ValueAndDerivatives {
         let [k1, k2, k3] = self.k;

@@ -5,11 +5,10 @@ use calibench_records::results::Group;
 
 use super::pictures::floor::{Curve, floor};
 use super::sweep_orientation;
-use super::tables::with_half;
 use crate::LoadError;
 use crate::canvas::Pictures;
 use crate::load::adjustments::{Summaries, Summary, load};
-use crate::markdown::{MarkdownTable, fixed};
+use crate::markdown::{MarkdownTable, fixed, with_half};
 use crate::sweep::LoadedSweep;
 
 /// What the paper prints in its Table 3, to be seen beside the curves.

@@ -2,9 +2,9 @@
 
 use calibench_records::results::Group;
 
-use super::tables::{mean, with_half};
+use super::tables::mean;
 use crate::load::adjustments::{Summaries, Summary};
-use crate::markdown::{MarkdownTable, fixed};
+use crate::markdown::{MarkdownTable, fixed, with_half};
 
 /// Reported standard deviations and true errors of every scored parameter, the camera over the frame, and check points, cell by cell: the cell's value of
 /// `axis`, and what was found there.
@@ -24,8 +24,7 @@ pub fn table(axis: &str, cells: &[(String, &Summaries)]) -> String {
         }
         row.push(mean(found.get(method, Group::Frame, "rms"), 2));
         row.extend(["rmse_xy", "rmse_z"].map(|name| mean(found.get(method, Group::Check, name), 4)));
-        let failed: u64 = found.failed.iter().filter(|((failed, ..), _)| failed == method).map(|(_, (count, _))| count).sum();
-        row.push(failed.to_string());
+        row.push(found.failures(method, None).to_string());
         rows.row(row);
     }
     format!(

@@ -5,7 +5,7 @@ use calibench_records::results::Group;
 
 use crate::field::plain;
 use crate::load::adjustments::{Summaries, Summary};
-use crate::markdown::{MarkdownTable, fixed};
+use crate::markdown::{MarkdownTable, fixed, with_half};
 
 /// What is to be known where methods measure different targets.
 const KINDS: &str = "Methods with `kinds` adjust targets of these kinds alone: their figures, reduction factors too, tell of fewer points as well as of the operator.\n\n";
@@ -33,9 +33,7 @@ pub fn methods(found: &Summaries) -> String {
             let ratio = found.get(method, Group::Check, name).and_then(|summary| summary.values.ratio());
             row.push(ratio.map_or_else(String::new, |(ratio, half)| with_half(ratio, half, 2)));
         }
-        let failed: u64 =
-            found.failed.iter().filter(|((m, set, _), _)| m == method && found.sets.first() == Some(set)).map(|(_, (n, _))| n).sum();
-        row.push(failed.to_string());
+        row.push(found.failures(method, found.sets.first().map(String::as_str)).to_string());
         rows.row(row);
     }
     let trials = found.trials;
@@ -76,10 +74,6 @@ pub(super) fn mean(summary: Option<&Summary>, digits: usize) -> String {
     summary.and_then(|s| Some(with_half(s.value.mean()?, s.value.half(), digits))).unwrap_or_default()
 }
 
-pub fn with_half(value: f64, half: Option<f64>, digits: usize) -> String {
-    half.map_or_else(|| fixed(value, digits), |half| format!("{} ± {}", fixed(value, digits), fixed(half, digits)))
-}
-
 /// The sets of parameters, of every method.
 pub fn sets(found: &Summaries) -> String {
     let mut rows = MarkdownTable::new(&[
@@ -96,7 +90,6 @@ pub fn sets(found: &Summaries) -> String {
             let c = found.of_set(method, set, Group::Iop, "c");
             let sigma0 = found.of_set(method, set, Group::Network, "sigma0");
             let um = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(1e3 * value, 1));
-            let failed: u64 = found.failed.iter().filter(|((m, s, _), _)| m == method && s == set).map(|(_, (n, _))| n).sum();
             rows.row([
                 format!("`{set}`"),
                 format!("`{method}`"),
@@ -104,7 +97,7 @@ pub fn sets(found: &Summaries) -> String {
                 um(c.and_then(|c| c.sigma.mean())),
                 um(c.and_then(|c| c.square.mean()).map(f64::sqrt)),
                 weakest(found, method, set),
-                failed.to_string(),
+                found.failures(method, Some(set)).to_string(),
             ]);
         }
     }

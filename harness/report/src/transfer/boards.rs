@@ -75,8 +75,7 @@ pub fn table(axes: &[String], cells: &[Cell]) -> String {
             row.push(um(c.and_then(|c: &Summary| c.sigma.mean())));
             row.push(um(c.and_then(|c| c.square.mean()).map(f64::sqrt)));
             row.extend(cases.iter().map(|case| hundredths(cell.found.of_set(method, case, Group::Check, "rmse_xy"))));
-            let failed: u64 = cell.found.failed.iter().filter(|((m, ..), _)| m == method).map(|(_, (count, _))| count).sum();
-            row.push(failed.to_string());
+            row.push(cell.found.failures(method, None).to_string());
             rows.row(row);
         }
     }

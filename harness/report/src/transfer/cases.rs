@@ -3,8 +3,7 @@
 use calibench_records::results::Group;
 
 use crate::load::adjustments::{Summaries, Summary};
-use crate::markdown::{MarkdownTable, fixed};
-use crate::network::tables::with_half;
+use crate::markdown::{MarkdownTable, fixed, with_half};
 
 /// Errors of check points, cm or the object unit's hundredth.
 const ERRORS: [(&str, &str); 5] = [("rmse_x", "X"), ("rmse_y", "Y"), ("rmse_z", "Z"), ("rmse_xy", "planimetric"), ("rmse_xyz", "in space")];
@@ -22,7 +21,7 @@ pub fn table(found: &Summaries) -> String {
     for set in &found.sets {
         for method in &found.methods {
             let of = |group, name| found.of_set(method, set, group, name);
-            let failed: u64 = found.failed.iter().filter(|((m, s, _), _)| m == method && s == set).map(|(_, (count, _))| count).sum();
+            let failed = found.failures(method, Some(set));
             if of(Group::Check, "rmse_xyz").is_none() && (failed == 0 || !is_case(found, set)) {
                 continue;
             }

@@ -4,8 +4,7 @@ use calibench_records::results::Group;
 
 use super::cases::hundredths;
 use crate::load::adjustments::{Summaries, Summary};
-use crate::markdown::{MarkdownTable, fixed};
-use crate::network::tables::with_half;
+use crate::markdown::{MarkdownTable, fixed, with_half};
 
 /// How many pairs of causes are shown.
 const PAIRS: usize = 5;

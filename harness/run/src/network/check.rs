@@ -7,10 +7,11 @@ use calibench_model::Pose;
 use calibench_model::camera::Camera;
 use calibench_records::results::{Figure, Group};
 use calibench_scenario::calibration::CheckPlan;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
 use super::adjustment::control_point;
 use super::{ImagePoint, Job, Observed};
+use crate::rmse::Rmse;
 
 /// Rays that meet at less are parallel, rad.
 const PARALLEL: f64 = 1e-3;
@@ -74,9 +75,8 @@ fn figures(job: &Job<'_>, plan: &CheckPlan, observed: &Observed, targets: &[usiz
     }
     let count = checked.len() as f64;
     let rmse = |reference: &dyn Fn(usize) -> Point3<f64>| {
-        let squares = checked.iter().map(|(target, point)| (point - reference(*target)).component_mul(&(point - reference(*target))));
-        let sum: Vector3<f64> = squares.sum();
-        [((sum.x + sum.y) / count).sqrt(), (sum.z / count).sqrt()]
+        let Rmse { axes: [.., z], planimetric, .. } = Rmse::of(checked.iter().map(|(target, point)| point - reference(*target)));
+        [planimetric, z]
     };
     let truth = |target: usize| job.field.position(&job.field.targets[target]);
     let surveyed = |target: usize| observed.control[target];

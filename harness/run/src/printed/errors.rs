@@ -5,20 +5,15 @@ use calibench_scenario::Printed;
 use nalgebra::Vector3;
 
 use super::with_unit;
+use crate::rmse::Rmse;
 
 /// The axes of object space.
 pub const AXES: [&str; 3] = ["X", "Y", "Z"];
 
 /// Root mean squares of errors: by axis, in the plane of X and Y (2D), in space; object units.
 pub fn root_mean_squares(errors: &[Vector3<f64>]) -> [(&'static str, f64); 5] {
-    let mean = |of: &dyn Fn(&Vector3<f64>) -> f64| (errors.iter().map(of).sum::<f64>() / errors.len() as f64).sqrt();
-    [
-        ("RMSE X", mean(&|e| e.x * e.x)),
-        ("RMSE Y", mean(&|e| e.y * e.y)),
-        ("RMSE Z", mean(&|e| e.z * e.z)),
-        ("planimetric RMSE", mean(&|e| e.x * e.x + e.y * e.y)),
-        ("spatial RMSE", mean(&|e| e.norm_squared())),
-    ]
+    let Rmse { axes: [x, y, z], planimetric, spatial } = Rmse::of(errors.iter().copied());
+    [("RMSE X", x), ("RMSE Y", y), ("RMSE Z", z), ("planimetric RMSE", planimetric), ("spatial RMSE", spatial)]
 }
 
 /// Those of the printed errors of a column.

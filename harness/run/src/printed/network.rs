@@ -134,16 +134,8 @@ fn without_distortion(camera: &Photogrammetric) -> Photogrammetric {
     Photogrammetric { x0: 0.0, y0: 0.0, k: [0.0; 3], p: [0.0; 2], b: [0.0; 2], ..*camera }
 }
 
-/// The printed correction of measured coordinates, mm from the principal point: by formula alone, where the camera folds over too.
-///
-/// Source: Brown 1971.
+/// The printed correction of measured coordinates, mm.
 fn corrected(camera: &Photogrammetric, measured: SensorPoint) -> SensorPoint {
-    let (x, y) = (measured.x - camera.x0, measured.y - camera.y0);
-    let ([k1, k2, k3], [p1, p2]) = (camera.k, camera.p);
-    let r2 = x * x + y * y;
-    let radial = r2 * (k1 + r2 * (k2 + r2 * k3));
-    SensorPoint {
-        x: x - (x * radial + p1 * (r2 + 2.0 * x * x) + 2.0 * p2 * x * y),
-        y: y - (y * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * y * y)),
-    }
+    let [x, y] = camera.corrected([measured.x - camera.x0, measured.y - camera.y0]);
+    SensorPoint { x, y }
 }

@@ -30,7 +30,7 @@ pub struct Checked {
 /// are resected with `camera` where `conditions` do not hold them.
 ///
 /// # Errors
-/// In words: a station that is not resected, a point whose rays do not meet.
+/// In words: a station that is not resected, a point whose rays do not meet, no point in two stations.
 pub fn checked(
     campaign: &Campaign<'_>,
     drawn: &Drawn<'_>,
@@ -59,7 +59,9 @@ pub fn checked(
         let (at, surveyed) = (found.point, drawn.surveyed(target, conditions.survey));
         Ok(Checked { target, at, error: at - campaign.truth[target], to_survey: at - surveyed })
     };
-    transfer.check.iter().filter(|target| sights[**target].len() > 1).map(point).collect()
+    let found: Vec<Checked> =
+        transfer.check.iter().filter(|target| sights[**target].len() > 1).map(point).collect::<Result<_, String>>()?;
+    if found.is_empty() { Err("no check point was measured in two of the images".into()) } else { Ok(found) }
 }
 
 /// Why a check point is not intersected, with the image that it is about.
