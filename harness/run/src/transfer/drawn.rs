@@ -109,7 +109,7 @@ fn views(board: &Board, camera: &Camera, key: Key<'_>) -> Result<Vec<Station>, S
 }
 
 /// The corners of a board whose middle is higher by `peak` than its outermost corners along its longer side.
-fn bent(board: &Board, peak: f64) -> Vec<Point3<f64>> {
+pub(super) fn bent(board: &Board, peak: f64) -> Vec<Point3<f64>> {
     let targets = &board.field.targets;
     let ends = |axis: usize| {
         let along = targets.iter().map(|target| target.at[axis]);

@@ -175,8 +175,10 @@ fn errors_grow_with_the_noise_and_what_the_adjustment_says_of_them_is_right() {
         let rms = mean(&|trial| error(trial, (BOARD, set), "c").powi(2)).sqrt();
         let own = mean(&|trial| figure(trial, (BOARD, set), Group::Iop, "c").sigma.unwrap());
         assert!((rms / own - 1.0).abs() < 3.0 / 48.0_f64.sqrt(), "{set}: {rms} mm, reported {own}");
-        let sigma0 = mean(&|trial| figure(trial, (BOARD, set), Group::Network, "sigma0").value);
-        assert!((sigma0 - 1.0).abs() < 0.05, "{sigma0}");
+        for method in [CONTROL, BOARD] {
+            let sigma0 = mean(&|trial| figure(trial, (method, set), Group::Network, "sigma0").value);
+            assert!((sigma0 - 1.0).abs() < 0.05, "{method}: {sigma0}, with control of its weight");
+        }
         let survey = mean(&|trial| value(trial, (CONTROL, set), "rmse_xy_survey"));
         assert!((survey - 0.003).abs() < 0.001, "2 mm an axis are in the references: {survey} m");
     }
@@ -282,4 +284,32 @@ fn an_interaction_is_that_of_its_pair() {
     assert!((split.shares().iter().sum::<f64>() - 1.0).abs() < 1e-12, "{:?}", split.shares());
     let failed = Split::new(&plan(), |c| if both(c) { Err("no rays".into()) } else { Ok(errors(0.0, 0.0)) }).unwrap_err();
     assert_eq!(failed, "all switches on: no rays");
+}
+
+/// Of the survey's 2 mm an axis check points keep what 33 control points leave of it against the truth, and all of it against their own survey. A case without
+/// it has none, whatever was calibrated before.
+#[test]
+fn errors_of_the_survey_are_those_of_the_survey() {
+    let cases =
+        format!("{}{}", case("with", "poses = \"held\"").replace("survey = false", "survey = true"), case("without", "poses = \"held\""));
+    let found = first(METHODS, &cases);
+    let [to_truth, to_survey] = ["rmse_xy", "rmse_xy_survey"].map(|name| value(&found, (CONTROL, 0), name));
+    assert!((to_survey / 0.002_f64.hypot(0.002) - 1.0).abs() < 3.0 / 56.0_f64.sqrt(), "{to_survey} m");
+    assert!(to_truth > 1e-4 && to_truth < 0.6 * to_survey, "{to_truth} {to_survey} m");
+    assert!(value(&found, (CONTROL, 1), "rmse_xy") < 1e-6 && value(&found, (BOARD, 1), "rmse_xy") < 1e-6);
+}
+
+/// Nine corners along the longer side: the fifth is the crest, the first and the last stay where they are.
+#[test]
+fn a_bent_board_has_its_crest_in_its_middle() {
+    let scenario = study(METHODS, &case("plain", "poses = \"held\""));
+    let calibench_scenario::Subject::Views(views) = &scenario.subject else { panic!("views") };
+    let board = views.transfer.as_ref().unwrap().board.as_ref().unwrap();
+    let heights: Vec<f64> =
+        super::drawn::bent(board, 0.8).iter().zip(&board.field.targets).map(|(bent, flat)| bent.z - flat.surveyed.z).collect();
+    assert_eq!(heights.len(), 54);
+    for row in heights.chunks(9) {
+        let expected = |i: usize| 0.8 * (1.0 - ((i as f64 - 4.0) / 4.0).powi(2));
+        assert!(row.iter().enumerate().all(|(i, z)| (z - expected(i)).abs() < 1e-9), "{row:?}");
+    }
 }
