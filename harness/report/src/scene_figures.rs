@@ -148,13 +148,15 @@ fn whole(image: &Image, layers: &[Layer], marks: &[MarkAt], labels: &[(String, P
     if factor == 1 {
         return overview(image, zoom_for(image), layers, marks, labels);
     }
-    let at = |at: PixelPoint| {
-        let corner = at.to_corner();
-        CornerPoint { x: corner.x / factor as f64, y: corner.y / factor as f64 }.to_pixel()
-    };
-    let marks: Vec<MarkAt> = marks.iter().map(|mark| MarkAt { at: at(mark.at), ..mark.clone() }).collect();
-    let labels: Vec<(String, PixelPoint)> = labels.iter().map(|(text, place)| (text.clone(), at(*place))).collect();
+    let marks: Vec<MarkAt> = marks.iter().map(|mark| MarkAt { at: smaller(mark.at, factor), ..mark.clone() }).collect();
+    let labels: Vec<(String, PixelPoint)> = labels.iter().map(|(text, place)| (text.clone(), smaller(*place, factor))).collect();
     overview(&image.reduced(factor), 1, layers, &marks, &labels)
+}
+
+/// A place in the image that is `factor` times smaller.
+fn smaller(at: PixelPoint, factor: usize) -> PixelPoint {
+    let corner = at.to_corner();
+    CornerPoint { x: corner.x / factor as f64, y: corner.y / factor as f64 }.to_pixel()
 }
 
 fn round(value: f64) -> f64 {
@@ -184,4 +186,42 @@ fn layers(loaded: &Loaded) -> (Vec<Layer>, Vec<Option<usize>>) {
     };
     let of = loaded.head.methods.iter().map(layer_of).collect();
     (layers, of)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(names: &[&str], place: impl Fn(usize) -> (f64, f64)) -> Vec<(String, PixelPoint)> {
+        names.iter().enumerate().map(|(i, name)| ((*name).to_owned(), PixelPoint::new(place(i).0, place(i).1))).collect()
+    }
+
+    #[test]
+    fn places_go_with_the_squares_that_become_pixels() {
+        // The middle of the second square of four pixels a side, third row.
+        assert_eq!(smaller(PixelPoint::new(5.5, 9.5), 4), PixelPoint::new(1.0, 2.0));
+    }
+
+    #[test]
+    fn of_several_kinds_each_is_shown_once_and_of_one_kind_no_target_twice() {
+        let targets = at(&["a", "b", "c", "d"], |i| (30.0 * i as f64, 5.0));
+        let kinds = BTreeMap::from([("a", "disc"), ("b", "disc"), ("c", "cross"), ("d", "corner")]);
+        let names = |chosen: Vec<&(String, PixelPoint)>| chosen.iter().map(|(id, _)| id.clone()).collect::<Vec<_>>();
+        assert_eq!(names(chosen(&targets, &kinds)), ["a", "c", "d"]);
+        let many: Vec<String> = (0..54).map(|i| i.to_string()).collect();
+        let many = at(&many.iter().map(String::as_str).collect::<Vec<_>>(), |i| (i as f64, 0.0));
+        let mut shown = names(chosen(&many, &BTreeMap::new()));
+        assert_eq!(shown.len(), MOST_PANELS);
+        shown.dedup();
+        assert_eq!(shown.len(), MOST_PANELS);
+    }
+
+    /// 30 px from one to the next: half of them to each side of the middle pixel; points where edges meet need no more than the least.
+    #[test]
+    fn a_window_holds_a_target_and_not_its_neighbours() {
+        let targets = at(&["a", "b", "c"], |i| (30.0 * i as f64, 5.0));
+        let all: Vec<&(String, PixelPoint)> = targets.iter().collect();
+        let of = |kind| window(&targets, &all, &BTreeMap::from([("a", kind), ("b", kind), ("c", kind)]));
+        assert_eq!((of("disc"), of("chess_corner")), (31, 11));
+    }
 }

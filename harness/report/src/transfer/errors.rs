@@ -18,8 +18,8 @@ const STEP: i32 = HEIGHT + 130;
 /// The longest arrow, px.
 const LONGEST: f64 = 60.0;
 
-/// A point: place and error.
-type Vectors = Vec<([f64; 3], [f64; 3])>;
+/// A point: true place and error.
+pub(super) type Vectors = Vec<([f64; 3], [f64; 3])>;
 
 /// A picture for each case whose points are kept, one panel a method: along the wall and upwards, so that the eye sees Y and Z; X is in the table.
 pub fn pictures(found: &Summaries) -> Vec<(String, Canvas)> {
@@ -31,7 +31,7 @@ pub fn pictures(found: &Summaries) -> Vec<(String, Canvas)> {
     found.sets.iter().filter_map(of).collect()
 }
 
-fn vectors(found: &Summaries, method: &str, set: &str) -> Vectors {
+pub(super) fn vectors(found: &Summaries, method: &str, set: &str) -> Vectors {
     let mut points: BTreeMap<&str, ([f64; 3], [f64; 3])> = BTreeMap::new();
     for ((m, s, group, name), summary) in &found.figures {
         let is_meant = m == method && s == set && *group == Group::Object;

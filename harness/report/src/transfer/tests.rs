@@ -109,6 +109,10 @@ fn a_split_lists_causes_by_what_they_make_alone() {
 fn points_of_every_trial_are_drawn() {
     let pictures = errors::pictures(&found());
     assert_eq!(pictures.iter().map(|(case, _)| case.as_str()).collect::<Vec<_>>(), ["held"]);
+    let vectors = errors::vectors(&found(), "board", "held");
+    let [(at, error)] = vectors[..] else { panic!("{vectors:?}") };
+    assert!(at.iter().zip([1.0, 2.0, 3.0]).all(|(a, b)| (a - b).abs() < 1e-9) && error == [0.03, 0.04, 0.12], "{at:?} {error:?}");
+    assert!(errors::vectors(&found(), "none", "held").is_empty());
 }
 
 #[test]
