@@ -5,7 +5,7 @@ use std::time::Instant;
 use calibench_measure::Configured;
 use calibench_run::Plan;
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
-use calibench_scenario::{Scenario, Subject, Sweep};
+use calibench_scenario::{Scenario, Subject, Sweep, Transfer};
 use clap::Args;
 
 use super::context::{Context, Pictured, origin};
@@ -91,10 +91,8 @@ impl Run {
             plan.methods = methods;
         }
         own_methods(scenario, methods)?;
-        if let Some(transfer) = plan.transfer() {
-            if let Some(warning) = transfer.warning() {
-                say!("{}: {warning}", scenario.name);
-            }
+        if let Some(warning) = plan.transfer().and_then(Transfer::warning) {
+            say!("{}: {warning}", scenario.name);
         }
         plan.seed = self.changes.seed.unwrap_or(scenario.seed);
         plan.trials = trials(scenario, self.changes.trials)?;
