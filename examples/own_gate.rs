@@ -46,5 +46,5 @@ impl Operator for Shifted {
 }
 
 fn main() -> ExitCode {
-    calibench_cli::main(&Toolbox { registry: Registry::builtin().with(shifted()), detector: None })
+    calibench_cli::main(&Toolbox { registry: Registry::builtin().with(shifted()), ..Toolbox::default() })
 }

@@ -2,6 +2,7 @@
 
 mod against_gross;
 mod board_shape;
+mod board_solver;
 mod calibration;
 mod checked;
 pub mod choice;
@@ -38,6 +39,7 @@ extern crate self as calibench_calibrate;
 mod scenes;
 
 pub use board_shape::{BoardShape, NoShape};
+pub use board_solver::{BoardSolution, BoardSolver};
 pub use calibration::Calibration;
 pub use checked::{Checked, Finding, SHARE, Verdict};
 pub use compared::{Compared, ComparedSet, SetResult};

@@ -136,7 +136,7 @@ fn swept(
 
 fn plan<'a>(context: &'a Context<'_>, scenario: &'a Scenario) -> Result<Plan<'a>, Failure> {
     // The gate compares errors with errors.
-    Ok(Plan { bounds: false, ..Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?) })
+    Ok(Plan { bounds: false, ..Plan::new(scenario, context.toolbox.tools(), context.data()?) })
 }
 
 fn empty<T: Kept>(scenario: &Scenario) -> Cells<T> {
@@ -169,8 +169,8 @@ fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Resul
         progress.finish("measured");
         return Ok(());
     };
-    let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
-    let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, detector, data: context.data()?, registry };
+    let (registry, tools) = (&context.toolbox.registry, context.toolbox.tools());
+    let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, tools, data: context.data()?, registry };
     store::run_sweep(&output, &plan, &revision, &|| ())?;
     Ok(())
 }

@@ -86,7 +86,7 @@ impl Run {
         methods: &[Configured],
         (folder, revision): (&RecordsFolder, &str),
     ) -> Result<u64, Failure> {
-        let mut plan = Plan::new(scenario, context.toolbox.detector.as_deref(), context.data()?);
+        let mut plan = Plan::new(scenario, context.toolbox.tools(), context.data()?);
         if !methods.is_empty() {
             plan.methods = methods;
         }
@@ -120,8 +120,8 @@ impl Run {
         }
         own_methods(scenario, methods)?;
         let Changes { seed, trials, .. } = self.changes;
-        let (registry, detector) = (&context.toolbox.registry, context.toolbox.detector.as_deref());
-        let plan = SweepPlan { scenario, sweep, methods, seed, trials, detector, data: context.data()?, registry };
+        let (registry, tools) = (&context.toolbox.registry, context.toolbox.tools());
+        let plan = SweepPlan { scenario, sweep, methods, seed, trials, tools, data: context.data()?, registry };
         let (started, cells) = (Instant::now(), sweep.cells());
         let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
         let measured = store::run_sweep(folder, &plan, revision, &|| progress.step())?;

@@ -1,11 +1,23 @@
 //! What a build of calibench can do.
 
+use calibench_calibrate::BoardSolver;
 use calibench_measure::{BoardDetector, Registry};
+use calibench_run::Tools;
 
 /// What a build of calibench can do.
+#[derive(Default)]
 pub struct Toolbox {
     /// Its methods.
     pub registry: Registry,
     /// Its chessboard detector, if it has one.
     pub detector: Option<Box<dyn BoardDetector>>,
+    /// OpenCV's calibration from a board, if it has it.
+    pub solver: Option<Box<dyn BoardSolver>>,
+}
+
+impl Toolbox {
+    /// What it has beside its methods.
+    pub fn tools(&self) -> Tools<'_> {
+        Tools { detector: self.detector.as_deref(), solver: self.solver.as_deref() }
+    }
 }

@@ -1,5 +1,6 @@
 //! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them, and a chessboard detector.
 
+pub mod calibrate_camera;
 pub mod chessboard;
 pub mod chessboard_sb;
 pub mod subpix;
@@ -23,5 +24,9 @@ pub fn version() -> String {
 
 /// The command line with everything that this build can do.
 pub fn main() -> std::process::ExitCode {
-    calibench_cli::main(&calibench_cli::Toolbox { registry: registry(), detector: Some(Box::new(detector())) })
+    calibench_cli::main(&calibench_cli::Toolbox {
+        registry: registry(),
+        detector: Some(Box::new(detector())),
+        solver: Some(Box::new(calibrate_camera::CalibrateCamera)),
+    })
 }

@@ -70,7 +70,7 @@ fn campaign(scenario: &Scenario) -> Result<f64, Box<dyn Error>> {
 fn several(scenario: &Scenario, more: u64) -> Result<f64, Box<dyn Error>> {
     let single = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let run = |trials: u64| -> Result<f64, String> {
-        let plan = Plan { trials, ..Plan::new(scenario, None, ".".into()) };
+        let plan = Plan { trials, ..Plan::new(scenario, calibench_run::Tools::default(), ".".into()) };
         let start = Instant::now();
         single.install(|| plan.run(&|| (), &mut |_| Ok(()))).map_err(|error| error.to_string())?;
         Ok(start.elapsed().as_secs_f64())

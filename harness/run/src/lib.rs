@@ -20,7 +20,7 @@ pub mod truth;
 pub mod views;
 
 pub use error::RunError;
-pub use plan::Plan;
+pub use plan::{Plan, Tools};
 pub use scene::{VIEW, starts, trial_picture, trial_truth};
 
 #[cfg(test)]

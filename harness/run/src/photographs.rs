@@ -38,5 +38,5 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
     if let Some(folder) = plan.images {
         folder.write(&kept_image_name(file), |file| encode_png(file, &image, false))?;
     }
-    Ok(plan.detector.map_or_else(Trial::default, |detector| measured_board(&image, &view, (detector, subject.board), plan.methods)))
+    Ok(plan.tools.detector.map_or_else(Trial::default, |detector| measured_board(&image, &view, (detector, subject.board), plan.methods)))
 }

@@ -2,16 +2,28 @@
 
 use std::path::PathBuf;
 
+use calibench_calibrate::BoardSolver;
 use calibench_exchange::NewFolder;
 use calibench_measure::{BoardDetector, Configured, Operator};
 use calibench_model::{Image, Measurement, Rejection, Start, TargetKind, Unknowns};
 use calibench_records::results::MethodInfo;
+use calibench_scenario::transfer::{Calibrates, Solver};
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 
 use crate::printed::PRINT;
+use crate::transfer::unavailable;
 
 /// The version of calibration methods: raised when their numbers change on purpose.
 const TRANSFER_VERSION: &str = "1";
+
+/// What a build has beside its methods; none of it by default.
+#[derive(Clone, Copy, Default)]
+pub struct Tools<'a> {
+    /// Finds chessboards.
+    pub detector: Option<&'a dyn BoardDetector>,
+    /// OpenCV's calibration from a board.
+    pub solver: Option<&'a dyn BoardSolver>,
+}
 
 /// How a scenario is run.
 pub struct Plan<'a> {
@@ -23,8 +35,8 @@ pub struct Plan<'a> {
     pub seed: u64,
     /// How many trials: the scenario's number or another.
     pub trials: u64,
-    /// Finds chessboards, where this build can.
-    pub detector: Option<&'a dyn BoardDetector>,
+    /// What this build has beside its methods.
+    pub tools: Tools<'a>,
     /// Where photographs are.
     pub data: PathBuf,
     /// Whether the Cramér-Rao bound of each target is computed.
@@ -35,17 +47,8 @@ pub struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     /// The scenario as its file says, with no images kept.
-    pub fn new(scenario: &'a Scenario, detector: Option<&'a dyn BoardDetector>, data: PathBuf) -> Self {
-        Self {
-            scenario,
-            methods: &scenario.methods,
-            seed: scenario.seed,
-            trials: scenario.trials,
-            detector,
-            data,
-            bounds: true,
-            images: None,
-        }
+    pub fn new(scenario: &'a Scenario, tools: Tools<'a>, data: PathBuf) -> Self {
+        Self { scenario, methods: &scenario.methods, seed: scenario.seed, trials: scenario.trials, tools, data, bounds: true, images: None }
     }
 
     /// The methods as results list them.
@@ -54,12 +57,12 @@ impl<'a> Plan<'a> {
             return vec![MethodInfo { label: PRINT.into(), version: "1".into(), unavailable: None }];
         }
         if let Some(transfer) = self.transfer() {
-            let info = |method: &calibench_scenario::transfer::Method| MethodInfo {
+            let info = |(place, method): (usize, &calibench_scenario::transfer::Method)| MethodInfo {
                 label: method.name.as_str().into(),
-                version: TRANSFER_VERSION.into(),
-                unavailable: None,
+                version: self.version(method).into(),
+                unavailable: unavailable(transfer, place, self.tools.solver.is_some()),
             };
-            return transfer.methods.iter().map(info).collect();
+            return transfer.methods.iter().enumerate().map(info).collect();
         }
         let missing = self.missing();
         let info = |method: &Configured| MethodInfo {
@@ -68,6 +71,18 @@ impl<'a> Plan<'a> {
             unavailable: missing.clone().or_else(|| method.operator.as_ref().err().map(|why| (*why).to_owned())),
         };
         self.methods.iter().map(info).collect()
+    }
+
+    /// The version of a calibration that is applied, with those of what measures for it and solves for it.
+    fn version(&self, method: &calibench_scenario::transfer::Method) -> String {
+        let measuring = method.measured_by.iter().map(|measuring| format!("{} {}", measuring.operator.label, measuring.operator.version));
+        let solver = match method.calibrates {
+            Calibrates::FromBoard { solver: Solver::Opencv, .. } => {
+                self.tools.solver.map(|solver| format!("{} {}", solver.name(), solver.version()))
+            }
+            _ => None,
+        };
+        [TRANSFER_VERSION.to_owned()].into_iter().chain(measuring).chain(solver).collect::<Vec<_>>().join(", ")
     }
 
     /// The calibrations that are applied, where those are the methods.
@@ -79,7 +94,7 @@ impl<'a> Plan<'a> {
     /// Name and version of the detector that gives the approximate positions, if one does.
     pub fn detector_used(&self) -> Option<(String, String)> {
         let used = matches!(self.scenario.subject, Subject::Photographs(_)) && self.missing().is_none();
-        self.detector.filter(|_| used).map(|detector| (detector.name().to_owned(), detector.version()))
+        self.tools.detector.filter(|_| used).map(|detector| (detector.name().to_owned(), detector.version()))
     }
 
     /// Why nothing at all can be measured, if so.
@@ -128,7 +143,7 @@ type Measured = Result<Measurement, Rejection>;
 
 /// Why the photographs cannot be measured, if so.
 fn missing(plan: &Plan<'_>, subject: &PhotographsSubject) -> Option<String> {
-    if plan.detector.is_none() {
+    if plan.tools.detector.is_none() {
         return Some("this build has no chessboard detector (it is built without OpenCV)".into());
     }
     let folder = plan.folder_of(subject);

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::{NewFile, NewFolder, OutputFolder};
-use calibench_measure::{BoardDetector, Configured, Registry};
+use calibench_measure::{Configured, Registry};
 use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
 use calibench_records::description::write as write_description;
 use calibench_records::names::{DESCRIPTION, ORIGIN, RECORDS, SCENARIO, cell_name};
@@ -17,7 +17,7 @@ use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 use crate::description::description;
 use crate::judgement::write_judgement;
 use crate::theory::write_theory;
-use crate::{Plan, RunError};
+use crate::{Plan, RunError, Tools};
 
 /// Copies the scenario's camera file to where the scenario as it was run looks for it.
 fn keep_camera(scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> {
@@ -129,8 +129,8 @@ pub struct SweepPlan<'a> {
     pub seed: Option<u64>,
     /// The number of trials in place of the scenario's; a cell in which nothing is random has one.
     pub trials: Option<u64>,
-    /// Finds chessboards, where this build can.
-    pub detector: Option<&'a dyn BoardDetector>,
+    /// What this build has beside its methods.
+    pub tools: Tools<'a>,
     /// Where photographs are.
     pub data: PathBuf,
     /// All methods that there are.
@@ -149,7 +149,7 @@ pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, 
     records.output.replace(|folder| {
         for index in 0..plan.sweep.cells() {
             let cell = parse_cell(scenario, plan.sweep, index, plan.registry).map_err(io::Error::other)?;
-            let mut run = Plan::new(&cell, plan.detector, plan.data.clone());
+            let mut run = Plan::new(&cell, plan.tools, plan.data.clone());
             if !plan.methods.is_empty() {
                 run.methods = plan.methods;
             }

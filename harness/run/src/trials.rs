@@ -52,7 +52,7 @@ impl Plan<'_> {
         }
     }
 
-    /// Calibrations that are applied: coordinates are drawn, nothing is measured.
+    /// Calibrations that are applied.
     fn transferred(
         &self,
         subject: &ViewsSubject,
@@ -60,9 +60,9 @@ impl Plan<'_> {
         sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
     ) -> Result<(), RunError> {
         let Some(transfer) = &subject.transfer else { return Ok(()) };
-        let campaign = Campaign::new(subject, transfer)?;
+        let campaign = Campaign::new(subject, transfer, self.tools)?;
         let key = |trial| Key { seed: self.seed, scenario: &self.scenario.name, trial, view: "", target: "" };
-        self.trials(step, sink, &|number| Ok(campaign.trial(key(number))))
+        self.trials(step, sink, &|number| campaign.trial(key(number)))
     }
 
     /// Runs trials in batches and hands them on in their order.

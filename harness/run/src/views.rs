@@ -257,9 +257,7 @@ pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<
 
 /// Where measuring starts in `image`, that of `view`: of each target that is wholly in it and that the scenario's detector, if it has one, does not miss.
 pub fn starts<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>, image: &Image, key: Key<'_>) -> Vec<(&'p str, Start)> {
-    let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
-    let starts = started(prepared, image, &seen);
-    seen.iter().zip(starts).filter_map(|(point, start)| Some((&*prepared.targets[point.target], start?))).collect()
+    pointed(prepared, view, image, key).into_iter().filter_map(|point| Some((&*prepared.targets[point.target], point.start?))).collect()
 }
 
 fn started(prepared: &Prepared<'_>, image: &Image, seen: &[SeenTarget]) -> Vec<Option<Start>> {
@@ -271,6 +269,23 @@ fn started(prepared: &Prepared<'_>, image: &Image, seen: &[SeenTarget]) -> Vec<O
 
 fn kind_of(prepared: &Prepared<'_>, point: &SeenTarget) -> TargetKind {
     prepared.subject.field.targets[point.target].kind
+}
+
+/// A target that is pointed at in an image.
+pub(crate) struct Pointed {
+    /// Its place in the field.
+    pub target: usize,
+    /// Where it is, px.
+    pub truth: PixelPoint,
+    /// Where measuring starts; `None` where nobody found it.
+    pub start: Option<Start>,
+}
+
+/// The targets that are pointed at in `image`, that of `view`.
+pub(crate) fn pointed(prepared: &Prepared<'_>, view: &PreparedView<'_>, image: &Image, key: Key<'_>) -> Vec<Pointed> {
+    let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
+    let starts = started(prepared, image, &seen);
+    seen.iter().zip(starts).map(|(point, start)| Pointed { target: point.target, truth: point.truth, start }).collect()
 }
 
 /// A target that is pointed at.

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::rc::Rc;
 
 use calibench_diagnostics::{Problem, Problems};
 use calibench_measure::Registry;
@@ -9,7 +10,7 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::section::Section;
-use super::transfer::{self, Site};
+use super::transfer;
 use super::{Scenario, Subject, ViewsSubject};
 
 /// Where other scenarios are found, and how they are read.
@@ -30,14 +31,13 @@ impl Surroundings<'_> {
     pub fn read(&self, section: Section<'_>, problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
         let mut applied = None;
         let mut site = |file: &Spanned<String>| {
-            let views = self.views(file.get_ref())?;
-            let site = Site { camera: views.camera, field: views.field.clone(), stations: views.stations.clone() };
+            let views = Rc::new(self.views(file.get_ref())?);
             // The first that is asked for is where calibrations are applied.
-            applied.get_or_insert(views);
-            Ok(site)
+            applied.get_or_insert(views.clone());
+            Ok(views)
         };
-        let transfer = transfer::read(section, &mut site, problems)?;
-        applied.map(|views| ViewsSubject { transfer: Some(transfer), ..views })
+        let transfer = transfer::read(section, self.registry, &mut site, problems)?;
+        applied.map(|views| ViewsSubject { transfer: Some(transfer), ..(*views).clone() })
     }
 
     /// The views of the scenario in `file`, or what is wrong with it.

@@ -87,6 +87,7 @@ impl SceneSubject {
 }
 
 /// Views of a testfield by a camera.
+#[derive(Clone, Debug)]
 pub struct ViewsSubject {
     /// What is seen.
     pub field: Testfield,

@@ -105,7 +105,7 @@ pub fn scenario(text: &str) -> Scenario {
 
 /// All trials of a scenario.
 pub fn trials(scenario: &Scenario, count: u64) -> Vec<Trial> {
-    let plan = Plan { bounds: false, trials: count, ..Plan::new(scenario, None, "".into()) };
+    let plan = Plan { bounds: false, trials: count, ..Plan::new(scenario, calibench_run::Tools::default(), "".into()) };
     let mut trials = Vec::new();
     plan.run(&|| (), &mut |trial| {
         trials.push(trial);

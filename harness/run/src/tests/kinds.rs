@@ -52,7 +52,7 @@ fn a_run_that_leaves_targets_to_nobody_is_refused() {
     let methods = |texts: &[&str]| texts.iter().map(|text| Registry::builtin().parse(text).unwrap()).collect::<Vec<_>>();
     let refused = |texts: &[&str]| {
         let methods = methods(texts);
-        let plan = Plan { methods: &methods, ..Plan::new(&found, None, std::path::PathBuf::new()) };
+        let plan = Plan { methods: &methods, ..Plan::new(&found, crate::Tools::default(), std::path::PathBuf::new()) };
         match plan.run(&|| (), &mut |_| Ok(())) {
             Err(RunError::Kinds(gap)) => Some(gap),
             Err(other) => panic!("{other}"),

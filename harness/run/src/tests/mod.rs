@@ -116,7 +116,7 @@ fn views(scenario: &Scenario) -> &ViewsSubject {
 }
 
 fn trials(scenario: &Scenario, seed: u64) -> Vec<Trial> {
-    let mut plan = Plan::new(scenario, None, PathBuf::new());
+    let mut plan = Plan::new(scenario, crate::Tools::default(), PathBuf::new());
     plan.seed = seed;
     let mut found = Vec::new();
     plan.run(&|| (), &mut |trial| {
@@ -130,7 +130,7 @@ fn trials(scenario: &Scenario, seed: u64) -> Vec<Trial> {
 #[test]
 fn trials_come_in_their_order_and_steps_are_counted() {
     let scenario = scenario(&[("trials = 2", "trials = 40")]);
-    let plan = Plan::new(&scenario, None, PathBuf::new());
+    let plan = Plan::new(&scenario, crate::Tools::default(), PathBuf::new());
     let steps = std::sync::atomic::AtomicU64::new(0);
     let mut numbers = Vec::new();
     let count = || {
@@ -170,7 +170,7 @@ fn the_seed_makes_the_noise() {
 #[test]
 fn a_sink_that_fails_ends_the_run() {
     let scenario = scenario(&[]);
-    let plan = Plan::new(&scenario, None, PathBuf::new());
+    let plan = Plan::new(&scenario, crate::Tools::default(), PathBuf::new());
     let error = plan.run(&|| (), &mut |_| Err(std::io::Error::other("the disk is full").into())).unwrap_err();
     assert_eq!(error.to_string(), "the disk is full");
 }

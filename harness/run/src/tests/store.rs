@@ -14,7 +14,12 @@ use crate::store::{RecordsFolder, SweepPlan, run, run_sweep};
 use crate::{Plan, RunError};
 
 fn stored(records: &Path, scenario: &Scenario) -> Result<u64, RunError> {
-    run(&RecordsFolder::open(records, &scenario.name, None)?, &mut Plan::new(scenario, None, PathBuf::new()), "r1", &|| ())
+    run(
+        &RecordsFolder::open(records, &scenario.name, None)?,
+        &mut Plan::new(scenario, crate::Tools::default(), PathBuf::new()),
+        "r1",
+        &|| (),
+    )
 }
 
 /// Names and contents of all files below a folder.
@@ -97,7 +102,7 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
         methods: &[],
         seed: None,
         trials: None,
-        detector: None,
+        tools: crate::Tools::default(),
         data: PathBuf::new(),
         registry: &registry,
     };

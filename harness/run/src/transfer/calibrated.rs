@@ -2,16 +2,19 @@
 
 use calibench_adjust::approximate::{Control, planar_poses};
 use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Solution, Variance, adjust};
-use calibench_calibrate::pose_of;
+use calibench_calibrate::{BoardSolver, pose_of};
 use calibench_model::Pose;
-use calibench_model::camera::Camera;
-use calibench_scenario::transfer::{Calibrates, Conditions, Method};
+use calibench_model::camera::{Camera, CameraModel};
+use calibench_scenario::transfer::{Calibrates, Conditions, Method, Solver};
+use nalgebra::Point3;
 
 use super::Campaign;
 use super::drawn::Drawn;
 
 /// Control points from which an image is resected for a start.
 const ENOUGH: usize = 12;
+/// Why there is no calibration of OpenCV's.
+pub const NO_SOLVER: &str = "this build is without OpenCV";
 
 /// A calibrated camera.
 #[derive(Clone, Debug)]
@@ -33,27 +36,37 @@ pub struct Quality {
     pub sigma0: f64,
     /// Observations minus unknowns.
     pub redundancy: i64,
+    /// Points in rendered images that were not measured.
+    pub missed: usize,
 }
 
-/// The calibration of `method` under `conditions`. Exterior orientations of stations start from `near`, or from resections with the data sheet's camera.
+/// The calibration of the method at `place` under `conditions`. Exterior orientations of stations start from `near`, or from resections with the data sheet's camera.
 ///
 /// # Errors
 /// In words: what cannot be oriented, what the images do not determine, no convergence.
 pub fn calibration(
     campaign: &Campaign<'_>,
     drawn: &Drawn<'_>,
-    method: &Method,
+    place: usize,
     conditions: &Conditions,
     near: Option<&[Pose]>,
 ) -> Result<Calibration, String> {
+    let method = &campaign.transfer.methods[place];
     match method.calibrates {
         Calibrates::Never => Ok(Calibration { camera: method.start, poses: Vec::new(), quality: None }),
         Calibrates::FromControl => from_control(campaign, drawn, method, conditions, near),
-        Calibrates::FromBoard { sigma_px } => {
-            let board = campaign.transfer.board.as_ref().ok_or("there is no board")?;
+        Calibrates::FromBoard { sigma_px, solver } => {
             let sigma_px = conditions.board_sigma_px.unwrap_or(sigma_px);
-            let views = drawn.boards(board, method, sigma_px, conditions)?;
-            from_board(method, &views, sigma_px, campaign.transfer.pitch_um)
+            let (views, missed) = drawn.boards(place, sigma_px, conditions)?;
+            // A view in which nothing was found is none.
+            let views: Vec<Vec<Control>> = views.into_iter().filter(|view| !view.is_empty()).collect();
+            let found = match solver {
+                Solver::Own => from_board(method, &views, sigma_px, campaign.transfer.pitch_um)?,
+                Solver::Opencv => {
+                    by_another(campaign.tools.solver.ok_or(NO_SOLVER)?, method, &views, sigma_px, campaign.transfer.pitch_um)?
+                }
+            };
+            Ok(Calibration { quality: found.quality.map(|quality| Quality { missed, ..quality }), ..found })
         }
     }
 }
@@ -66,17 +79,19 @@ fn from_control(
     near: Option<&[Pose]>,
 ) -> Result<Calibration, String> {
     let (transfer, stations) = (campaign.transfer, &campaign.subject.stations);
-    let poses = match near {
+    let used = campaign.all_stations(conditions);
+    let mut poses = match near {
         Some(poses) => poses.to_vec(),
         None => {
-            let pose = |(place, station): (usize, &calibench_synth::stations::Station)| {
-                pose_of(&method.start, &some(&drawn.control(place, conditions))).map_err(|why| format!("image {}: {why}", station.name))
+            let pose = |place: usize| {
+                pose_of(&method.start, &some(&drawn.control(place, conditions)))
+                    .map_err(|why| format!("image {}: {why}", stations[place].name))
             };
-            stations.iter().enumerate().map(pose).collect::<Result<_, _>>()?
+            (0..stations.len()).map(pose).collect::<Result<_, _>>()?
         }
     };
     let mut network = start(method)?;
-    network.images = stations.iter().zip(&poses).map(|(station, pose)| Exterior::free(station.name.as_str(), 0, *pose)).collect();
+    network.images = used.iter().map(|&place| Exterior::free(stations[place].name.as_str(), 0, poses[place])).collect();
     let mut places = vec![None; campaign.truth.len()];
     for &target in &transfer.control {
         places[target] = Some(network.points.len());
@@ -86,12 +101,34 @@ fn from_control(
             _ => ObjectPoint::fixed(name, at),
         });
     }
-    for image in 0..stations.len() {
-        let seen = drawn.seen(image, conditions.measurement);
-        let of = |(target, at): (usize, _)| Some(ImageObservation::new(image, places[target]?, at, transfer.sigma_px));
+    for (image, &station) in used.iter().enumerate() {
+        let seen = drawn.seen(station, conditions.measurement).iter();
+        let of = |&(target, at): &(usize, _)| Some(ImageObservation::new(image, places[target]?, at, transfer.sigma_px));
         network.observations.extend(seen.filter_map(of));
     }
-    solved(&network, transfer.pitch_um)
+    let found = solved(&network, transfer.pitch_um)?;
+    for (&station, pose) in used.iter().zip(&found.poses) {
+        poses[station] = *pose;
+    }
+    let missed = if conditions.measurement { drawn.missed() } else { 0 };
+    Ok(Calibration { poses, quality: found.quality.map(|quality| Quality { missed, ..quality }), ..found })
+}
+
+/// What another tool makes of the same corners, with all its parameters and no start but its own.
+fn by_another(
+    solver: &dyn BoardSolver,
+    method: &Method,
+    views: &[Vec<Control>],
+    sigma_px: f64,
+    pitch_um: f64,
+) -> Result<Calibration, String> {
+    let found = solver.solve(method.start.size(), views)?;
+    let corners: usize = views.iter().map(Vec::len).sum();
+    let redundancy = 2 * corners as i64 - 6 * views.len() as i64 - method.parameters.len() as i64;
+    let sigma0 = found.rms_px / sigma_px * (corners as f64 / redundancy.max(1) as f64).sqrt();
+    let sigma_c = found.sigma_f_px.map_or(f64::NAN, |sigma| sigma * pitch_um * 1e-3);
+    let quality = Quality { sigma_c, sigma0, redundancy, missed: 0 };
+    Ok(Calibration { camera: found.camera, poses: Vec::new(), quality: Some(quality) })
 }
 
 /// Some of many control points, spread over their order: start values need no more.
@@ -101,17 +138,22 @@ fn some(control: &[Control]) -> Vec<Control> {
 
 fn from_board(method: &Method, views: &[Vec<Control>], sigma_px: f64, pitch_um: f64) -> Result<Calibration, String> {
     let mut network = start(method)?;
-    let corners = views.first().map_or(&[][..], Vec::as_slice);
-    network.points = corners.iter().enumerate().map(|(i, corner)| ObjectPoint::fixed(format!("corner {}", i + 1), corner.object)).collect();
+    let mut places: Vec<Point3<f64>> = Vec::new();
     for (image, view) in views.iter().enumerate() {
         let name = format!("view {}", image + 1);
         let poses = planar_poses(&method.start, view).map_err(|error| format!("{name}: {error}"))?;
         let best = poses.first().ok_or_else(|| format!("{name}: no pose before the board"))?;
         network.images.push(Exterior::free(name, 0, best.pose));
-        network
-            .observations
-            .extend(view.iter().enumerate().map(|(point, corner)| ImageObservation::new(image, point, corner.image, sigma_px)));
+        for corner in view {
+            let known = places.iter().position(|place| *place == corner.object);
+            let point = known.unwrap_or_else(|| {
+                places.push(corner.object);
+                places.len() - 1
+            });
+            network.observations.push(ImageObservation::new(image, point, corner.image, sigma_px));
+        }
     }
+    network.points = places.iter().enumerate().map(|(i, at)| ObjectPoint::fixed(format!("corner {}", i + 1), *at)).collect();
     Ok(Calibration { poses: Vec::new(), ..solved(&network, pitch_um)? })
 }
 
@@ -143,5 +185,6 @@ fn quality(solution: &Solution<'_>, pitch_um: f64) -> Result<Quality, String> {
         .flat_map(|i| (0..weights.len()).map(move |j| (i, j)))
         .map(|(i, j)| weights[i] * matrix[(i, j)] * weights[j])
         .sum();
-    Ok(Quality { sigma_c: variance.max(0.0).sqrt(), sigma0: solution.sigma0().unwrap_or(0.0), redundancy: solution.counts().redundancy() })
+    let (sigma_c, sigma0) = (variance.max(0.0).sqrt(), solution.sigma0().unwrap_or(0.0));
+    Ok(Quality { sigma_c, sigma0, redundancy: solution.counts().redundancy(), missed: 0 })
 }

@@ -1,35 +1,46 @@
-//! What is drawn in a trial: errors of image coordinates and of the survey, and the views of the board.
+//! What is measured in a trial: errors of image coordinates and of the survey, drawn or from rendered images, and the views of the board.
+
+use std::cell::RefCell;
+use std::rc::Rc;
 
 use calibench_adjust::approximate::Control;
 use calibench_model::camera::{Camera, CameraModel};
-use calibench_model::{Bend, PixelPoint, Pose};
+use calibench_model::{Bend, PixelPoint, Plate, Pose, Testfield};
 use calibench_random::{Key, Purpose, stream};
-use calibench_scenario::transfer::{Board, Conditions, Method};
+use calibench_scenario::transfer::{Board, Conditions};
 use calibench_synth::stations::Station;
 use nalgebra::{Point3, Vector3};
 use rand_distr::{Distribution, StandardNormal};
 
 use super::Campaign;
 use super::camera::refocused;
+use super::imaged::{BoardImages, measured_wall};
+use crate::RunError;
 
-/// Errors of standard deviation 1 of a trial, which all conditions share, and its board's views.
+/// What is measured in a trial, drawn or in rendered images, and its survey, which all conditions share, and its board's views.
 pub struct Drawn<'a> {
     campaign: &'a Campaign<'a>,
     key: Key<'a>,
-    /// Of each station, of each target.
-    images: Vec<Vec<[f64; 2]>>,
-    /// Of each target.
+    /// Of each station: target and image coordinates, px.
+    images: Vec<Vec<(usize, PixelPoint)>>,
+    /// How many targets were not measured.
+    missed: usize,
+    /// Of each target, errors of standard deviation 1.
     survey: Vec<Vector3<f64>>,
     /// The views of the board, the board's units; why there are none.
     boards: Result<Vec<Station>, String>,
+    /// What was measured in images of the board, by its bend and the refocus.
+    measured: RefCell<Vec<([f64; 2], Rc<BoardImages>)>>,
 }
 
 impl<'a> Drawn<'a> {
     /// Of the trial of `key`.
-    pub fn new(campaign: &'a Campaign<'a>, key: Key<'a>) -> Self {
+    ///
+    /// # Errors
+    /// Images that cannot be rendered.
+    pub fn new(campaign: &'a Campaign<'a>, key: Key<'a>) -> Result<Self, RunError> {
         let subject = campaign.subject;
         let targets = &subject.field.targets;
-        let errors = |station: &Station| errors(targets.len(), Key { view: &station.name, ..key }, Purpose::CommonError);
         let survey = |target: &calibench_model::ObjectTarget| {
             let mut rng = stream(Key { target: &target.id, ..key }, Purpose::Control);
             Vector3::from_fn(|_, _| StandardNormal.sample(&mut rng))
@@ -38,16 +49,22 @@ impl<'a> Drawn<'a> {
             Some(board) => views(board, &subject.camera, key),
             None => Ok(Vec::new()),
         };
-        Self { campaign, key, images: subject.stations.iter().map(errors).collect(), survey: targets.iter().map(survey).collect(), boards }
+        let (images, missed) = match &campaign.transfer.measured_by {
+            Some(measuring) => measured_wall(campaign, measuring, key)?,
+            None => (drawn_wall(campaign, key), 0),
+        };
+        let survey = targets.iter().map(survey).collect();
+        Ok(Self { campaign, key, images, missed, survey, boards, measured: RefCell::default() })
     }
 
-    /// Of a station what is measured: target and image coordinates, px.
-    pub fn seen(&self, station: usize, measurement: bool) -> impl Iterator<Item = (usize, PixelPoint)> + '_ {
-        let sigma = if measurement { self.campaign.transfer.sigma_px } else { 0.0 };
-        self.campaign.images[station].iter().map(move |&(target, at)| {
-            let [x, y] = self.images[station][target];
-            (target, PixelPoint::new(at.x + sigma * x, at.y + sigma * y))
-        })
+    /// How many targets of the field were not measured, in all stations.
+    pub fn missed(&self) -> usize {
+        self.missed
+    }
+
+    /// Of a station what is measured: target and image coordinates, px; with `measurement` off the truth of it.
+    pub fn seen(&self, station: usize, measurement: bool) -> &[(usize, PixelPoint)] {
+        if measurement { &self.images[station] } else { &self.campaign.images[station] }
     }
 
     /// Where the survey has a target, object units.
@@ -58,19 +75,25 @@ impl<'a> Drawn<'a> {
 
     /// What is measured of control in a station.
     pub fn control(&self, station: usize, conditions: &Conditions) -> Vec<Control> {
-        let of = |(target, image)| Control { object: self.surveyed(target, conditions.survey), image };
-        let seen = self.seen(station, conditions.measurement);
+        let of = |&(target, image): &(usize, PixelPoint)| Control { object: self.surveyed(target, conditions.survey), image };
+        let seen = self.seen(station, conditions.measurement).iter();
         seen.filter(|(target, _)| self.campaign.is_control[*target]).map(of).collect()
     }
 
-    /// The corners of the board in each of its views as `method` measures them with `sigma_px`: where they are meant to be on a flat board, the board's
-    /// units, and image coordinates.
+    /// The corners of the board in each of its views as the method at `place` measures them: where they are meant to be on a flat board, the board's units,
+    /// and image coordinates. How many were not measured.
     ///
     /// # Errors
-    /// In words: no views within the bounds, a corner that is not pictured.
-    pub fn boards(&self, board: &Board, method: &Method, sigma_px: f64, conditions: &Conditions) -> Result<Vec<Vec<Control>>, String> {
+    /// In words: no views within the bounds, a corner that is not pictured, images that cannot be rendered.
+    pub fn boards(&self, place: usize, sigma_px: f64, conditions: &Conditions) -> Result<(Vec<Vec<Control>>, usize), String> {
         let campaign = self.campaign;
+        let (board, method) = (campaign.transfer.board.as_ref().ok_or("there is no board")?, &campaign.transfer.methods[place]);
+        let stations = self.boards.as_ref().map_err(Clone::clone)?;
         let camera = refocused(&campaign.subject.camera, conditions.refocus, campaign.transfer.pitch_um)?;
+        if conditions.measurement && method.measured_by.is_some() {
+            let images = self.board_images(board, &camera, stations, conditions)?;
+            return Ok((images.of(place), images.missed(place)));
+        }
         let corners = bent(board, conditions.bend);
         let sigma = if conditions.measurement { sigma_px } else { 0.0 };
         let of_view = |station: &Station| {
@@ -81,10 +104,43 @@ impl<'a> Drawn<'a> {
                 let seen = camera.project(station.pose.ray(at)).map_err(|error| format!("view {}: {error}", station.name))?;
                 Ok(Control { object: target.surveyed, image: PixelPoint::new(seen.x + sigma * x, seen.y + sigma * y) })
             };
-            board.field.targets.iter().zip(&corners).zip(errors).map(corner).collect()
+            board.subject.field.targets.iter().zip(&corners).zip(errors).map(corner).collect()
         };
-        self.boards.as_ref().map_err(Clone::clone)?.iter().map(of_view).collect()
+        let views: Result<Vec<Vec<Control>>, String> = stations.iter().map(of_view).collect();
+        Ok((views?, 0))
     }
+
+    /// What all methods measure in images of the board: rendered once for each bend and refocus.
+    fn board_images(
+        &self,
+        board: &Board,
+        camera: &Camera,
+        stations: &[Station],
+        conditions: &Conditions,
+    ) -> Result<Rc<BoardImages>, String> {
+        let which = [conditions.bend, conditions.refocus];
+        if let Some((_, known)) = self.measured.borrow().iter().find(|(other, _)| *other == which) {
+            return Ok(known.clone());
+        }
+        let found = BoardImages::new(self.campaign, (board, camera, conditions.bend), stations, self.key).map_err(|why| why.to_string())?;
+        let found = Rc::new(found);
+        self.measured.borrow_mut().push((which, found.clone()));
+        Ok(found)
+    }
+}
+
+/// Image coordinates of the field that are drawn.
+fn drawn_wall(campaign: &Campaign<'_>, key: Key<'_>) -> Vec<Vec<(usize, PixelPoint)>> {
+    let (subject, sigma) = (campaign.subject, campaign.transfer.sigma_px);
+    let station = |(station, seen): (&Station, &Vec<(usize, PixelPoint)>)| {
+        let errors = errors(subject.field.targets.len(), Key { view: &station.name, ..key }, Purpose::CommonError);
+        let point = |&(target, at): &(usize, PixelPoint)| {
+            let [x, y] = errors[target];
+            (target, PixelPoint::new(at.x + sigma * x, at.y + sigma * y))
+        };
+        seen.iter().map(point).collect()
+    };
+    subject.stations.iter().zip(&campaign.images).map(station).collect()
 }
 
 /// `count` pairs of standard normal numbers.
@@ -104,21 +160,25 @@ fn views(board: &Board, camera: &Camera, key: Key<'_>) -> Result<Vec<Station>, S
             corner.x >= left && corner.x <= right && corner.y >= top && corner.y <= bottom
         })
     };
-    let all_inside = |pose: &Pose| board.field.targets.iter().all(|target| inside(pose, &target.surveyed));
+    let all_inside = |pose: &Pose| board.subject.field.targets.iter().all(|target| inside(pose, &target.surveyed));
     board.views.generate(&board.aim, key, all_inside).map_err(|error| error.to_string())
 }
 
 /// The corners of a board whose middle is higher by `peak` than its outermost corners along its longer side.
 pub(super) fn bent(board: &Board, peak: f64) -> Vec<Point3<f64>> {
-    let targets = &board.field.targets;
+    let plate = bent_plate(&board.subject.field, peak);
+    board.subject.field.targets.iter().map(|target| plate.point(target.at)).collect()
+}
+
+/// The board's sheet, bent so.
+pub(super) fn bent_plate(field: &Testfield, peak: f64) -> Plate {
     let ends = |axis: usize| {
-        let along = targets.iter().map(|target| target.at[axis]);
+        let along = field.targets.iter().map(|target| target.at[axis]);
         along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
     };
     let [(u0, u1), (v0, v1)] = [ends(0), ends(1)];
     let across = if u1 - u0 >= v1 - v0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
     let reach = 0.5 * (u1 - u0).max(v1 - v0);
-    let mut plate = board.field.plates[0].clone();
-    plate.bend = Some(Bend { peak, middle: [0.5 * (u0 + u1), 0.5 * (v0 + v1)], across, reach });
-    targets.iter().map(|target| plate.point(target.at)).collect()
+    let bend = Some(Bend { peak, middle: [0.5 * (u0 + u1), 0.5 * (v0 + v1)], across, reach });
+    Plate { bend, ..field.plates[0].clone() }
 }

@@ -9,8 +9,11 @@ mod camera;
 mod decomposition;
 mod drawn;
 mod figures;
+mod imaged;
 mod points;
 mod trial;
+
+pub use trial::unavailable;
 
 #[cfg(test)]
 mod tests;
@@ -19,13 +22,13 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::Camera;
 use calibench_random::Key;
 use calibench_records::results::Trial;
-use calibench_scenario::transfer::Calibrates;
+use calibench_scenario::transfer::{Calibrates, Conditions};
 use calibench_scenario::{Transfer, ViewsSubject};
 use calibench_synth::view::View;
 use nalgebra::Point3;
 
-use crate::RunError;
 use crate::views::is_pointed_at;
+use crate::{RunError, Tools};
 
 /// What is the same in all trials.
 pub struct Campaign<'a> {
@@ -35,6 +38,11 @@ pub struct Campaign<'a> {
     truth: Vec<Point3<f64>>,
     /// Which of them are control.
     is_control: Vec<bool>,
+    /// Which of them are check points.
+    is_check: Vec<bool>,
+    /// All stations, by their places.
+    all: Vec<usize>,
+    tools: Tools<'a>,
     /// Of each station the control and check points that it sees, and where, px.
     images: Vec<Vec<(usize, PixelPoint)>>,
     /// Principal distance and point of the true camera, mm.
@@ -48,7 +56,7 @@ impl<'a> Campaign<'a> {
     ///
     /// # Errors
     /// A view that cannot be pictured, by the name of its station.
-    pub fn new(subject: &'a ViewsSubject, transfer: &'a Transfer) -> Result<Self, RunError> {
+    pub fn new(subject: &'a ViewsSubject, transfer: &'a Transfer, tools: Tools<'a>) -> Result<Self, RunError> {
         let field = &subject.field;
         let is = |list: &[usize]| (0..field.targets.len()).map(|target| list.contains(&target)).collect::<Vec<bool>>();
         let (is_control, is_check) = (is(&transfer.control), is(&transfer.check));
@@ -64,11 +72,25 @@ impl<'a> Campaign<'a> {
         let interior = camera::interior(&subject.camera, transfer.pitch_um).map_err(std::io::Error::other)?;
         let never = transfer.methods.iter().filter(|method| method.calibrates == Calibrates::Never);
         let compared = never.map(|method| (method.start, figures::over_frame(&subject.camera, &method.start))).collect();
-        Ok(Self { subject, transfer, truth, is_control, images, interior, compared })
+        let all = (0..subject.stations.len()).collect();
+        Ok(Self { subject, transfer, truth, is_control, is_check, all, tools, images, interior, compared })
     }
 
     /// The trial of `key`: every case of every method, then the splits.
-    pub fn trial(&self, key: Key<'_>) -> Trial {
-        Trial { number: key.trial, calibrations: trial::run(self, key), ..Trial::default() }
+    ///
+    /// # Errors
+    /// Images that cannot be rendered.
+    pub fn trial(&self, key: Key<'_>) -> Result<Trial, RunError> {
+        Ok(Trial { number: key.trial, calibrations: trial::run(self, key)?, ..Trial::default() })
+    }
+
+    /// The stations that there are under `conditions`.
+    fn all_stations(&self, conditions: &Conditions) -> &[usize] {
+        conditions.network.map_or(&self.all, |network| &self.transfer.networks[network])
+    }
+
+    /// Those of them from which check points are intersected.
+    fn check_stations(&self, conditions: &Conditions) -> &[usize] {
+        conditions.network.map_or(&self.transfer.stations, |network| &self.transfer.networks[network])
     }
 }

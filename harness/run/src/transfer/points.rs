@@ -39,23 +39,23 @@ pub fn checked(
     conditions: &Conditions,
 ) -> Result<Vec<Checked>, String> {
     let transfer = campaign.transfer;
+    let stations = campaign.check_stations(conditions);
     let poses: Vec<Pose> = if conditions.held {
-        transfer.stations.iter().map(|&station| held[station]).collect()
+        stations.iter().map(|&station| held[station]).collect()
     } else {
-        transfer
-            .stations
+        stations
             .iter()
             .map(|&station| resected(campaign, drawn, camera, (station, &held[station]), conditions))
             .collect::<Result<_, _>>()?
     };
     let mut sights: Vec<Vec<Sight<'_>>> = vec![Vec::new(); campaign.truth.len()];
-    for (&station, pose) in transfer.stations.iter().zip(&poses) {
-        for (target, image) in drawn.seen(station, conditions.measurement) {
+    for (&station, pose) in stations.iter().zip(&poses) {
+        for &(target, image) in drawn.seen(station, conditions.measurement) {
             sights[target].push(Sight { camera, pose, image });
         }
     }
     let point = |&target: &usize| {
-        let found = intersect(&sights[target], PARALLEL, None).map_err(|error| told(campaign, target, &error))?;
+        let found = intersect(&sights[target], PARALLEL, None).map_err(|error| told(campaign, (drawn, conditions), target, &error))?;
         let (at, surveyed) = (found.point, drawn.surveyed(target, conditions.survey));
         Ok(Checked { target, at, error: at - campaign.truth[target], to_survey: at - surveyed })
     };
@@ -65,11 +65,11 @@ pub fn checked(
 }
 
 /// Why a check point is not intersected, with the image that it is about.
-fn told(campaign: &Campaign<'_>, target: usize, error: &ApproximateError) -> String {
+fn told(campaign: &Campaign<'_>, (drawn, conditions): (&Drawn<'_>, &Conditions), target: usize, error: &ApproximateError) -> String {
     let name = &campaign.subject.field.targets[target].id;
     let image = |index: usize| {
-        let mut stations =
-            campaign.transfer.stations.iter().filter(|&&station| campaign.images[station].iter().any(|seen| seen.0 == target));
+        let sees = |station: usize| drawn.seen(station, conditions.measurement).iter().any(|seen| seen.0 == target);
+        let mut stations = campaign.check_stations(conditions).iter().filter(|&&station| sees(station));
         stations.nth(index).map_or("", |&station| &campaign.subject.stations[station].name)
     };
     match *error {

@@ -12,6 +12,8 @@ use nalgebra::Vector2;
 use super::decomposition::{Errors, Split};
 use crate::Plan;
 
+mod images;
+
 /// The methods of most tests, by their places.
 const METHODS: &str = r#"
 [[transfer.method]]
@@ -40,7 +42,11 @@ fn registry() -> Registry {
 
 /// A study of two trials with the wall and the board of `canon-t3`; `cases` end it.
 fn study(methods: &str, cases: &str) -> Scenario {
-    let text = format!(
+    read(&text(methods, cases))
+}
+
+fn text(methods: &str, cases: &str) -> String {
+    format!(
         r#"
 why = "A study."
 source = "ours"
@@ -67,9 +73,12 @@ aside = [280, 180]
 {methods}
 {cases}
 "#
-    );
+    )
+}
+
+fn read(text: &str) -> Scenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/canon-t3/test.toml");
-    parse("canon-t3/test", &path.display().to_string(), &text, &registry()).unwrap_or_else(|problems| panic!("{problems}"))
+    parse("canon-t3/test", &path.display().to_string(), text, &registry()).unwrap_or_else(|problems| panic!("{problems}"))
 }
 
 /// A case without errors, with the keys `more`.
@@ -78,7 +87,7 @@ fn case(name: &str, more: &str) -> String {
 }
 
 fn trials(scenario: &Scenario, seed: u64) -> Vec<Trial> {
-    let (plan, mut found) = (Plan { seed, ..Plan::new(scenario, None, "".into()) }, Vec::new());
+    let (plan, mut found) = (Plan { seed, ..Plan::new(scenario, crate::Tools::default(), "".into()) }, Vec::new());
     plan.run(&|| (), &mut |trial| {
         found.push(trial);
         Ok(())
@@ -306,10 +315,37 @@ fn a_bent_board_has_its_crest_in_its_middle() {
     let calibench_scenario::Subject::Views(views) = &scenario.subject else { panic!("views") };
     let board = views.transfer.as_ref().unwrap().board.as_ref().unwrap();
     let heights: Vec<f64> =
-        super::drawn::bent(board, 0.8).iter().zip(&board.field.targets).map(|(bent, flat)| bent.z - flat.surveyed.z).collect();
+        super::drawn::bent(board, 0.8).iter().zip(&board.subject.field.targets).map(|(bent, flat)| bent.z - flat.surveyed.z).collect();
     assert_eq!(heights.len(), 54);
     for row in heights.chunks(9) {
         let expected = |i: usize| 0.8 * (1.0 - ((i as f64 - 4.0) / 4.0).powi(2));
         assert!(row.iter().enumerate().all(|(i, z)| (z - expected(i)).abs() < 1e-9), "{row:?}");
     }
+}
+
+/// A network of fewer stations is all there is: for the bundle, whose redundancy it lowers, for held poses and for check points. Without errors it costs nothing.
+#[test]
+fn a_network_of_fewer_stations_is_all_there_is() {
+    let few = "poses = \"held\"\nstations = [\"1\", \"4\", \"12\"]";
+    let noisy = format!("[[transfer.case]]\nname = \"noisy\"\n{few}\n[[transfer.case]]\nname = \"noisy, all\"\nposes = \"held\"\n");
+    let found = first(METHODS, &format!("{}{}{noisy}", case("all", "poses = \"held\""), case("few", few)));
+    for method in [CONTROL, BOARD] {
+        assert!(value(&found, (method, 1), "rmse_xyz") < 1e-6, "{method}: {} m", value(&found, (method, 1), "rmse_xyz"));
+    }
+    let redundancy = |set| figure(&found, (CONTROL, set), Group::Network, "redundancy").value;
+    // Two coordinates of each of 33 control points less six unknowns of each station, 9 fewer; not every point is in every image.
+    assert!(redundancy(0) - redundancy(1) <= 9.0 * (2.0 * 33.0 - 6.0) && redundancy(1) < 0.3 * redundancy(0));
+    let [few, all] = [2, 3].map(|set| value(&found, (CONTROL, set), "rmse_xyz"));
+    assert!(few > 1.2 * all, "fewer rays, larger errors: {few} {all} m");
+}
+
+#[test]
+fn the_network_is_a_switch_of_its_own() {
+    let plan =
+        "[[transfer.decomposition]]\nname = \"split\"\nmethods = [\"control\"]\nposes = \"held\"\nstations = [\"1\", \"4\", \"12\"]\n";
+    let found = first(METHODS, &format!("{}{plan}", case("plain", "poses = \"held\"")));
+    let of = (CONTROL, 1);
+    assert!(value(&found, of, "alone/network") < 1e-6, "alone it has nothing to enlarge");
+    let both = value(&found, of, "pair/measurement+network");
+    assert!(both > 0.1 * value(&found, of, "alone/measurement"), "{both} m");
 }

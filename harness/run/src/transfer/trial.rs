@@ -3,22 +3,27 @@
 use calibench_model::camera::Camera;
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, Figure, Group};
-use calibench_scenario::transfer::{Calibrates, Case, Conditions, Decomposition};
+use calibench_scenario::Transfer;
+use calibench_scenario::transfer::{Calibrates, Case, Conditions, Decomposition, Solver};
 
 use super::Campaign;
-use super::calibrated::{Calibration, calibration};
+use super::calibrated::{Calibration, NO_SOLVER, calibration};
 use super::camera::applied;
 use super::decomposition::Split;
 use super::drawn::Drawn;
 use super::figures;
 use super::points::{Checked, checked};
+use crate::RunError;
 
 /// All adjustments of the trial of `key`, by method and then by case.
-pub fn run(campaign: &Campaign<'_>, key: Key<'_>) -> Vec<Calibrated> {
-    let mut bench = Bench { campaign, drawn: Drawn::new(campaign, key), calibrations: Vec::new(), compared: Vec::new() };
+///
+/// # Errors
+/// Images that cannot be rendered.
+pub fn run(campaign: &Campaign<'_>, key: Key<'_>) -> Result<Vec<Calibrated>, RunError> {
+    let mut bench = Bench { campaign, drawn: Drawn::new(campaign, key)?, calibrations: Vec::new(), compared: Vec::new() };
     let transfer = campaign.transfer;
     let mut all = Vec::new();
-    for method in 0..transfer.methods.len() {
+    for method in (0..transfer.methods.len()).filter(|&method| unavailable(transfer, method, campaign.tools.solver.is_some()).is_none()) {
         for (set, case) in transfer.cases.iter().enumerate().filter(|(_, case)| case.methods.contains(&method)) {
             all.push(bench.case(method, set, case, key.trial == 0));
         }
@@ -27,7 +32,17 @@ pub fn run(campaign: &Campaign<'_>, key: Key<'_>) -> Vec<Calibrated> {
             all.push(Calibrated { method, set: transfer.cases.len() + place, outcome, check_failed: None });
         }
     }
-    all
+    Ok(all)
+}
+
+/// Why the method at `place` cannot run in this build, if so; `solver` is whether there is OpenCV's.
+pub fn unavailable(transfer: &Transfer, place: usize, solver: bool) -> Option<String> {
+    let method = &transfer.methods[place];
+    if matches!(method.calibrates, Calibrates::FromBoard { solver: Solver::Opencv, .. }) && !solver {
+        return Some(NO_SOLVER.into());
+    }
+    let measuring = transfer.measured_by.iter().chain(&method.measured_by);
+    measuring.filter_map(|measuring| Some(format!("{}: {}", measuring.operator.label, measuring.operator.operator.as_ref().err()?))).next()
 }
 
 /// What a trial has come to so far: a calibration serves many cases.
@@ -113,7 +128,7 @@ impl Bench<'_> {
             }
             Calibrates::FromBoard { .. } | Calibrates::Never => None,
         };
-        let found = calibration(self.campaign, &self.drawn, plan, conditions, near.as_ref().map(|near| near.poses.as_slice()));
+        let found = calibration(self.campaign, &self.drawn, method, conditions, near.as_ref().map(|near| near.poses.as_slice()));
         self.calibrations.push((key, found.clone()));
         found
     }
@@ -121,9 +136,9 @@ impl Bench<'_> {
 
 /// The conditions without what makes no difference to a calibration.
 fn relevant(calibrates: Calibrates, conditions: &Conditions) -> Conditions {
-    let Conditions { measurement, survey, bend, refocus, board_sigma_px, .. } = *conditions;
+    let Conditions { measurement, survey, bend, refocus, board_sigma_px, network, .. } = *conditions;
     match calibrates {
-        Calibrates::FromControl => Conditions { measurement, survey, ..Conditions::none() },
+        Calibrates::FromControl => Conditions { measurement, survey, network, ..Conditions::none() },
         Calibrates::FromBoard { .. } => Conditions { measurement, bend, refocus, board_sigma_px, ..Conditions::none() },
         Calibrates::Never => Conditions::none(),
     }

@@ -22,6 +22,8 @@ pub struct Conditions {
     pub refocus: f64,
     /// Standard deviation per axis of the corners' coordinates in place of the methods' own, px.
     pub board_sigma_px: Option<f64>,
+    /// The network of fewer stations that is all there is, by its place among those of the campaign.
+    pub network: Option<usize>,
 }
 
 /// One of the conditions.
@@ -43,11 +45,13 @@ pub enum Switch {
     Bend,
     /// The other focus.
     Refocus,
+    /// The network of fewer stations.
+    Network,
 }
 
 impl Switch {
     /// All switches with their names in records.
-    pub const ALL: [(Self, &'static str); 8] = [
+    pub const ALL: [(Self, &'static str); 9] = [
         (Self::Measurement, "measurement"),
         (Self::Survey, "survey"),
         (Self::Naive, "naive conversion"),
@@ -56,6 +60,7 @@ impl Switch {
         (Self::PrincipalPoint, "principal point"),
         (Self::Bend, "bent board"),
         (Self::Refocus, "refocus"),
+        (Self::Network, "network"),
     ];
 
     /// The name in records.
@@ -77,6 +82,7 @@ impl Conditions {
             bend: 0.0,
             refocus: 0.0,
             board_sigma_px: None,
+            network: None,
         }
     }
 
@@ -92,6 +98,7 @@ impl Conditions {
             Switch::PrincipalPoint => Self { principal_point: other.principal_point, ..self },
             Switch::Bend => Self { bend: other.bend, ..self },
             Switch::Refocus => Self { refocus: other.refocus, ..self },
+            Switch::Network => Self { network: other.network, ..self },
         }
     }
 
@@ -117,10 +124,11 @@ mod tests {
             bend: 1.0,
             refocus: 0.5,
             board_sigma_px: None,
+            network: Some(0),
         };
         let off = Conditions::none();
         let switches = off.differing(&on);
-        assert_eq!(switches.len(), 8);
+        assert_eq!(switches.len(), Switch::ALL.len());
         assert_eq!(switches.iter().fold(off, |at, switch| at.with(*switch, &on)), on);
         for switch in switches {
             assert_eq!(off.differing(&off.with(switch, &on)), [switch], "{}", switch.name());

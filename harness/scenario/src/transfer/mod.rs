@@ -2,17 +2,25 @@
 
 mod board;
 mod conditions;
+mod method;
 mod model;
+mod operator;
 mod read;
 pub mod wire;
 
-use calibench_model::Testfield;
+use std::rc::Rc;
+
 use calibench_model::camera::Camera;
-use calibench_synth::stations::{Aim, RandomViews, Station};
+use calibench_synth::stations::{Aim, RandomViews};
+use schemars::JsonSchema;
+use serde::Deserialize;
 use toml::Spanned;
+
+use crate::ViewsSubject;
 
 pub use conditions::{Conditions, Switch};
 pub use model::Model;
+pub use operator::Measuring;
 pub(crate) use read::read;
 
 /// Checked `[transfer]` tables. What is said of the field where calibrations are applied stands beside them, in the subject.
@@ -24,8 +32,12 @@ pub struct Transfer {
     pub control: Vec<usize>,
     /// Check points, by their places in the field.
     pub check: Vec<usize>,
+    /// Networks of fewer stations that cases and decompositions name, by the places of stations.
+    pub networks: Vec<Vec<usize>>,
     /// Standard deviation per axis of the image coordinates of the field's targets, px.
     pub sigma_px: f64,
+    /// What measures them in rendered images. Without it they are drawn.
+    pub measured_by: Option<Measuring>,
     /// Standard deviation per axis of the survey, object units.
     pub survey_sigma: f64,
     /// Pixel pitch, um.
@@ -44,25 +56,14 @@ pub struct Transfer {
     pub decompositions: Vec<Decomposition>,
 }
 
-/// A field and what pictures it, as another scenario has them.
-#[derive(Clone, Debug)]
-pub struct Site {
-    /// The interior orientation.
-    pub camera: Camera,
-    /// What is seen.
-    pub field: Testfield,
-    /// From where.
-    pub stations: Vec<Station>,
-}
-
 /// Reads the scenario of a file that is named, or says what is wrong with it.
-pub(crate) type Sites<'a> = dyn FnMut(&Spanned<String>) -> Result<Site, String> + 'a;
+pub(crate) type Sites<'a> = dyn FnMut(&Spanned<String>) -> Result<Rc<ViewsSubject>, String> + 'a;
 
 /// A chessboard and its views.
 #[derive(Clone, Debug)]
 pub struct Board {
-    /// The board; its bend is that of [`Conditions::bend`].
-    pub field: Testfield,
+    /// The board and what pictures it; its bend is that of [`Conditions::bend`], its camera that of the field where calibrations are applied.
+    pub subject: Box<ViewsSubject>,
     /// What makes its views, the board's units.
     pub views: RandomViews,
     /// What they look at.
@@ -80,13 +81,26 @@ pub enum Calibrates {
     FromBoard {
         /// px.
         sigma_px: f64,
+        /// What solves for the camera.
+        solver: Solver,
     },
     /// Nothing.
     Never,
 }
 
+/// What makes a camera of a board's corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(inline)]
+pub enum Solver {
+    /// The adjustment of this project.
+    Own,
+    /// OpenCV's `calibrateCamera`.
+    Opencv,
+}
+
 /// A calibration method.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Method {
     /// Its name.
     pub name: String,
@@ -96,6 +110,8 @@ pub struct Method {
     pub start: Camera,
     /// The parameters that are solved for.
     pub parameters: Vec<String>,
+    /// What measures its board in rendered images. Without it corners are drawn.
+    pub measured_by: Option<Measuring>,
 }
 
 /// A way to apply calibrations.

@@ -1,13 +1,15 @@
 //! Reading `[transfer]` and its tables.
 
 use calibench_diagnostics::Problem;
+use calibench_measure::Registry;
 use calibench_model::camera::{Camera, CameraModel, fold};
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
 
-use super::board::{self, ReadBoard};
-use super::wire::{CaseWire, Conversion, DecompositionWire, MethodWire, Poses, Source, TransferWire};
-use super::{Calibrates, Case, Conditions, Decomposition, Method, Model, Site, Sites, Transfer};
+use super::method::{Told, method};
+use super::wire::{CaseWire, Conversion, DecompositionWire, Names, Poses, TransferWire};
+use super::{Calibrates, Case, Conditions, Decomposition, Method, Sites, Transfer, board, operator};
+use crate::ViewsSubject;
 use crate::blocks::{filled, matched};
 use crate::section::Section;
 
@@ -21,7 +23,7 @@ const LEAST_CONTROL: usize = 4;
 const OFF_LINE: f64 = 1e-3;
 
 /// Reads the tables; the first that is asked of `sites` is where calibrations are applied.
-pub(crate) fn read(mut section: Section<'_>, sites: &mut Sites<'_>, problems: &mut Vec<Problem>) -> Option<Transfer> {
+pub(crate) fn read(mut section: Section<'_>, registry: &Registry, sites: &mut Sites<'_>, problems: &mut Vec<Problem>) -> Option<Transfer> {
     let before = problems.len();
     let span = section.span.clone();
     let board = section.take_table("board", "[transfer.board]", problems);
@@ -38,13 +40,15 @@ pub(crate) fn read(mut section: Section<'_>, sites: &mut Sites<'_>, problems: &m
     check_camera(&views.camera, &wire, problems);
     let [stations, control, check] = points(&wire, &views, problems);
     let board = match board {
-        Some(section) => Some(board::read(section, views.camera.size(), sites, problems)?),
+        Some(section) => Some(board::read(section, &views.camera, sites, problems)?),
         None => None,
     };
+    let measured_by = wire.measured_by.as_ref().and_then(|text| operator::read(text, false, registry, problems));
+    let told = Told { wire: &wire, camera: &views.camera, board: board.as_ref(), registry };
     let mut methods: Vec<Method> = Vec::new();
     let mut broken = false;
     for section in listed {
-        let found = method(section, &wire, &views, board.as_ref(), &methods, problems);
+        let found = method(section, &told, &methods, problems);
         broken |= found.is_none();
         methods.extend(found);
     }
@@ -53,27 +57,36 @@ pub(crate) fn read(mut section: Section<'_>, sites: &mut Sites<'_>, problems: &m
     }
     let poses_of = poses_of(&wire.poses_of, &methods, problems);
     let names: Vec<&str> = methods.iter().map(|method| method.name.as_str()).collect();
-    let bend = board.as_ref().map_or(0.0, |board| board.bend);
+    let mut applied = Applied {
+        methods: &names,
+        stations: views.stations.iter().map(|station| station.name.as_str()).collect(),
+        seen: &stations,
+        networks: Vec::new(),
+        bend: board.as_ref().map_or(0.0, |board| board.bend),
+        drawn: measured_by.is_none(),
+    };
     let mut found: Vec<Case> = Vec::new();
     for section in cases {
-        found.extend(case(section, &names, bend, &found, problems));
+        found.extend(applied.case(section, &found, problems));
     }
     let mut decompositions: Vec<Decomposition> = Vec::new();
     for section in splits {
         let taken: Vec<&str> =
             found.iter().map(|case| case.name.as_str()).chain(decompositions.iter().map(|split| split.name.as_str())).collect();
-        let split = decomposition(section, &names, &taken, problems);
+        let split = applied.decomposition(section, &taken, problems);
         decompositions.extend(split);
     }
     if problems.len() > before {
         return None;
     }
-    let width = f64::from(views.camera.size().width);
+    let (width, networks) = (f64::from(views.camera.size().width), applied.networks);
     Some(Transfer {
         stations,
         control,
         check,
+        networks,
         sigma_px: wire.sigma_px.0,
+        measured_by,
         survey_sigma: wire.survey_sigma.0,
         pitch_um: wire.pitch.get_ref().0,
         other_pitch_um: wire.sensor_width.map(|mm| 1e3 * mm.get_ref().0 / width),
@@ -106,7 +119,7 @@ fn check_camera(camera: &Camera, wire: &TransferWire, problems: &mut Vec<Problem
 }
 
 /// Stations, control and check points by their places.
-fn points(wire: &TransferWire, views: &Site, problems: &mut Vec<Problem>) -> [Vec<usize>; 3] {
+fn points(wire: &TransferWire, views: &ViewsSubject, problems: &mut Vec<Problem>) -> [Vec<usize>; 3] {
     let stations: Vec<&str> = views.stations.iter().map(|station| station.name.as_str()).collect();
     let targets: Vec<&str> = views.field.targets.iter().map(|target| target.id.as_str()).collect();
     let before = problems.len();
@@ -151,77 +164,6 @@ fn is_line(points: &[Point3<f64>]) -> bool {
     farthest(&|point| (point - points[0]).cross(&along).norm()) <= OFF_LINE * length
 }
 
-fn method(
-    section: Section<'_>,
-    told: &TransferWire,
-    views: &Site,
-    board: Option<&ReadBoard>,
-    earlier: &[Method],
-    problems: &mut Vec<Problem>,
-) -> Option<Method> {
-    let before = problems.len();
-    let span = section.span.clone();
-    let wire: MethodWire = section.read(&[], problems)?;
-    let name = wire.name.get_ref().clone();
-    if name.trim().is_empty() || earlier.iter().any(|other| other.name == name) {
-        problems.push(Problem::new(wire.name.span(), format!("the name `{name}` is empty or taken: expected each once")));
-    }
-    let from = *wire.from.get_ref();
-    let model = match (from, wire.model) {
-        (Source::Nothing, _) => Model::Photogrammetric,
-        (_, Some(model)) => model,
-        (_, None) => {
-            let problem = Problem::new(span, format!("method `{name}` calibrates and has no `model`"));
-            problems.push(problem.help("expected `metashape`, `pix4d`, `opencv` or `photogrammetric`"));
-            return None;
-        }
-    };
-    if let Some(sigma) = wire.sigma_px.as_ref().filter(|_| from != Source::Board) {
-        problems
-            .push(Problem::new(sigma.span(), "`sigma_px` of a method is that of a board's corners: expected `from = \"board\"` beside it"));
-    }
-    let sigma = board.and_then(|board| board.sigma_px).or(wire.sigma_px.as_ref().map(|sigma| sigma.get_ref().0));
-    let calibrates = match from {
-        Source::Control => Calibrates::FromControl,
-        Source::Nothing => Calibrates::Never,
-        Source::Board if board.is_none() => {
-            problems.push(Problem::new(wire.from.span(), format!("method `{name}` calibrates from a board: there is no [transfer.board]")));
-            return None;
-        }
-        Source::Board => match sigma {
-            Some(sigma_px) => Calibrates::FromBoard { sigma_px },
-            None => {
-                problems.push(Problem::new(wire.from.span(), format!("method `{name}` calibrates from a board and has no `sigma_px`")));
-                return None;
-            }
-        },
-    };
-    let start = model.start(views.camera.size(), told.pitch.get_ref().0, told.start_c.0)?;
-    let parameters = parameters(&wire, from, model, &start, problems);
-    (problems.len() == before).then_some(Method { name, calibrates, start, parameters })
-}
-
-fn parameters(wire: &MethodWire, from: Source, model: Model, start: &Camera, problems: &mut Vec<Problem>) -> Vec<String> {
-    let Some(written) = &wire.parameters else {
-        let full = if from == Source::Nothing { &[] } else { model.full() };
-        return full.iter().map(|name| (*name).to_owned()).collect();
-    };
-    filled("parameters", Some(written), problems);
-    let known: Vec<&str> = start.parameters().iter().map(|parameter| parameter.name).collect();
-    for name in written.get_ref() {
-        if !known.contains(&name.get_ref().as_str()) {
-            let message = format!(
-                "the model {} has no parameter `{}`: expected some of {}",
-                start.convention().name,
-                name.get_ref(),
-                known.join(", ")
-            );
-            problems.push(Problem::new(name.span(), message).nearest(name.get_ref(), known.iter().copied()));
-        }
-    }
-    written.get_ref().iter().map(|name| name.get_ref().clone()).collect()
-}
-
 fn poses_of(name: &Spanned<String>, methods: &[Method], problems: &mut Vec<Problem>) -> Option<usize> {
     let found = methods.iter().position(|method| method.name == *name.get_ref());
     let problem = match found {
@@ -237,51 +179,88 @@ fn poses_of(name: &Spanned<String>, methods: &[Method], problems: &mut Vec<Probl
     None
 }
 
-fn case(section: Section<'_>, methods: &[&str], bend: f64, earlier: &[Case], problems: &mut Vec<Problem>) -> Option<Case> {
-    let before = problems.len();
-    let wire: CaseWire = section.read(&[], problems)?;
-    let name = wire.name.get_ref().clone();
-    if earlier.iter().any(|other| other.name == name) {
-        problems.push(Problem::new(wire.name.span(), format!("the name `{name}` is taken: expected each once")));
-    }
-    let conditions = Conditions {
-        measurement: wire.measurement.unwrap_or(true),
-        survey: wire.survey.unwrap_or(true),
-        naive: wire.conversion == Some(Conversion::Naive),
-        held: wire.poses == Poses::Held,
-        pitch_um: wire.pitch.map(|pitch| pitch.0),
-        principal_point: wire.principal_point.map_or([0.0; 2], |at| at.0),
-        bend: wire.bend.map_or(bend, |bend| bend.0),
-        refocus: wire.refocus.map_or(0.0, |mm| mm.0),
-        board_sigma_px: wire.board_sigma_px.map(|sigma| sigma.0),
-    };
-    let methods = match &wire.methods {
-        Some(patterns) => matched("method", patterns.get_ref(), methods, problems),
-        None => (0..methods.len()).collect(),
-    };
-    (problems.len() == before).then_some(Case { name, methods, conditions, points: wire.points.unwrap_or(false) })
+/// What cases and decompositions are read with.
+struct Applied<'a> {
+    methods: &'a [&'a str],
+    stations: Vec<&'a str>,
+    /// The stations from which check points are intersected.
+    seen: &'a [usize],
+    networks: Vec<Vec<usize>>,
+    bend: f64,
+    /// Whether coordinates are drawn.
+    drawn: bool,
 }
 
-fn decomposition(section: Section<'_>, methods: &[&str], taken: &[&str], problems: &mut Vec<Problem>) -> Option<Decomposition> {
-    let before = problems.len();
-    let wire: DecompositionWire = section.read(&[], problems)?;
-    filled("methods", Some(&wire.methods), problems);
-    let name = wire.name.get_ref().clone();
-    if taken.contains(&name.as_str()) {
-        problems.push(Problem::new(wire.name.span(), format!("the name `{name}` is taken: expected each once")));
+impl Applied<'_> {
+    fn case(&mut self, section: Section<'_>, earlier: &[Case], problems: &mut Vec<Problem>) -> Option<Case> {
+        let before = problems.len();
+        let wire: CaseWire = section.read(&[], problems)?;
+        let name = wire.name.get_ref().clone();
+        if earlier.iter().any(|other| other.name == name) {
+            problems.push(Problem::new(wire.name.span(), format!("the name `{name}` is taken: expected each once")));
+        }
+        if let Some(sigma) = wire.board_sigma_px.as_ref().filter(|_| !self.drawn) {
+            let message = "`board_sigma_px` is of corners that are drawn: expected no `measured_by` in [transfer]";
+            problems.push(Problem::new(sigma.span(), message));
+        }
+        let conditions = Conditions {
+            measurement: wire.measurement.unwrap_or(true),
+            survey: wire.survey.unwrap_or(true),
+            naive: wire.conversion == Some(Conversion::Naive),
+            held: wire.poses == Poses::Held,
+            pitch_um: wire.pitch.map(|pitch| pitch.0),
+            principal_point: wire.principal_point.map_or([0.0; 2], |at| at.0),
+            bend: wire.bend.map_or(self.bend, |bend| bend.0),
+            refocus: wire.refocus.map_or(0.0, |mm| mm.0),
+            board_sigma_px: wire.board_sigma_px.map(|sigma| sigma.get_ref().0),
+            network: self.network(wire.stations.as_ref(), problems),
+        };
+        let methods = match &wire.methods {
+            Some(patterns) => matched("method", patterns.get_ref(), self.methods, problems),
+            None => (0..self.methods.len()).collect(),
+        };
+        (problems.len() == before).then_some(Case { name, methods, conditions, points: wire.points.unwrap_or(false) })
     }
-    let off = Conditions { held: wire.poses == Some(Poses::Held), ..Conditions::none() };
-    let on = Conditions {
-        measurement: true,
-        survey: true,
-        naive: true,
-        held: true,
-        pitch_um: wire.pitch.map(|pitch| pitch.0),
-        principal_point: wire.principal_point.map_or([0.0; 2], |at| at.0),
-        bend: wire.bend.map_or(0.0, |bend| bend.0),
-        refocus: wire.refocus.map_or(0.0, |mm| mm.0),
-        board_sigma_px: None,
-    };
-    let methods = matched("method", wire.methods.get_ref(), methods, problems);
-    (problems.len() == before).then_some(Decomposition { name, methods, on, off, switches: off.differing(&on) })
+
+    fn decomposition(&mut self, section: Section<'_>, taken: &[&str], problems: &mut Vec<Problem>) -> Option<Decomposition> {
+        let before = problems.len();
+        let wire: DecompositionWire = section.read(&[], problems)?;
+        filled("methods", Some(&wire.methods), problems);
+        let name = wire.name.get_ref().clone();
+        if taken.contains(&name.as_str()) {
+            problems.push(Problem::new(wire.name.span(), format!("the name `{name}` is taken: expected each once")));
+        }
+        let off = Conditions { held: wire.poses == Some(Poses::Held), ..Conditions::none() };
+        let on = Conditions {
+            measurement: true,
+            survey: true,
+            naive: true,
+            held: true,
+            pitch_um: wire.pitch.map(|pitch| pitch.0),
+            principal_point: wire.principal_point.map_or([0.0; 2], |at| at.0),
+            bend: wire.bend.map_or(0.0, |bend| bend.0),
+            refocus: wire.refocus.map_or(0.0, |mm| mm.0),
+            board_sigma_px: None,
+            network: self.network(wire.stations.as_ref(), problems),
+        };
+        let methods = matched("method", wire.methods.get_ref(), self.methods, problems);
+        (problems.len() == before).then_some(Decomposition { name, methods, on, off, switches: off.differing(&on) })
+    }
+
+    /// The place of the network that patterns name, if they do: some of the stations from which check points are intersected.
+    fn network(&mut self, patterns: Option<&Names>, problems: &mut Vec<Problem>) -> Option<usize> {
+        let (patterns, before) = (patterns?, problems.len());
+        filled("stations", Some(patterns), problems);
+        let chosen = matched("station", patterns.get_ref(), &self.stations, problems);
+        let left: Vec<usize> = chosen.into_iter().filter(|station| self.seen.contains(station)).collect();
+        if problems.len() == before && left.len() < LEAST_STATIONS {
+            let message = format!("{} stations are left: expected at least {LEAST_STATIONS} of those of [transfer]", left.len());
+            problems.push(Problem::new(patterns.span(), message));
+        }
+        let place = self.networks.iter().position(|network| *network == left).unwrap_or(self.networks.len());
+        if place == self.networks.len() {
+            self.networks.push(left);
+        }
+        Some(place)
+    }
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use calibench_measure::registry::Build;
 use calibench_measure::{Registry, opencv_subpix};
 
+use super::{Calibrates, Solver};
 use crate::{Subject, Transfer, parse};
 
 const GOOD: &str = r#"why = "A transfer."
@@ -94,6 +95,37 @@ fn pitches_that_disagree_are_said() {
 }
 
 #[test]
+fn images_are_measured_by_what_is_named() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/canon-t3");
+    let measured = GOOD
+        .replace("sigma_px = 0.5", "sigma_px = 0.5\nmeasured_by = \"forstner:window=15\"")
+        .replace("sigma_px = 0.03", "sigma_px = 0.03\nmeasured_by = \"opencv_subpix\"\ndetected = true\nsolver = \"opencv\"");
+    let found = read_in(&folder, &measured).unwrap();
+    assert_eq!(found.measured_by.unwrap().operator.label, "forstner:window=15");
+    let board = found.methods[1].measured_by.as_ref().unwrap();
+    assert!(board.detected && board.operator.operator.is_err(), "{board:?}");
+    assert_eq!(found.methods[1].calibrates, Calibrates::FromBoard { sigma_px: 0.03, solver: Solver::Opencv });
+    let drawn = measured.replace("methods = [\"b*\"]", "board_sigma_px = 0.2");
+    let wrong = read_in(&folder, &drawn).unwrap_err();
+    assert!(wrong.starts_with("test.toml:42:18: `board_sigma_px` is of corners that are drawn"), "{wrong}");
+}
+
+/// Stations of a case are of those where calibrations are applied; the same ones are one network.
+#[test]
+fn networks_are_of_fewer_stations() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/canon-t3");
+    let text = GOOD
+        .replace("stations = [\"*\"]", "stations = [\"?\"]")
+        .replace("methods = [\"b*\"]", "stations = [\"1*\", \"2\"]")
+        .replace("bend = 1.0", "stations = [\"1\", \"2\"]");
+    let found = read_in(&folder, &text).unwrap();
+    assert_eq!((found.stations.len(), &found.networks), (9, &vec![vec![0, 1]]));
+    assert_eq!((found.cases[0].conditions.network, found.decompositions[0].on.network), (Some(0), Some(0)));
+    let names: Vec<&str> = found.decompositions[0].switches.iter().map(|switch| switch.name()).collect();
+    assert_eq!(names.last(), Some(&"network"));
+}
+
+#[test]
 fn each_mistake_is_one_diagnostic_with_its_place() {
     let cases: &[(&str, &str, &str, &[&str])] = &[
         ("\"k1\"]", "\"k9\"]", "26:32", &["the model metashape has no parameter `k9`: expected some of f, cx"]),
@@ -121,6 +153,30 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
         ("poses = \"held\"", "poses = \"hold\"", "37:9", &["hold", "resected"]),
         ("survey_sigma = 0.002", "survey_sigmas = 0.002", "11:1", &["unknown key `survey_sigmas`", "did you mean `survey_sigma`"]),
         ("[[transfer.case]]\nname = \"plain\"\nposes = \"held\"\nmethods = [\"b*\"]\n", "", "5:2", &["without a [[transfer.case]]"]),
+        ("bend = 1.0", "stations = [\"1\"]", "42:12", &["1 stations are left: expected at least 2"]),
+        ("bend = 1.0", "stations = [\"13\"]", "42:13", &["no station is called `13`"]),
+        ("poses = \"held\"", "poses = \"held\"\nstations = []", "38:12", &["`stations` is empty"]),
+        ("sigma_px = 0.5", "sigma_px = 0.5\nmeasured_by = \"parametric\"", "11:15", &["parametric"]),
+        (
+            "sigma_px = 0.5",
+            "sigma_px = 0.5\nmeasured_by = \"pixel\"",
+            "29:8",
+            &["method `board` calibrates from a board and has no `measured_by`"],
+        ),
+        ("sigma_px = 0.03", "sigma_px = 0.03\nmeasured_by = \"pixel\"", "31:15", &["expected one in [transfer] too"]),
+        (
+            "name = \"nothing\"",
+            "name = \"nothing\"\nmeasured_by = \"pixel\"",
+            "34:15",
+            &["`measured_by` of a method is what measures a board's corners"],
+        ),
+        ("name = \"nothing\"", "name = \"nothing\"\nsolver = \"own\"", "34:10", &["`solver` of a method is what makes a camera"]),
+        (
+            "sigma_px = 0.03",
+            "sigma_px = 0.03\nsolver = \"opencv\"\nparameters = [\"fx\"]",
+            "31:10",
+            &["expected `model = \"opencv\"` and no `parameters`"],
+        ),
         ("[transfer]\n", "[sensor]\nsnr_contrast_db = 40\n[transfer]\n", "5:2", &["beside [transfer]"]),
     ];
     let wrong = |(old, new, place, parts): &(&str, &str, &str, &[&str])| {

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::Solver;
 use super::model::Model;
 use crate::calibration::wire::{PrincipalDistance, Sigma};
 use crate::camera::Pitch;
@@ -16,7 +17,7 @@ bounded! {
 }
 
 /// A list of patterns or names.
-type Names = Spanned<Vec<Spanned<String>>>;
+pub(super) type Names = Spanned<Vec<Spanned<String>>>;
 
 /// Calibrate here, apply there: cameras are calibrated from control or from a chessboard and applied to the check points of one field, in every trial, from
 /// coordinates that are drawn.
@@ -37,6 +38,10 @@ pub struct TransferWire {
     pub check: Names,
     /// Standard deviation per axis of the image coordinates of its targets, px.
     pub sigma_px: Sigma,
+    /// The operator that measures them in rendered images, as in `parametric_corner:window=15`; methods from a board then have one too. Default: coordinates
+    /// are drawn.
+    #[schemars(with = "Option<String>")]
+    pub measured_by: Option<Spanned<String>>,
     /// Standard deviation per axis of the survey, drawn anew in each trial, object units: in the control that calibrations are told and in the references
     /// of check points.
     pub survey_sigma: Length,
@@ -111,6 +116,14 @@ pub struct MethodWire {
     /// Standard deviation per axis of the corners' coordinates, px; only from a board.
     #[schemars(with = "Option<Sigma>")]
     pub sigma_px: Option<Spanned<Sigma>>,
+    /// The operator that measures the board's corners in rendered images; only from a board, and where `[transfer]` has one.
+    #[schemars(with = "Option<String>")]
+    pub measured_by: Option<Spanned<String>>,
+    /// Whether measuring starts from what the build's detector of chessboards finds, in place of the board's `[pointing]`. Default false.
+    pub detected: Option<bool>,
+    /// What solves for the camera; only from a board. Default: `own`.
+    #[schemars(with = "Option<Solver>")]
+    pub solver: Option<Spanned<Solver>>,
 }
 
 /// How the camera comes to where it is applied.
@@ -161,8 +174,12 @@ pub struct CaseWire {
     pub bend: Option<Height>,
     /// Principal distance before the board less that where the camera is applied, mm. Default 0.
     pub refocus: Option<Refocus>,
-    /// Standard deviation per axis of the corners' coordinates in place of the methods' own, px.
-    pub board_sigma_px: Option<Sigma>,
+    /// Standard deviation per axis of the corners' coordinates in place of the methods' own, px; only of corners that are drawn.
+    #[schemars(with = "Option<Sigma>")]
+    pub board_sigma_px: Option<Spanned<Sigma>>,
+    /// All stations that there are in this case, for calibrations and for check points, by patterns of names. Default: all.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub stations: Option<Names>,
     /// Whether records keep the errors of each check point in every trial. Default: those of the first.
     pub points: Option<bool>,
 }
@@ -187,4 +204,7 @@ pub struct DecompositionWire {
     pub bend: Option<Height>,
     /// The change of the principal distance, mm. Without it there is no such switch.
     pub refocus: Option<Refocus>,
+    /// The stations that are left where the switch of the network is on, by patterns of names. Without it there is no such switch.
+    #[schemars(with = "Option<Vec<String>>")]
+    pub stations: Option<Names>,
 }

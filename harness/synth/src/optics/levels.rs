@@ -17,6 +17,13 @@ pub(crate) struct Levels {
     variance: [f64; 2],
 }
 
+/// The place of a pixel between the levels of blur: barycentric interpolation over the logarithm of the variance.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Place {
+    log: f64,
+    sum: f64,
+}
+
 impl Levels {
     /// For a frame of `width` x `height` px. A blur that does not change has one level.
     pub fn new(optics: &Optics, width: usize, height: usize) -> Self {
@@ -42,21 +49,21 @@ impl Levels {
         Self { kernels, nodes, middle, variance: [low, growth] }
     }
 
-    /// The weight of each level at pixel (`x`, `y`).
-    pub fn weights(&self, x: f64, y: f64, weights: &mut [f64]) {
+    /// Where pixel (`x`, `y`) lies between the levels.
+    pub fn place(&self, x: f64, y: f64) -> Place {
         let r2 = (x - self.middle[0]).powi(2) + (y - self.middle[1]).powi(2);
         let log = (self.variance[0] + self.variance[1] * r2).ln();
-        if let Some(exact) = self.nodes.iter().position(|(node, _)| *node == log) {
-            weights.fill(0.0);
-            weights[exact] = 1.0;
-            return;
+        Place { log, sum: self.nodes.iter().map(|(node, factor)| factor / (log - node)).sum() }
+    }
+
+    /// Adds the grey values of one level to `sums`, each with the weight that the level has at the place of its pixel.
+    pub fn add(&self, level: usize, places: &[Place], values: &[f64], sums: &mut [f64]) {
+        let (node, factor) = self.nodes[level];
+        for ((sum, value), place) in sums.iter_mut().zip(values).zip(places) {
+            // On a node its own part is infinite, and so is the sum.
+            let weight = if place.sum.is_finite() { factor / (place.log - node) / place.sum } else { f64::from(place.log == node) };
+            *sum += weight * value;
         }
-        let mut sum = 0.0;
-        for (weight, (node, factor)) in weights.iter_mut().zip(&self.nodes) {
-            *weight = factor / (log - node);
-            sum += *weight;
-        }
-        weights.iter_mut().for_each(|weight| *weight /= sum);
     }
 
     /// How far the widest kernel reaches, px, along x and y.

@@ -6,7 +6,7 @@ mod profile;
 mod spread;
 
 pub(crate) use kernel::{Kernel, Part};
-pub(crate) use levels::Levels;
+pub(crate) use levels::{Levels, Place};
 
 use thiserror::Error;
 

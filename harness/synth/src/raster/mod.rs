@@ -6,10 +6,12 @@ mod strip;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use calibench_model::{Image, Scene};
 use rayon::prelude::*;
 
-use crate::optics::{Levels, Optics, OpticsError};
+use crate::optics::{Levels, Optics, OpticsError, Place};
 use strip::{Rules, Strip};
 
 pub use piece::Piece;
@@ -129,36 +131,43 @@ impl Renderer {
             strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
             return strip.finish(band.background, row);
         }
-        // At every level of blur, blended at each pixel.
-        let n = self.levels.kernels.len();
-        let (mut blended, mut weights) = (vec![Vec::new(); band.rows], Vec::new());
+        // At every level of blur, blended at each pixel that a piece reaches; the others are alike at all of them.
+        let columns = self.columns(band, strip.width());
+        let place = |y: usize, column: usize| {
+            self.levels.place((band.origin[0] + column as i64) as f64, (band.origin[1] + band.top + y as i64) as f64)
+        };
+        let places: Vec<Place> =
+            (0..band.rows).flat_map(|y| columns.clone().map(move |column| (y, column))).map(|(y, x)| place(y, x)).collect();
+        let mut blended = vec![0.0; band.rows * strip.width()];
         for (level, kernel) in self.levels.kernels.iter().enumerate() {
             strip.reset(band.top, band.rows);
             strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
             strip.finish(band.background, |y, values| {
-                if weights.is_empty() {
-                    weights = self.weights(band, values.len());
+                let sums = &mut blended[y * values.len()..(y + 1) * values.len()];
+                if level == 0 {
+                    sums.copy_from_slice(values);
+                    sums[columns.clone()].fill(0.0);
                 }
-                let sums: &mut Vec<f64> = &mut blended[y];
-                sums.resize(values.len(), 0.0);
-                let weights = weights[y * values.len() * n..].chunks_exact(n);
-                for ((sum, value), weights) in sums.iter_mut().zip(values).zip(weights) {
-                    *sum += weights[level] * value;
-                }
+                let places = &places[y * columns.len()..(y + 1) * columns.len()];
+                self.levels.add(level, places, &values[columns.clone()], &mut sums[columns.clone()]);
             });
+            if columns.is_empty() {
+                break;
+            }
         }
-        blended.iter().enumerate().for_each(|(y, values)| row(y, values));
+        blended.chunks_exact(strip.width()).enumerate().for_each(|(y, values)| row(y, values));
     }
 
-    /// The share of every level of blur in every pixel of a band of `columns`, pixel by pixel.
-    fn weights(&self, band: &Band<'_>, columns: usize) -> Vec<f64> {
-        let n = self.levels.kernels.len();
-        let mut weights = vec![0.0; band.rows * columns * n];
-        for (index, weights) in weights.chunks_exact_mut(n).enumerate() {
-            let (column, line) = (band.origin[0] + (index % columns) as i64, band.origin[1] + band.top + (index / columns) as i64);
-            self.levels.weights(column as f64, line as f64, weights);
-        }
-        weights
+    /// The columns of a band, which has `width` of them, that any of its pieces reaches.
+    fn columns(&self, band: &Band<'_>, width: usize) -> Range<usize> {
+        let shift = |ends: [f64; 2], jitter: f64| [ends[0].min(jitter), ends[1].max(jitter)];
+        let [least, most] = band.jitter.unwrap_or_default().iter().fold([0.0, 0.0], |ends, jitter| shift(ends, *jitter));
+        let reach = self.levels.reach()[0] + 2.0;
+        let reached = band.listed.iter().map(|&piece| band.pieces[piece as usize].columns());
+        let [low, high] = reached.fold([f64::INFINITY, f64::NEG_INFINITY], |ends, [low, high]| [ends[0].min(low), ends[1].max(high)]);
+        let column = |at: f64| at.clamp(0.0, width as f64) as usize;
+        let (first, end) = (column((low + least - reach).floor()), column((high + most + reach).ceil() + 1.0));
+        first..end.max(first)
     }
 
     /// The pieces that matter, none of them long.

@@ -46,6 +46,11 @@ impl Strip {
         Self { top: 0, rows, width, pad, stride, differences: vec![0.0; stride * rows], scratch: vec![0.0; pad] }
     }
 
+    /// Columns, px.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
     /// Makes it the strip of `rows` rows from `top` on, empty.
     pub fn reset(&mut self, top: i64, rows: usize) {
         (self.top, self.rows) = (top, rows);

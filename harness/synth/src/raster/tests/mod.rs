@@ -210,3 +210,22 @@ fn optics_out_of_range_are_named() {
     assert!(wrong(Optics { blur: 1.0, corner_blur: Some(0.5), ..fine }).contains("corners"));
     assert!(wrong(Optics { defocus: 2.0, ..fine }).contains("defocus disc needs a Gaussian blur of at least 0.1 px"));
 }
+
+/// Levels of blur are blended where a piece reaches; a piece without contrast that reaches everywhere changes nothing.
+#[test]
+fn a_blur_that_grows_is_blended_wherever_a_piece_reaches() {
+    let optics = Optics { blur: 0.6, corner_blur: Some(2.0), ..Optics::default() };
+    let square = polygon(&[(11.3, 9.2), (30.1, 9.2), (30.1, 22.8), (11.3, 22.8)]);
+    let jitter: Vec<f64> = (0..SIZE).map(|row| 6.0 * (row as f64 * 1.7).sin()).collect();
+    for jitter in [&[][..], &jitter] {
+        let render = |pieces: Vec<Piece>| {
+            let picture = Picture { width: SIZE, height: SIZE, background: 0.2, pieces };
+            Renderer::new(&optics, SIZE, SIZE).unwrap().render(&picture, jitter)
+        };
+        let frame = [(-9.0, -9.0), (50.0, -9.0), (50.0, 50.0), (-9.0, 50.0)];
+        let nothing = polygon(&frame).into_iter().map(|piece| Piece { contrast: 0.0, ..piece });
+        let (part, whole) = (render(square.clone()), render(square.iter().copied().chain(nothing).collect()));
+        let worst = part.grey().iter().zip(whole.grey()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(worst < 1e-6, "{worst}");
+    }
+}

@@ -1,0 +1,169 @@
+//! What operators measure in rendered images of a campaign.
+
+use calibench_adjust::approximate::Control;
+use calibench_measure::{Board as Counted, BoardDetector};
+use calibench_model::camera::Camera;
+use calibench_model::{Image, PixelPoint, Start, Testfield};
+use calibench_random::Key;
+use calibench_scenario::ViewsSubject;
+use calibench_scenario::transfer::{Board, Measuring};
+use calibench_synth::stations::Station;
+use nalgebra::Point3;
+use rayon::prelude::*;
+
+use super::Campaign;
+use super::drawn::bent_plate;
+use crate::RunError;
+use crate::views::{Pointed, Prepared, pointed};
+
+/// Of each station target and image coordinates, px; how many targets were not measured.
+pub type Measured = (Vec<Vec<(usize, PixelPoint)>>, usize);
+
+/// The image coordinates of the field's control and check points.
+///
+/// # Errors
+/// A view that cannot be pictured, an image that the sensor cannot write.
+pub fn measured_wall(campaign: &Campaign<'_>, measuring: &Measuring, key: Key<'_>) -> Result<Measured, RunError> {
+    let subject = campaign.subject;
+    let prepared = Prepared::of(subject, &subject.stations, key)?;
+    let images = images(&prepared, &[measuring], None, key)?;
+    let is_used = |target: usize| campaign.is_control[target] || campaign.is_check[target];
+    let mut missed = 0;
+    let mut station = |mut ways: Vec<Vec<(usize, Option<PixelPoint>)>>| -> Vec<(usize, PixelPoint)> {
+        let used = ways.swap_remove(0).into_iter().filter(|(target, _)| is_used(*target));
+        used.filter_map(|(target, at)| {
+            missed += usize::from(at.is_none());
+            Some((target, at?))
+        })
+        .collect()
+    };
+    let found = images.into_iter().map(&mut station).collect();
+    Ok((found, missed))
+}
+
+/// What each method measures in images of the board.
+pub struct BoardImages {
+    /// The methods that measure, by their places.
+    methods: Vec<usize>,
+    /// Of each view, of each of them, each corner's place and image coordinates, px, if it was measured.
+    views: Vec<Vec<Vec<(usize, Option<PixelPoint>)>>>,
+    /// Where the corners are meant to be, the board's units.
+    corners: Vec<Point3<f64>>,
+}
+
+impl BoardImages {
+    /// Renders the `board`, bent by a height, its units, as a camera pictures it from `stations`, and measures it.
+    ///
+    /// # Errors
+    /// As of [`measured_wall`].
+    pub fn new(
+        campaign: &Campaign<'_>,
+        (board, camera, bend): (&Board, &Camera, f64),
+        stations: &[Station],
+        key: Key<'_>,
+    ) -> Result<Self, RunError> {
+        let flat = &board.subject.field;
+        let corners = flat.targets.iter().map(|target| target.surveyed).collect();
+        let field = Testfield { plates: vec![bent_plate(flat, bend)], ..flat.clone() };
+        let subject = ViewsSubject { field, camera: *camera, stations: stations.to_vec(), ..(*board.subject).clone() };
+        let all = campaign.transfer.methods.iter().enumerate();
+        let (methods, ways): (Vec<usize>, Vec<&Measuring>) =
+            all.filter_map(|(place, method)| Some((place, method.measured_by.as_ref()?))).unzip();
+        // The field where calibrations are applied has views of its own, maybe of the same names.
+        let name = format!("{}, board", key.scenario);
+        let key = Key { scenario: &name, ..key };
+        let prepared = Prepared::of(&subject, stations, key)?;
+        Ok(Self { methods, views: images(&prepared, &ways, campaign.tools.detector, key)?, corners })
+    }
+
+    /// The measured corners of each view, of the method at `place`.
+    pub fn of(&self, place: usize) -> Vec<Vec<Control>> {
+        let corner = |&(corner, at): &(usize, Option<PixelPoint>)| Some(Control { object: self.corners[corner], image: at? });
+        self.ways(place).map(|way| way.iter().filter_map(corner).collect()).collect()
+    }
+
+    /// How many corners the method at `place` did not measure.
+    pub fn missed(&self, place: usize) -> usize {
+        self.ways(place).flatten().filter(|(_, at)| at.is_none()).count()
+    }
+
+    fn ways(&self, place: usize) -> impl Iterator<Item = &Vec<(usize, Option<PixelPoint>)>> {
+        let way = self.methods.iter().position(|method| *method == place);
+        self.views.iter().filter_map(move |view| view.get(way?))
+    }
+}
+
+/// Renders every view and measures it in all `ways`: of each view, of each way, each target that is pointed at.
+fn images(
+    prepared: &Prepared<'_>,
+    ways: &[&Measuring],
+    detector: Option<&dyn BoardDetector>,
+    key: Key<'_>,
+) -> Result<Vec<Vec<Vec<(usize, Option<PixelPoint>)>>>, RunError> {
+    let view = |view: &crate::views::PreparedView<'_>| {
+        let image = prepared.image(view, key)?.image;
+        let points = pointed(prepared, view, &image, key);
+        Ok(ways.iter().map(|way| measured(&prepared.subject.field, way, detector, &image, &points)).collect())
+    };
+    prepared.views.par_iter().map(view).collect()
+}
+
+fn measured(
+    field: &Testfield,
+    way: &Measuring,
+    detector: Option<&dyn BoardDetector>,
+    image: &Image,
+    points: &[Pointed],
+) -> Vec<(usize, Option<PixelPoint>)> {
+    let found = way.detected.then(|| {
+        let corners = detector.and_then(|detector| detector.detect(image, counted(field)?));
+        corners.map(|corners| named(points, &corners)).unwrap_or_else(|| vec![None; points.len()])
+    });
+    let start = |(place, point): (usize, &Pointed)| {
+        let start = point.start.filter(|_| way.operator.measures(Some(field.targets[point.target].kind)))?;
+        match &found {
+            Some(found) => Some(Start { position: found[place]?, ..start }),
+            None => Some(start),
+        }
+    };
+    let starts: Vec<Option<Start>> = points.iter().enumerate().map(start).collect();
+    let asked: Vec<Start> = starts.iter().flatten().copied().collect();
+    let mut results =
+        way.operator.operator.as_deref().map_or_else(|_| Vec::new(), |operator| operator.measure_all(image, &asked)).into_iter();
+    let at = |start: &Option<Start>| Some(start.and_then(|_| results.next())?.ok()?.position);
+    points.iter().map(|point| point.target).zip(starts.iter().map(at)).collect()
+}
+
+/// The chessboard of a field, counted; `None` where its targets are no full rows.
+fn counted(field: &Testfield) -> Option<Counted> {
+    let first = field.targets.first()?.at[1];
+    let columns = field.targets.iter().filter(|target| target.at[1] == first).count();
+    let rows = field.targets.len() / columns;
+    (rows * columns == field.targets.len()).then_some(Counted { columns, rows })
+}
+
+/// The detected corner of each point. A detector does not say which corner of a symmetric board is the first: that is told by where the corners are, and by
+/// nothing finer than half of the least distance between two.
+fn named(points: &[Pointed], corners: &[PixelPoint]) -> Vec<Option<PixelPoint>> {
+    let between = |i: usize| corners[i + 1..].iter().map(move |other| corners[i].distance(*other));
+    let reach = 0.5 * (0..corners.len()).flat_map(between).fold(f64::INFINITY, f64::min);
+    let nearest = |point: &Pointed| {
+        let by_distance = corners.iter().map(|corner| (corner.distance(point.truth), *corner));
+        by_distance.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(distance, _)| *distance < reach).map(|(_, corner)| corner)
+    };
+    points.iter().map(nearest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_are_named_by_where_they_are() {
+        let point = |target, x| Pointed { target, truth: PixelPoint::new(x, 0.0), start: Some(Start::at(PixelPoint::new(x, 0.0))) };
+        let points = [point(0, 10.0), point(1, 20.0), point(2, 30.0)];
+        // The other way round, one far off.
+        let corners = [PixelPoint::new(36.0, 0.0), PixelPoint::new(21.0, 0.0), PixelPoint::new(11.0, 0.0)];
+        assert_eq!(named(&points, &corners), [Some(corners[2]), Some(corners[1]), None]);
+    }
+}
