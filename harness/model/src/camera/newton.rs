@@ -17,8 +17,9 @@ pub(super) fn determinant(d: [[f64; 2]; 2]) -> f64 {
 /// The solution of `f(x) = goal` from `start`, to the last bits: steps are halved until the residual falls, and the determinant stays positive, so
 /// that no step ends beyond a fold.
 pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> ValueAndDerivatives) -> Result<[f64; 2], NoCounterpart> {
-    let misclosure = |value: [f64; 2]| (goal[0] - value[0]).hypot(goal[1] - value[1]);
-    let closed = CLOSED * goal[0].abs().max(goal[1].abs()).max(1.0);
+    // Squares, which order as the lengths do: `hypot` takes as long as a model's polynomial.
+    let misclosure = |value: [f64; 2]| (goal[0] - value[0]).powi(2) + (goal[1] - value[1]).powi(2);
+    let closed = (CLOSED * goal[0].abs().max(goal[1].abs()).max(1.0)).powi(2);
     let mut x = start;
     let (mut value, mut slope) = f(x);
     let mut residual = misclosure(value);
@@ -36,8 +37,9 @@ pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> Val
         let better = loop {
             let next = [x[0] + share * step[0], x[1] + share * step[1]];
             let (next_value, next_slope) = f(next);
-            if determinant(next_slope) > 0.0 && misclosure(next_value) < residual {
-                break Some((next, next_value, next_slope));
+            let next_residual = misclosure(next_value);
+            if determinant(next_slope) > 0.0 && next_residual < residual {
+                break Some((next, next_value, next_slope, next_residual));
             }
             share *= 0.5;
             if share < 1e-6 || residual <= closed {
@@ -45,8 +47,7 @@ pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> Val
             }
         };
         let Some(better) = better else { break };
-        (x, value, slope) = better;
-        residual = misclosure(value);
+        (x, value, slope, residual) = better;
     }
     // Nothing gets closer: rounding, or the edge of a fold.
     if residual <= closed { Ok(x) } else { Err(NoCounterpart::Fold) }

@@ -38,10 +38,13 @@ pub fn table(found: &Summaries) -> String {
             format!("- {set}, {method}: {count} of {} trials failed, the first because {why}.\n", found.trials)
         })
         .collect();
+    let of_trials = match found.trials {
+        1 => "one trial".to_owned(),
+        trials => format!("mean of {trials} trials ± half its 95 % interval"),
+    };
     format!(
-        "### Cases\n\nRoot mean square errors of the check points against the truth, in hundredths of the object unit (cm where it is m), mean of {} trials ± half its 95 % interval. *Camera*: distance of the applied camera from the true one \
+        "### Cases\n\nRoot mean square errors of the check points against the truth, in hundredths of the object unit (cm where it is m), {of_trials}. *Camera*: distance of the applied camera from the true one \
          over the frame after the best rotation. *Error of c*: root mean square.\n\n{}\n{why}\n",
-        found.trials,
         rows.render()
     )
 }
