@@ -133,7 +133,8 @@ pub(crate) fn between(field: &Field, at: PixelPoint) -> Option<(f64, f64)> {
 fn arrows(area: &Area<'_>, map: &Map, field: &Field, times: f64) {
     let (columns, rows) = field.grid;
     let every = columns.max(rows).div_ceil(ARROWS).max(1);
-    let first = |count: usize| (count - 1) % every / 2;
+    // Within the frame, and as far from both ends.
+    let first = |count: usize| ((count - 1) % every + every) / 2;
     for row in (first(rows)..rows).step_by(every) {
         for column in (first(columns)..columns).step_by(every) {
             let (at, Some((dx, dy))) = field.vectors[row * columns + column] else { continue };

@@ -4,8 +4,8 @@ use calibench_records::description::Views;
 use nalgebra::Vector3;
 
 const NAMES: [&str; 3] = ["X", "Y", "Z"];
-/// Coordinates beyond so many times the object's size are told from a round number near it.
-const FAR: f64 = 20.0;
+/// Coordinates beyond so many times the step of the object's size, a power of ten, are told from a multiple of it.
+const FAR: f64 = 100.0;
 
 /// An object axis as a drawing shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl Side {
         Self { sign: -self.sign, ..self }
     }
 
-    /// The title of its scale, as in `-X, m` or `Y - 200, m`.
+    /// The title of its scale, as in `-X, m` or `Y - 259270, m`.
     pub(crate) fn title(&self, unit: &str) -> String {
         let (name, origin) = (NAMES[self.index], self.origin);
         match (self.sign < 0.0, origin == 0.0) {
@@ -69,7 +69,7 @@ impl Sides {
         // Right, up and towards the viewer are right-handed.
         let right = (unit(across).cross(&unit(up))[towards] * sign).signum();
         let size = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
-        let step = 10_f64.powf(size.log10().ceil());
+        let step = 10_f64.powf(size.log10().floor());
         let side = |index: usize, sign| {
             let origin = if low[index].abs() > FAR * step { (low[index] / step).floor() * step } else { 0.0 };
             Side { index, sign, origin }
@@ -112,8 +112,8 @@ mod tests {
         let sides = Sides::of([1.0, 0.0, 0.0], &[low, [149_451.5, 259_287.9, 616.9]]);
         assert_eq!(
             [sides.across, sides.up, sides.towards.reversed()].map(|side| side.title("m")),
-            ["Y - 259200, m", "Z, m", "149400 - X, m"]
+            ["Y - 259270, m", "Z, m", "149450 - X, m"]
         );
-        assert!((sides.across.of(&low) - 74.7).abs() < 1e-9 && (sides.towards.reversed().of(&low) + 50.0).abs() < 1e-9);
+        assert!((sides.across.of(&low) - 4.7).abs() < 1e-9 && sides.towards.reversed().of(&low).abs() < 1e-9);
     }
 }

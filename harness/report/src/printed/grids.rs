@@ -11,6 +11,8 @@ use crate::field::{plain, stretch, write};
 
 /// Squares along the longer side.
 const SQUARES: f64 = 12.0;
+/// The share of a square by which the last one may leave the frame.
+const NEARLY: f64 = 0.01;
 /// Places on a line from one crossing to the next.
 const FINE: usize = 6;
 /// Width of the frame in a panel, px of the picture.
@@ -71,7 +73,7 @@ impl Grid {
 fn lines([width, height]: [u32; 2]) -> Vec<Vec<PixelPoint>> {
     let (x, y) = (0.5 * (f64::from(width) - 1.0), 0.5 * (f64::from(height) - 1.0));
     let side = 2.0 * x.max(y) / SQUARES;
-    let count = |half: f64| (half / side + 1e-9).floor() as i64;
+    let count = |half: f64| (half / side + NEARLY).floor() as i64;
     let (columns, rows) = (count(x), count(y));
     let fine = FINE as i64;
     let place = |column: f64, row: f64| PixelPoint::new(x + side * column, y + side * row);

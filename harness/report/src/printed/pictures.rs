@@ -15,12 +15,29 @@ use crate::field_panels::panels;
 use crate::load::adjustments::Summaries;
 use crate::network::pictures::plan::plan;
 
-const GRIDS: &str = "What distortion does to a square grid: dashed without distortion, solid as a camera has it; each panel says by how much and how many times too large";
-const DISTORTION: &str = "Distortion of each camera over the frame, px: arrows lead from where a camera of the same principal distance and point without distortion has a ray to where this one has it; \
-                          one scale of colours and arrows for all";
-const CONVERSION: &str = "What the direct conversion costs over the frame, px: arrows lead from where a tool's own camera, which an exact conversion keeps, has a ray to where the printed one has it, \
-                          after the best rotation; one scale of colours and arrows for all. White: within a tenth of where the tool's own camera folds over, and beyond";
-const NETWORK: &str = "The stations that explain the fitted columns, and the check points, from above and from the front";
+/// The title of a picture, which stands for it in words, and what has to be said beside it.
+struct Caption {
+    title: &'static str,
+    said: &'static str,
+}
+
+const GRIDS: Caption = Caption {
+    title: "What distortion does to a square grid",
+    said: "dashed without distortion, solid as a camera has it, with the same principal distance and point. Each panel says how far, in px, and how many times too large it is drawn",
+};
+const DISTORTION: Caption = Caption {
+    title: "Distortion of each camera over the frame, px",
+    said: "arrows lead from where a camera with the same principal distance and point, but without distortion, has a ray to where this one has it. One scale of colours and arrows for all",
+};
+const CONVERSION: Caption = Caption {
+    title: "Direct conversion less exact over the frame, px, after the best rotation",
+    said: "arrows lead from where a tool's own camera has a ray, which an exact conversion keeps, to where the printed one has it. One scale of colours and arrows for all. White: beyond nine tenths of the \
+           radius at which the tool's own camera folds over",
+};
+const NETWORK: Caption = Caption {
+    title: "Stations and check points of the network",
+    said: "from above, with lines of sight, and the points from the front, as seen from the stations. Each drawing has one scale for both axes",
+};
 
 /// Pictures of a page under way: their text and their files.
 pub(super) struct Drawn<'a> {
@@ -34,22 +51,21 @@ impl<'a> Drawn<'a> {
     }
 
     /// The text of a picture, if there is one.
-    fn add(&mut self, name: &str, caption: &str, canvas: Option<crate::Canvas>) -> String {
+    fn add(&mut self, name: &str, caption: &Caption, canvas: Option<crate::Canvas>) -> String {
         let Some(canvas) = canvas else { return String::new() };
         let file = format!("{}-{name}.png", self.stem);
         self.pictures.push((file.clone(), canvas));
-        format!("{caption}:\n\n![{caption}]({file})\n\n")
+        let Caption { title, said } = caption;
+        format!("{title}: {said}.\n\n![{title}]({file})\n\n")
     }
 
     /// The grids and the maps of the cameras.
     pub(super) fn cameras(&mut self, printed: &Printed) -> String {
-        let mut text = self.add("grids", GRIDS, grids::picture(&Grid::all(printed)));
-        for (name, caption, title, maps) in [
-            ("distortion", DISTORTION, "Distortion", distortions(printed)),
-            ("conversion", CONVERSION, "Direct conversion less exact, after the best rotation", conversions(printed)),
-        ] {
+        let mut text = self.add("grids", &GRIDS, grids::picture(&Grid::all(printed)));
+        for (name, caption, maps) in [("distortion", &DISTORTION, distortions(printed)), ("conversion", &CONVERSION, conversions(printed))]
+        {
             let (fields, failed) = sorted(maps);
-            text.push_str(&self.add(name, caption, panels(title, &fields)));
+            text.push_str(&self.add(name, caption, panels(caption.title, &fields)));
             text.push_str(&failed);
         }
         text
@@ -57,7 +73,7 @@ impl<'a> Drawn<'a> {
 
     /// The plan of the network.
     pub(super) fn network(&mut self, printed: &Printed, network: &PlacedNetwork, found: &Summaries) -> String {
-        self.add("network", NETWORK, plan(&views(printed, network, found)))
+        self.add("network", &NETWORK, plan(&views(printed, network, found)))
     }
 }
 

@@ -27,7 +27,7 @@ pub fn plan(views: &Views) -> Option<Canvas> {
     let (across, depth) = (sides.across, sides.towards.reversed());
     let places = || views.stations.iter().map(|station| &station.centre).chain(&ends);
     let ([left, right], [near, far]) = (across.span(places()), depth.span(places()));
-    let room = 0.08 * (right - left);
+    let room = 0.1 * (right - left);
     // One scale for both axes.
     let (x, y) = ([left - room, right + room], [near - room, far + room]);
     let width = (f64::from(HEIGHT) * (x[1] - x[0]) / (y[1] - y[0])).round() as i32;
