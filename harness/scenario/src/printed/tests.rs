@@ -111,7 +111,7 @@ fn a_mistake_is_told_by_line_and_name() {
         ("bases = [3]", "bases = []", "47:9", "`bases` is empty"),
         ("tool = \"photoscan\"", "tool = \"photscan\"", "20:8", "did you mean `photoscan`?"),
         ("camera = \"own\"\nk = [4e-4, 0, 0]", "camera = \"won\"\nk = [4e-4, 0, 0]", "26:10", "no camera is called `won`"),
-        ("k = [4e-4, 0, 0]", "k = [-2e-3, 1e-5, 0]", "25:8", "`bent` folds over inside the frame"),
+        ("k = [4e-4, 0, 0]", "k = [4e-3, 0, 0]", "25:8", "`bent` folds over inside the frame"),
         ("k = [4e-4, 0, 0]", "k = [0, 0, 0]", "25:8", "`bent` has no distortion to show"),
         ("unit = \"m\"", "unit = \"inch\"", "9:8", "no unit is called `inch`"),
         ("name = \"other\"", "name = \"network\"", "49:8", "stands twice"),

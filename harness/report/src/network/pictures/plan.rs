@@ -27,7 +27,7 @@ pub fn plan(views: &Views) -> Option<Canvas> {
     let (across, depth) = (sides.across, sides.towards.reversed());
     let places = || views.stations.iter().map(|station| &station.centre).chain(&ends);
     let ([left, right], [near, far]) = (across.span(places()), depth.span(places()));
-    let room = 0.1 * (right - left);
+    let room = 0.08 * (right - left);
     // One scale for both axes.
     let (x, y) = ([left - room, right + room], [near - room, far + room]);
     let width = (f64::from(HEIGHT) * (x[1] - x[0]) / (y[1] - y[0])).round() as i32;
@@ -59,7 +59,7 @@ pub fn plan(views: &Views) -> Option<Canvas> {
         let (px, py) = axes.place(across.of(&station.centre), depth.of(&station.centre));
         let look = if station.second_step { (Mark::Diamond, COLOURS[0]) } else { (Mark::Circle, COLOURS[1]) };
         marks.push((look.0, look.1, (f64::from(px), f64::from(py))));
-        canvas.label(&station.name, 18, (px as u32 + 10, py as u32 + 14));
+        canvas.label(&station.name, 18, (beside(&axes, px, &station.name, 10), py as u32 + 14));
     }
     points(&mut canvas, views, (&front, &sides), &mut marks);
     canvas.marks(&marks);
@@ -112,12 +112,17 @@ fn points(canvas: &mut Canvas, views: &Views, (axes, sides): (&Axes, &Sides), ma
         let (x, y) = axes.place(sides.across.of(&target.surveyed), sides.up.of(&target.surveyed));
         marks.push(mark(target, (x, y)));
         if target.role == Some(named) {
-            // To the left near the right side.
-            let room = 8 * target.id.chars().count() as i32 + 16;
-            let left = if x + room > axes.at[0] + axes.at[2] { x - room } else { x + 10 };
-            canvas.label(&target.id, 14, (left.max(0) as u32, (y - 12).max(0) as u32));
+            let left = beside(axes, x, &target.id, 8);
+            canvas.label(&target.id, 14, (left, (y - 12).max(0) as u32));
         }
     }
+}
+
+/// Where a name beside `x` begins, its letters `wide` px: to the right of it, or to the left near the right side.
+fn beside(axes: &Axes, x: i32, name: &str, wide: i32) -> u32 {
+    let room = wide * name.chars().count() as i32 + 16;
+    let left = if x + room > axes.at[0] + axes.at[2] { x - room } else { x + 10 };
+    left.max(0) as u32
 }
 
 /// What there is, and no more.
