@@ -134,7 +134,10 @@ fn arrows(area: &Area<'_>, map: &Map, field: &Field, times: f64) {
     let (columns, rows) = field.grid;
     let every = columns.max(rows).div_ceil(ARROWS).max(1);
     // Within the frame, and as far from both ends.
-    let first = |count: usize| ((count - 1) % every + every) / 2;
+    let first = |count: usize| match (count - 1) % every {
+        left @ 0..2 => (left + every) / 2,
+        left => left / 2,
+    };
     for row in (first(rows)..rows).step_by(every) {
         for column in (first(columns)..columns).step_by(every) {
             let (at, Some((dx, dy))) = field.vectors[row * columns + column] else { continue };

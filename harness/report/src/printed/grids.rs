@@ -62,7 +62,7 @@ impl Grid {
     }
 
     /// The displacement and how it is drawn.
-    fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         let times = self.times();
         let drawn = if times == 1.0 { "drawn to scale".to_owned() } else { format!("drawn {times} times too large") };
         format!("at most {} px, {drawn}", plain(self.longest()))

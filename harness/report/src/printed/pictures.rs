@@ -23,7 +23,7 @@ struct Caption {
 
 const GRIDS: Caption = Caption {
     title: "What distortion does to a square grid",
-    said: "dashed without distortion, solid as a camera has it, with the same principal distance and point. Each panel says how far, in px, and how many times too large it is drawn",
+    said: "dashed without distortion, solid as a camera has it, with the same principal distance and point",
 };
 const DISTORTION: Caption = Caption {
     title: "Distortion of each camera over the frame, px",
@@ -59,9 +59,19 @@ impl<'a> Drawn<'a> {
         format!("{title}: {said}.\n\n![{title}]({file})\n\n")
     }
 
+    /// The grids, and in words how large each is drawn.
+    fn grids(&mut self, grids: &[Grid]) -> String {
+        let mut text = self.add("grids", &GRIDS, grids::picture(grids));
+        let words: Vec<String> = grids.iter().map(|grid| format!("*{}*, {}", grid.name, grid.words())).collect();
+        if !words.is_empty() {
+            text.push_str(&format!("The longest displacements: {}.\n\n", words.join("; ")));
+        }
+        text
+    }
+
     /// The grids and the maps of the cameras.
     pub(super) fn cameras(&mut self, printed: &Printed) -> String {
-        let mut text = self.add("grids", &GRIDS, grids::picture(&Grid::all(printed)));
+        let mut text = self.grids(&Grid::all(printed));
         for (name, caption, maps) in [("distortion", &DISTORTION, distortions(printed)), ("conversion", &CONVERSION, conversions(printed))]
         {
             let (fields, failed) = sorted(maps);

@@ -149,6 +149,8 @@ fn every_camera_has_its_panels() {
     let files: Vec<&str> = drawn.pictures.iter().map(|(file, _)| file.as_str()).collect();
     assert_eq!(files, ["stem-grids.png", "stem-distortion.png", "stem-conversion.png"]);
     assert!(files.iter().all(|file| text.contains(&format!("]({file})"))), "{text}");
+    let factor = Grid::all(&printed())[2].times();
+    assert!(text.contains(&format!("drawn {factor} times too large.\n")) && text.contains("*barrel*, at most "), "{text}");
     let bare = Printed { cameras: vec![camera("none", None, 0.0, [0.0; 2])], grids: Vec::new(), ..printed() };
     let mut drawn = Drawn::new("stem");
     assert_eq!((drawn.cameras(&bare), drawn.pictures.len()), (String::new(), 0));
