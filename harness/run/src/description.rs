@@ -18,7 +18,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     let subject = match &scenario.subject {
         Subject::Scene(_) => description::Subject::Scene,
         Subject::Views(subject) => description::Subject::Views(Box::new(views(subject))),
-        Subject::Printed(printed) => description::Subject::Printed(of_print(printed)),
+        Subject::Printed(printed) => description::Subject::Printed(Box::new(of_print(printed))),
         Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
     };
     Description {

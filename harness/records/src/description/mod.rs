@@ -53,7 +53,7 @@ pub enum Subject {
         judged: bool,
     },
     /// Figures that were printed: nothing is measured.
-    Printed(Printed),
+    Printed(Box<Printed>),
 }
 
 impl Description {
