@@ -123,6 +123,9 @@ fn printed(text: &mut String, subject: &Printed) {
         let values: Vec<String> = camera.parameters().iter().map(|parameter| format!("{} {}", parameter.name, parameter.value)).collect();
         let _ = writeln!(text, "# {name}: {}", values.join(", "));
     }
+    for grid in &subject.grids {
+        let _ = writeln!(text, "# a grid: {}", grid.name);
+    }
     if let Some(network) = &subject.network {
         let fitted: Vec<&str> = network.fitted.iter().map(|&column| subject.cameras[column].name.as_str()).collect();
         let _ = writeln!(text, "# network of {} stations, fitted to {}", network.stations, fitted.join(", "));

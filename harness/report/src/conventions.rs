@@ -145,7 +145,7 @@ fn section(
                 plain(fold.radius_px),
                 plain(fold.radius_px * pitch_um * 1e-3),
                 100.0 * fold.share,
-                plain(fold.radius_px * INSIDE)
+                plain(fold.radius_px * Region::INSIDE_FOLD)
             ));
         }
         text.push_str(&priced.table(*distance_m));
@@ -159,9 +159,6 @@ fn section(
     }
     Ok(())
 }
-
-/// The share of the fold's radius within which a camera is taken as true.
-const INSIDE: f64 = 0.9;
 
 /// A camera and what mistakes cost it: the mistake, as it is and after the best rotation.
 struct Priced {
@@ -179,7 +176,7 @@ fn price(cameras: &Cameras, printed: &Printed) -> Result<Priced, ReportError> {
     let converted = Photogrammetric { size, pitch_um, c, x0, y0, k, p, b: [0.0; 2] };
     let truth = from_naive(&converted, Target::metashape(), Tangential::Converted)?;
     let fold = fold(&truth);
-    let region = fold.as_ref().map_or(Region::Frame, |fold| Region::Radius { px: fold.radius_px * INSIDE });
+    let region = Region::inside_fold(&truth);
     let options = ConvertOptions { region, accept: true, ..ConvertOptions::default() };
     let compare =
         |wrong: &Camera, rotation| difference(&truth, wrong, &DifferenceOptions { region, rotation, ..DifferenceOptions::default() });

@@ -9,7 +9,7 @@ use crate::answer::{Answers, heading};
 use crate::markdown::contents;
 use crate::places::PAGE;
 use crate::{
-    Canvas, LoadError, Loaded, blocks, network, photographs, printed, recognition, scene_figures, scores_section, sweep, transfer,
+    Canvas, LoadError, Loaded, blocks, network, photographs, poses, printed, recognition, scene_figures, scores_section, sweep, transfer,
 };
 
 /// A page with its pictures, filled section by section.
@@ -104,7 +104,11 @@ impl Page {
             return;
         }
         match &scenario.subject {
-            Subject::Printed(sets) => self.text.push_str(&printed::section(loaded, sets)),
+            Subject::Printed(sets) => {
+                let (text, pictures) = printed::section(loaded, sets, &stem);
+                self.text.push_str(&text);
+                self.pictures.extend(pictures);
+            }
             Subject::Photographs { .. } => {
                 photographs::answer(loaded).into_iter().for_each(|answer| self.answers.say(answer));
                 let (text, pictures) = photographs::section(loaded);
@@ -116,6 +120,11 @@ impl Page {
                 self.answers.scenario(loaded);
                 self.text.push_str(&scores_section::section(loaded));
                 self.text.push('\n');
+                if let Some(canvas) = poses::of(scenario) {
+                    let file = format!("{stem}-poses.png");
+                    self.text.push_str(&format!("{0}:\n\n![{0}]({file})\n\n", poses::CAPTION));
+                    self.pictures.push((file, canvas));
+                }
                 if let Some(figures) = scene_figures::figures(loaded) {
                     self.text.push_str(&format!(
                         "The image of the first trial with truth, approximate positions and the results of one method, and {}, with all results:\n\n\

@@ -1,8 +1,11 @@
 //! What the pages of a scenario tell of it, for its records.
 
 use calibench_measure::Configured;
-use calibench_model::camera::CameraModel;
-use calibench_records::description::{self, Adjustment, Axis, Cell, Description, Role, Station, Target, Value, Views, operator};
+use calibench_model::camera::{CameraModel, Photogrammetric};
+use calibench_model::convert::Tool;
+use calibench_records::description::{
+    self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Station, Target, Value, Views, operator,
+};
 use calibench_scenario::calibration::CheckPlan;
 use calibench_scenario::printed::{NETWORK, SENSOR};
 use calibench_scenario::{Blocks, Printed, Scenario, Subject, Sweep, ViewsSubject};
@@ -15,7 +18,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     let subject = match &scenario.subject {
         Subject::Scene(_) => description::Subject::Scene,
         Subject::Views(subject) => description::Subject::Views(Box::new(views(subject))),
-        Subject::Printed(printed) => description::Subject::Printed(of_print(printed)),
+        Subject::Printed(printed) => description::Subject::Printed(Box::new(of_print(printed))),
         Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
     };
     Description {
@@ -50,10 +53,25 @@ fn of_print(printed: &Printed) -> description::Printed {
         let chosen = printed.variants.iter().filter(move |variant| variant.refit == again);
         chosen.map(|variant| variant.name.clone()).collect()
     };
+    let size = printed.cameras[0].camera.size;
+    let camera = |name: &str, camera: &Photogrammetric, tool: Option<Tool>| PrintedCamera {
+        name: name.to_owned(),
+        tool: tool.map(|tool| tool.name().to_owned()),
+        c: camera.c,
+        principal_point: [camera.x0, camera.y0],
+        k: camera.k,
+        p: camera.p,
+    };
+    let point = |point: &calibench_scenario::printed::CheckPoint| CheckPoint { name: point.name.clone(), at: point.at.coords.into() };
     description::Printed {
         sensor: SENSOR.to_owned(),
-        cameras: printed.cameras.iter().map(|column| column.name.clone()).collect(),
-        network: printed.network.as_ref().map(|_| NETWORK.to_owned()),
+        size: [size.width, size.height],
+        pitch_um: printed.cameras[0].camera.pitch_um,
+        unit: printed.unit.name().to_owned(),
+        cameras: printed.cameras.iter().map(|column| camera(&column.name, &column.camera, column.tool)).collect(),
+        grids: printed.grids.iter().map(|grid| camera(&grid.name, &grid.camera, None)).collect(),
+        points: printed.points.iter().map(point).collect(),
+        network: printed.network.as_ref().map(|plan| PlacedNetwork { set: NETWORK.to_owned(), from: plan.from.into() }),
         variants: variants(false),
         again: variants(true),
     }

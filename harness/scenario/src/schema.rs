@@ -88,6 +88,7 @@ fn printed() -> Value {
     let mut all = table::<printed_wire::PrintedWire>();
     all["properties"]["pixel"] = list(&table::<printed_wire::PixelWire>());
     all["properties"]["camera"] = list(&table::<printed_wire::CameraWire>());
+    all["properties"]["grid"] = list(&table::<printed_wire::GridWire>());
     all["properties"]["point"] = list(&table::<printed_wire::PointWire>());
     all["properties"]["network"] = table::<printed_wire::NetworkWire>();
     all["properties"]["variant"] = list(&table::<printed_wire::VariantWire>());

@@ -16,6 +16,16 @@ pub enum Region {
     },
 }
 
+impl Region {
+    /// The share of a fold's radius within which a camera may be taken as true.
+    pub const INSIDE_FOLD: f64 = 0.9;
+
+    /// Where `camera` may be taken as true: the frame, or what lies within [`Self::INSIDE_FOLD`] of the radius of its fold.
+    pub fn inside_fold(camera: &dyn CameraModel) -> Self {
+        fold(camera).map_or(Self::Frame, |fold| Self::Radius { px: fold.radius_px * Self::INSIDE_FOLD })
+    }
+}
+
 /// A vector in the image, for plots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector {

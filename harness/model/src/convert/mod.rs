@@ -15,6 +15,7 @@ mod rotation;
 mod target;
 #[cfg(test)]
 mod tests;
+mod tool;
 mod wide_angle;
 
 use nalgebra::DMatrix;
@@ -31,6 +32,7 @@ pub use mistake::{Mistake, Mistaken, mistaken};
 pub use naive::{Tangential, from_naive, naive};
 pub use rotation::Rotation;
 pub use target::Target;
+pub use tool::Tool;
 
 /// Largest residual that passes without a word, px.
 pub const WARNING_PX: f64 = 0.01;

@@ -1,5 +1,6 @@
 //! A scenario as its pages tell it: what a report needs of it, beside the records of its run.
 
+mod printed;
 mod sweep;
 mod views;
 
@@ -8,6 +9,7 @@ use std::io::{Read, Write};
 
 use serde::{Deserialize, Serialize};
 
+pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
 pub use sweep::{Axis, Cell, Sweep, Value};
 pub use views::{Adjustment, Blocks, Role, Station, Target, Views};
 
@@ -51,23 +53,7 @@ pub enum Subject {
         judged: bool,
     },
     /// Figures that were printed: nothing is measured.
-    Printed(Printed),
-}
-
-/// What printed figures are of, by the names of their sets.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Printed {
-    /// Of the sensor.
-    pub sensor: String,
-    /// Cameras, in the order of their columns.
-    pub cameras: Vec<String>,
-    /// The network, if one is fitted.
-    pub network: Option<String>,
-    /// Changed cameras in that network.
-    pub variants: Vec<String>,
-    /// Changed cameras with which it is fitted again.
-    pub again: Vec<String>,
+    Printed(Box<Printed>),
 }
 
 impl Description {

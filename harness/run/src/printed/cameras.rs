@@ -9,8 +9,6 @@ use calibench_scenario::printed::{Column, Variant};
 
 use super::figure;
 
-/// The share of a fold's radius within which cameras are compared.
-const INSIDE: f64 = 0.9;
 /// Columns and rows of the grid on which an inverse is tried.
 const GRID: (usize, usize) = (61, 41);
 
@@ -23,7 +21,7 @@ pub fn figures(printed: &Printed, column: &Column) -> Result<Vec<Figure>, String
     let mut all = vec![figure("c less that of the first column", camera.c - printed.cameras[0].camera.c, "mm")];
     folded("fold as a correction", &camera.into(), camera.pitch_um, &mut all);
     all.push(figure("error of the inverse", round_trip(&camera.into()), "px"));
-    let Some(tool) = column.tool else { return Ok(all) };
+    let Some(tool) = column.target() else { return Ok(all) };
     let told = |error: calibench_model::convert::ConvertError| format!("{}: {error}", column.name);
     all.extend(scheme(&camera, tool).map_err(told)?);
     let own = from_naive(&camera, tool, Tangential::Converted).map_err(told)?;
@@ -70,7 +68,7 @@ fn scheme(camera: &Photogrammetric, tool: Target) -> Result<Vec<Figure>, caliben
 
 /// What the direct conversion `camera` of the tool's `own` camera costs, beside an exact one.
 fn direct(printed: &Printed, camera: &Photogrammetric, own: &Camera) -> Result<Vec<Figure>, calibench_model::convert::ConvertError> {
-    let region = inside(own);
+    let region = Region::inside_fold(own);
     let options = ConvertOptions { region, accept: true, ..ConvertOptions::default() };
     let exact = convert(own, Target::photogrammetric(camera.pitch_um), &options)?;
     let over = DifferenceOptions { region, ..DifferenceOptions::default() };
@@ -89,11 +87,6 @@ fn direct(printed: &Printed, camera: &Photogrammetric, own: &Camera) -> Result<V
     ])
 }
 
-/// The frame, or what lies within the camera's fold.
-fn inside(camera: &Camera) -> Region {
-    fold(camera).map_or(Region::Frame, |fold| Region::Radius { px: fold.radius_px * INSIDE })
-}
-
 /// What a changed camera costs in the image, against the printed one.
 ///
 /// # Errors
@@ -101,11 +94,11 @@ fn inside(camera: &Camera) -> Region {
 pub fn varied(printed: &Printed, variant: &Variant) -> Result<Vec<Figure>, String> {
     let base: Camera = printed.cameras[variant.of].camera.into();
     // Compared where both are one to one: of two regions the smaller.
-    let radius = [base, variant.camera.into()]
-        .iter()
-        .filter_map(|camera: &Camera| fold(camera))
-        .map(|fold| fold.radius_px * INSIDE)
-        .min_by(f64::total_cmp);
+    let within = |camera: Camera| match Region::inside_fold(&camera) {
+        Region::Frame => None,
+        Region::Radius { px } => Some(px),
+    };
+    let radius = [base, variant.camera.into()].into_iter().filter_map(within).min_by(f64::total_cmp);
     let region = radius.map_or(Region::Frame, |px| Region::Radius { px });
     let over = DifferenceOptions { region, ..DifferenceOptions::default() };
     let found = difference(&base, &variant.camera.into(), &over).map_err(|error| format!("{}: {error}", variant.name))?;

@@ -20,6 +20,8 @@ const DIFFERENCE: f64 = 1e-6;
 const ROUGH: f64 = 1e-3;
 /// Where the best ends.
 const FINE: f64 = 1e-9;
+/// The angles of an exterior orientation.
+const ANGLES: [&str; 3] = ["omega", "phi", "kappa"];
 /// Starts whose misfit is within this factor of the least one end at the same network.
 const SAME: f64 = 1.01;
 
@@ -55,14 +57,17 @@ impl<'a> Predictions<'a> {
         Ok(Self { printed, plan, site, fitted })
     }
 
-    /// The network itself: its numbers, its stations, how well it fits.
+    /// The network itself: its numbers, its stations with their exterior orientations, how well it fits.
     pub fn network(&self) -> Vec<Figure> {
         let unit = self.printed.unit.name();
         let numbers =
             NAMES.iter().zip(self.fitted.numbers).map(|(name, value)| Figure::plain(Group::Eop, with_unit(name, unit), value, unit));
         let stations = self.fitted.pictures.iter().enumerate().flat_map(|(index, (pose, _))| {
             let centre = self.site.middle() + pose.centre.coords;
-            (0..3).map(move |axis| Figure::plain(Group::Eop, format!("{}/{}", index + 1, AXES[axis]), centre[axis], unit))
+            let angles = pose.angles().map(f64::to_degrees);
+            let plain = move |name: &str, value, unit| Figure::plain(Group::Eop, format!("{}/{name}", index + 1), value, unit);
+            let place = (0..3).map(move |axis| plain(AXES[axis], centre[axis], unit));
+            place.chain((0..3).map(move |axis| plain(ANGLES[axis], angles[axis], "deg")))
         });
         let [starts, same] = self.fitted.starts.map(|count| count as f64);
         let seen = self.fitted.pictures.iter().flat_map(|(_, seen)| seen).flatten().count() as f64;
@@ -129,7 +134,7 @@ fn misfits(printed: &Printed, column: usize, errors: &[Vector3<f64>]) -> Vec<f64
 
 /// The network whose errors of the fitted columns are nearest to the printed ones, over all starts.
 fn fit(printed: &Printed, plan: &NetworkPlan, site: &Site, cameras: &[Photogrammetric]) -> Result<Fitted, String> {
-    let tool = printed.cameras[plan.truth].tool.ok_or("the true camera has no tool")?;
+    let tool = printed.cameras[plan.truth].target().ok_or("the true camera has no tool")?;
     let truth = from_naive(&cameras[plan.truth], tool, Tangential::Converted).map_err(|why| why.to_string())?;
     let residuals = |numbers: &[f64; NUMBERS]| residuals(printed, plan, site, (cameras, &truth), numbers);
     let starts: Vec<[f64; NUMBERS]> = starts(plan);

@@ -1,12 +1,12 @@
 //! Arithmetic against numbers by hand, and intersections against a second implementation.
 
 use calibench_measure::Registry;
-use calibench_model::Frame;
 use calibench_model::camera::{Camera, Photogrammetric};
 use calibench_model::convert::{Tangential, Target, from_naive};
+use calibench_model::{Frame, Pose};
 use calibench_records::results::{Figure, Group};
 use calibench_scenario::{Printed, Subject, parse};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::errors::root_mean_squares;
 use super::fit::least_squares;
@@ -193,6 +193,16 @@ fn a_network_is_found_again_from_its_own_errors() {
         near(of(Group::Eop, name), expected, 0.05);
     }
     near(value(&all, &printed, "OpenCV", Group::Network, "misfit, m"), 0.0, 2e-4);
+    for (index, (pose, _)) in pictures.iter().enumerate() {
+        let get = |name: &str| of(Group::Eop, &format!("{}/{name}", index + 1));
+        let centre = Point3::new(get("X"), get("Y"), get("Z"));
+        let found = Pose::from_angles(centre, ["omega", "phi", "kappa"].map(|name| get(name).to_radians()));
+        let apart = (found.rotation - pose.rotation).norm();
+        assert!(apart < 0.01, "station {}: {apart} rad", index + 1);
+        // The points are before the camera, on its -z.
+        let middle = printed.points.iter().map(|point| point.at.coords).sum::<Vector3<f64>>() / printed.points.len() as f64;
+        assert!(found.camera_from_world(&middle.into()).z < -5.0);
+    }
 }
 
 /// Rosenbrock's valley, as residuals 10 (y - x^2) and 1 - x: the least is at (1, 1).

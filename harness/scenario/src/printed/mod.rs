@@ -1,7 +1,7 @@
 //! The `[printed]` table: figures of a paper as data.
 
 use calibench_model::camera::Photogrammetric;
-use calibench_model::convert::Target;
+use calibench_model::convert::{Target, Tool};
 use nalgebra::{Point3, Vector3};
 
 use crate::Unit;
@@ -29,6 +29,8 @@ pub struct Printed {
     pub pitches: Vec<(String, f64)>,
     /// The cameras, in the order of their columns.
     pub cameras: Vec<Column>,
+    /// Cameras through which a square grid is shown.
+    pub grids: Vec<Grid>,
     /// The check points.
     pub points: Vec<CheckPoint>,
     /// The network that is fitted, if one is.
@@ -44,8 +46,24 @@ pub struct Column {
     pub name: String,
     /// As printed: a correction of measured coordinates.
     pub camera: Photogrammetric,
+    /// The tool whose convention it was converted from, if it is a tool's.
+    pub tool: Option<Tool>,
+}
+
+impl Column {
     /// The convention that it was converted from, if it is a tool's.
-    pub tool: Option<Target>,
+    pub fn target(&self) -> Option<Target> {
+        Some(self.tool?.target(self.camera.size, self.camera.pitch_um))
+    }
+}
+
+/// A camera through which a square grid is shown.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    /// What it shows.
+    pub name: String,
+    /// A correction of measured coordinates.
+    pub camera: Photogrammetric,
 }
 
 /// A check point.

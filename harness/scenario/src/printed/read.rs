@@ -3,27 +3,31 @@
 use std::ops::Range;
 
 use calibench_diagnostics::Problem;
-use calibench_model::camera::{AgisoftVersion, ImageSize, Photogrammetric, TangentialOrder, fold};
-use calibench_model::convert::{Tangential, Target, from_naive};
+use calibench_model::camera::{Fold, ImageSize, Photogrammetric, fold};
+use calibench_model::convert::{Tangential, Tool, from_naive};
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
 
-use super::wire::{AbsoluteError, CameraWire, NetworkWire, PixelWire, PointWire, PrintedWire, VariantWire};
-use super::{CheckPoint, Column, NETWORK, NetworkPlan, Printed, SENSOR, Variant};
+use super::wire::{AbsoluteError, CameraWire, GridWire, NetworkWire, PixelWire, PointWire, PrintedWire, VariantWire};
+use super::{CheckPoint, Column, Grid, NETWORK, NetworkPlan, Printed, SENSOR, Variant};
 use crate::Unit;
 use crate::section::Section;
 use crate::testfield::wire::{Height, Length};
 
 /// Tables below `[printed]`.
-const TABLES: [&str; 5] = ["pixel", "camera", "point", "network", "variant"];
-/// The tools whose conventions there are.
-const TOOLS: [&str; 4] = ["photoscan", "pix4d", "opencv", "lens"];
+const TABLES: [&str; 6] = ["pixel", "camera", "grid", "point", "network", "variant"];
+
+/// The names of the tools whose conventions there are.
+fn tools() -> [&'static str; 4] {
+    Tool::ALL.map(|(_, name)| name)
+}
 
 /// Reads the table.
 pub fn read(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Printed> {
     let (before, span) = (problems.len(), section.span.clone());
     let pitches = section.take_tables("pixel", "[[printed.pixel]]", problems).unwrap_or_default();
     let cameras = section.take_tables("camera", "[[printed.camera]]", problems).unwrap_or_default();
+    let grids = section.take_tables("grid", "[[printed.grid]]", problems).unwrap_or_default();
     let points = section.take_tables("point", "[[printed.point]]", problems).unwrap_or_default();
     let network = section.take_table("network", "[printed.network]", problems);
     let variants = section.take_tables("variant", "[[printed.variant]]", problems).unwrap_or_default();
@@ -37,7 +41,8 @@ pub fn read(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Pri
     if problems.len() > before {
         return None;
     }
-    let mut point_names = Names::default();
+    let (mut point_names, mut grid_names) = (Names::default(), Names::default());
+    let grids: Vec<_> = grids.into_iter().filter_map(|section| grid(section, &cameras, &mut grid_names, problems)).collect();
     let listed = points.len();
     let points: Vec<_> = points.into_iter().filter_map(|section| point(section, &cameras, &mut point_names, problems)).collect();
     let variants: Vec<_> = variants.into_iter().filter_map(|section| variant(section, &cameras, &mut names, problems)).collect();
@@ -48,7 +53,7 @@ pub fn read(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Pri
     }
     let network = network.map_or(Some(None), |read| read.map(Some))?;
     let (distance, unit) = (head.distance.0, named_unit(&head.unit, problems)?);
-    (problems.len() == before).then_some(Printed { distance, unit, pitches, cameras, points, network, variants })
+    (problems.len() == before).then_some(Printed { distance, unit, pitches, cameras, grids, points, network, variants })
 }
 
 fn named_unit(name: &Spanned<String>, problems: &mut Vec<Problem>) -> Option<Unit> {
@@ -89,7 +94,7 @@ fn camera(section: Section<'_>, head: &PrintedWire, names: &mut Names, problems:
     let pitch_um = head.pitch.0;
     let tool = match &wire.tool {
         None => None,
-        Some(tool) => Some(target(tool, size, pitch_um, problems)?),
+        Some(name) => Some(tool(name, problems)?),
     };
     let camera = Photogrammetric {
         size,
@@ -104,19 +109,29 @@ fn camera(section: Section<'_>, head: &PrintedWire, names: &mut Names, problems:
     Some(Column { name, camera, tool })
 }
 
-fn target(tool: &Spanned<String>, size: ImageSize, pitch_um: f64, problems: &mut Vec<Problem>) -> Option<Target> {
-    let sensor_width_mm = f64::from(size.width) * pitch_um * 1e-3;
-    match tool.get_ref().as_str() {
-        "photoscan" => Some(Target::metashape()),
-        "pix4d" => Some(Target::Pix4d { sensor_width_mm, order: TangentialOrder::OpenCv }),
-        "opencv" => Some(Target::OpenCv { coefficients: 5 }),
-        "lens" => Some(Target::Agisoft { version: AgisoftVersion::Lens, radial: 3, tangential: 2, affinity: false }),
-        other => {
-            let problem = Problem::new(tool.span(), format!("no tool is called `{other}`: expected one of {}", TOOLS.join(", ")));
-            problems.push(problem.nearest(other, TOOLS));
-            None
-        }
+fn tool(name: &Spanned<String>, problems: &mut Vec<Problem>) -> Option<Tool> {
+    let found = Tool::named(name.get_ref());
+    if found.is_none() {
+        let message = format!("no tool is called `{}`: expected one of {}", name.get_ref(), tools().join(", "));
+        problems.push(Problem::new(name.span(), message).nearest(name.get_ref(), tools()));
     }
+    found
+}
+
+fn grid(section: Section<'_>, cameras: &[Column], names: &mut Names, problems: &mut Vec<Problem>) -> Option<Grid> {
+    let wire: GridWire = section.read(&[], problems)?;
+    let name = names.add(&wire.name, problems);
+    let base = cameras[place(&wire.camera, cameras, problems)?].camera;
+    let k = wire.k.map_or(base.k, |k| k.map(|k| k.0));
+    let camera = Photogrammetric { k, p: wire.p.map_or(base.p, |p| p.map(|p| p.0)), ..base };
+    if let Some(Fold { radius_px, .. }) = fold(&camera) {
+        let message =
+            format!("`{name}` folds over inside the frame, {radius_px:.0} px from its axis: a grid needs a camera that is one to one");
+        problems.push(Problem::new(wire.name.span(), message));
+    } else if camera.k == [0.0; 3] && camera.p == [0.0; 2] {
+        problems.push(Problem::new(wire.name.span(), format!("`{name}` has no distortion to show: give `k` or `p`")));
+    }
+    Some(Grid { name, camera })
 }
 
 fn point(section: Section<'_>, cameras: &[Column], names: &mut Names, problems: &mut Vec<Problem>) -> Option<CheckPoint> {
@@ -200,13 +215,13 @@ fn network_plan(section: Section<'_>, cameras: &[Column], points: usize, problem
 
 /// The true camera pictures the whole frame.
 fn one_to_one(truth: Option<&Column>, span: Range<usize>, problems: &mut Vec<Problem>) {
-    let Some(Column { name, camera, tool }) = truth else { return };
-    let Some(tool) = tool else {
+    let Some(column @ Column { name, camera, .. }) = truth else { return };
+    let Some(target) = column.target() else {
         let problem = Problem::new(span, format!("`{name}` has no tool: a true camera is a tool's own"));
-        problems.push(problem.help(format!("add `tool`, one of {}", TOOLS.join(", "))));
+        problems.push(problem.help(format!("add `tool`, one of {}", tools().join(", "))));
         return;
     };
-    match from_naive(camera, *tool, Tangential::Converted) {
+    match from_naive(camera, target, Tangential::Converted) {
         Err(error) => problems.push(Problem::new(span, format!("`{name}`: {error}"))),
         Ok(own) => {
             if let Some(fold) = fold(&own) {

@@ -28,6 +28,10 @@ tool = "photoscan"
 c = 20.0
 x0 = 0.1
 k = [-4e-4, 1e-6, 0]
+[[printed.grid]]
+name = "bent"
+camera = "own"
+k = [4e-4, 0, 0]
 [[printed.point]]
 name = "A"
 at = [0, 1, 2]
@@ -76,6 +80,8 @@ fn what_is_written_is_read() {
     assert_eq!(printed.sets(), ["sensor", "none", "own", "network", "other"]);
     assert_eq!(printed.pitches, [("of the width".to_owned(), 5.0)], "20 mm / 4000");
     assert_eq!(printed.points[0].errors, [[0.1, 0.2, 0.3], [0.01, 0.02, 0.03]]);
+    let grid = &printed.grids[0];
+    assert_eq!((grid.name.as_str(), grid.camera.k, grid.camera.x0), ("bent", [4e-4, 0.0, 0.0], 0.1), "the rest is that of the camera");
     let network = printed.network.unwrap();
     assert_eq!((network.truth, network.stations, network.fitted), (1, 4, vec![0]));
     assert!((network.from.x - 1.0).abs() < 1e-15 && (network.up.z - 1.0).abs() < 1e-15 && network.up.x.abs() < 1e-15, "unit and across");
@@ -90,24 +96,27 @@ fn a_mistake_is_told_by_line_and_name() {
         (
             "{ none = [0.1, 0.2, 0.3], own = [0.01",
             "{ none = [0.1, 0.2, 0.3], nome = [0, 0, 0], own = [0.01",
-            "27:36",
+            "31:36",
             "no camera is called `nome` (did you mean `none`?)",
         ),
-        (", own = [0, 0, 0] }", " }", "31:10", "point `B` has no errors of own: expected X, Y, Z of every camera"),
-        ("stations = 4", "stations = 1", "38:12", "from 2 to 1000, found 1"),
-        ("truth = \"own\"", "truth = \"onw\"", "37:9", "no camera is called `onw`"),
-        ("truth = \"own\"", "truth = \"none\"", "37:9", "`none` has no tool"),
-        ("k = [-4e-4, 1e-6, 0]", "k = [-2e-3, 0, 0]", "37:9", "`own` folds over inside the frame"),
-        ("fitted = [\"none\"]", "fitted = []", "41:10", "`fitted` is empty"),
-        ("fitted = [\"none\"]", "fitted = [\"one\"]", "41:11", "no camera is called `one`"),
-        ("up = [1, 0, 1]", "up = [-3, 0, 0]", "40:6", "`up` lies along `from`"),
-        ("from = [2, 0, 0]", "from = [0, 0, 0]", "39:8", "`from` is no direction"),
-        ("bases = [3]", "bases = []", "43:9", "`bases` is empty"),
+        (", own = [0, 0, 0] }", " }", "35:10", "point `B` has no errors of own: expected X, Y, Z of every camera"),
+        ("stations = 4", "stations = 1", "42:12", "from 2 to 1000, found 1"),
+        ("truth = \"own\"", "truth = \"onw\"", "41:9", "no camera is called `onw`"),
+        ("truth = \"own\"", "truth = \"none\"", "41:9", "`none` has no tool"),
+        ("k = [-4e-4, 1e-6, 0]", "k = [-2e-3, 0, 0]", "41:9", "`own` folds over inside the frame"),
+        ("fitted = [\"none\"]", "fitted = []", "45:10", "`fitted` is empty"),
+        ("fitted = [\"none\"]", "fitted = [\"one\"]", "45:11", "no camera is called `one`"),
+        ("up = [1, 0, 1]", "up = [-3, 0, 0]", "44:6", "`up` lies along `from`"),
+        ("from = [2, 0, 0]", "from = [0, 0, 0]", "43:8", "`from` is no direction"),
+        ("bases = [3]", "bases = []", "47:9", "`bases` is empty"),
         ("tool = \"photoscan\"", "tool = \"photscan\"", "20:8", "did you mean `photoscan`?"),
+        ("camera = \"own\"\nk = [4e-4, 0, 0]", "camera = \"won\"\nk = [4e-4, 0, 0]", "26:10", "no camera is called `won`"),
+        ("k = [4e-4, 0, 0]", "k = [4e-3, 0, 0]", "25:8", "`bent` folds over inside the frame"),
+        ("k = [4e-4, 0, 0]", "k = [0, 0, 0]", "25:8", "`bent` has no distortion to show"),
         ("unit = \"m\"", "unit = \"inch\"", "9:8", "no unit is called `inch`"),
-        ("name = \"other\"", "name = \"network\"", "45:8", "stands twice"),
-        ("name = \"C\"", "name = \"A\"", "33:8", "`A` stands twice"),
-        ("[0.01, 0.02, 0.03]", "[-0.01, 0.02, 0.03]", "27:42", "expected a number from 0"),
+        ("name = \"other\"", "name = \"network\"", "49:8", "stands twice"),
+        ("name = \"C\"", "name = \"A\"", "37:8", "`A` stands twice"),
+        ("[0.01, 0.02, 0.03]", "[-0.01, 0.02, 0.03]", "31:42", "expected a number from 0"),
         ("seed = 1", "seed = 1\ntrials = 2", "4:10", "2 trials of a scenario in which nothing is random"),
     ] {
         let found = diagnostics(old, new);

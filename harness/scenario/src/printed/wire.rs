@@ -76,6 +76,22 @@ pub struct CameraWire {
     pub p: Option<[Coefficient; 2]>,
 }
 
+/// A camera through which a square grid is shown: what its distortion does to straight lines.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GridWire {
+    /// What it shows, as in `barrel`.
+    #[schemars(with = "String")]
+    pub name: Spanned<String>,
+    /// The printed camera that it is, but for what is given.
+    #[schemars(with = "String")]
+    pub camera: Spanned<String>,
+    /// Others k1, k2, k3.
+    pub k: Option<[Coefficient; 3]>,
+    /// Others p1, p2.
+    pub p: Option<[Coefficient; 2]>,
+}
+
 /// A printed camera with something changed: what that costs in the image and on the object.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -6,8 +6,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::super::board::adjusted;
-use super::levels::contour;
 use crate::field::{Area, BOTTOM, LEFT, MAP, RIGHT, TOP, shade, shades_beside, write};
+use crate::levels::contour;
 use crate::ticks::linear;
 use crate::{Canvas, plain};
 

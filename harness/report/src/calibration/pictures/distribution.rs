@@ -5,9 +5,9 @@ use calibench_model::camera::CameraModel;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::frame::Map;
 use crate::Canvas;
 use crate::field::{BOTTOM, LEFT, TOP, shade, write};
+use crate::frame::Map;
 
 /// Cells along the longer side.
 const CELLS: usize = 12;

@@ -3,8 +3,6 @@
 mod board;
 mod correlations;
 mod distribution;
-mod frame;
-mod levels;
 mod residuals;
 mod uncertainty;
 

@@ -6,8 +6,8 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 use plotters::prelude::*;
 
-use super::frame::Map;
 use crate::field::{Area, BOTTOM, LEFT, MAP, TOP, arrow, stretch};
+use crate::frame::Map;
 use crate::{Canvas, plain};
 
 /// The colour of what takes part, and of what does not, or not fully.

@@ -7,9 +7,9 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use super::super::uncertainty::{UncertaintyMap, maps};
-use super::frame::Map;
-use super::levels::{Scale, contour};
 use crate::field::{Area, BOTTOM, LEFT, TOP, dashed, shade, shades_beside, write};
+use crate::frame::Map;
+use crate::levels::{Scale, contour};
 use crate::{Canvas, plain};
 
 /// Room that a line's value needs on all sides, px of the picture.

@@ -1,120 +1,150 @@
 //! The network from above, and the wall with control and check points.
 
-use calibench_records::description::{Role, Views};
-use nalgebra::{Point3, Vector3};
+use calibench_records::description::{Role, Target, Views};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use crate::axes::Axes;
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::field::{arrow, write};
+use crate::sides::{Side, Sides, around};
 
 const HEIGHT: i32 = 460;
 /// The most that the wall is wide, px.
 const WIDEST: f64 = 900.0;
-const NAMES: [&str; 3] = ["X", "Y", "Z"];
+/// Length of a line of sight, as a share of the depth of the network.
+const SIGHT: f64 = 0.16;
+const GREY: RGBColor = RGBColor(120, 120, 120);
 
-/// Along the wall, up, and away from it: numbers of coordinates. A wall is longer than it is high.
-struct Sides {
-    across: usize,
-    up: usize,
-    depth: usize,
-}
+type Marks = Vec<(Mark, RGBColor, (f64, f64))>;
 
-impl Sides {
-    fn of(views: &Views, low: &Point3<f64>, high: &Point3<f64>) -> Option<Self> {
-        let normal = Vector3::from(views.normal?).abs();
-        let depth = normal.imax();
-        let [a, b] = [[1, 2], [0, 2], [0, 1]][depth];
-        let (across, up) = if high[a] - low[a] >= high[b] - low[b] { (a, b) } else { (b, a) };
-        Some(Self { across, up, depth })
-    }
-}
-
-/// From above: stations with their axes before the wall; those of the second step in orange. Beside it the wall from the front.
+/// From above: stations with their axes before the wall; those of the second step in orange. Beside it the wall from the front. Without a sheet there are its
+/// points in its place. `None` without stations, or where the front is not known.
 pub fn plan(views: &Views) -> Option<Canvas> {
-    let [low, high] = views.extent?.map(Point3::from);
-    let sides = Sides::of(views, &low, &high)?;
-    let Sides { across, up, depth } = sides;
-    let centres: Vec<_> = views.stations.iter().map(|station| Point3::from(station.centre)).collect();
-    let span = |of: &dyn Fn(&Point3<f64>) -> f64| {
-        let values = centres.iter().map(of).chain([of(&low), of(&high)]);
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)])
-    };
-    let ([left, right], [near, far]) = (span(&|p| p[across]), span(&|p| p[depth]));
+    let ends = around(views)?;
+    let sides = Sides::of(views.normal?, &ends);
+    // From above the cameras stand below the wall, as a reader would stand before it.
+    let (across, depth) = (sides.across, sides.towards.reversed());
+    let places = || views.stations.iter().map(|station| &station.centre).chain(&ends);
+    let ([left, right], [near, far]) = (across.span(places()), depth.span(places()));
     let room = 0.08 * (right - left);
-    // One scale for both axes; from above the cameras stand below the wall, as a reader would stand before it.
-    let (x, y) = ([left - room, right + room], [-far - room, -near + room]);
+    // One scale for both axes.
+    let (x, y) = ([left - room, right + room], [near - room, far + room]);
     let width = (f64::from(HEIGHT) * (x[1] - x[0]) / (y[1] - y[0])).round() as i32;
     let axes = Axes { at: [70, 80, width, HEIGHT], x, y };
-    let front = front_axes([low[across], high[across]], [low[up], high[up]], 70 + width + 90);
+    let front = front_axes(&sides, &ends, views.extent.is_none(), 70 + width + 90);
     let mut canvas = Canvas::new((front.at[0] + front.at[2] + 40) as u32, (HEIGHT + 210) as u32);
-    let unit = &views.unit;
+    let object = if views.extent.is_some() { "wall" } else { "points" };
     canvas.text("The network from above", 20, (70, 20));
-    canvas.text("The wall from the front", 20, (front.at[0] as u32, 20));
-    canvas.paint(|area| {
-        axes.vertical(area, &format!("-{}, {unit}", NAMES[depth]));
-        axes.horizontal(area, &format!("{}, {unit}", NAMES[across]));
-        let wall = [axes.place(low[across], -low[depth]), axes.place(high[across], -high[depth])];
-        area.draw(&PathElement::new(wall, ShapeStyle::from(&BLACK).stroke_width(5))).ok();
-        let named = axes.place(0.5 * (low[across] + high[across]), -0.5 * (low[depth] + high[depth]));
-        write(area, "wall", (named.0, named.1 - 16), HPos::Center);
-        for (station, centre) in views.stations.iter().zip(&centres) {
-            let to = centre + Vector3::from(station.sight) * (0.16 * (far - near));
-            arrow(area, axes.place(centre[across], -centre[depth]), axes.place(to[across], -to[depth]));
-        }
-        front.vertical(area, &format!("{}, {unit}", NAMES[up]));
-        front.horizontal(area, &format!("{}, {unit}", NAMES[across]));
-    });
+    canvas.text(&format!("The {object} from the front"), 20, (front.at[0] as u32, 20));
     let mut marks = Vec::new();
-    for (station, centre) in views.stations.iter().zip(&centres) {
-        let (px, py) = axes.place(centre[across], -centre[depth]);
+    canvas.paint(|area| {
+        axes.vertical(area, &depth.title(&views.unit));
+        axes.horizontal(area, &across.title(&views.unit));
+        if views.extent.is_some() {
+            wall(area, &axes, views, (across, depth));
+        }
+        for station in &views.stations {
+            let (at, by) = ((across.of(&station.centre), depth.of(&station.centre)), SIGHT * (far - near));
+            let to = (at.0 + by * across.along(&station.sight), at.1 + by * depth.along(&station.sight));
+            arrow(area, axes.place(at.0, at.1), axes.place(to.0, to.1));
+        }
+        front.vertical(area, &sides.up.title(&views.unit));
+        front.horizontal(area, &across.title(&views.unit));
+    });
+    if views.extent.is_none() {
+        marks.extend(views.targets.iter().map(|target| mark(target, axes.place(across.of(&target.surveyed), depth.of(&target.surveyed)))));
+    }
+    for station in &views.stations {
+        let (px, py) = axes.place(across.of(&station.centre), depth.of(&station.centre));
         let look = if station.second_step { (Mark::Diamond, COLOURS[0]) } else { (Mark::Circle, COLOURS[1]) };
         marks.push((look.0, look.1, (f64::from(px), f64::from(py))));
-        canvas.label(&station.name, 18, (px as u32 + 10, py as u32 + 14));
+        canvas.label(&station.name, 18, (beside(&axes, px, &station.name, 10), py as u32 + 14));
     }
     points(&mut canvas, views, (&front, &sides), &mut marks);
     canvas.marks(&marks);
-    legend(&mut canvas, front.at[0] as u32);
+    legend(&mut canvas, views, front.at[0] as u32);
     Some(canvas)
 }
 
-fn front_axes(x: [f64; 2], y: [f64; 2], left: i32) -> Axes {
+/// The wall from above: the diagonal of its box along which its targets lie.
+fn wall(area: &crate::field::Area<'_>, axes: &Axes, views: &Views, (across, depth): (Side, Side)) {
+    let [from, to] = wall_ends(views, (across, depth)).map(|(x, y)| axes.place(x, y));
+    area.draw(&PathElement::new([from, to], ShapeStyle::from(&BLACK).stroke_width(5))).ok();
+    write(area, "wall", ((from.0 + to.0) / 2, (from.1 + to.1) / 2 - 16), HPos::Center);
+}
+
+/// The ends of the wall from above, along it and in depth.
+pub(crate) fn wall_ends(views: &Views, (across, depth): (Side, Side)) -> [(f64, f64); 2] {
+    let ends = views.extent.unwrap_or_default();
+    let ([left, right], [near, far]) = (across.span(ends.iter()), depth.span(ends.iter()));
+    let places = || views.targets.iter().map(|target| (across.of(&target.surveyed), depth.of(&target.surveyed)));
+    let count = places().count().max(1) as f64;
+    let middle = places().fold((0.0, 0.0), |sum, at| (sum.0 + at.0 / count, sum.1 + at.1 / count));
+    let rising = places().map(|at| (at.0 - middle.0) * (at.1 - middle.1)).sum::<f64>() >= 0.0;
+    let (first, last) = if rising { (near, far) } else { (far, near) };
+    [(left, first), (right, last)]
+}
+
+/// Points without a sheet have room around them.
+fn front_axes(sides: &Sides, ends: &[[f64; 3]; 2], roomy: bool, left: i32) -> Axes {
+    let ([x0, x1], [y0, y1]) = (sides.across.span(ends.iter()), sides.up.span(ends.iter()));
+    let room = if roomy { 0.06 * (x1 - x0) } else { 0.0 };
+    let (x, y) = ([x0 - room, x1 + room], [y0 - room, y1 + room]);
     let width = (f64::from(HEIGHT) * (x[1] - x[0]) / (y[1] - y[0])).min(WIDEST);
     let height = width * (y[1] - y[0]) / (x[1] - x[0]);
     Axes { at: [left, 80, width.round() as i32, height.round() as i32], x, y }
 }
 
-fn points(canvas: &mut Canvas, views: &Views, (axes, sides): (&Axes, &Sides), marks: &mut Vec<(Mark, RGBColor, (f64, f64))>) {
+fn mark(target: &Target, (x, y): (i32, i32)) -> (Mark, RGBColor, (f64, f64)) {
+    let (mark, colour) = match target.role {
+        Some(Role::Control) => (Mark::Triangle, COLOURS[0]),
+        Some(Role::Check) => (Mark::Cross, COLOURS[1]),
+        None => (Mark::Square, GREY),
+    };
+    (mark, colour, (f64::from(x), f64::from(y)))
+}
+
+fn points(canvas: &mut Canvas, views: &Views, (axes, sides): (&Axes, &Sides), marks: &mut Marks) {
+    // Names of all would hide each other: those of control points, or of check points where these are alone.
+    let named = if views.targets.iter().any(|target| target.role == Some(Role::Control)) { Role::Control } else { Role::Check };
     for target in &views.targets {
-        let (x, y) = axes.place(target.surveyed[sides.across], target.surveyed[sides.up]);
-        let look = match target.role {
-            Some(Role::Control) => (Mark::Triangle, COLOURS[0]),
-            Some(Role::Check) => (Mark::Cross, COLOURS[1]),
-            None => (Mark::Square, RGBColor(120, 120, 120)),
-        };
-        marks.push((look.0, look.1, (f64::from(x), f64::from(y))));
-        if look.0 == Mark::Triangle {
-            // To the left near the right side.
-            let room = 8 * target.id.chars().count() as i32 + 16;
-            let left = if x + room > axes.at[0] + axes.at[2] { x - room } else { x + 10 };
-            canvas.label(&target.id, 14, (left.max(0) as u32, (y - 12).max(0) as u32));
+        let (x, y) = axes.place(sides.across.of(&target.surveyed), sides.up.of(&target.surveyed));
+        marks.push(mark(target, (x, y)));
+        if target.role == Some(named) {
+            let left = beside(axes, x, &target.id, 8);
+            canvas.label(&target.id, 14, (left, (y - 12).max(0) as u32));
         }
     }
 }
 
-fn legend(canvas: &mut Canvas, second: u32) {
-    let grey = RGBColor(120, 120, 120);
+/// Where a name beside `x` begins, its letters `wide` px: to the right of it, or to the left near the right side.
+fn beside(axes: &Axes, x: i32, name: &str, wide: i32) -> u32 {
+    let room = wide * name.chars().count() as i32 + 16;
+    let left = if x + room > axes.at[0] + axes.at[2] { x - room } else { x + 10 };
+    left.max(0) as u32
+}
+
+/// What there is, and no more.
+fn legend(canvas: &mut Canvas, views: &Views, second: u32) {
+    let stepped = |step: bool| views.stations.iter().any(|station| station.second_step == step);
+    let has = |role: Option<Role>| views.targets.iter().any(|target| target.role == role);
+    let control = has(Some(Role::Control));
+    let station = if stepped(true) { "station of the calibration" } else { "station" };
+    let other = if control || has(Some(Role::Check)) { "calibration alone" } else { "target" };
     let rows = [
-        (70, 0, Mark::Circle, COLOURS[1], "station of the calibration"),
-        (70, 1, Mark::Diamond, COLOURS[0], "station of the second step too"),
-        (second, 0, Mark::Triangle, COLOURS[0], "control point of the second step"),
-        (second, 1, Mark::Cross, COLOURS[1], "check point"),
-        (second, 2, Mark::Square, grey, "calibration alone"),
+        (70, stepped(false), Mark::Circle, COLOURS[1], station),
+        (70, stepped(true), Mark::Diamond, COLOURS[0], "station of the second step too"),
+        (second, control, Mark::Triangle, COLOURS[0], "control point of the second step"),
+        (second, has(Some(Role::Check)), Mark::Cross, COLOURS[1], "check point"),
+        (second, has(None), Mark::Square, GREY, other),
     ];
-    for (x, row, mark, colour, text) in rows {
-        let y = (HEIGHT + 145) as u32 + row * 24;
-        canvas.marks(&[(mark, colour, (f64::from(x + 14), f64::from(y)))]);
-        canvas.paint(|area| write(area, text, (x as i32 + 34, y as i32), HPos::Left));
+    for left in [70, second] {
+        let shown = rows.iter().filter(|(x, there, ..)| *x == left && *there);
+        for (row, (x, _, mark, colour, text)) in (0..).zip(shown) {
+            let y = (HEIGHT + 145) as u32 + row * 24;
+            canvas.marks(&[(*mark, *colour, (f64::from(x + 14), f64::from(y)))]);
+            canvas.paint(|area| write(area, text, (*x as i32 + 34, y as i32), HPos::Left));
+        }
     }
 }

@@ -7,14 +7,14 @@ const MOST: usize = 7;
 
 /// A logarithmic scale from the least to the largest value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     low: f64,
     high: f64,
 }
 
 impl Scale {
     /// Over positive `values`; `None` without any. Values hardly different get a scale of a factor of two about them.
-    pub(super) fn of(values: &[f64]) -> Option<Self> {
+    pub(crate) fn of(values: &[f64]) -> Option<Self> {
         let positive = || values.iter().copied().filter(|value| *value > 0.0 && value.is_finite());
         let (low, high) = (positive().reduce(f64::min)?, positive().reduce(f64::max)?);
         let widen = (2.0 * low / high).max(1.0).sqrt();
@@ -22,12 +22,12 @@ impl Scale {
     }
 
     /// Where a value stands, 0 to 1; what is not positive stands at 0.
-    pub(super) fn part(&self, value: f64) -> f64 {
+    pub(crate) fn part(&self, value: f64) -> f64 {
         if value > self.low { (value / self.low).ln() / (self.high / self.low).ln() } else { 0.0 }.clamp(0.0, 1.0)
     }
 
     /// Round values within the scale: 1, 2, 5 of each decade, or 1 and 3, or 1 alone where these were too many.
-    pub(super) fn levels(&self) -> Vec<f64> {
+    pub(crate) fn levels(&self) -> Vec<f64> {
         let choices: [&[f64]; 4] = [&[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0], &[1.0, 2.0, 5.0], &[1.0, 3.0], &[1.0]];
         let found: Vec<Vec<f64>> = choices.iter().map(|factors| decades(self.low, self.high, factors)).collect();
         let few = |levels: &&Vec<f64>| levels.len() <= MOST;
@@ -38,7 +38,7 @@ impl Scale {
 /// The pieces of the line on which a grid of values, `columns` x `rows` row by row, has the value `level`: two ends each, in columns and rows of the grid.
 ///
 /// Source: Lorensen & Cline 1987, in two dimensions; values are taken for linear along the edges. Cells with a value that is no number have no line.
-pub(super) fn contour(values: &[f64], (columns, rows): (usize, usize), level: f64) -> Vec<[(f64, f64); 2]> {
+pub(crate) fn contour(values: &[f64], (columns, rows): (usize, usize), level: f64) -> Vec<[(f64, f64); 2]> {
     let at = |c: usize, r: usize| values[r * columns + c];
     let mut pieces = Vec::new();
     for (row, column) in (1..rows).flat_map(|row| (1..columns).map(move |column| (row - 1, column - 1))) {

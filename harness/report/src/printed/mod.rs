@@ -1,12 +1,20 @@
 //! The section of printed figures: cameras, the network that they ask for, changed cameras.
 
+mod grids;
+mod maps;
+mod pictures;
+#[cfg(test)]
+mod tests;
+
 use calibench_records::description::Printed;
 use calibench_records::results::Group;
 
+use crate::canvas::Pictures;
 use crate::field::plain;
 use crate::load::Loaded;
 use crate::load::adjustments::Summaries;
 use crate::markdown::MarkdownTable;
+use pictures::Drawn;
 
 /// What stands above the figures of the network.
 const NETWORK: &str = "The network of stations that explains the fitted columns, and where its stations stand.";
@@ -16,14 +24,19 @@ const VARIANTS: &str = "Each camera with something changed: in the image against
 /// What stands above changed cameras that others are fitted to.
 const AGAIN: &str = "The network fitted again, with a camera changed.";
 
-/// The section of `loaded`, whose sets are `sets`.
-pub fn section(loaded: &Loaded, sets: &Printed) -> String {
-    let Some(found) = &loaded.calibrations else { return String::new() };
+/// The section of `loaded`, whose sets are `sets`, and its pictures, whose names begin with `stem`.
+pub fn section(loaded: &Loaded, sets: &Printed, stem: &str) -> (String, Pictures) {
+    let Some(found) = &loaded.calibrations else { return (String::new(), Pictures::new()) };
+    let mut drawn = Drawn::new(stem);
     let mut text = by_figure(found, std::slice::from_ref(&sets.sensor), &[Group::Network]) + "\n";
-    text.push_str(&format!("### Cameras\n\n{}\n", by_figure(found, &sets.cameras, &[Group::Network, Group::Check])));
+    let cameras: Vec<String> = sets.cameras.iter().map(|camera| camera.name.clone()).collect();
+    text.push_str(&format!("### Cameras\n\n{}\n", by_figure(found, &cameras, &[Group::Network, Group::Check])));
+    text.push_str(&drawn.cameras(sets));
     if let Some(network) = &sets.network {
-        text.push_str(&format!("### The network\n\n{NETWORK}\n\n{}\n", by_figure(found, std::slice::from_ref(network), &[Group::Network])));
-        text.push_str(&format!("{}\n{}\n", numbers(found, network), stations(found, network)));
+        let set = &network.set;
+        text.push_str(&format!("### The network\n\n{NETWORK}\n\n{}\n", by_figure(found, std::slice::from_ref(set), &[Group::Network])));
+        text.push_str(&format!("{}\n{}\n", numbers(found, set), stations(found, set)));
+        text.push_str(&drawn.network(sets, network, found));
     }
     if !sets.variants.is_empty() {
         text.push_str(&format!("### Changed cameras\n\n{VARIANTS}\n\n{}\n", by_set(found, &sets.variants)));
@@ -31,7 +44,7 @@ pub fn section(loaded: &Loaded, sets: &Printed) -> String {
     if !sets.again.is_empty() {
         text.push_str(&format!("### Fitted again\n\n{AGAIN}\n\n{}\n", by_figure(found, &sets.again, &[Group::Network])));
     }
-    text + &failures(found)
+    (text + &failures(found), drawn.pictures)
 }
 
 /// The value of a figure; nothing where a set has none.
@@ -101,61 +114,4 @@ fn stations(found: &Summaries, network: &str) -> String {
 fn failures(found: &Summaries) -> String {
     let lines: String = found.failed.iter().map(|((_, set, _), (_, why))| format!("- `{set}` has no predictions: {why}.\n")).collect();
     if lines.is_empty() { lines } else { lines + "\n" }
-}
-
-#[cfg(test)]
-mod tests {
-    use calibench_records::adjustments::Numbers;
-
-    use super::*;
-    use crate::load::adjustments::Summary;
-
-    /// Cameras `a` (c 1, RMSE 2) and `b` (c 3), a network of two stations.
-    fn summaries() -> Summaries {
-        let mut found = Summaries { methods: vec!["print".into()], trials: 1, ..Summaries::default() };
-        let mut add = |set: &str, group: Group, name: &str, value: f64| {
-            let first = Some(Numbers { value, sigma: None, error: None });
-            found.figures.insert(("print".into(), set.into(), group, name.into()), Summary { first, ..Summary::default() });
-        };
-        add("a", Group::Network, "c, mm", 1.0);
-        add("b", Group::Network, "c, mm", 3.0);
-        add("a", Group::Check, "RMSE X, m", 2.0);
-        add("a", Group::Object, "V1/X", 7.0);
-        add("net", Group::Eop, "height, m", 5.0);
-        for (station, height) in [("1", 10.0), ("2", 20.0)] {
-            add("net", Group::Eop, &format!("{station}/X"), height);
-            add("net", Group::Eop, &format!("{station}/Y"), 0.0);
-            add("net", Group::Eop, &format!("{station}/Z"), height);
-        }
-        found
-    }
-
-    /// Cells between bars, without blanks.
-    fn cells(table: &str) -> Vec<Vec<String>> {
-        let rows = table.lines().filter(|line| !line.contains("--"));
-        rows.map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
-    }
-
-    #[test]
-    fn figures_stand_by_set_and_what_a_set_lacks_is_empty() {
-        let sets = ["a".to_owned(), "b".to_owned()];
-        let found = cells(&by_figure(&summaries(), &sets, &[Group::Network, Group::Check]));
-        assert_eq!(found, [["figure", "a", "b"], ["c, mm", "1.00", "3.00"], ["RMSE X, m, of printed errors", "2.00", ""]]);
-        assert_eq!(cells(&by_set(&summaries(), &sets)), [["camera", "c, mm"], ["a", "1.00"], ["b", "3.00"]]);
-    }
-
-    #[test]
-    fn a_network_is_its_numbers_and_its_stations() {
-        assert_eq!(cells(&numbers(&summaries(), "net")), [["number", "value"], ["height, m", "5.00"]]);
-        let stations = cells(&stations(&summaries(), "net"));
-        assert_eq!(stations, [["station", "X", "Y", "Z"], ["1", "10.00", "0.00", "10.00"], ["2", "20.00", "0.00", "20.00"]]);
-    }
-
-    #[test]
-    fn what_has_no_predictions_is_said_with_its_reason() {
-        let mut found = summaries();
-        assert_eq!(failures(&found), "");
-        found.failed.insert(("print".into(), "a".into(), Group::Check), (1, "rays are parallel".into()));
-        assert_eq!(failures(&found), "- `a` has no predictions: rays are parallel.\n\n");
-    }
 }
