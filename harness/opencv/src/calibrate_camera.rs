@@ -27,7 +27,11 @@ impl BoardSolver for CalibrateCamera {
     }
 
     fn solve(&self, size: ImageSize, views: &[Vec<Control>]) -> Result<BoardSolution, String> {
-        solve(size, views).map_err(|error| format!("calibrateCamera: {error}"))
+        if views.is_empty() {
+            return Err("calibrateCamera: no view shows the board".into());
+        }
+        let first = |error: opencv::Error| error.message.lines().next().unwrap_or_default().to_owned();
+        solve(size, views).map_err(|error| format!("calibrateCamera: {}", first(error)))
     }
 }
 
@@ -160,7 +164,9 @@ mod tests {
 
     #[test]
     fn what_it_refuses_is_told() {
-        let why = CalibrateCamera.solve(SIZE, &[]).unwrap_err();
-        assert!(why.starts_with("calibrateCamera: ") && !why.contains('\n'), "{why}");
+        assert_eq!(CalibrateCamera.solve(SIZE, &[]).unwrap_err(), "calibrateCamera: no view shows the board");
+        let two = vec![views(0.0)[0][..2].to_vec()];
+        let why = CalibrateCamera.solve(SIZE, &two).unwrap_err();
+        assert!(why.starts_with("calibrateCamera: OpenCV") && !why.contains('\n'), "{why}");
     }
 }
