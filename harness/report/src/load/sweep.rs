@@ -1,14 +1,12 @@
 //! The records of a sweep, read cell by cell.
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use calibench_records::description::{Description, Sweep, looks};
-use calibench_records::names::{RECORDS, cell_folder};
-use calibench_records::points::read_records;
+use calibench_records::names::cell_folder;
 use calibench_records::results::Trial;
 use calibench_records::score::{Score, Scores};
+use calibench_records::stored::read_points;
 
 use crate::LoadError;
 use crate::load::description::description;
@@ -71,7 +69,7 @@ pub fn load_with(records: &Path, name: &str, watch: &mut Watch<'_>) -> Result<Op
     let mut loaded =
         LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder: folder.clone() };
     for index in 0..loaded.sweep.cells.len() {
-        loaded.add(&cell_folder(&folder, index).join(RECORDS), watch)?;
+        loaded.add(&cell_folder(&folder, index), watch)?;
     }
     loaded.order();
     Ok(Some(loaded))
@@ -88,17 +86,15 @@ impl LoadedSweep {
         self.cells.get(cell)?.scores.get(method).filter(|score| score.points() > 0)
     }
 
-    fn add(&mut self, path: &Path, watch: &mut Watch<'_>) -> Result<(), LoadError> {
-        let file = File::open(path).map_err(|source| LoadError::File { path: path.to_owned(), source })?;
+    fn add(&mut self, folder: &Path, watch: &mut Watch<'_>) -> Result<(), LoadError> {
         let mut scores = Scores { groups: groups(&self.scenario), ..Scores::default() };
         let cell = self.cells.len();
-        let head = read_records(BufReader::new(file), |trial, methods| {
+        let head = read_points(folder, |trial, methods| {
             let names: Vec<String> = methods.iter().map(|info| self.sweep.method(&info.label)).collect();
             watch(cell, &trial, &names);
             scores.limited = limited(methods);
             scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
-        });
-        let head = head.map_err(|source| LoadError::Records { path: path.to_owned(), source })?;
+        })?;
         scores.methods.resize_with(head.methods.len(), Score::default);
         let mut cell = LoadedCell { scores: vec![Score::default(); self.methods.len()], trials: scores.trials };
         for (info, score) in head.methods.into_iter().zip(scores.methods) {
