@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 use calibench_records::description::Description;
-use calibench_records::names::{DESCRIPTION, SCENARIO, cell_folder};
+use calibench_records::names::{SCENARIO, cell_folder};
 use calibench_records::plain;
 use calibench_records::stored::{StoredError, Table, open};
 use calibench_report::sweep;
