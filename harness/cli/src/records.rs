@@ -71,7 +71,10 @@ impl Records {
             return if self.at.is_empty() {
                 Ok(vec![path.to_owned()])
             } else {
-                Err(Failure::input(format!("--at: {} is one file, of no sweep or of one cell; expected the name of a sweep", path.display())))
+                Err(Failure::input(format!(
+                    "--at: {} is one file, of no sweep or of one cell; expected the name of a sweep",
+                    path.display()
+                )))
             };
         }
         let folder = self.folder(context, path)?;

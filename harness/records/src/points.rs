@@ -12,8 +12,23 @@ use crate::results::{MethodInfo, Outcome, PointResult, Trial};
 
 /// The columns of a records file.
 pub const COLUMNS: [&str; 17] = [
-    "scenario", "trial", "view", "target", "method", "version", "x", "y", "dx", "dy", "bound", "predicted", "unit", "status", "reason",
-    "seed", "revision",
+    "scenario",
+    "trial",
+    "view",
+    "target",
+    "method",
+    "version",
+    "x",
+    "y",
+    "dx",
+    "dy",
+    "bound",
+    "predicted",
+    "unit",
+    "status",
+    "reason",
+    "seed",
+    "revision",
 ];
 
 const SCENARIO: usize = 0;
@@ -147,8 +162,12 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
     while csv.read_record(&mut record)? {
         let row = Cells { record: &record, columns: &COLUMNS };
         if head.run.scenario.is_empty() {
-            head.run =
-                RunInfo { scenario: row.text(SCENARIO).into(), seed: row.parse(SEED)?, revision: row.text(REVISION).into(), detector: None };
+            head.run = RunInfo {
+                scenario: row.text(SCENARIO).into(),
+                seed: row.parse(SEED)?,
+                revision: row.text(REVISION).into(),
+                detector: None,
+            };
         }
         if row.text(STATUS) == "detector" {
             head.run.detector = Some((row.text(METHOD).into(), row.text(VERSION).into()));

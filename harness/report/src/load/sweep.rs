@@ -71,8 +71,7 @@ pub fn load_with<T: Default + Send>(
     let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
     let read: Vec<_> =
         (0..sweep.cells.len()).into_par_iter().map(|index| read_cell(&cell_folder(&folder, index), &scenario, &sweep, &watch)).collect();
-    let mut loaded =
-        LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder };
+    let mut loaded = LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder };
     let mut gathered = Vec::new();
     for cell in read {
         let (head, scores, found) = cell?;
