@@ -1,6 +1,6 @@
 //! The command line as a user meets it.
 
-use crate::project::{copy, root, run, stderr, stdout};
+use crate::project::{copy, root, run, stderr, stdout, table};
 
 #[test]
 fn lists_what_there_is() {
@@ -84,14 +84,15 @@ fn methods_trials_and_seed_can_be_changed() {
     let project = copy();
     let output = run(project.path(), &["run", "corners/noise", "-m", "pixel", "-m", "forstner:window=7", "--trials", "3", "--seed", "5"]);
     assert!(output.status.success(), "{}", stderr(&output));
-    let records = std::fs::read_to_string(project.path().join("records/corners/noise/records.csv")).unwrap();
+    let records = table(&project.path().join("records/corners/noise/records.csv.gz"));
     let first = records.lines().nth(1).unwrap();
-    assert!(
-        first.starts_with("corners/noise,0,image,corner-90-at-0,pixel,1,x,") && first.contains(",px,") && first.contains(",,5,"),
-        "{first}"
-    );
-    // Header, and 3 trials of 8 targets: with two methods x, y, dx, dy and the bound, with one its own standard deviation.
-    assert_eq!(records.lines().count(), 1 + 3 * 8 * (2 * 5 + 1));
+    assert!(first.starts_with("corners/noise,0,image,corner-90-at-0,pixel,1,") && first.contains(",px,measured,,5,"), "{first}");
+    // Header, and 3 trials of 8 targets with two methods.
+    assert_eq!(records.lines().count(), 1 + 3 * 8 * 2);
+    let numbers = |line: &str| line.split(',').skip(6).take(6).filter(|cell| !cell.is_empty()).count();
+    let counts = |method: &str| records.lines().filter(|line| line.contains(method)).map(numbers).collect::<Vec<_>>();
+    assert_eq!(counts(",pixel,"), vec![5; 24], "x, y, dx, dy and the bound");
+    assert_eq!(counts(",forstner:window=7,"), vec![6; 24], "and its own standard deviation");
     assert!(records.contains("forstner:window=7") && !records.contains("harris"));
     let output = run(project.path(), &["run", "corners/noise", "--trials", "2", "--quiet"]);
     assert!(output.status.success() && stderr(&output).is_empty(), "{}", stderr(&output));

@@ -5,7 +5,7 @@ use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::calibrate::{wall, write};
-use crate::project::{copy, files, program, run, stderr};
+use crate::project::{copy, files, program, put_table, run, stderr, table};
 
 /// A command that takes longer hangs.
 const HANGS: Duration = Duration::from_mins(1);
@@ -144,14 +144,14 @@ fn names_command_neither_the_terminal_nor_a_spreadsheet() {
 fn records_that_mean_nothing_are_refused_with_their_line() {
     let project = copy();
     assert!(run(project.path(), &["run", "corners/noise", "--trials", "2", "-q"]).status.success());
-    let path = project.path().join("records/corners/noise/records.csv");
-    let good = std::fs::read_to_string(&path).unwrap();
+    let path = project.path().join("records/corners/noise/records.csv.gz");
+    let good = table(&path);
     let row = good.lines().position(|line| line.contains(",measured,")).unwrap();
     for (text, expected) in [
-        (with_cell(&good, row, 7, "1e999"), "column `value` holds `1e999`"),
-        (with_cell(&with_cell(&good, row, 4, ""), row, 9, "unavailable"), "a row without a method"),
+        (with_cell(&good, row, 6, "1e999"), "column `x` holds `1e999`"),
+        (with_cell(&with_cell(&good, row, 4, ""), row, 13, "unavailable"), "a row without a method"),
     ] {
-        std::fs::write(&path, text).unwrap();
+        put_table(&path, &text);
         let output = in_time(project.path(), &["report", "corners"]);
         assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
         let words = stderr(&output);

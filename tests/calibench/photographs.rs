@@ -1,6 +1,6 @@
 //! Real photographs: OpenCV's samples, where they are.
 
-use crate::project::{copy, root, run, stderr, stdout};
+use crate::project::{copy, root, run, stderr, stdout, table};
 
 fn data() -> std::path::PathBuf {
     std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), Into::into)
@@ -67,7 +67,7 @@ fn without_photographs_the_scenario_is_unavailable_visibly() {
     ends(&["report", "photographs"], 0);
     let page = std::fs::read_to_string(project.path().join("reports/photographs/README.md")).unwrap();
     assert!(page.contains("**unavailable**: 13 of 13 photographs are not in `opencv-left`"), "{page}");
-    let records = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/records.csv")).unwrap();
+    let records = table(&project.path().join("records/photographs/opencv-left/records.csv.gz"));
     assert_eq!(records.matches(",unavailable,").count(), 9, "a row for each method");
     let judgement = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/judgement.csv")).unwrap();
     assert_eq!(judgement.matches(",unavailable,").count(), 1, "{judgement}");

@@ -108,3 +108,15 @@ pub fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     found.sort();
     found
 }
+
+/// A compressed table of records as plain CSV.
+pub fn table(path: &Path) -> String {
+    std::io::read_to_string(calibench_records::stored::open(path).expect("a table")).expect("CSV")
+}
+
+/// Puts plain CSV in the place of a compressed table.
+pub fn put_table(path: &Path, text: &str) {
+    let mut file = calibench_records::stored::Compressor::new(std::fs::File::create(path).expect("a file"));
+    std::io::Write::write_all(&mut file, text.as_bytes()).expect("room");
+    file.finish().expect("room");
+}

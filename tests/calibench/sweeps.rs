@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use calibench_measure::Registry;
+use calibench_records::stored;
 use calibench_report::sweep::{Choice, Layout, LayoutError, LoadedSweep, Metric, load, write_numbers};
 use calibench_scenario::{parse, parse_cell};
 
-use crate::project::{copy, files, program, run, stderr};
+use crate::project::{copy, files, program, run, stderr, table};
 
 const BASE: &str = r#"why = "To see what a sweep does."
 source = "a test"
@@ -124,7 +125,7 @@ fn project(text: &str, extra: &[&str]) -> tempfile::TempDir {
 
 /// The rows of a records file without its first column, the scenario's name.
 fn rows(project: &Path, file: &str) -> Vec<Vec<String>> {
-    let mut csv = csv::Reader::from_path(project.join("records/t/s").join(file)).unwrap();
+    let mut csv = csv::Reader::from_reader(stored::open(&project.join("records/t/s").join(file)).unwrap());
     csv.records().map(|row| row.unwrap().iter().skip(1).map(str::to_owned).collect()).collect()
 }
 
@@ -133,12 +134,12 @@ fn a_cell_is_the_plain_scenario_with_its_values_whichever_other_cells_there_are(
     let many = project(&swept("\"optics.blur\" = [0.3, 0.9, 1.5]\n\"method.window\" = [7, 11]"), &[]);
     let few = project(&swept("\"method.window\" = [11, 5]\n\"optics.blur\" = [0.9]"), &[]);
     let plain = project(&text("").replace("blur = 0.6", "blur = 0.9").replace("window = 9", "window = 11"), &[]);
-    let expected = rows(plain.path(), "records.csv");
+    let expected = rows(plain.path(), "records.csv.gz");
     assert!(expected.len() > 20);
-    assert!(rows(many.path(), "cell-0004/records.csv") == expected);
-    assert!(rows(few.path(), "cell-0001/records.csv") == expected);
-    assert!(rows(many.path(), "cell-0003/records.csv") != expected);
-    let head = std::fs::read_to_string(many.path().join("records/t/s/cell-0004/records.csv")).unwrap();
+    assert!(rows(many.path(), "cell-0004/records.csv.gz") == expected);
+    assert!(rows(few.path(), "cell-0001/records.csv.gz") == expected);
+    assert!(rows(many.path(), "cell-0003/records.csv.gz") != expected);
+    let head = table(&many.path().join("records/t/s/cell-0004/records.csv.gz"));
     assert!(head.contains("\"t/s@blur=0.9, window=11\""), "records carry the values of the cell");
 }
 
@@ -152,7 +153,7 @@ fn a_cell_in_which_nothing_is_random_is_run_once() {
         .replace("at = [60, 50]\n", "at = [60, 50]\nstart = [60, 50]\n");
     let project = project(&fixed, &["--trials", "4"]);
     let trials = |file| rows(project.path(), file).iter().map(|row| row[0].clone()).collect::<std::collections::BTreeSet<_>>().len();
-    assert_eq!((trials("cell-0001/records.csv"), trials("cell-0002/records.csv")), (1, 4));
+    assert_eq!((trials("cell-0001/records.csv.gz"), trials("cell-0002/records.csv.gz")), (1, 4));
 }
 
 fn loaded(project: &Path) -> LoadedSweep {

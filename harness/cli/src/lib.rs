@@ -30,6 +30,7 @@ mod power;
 mod print;
 mod progress;
 mod reading;
+mod records;
 mod render;
 mod report;
 mod resect;
@@ -75,6 +76,8 @@ enum Command {
     Show(show::Show),
     /// Run scenarios and write their records
     Run(run::Run),
+    /// Print the records of a run, as they lie compressed in its folder
+    Records(records::Records),
     /// Write a scenario's images with the truth about every target, the camera and the poses
     Render(render::Render),
     /// Write a scenario's testfield at true scale, as SVG and PDF
@@ -151,6 +154,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::List { what } => list::list(&context, what),
         Command::Show(show) => show.run(&context),
         Command::Run(run) => run.run(&context),
+        Command::Records(records) => records.run(&context),
         Command::Print(print) => print.run(&context),
         Command::Render(render) => render.run(&context),
         Command::Report(report) => report.run(&context),

@@ -56,7 +56,7 @@ fn metrics() -> impl TypedValueParser<Value = Metric> {
         .try_map(|text| Metric::ALL.into_iter().find(|metric| word(*metric) == text).ok_or("there is no such figure"))
 }
 
-fn pair(text: &str) -> Result<(String, String), String> {
+pub fn pair(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or_else(|| "expected KEY=VALUE, as in blur=0.5".to_owned())?;
     Ok((key.to_owned(), value.to_owned()))
 }

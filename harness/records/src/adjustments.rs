@@ -13,9 +13,6 @@ use crate::results::{Calibrated, Figure, Group};
 pub const COLUMNS: [&str; 13] =
     ["scenario", "trial", "method", "set", "group", "name", "value", "sigma", "error", "unit", "status", "reason", "seed"];
 
-/// The file's name in a scenario's folder.
-pub const CALIBRATIONS: &str = "calibrations.csv";
-
 /// Writes adjustments, trial by trial.
 pub struct CalibrationWriter<W: Write> {
     csv: csv::Writer<W>,
@@ -53,12 +50,12 @@ impl<W: Write> CalibrationWriter<W> {
         Ok(())
     }
 
-    /// Ends the file.
+    /// Ends the file and gives back its output.
     ///
     /// # Errors
     /// What the output refuses.
-    pub fn finish(mut self) -> Result<(), csv::Error> {
-        Ok(self.csv.flush()?)
+    pub fn finish(self) -> Result<W, csv::Error> {
+        Ok(self.csv.into_inner().map_err(|error| error.into_error())?)
     }
 
     fn figure(&mut self, trial: &str, one: &Calibrated, figure: &Figure) -> Result<(), csv::Error> {

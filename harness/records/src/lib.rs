@@ -5,10 +5,12 @@ mod cells;
 pub mod description;
 pub mod judgement;
 pub mod names;
+pub mod plain;
 pub mod points;
 pub mod results;
 pub mod score;
 pub mod statistics;
+pub mod stored;
 pub mod theory;
 
 pub use cells::RecordError;

@@ -2,9 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// The records' file in a scenario's folder.
-pub const RECORDS: &str = "records.csv";
-/// The scenario as it was run, in the same folder.
+/// The scenario as it was run, in the folder of its records.
 pub const SCENARIO: &str = "scenario.toml";
 /// What the pages of the scenario tell of it, in the same folder: a [`Description`](crate::description::Description).
 pub const DESCRIPTION: &str = "scenario.json";

@@ -1,16 +1,52 @@
-//! Records: one tidy CSV a scenario. What measuring leaves for scoring and reporting.
+//! Records of points: one tidy CSV a run, a row a point. What measuring leaves for scoring and reporting.
 
+use std::collections::HashSet;
 use std::io::{Read, Write};
 use std::sync::Arc;
 
 use calibench_model::{PixelPoint, Rejection};
+use csv::StringRecord;
 
 use crate::cells::{Cells, RecordError, open, write_row};
 use crate::results::{MethodInfo, Outcome, PointResult, Trial};
 
 /// The columns of a records file.
-pub const COLUMNS: [&str; 13] =
-    ["scenario", "trial", "view", "target", "method", "version", "metric", "value", "unit", "status", "reason", "seed", "revision"];
+pub const COLUMNS: [&str; 17] = [
+    "scenario",
+    "trial",
+    "view",
+    "target",
+    "method",
+    "version",
+    "x",
+    "y",
+    "dx",
+    "dy",
+    "bound",
+    "predicted",
+    "unit",
+    "status",
+    "reason",
+    "seed",
+    "revision",
+];
+
+const SCENARIO: usize = 0;
+const TRIAL: usize = 1;
+const VIEW: usize = 2;
+const TARGET: usize = 3;
+const METHOD: usize = 4;
+const VERSION: usize = 5;
+const X: usize = 6;
+const Y: usize = 7;
+const DX: usize = 8;
+const DY: usize = 9;
+const BOUND: usize = 10;
+const PREDICTED: usize = 11;
+const STATUS: usize = 13;
+const REASON: usize = 14;
+const SEED: usize = 15;
+const REVISION: usize = 16;
 
 /// What all rows of a file share.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,8 +65,15 @@ pub struct RunInfo {
 pub struct RecordWriter<W: Write> {
     csv: csv::Writer<W>,
     run: RunInfo,
+    seed: String,
     methods: Vec<MethodInfo>,
 }
+
+/// Where and of which method a row is: trial, view, target, method, version.
+type Place<'a> = [&'a str; 5];
+
+/// The numbers of a point that was not measured.
+const NONE: [String; 6] = [const { String::new() }; 6];
 
 impl<W: Write> RecordWriter<W> {
     /// Starts a file with its header and a row for each unavailable method.
@@ -40,70 +83,62 @@ impl<W: Write> RecordWriter<W> {
     pub fn new(output: W, run: RunInfo, methods: Vec<MethodInfo>) -> Result<Self, csv::Error> {
         let mut csv = csv::Writer::from_writer(output);
         csv.write_record(COLUMNS)?;
-        if let Some((name, version)) = &run.detector {
-            let (seed, nothing) = (run.seed.to_string(), "");
-            let (status, reason) = ("detector", "gave the approximate positions");
-            let cells: [&str; 13] =
-                [&run.scenario, nothing, nothing, nothing, name, version, nothing, nothing, nothing, status, reason, &seed, &run.revision];
-            write_row(&mut csv, cells)?;
+        let mut writer = Self { csv, seed: run.seed.to_string(), run, methods: Vec::new() };
+        if let Some((name, version)) = writer.run.detector.clone() {
+            writer.row(["", "", "", &name, &version], &NONE, "", "detector", "gave the approximate positions")?;
         }
-        let mut writer = Self { csv, run, methods };
-        for method in 0..writer.methods.len() {
-            if let Some(why) = writer.methods[method].unavailable.clone() {
-                writer.row(["", "", ""], method, ["", "", ""], "unavailable", &why)?;
+        for MethodInfo { label, version, unavailable } in &methods {
+            if let Some(why) = unavailable {
+                writer.row(["", "", "", label, version], &NONE, "", "unavailable", why)?;
             }
         }
+        writer.methods = methods;
         Ok(writer)
     }
 
-    /// Adds a trial: for each measured point its metrics x and y, dx and dy where the truth is known, its bound and the method's own standard deviation where
-    /// there are such; for each rejected one a row.
+    /// Adds a trial: a row for each point, with its errors where the truth is known, its bound and the method's own standard deviation where there are
+    /// such, or with the reason why it was rejected.
     ///
     /// # Errors
     /// What the output refuses.
     pub fn trial(&mut self, trial: &Trial) -> Result<(), csv::Error> {
         let number = trial.number.to_string();
+        let methods = std::mem::take(&mut self.methods);
         for (view, why) in &trial.missed_views {
-            for method in (0..self.methods.len()).filter(|&m| self.methods[m].unavailable.is_none()).collect::<Vec<_>>() {
-                self.row([&number, view, ""], method, ["", "", ""], "missed", why)?;
+            for method in methods.iter().filter(|method| method.unavailable.is_none()) {
+                self.row([&number, view, "", &method.label, &method.version], &NONE, "", "missed", why)?;
             }
         }
         for point in &trial.points {
-            let place = [&*number, &*point.view, &*point.target];
+            let (label, version) = methods.get(point.method).map_or(("", ""), |m| (&*m.label, &*m.version));
+            let place = [&*number, &*point.view, &*point.target, label, version];
             match point.outcome {
-                Outcome::Rejected(why) => self.row(place, point.method, ["x", "", "px"], "rejected", why.name())?,
+                Outcome::Rejected(why) => self.row(place, &NONE, "px", "rejected", why.name())?,
                 Outcome::Measured { position, error } => {
                     let status = if point.outcome.is_lost() { "lost" } else { "measured" };
                     let [dx, dy] = [error.map(|e| e.0), error.map(|e| e.1)];
-                    let [x, y] = [Some(position.x), Some(position.y)];
-                    let metrics = [("x", x), ("y", y), ("dx", dx), ("dy", dy), ("bound", point.bound), ("predicted", point.predicted)];
-                    for (metric, value) in metrics {
-                        if let Some(value) = value {
-                            self.row(place, point.method, [metric, &value.to_string(), "px"], status, "")?;
-                        }
-                    }
+                    let numbers = [Some(position.x), Some(position.y), dx, dy, point.bound, point.predicted];
+                    let numbers = numbers.map(|number| number.map_or_else(String::new, |number| number.to_string()));
+                    self.row(place, &numbers, "px", status, "")?;
                 }
             }
         }
+        self.methods = methods;
         Ok(())
     }
 
-    /// Writes what is buffered.
+    /// Ends the file and gives back its output.
     ///
     /// # Errors
     /// What the output refuses.
-    pub fn finish(mut self) -> Result<(), csv::Error> {
-        Ok(self.csv.flush()?)
+    pub fn finish(self) -> Result<W, csv::Error> {
+        Ok(self.csv.into_inner().map_err(|error| error.into_error())?)
     }
 
-    fn row(&mut self, place: [&str; 3], method: usize, metric: [&str; 3], status: &str, reason: &str) -> Result<(), csv::Error> {
-        let (label, version) = self.methods.get(method).map_or(("", ""), |m| (&*m.label, &*m.version));
-        let seed = self.run.seed.to_string();
-        let [trial, view, target] = place;
-        let [metric, value, unit] = metric;
-        let cells: [&str; 13] =
-            [&self.run.scenario, trial, view, target, label, version, metric, value, unit, status, reason, &seed, &self.run.revision];
-        write_row(&mut self.csv, cells)
+    fn row(&mut self, place: Place<'_>, numbers: &[String; 6], unit: &str, status: &str, reason: &str) -> Result<(), csv::Error> {
+        let head = [&*self.run.scenario].into_iter().chain(place);
+        let tail = [unit, status, reason, &self.seed, &self.run.revision];
+        write_row(&mut self.csv, head.chain(numbers.iter().map(String::as_str)).chain(tail))
     }
 }
 
@@ -123,97 +158,92 @@ pub struct RecordHead {
 pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, RecordError> {
     let mut csv = open(input, &COLUMNS)?;
     let mut head = RecordHead { run: RunInfo::default(), methods: Vec::new() };
-    let mut trial: Option<Trial> = None;
-    for record in csv.records() {
-        let record = record?;
+    let (mut trial, mut names, mut record): (Option<Trial>, Names, _) = (None, Names::default(), StringRecord::new());
+    while csv.read_record(&mut record)? {
         let row = Cells { record: &record, columns: &COLUMNS };
         if head.run.scenario.is_empty() {
-            head.run = RunInfo { scenario: row.text(0).into(), seed: row.parse(11)?, revision: row.text(12).into(), detector: None };
+            head.run = RunInfo {
+                scenario: row.text(SCENARIO).into(),
+                seed: row.parse(SEED)?,
+                revision: row.text(REVISION).into(),
+                detector: None,
+            };
         }
-        if row.text(9) == "detector" {
-            head.run.detector = Some((row.text(4).into(), row.text(5).into()));
+        if row.text(STATUS) == "detector" {
+            head.run.detector = Some((row.text(METHOD).into(), row.text(VERSION).into()));
             continue;
         }
-        let method = method_index(&mut head.methods, &row);
-        if row.text(9) == "unavailable" {
-            let method = method.ok_or_else(|| row.wrong("a row without a method"))?;
-            head.methods[method].unavailable = Some(row.text(10).to_owned());
+        let method = method_index(&mut head.methods, &row)?;
+        if row.text(STATUS) == "unavailable" {
+            head.methods[method].unavailable = Some(row.text(REASON).to_owned());
             continue;
         }
-        let number = row.parse(1)?;
+        let number = row.parse(TRIAL)?;
         if trial.as_ref().is_some_and(|trial| trial.number != number) {
-            trial.take().into_iter().try_for_each(|trial| whole(&trial, row.line()).map(|()| sink(trial, &head.methods)))?;
+            trial.take().into_iter().for_each(|trial| sink(trial, &head.methods));
         }
-        let trial = trial.get_or_insert_with(|| Trial { number, ..Trial::default() });
-        let method = method.ok_or_else(|| row.wrong("a row without a method"))?;
-        if row.text(9) == "missed" {
-            // One row a method: the view is missed once.
-            let missed = (row.text(2).into(), row.text(10).to_owned());
-            if !trial.missed_views.contains(&missed) {
-                trial.missed_views.push(missed);
-            }
-            continue;
-        }
-        add(trial, &row, method)?;
+        add(trial.get_or_insert_with(|| Trial { number, ..Trial::default() }), &row, method, &mut names)?;
     }
-    let end = csv.position().line();
-    trial.into_iter().try_for_each(|trial| whole(&trial, end).map(|()| sink(trial, &head.methods)))?;
+    trial.into_iter().for_each(|trial| sink(trial, &head.methods));
     Ok(head)
 }
 
-fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>) -> Option<usize> {
-    let (label, version) = (row.text(4), row.text(5));
+fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>) -> Result<usize, RecordError> {
+    let (label, version) = (row.text(METHOD), row.text(VERSION));
     if label.is_empty() {
-        return None;
+        return Err(row.wrong("a row without a method"));
     }
     let place = methods.iter().position(|m| &*m.label == label);
-    Some(place.unwrap_or_else(|| {
+    Ok(place.unwrap_or_else(|| {
         methods.push(MethodInfo { label: label.into(), version: version.into(), unavailable: None });
         methods.len() - 1
     }))
 }
 
-/// Both coordinates of the last point of a trial are there; else a row is missing on or before `line`.
-fn whole(trial: &Trial, line: u64) -> Result<(), RecordError> {
-    let wrong = |problem: &str| Err(RecordError::Row { line, problem: problem.to_owned() });
-    match trial.points.last().map(|point| &point.outcome) {
-        Some(Outcome::Measured { position, .. }) if position.y.is_nan() => wrong("the point that ends here has no y"),
-        Some(Outcome::Measured { error: Some((_, dy)), .. }) if dy.is_nan() => wrong("the point that ends here has dx and no dy"),
-        _ => Ok(()),
+/// Names of views and targets, each of which is kept once.
+#[derive(Default)]
+struct Names(HashSet<Arc<str>>);
+
+impl Names {
+    fn get(&mut self, name: &str) -> Arc<str> {
+        if let Some(known) = self.0.get(name) {
+            return known.clone();
+        }
+        let new: Arc<str> = name.into();
+        self.0.insert(new.clone());
+        new
     }
 }
 
-/// Adds a row to a trial; the rows of one point follow each other.
-fn add(trial: &mut Trial, row: &Cells<'_>, method: usize) -> Result<(), RecordError> {
-    let (view, target) = (row.text(2), row.text(3));
-    if row.text(9) == "rejected" {
-        whole(trial, row.line())?;
-        let why = Rejection::ALL.into_iter().find(|why| why.name() == row.text(10));
-        let why = why.ok_or_else(|| row.wrong("unknown reason"))?;
-        trial.points.push(PointResult::new(view, target, method, Outcome::Rejected(why)));
-        return Ok(());
-    }
-    let value = row.number(7)?;
-    if row.text(6) == "x" {
-        whole(trial, row.line())?;
-        let share = |old: Option<&Arc<str>>, new: &str| old.filter(|old| &***old == new).cloned().unwrap_or_else(|| new.into());
-        let view = share(trial.points.last().map(|p| &p.view), view);
-        let outcome = Outcome::Measured { position: PixelPoint::new(value, f64::NAN), error: None };
-        trial.points.push(PointResult::new(view, target, method, outcome));
-        return Ok(());
-    }
-    let last = trial.points.last_mut().filter(|p| p.method == method && &*p.target == target && &*p.view == view);
-    let Some(PointResult { outcome: Outcome::Measured { position, error }, bound, predicted, .. }) = last else {
-        return Err(row.wrong("a metric without its point"));
+/// Adds a row to its trial.
+fn add(trial: &mut Trial, row: &Cells<'_>, method: usize, names: &mut Names) -> Result<(), RecordError> {
+    let view = names.get(row.text(VIEW));
+    let outcome = match row.text(STATUS) {
+        "missed" => {
+            // One row a method: the view is missed once.
+            let missed = (view, row.text(REASON).to_owned());
+            if !trial.missed_views.contains(&missed) {
+                trial.missed_views.push(missed);
+            }
+            return Ok(());
+        }
+        "rejected" => {
+            let why = Rejection::ALL.into_iter().find(|why| why.name() == row.text(REASON));
+            Outcome::Rejected(why.ok_or_else(|| row.wrong("unknown reason"))?)
+        }
+        "measured" | "lost" => {
+            let error = match (row.optional_number(DX)?, row.optional_number(DY)?) {
+                (Some(dx), Some(dy)) => Some((dx, dy)),
+                (None, None) => None,
+                _ => return Err(row.wrong("one of `dx` and `dy` without the other")),
+            };
+            Outcome::Measured { position: PixelPoint::new(row.number(X)?, row.number(Y)?), error }
+        }
+        _ => return Err(row.bad(STATUS)),
     };
-    match row.text(6) {
-        "y" => position.y = value,
-        "dx" => *error = Some((value, f64::NAN)),
-        "dy" => error.as_mut().ok_or_else(|| row.wrong("a dy without its dx"))?.1 = value,
-        "bound" => *bound = Some(value),
-        "predicted" => *predicted = Some(value),
-        _ => return Err(row.wrong("unknown metric")),
-    }
+    let (bound, predicted) = (row.optional_number(BOUND)?, row.optional_number(PREDICTED)?);
+    let target = names.get(row.text(TARGET));
+    trial.points.push(PointResult { bound, predicted, ..PointResult::new(view, target, method, outcome) });
     Ok(())
 }
 
@@ -266,13 +296,17 @@ mod tests {
     fn other_files_are_refused() {
         assert!(read_records(&b"a,b\n1,2\n"[..], |_, _| ()).is_err());
         for (rows, expected) in [
-            ("s,0,v,t,m,1,dx,1,px,measured,,0,r\n", "line 2: a metric without its point"),
-            ("s,,,,,,,,,unavailable,why,0,r\n", "line 2: a row without a method"),
-            ("s,0,v,t,m,1,x,1e999,px,measured,,0,r\n", "line 2: column `value` holds `1e999`"),
-            ("s,0,v,t,m,1,x,NaN,px,measured,,0,r\n", "line 2: column `value` holds `NaN`"),
-            ("s,0,v,t,m,1,x,1,px,measured,,0,r\ns,0,v,u,m,1,x,1,px,measured,,0,r\n", "line 3: the point that ends here has no y"),
-            ("s,0,v,t,m,1,x,1,px,measured,,0,r\n", "line 3: the point that ends here has no y"),
-            ("s,0,v,t,m,1,x,1,px,measured,,0,r\ns,0,v,t,m,1,dy,1,px,measured,,0,r\n", "line 3: a dy without its dx"),
+            ("s,0,v,t,,1,1,2,,,,,px,measured,,0,r\n", "line 2: a row without a method"),
+            ("s,,,,,,,,,,,,,unavailable,why,0,r\n", "line 2: a row without a method"),
+            ("s,0,v,t,m,1,1,2,,,,,px,found,,0,r\n", "line 2: column `status` holds `found`"),
+            ("s,0,v,t,m,1,,,,,,,px,rejected,luck,0,r\n", "line 2: unknown reason"),
+            ("s,0,v,t,m,1,1e999,2,,,,,px,measured,,0,r\n", "line 2: column `x` holds `1e999`"),
+            ("s,0,v,t,m,1,1,NaN,,,,,px,measured,,0,r\n", "line 2: column `y` holds `NaN`"),
+            ("s,0,v,t,m,1,1,,,,,,px,measured,,0,r\n", "line 2: column `y` holds ``"),
+            ("s,0,v,t,m,1,1,2,,0.5,,,px,measured,,0,r\n", "line 2: one of `dx` and `dy` without the other"),
+            ("s,0,v,t,m,1,1,2,0.5,,,,px,measured,,0,r\n", "line 2: one of `dx` and `dy` without the other"),
+            ("s,0,v,t,m,1,1,2,,,inf,,px,measured,,0,r\n", "line 2: column `bound` holds `inf`"),
+            ("s,-1,v,t,m,1,1,2,,,,,px,measured,,0,r\n", "line 2: column `trial` holds `-1`"),
         ] {
             let text = format!("{}\n{rows}", COLUMNS.join(","));
             let error = read_records(text.as_bytes(), |_, _| ()).unwrap_err().to_string();
@@ -294,25 +328,6 @@ mod tests {
         let mut again = Vec::new();
         read_records(&bytes[..], |trial, _| again.push(trial)).unwrap();
         assert_eq!(again, trials);
-    }
-
-    /// The second row must go on with the point of the first: the same view, target and method.
-    #[test]
-    fn a_metric_belongs_to_the_point_above_it() {
-        let read = |row: &str| {
-            let text = format!("{}\ns,0,v,t,m,1,x,1,px,measured,,0,r\n{row}", COLUMNS.join(","));
-            let mut found = Vec::new();
-            read_records(text.as_bytes(), |trial, _| found.extend(trial.points)).map(|_| found)
-        };
-        let own = read("s,0,v,t,m,1,y,2,px,measured,,0,r\n").unwrap();
-        let outcome = Outcome::Measured { position: PixelPoint::new(1.0, 2.0), error: None };
-        assert_eq!(own, [PointResult::new("v", "t", 0, outcome)]);
-        for other in ["s,0,w,t,m,1,y,2,px,measured,,0,r\n", "s,0,v,u,m,1,y,2,px,measured,,0,r\n", "s,0,v,t,n,1,y,2,px,measured,,0,r\n"] {
-            let error = read(other).unwrap_err().to_string();
-            assert!(error.contains("line 3: a metric without its point"), "{other}: {error}");
-        }
-        let cut = read("s,0,v,t,m,1,y,2,px,measured,,0,r\ns,0,v,t,m,1,dx,1,px,measured,,0,r\n").unwrap_err().to_string();
-        assert!(cut.contains("the point that ends here has dx and no dy"), "{cut}");
     }
 
     #[test]

@@ -85,18 +85,18 @@ fn records_of_a_judgement() {
 /// What a user reads of a file that was cut, edited or written by another version.
 #[test]
 fn messages_name_line_and_column() {
-    let points = "scenario,trial,view,target,method,version,metric,value,unit,status,reason,seed,revision\n";
+    let points = "scenario,trial,view,target,method,version,x,y,dx,dy,bound,predicted,unit,status,reason,seed,revision\n";
     let adjusted = "scenario,trial,method,set,group,name,value,sigma,error,unit,status,reason,seed\n";
     let judged = "scenario,method,model,measure,place,value,sigma,count,unit,status,reason,seed,revision\n";
     let of_points = |row: &str| read_records(format!("{points}{row}\n").as_bytes(), |_, _| ()).unwrap_err().to_string();
     let of_adjusted = |row: &str| adjustments::read(format!("{adjusted}{row}\n").as_bytes(), |_| ()).unwrap_err().to_string();
     let of_judged = |row: &str| read_rows(format!("{judged}{row}\n").as_bytes()).unwrap_err().to_string();
     let messages = [
-        of_points("s,zero,v,t,m,1,x,1,px,measured,,0,r"),
-        of_points("s,0,v,t,m,1,x,one,px,measured,,0,r"),
-        of_points("s,0,v,t,m,1,x,1,px,measured,,-1,r"),
-        of_points("s,0,v,t,m,1,x,,px,rejected,boredom,0,r"),
-        of_points("s,0,v,t,m,1,y,1,px,measured,,0,r"),
+        of_points("s,zero,v,t,m,1,1,2,,,,,px,measured,,0,r"),
+        of_points("s,0,v,t,m,1,one,2,,,,,px,measured,,0,r"),
+        of_points("s,0,v,t,m,1,1,2,,,,,px,measured,,-1,r"),
+        of_points("s,0,v,t,m,1,,,,,,,px,rejected,boredom,0,r"),
+        of_points("s,0,v,t,m,1,1,2,0.5,,,,px,measured,,0,r"),
         of_points("s,0,v,t"),
         of_adjusted("s,0,m,c,iop,c,1,2,x,mm,adjusted,,1"),
         of_adjusted("s,0,m,c,eye,c,1,2,3,mm,adjusted,,1"),

@@ -1,6 +1,7 @@
 //! The report of a family of scenarios.
 
 use calibench_exchange::OutputFolder;
+use rayon::prelude::*;
 
 use crate::page::Page;
 use crate::places::PAGE;
@@ -21,7 +22,8 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
             None => Either::Plain(Box::new(load(&places.records, name)?)),
         })
     };
-    let all = scenarios.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let all: Vec<_> = scenarios.par_iter().map(of).collect();
+    let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
     let loaded: Vec<&Loaded> = all.iter().filter_map(Either::plain).collect();
     let page_path = places.reports.join(family).join(PAGE);
     if page_path.is_file() && all.iter().all(Either::is_unavailable) {

@@ -6,6 +6,7 @@ use calibench_exchange::NewFolder;
 use calibench_records::description::{Description, Subject};
 
 use crate::answer::{Answers, heading};
+use crate::canvas::write_pictures;
 use crate::markdown::contents;
 use crate::places::PAGE;
 use crate::{
@@ -143,9 +144,7 @@ impl Page {
     /// # Errors
     /// What the folder refuses.
     pub fn write(&self, folder: &NewFolder) -> io::Result<()> {
-        for (name, picture) in &self.pictures {
-            folder.write(name, |file| picture.encode(file))?;
-        }
+        write_pictures(folder, &self.pictures)?;
         let legend = if self.scored { scores_section::legend() } else { String::new() };
         let body = format!("{}\n\n{legend}", self.text.trim_end());
         let family = &self.family;

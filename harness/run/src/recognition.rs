@@ -31,13 +31,17 @@ pub struct Recognised {
     pub counted: Counted,
 }
 
+/// The place of the image of which the steps are kept.
+pub fn shown(plan: &Recognition) -> Option<usize> {
+    plan.images.last().and_then(|(_, images)| images.first().copied())
+}
+
 /// Keeps the steps of recognition of an image beside it: the first one of the last group of images that are counted together. None where no grid is found.
 ///
 /// # Errors
 /// A folder that cannot be written.
 pub fn keep_steps(plan: &Recognition, image: &Image, (view, name): (usize, &str), folder: &NewFolder) -> Result<(), RunError> {
-    let shown = plan.images.last().and_then(|(_, images)| images.first());
-    let (Some(recogniser), true) = (plan.recognisers.first(), shown == Some(&view)) else { return Ok(()) };
+    let (Some(recogniser), true) = (plan.recognisers.first(), shown(plan) == Some(view)) else { return Ok(()) };
     let Ok(steps) = recogniser.steps(image) else { return Ok(()) };
     let pictures = [("normal", &steps.normal), ("enlarged", &steps.enlarged), ("binary", &steps.binary), ("contours", &steps.contours)];
     for (step, picture) in pictures {

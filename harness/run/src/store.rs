@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::{NewFile, NewFolder, OutputFolder};
 use calibench_measure::{Configured, Registry};
-use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
+use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::description::write as write_description;
-use calibench_records::names::{DESCRIPTION, ORIGIN, RECORDS, SCENARIO, cell_name};
+use calibench_records::names::{DESCRIPTION, ORIGIN, SCENARIO, cell_name};
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::Outcome;
+use calibench_records::stored::{Compressor, Table};
 use calibench_scenario::camera::KEPT;
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
@@ -88,7 +89,7 @@ pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &
 /// Runs `plan` and writes its records into `folder`, under the name `name`; how many points were measured.
 fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
-    let mut records = RecordWriter::new(folder.create(RECORDS)?, info.clone(), plan.method_infos()).map_err(io::Error::other)?;
+    let mut records = RecordWriter::new(table(folder, Table::Points)?, info.clone(), plan.method_infos()).map_err(io::Error::other)?;
     let (mut calibrations, mut measured) = (calibrations(folder, name, plan, revision)?, 0);
     plan.run(step, &mut |trial| {
         if let Some(writer) = &mut calibrations {
@@ -100,20 +101,29 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
         records.trial(&trial).map_err(io::Error::other)?;
         write_judgement(folder, plan, &info, &trial)
     })?;
-    calibrations.map_or(Ok(()), CalibrationWriter::finish).map_err(io::Error::other)?;
+    if let Some(writer) = calibrations {
+        writer.finish().map_err(io::Error::other)?.finish()?;
+    }
     write_theory(plan, &info)?;
-    records.finish().map_err(io::Error::other)?;
+    records.finish().map_err(io::Error::other)?.finish()?;
     Ok(measured)
 }
 
+/// A new table in `folder`.
+fn table(folder: &NewFolder, table: Table) -> io::Result<Compressor<NewFile>> {
+    Ok(Compressor::new(folder.create(table.file())?))
+}
+
+type Adjustments = CalibrationWriter<Compressor<NewFile>>;
+
 /// What writes the adjustments of `plan`, if it makes any.
-fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str) -> Result<Option<CalibrationWriter<NewFile>>, RunError> {
+fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str) -> Result<Option<Adjustments>, RunError> {
     let sets = plan.scenario.subject.sets();
     if sets.is_empty() {
         return Ok(None);
     }
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: None };
-    let writer = CalibrationWriter::new(folder.create(CALIBRATIONS)?, info, plan.method_infos(), sets).map_err(io::Error::other)?;
+    let writer = CalibrationWriter::new(table(folder, Table::Adjustments)?, info, plan.method_infos(), sets).map_err(io::Error::other)?;
     Ok(Some(writer))
 }
 

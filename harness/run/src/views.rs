@@ -16,7 +16,7 @@ use calibench_synth::view::{TargetTruth, View, Visibility};
 use rayon::prelude::*;
 
 use super::bounds::{BySet, TargetBounds};
-use super::recognition::{Counted, keep_steps, recognise};
+use super::recognition::{Counted, keep_steps, recognise, shown};
 use super::{Plan, RunError};
 use crate::network::Job;
 use crate::{blocks, network};
@@ -208,9 +208,6 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
     let mut counted = Counted::default();
     for (place, view) in prepared.views.iter().enumerate() {
         let image = prepared.image(view, key)?.image;
-        if let Some(folder) = plan.images.filter(|_| number == 0) {
-            folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, prepared.is_deep()))?;
-        }
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
         let kinds = seen.iter().map(|point| kind_of(prepared, point));
         let starts = match &subject.recognition {
@@ -234,12 +231,21 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
             });
             by_method[method].extend(points);
         }
+        let is_shown = is_first(&by_method, &view.name) || subject.recognition.as_ref().is_some_and(|plan| shown(plan) == Some(place));
+        if let Some(folder) = plan.images.filter(|_| number == 0 && is_shown) {
+            folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, prepared.is_deep()))?;
+        }
     }
     let mut trial = Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() };
     if let Some(recognition) = &subject.recognition {
         trial.calibrations.push(counted.calibrated(recognition, subject.sets().len() - 1));
     }
     Ok(trial)
+}
+
+/// Whether the first point of all, which decides the image that pages show, lies in `view`. Noisy images do not compress: only this one is kept.
+fn is_first(by_method: &[Vec<PointResult>], view: &str) -> bool {
+    by_method.iter().find_map(|points| points.first()).is_some_and(|point| &*point.view == view)
 }
 
 /// The image of the first view in the first trial, and where measuring starts in it.

@@ -15,10 +15,16 @@ pub type Losses = BTreeMap<u64, f64>;
 pub struct Part {
     /// Its figures.
     pub sweep: LoadedSweep,
-    /// By cell and name of the method.
-    losses: BTreeMap<(usize, String), Losses>,
-    /// Points that were measured wrong, by more than `is_wrong` allows, by cell and name of the method.
-    wrong: BTreeMap<(usize, String), u64>,
+    /// By cell.
+    cells: Vec<Cell>,
+}
+
+/// What the atlas asks of one cell, by name of the method.
+#[derive(Default)]
+struct Cell {
+    losses: BTreeMap<String, Losses>,
+    /// Points that were measured wrong, by more than `is_wrong` allows.
+    wrong: BTreeMap<String, u64>,
 }
 
 /// A measured point further off is wrong without a word, px: beyond any noise of the atlas, and near enough that nobody notices.
@@ -30,30 +36,28 @@ impl Part {
     /// # Errors
     /// Records that are not whole or not of this version.
     pub fn load(records: &Path, name: &str) -> Result<Option<Self>, LoadError> {
-        let mut found: BTreeMap<(usize, String), Losses> = BTreeMap::new();
-        let mut wrong: BTreeMap<(usize, String), u64> = BTreeMap::new();
-        let sweep = load_with(records, name, &mut |cell, trial, names| {
+        let loaded = load_with(records, name, |trial, names, cell: &mut Cell| {
             for (method, loss) in losses(trial) {
                 if let Some(name) = names.get(method) {
-                    found.entry((cell, name.clone())).or_default().insert(trial.number, loss);
+                    cell.losses.entry(name.clone()).or_default().insert(trial.number, loss);
                 }
             }
             for name in trial.points.iter().filter(|point| is_wrong(&point.outcome)).filter_map(|point| names.get(point.method)) {
-                *wrong.entry((cell, name.clone())).or_default() += 1;
+                *cell.wrong.entry(name.clone()).or_default() += 1;
             }
         })?;
-        Ok(sweep.map(|sweep| Self { sweep, losses: found, wrong }))
+        Ok(loaded.map(|(sweep, cells)| Self { sweep, cells }))
     }
 
     /// How many points of a cell method `method` measured wrong, by more than `is_wrong` allows.
     pub fn wrong(&self, cell: usize, method: usize) -> u64 {
-        self.wrong.get(&(cell, self.sweep.methods[method].name.clone())).copied().unwrap_or(0)
+        self.cells.get(cell).and_then(|cell| cell.wrong.get(&self.sweep.methods[method].name)).copied().unwrap_or(0)
     }
 
     /// The losses of method `method` over `cells`: for each trial the mean over these cells, each of which has the same points.
     pub fn losses(&self, cells: &[usize], method: usize) -> Vec<f64> {
         let name = &self.sweep.methods[method].name;
-        let of = |cell: &usize| self.losses.get(&(*cell, name.clone()));
+        let of = |cell: &usize| self.cells.get(*cell)?.losses.get(name);
         let all: Vec<&Losses> = cells.iter().filter_map(of).collect();
         let Some(first) = all.first().filter(|_| all.len() == cells.len()) else { return Vec::new() };
         let sum = |trial: &u64| all.iter().map(|losses| losses.get(trial).copied()).sum::<Option<f64>>();

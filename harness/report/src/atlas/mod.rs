@@ -20,6 +20,7 @@ use self::page::Group;
 use super::markdown::{MarkdownTable, contents};
 use super::sweep::{Metric, deviations};
 use super::{Canvas, LoadError, Places, ReportError, Written};
+use crate::canvas::write_pictures;
 use crate::places::PAGE;
 use crate::speeds::Speeds;
 pub use load::Part;
@@ -65,7 +66,7 @@ pub fn write(places: &Places, names: &[String]) -> Result<Written, ReportError> 
     let which = page::which(&groups(&parts, &speeds), &speeds.machine, &evidence(&parts));
     let neighbours = neighbours::page(&parts);
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| {
-        files.iter().try_for_each(|(name, picture): &(String, Canvas)| folder.write(name, |file| picture.encode(file)))?;
+        write_pictures(folder, &files)?;
         folder.write(NUMBERS, |file| Ok::<_, io::Error>(numbers(&parts, file)?))?;
         folder.write(WHICH, |file| file.write_all(which.text.as_bytes()))?;
         if let Some(page) = &neighbours {

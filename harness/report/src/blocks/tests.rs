@@ -1,9 +1,10 @@
 //! Tables of blocks of two trials whose figures are computed by hand: t(0.975, 1) = 12.7062. Every figure has a value of its own.
 
-use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
+use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::description::Blocks;
 use calibench_records::points::RunInfo;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
+use calibench_records::stored::{Compressor, Table};
 
 use super::tables;
 use crate::load::adjustments::{Summaries, load};
@@ -45,11 +46,11 @@ fn trial(number: u64) -> Vec<Calibrated> {
 fn summaries() -> Summaries {
     let folder = tempfile::tempdir().unwrap();
     let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
-    let file = std::fs::File::create(folder.path().join(CALIBRATIONS)).unwrap();
+    let file = Compressor::new(std::fs::File::create(folder.path().join(Table::Adjustments.file())).unwrap());
     let methods = vec![MethodInfo { label: "lsm".into(), version: "1".into(), unavailable: None }];
     let mut writer = CalibrationWriter::new(file, run, methods, SETS.map(Into::into).to_vec()).unwrap();
     (0..2).for_each(|number| writer.trial(number, &trial(number)).unwrap());
-    writer.finish().unwrap();
+    writer.finish().unwrap().finish().unwrap();
     load(folder.path()).unwrap().unwrap()
 }
 

@@ -1,13 +1,12 @@
 //! The adjustments of a run, read for a report.
 
 use std::collections::{BTreeMap, HashMap};
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
-use calibench_records::adjustments::{CALIBRATIONS, Numbers, Row, read};
+use calibench_records::adjustments::{Numbers, Row};
 use calibench_records::results::Group;
 use calibench_records::statistics::running::{Paired, Running};
+use calibench_records::stored::{Table, read_adjustments};
 
 use crate::LoadError;
 
@@ -61,10 +60,11 @@ pub struct Summaries {
 /// # Errors
 /// A file that is not whole or not of this version.
 pub fn load(folder: &Path) -> Result<Option<Summaries>, LoadError> {
-    let path = folder.join(CALIBRATIONS);
-    let Ok(file) = File::open(&path) else { return Ok(None) };
+    if !Table::Adjustments.is_in(folder)? {
+        return Ok(None);
+    }
     let mut reader = Reader::default();
-    read(BufReader::new(file), |row| reader.add(row)).map_err(|source| LoadError::Records { path, source })?;
+    read_adjustments(folder, |row| reader.add(row))?;
     Ok(Some(reader.found))
 }
 

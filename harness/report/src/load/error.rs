@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use calibench_records::RecordError;
+use calibench_records::stored::StoredError;
 use thiserror::Error;
 
 /// Records that cannot be read.
@@ -12,6 +13,9 @@ pub enum LoadError {
     /// There are none.
     #[error("no records of `{0}`: run it first with `calibench run {0}`")]
     None(String),
+    /// A table of a run that cannot be read.
+    #[error(transparent)]
+    Stored(#[from] StoredError),
     /// A file that cannot be read.
     #[error("{}: {source}", path.display())]
     File {

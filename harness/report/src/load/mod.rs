@@ -8,6 +8,7 @@ mod plain;
 pub mod sweep;
 pub(crate) mod theory;
 
+pub use description::description;
 pub use error::LoadError;
 pub use groups::MOST_TARGETS;
 pub use plain::{Loaded, load, recorded};

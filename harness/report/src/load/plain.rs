@@ -1,16 +1,15 @@
 //! The records of a scenario without a sweep.
 
-use std::fs::File;
-use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::read_photo;
 use calibench_model::Image;
 use calibench_records::description::{Description, looks};
-use calibench_records::names::{RECORDS, SCENARIO, kept_image};
-use calibench_records::points::{RecordHead, read_records};
+use calibench_records::names::{SCENARIO, kept_image};
+use calibench_records::points::RecordHead;
 use calibench_records::results::{MethodInfo, Trial};
 use calibench_records::score::Scores;
+use calibench_records::stored::{Table, read_points};
 
 use super::LoadError;
 use super::adjustments::{self, Summaries};
@@ -41,22 +40,18 @@ pub struct Loaded {
 /// Records that are absent or not of this version.
 pub fn load(records: &Path, name: &str) -> Result<Loaded, LoadError> {
     let folder = records.join(name);
-    let path = folder.join(RECORDS);
-    let in_file = |path: PathBuf| move |source| LoadError::File { path, source };
-    let file = match File::open(&path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Err(LoadError::None(name.to_owned())),
-        other => other.map_err(in_file(path.clone()))?,
-    };
+    if !Table::Points.is_in(&folder)? {
+        return Err(LoadError::None(name.to_owned()));
+    }
     let scenario = description(&folder, name)?.ok_or_else(|| LoadError::None(name.to_owned()))?;
     let mut scores = Scores { groups: groups(&scenario), ..Scores::default() };
     let mut first = None;
     // The methods of a file are named as they come; `pixel` is the one that does not look at the image.
-    let head = read_records(BufReader::new(file), |trial, methods| {
+    let mut head = read_points(&folder, |trial, methods| {
         scores.limited = limited(methods);
         scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
         first.get_or_insert(trial);
-    });
-    let mut head = head.map_err(|source| LoadError::Records { path, source })?;
+    })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
     let calibrations = adjustments::load(&folder)?;
     if let Some(found) = calibrations.as_ref().filter(|_| head.methods.is_empty()) {

@@ -1,14 +1,14 @@
 //! The records of a sweep, read cell by cell.
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use calibench_records::description::{Description, Sweep, looks};
-use calibench_records::names::{RECORDS, cell_folder};
-use calibench_records::points::read_records;
+use calibench_records::names::cell_folder;
+use calibench_records::points::RecordHead;
 use calibench_records::results::Trial;
 use calibench_records::score::{Score, Scores};
+use calibench_records::stored::read_points;
+use rayon::prelude::*;
 
 use crate::LoadError;
 use crate::load::description::description;
@@ -54,27 +54,54 @@ pub struct LoadedCell {
 /// # Errors
 /// Records that are not whole or not of this version.
 pub fn load(records: &Path, name: &str) -> Result<Option<LoadedSweep>, LoadError> {
-    load_with(records, name, &mut |_, _, _| ())
+    Ok(load_with(records, name, |_, _, _: &mut ()| ())?.map(|(loaded, _)| loaded))
 }
 
-/// Is shown every trial: the cell, the trial, and the names of the methods that its points index.
-pub type Watch<'a> = dyn FnMut(usize, &Trial, &[String]) + 'a;
-
-/// As [`load`]; `watch` is shown every trial.
+/// As [`load`], with what `watch` gathers in each cell: it is shown every trial of the cell, and the names of the methods that its points index.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with(records: &Path, name: &str, watch: &mut Watch<'_>) -> Result<Option<LoadedSweep>, LoadError> {
+pub fn load_with<T: Default + Send>(
+    records: &Path,
+    name: &str,
+    watch: impl Fn(&Trial, &[String], &mut T) + Sync,
+) -> Result<Option<(LoadedSweep, Vec<T>)>, LoadError> {
     let folder = records.join(name);
     let Some(mut scenario) = description(&folder, name)? else { return Ok(None) };
     let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
-    let mut loaded =
-        LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder: folder.clone() };
-    for index in 0..loaded.sweep.cells.len() {
-        loaded.add(&cell_folder(&folder, index).join(RECORDS), watch)?;
+    let read: Vec<_> =
+        (0..sweep.cells.len()).into_par_iter().map(|index| read_cell(&cell_folder(&folder, index), &scenario, &sweep, &watch)).collect();
+    let mut loaded = LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder };
+    let mut gathered = Vec::new();
+    for cell in read {
+        let (head, scores, found) = cell?;
+        loaded.add(head, scores);
+        gathered.push(found);
     }
     loaded.order();
-    Ok(Some(loaded))
+    Ok(Some((loaded, gathered)))
+}
+
+/// What a cell's records hold: run and methods, figures, and what `watch` gathers.
+fn read_cell<T: Default>(
+    folder: &Path,
+    scenario: &Description,
+    sweep: &Sweep,
+    watch: &impl Fn(&Trial, &[String], &mut T),
+) -> Result<(RecordHead, Scores, T), LoadError> {
+    let mut scores = Scores { groups: groups(scenario), ..Scores::default() };
+    let (mut names, mut gathered) = (Vec::new(), T::default());
+    let head = read_points(folder, |trial, methods| {
+        // The methods of a file are named as they come.
+        if names.len() != methods.len() {
+            names = methods.iter().map(|info| sweep.method(&info.label)).collect();
+            scores.limited = limited(methods);
+        }
+        watch(&trial, &names, &mut gathered);
+        scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
+    })?;
+    scores.methods.resize_with(head.methods.len(), Score::default);
+    Ok((head, scores, gathered))
 }
 
 impl LoadedSweep {
@@ -88,18 +115,7 @@ impl LoadedSweep {
         self.cells.get(cell)?.scores.get(method).filter(|score| score.points() > 0)
     }
 
-    fn add(&mut self, path: &Path, watch: &mut Watch<'_>) -> Result<(), LoadError> {
-        let file = File::open(path).map_err(|source| LoadError::File { path: path.to_owned(), source })?;
-        let mut scores = Scores { groups: groups(&self.scenario), ..Scores::default() };
-        let cell = self.cells.len();
-        let head = read_records(BufReader::new(file), |trial, methods| {
-            let names: Vec<String> = methods.iter().map(|info| self.sweep.method(&info.label)).collect();
-            watch(cell, &trial, &names);
-            scores.limited = limited(methods);
-            scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
-        });
-        let head = head.map_err(|source| LoadError::Records { path: path.to_owned(), source })?;
-        scores.methods.resize_with(head.methods.len(), Score::default);
+    fn add(&mut self, head: RecordHead, scores: Scores) {
         let mut cell = LoadedCell { scores: vec![Score::default(); self.methods.len()], trials: scores.trials };
         for (info, score) in head.methods.into_iter().zip(scores.methods) {
             let name = self.sweep.method(&info.label);
@@ -112,7 +128,6 @@ impl LoadedSweep {
         }
         self.seed = head.run.seed;
         self.cells.push(cell);
-        Ok(())
     }
 
     /// The methods in the order of the scenario: records name those first that are unavailable.

@@ -1,8 +1,9 @@
 //! Tables of adjustments from three trials, whose figures are computed by hand: t(0.975, 2) = 4.302653.
 
-use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
+use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::points::RunInfo;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
+use calibench_records::stored::{Compressor, Table};
 
 use super::tables;
 use crate::load::adjustments::{Summaries, load};
@@ -29,7 +30,7 @@ fn summaries() -> Summaries {
     let folder = tempfile::tempdir().unwrap();
     let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
     let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
-    let file = std::fs::File::create(folder.path().join(CALIBRATIONS)).unwrap();
+    let file = Compressor::new(std::fs::File::create(folder.path().join(Table::Adjustments.file())).unwrap());
     let mut writer = CalibrationWriter::new(file, run, vec![info("pixel"), info("good")], vec!["c".into()]).unwrap();
     let pixel = [([16.5, 0.02, 0.002], 0.004), ([16.6, 0.02, 0.001], 0.002), ([16.7, 0.04, -0.002], 0.004), ([16.5, 0.02, 0.0], 0.004)];
     let good = [([16.51, 0.01, 0.001], 0.002), ([16.52, 0.02, -0.002], 0.001), ([16.53, 0.01, 0.003], 0.006), ([0.0; 3], 0.0)];
@@ -37,7 +38,7 @@ fn summaries() -> Summaries {
         let all = [calibrated(0, c, xy, false), calibrated(1, own, own_xy, number == 3)];
         writer.trial(number as u64, &all).unwrap();
     }
-    writer.finish().unwrap();
+    writer.finish().unwrap().finish().unwrap();
     load(folder.path()).unwrap().unwrap()
 }
 

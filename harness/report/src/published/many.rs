@@ -1,11 +1,7 @@
 //! A published table beside many runs of ours: one of them, their mean, and where single runs lie.
 
-use std::fs::File;
-use std::io::BufReader;
-
-use calibench_records::names::RECORDS;
-use calibench_records::points::read_records;
 use calibench_records::statistics::running::Running;
+use calibench_records::stored::read_points;
 
 use super::ensemble::Range;
 use super::figure::{Ours, of_points};
@@ -24,10 +20,8 @@ const PLAUSIBLE: &str = "plausible, 95 %";
 /// # Errors
 /// Records that cannot be read.
 pub fn of_all_trials(table: &Table, loaded: &Loaded) -> Result<Vec<Option<Ours>>, LoadError> {
-    let path = loaded.folder.join(RECORDS);
-    let file = File::open(&path).map_err(|source| LoadError::File { path: path.clone(), source })?;
     let mut figures = vec![(None, Running::default()); table.cells.len()];
-    let read = read_records(BufReader::new(file), |trial, methods| {
+    read_points(&loaded.folder, |trial, methods| {
         for (cell, (first, all)) in table.cells.iter().zip(&mut figures) {
             let label = cell.method.as_ref().unwrap_or(&table.method);
             let method = methods.iter().position(|method| *method.label == **label);
@@ -37,8 +31,7 @@ pub fn of_all_trials(table: &Table, loaded: &Loaded) -> Result<Vec<Option<Ours>>
                 all.add(figure);
             }
         }
-    });
-    read.map_err(|source| LoadError::Records { path, source })?;
+    })?;
     Ok(figures.into_iter().map(|(first, all)| Ours::of(first, &all)).collect())
 }
 

@@ -1,6 +1,7 @@
 //! What of a sweep goes where: along x, into curves or along y, into panels.
 
 use calibench_diagnostics::nearest;
+use calibench_records::description::Sweep;
 use thiserror::Error;
 
 use super::metric::{Estimate, Metric};
@@ -96,7 +97,7 @@ impl Layout {
     /// What the sweep cannot serve.
     pub fn new(loaded: &LoadedSweep, choice: &Choice, metric: Metric, map: bool) -> Result<Self, LayoutError> {
         let axes = &loaded.sweep.axes;
-        let named = |name: &Option<String>| name.as_ref().map(|name| dimension(loaded, name)).transpose();
+        let named = |name: &Option<String>| name.as_ref().map(|name| dimension(&loaded.sweep, name)).transpose();
         let by = named(&choice.by)?.unwrap_or(Dimension::Method);
         let first = (0..axes.len()).find(|axis| Dimension::Axis(*axis) != by).unwrap_or(0);
         let Dimension::Axis(x) = named(&choice.x)?.unwrap_or(Dimension::Axis(first)) else { return Err(LayoutError::MethodOnAxis) };
@@ -106,8 +107,8 @@ impl Layout {
         let mut held = vec![0; axes.len()];
         let mut used = vec![Dimension::Axis(x), by];
         for (name, value) in &choice.at {
-            let Dimension::Axis(axis) = dimension(loaded, name)? else { return Err(LayoutError::MethodOnAxis) };
-            held[axis] = place(loaded, axis, value)?;
+            let Dimension::Axis(axis) = dimension(&loaded.sweep, name)? else { return Err(LayoutError::MethodOnAxis) };
+            held[axis] = place(&loaded.sweep, axis, value)?;
             used.push(Dimension::Axis(axis));
         }
         let methods = methods(loaded, &choice.methods)?;
@@ -224,11 +225,25 @@ pub fn value(loaded: &LoadedSweep, dimension: Dimension, place: usize) -> String
     }
 }
 
-fn dimension(loaded: &LoadedSweep, name: &str) -> Result<Dimension, LayoutError> {
+/// The cells of a sweep in which every key of `at` has its value, in their order.
+///
+/// # Errors
+/// [`LayoutError::Unknown`] for a key that is not swept, [`LayoutError::NoValue`] for a value that it does not have.
+pub fn cells(sweep: &Sweep, at: &[(String, String)]) -> Result<Vec<usize>, LayoutError> {
+    let held = at.iter().map(|(name, value)| match dimension(sweep, name)? {
+        Dimension::Axis(axis) => Ok((axis, place(sweep, axis, value)?)),
+        Dimension::Method => Err(LayoutError::MethodOnAxis),
+    });
+    let held = held.collect::<Result<Vec<_>, _>>()?;
+    let fits = |cell: &usize| held.iter().all(|(axis, place)| sweep.cells[*cell].places[*axis] == *place);
+    Ok((0..sweep.cells.len()).filter(fits).collect())
+}
+
+fn dimension(sweep: &Sweep, name: &str) -> Result<Dimension, LayoutError> {
     if name == "method" {
         return Ok(Dimension::Method);
     }
-    let axes = &loaded.sweep.axes;
+    let axes = &sweep.axes;
     axes.iter()
         .position(|axis| axis.path == name || axis.name == name)
         .or_else(|| axes.iter().position(|axis| axis.is_called(name)))
@@ -242,8 +257,8 @@ fn dimension(loaded: &LoadedSweep, name: &str) -> Result<Dimension, LayoutError>
         )
 }
 
-fn place(loaded: &LoadedSweep, axis: usize, text: &str) -> Result<usize, LayoutError> {
-    let (axis, number) = (&loaded.sweep.axes[axis], text.parse::<f64>().ok());
+fn place(sweep: &Sweep, axis: usize, text: &str) -> Result<usize, LayoutError> {
+    let (axis, number) = (&sweep.axes[axis], text.parse::<f64>().ok());
     let found = axis.values.iter().position(|value| value.text == text || (number.is_some() && value.number == number));
     found.ok_or_else(|| {
         let known: Vec<&str> = axis.values.iter().map(|value| value.text.as_str()).collect();

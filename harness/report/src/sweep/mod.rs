@@ -11,7 +11,7 @@ mod units;
 
 pub use crate::load::sweep::{LoadedMethod, LoadedSweep, load, load_with};
 pub use curves::curves;
-pub use layout::{Choice, Dimension, Layout, LayoutError};
+pub use layout::{Choice, Dimension, Layout, LayoutError, cells};
 pub use map::map;
 pub use metric::{Estimate, Metric};
 pub use numbers::write_numbers;

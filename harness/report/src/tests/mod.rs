@@ -2,7 +2,7 @@
 
 pub(crate) mod small;
 
-use calibench_records::adjustments::CALIBRATIONS;
+use calibench_records::stored::Table;
 use small::{Family, line, row};
 
 use crate::verdicts;
@@ -55,10 +55,15 @@ fn records_that_are_not_the_scenario_of_the_file_are_named() {
 #[test]
 fn what_is_missing_or_broken_is_named_with_its_path() {
     let family = Family::new();
-    std::fs::write(family.records(), "a,b\n1,2\n").unwrap();
+    family.put(Table::Points, "a,b\n1,2\n");
     let message = family.message();
-    assert!(message.contains("records.csv: line 1: expected the columns scenario,trial,view"), "{message}");
+    assert!(message.contains("records.csv.gz: line 1: expected the columns scenario,trial,view"), "{message}");
     std::fs::remove_file(family.records()).unwrap();
+    let older = family.records().with_extension("");
+    std::fs::write(&older, "scenario,trial\n").unwrap();
+    let message = family.message();
+    assert!(message.contains("records.csv: records of an older version") && message.contains("run the scenario again"), "{message}");
+    std::fs::remove_file(older).unwrap();
     insta::assert_snapshot!(family.message(), @"no records of `small/scene`: run it first with `calibench run small/scene`");
 }
 
@@ -108,9 +113,9 @@ fn verdicts_are_those_of_the_page() {
     let page = family.page();
     assert!(page.contains("where 95 % of single runs lie") && page.contains("hold no method `absent`"), "{page}");
     // The first trial alone.
-    let text = std::fs::read_to_string(&scene).unwrap();
+    let text = family.text();
     let one: String = text.lines().filter(|line| !line.starts_with("small/scene,1,")).map(|line| format!("{line}\n")).collect();
-    std::fs::write(&scene, one).unwrap();
+    family.put(Table::Points, &one);
     assert_eq!(of("small/table-2"), ["far dx differs", "near dx reproduces"]);
     let page = family.page();
     assert!(!page.contains("where 95 % of single runs lie") && page.contains("when ours is within half a unit"), "{page}");
@@ -123,13 +128,13 @@ fn verdicts_are_those_of_the_page() {
 #[test]
 fn a_run_without_points_is_known_by_its_adjustments() {
     let family = Family::new();
-    let text = std::fs::read_to_string(family.records()).unwrap();
-    std::fs::write(family.records(), format!("{}\n", text.lines().next().unwrap())).unwrap();
+    let text = family.text();
+    family.put(Table::Points, &format!("{}\n", text.lines().next().unwrap()));
     let header = calibench_records::adjustments::COLUMNS.join(",");
     let row = |trial: u64, method: &str, seed: u64| format!("small/scene,{trial},{method},c,iop,c,1.0,0.1,0.0,mm,adjusted,,{seed}\n");
     let rows = |methods: &[&str], seed: u64| -> String { (0..2).flat_map(|t| methods.iter().map(move |m| row(t, m, seed))).collect() };
     let said = |rows: String| {
-        std::fs::write(family.records().with_file_name(CALIBRATIONS), format!("{header}\n{rows}")).unwrap();
+        family.put(Table::Adjustments, &format!("{header}\n{rows}"));
         family.page().lines().find(|line| line.contains("Not the scenario")).map(str::to_owned)
     };
     let methods = ["pixel", "centroid:window=15"];

@@ -1,6 +1,7 @@
 //! A family of one scenario with two trials of two methods, and a published table.
 
 use std::fs;
+use std::io::Write;
 use std::path::PathBuf;
 
 use calibench_model::{PixelPoint, Rejection};
@@ -8,6 +9,7 @@ use calibench_records::description::{self, Description, Subject};
 use calibench_records::names::DESCRIPTION;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
+use calibench_records::stored::{Compressor, Table, open};
 use tempfile::TempDir;
 
 use crate::{Places, write};
@@ -114,19 +116,32 @@ impl Family {
         fs::write(family.folder.path().join("published/small/table-1.toml"), TABLE).unwrap();
         let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
         let run = RunInfo { scenario: NAME.into(), seed: 5, revision: "r".into(), detector: None };
-        let file = fs::File::create(family.records()).unwrap();
+        let file = Compressor::new(fs::File::create(family.records()).unwrap());
         let mut writer = RecordWriter::new(file, run, vec![info("pixel"), info("centroid:window=15")]).unwrap();
         let first = [Some((0.03, 0.04)), Some((-0.01, 0.02)), None];
         let second = [Some((0.05, 0.0)), Some((3.0, 4.0)), Some((0.02, -0.02))];
         writer.trial(&trial(0, [(0.3, 0.4), (0.0, 0.0), (0.0, 0.5)], first)).unwrap();
         writer.trial(&trial(1, [(0.0, 0.1), (0.1, 0.0), (-0.4, 0.3)], second)).unwrap();
-        writer.finish().unwrap();
+        writer.finish().unwrap().finish().unwrap();
         family.describe(&description());
         family
     }
 
+    /// The records of points as plain CSV.
+    pub fn text(&self) -> String {
+        std::io::read_to_string(open(&self.records()).unwrap()).unwrap()
+    }
+
+    /// Puts plain CSV in the place of a table of the run.
+    pub fn put(&self, table: Table, text: &str) {
+        let file = fs::File::create(self.records().with_file_name(table.file())).unwrap();
+        let mut file = Compressor::new(file);
+        file.write_all(text.as_bytes()).unwrap();
+        file.finish().unwrap();
+    }
+
     pub fn records(&self) -> PathBuf {
-        self.folder.path().join("records").join(NAME).join("records.csv")
+        self.folder.path().join("records").join(NAME).join(Table::Points.file())
     }
 
     /// Three trials in place of two.

@@ -1,12 +1,11 @@
 //! A sweep of calibrations that are applied elsewhere: how many views, how tilted, where.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
-use calibench_records::adjustments::{CALIBRATIONS, Numbers, Row, read};
+use calibench_records::adjustments::{Numbers, Row};
 use calibench_records::results::Group;
+use calibench_records::stored::read_adjustments;
 use plotters::prelude::*;
 
 use super::cases::hundredths;
@@ -31,8 +30,6 @@ pub struct Cell {
 /// # Errors
 /// Records that cannot be read.
 pub fn medians(folder: &Path) -> Result<BTreeMap<String, f64>, LoadError> {
-    let path = folder.join(CALIBRATIONS);
-    let file = File::open(&path).map_err(|source| LoadError::File { path: path.clone(), source })?;
     let (mut values, mut sets): (BTreeMap<String, Vec<f64>>, BTreeMap<String, String>) = Default::default();
     let add = |row: Row| {
         let Row { method, set, group: Group::Frame, figure: Ok(Numbers { value, .. }), .. } = row else { return };
@@ -40,7 +37,7 @@ pub fn medians(folder: &Path) -> Result<BTreeMap<String, f64>, LoadError> {
             values.entry(method).or_default().push(value);
         }
     };
-    read(BufReader::new(file), add).map_err(|source| LoadError::Records { path, source })?;
+    read_adjustments(folder, add)?;
     Ok(values.into_iter().map(|(method, values)| (method, median(values))).collect())
 }
 

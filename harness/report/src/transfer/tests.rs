@@ -1,8 +1,9 @@
 //! Tables of calibrations that are applied elsewhere, from two trials whose figures are computed by hand: t(0.975, 1) = 12.7062.
 
-use calibench_records::adjustments::{CALIBRATIONS, CalibrationWriter};
+use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::points::RunInfo;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
+use calibench_records::stored::{Compressor, Table};
 use tempfile::TempDir;
 
 use super::{boards, cases, decomposition, errors, is_transfer};
@@ -53,14 +54,14 @@ fn run() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
     let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
-    let file = std::fs::File::create(folder.path().join(CALIBRATIONS)).unwrap();
+    let file = Compressor::new(std::fs::File::create(folder.path().join(Table::Adjustments.file())).unwrap());
     let mut writer = CalibrationWriter::new(file, run, vec![info("board"), info("none")], SETS.map(Into::into).to_vec()).unwrap();
     for number in 0..2 {
         let of = |method, set, outcome| Calibrated { method, set, outcome, check_failed: None };
         let none = if number == 0 { Ok(held(0)) } else { Err("a fold".to_owned()) };
         writer.trial(number as u64, &[of(0, 0, Ok(held(number))), of(0, 1, Ok(split())), of(1, 0, none)]).unwrap();
     }
-    writer.finish().unwrap();
+    writer.finish().unwrap().finish().unwrap();
     folder
 }
 

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use calibench_measure::Registry;
-use calibench_records::adjustments;
-use calibench_records::points::read_records;
 use calibench_records::results::Group;
+use calibench_records::stored::{read_adjustments, read_points};
 use calibench_scenario::Scenario;
 
 use super::{NAME, SCENARIO, scenario, trials};
@@ -41,16 +40,16 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 fn what_is_stored_is_what_the_run_gave() {
     let (scenario, parent) = (scenario(&[]), tempfile::tempdir().unwrap());
     assert_eq!(stored(parent.path(), &scenario).unwrap(), 2 * 4 * 12, "two methods, four views, twelve targets");
-    let stored = files(&parent.path().join(NAME));
-    assert_eq!(stored["scenario.toml"], SCENARIO.as_bytes());
+    let folder = parent.path().join(NAME);
+    assert_eq!(files(&folder)["scenario.toml"], SCENARIO.as_bytes());
     let mut again = Vec::new();
-    let head = read_records(&stored["records.csv"][..], |trial, _| again.push(trial.points)).unwrap();
+    let head = read_points(&folder, |trial, _| again.push(trial.points)).unwrap();
     assert_eq!((head.run.scenario.as_str(), head.run.seed, head.run.revision.as_str()), (NAME, 3, "r1"));
     assert_eq!(head.methods.iter().map(|method| &*method.label).collect::<Vec<_>>(), ["pixel", "forstner:window=9"]);
     let run = trials(&scenario, 3);
     assert_eq!(again, [run[0].points.clone()], "of later trials the adjustments alone are kept");
     let mut rows = Vec::new();
-    adjustments::read(&stored["calibrations.csv"][..], |row| rows.push(row)).unwrap();
+    read_adjustments(&folder, |row| rows.push(row)).unwrap();
     for (number, trial) in run.iter().enumerate() {
         for calibrated in &trial.calibrations {
             let (method, set) = (["pixel", "forstner:window=9"][calibrated.method], ["c,x0,y0", "c"][calibrated.set]);
@@ -113,15 +112,16 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
     };
     run_sweep(&RecordsFolder::open(parent.path(), NAME, None).unwrap(), &plan, "r1", &count).unwrap();
     assert_eq!(steps.into_inner(), 2);
-    let stored = files(&parent.path().join(NAME));
+    let folder = parent.path().join(NAME);
+    let stored = files(&folder);
     assert_eq!(stored["scenario.toml"], text.as_bytes());
     let points = |cell: &str| {
         let mut found = Vec::new();
-        let head = read_records(&stored[&format!("{cell}/records.csv")][..], |trial, _| found.push(trial.points)).unwrap();
+        let head = read_points(&folder.join(cell), |trial, _| found.push(trial.points)).unwrap();
         (head.run.scenario, found)
     };
     let ((first, a), (second, b)) = (points("cell-0001"), points("cell-0002"));
     assert!(first.starts_with("small/wall@") && first != second, "{first} {second}");
     assert_eq!(a, b, "the floor concerns the adjustment, the points are the same");
-    assert_ne!(stored["cell-0001/calibrations.csv"], stored["cell-0002/calibrations.csv"]);
+    assert_ne!(stored["cell-0001/calibrations.csv.gz"], stored["cell-0002/calibrations.csv.gz"]);
 }
