@@ -129,6 +129,9 @@ enum Command {
 pub fn main(toolbox: &Toolbox) -> ExitCode {
     let arguments = Arguments::parse();
     let threads = usize::from(arguments.threads.unwrap_or(0));
+    if let Some(threads) = arguments.threads {
+        (toolbox.bind_threads)(usize::from(threads));
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -11,5 +11,5 @@ const WHY: &str = "this build is without OpenCV";
 
 fn main() -> ExitCode {
     let absent = [opencv_subpix::method, opencv_chessboard_sb::method].map(|method| method(Build::Unavailable(WHY), "none".into()));
-    run(&Toolbox { registry: absent.into_iter().fold(Registry::builtin(), Registry::with), detector: None })
+    run(&Toolbox { registry: absent.into_iter().fold(Registry::builtin(), Registry::with), detector: None, bind_threads: |_| () })
 }

@@ -8,4 +8,6 @@ pub struct Toolbox {
     pub registry: Registry,
     /// Its chessboard detector, if it has one.
     pub detector: Option<Box<dyn BoardDetector>>,
+    /// Binds the threads that its libraries start by themselves to a number.
+    pub bind_threads: fn(usize),
 }

@@ -21,7 +21,15 @@ pub fn version() -> String {
     opencv::core::get_version_string().unwrap_or_else(|_| "unknown".into())
 }
 
+/// Binds OpenCV's own threads, those of the whole process, to `threads`; a version that cannot be bound stays as it is.
+pub fn bind_threads(threads: usize) {
+    if let Ok(threads) = i32::try_from(threads) {
+        opencv::core::set_num_threads(threads).ok();
+    }
+}
+
 /// The command line with everything that this build can do.
 pub fn main() -> std::process::ExitCode {
-    calibench_cli::main(&calibench_cli::Toolbox { registry: registry(), detector: Some(Box::new(detector())) })
+    let detector = Some(Box::new(detector()) as Box<dyn BoardDetector>);
+    calibench_cli::main(&calibench_cli::Toolbox { registry: registry(), detector, bind_threads })
 }
