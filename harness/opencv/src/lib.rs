@@ -33,3 +33,18 @@ pub fn main() -> std::process::ExitCode {
     let detector = Some(Box::new(detector()) as Box<dyn BoardDetector>);
     calibench_cli::main(&calibench_cli::Toolbox { registry: registry(), detector, bind_threads })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opencv_starts_as_many_threads_as_it_may() {
+        let before = opencv::core::get_num_threads().unwrap();
+        for threads in [1, 2, 1] {
+            bind_threads(threads);
+            assert_eq!(opencv::core::get_num_threads().unwrap(), threads as i32);
+        }
+        bind_threads(before as usize);
+    }
+}
