@@ -11,7 +11,7 @@ use clap::ValueEnum;
 
 use super::context::Context;
 use crate::deliver::print;
-use crate::failure::Failure;
+use crate::failure::{Failure, scenario_failure};
 
 /// What can be listed.
 #[derive(Clone, Copy, ValueEnum)]
@@ -40,9 +40,10 @@ pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
 
 fn scenarios(context: &Context<'_>) -> Result<String, Failure> {
     let mut text = String::new();
-    for name in context.catalogue()?.names()? {
-        let scenario = context.scenario(&name)?;
-        let why: Vec<&str> = scenario.why.split_whitespace().collect();
+    let catalogue = context.catalogue()?;
+    for name in catalogue.names()? {
+        let why = catalogue.why(&name).map_err(scenario_failure)?;
+        let why: Vec<&str> = why.split_whitespace().collect();
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{name}\n    {}", why.join(" "));
     }

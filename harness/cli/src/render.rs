@@ -3,16 +3,18 @@
 use std::path::PathBuf;
 
 use calibench_exchange::{NewFolder, Points, encode_png};
+use calibench_model::Start;
 use calibench_model::camera::CameraModel;
 use calibench_random::Key;
 use calibench_records::names::kept_image_name;
-use calibench_run::views::{self, Prepared};
+use calibench_run::views::{self, Prepared, PreparedView};
 use calibench_run::{RunError, VIEW, starts, trial_picture, trial_truth, truth};
 use calibench_scenario::stations::{LOCAL_DISTORTION, NOISE_FREE};
 use calibench_scenario::{Scenario, SceneSubject, Subject, ViewsSubject};
 use calibench_synth::local::LocalDesign;
 use calibench_synth::stations::Station;
 use clap::Args;
+use rayon::prelude::*;
 
 use super::context::Context;
 use super::output;
@@ -42,6 +44,14 @@ pub struct Render {
     stations: Vec<String>,
 }
 
+/// What is said of an image that was drawn.
+struct Drawn<'p> {
+    name: &'p str,
+    row: truth::StationRow<'p>,
+    starts: Vec<(&'p str, Start)>,
+    notes: Vec<String>,
+}
+
 impl Render {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let scenario = context.scenario(&self.scenario)?;
@@ -60,6 +70,31 @@ impl Render {
             notes.insert(0, format!("of the sweep's {} cells the first: {}", sweep.cells(), sweep.label(0)));
         }
         print(&format!("{}\n{}", self.output.display(), notes.iter().map(|note| format!("  {note}\n")).collect::<String>()))
+    }
+
+    /// Draws the image of one station.
+    fn station<'p>(
+        &self,
+        subject: &ViewsSubject,
+        prepared: &'p Prepared<'_>,
+        view: &'p PreparedView<'_>,
+        key: Key<'_>,
+        folder: &NewFolder,
+    ) -> Result<Drawn<'p>, RunError> {
+        let name = &view.station.name;
+        let exposure = prepared.image(view, key)?;
+        folder.write(&kept_image_name(name), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
+        if self.noise_free {
+            folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
+        }
+        truth::write_view(folder, &format!("{name}.csv"), subject, view)?;
+        let clipped = truth::clipping_note(name, exposure.clipped, exposure.image.grey().len());
+        Ok(Drawn {
+            name,
+            row: truth::StationRow::new(view.station, exposure.clipped),
+            starts: views::starts(prepared, view, &exposure.image, key),
+            notes: clipped.into_iter().chain(truth::warnings(subject, view)).collect(),
+        })
     }
 
     fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &NewFolder) -> Result<Vec<String>, RunError> {
@@ -102,22 +137,21 @@ impl Render {
         let stations: Vec<Station> = drawn.iter().filter(chosen).cloned().collect();
         let prepared = Prepared::of(subject, &stations, key)?;
         let progress = Progress::start(&scenario.name, stations.len() as u64, context.quiet);
-        let (mut notes, mut rows, mut points) = (Vec::new(), Vec::new(), Points::default());
-        for view in &prepared.views {
-            let name = &view.station.name;
-            let exposure = prepared.image(view, key)?;
-            folder.write(&kept_image_name(name), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
-            if self.noise_free {
-                folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
-            }
-            truth::write_view(folder, &format!("{name}.csv"), subject, view)?;
-            for (target, start) in views::starts(&prepared, view, &exposure.image, key) {
-                points.push(&kept_image_name(name), target, start);
-            }
-            notes.extend(truth::clipping_note(name, exposure.clipped, exposure.image.grey().len()));
-            notes.extend(truth::warnings(subject, view));
-            rows.push(truth::StationRow::new(view.station, exposure.clipped));
+        let draw = |view| {
+            let drawn = self.station(subject, &prepared, view, key, folder);
             progress.step();
+            drawn
+        };
+        let (mut notes, mut rows, mut points) = (Vec::new(), Vec::new(), Points::default());
+        // In batches: as many images as threads are in memory, and a thread that waits for the bands of its image does not begin with another one.
+        for batch in prepared.views.chunks(rayon::current_num_threads()) {
+            let drawn = batch.par_iter().map(draw).collect::<Vec<Result<Drawn<'_>, RunError>>>();
+            for one in drawn {
+                let one = one?;
+                one.starts.into_iter().for_each(|(target, start)| points.push(&kept_image_name(one.name), target, start));
+                notes.extend(one.notes);
+                rows.push(one.row);
+            }
         }
         truth::write_stations(folder, "stations.csv", &rows)?;
         truth::write_starts(folder, "starts.csv", &points)?;

@@ -13,6 +13,8 @@ pub struct Toolbox {
     pub detector: Option<Box<dyn BoardDetector>>,
     /// OpenCV's calibration from a board, if it has it.
     pub solver: Option<Box<dyn BoardSolver>>,
+    /// Binds the threads that its libraries start by themselves to a number, if any do.
+    pub bind_threads: Option<fn(usize)>,
 }
 
 impl Toolbox {

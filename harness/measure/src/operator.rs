@@ -15,6 +15,12 @@ pub trait Operator: Send + Sync {
         starts.iter().map(|start| self.measure(image, start)).collect()
     }
 
+    /// Whether each point is measured from its own surroundings, whatever others are measured with it: points of one image may then be shared out among
+    /// threads. False of detectors of whole images, which would search the image again for every share.
+    fn is_local(&self) -> bool {
+        true
+    }
+
     /// What the operator estimates beside the position: with it, and with it alone, its precision is compared to the bound.
     fn unknowns(&self) -> Unknowns {
         Unknowns::default()

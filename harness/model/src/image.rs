@@ -85,7 +85,7 @@ impl Image {
 
     /// 8-bit grey values from 0 (black) to 255 (white), row by row, rounded and clipped. NaN becomes black.
     pub fn to_u8(&self) -> Vec<u8> {
-        self.grey.iter().map(|&g| (g.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
+        self.grey.iter().map(|&grey| level(grey, 255) as u8).collect()
     }
 
     /// The image `factor` times smaller: means of whole squares of `factor` px; what is left over at the right and at the bottom is not used.
@@ -104,9 +104,31 @@ impl Image {
     }
 }
 
+/// The level nearest to a grey value (fraction of full scale), of 0 (black) to `top` (white); halves go up, what lies outside is clipped, NaN becomes black.
+#[inline(always)]
+pub fn level(grey: f32, top: u16) -> u16 {
+    // Written so that NaN is black.
+    let inside = if grey > 0.0 { grey.min(1.0) } else { 0.0 };
+    let scaled = inside * f32::from(top);
+    // The same as `round`, which is a call of the library for each pixel: here the difference is exact.
+    let whole = scaled as i32;
+    (whole + i32::from(scaled - whole as f32 >= 0.5)) as u16
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn levels_are_rounded_as_numbers_are() {
+        for top in [255, 4095, 65535] {
+            let rounded = |grey: f32| (grey.clamp(0.0, 1.0) * f32::from(top)).round() as u16;
+            // Around every half, by the last digit of a number too.
+            let halves = (0..top).map(|i| (f32::from(i) + 0.5) / f32::from(top)).flat_map(|g| [g.next_down(), g, g.next_up()]);
+            let odd = [-1.0, -0.0, 0.0, 1.0, 1.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MIN_POSITIVE];
+            halves.chain(odd).for_each(|grey| assert_eq!(level(grey, top), rounded(grey), "{grey} of {top}"));
+        }
+    }
 
     #[test]
     fn rows_around_stop_at_the_border() {

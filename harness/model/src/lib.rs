@@ -15,7 +15,7 @@ pub mod target;
 pub mod testfield;
 
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
-pub use image::Image;
+pub use image::{Image, level};
 pub use observation::{Gradient, Levels, Measurement, Rejection, Start, Unknowns};
 pub use pose::Pose;
 pub use scene::{Polygon, Scene, SceneTarget};

@@ -60,6 +60,10 @@ impl Operator for ChessboardSb {
         // What OpenCV objects to, an image of a few pixels for one, shows no board.
         nearest_detected((image, starts), (reach, self.radius), || self.detect(image).unwrap_or_default())
     }
+
+    fn is_local(&self) -> bool {
+        false
+    }
 }
 
 #[cfg(test)]

@@ -22,11 +22,34 @@ pub fn version() -> String {
     opencv::core::get_version_string().unwrap_or_else(|_| "unknown".into())
 }
 
+/// Binds OpenCV's own threads, those of the whole process, to `threads`; a version that cannot be bound stays as it is.
+pub fn bind_threads(threads: usize) {
+    if let Ok(threads) = i32::try_from(threads) {
+        opencv::core::set_num_threads(threads).ok();
+    }
+}
+
 /// The command line with everything that this build can do.
 pub fn main() -> std::process::ExitCode {
     calibench_cli::main(&calibench_cli::Toolbox {
         registry: registry(),
         detector: Some(Box::new(detector())),
         solver: Some(Box::new(calibrate_camera::CalibrateCamera)),
+        bind_threads: Some(bind_threads),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opencv_starts_as_many_threads_as_it_may() {
+        let before = opencv::core::get_num_threads().unwrap();
+        for threads in [1, 2, 1] {
+            bind_threads(threads);
+            assert_eq!(opencv::core::get_num_threads().unwrap(), threads as i32);
+        }
+        bind_threads(before as usize);
+    }
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use calibench_exchange::{Outcome, Points, read_photo};
-use calibench_measure::Configured;
-use calibench_model::{Covariance, Measurement, PixelPoint, Rejection, Start};
+use calibench_measure::{Configured, Operator};
+use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start};
 use rayon::prelude::*;
 
 use crate::PhotographsError;
@@ -14,6 +14,8 @@ use crate::names::{ambiguous, names, once};
 
 /// Points that are handed to a method at a time: bounds the memory, whatever the number of points.
 const CHUNK: usize = 1 << 16;
+/// Points that a thread takes at a time.
+const SHARE: usize = 128;
 
 /// The results of several methods at the same points: 41 bytes a point and method.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,7 +100,7 @@ impl Measured {
 /// Measures every point in its photograph with every available method that is not limited to other kinds of targets.
 ///
 /// `points` name their images by file name, with folders where two photographs share one. One photograph a thread is in memory; `step` is called after each, on
-/// any thread.
+/// any thread. Photographs are shared out among the threads, and so are the points of each: the results are the same on any number of threads.
 ///
 /// # Errors
 /// As [`photos_of`]; a photograph that cannot be read.
@@ -123,7 +125,7 @@ pub fn measure_points(
                 let mine = |point: &usize| method.measures(points.start(*point).kind);
                 let (own, others): (Vec<usize>, Vec<usize>) = chunk.iter().copied().partition(mine);
                 let starts: Vec<Start> = own.iter().map(|&point| points.start(point)).collect();
-                let results = operator.measure_all(&photo, &starts);
+                let results = shared_out(operator.as_ref(), &photo, &starts);
                 let mut found = found.lock().unwrap_or_else(PoisonError::into_inner);
                 own.iter().zip(results).for_each(|(&point, result)| found.set(index, point, result));
                 others.iter().for_each(|&point| found.methods[index].state[point] = State::OtherKind);
@@ -132,8 +134,21 @@ pub fn measure_points(
         step();
         Ok(())
     };
-    photos.par_iter().zip(&images).map(one).collect::<Result<(), PhotographsError>>()?;
+    // In batches: a thread that waits for the shares of its photograph would begin with another one, and then with a third.
+    let batch = rayon::current_num_threads();
+    for (photos, images) in photos.chunks(batch).zip(images.chunks(batch)) {
+        photos.par_iter().zip(images).map(one).collect::<Result<(), PhotographsError>>()?;
+    }
     Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// The results at `starts`, in their order.
+fn shared_out(operator: &dyn Operator, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
+    if !operator.is_local() {
+        return operator.measure_all(image, starts);
+    }
+    let shares: Vec<_> = starts.par_chunks(SHARE).map(|share| operator.measure_all(image, share)).collect();
+    shares.concat()
 }
 
 /// The photograph of each image that points name, as its place among `photos`; `None` for one that is not among them.
@@ -162,6 +177,10 @@ pub fn photos_of(points: &Points, photos: &[PathBuf]) -> Result<Vec<Option<usize
 
 #[cfg(test)]
 mod tests {
+    use calibench_exchange::write_png;
+    use calibench_measure::Registry;
+    use calibench_model::TargetKind;
+
     use super::*;
 
     fn points(images: &[&str]) -> Points {
@@ -179,5 +198,49 @@ mod tests {
         let alike = ["x/a.png", "y/a.png"].map(PathBuf::from);
         assert!(error(&["a.png"], &alike).starts_with("two photographs are called a.png"));
         assert_eq!(photos_of(&points(&["y/a.png"]), &alike).unwrap(), [Some(1)]);
+    }
+
+    /// Squares of 9 px whose grey values no two corners share, and a start half a pixel beside each corner: row by row.
+    fn board(columns: usize, rows: usize) -> (Image, Vec<Start>) {
+        let (width, height) = (9 * (columns + 1), 9 * (rows + 1));
+        let grey = |x: usize, y: usize| if (x / 9 + y / 9) % 2 == 0 { 0.2 } else { 0.7 + 0.0001 * (x * 7 + y * 3) as f32 / 9.0 };
+        let corner = |i: usize| PixelPoint::new(9.0 * (i % columns + 1) as f64 - 0.2, 9.0 * (i / columns + 1) as f64 - 0.9);
+        let start = |i| Start { kind: Some(TargetKind::ChessCorner), ..Start::at(corner(i)) };
+        (Image::from_fn(width, height, grey), (0..columns * rows).map(start).collect())
+    }
+
+    #[test]
+    fn results_are_those_of_each_photograph_alone_on_any_number_of_threads() {
+        let folder = tempfile::tempdir().unwrap();
+        let (names, mut points) = (["a.png", "b.png", "c.png"], Points::default());
+        let photos = names.map(|name| folder.path().join(name));
+        // More than one share, and one that is not full.
+        let boards = [(23, 12), (5, 4), (13, 10)].map(|(columns, rows)| board(columns, rows));
+        for ((image, starts), (name, path)) in boards.iter().zip(names.iter().zip(&photos)) {
+            write_png(path, image, true).unwrap();
+            starts.iter().enumerate().for_each(|(i, start)| points.push(name, &i.to_string(), *start));
+        }
+        let methods = ["forstner:window=7", "parametric_corner:window=7", "lsm:window=7", "chess_corners", "disc=centroid"]
+            .map(|method| Registry::builtin().parse(method).unwrap());
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| measure_points(&points, &photos, &methods, &|| ())).unwrap()
+        };
+        let found = on(1);
+        for (m, method) in methods.iter().take(4).enumerate() {
+            let mut point = 0;
+            for (path, (_, starts)) in photos.iter().zip(&boards) {
+                let alone = method.operator.as_ref().unwrap().measure_all(&read_photo(path).unwrap().image, starts);
+                assert!(alone.iter().filter(|result| result.is_ok()).count() * 2 > starts.len(), "{}", method.label);
+                for result in alone {
+                    let outcome = result.map_or_else(Outcome::Rejected, Outcome::Measured);
+                    assert_eq!(found.outcome(m, point), Some(outcome), "{}, point {point}", method.label);
+                    point += 1;
+                }
+            }
+        }
+        assert_eq!((found.outcome(4, 3), found.not_given()), (None, 0));
+        // Not a number is not itself: as text.
+        [2, 3, 5].iter().for_each(|&threads| assert!(format!("{:?}", on(threads)) == format!("{found:?}"), "{threads} threads"));
     }
 }

@@ -12,6 +12,7 @@ use calibench_synth::local::LocalDistortion;
 use calibench_synth::sensor::Clipped;
 use calibench_synth::stations::Station;
 use calibench_synth::view::{Ellipse, TargetTruth, Visibility};
+use rayon::prelude::*;
 
 use crate::views::PreparedView;
 
@@ -75,12 +76,19 @@ pub fn write_scene(folder: &NewFolder, name: &str, scene: &Scene) -> io::Result<
     table(folder, name, &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
 }
 
+/// Rows that are put into words before they are written: bounds the memory.
+const ROWS: usize = 1 << 12;
+
 /// All targets of a testfield in one image, with what is to be known of each.
 ///
 /// # Errors
 /// What the file system refuses.
 pub fn write_view(folder: &NewFolder, name: &str, subject: &ViewsSubject, view: &PreparedView<'_>) -> io::Result<()> {
-    let rows = subject.field.targets.iter().zip(&view.truth).map(|(target, truth)| view_row(subject, view, target, truth));
+    let targets = subject.field.targets.chunks(ROWS).zip(view.truth.chunks(ROWS));
+    let rows = targets.flat_map(|(targets, truth)| {
+        let row = |(target, truth)| view_row(subject, view, target, truth);
+        targets.par_iter().zip(truth).map(row).collect::<Vec<_>>()
+    });
     table(folder, name, &VIEW_COLUMNS, rows)
 }
 

@@ -88,7 +88,8 @@ impl<'a> Prepared<'a> {
             let bounds = truth.par_iter().map(bound).collect();
             Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into() })
         };
-        let views = stations.iter().map(view).collect::<Result<Vec<_>, RunError>>()?;
+        // The first station's error is the one that is said, whichever comes first.
+        let views = stations.par_iter().map(view).collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, RunError>>()?;
         let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
         Ok(Self { subject, views, renderer, targets })
     }

@@ -8,7 +8,7 @@ use calibench_diagnostics::{Problems, nearest};
 use calibench_measure::Registry;
 use thiserror::Error;
 
-use super::{Scenario, check};
+use super::{Scenario, check, why};
 
 /// What the names of scenarios begin with whose files are not in the folder.
 pub const LOCAL: &str = "local/";
@@ -70,16 +70,30 @@ impl Catalogue {
     /// # Errors
     /// No such scenario, or every mistake in its file.
     pub fn load(&self, name: &str, registry: &Registry) -> Result<Scenario, CatalogueError> {
+        let (path, text) = self.text(name)?;
+        Ok(check::parse(&self.name_of(&path), &path.display().to_string(), &text, registry)?)
+    }
+
+    /// What the scenario called `name`, or that of the file `name`, is to show, from its text alone: nothing of what it describes is made or checked.
+    ///
+    /// # Errors
+    /// No such scenario, and a text that does not say it.
+    pub fn why(&self, name: &str) -> Result<String, CatalogueError> {
+        let (path, text) = self.text(name)?;
+        Ok(why::why(&path.display().to_string(), &text)?)
+    }
+
+    /// The file of the scenario called `name`, or the file `name`, and its text.
+    fn text(&self, name: &str) -> Result<(PathBuf, String), CatalogueError> {
         let path = match &self.folder {
             Some(folder) if !is_toml(Path::new(name)) => folder.join(format!("{name}.toml")),
             _ => PathBuf::from(name),
         };
-        let text = match fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !is_toml(Path::new(name)) => return Err(self.unknown(name)),
-            Err(source) => return Err(CatalogueError::File { path, source }),
-        };
-        Ok(check::parse(&self.name_of(&path), &path.display().to_string(), &text, registry)?)
+        match fs::read_to_string(&path) {
+            Ok(text) => Ok((path, text)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound && !is_toml(Path::new(name)) => Err(self.unknown(name)),
+            Err(source) => Err(CatalogueError::File { path, source }),
+        }
     }
 
     fn unknown(&self, name: &str) -> CatalogueError {

@@ -27,6 +27,7 @@ pub mod sweep;
 pub mod testfield;
 pub mod transfer;
 mod views;
+mod why;
 mod wire;
 
 pub use blocks::{Block, Blocks, ResidualPairs};

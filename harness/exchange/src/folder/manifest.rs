@@ -5,6 +5,8 @@ use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::at;
 
 /// The list's name in its folder.
@@ -75,12 +77,14 @@ impl Manifest {
     /// # Errors
     /// A file whose name is no text, and what the file system refuses.
     pub fn of(folder: &Path) -> io::Result<Self> {
-        let mut manifest = Self::default();
-        for entry in entries(folder)?.into_iter().filter(|entry| entry.kind == Kind::File) {
+        let one = |entry: Entry| {
             let name = entry.name.filter(|name| !name.contains(char::is_control));
             let name = name.ok_or_else(|| io::Error::other(format!("{}: no name for a file", entry.path.display())))?;
-            manifest.add(&name, &digest(&entry.path)?);
-        }
+            Ok((name, digest(&entry.path)?))
+        };
+        let files = entries(folder)?.into_par_iter().filter(|entry| entry.kind == Kind::File).map(one).collect::<io::Result<Vec<_>>>()?;
+        let mut manifest = Self::default();
+        files.iter().for_each(|(name, digest)| manifest.add(name, digest));
         Ok(manifest)
     }
 

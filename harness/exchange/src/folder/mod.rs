@@ -51,12 +51,26 @@ impl OutputFolder {
         let new = NewFolder::new(scratch.new_folder(), self.path.clone());
         fill(&new)?;
         Manifest::of(new.path())?.write(new.path())?;
+        sync(new.path()).map_err(|error| at(&self.path, &error))?;
         // Whatever came into the old folder while the new one was filled is seen here.
         let old = place.check()?;
         scratch.put(&place.path(), old.as_ref())?;
         made.keep();
         Ok(())
     }
+}
+
+/// Puts everything below a folder on the disk, at once: a power cut after the old folder has gone must not leave new files without their content.
+#[cfg(target_os = "linux")]
+fn sync(folder: &Path) -> io::Result<()> {
+    Ok(rustix::fs::syncfs(fs::File::open(folder)?)?)
+}
+
+/// The same where there is no call for it: file by file.
+#[cfg(not(target_os = "linux"))]
+fn sync(folder: &Path) -> io::Result<()> {
+    let files = manifest::entries(folder)?.into_iter().filter(|entry| entry.kind == manifest::Kind::File);
+    files.map(|entry| fs::File::open(&entry.path)?.sync_all()).collect()
 }
 
 /// Folders that were made for a result; those that are empty go when there is none.

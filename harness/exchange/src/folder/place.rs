@@ -4,6 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
+
 use super::at;
 use super::manifest::{Entry, Kind, MANIFEST, Manifest, digest, entries};
 
@@ -73,8 +75,10 @@ impl Place {
         }
         let Some(manifest) = Manifest::read(&folder)? else { return self.without_manifest(&folder) };
         let (mut named, mut count) = (Vec::new(), 0);
-        for entry in entries(&folder)? {
-            if let Some(why) = obstacle(&entry, &manifest)? {
+        let found = entries(&folder)?;
+        let obstacles = found.par_iter().map(|entry| obstacle(entry, &manifest)).collect::<io::Result<Vec<_>>>()?;
+        for (entry, obstacle) in found.iter().zip(obstacles) {
+            if let Some(why) = obstacle {
                 count += 1;
                 if named.len() < NAMED {
                     let name = entry.path.strip_prefix(&folder).unwrap_or(&entry.path).display().to_string();

@@ -1,7 +1,9 @@
 //! Photographs in, images out.
 
 mod budget;
+mod grey;
 mod jpeg;
+mod png;
 mod turn;
 
 use std::fs::File;
@@ -9,8 +11,7 @@ use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use calibench_model::Image;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use thiserror::Error;
 
 use crate::atomic::write_atomically;
@@ -143,37 +144,9 @@ fn decode(path: &Path, mut input: impl BufRead + Seek) -> Result<Photo, PhotoErr
     let _share = budget::share(bytes).ok_or_else(|| PhotoError::TooLarge { path: path.to_owned(), width, height, bytes })?;
     decoder.set_limits(budget::limits(bytes)).map_err(content)?;
     let turn = Turn::of(decoder.orientation().map_err(content)?);
-    let image = to_grey(&DynamicImage::from_decoder(decoder).map_err(content)?);
+    let image = grey::of(&DynamicImage::from_decoder(decoder).map_err(content)?);
     let image = if let Some(turn) = turn { turn.apply(&image) } else { image };
     Ok(Photo { image, turn })
-}
-
-fn to_grey(decoded: &DynamicImage) -> Image {
-    let (width, height) = (decoded.width() as usize, decoded.height() as usize);
-    let eight = |values: &[u8], channels| grey_of(values, channels, 255.0);
-    let sixteen = |values: &[u16], channels| grey_of(values, channels, 65535.0);
-    let grey = match decoded {
-        DynamicImage::ImageLuma8(i) => eight(i, 1),
-        DynamicImage::ImageLumaA8(i) => eight(i, 2),
-        DynamicImage::ImageRgb8(i) => eight(i, 3),
-        DynamicImage::ImageRgba8(i) => eight(i, 4),
-        DynamicImage::ImageLuma16(i) => sixteen(i, 1),
-        DynamicImage::ImageLumaA16(i) => sixteen(i, 2),
-        DynamicImage::ImageRgb16(i) => sixteen(i, 3),
-        DynamicImage::ImageRgba16(i) => sixteen(i, 4),
-        other => grey_of(&other.to_rgb32f(), 3, 1.0),
-    };
-    Image::new(width, height, grey)
-}
-
-/// `channels` 1 or 2: grey (and alpha); 3 or 4: red, green, blue (and alpha).
-fn grey_of<T: Copy + Into<f64>>(values: &[T], channels: usize, full_scale: f64) -> Vec<f32> {
-    let luma = |pixel: &[T]| match *pixel {
-        [red, green, blue, ..] => 0.299 * red.into() + 0.587 * green.into() + 0.114 * blue.into(),
-        [grey, ..] => grey.into(),
-        [] => 0.0,
-    };
-    values.chunks_exact(channels).map(|pixel| (luma(pixel) / full_scale) as f32).collect()
 }
 
 /// Writes an image as PNG file: [`encode_png`].
@@ -184,20 +157,12 @@ pub fn write_png(path: &Path, image: &Image, sixteen_bits: bool) -> Result<(), P
     Ok(write_atomically(path, |file| encode_png(file, image, sixteen_bits))?)
 }
 
-/// Encodes an image as PNG of 8 or 16 bits, compressed fast; values outside [0, 1] are clipped.
+/// Encodes an image as PNG of 8 or 16 bits, compressed fast, strips of it on all threads; values outside [0, 1] are clipped, NaN is black.
 ///
 /// # Errors
-/// What the output refuses.
+/// An image without pixels or larger than PNG holds; what the output refuses.
 pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
-    let (width, height) = (image.width() as u32, image.height() as u32);
-    let (bytes, colour) = if sixteen_bits {
-        let level = |g: &f32| (g.clamp(0.0, 1.0) * 65535.0).round() as u16;
-        (image.grey().iter().flat_map(|g| level(g).to_ne_bytes()).collect(), ExtendedColorType::L16)
-    } else {
-        (image.to_u8(), ExtendedColorType::L8)
-    };
-    let encoder = PngEncoder::new_with_quality(output, CompressionType::Fast, FilterType::Adaptive);
-    encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
+    png::encode(output, image, sixteen_bits)
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! Photographs that are turned, cut short, deep or large.
 
 use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::PngEncoder;
 use image::codecs::pnm::PnmEncoder;
+use image::{ExtendedColorType, ImageEncoder};
 
+use super::grey::grey_of;
 use super::*;
 
 /// EXIF data that holds an orientation alone.
@@ -134,7 +137,7 @@ fn sixteen_bits_are_kept() {
 
 #[test]
 fn colour_is_not_rounded_to_levels() {
-    let grey = grey_of(&[10_u8, 20, 30, 255, 255, 255], 3, 255.0);
+    let grey = grey_of::<u8, 3>(&[10, 20, 30, 255, 255, 255], 255.0);
     assert!((f64::from(grey[0]) - (2.99 + 11.74 + 3.42) / 255.0).abs() < 1e-8 && (grey[1] - 1.0).abs() < 1e-7);
     let deep: Vec<u8> = [1000_u16, 2000, 65535].iter().flat_map(|level| level.to_le_bytes()).collect();
     let expected = ((0.299 * 1000.0 + 0.587 * 2000.0 + 0.114 * 65535.0) / 65535.0) as f32;

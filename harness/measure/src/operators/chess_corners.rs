@@ -87,6 +87,10 @@ impl Operator for ChessCorners {
         let reach = RING + self.radius.ceil() as i64;
         nearest_detected((image, starts), (reach, self.radius), || self.detect(image).unwrap_or_default())
     }
+
+    fn is_local(&self) -> bool {
+        false
+    }
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ mod truth;
 use calibench_model::camera::{Camera, CameraModel, NoCounterpart, Ray, fold};
 use calibench_model::{PixelPoint, Pose, Testfield};
 use nalgebra::{Matrix2, Matrix2x3, Point3};
+use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::local::LocalDistortion;
@@ -174,7 +175,7 @@ impl Seen<'_> {
 
     /// The truth about every target, in the order of the testfield's.
     pub fn truth(&self) -> Vec<TargetTruth> {
-        let targets = self.view.field.targets.iter();
+        let targets = self.view.field.targets.par_iter();
         targets.map(|target| truth::truth(&self.view, target, self.sheets[target.plate].as_ref())).collect()
     }
 }

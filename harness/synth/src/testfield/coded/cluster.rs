@@ -89,7 +89,7 @@ fn order(places: &mut [[PlatePoint; 2]; PAIRS], clear: f64) -> bool {
 
 /// The code, if no segment passes nearer than `clear` to an end of another.
 fn clear_code(large: &[[PlatePoint; 2]; 4], clear: f64) -> Option<u8> {
-    let near = |a: usize, b: usize| large[b].iter().any(|&end| from_segment(end, large[a]) < clear);
+    let near = |a: usize, b: usize| large[b].iter().any(|&end| from_segment(end, large[a]) < clear * clear);
     let close = (0..4).any(|a| (0..4).any(|b| a != b && near(a, b)));
     (!close).then(|| code(large))
 }
@@ -98,8 +98,9 @@ fn distance(a: PlatePoint, b: PlatePoint) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
+/// The square of the distance: most arrangements are refused here, and a root is what that takes.
 fn from_segment(p: PlatePoint, [a, b]: [PlatePoint; 2]) -> f64 {
     let (u, v) = (b[0] - a[0], b[1] - a[1]);
     let t = (((p[0] - a[0]) * u + (p[1] - a[1]) * v) / (u * u + v * v)).clamp(0.0, 1.0);
-    distance(p, [a[0] + t * u, a[1] + t * v])
+    (p[0] - a[0] - t * u).powi(2) + (p[1] - a[1] - t * v).powi(2)
 }

@@ -5,6 +5,7 @@ use calibench_model::testfield::{Area, ObjectTarget, Outline, Plate, PlatePoint,
 use calibench_random::{Key, Purpose, stream};
 use nalgebra::{Point3, Vector3};
 use rand::seq::SliceRandom;
+use rayon::prelude::*;
 
 use super::{FieldError, Levels, Shape, SheetBend, check};
 
@@ -80,11 +81,17 @@ impl Coded {
         codes.shuffle(&mut stream(Key { target: "", ..key }, Purpose::Layout));
         let mut areas = vec![Area { outline: self.square_at(0, 0, self.squares, self.line), level: ink, ground: paper }];
         let mut targets = Vec::new();
-        for (row, column) in (0..self.squares).flat_map(|row| (0..self.squares).map(move |column| (row, column))) {
+        let squares: Vec<(usize, usize)> = (0..self.squares).flat_map(|row| (0..self.squares).map(move |column| (row, column))).collect();
+        let arrange = |&(row, column): &(usize, usize)| {
+            let name = name_of(row, column);
+            Cluster::arranged(self, codes[row * 8 + column], &mut stream(Key { target: &name, ..key }, Purpose::Layout))
+        };
+        // Each has its own stream of random numbers.
+        let arranged: Vec<Option<Cluster>> = squares.par_iter().map(arrange).collect();
+        for ((row, column), cluster) in squares.into_iter().zip(arranged) {
             areas.push(Area { outline: self.square_at(row, column, 1, -self.line), level: paper, ground: ink });
-            let name = format!("r{}c{}", row + 1, column + 1);
-            let mut rng = stream(Key { target: &name, ..key }, Purpose::Layout);
-            let cluster = Cluster::arranged(self, codes[row * 8 + column], &mut rng).ok_or_else(|| FieldError::Ambiguous(name.clone()))?;
+            let name = name_of(row, column);
+            let cluster = cluster.ok_or_else(|| FieldError::Ambiguous(name.clone()))?;
             let listed = self.is_measured(row) && self.is_measured(column);
             let middle = self.middle(row, column);
             for printed in &cluster.targets {
@@ -160,6 +167,11 @@ impl Coded {
         let half = 0.5 * (self.spacing + more);
         Outline::rectangle([first[0] - half, last[1] - half], [last[0] + half, first[1] + half])
     }
+}
+
+/// What a square is called.
+fn name_of(row: usize, column: usize) -> String {
+    format!("r{}c{}", row + 1, column + 1)
 }
 
 #[cfg(test)]
