@@ -200,11 +200,17 @@ mod tests {
         assert_eq!(photos_of(&points(&["y/a.png"]), &alike).unwrap(), [Some(1)]);
     }
 
-    /// Squares of 9 px whose grey values no two corners share, and a start half a pixel beside each corner: row by row.
+    /// Squares of 14 px whose grey values no two corners share, and a start half a pixel beside each corner: row by row.
     fn board(columns: usize, rows: usize) -> (Image, Vec<Start>) {
-        let (width, height) = (9 * (columns + 1), 9 * (rows + 1));
-        let grey = |x: usize, y: usize| if (x / 9 + y / 9) % 2 == 0 { 0.2 } else { 0.7 + 0.0001 * (x * 7 + y * 3) as f32 / 9.0 };
-        let corner = |i: usize| PixelPoint::new(9.0 * (i % columns + 1) as f64 - 0.2, 9.0 * (i / columns + 1) as f64 - 0.9);
+        let (width, height) = (14 * (columns + 1), 14 * (rows + 1));
+        let sharp = |x: usize, y: usize| if (x / 14 + y / 14) % 2 == 0 { 0.2 } else { 0.7 + 0.0001 * (x * 7 + y * 3) as f32 / 9.0 };
+        // Means of nine pixels: edges without any blur are no photograph's.
+        let near = |place: usize| place.saturating_sub(1)..place + 2;
+        let grey = |x: usize, y: usize| {
+            let around: Vec<f32> = near(y).flat_map(|y| near(x).map(move |x| sharp(x, y))).collect();
+            around.iter().sum::<f32>() / around.len() as f32
+        };
+        let corner = |i: usize| PixelPoint::new(14.0 * (i % columns + 1) as f64 - 0.2, 14.0 * (i / columns + 1) as f64 - 0.9);
         let start = |i| Start { kind: Some(TargetKind::ChessCorner), ..Start::at(corner(i)) };
         (Image::from_fn(width, height, grey), (0..columns * rows).map(start).collect())
     }

@@ -15,7 +15,7 @@ const BLOCK: usize = 8;
 
 /// Where values go, and runs.
 trait Sink {
-    fn eight(&mut self, values: &[u8; BLOCK]);
+    fn eight(&mut self, values: [u8; BLOCK]);
     fn one(&mut self, value: u8);
     /// A match: `count` zeros behind a zero.
     fn zeros(&mut self, count: usize);
@@ -35,7 +35,7 @@ fn feed(values: &[u8], sink: &mut impl Sink) {
             feed_zeros(run, sink);
             run = 0;
         }
-        sink.eight(block);
+        sink.eight(*block);
     }
     if run > 0 {
         feed_zeros(run, sink);
@@ -76,7 +76,7 @@ struct Counter {
 
 impl Sink for Counter {
     #[inline(always)]
-    fn eight(&mut self, values: &[u8; BLOCK]) {
+    fn eight(&mut self, values: [u8; BLOCK]) {
         for (i, &value) in values.iter().enumerate() {
             self.tables[i % 4][usize::from(value)] += 1;
         }
@@ -123,7 +123,7 @@ impl Writer<'_> {
 
 impl Sink for Writer<'_> {
     #[inline(always)]
-    fn eight(&mut self, values: &[u8; BLOCK]) {
+    fn eight(&mut self, values: [u8; BLOCK]) {
         for four in values.as_chunks::<4>().0 {
             let [a, b, c, d] = four.map(|value| self.literals[usize::from(value)]);
             let code = |literal: u32| u64::from(literal & 0xffff);
@@ -198,7 +198,7 @@ const ORDER: [usize; 19] = [16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 
 fn head(codes: &[Code; SYMBOLS], writer: &mut Writer<'_>) {
     // Not the last; dynamic codes; 286 symbols, 1 distance, 19 code lengths.
     writer.put(2 << 1, 3);
-    writer.put(29 | 15 << 10, 14);
+    writer.put(0x1d | 0xf << 10, 14);
     let length = |value: usize| match value {
         0..3 => 3,
         3..=LONGEST => 4,

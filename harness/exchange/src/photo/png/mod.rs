@@ -34,7 +34,7 @@ struct Strip {
 /// # Errors
 /// An image without pixels or with more on a side than PNG holds, and what the output refuses.
 pub(super) fn encode(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
-    let side = |pixels: usize| u32::try_from(pixels).ok().filter(|&pixels| pixels > 0 && pixels <= i32::MAX as u32);
+    let side = |pixels: usize| i32::try_from(pixels).ok().filter(|&pixels| pixels > 0);
     let (Some(width), Some(height)) = (side(image.width()), side(image.height())) else {
         let why = format!("an image of {} x {} px cannot be written as PNG", image.width(), image.height());
         return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
@@ -45,7 +45,7 @@ pub(super) fn encode(output: &mut dyn Write, image: &Image, sixteen_bits: bool) 
     header[4..8].copy_from_slice(&height.to_be_bytes());
     (header[8], header[9]) = (8 * pixel as u8, GREY);
     output.write_all(SIGNATURE)?;
-    output.write_all(&chunk(b"IHDR", &header))?;
+    output.write_all(&chunk(*b"IHDR", &header))?;
     let rows = STRIP.div_ceil(image.width() * pixel);
     let firsts: Vec<usize> = (0..image.height()).step_by(rows).collect();
     let mut adler = 1;
@@ -56,8 +56,8 @@ pub(super) fn encode(output: &mut dyn Write, image: &Image, sixteen_bits: bool) 
             adler = joined(adler, strip.adler, strip.bytes);
         }
     }
-    output.write_all(&chunk(b"IDAT", &[&deflate::LAST[..], &adler.to_be_bytes()].concat()))?;
-    output.write_all(&chunk(b"IEND", &[]))
+    output.write_all(&chunk(*b"IDAT", &[&deflate::LAST[..], &adler.to_be_bytes()].concat()))?;
+    output.write_all(&chunk(*b"IEND", &[]))
 }
 
 impl Strip {
@@ -76,7 +76,7 @@ impl Strip {
         }
         let mut data = if first == 0 { ZLIB.to_vec() } else { Vec::new() };
         deflate::append(&filtered, &mut data);
-        Self { chunk: chunk(b"IDAT", &data), adler: simd_adler32::adler32(&filtered.as_slice()), bytes: filtered.len() }
+        Self { chunk: chunk(*b"IDAT", &data), adler: simd_adler32::adler32(&filtered.as_slice()), bytes: filtered.len() }
     }
 }
 
@@ -92,7 +92,7 @@ fn bytes_of(grey: &[f32], pixel: usize, bytes: &mut [u8]) {
 }
 
 /// A chunk: length, type, data, checksum.
-fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
+fn chunk(kind: [u8; 4], data: &[u8]) -> Vec<u8> {
     let mut chunk = Vec::with_capacity(data.len() + 12);
     chunk.extend((data.len() as u32).to_be_bytes());
     chunk.extend(kind);
