@@ -38,7 +38,7 @@ fn views(scenario: &Scenario) -> &ViewsSubject {
 }
 
 fn first_trial(scenario: &Scenario) -> Trial {
-    let mut plan = Plan::new(scenario, None, PathBuf::new());
+    let mut plan = Plan::new(scenario, calibench_run::Tools::default(), PathBuf::new());
     plan.trials = 1;
     let mut found = None;
     plan.run(&|| (), &mut |trial| {

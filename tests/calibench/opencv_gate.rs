@@ -21,7 +21,7 @@ fn scenario() -> Scenario {
 
 /// A run whose points went through `change`. All tables carry one seed: that of the file is another test's matter.
 fn table(scenario: &Scenario, seed: u64, change: &dyn Fn(PointResult) -> PointResult) -> Table {
-    let mut plan = Plan::new(scenario, None, PathBuf::new());
+    let mut plan = Plan::new(scenario, calibench_run::Tools::default(), PathBuf::new());
     (plan.seed, plan.trials, plan.bounds) = (seed, TRIALS, false);
     let mut table = Table::new(scenario.name.as_str(), 0, Coordinates::of(scenario.has_truth()), &plan.method_infos());
     plan.run(&|| (), &mut |trial| {

@@ -73,7 +73,7 @@ fn run(testfield: &str, blur: f64, sensor: &str, pointing: f64, methods: &[&str]
     let head = HEAD.replace("BLUR", &blur.to_string());
     let text = format!("{head}{testfield}{sensor}\n[pointing]\nsigma = {pointing}\nwhole_pixels = true\n\n{methods}");
     let scenario = parse("tests/operators", "operators.toml", &text, &calibench_opencv::registry()).unwrap();
-    let mut plan = Plan::new(&scenario, None, PathBuf::new());
+    let mut plan = Plan::new(&scenario, calibench_run::Tools::default(), PathBuf::new());
     (plan.trials, plan.bounds) = (trials, false);
     plan.run(&|| (), &mut |trial| {
         let mut by_target: BTreeMap<_, Vec<PointResult>> = BTreeMap::new();

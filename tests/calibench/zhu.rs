@@ -82,7 +82,7 @@ fn the_operator_measures_what_the_search_found() {
         trials.push(trial);
         Ok(())
     };
-    Plan::new(&scenario, None, std::path::PathBuf::new()).run(&|| (), sink).unwrap();
+    Plan::new(&scenario, calibench_run::Tools::default(), std::path::PathBuf::new()).run(&|| (), sink).unwrap();
     let mine = trials[0].points.iter().filter(|point| point.method == method);
     let found: Vec<f64> = mine
         .map(|point| match point.outcome {
@@ -195,7 +195,7 @@ fn a_target_without_detection_is_a_missed_row_of_every_method() {
     let scenario = parse("family/test", "test.toml", DETECTED, &Registry::builtin()).unwrap();
     assert!(scenario.is_deterministic());
     let mut trials = Vec::new();
-    let plan = Plan::new(&scenario, None, std::path::PathBuf::new());
+    let plan = Plan::new(&scenario, calibench_run::Tools::default(), std::path::PathBuf::new());
     plan.run(&|| (), &mut |trial| {
         trials.push(trial);
         Ok(())

@@ -40,7 +40,7 @@ fn pointing() -> Scenario {
 }
 
 fn run(scenario: &Scenario, seed: u64, trials: u64) -> Vec<Trial> {
-    let mut plan = Plan::new(scenario, None, PathBuf::new());
+    let mut plan = Plan::new(scenario, calibench_run::Tools::default(), PathBuf::new());
     (plan.seed, plan.trials, plan.bounds) = (seed, trials, false);
     let mut all = Vec::new();
     plan.run(&|| (), &mut |trial| {
@@ -53,7 +53,7 @@ fn run(scenario: &Scenario, seed: u64, trials: u64) -> Vec<Trial> {
 
 /// The table of a run whose points went through `change`; points that it returns as `None` are dropped.
 fn table(scenario: &Scenario, trials: &[Trial], change: impl Fn(u64, PointResult) -> Option<PointResult>) -> Table {
-    let infos = Plan::new(scenario, None, PathBuf::new()).method_infos();
+    let infos = Plan::new(scenario, calibench_run::Tools::default(), PathBuf::new()).method_infos();
     let mut table = Table::new(scenario.name.as_str(), 0, Coordinates::of(scenario.has_truth()), &infos);
     for trial in trials {
         let points = trial.points.iter().filter_map(|point| change(trial.number, point.clone())).collect();

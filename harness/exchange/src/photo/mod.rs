@@ -3,15 +3,15 @@
 mod budget;
 mod grey;
 mod jpeg;
-mod png;
 mod turn;
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use calibench_model::Image;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use calibench_model::{Image, level};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader};
 use thiserror::Error;
 
 use crate::atomic::write_atomically;
@@ -157,12 +157,19 @@ pub fn write_png(path: &Path, image: &Image, sixteen_bits: bool) -> Result<(), P
     Ok(write_atomically(path, |file| encode_png(file, image, sixteen_bits))?)
 }
 
-/// Encodes an image as PNG of 8 or 16 bits, compressed fast, strips of it on all threads; values outside [0, 1] are clipped, NaN is black.
+/// Encodes an image as PNG of 8 or 16 bits, compressed fast; values outside [0, 1] are clipped, NaN is black.
 ///
 /// # Errors
-/// An image without pixels or larger than PNG holds; what the output refuses.
+/// What the output refuses.
 pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
-    png::encode(output, image, sixteen_bits)
+    let (width, height) = (image.width() as u32, image.height() as u32);
+    let (bytes, colour) = if sixteen_bits {
+        (image.grey().iter().flat_map(|grey| level(*grey, u16::MAX).to_ne_bytes()).collect(), ExtendedColorType::L16)
+    } else {
+        (image.to_u8(), ExtendedColorType::L8)
+    };
+    let encoder = PngEncoder::new_with_quality(output, CompressionType::Fast, FilterType::Adaptive);
+    encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
 }
 
 #[cfg(test)]

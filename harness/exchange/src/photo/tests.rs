@@ -1,9 +1,7 @@
 //! Photographs that are turned, cut short, deep or large.
 
 use image::codecs::jpeg::JpegEncoder;
-use image::codecs::png::PngEncoder;
 use image::codecs::pnm::PnmEncoder;
-use image::{ExtendedColorType, ImageEncoder};
 
 use super::grey::grey_of;
 use super::*;
