@@ -35,6 +35,7 @@ mod peers;
 mod photographs;
 mod priors;
 mod project;
+mod records;
 mod render;
 mod schema;
 mod several;

@@ -63,6 +63,7 @@ fn bad_input_is_told_to_the_letter() {
             &["print", "scenario.toml", "-o", "out"],
             &["show", "absent"],
             &["plot", "absent.toml"],
+            &["records", "absent.toml"],
             &["report", "absent"],
             &["check"],
             &["bless"],

@@ -105,7 +105,7 @@ fn transfer(text: &mut String, plan: &Transfer) {
     let _ = writeln!(text, "sigma_px = {}\nsurvey_sigma = {}\npitch = {}", plan.sigma_px, plan.survey_sigma, plan.pitch_um);
     let _ = writeln!(text, "poses_of = \"{}\"", plan.methods[plan.poses_of].name);
     if let Some(board) = &plan.board {
-        let _ = writeln!(text, "# {} views of a board of {} corners", board.views.count, board.subject.field.targets.len());
+        let _ = writeln!(text, "# {} views of a board of {} corners", board.views.count, board.field.targets.len());
     }
     for method in &plan.methods {
         let _ = writeln!(text, "# method `{}`: {}", method.name, method.parameters.join(", "));

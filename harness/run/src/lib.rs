@@ -14,14 +14,16 @@ mod rmse;
 mod scene;
 pub mod store;
 mod theory;
+mod tools;
 pub mod transfer;
 mod trials;
 pub mod truth;
 pub mod views;
 
 pub use error::RunError;
-pub use plan::{Plan, Tools};
+pub use plan::Plan;
 pub use scene::{VIEW, starts, trial_picture, trial_truth};
+pub use tools::Tools;
 
 #[cfg(test)]
 mod tests;

@@ -2,28 +2,18 @@
 
 use std::path::PathBuf;
 
-use calibench_calibrate::BoardSolver;
 use calibench_exchange::NewFolder;
-use calibench_measure::{BoardDetector, Configured, Operator};
+use calibench_measure::{Configured, Operator};
 use calibench_model::{Image, Measurement, Rejection, Start, TargetKind, Unknowns};
 use calibench_records::results::MethodInfo;
 use calibench_scenario::transfer::{Calibrates, Solver};
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 
 use crate::printed::PRINT;
-use crate::transfer::unavailable;
+use crate::tools::Tools;
 
 /// The version of calibration methods: raised when their numbers change on purpose.
 const TRANSFER_VERSION: &str = "1";
-
-/// What a build has beside its methods; none of it by default.
-#[derive(Clone, Copy, Default)]
-pub struct Tools<'a> {
-    /// Finds chessboards.
-    pub detector: Option<&'a dyn BoardDetector>,
-    /// OpenCV's calibration from a board.
-    pub solver: Option<&'a dyn BoardSolver>,
-}
 
 /// How a scenario is run.
 pub struct Plan<'a> {
@@ -60,7 +50,7 @@ impl<'a> Plan<'a> {
             let info = |(place, method): (usize, &calibench_scenario::transfer::Method)| MethodInfo {
                 label: method.name.as_str().into(),
                 version: self.version(method).into(),
-                unavailable: unavailable(transfer, place, self.tools.solver.is_some()),
+                unavailable: transfer.unavailable(place, self.tools.solver.is_some()),
             };
             return transfer.methods.iter().enumerate().map(info).collect();
         }

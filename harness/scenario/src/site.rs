@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::rc::Rc;
 
 use calibench_diagnostics::{Problem, Problems};
 use calibench_measure::Registry;
@@ -10,7 +9,7 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use super::section::Section;
-use super::transfer;
+use super::transfer::{self, Site};
 use super::{Scenario, Subject, ViewsSubject};
 
 /// Where other scenarios are found, and how they are read.
@@ -29,15 +28,19 @@ pub struct Surroundings<'a> {
 impl Surroundings<'_> {
     /// The field where calibrations are applied, with the `[transfer]` of `section`.
     pub fn read(&self, section: Section<'_>, problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
-        let mut applied = None;
+        let mut found = Vec::new();
         let mut site = |file: &Spanned<String>| {
-            let views = Rc::new(self.views(file.get_ref())?);
-            // The first that is asked for is where calibrations are applied.
-            applied.get_or_insert(views.clone());
-            Ok(views)
+            let views = self.views(file.get_ref())?;
+            let site = Site { camera: views.camera, field: views.field.clone(), stations: views.stations.clone() };
+            found.push(views);
+            Ok(site)
         };
         let transfer = transfer::read(section, self.registry, &mut site, problems)?;
-        applied.map(|views| ViewsSubject { transfer: Some(transfer), ..(*views).clone() })
+        // The first that is asked for is where calibrations are applied, the second has the board, which the same camera pictures.
+        let mut found = found.into_iter();
+        let views = found.next()?;
+        let board = found.next().map(|board| Box::new(ViewsSubject { camera: views.camera, ..board }));
+        Some(ViewsSubject { transfer: Some(transfer), board, ..views })
     }
 
     /// The views of the scenario in `file`, or what is wrong with it.

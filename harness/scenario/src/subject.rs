@@ -121,6 +121,8 @@ pub struct ViewsSubject {
     pub recognition: Option<Recognition>,
     /// The calibrations that are applied here, in place of measuring.
     pub transfer: Option<Transfer>,
+    /// The board from which they are made, with its lens, sensor and hand, and the camera of these views.
+    pub board: Option<Box<ViewsSubject>>,
 }
 
 impl ViewsSubject {

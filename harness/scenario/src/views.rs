@@ -137,6 +137,7 @@ impl<'i> ViewTables<'i> {
             blocks: None,
             recognition: None,
             transfer: None,
+            board: None,
         })
     }
 }

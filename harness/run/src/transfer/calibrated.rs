@@ -5,7 +5,7 @@ use calibench_adjust::{Exterior, ImageObservation, Interior, Network, ObjectPoin
 use calibench_calibrate::{BoardSolver, pose_of};
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel};
-use calibench_scenario::transfer::{Calibrates, Conditions, Method, Solver};
+use calibench_scenario::transfer::{Calibrates, Conditions, Method, NO_SOLVER, Solver};
 use nalgebra::Point3;
 
 use super::Campaign;
@@ -13,8 +13,6 @@ use super::drawn::Drawn;
 
 /// Control points from which an image is resected for a start.
 const ENOUGH: usize = 12;
-/// Why there is no calibration of OpenCV's.
-pub const NO_SOLVER: &str = "this build is without OpenCV";
 
 /// A calibrated camera.
 #[derive(Clone, Debug)]

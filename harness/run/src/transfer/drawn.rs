@@ -104,7 +104,7 @@ impl<'a> Drawn<'a> {
                 let seen = camera.project(station.pose.ray(at)).map_err(|error| format!("view {}: {error}", station.name))?;
                 Ok(Control { object: target.surveyed, image: PixelPoint::new(seen.x + sigma * x, seen.y + sigma * y) })
             };
-            board.subject.field.targets.iter().zip(&corners).zip(errors).map(corner).collect()
+            board.field.targets.iter().zip(&corners).zip(errors).map(corner).collect()
         };
         let views: Result<Vec<Vec<Control>>, String> = stations.iter().map(of_view).collect();
         Ok((views?, 0))
@@ -160,14 +160,14 @@ fn views(board: &Board, camera: &Camera, key: Key<'_>) -> Result<Vec<Station>, S
             corner.x >= left && corner.x <= right && corner.y >= top && corner.y <= bottom
         })
     };
-    let all_inside = |pose: &Pose| board.subject.field.targets.iter().all(|target| inside(pose, &target.surveyed));
+    let all_inside = |pose: &Pose| board.field.targets.iter().all(|target| inside(pose, &target.surveyed));
     board.views.generate(&board.aim, key, all_inside).map_err(|error| error.to_string())
 }
 
 /// The corners of a board whose middle is higher by `peak` than its outermost corners along its longer side.
 pub(super) fn bent(board: &Board, peak: f64) -> Vec<Point3<f64>> {
-    let plate = bent_plate(&board.subject.field, peak);
-    board.subject.field.targets.iter().map(|target| plate.point(target.at)).collect()
+    let plate = bent_plate(&board.field, peak);
+    board.field.targets.iter().map(|target| plate.point(target.at)).collect()
 }
 
 /// The board's sheet, bent so.

@@ -62,10 +62,11 @@ impl BoardImages {
         stations: &[Station],
         key: Key<'_>,
     ) -> Result<Self, RunError> {
-        let flat = &board.subject.field;
+        let flat = &board.field;
         let corners = flat.targets.iter().map(|target| target.surveyed).collect();
         let field = Testfield { plates: vec![bent_plate(flat, bend)], ..flat.clone() };
-        let subject = ViewsSubject { field, camera: *camera, stations: stations.to_vec(), ..(*board.subject).clone() };
+        let pictured = campaign.subject.board.as_deref().ok_or(RunError::NothingToRender)?;
+        let subject = ViewsSubject { field, camera: *camera, stations: stations.to_vec(), ..pictured.clone() };
         let all = campaign.transfer.methods.iter().enumerate();
         let (methods, ways): (Vec<usize>, Vec<&Measuring>) =
             all.filter_map(|(place, method)| Some((place, method.measured_by.as_ref()?))).unzip();

@@ -13,8 +13,6 @@ mod imaged;
 mod points;
 mod trial;
 
-pub use trial::unavailable;
-
 #[cfg(test)]
 mod tests;
 

@@ -3,11 +3,10 @@
 use calibench_model::camera::Camera;
 use calibench_random::Key;
 use calibench_records::results::{Calibrated, Figure, Group};
-use calibench_scenario::Transfer;
-use calibench_scenario::transfer::{Calibrates, Case, Conditions, Decomposition, Solver};
+use calibench_scenario::transfer::{Calibrates, Case, Conditions, Decomposition};
 
 use super::Campaign;
-use super::calibrated::{Calibration, NO_SOLVER, calibration};
+use super::calibrated::{Calibration, calibration};
 use super::camera::applied;
 use super::decomposition::Split;
 use super::drawn::Drawn;
@@ -23,7 +22,7 @@ pub fn run(campaign: &Campaign<'_>, key: Key<'_>) -> Result<Vec<Calibrated>, Run
     let mut bench = Bench { campaign, drawn: Drawn::new(campaign, key)?, calibrations: Vec::new(), compared: Vec::new() };
     let transfer = campaign.transfer;
     let mut all = Vec::new();
-    for method in (0..transfer.methods.len()).filter(|&method| unavailable(transfer, method, campaign.tools.solver.is_some()).is_none()) {
+    for method in (0..transfer.methods.len()).filter(|&method| transfer.unavailable(method, campaign.tools.solver.is_some()).is_none()) {
         for (set, case) in transfer.cases.iter().enumerate().filter(|(_, case)| case.methods.contains(&method)) {
             all.push(bench.case(method, set, case, key.trial == 0));
         }
@@ -33,16 +32,6 @@ pub fn run(campaign: &Campaign<'_>, key: Key<'_>) -> Result<Vec<Calibrated>, Run
         }
     }
     Ok(all)
-}
-
-/// Why the method at `place` cannot run in this build, if so; `solver` is whether there is OpenCV's.
-pub fn unavailable(transfer: &Transfer, place: usize, solver: bool) -> Option<String> {
-    let method = &transfer.methods[place];
-    if matches!(method.calibrates, Calibrates::FromBoard { solver: Solver::Opencv, .. }) && !solver {
-        return Some(NO_SOLVER.into());
-    }
-    let measuring = transfer.measured_by.iter().chain(&method.measured_by);
-    measuring.filter_map(|measuring| Some(format!("{}: {}", measuring.operator.label, measuring.operator.operator.as_ref().err()?))).next()
 }
 
 /// What a trial has come to so far: a calibration serves many cases.

@@ -2,12 +2,11 @@
 
 use calibench_diagnostics::Problem;
 use calibench_model::TargetKind;
-use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_synth::stations::{Aim, RandomViews};
 
 use super::wire::BoardWire;
 use super::{Board, Sites};
-use crate::ViewsSubject;
 use crate::section::Section;
 
 /// The fewest views of a plane that show an interior orientation.
@@ -25,8 +24,8 @@ pub struct ReadBoard {
     pub sigma_px: Option<f64>,
 }
 
-/// Reads the table; the board is pictured by `camera`.
-pub fn read(section: Section<'_>, camera: &Camera, sites: &mut Sites<'_>, problems: &mut Vec<Problem>) -> Option<ReadBoard> {
+/// Reads the table; images have the `size`.
+pub fn read(section: Section<'_>, size: ImageSize, sites: &mut Sites<'_>, problems: &mut Vec<Problem>) -> Option<ReadBoard> {
     let before = problems.len();
     let wire: BoardWire = section.read(&[], problems)?;
     let (count, tilt) = (wire.views.get_ref().0, wire.tilt.get_ref().0);
@@ -49,7 +48,7 @@ pub fn read(section: Section<'_>, camera: &Camera, sites: &mut Sites<'_>, proble
             format!("`{}` has no chessboard: expected one sheet of chess corners", wire.file.get_ref()),
         ));
     }
-    if views.camera.size() != camera.size() {
+    if views.camera.size() != size {
         problems.push(Problem::new(
             wire.file.span(),
             format!("the images of `{}` are of another size than those where calibrations are applied", wire.file.get_ref()),
@@ -69,7 +68,6 @@ pub fn read(section: Section<'_>, camera: &Camera, sites: &mut Sites<'_>, proble
     if problems.len() > before {
         return None;
     }
-    let subject = Box::new(ViewsSubject { camera: *camera, ..(*views).clone() });
-    let board = Board { subject, views: random, aim: aim?, within: wire.within.map_or(1.0, |part| part.0) };
+    let board = Board { field: views.field, views: random, aim: aim?, within: wire.within.map_or(1.0, |part| part.0) };
     Some(ReadBoard { board, bend: wire.bend.map_or(0.0, |bend| bend.0), sigma_px: wire.sigma_px.map(|sigma| sigma.0) })
 }

@@ -66,7 +66,7 @@ fn only_of_a_board(wire: &MethodWire, from: Source, problems: &mut Vec<Problem>)
 /// What measures the board's corners: an operator where the images of `[transfer]` are measured, and none where they are drawn.
 fn measured_by(wire: &MethodWire, told: &Told<'_>, name: &str, problems: &mut Vec<Problem>) -> Option<Measuring> {
     let rendered = told.wire.measured_by.is_some();
-    match &wire.measured_by {
+    match wire.measured_by.as_ref().filter(|_| *wire.from.get_ref() == Source::Board) {
         Some(text) if rendered => operator::read(text, wire.detected.unwrap_or(false), told.registry, problems),
         Some(text) => {
             let message =

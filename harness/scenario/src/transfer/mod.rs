@@ -8,15 +8,12 @@ mod operator;
 mod read;
 pub mod wire;
 
-use std::rc::Rc;
-
+use calibench_model::Testfield;
 use calibench_model::camera::Camera;
-use calibench_synth::stations::{Aim, RandomViews};
+use calibench_synth::stations::{Aim, RandomViews, Station};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
-
-use crate::ViewsSubject;
 
 pub use conditions::{Conditions, Switch};
 pub use model::Model;
@@ -56,14 +53,25 @@ pub struct Transfer {
     pub decompositions: Vec<Decomposition>,
 }
 
+/// A field and what pictures it, as another scenario has them.
+#[derive(Clone, Debug)]
+pub struct Site {
+    /// The interior orientation.
+    pub camera: Camera,
+    /// What is seen.
+    pub field: Testfield,
+    /// From where.
+    pub stations: Vec<Station>,
+}
+
 /// Reads the scenario of a file that is named, or says what is wrong with it.
-pub(crate) type Sites<'a> = dyn FnMut(&Spanned<String>) -> Result<Rc<ViewsSubject>, String> + 'a;
+pub(crate) type Sites<'a> = dyn FnMut(&Spanned<String>) -> Result<Site, String> + 'a;
 
 /// A chessboard and its views.
 #[derive(Clone, Debug)]
 pub struct Board {
-    /// The board and what pictures it; its bend is that of [`Conditions::bend`], its camera that of the field where calibrations are applied.
-    pub subject: Box<ViewsSubject>,
+    /// The board; its bend is that of [`Conditions::bend`]. What pictures it stands beside these tables, in the subject.
+    pub field: Testfield,
     /// What makes its views, the board's units.
     pub views: RandomViews,
     /// What they look at.
@@ -87,6 +95,9 @@ pub enum Calibrates {
     /// Nothing.
     Never,
 }
+
+/// Why there is no calibration of OpenCV's.
+pub const NO_SOLVER: &str = "this build is without OpenCV";
 
 /// What makes a camera of a board's corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -147,6 +158,16 @@ impl Transfer {
     pub fn sets(&self) -> Vec<String> {
         let splits = self.decompositions.iter().map(|split| split.name.clone());
         self.cases.iter().map(|case| case.name.clone()).chain(splits).collect()
+    }
+
+    /// Why the method at `place` cannot run in a build, if so; `solver` is whether that has OpenCV's calibration from a board.
+    pub fn unavailable(&self, place: usize, solver: bool) -> Option<String> {
+        let method = &self.methods[place];
+        if matches!(method.calibrates, Calibrates::FromBoard { solver: Solver::Opencv, .. }) && !solver {
+            return Some(NO_SOLVER.into());
+        }
+        let mut measuring = self.measured_by.iter().chain(&method.measured_by);
+        measuring.find_map(|measuring| Some(format!("{}: {}", measuring.operator.label, measuring.operator.operator.as_ref().err()?)))
     }
 
     /// What is doubtful of it: a pitch and a width of the sensor that disagree by more than a thousandth.

@@ -8,8 +8,7 @@ use toml::Spanned;
 
 use super::method::{Told, method};
 use super::wire::{CaseWire, Conversion, DecompositionWire, Names, Poses, TransferWire};
-use super::{Calibrates, Case, Conditions, Decomposition, Method, Sites, Transfer, board, operator};
-use crate::ViewsSubject;
+use super::{Calibrates, Case, Conditions, Decomposition, Method, Site, Sites, Transfer, board, operator};
 use crate::blocks::{filled, matched};
 use crate::section::Section;
 
@@ -40,7 +39,7 @@ pub(crate) fn read(mut section: Section<'_>, registry: &Registry, sites: &mut Si
     check_camera(&views.camera, &wire, problems);
     let [stations, control, check] = points(&wire, &views, problems);
     let board = match board {
-        Some(section) => Some(board::read(section, &views.camera, sites, problems)?),
+        Some(section) => Some(board::read(section, views.camera.size(), sites, problems)?),
         None => None,
     };
     let measured_by = wire.measured_by.as_ref().and_then(|text| operator::read(text, false, registry, problems));
@@ -119,7 +118,7 @@ fn check_camera(camera: &Camera, wire: &TransferWire, problems: &mut Vec<Problem
 }
 
 /// Stations, control and check points by their places.
-fn points(wire: &TransferWire, views: &ViewsSubject, problems: &mut Vec<Problem>) -> [Vec<usize>; 3] {
+fn points(wire: &TransferWire, views: &Site, problems: &mut Vec<Problem>) -> [Vec<usize>; 3] {
     let stations: Vec<&str> = views.stations.iter().map(|station| station.name.as_str()).collect();
     let targets: Vec<&str> = views.field.targets.iter().map(|target| target.id.as_str()).collect();
     let before = problems.len();

@@ -105,6 +105,8 @@ fn images_are_measured_by_what_is_named() {
     let board = found.methods[1].measured_by.as_ref().unwrap();
     assert!(board.detected && board.operator.operator.is_err(), "{board:?}");
     assert_eq!(found.methods[1].calibrates, Calibrates::FromBoard { sigma_px: 0.03, solver: Solver::Opencv });
+    let unknown = read_in(&folder, &measured.replace("forstner:window", "forster:window")).unwrap_err();
+    assert!(unknown.starts_with("test.toml:11:15: no method is called `forster`") && unknown.lines().count() == 1, "{unknown}");
     let drawn = measured.replace("methods = [\"b*\"]", "board_sigma_px = 0.2");
     let wrong = read_in(&folder, &drawn).unwrap_err();
     assert!(wrong.starts_with("test.toml:42:18: `board_sigma_px` is of corners that are drawn"), "{wrong}");
@@ -156,14 +158,13 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
         ("bend = 1.0", "stations = [\"1\"]", "42:12", &["1 stations are left: expected at least 2"]),
         ("bend = 1.0", "stations = [\"13\"]", "42:13", &["no station is called `13`"]),
         ("poses = \"held\"", "poses = \"held\"\nstations = []", "38:12", &["`stations` is empty"]),
-        ("sigma_px = 0.5", "sigma_px = 0.5\nmeasured_by = \"parametric\"", "11:15", &["parametric"]),
         (
             "sigma_px = 0.5",
             "sigma_px = 0.5\nmeasured_by = \"pixel\"",
-            "29:8",
+            "30:8",
             &["method `board` calibrates from a board and has no `measured_by`"],
         ),
-        ("sigma_px = 0.03", "sigma_px = 0.03\nmeasured_by = \"pixel\"", "31:15", &["expected one in [transfer] too"]),
+        ("sigma_px = 0.03", "sigma_px = 0.03\nmeasured_by = \"pixel\"", "32:15", &["expected one in [transfer] too"]),
         (
             "name = \"nothing\"",
             "name = \"nothing\"\nmeasured_by = \"pixel\"",
@@ -174,7 +175,7 @@ fn each_mistake_is_one_diagnostic_with_its_place() {
         (
             "sigma_px = 0.03",
             "sigma_px = 0.03\nsolver = \"opencv\"\nparameters = [\"fx\"]",
-            "31:10",
+            "32:10",
             &["expected `model = \"opencv\"` and no `parameters`"],
         ),
         ("[transfer]\n", "[sensor]\nsnr_contrast_db = 40\n[transfer]\n", "5:2", &["beside [transfer]"]),
