@@ -132,10 +132,8 @@ enum Command {
 pub fn main(toolbox: &Toolbox) -> ExitCode {
     let arguments = Arguments::parse();
     let threads = usize::from(arguments.threads.unwrap_or(0));
-    if let Some(threads) = arguments.threads {
-        if let Some(bind) = toolbox.bind_threads {
-            bind(usize::from(threads));
-        }
+    if let (Some(threads), Some(bind)) = (arguments.threads, toolbox.bind_threads) {
+        bind(usize::from(threads));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {

@@ -55,7 +55,7 @@ impl<W: Write> CalibrationWriter<W> {
     /// # Errors
     /// What the output refuses.
     pub fn finish(self) -> Result<W, csv::Error> {
-        Ok(self.csv.into_inner().map_err(|error| error.into_error())?)
+        Ok(self.csv.into_inner().map_err(csv::IntoInnerError::into_error)?)
     }
 
     fn figure(&mut self, trial: &str, one: &Calibrated, figure: &Figure) -> Result<(), csv::Error> {

@@ -132,7 +132,7 @@ impl<W: Write> RecordWriter<W> {
     /// # Errors
     /// What the output refuses.
     pub fn finish(self) -> Result<W, csv::Error> {
-        Ok(self.csv.into_inner().map_err(|error| error.into_error())?)
+        Ok(self.csv.into_inner().map_err(csv::IntoInnerError::into_error)?)
     }
 
     fn row(&mut self, place: Place<'_>, numbers: &[String; 6], unit: &str, status: &str, reason: &str) -> Result<(), csv::Error> {

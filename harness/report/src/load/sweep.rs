@@ -54,7 +54,7 @@ pub struct LoadedCell {
 /// # Errors
 /// Records that are not whole or not of this version.
 pub fn load(records: &Path, name: &str) -> Result<Option<LoadedSweep>, LoadError> {
-    Ok(load_with(records, name, |_, _, _: &mut ()| ())?.map(|(loaded, _)| loaded))
+    Ok(load_with(records, name, |_, _, (): &mut ()| ())?.map(|(loaded, _)| loaded))
 }
 
 /// As [`load`], with what `watch` gathers in each cell: it is shown every trial of the cell, and the names of the methods that its points index.

@@ -16,6 +16,9 @@ use super::drawn::bent_plate;
 use crate::RunError;
 use crate::views::{Pointed, Prepared, pointed};
 
+/// Of each target that is pointed at its place, and its image coordinates if it was measured, px.
+type Found = Vec<(usize, Option<PixelPoint>)>;
+
 /// Of each station target and image coordinates, px; how many targets were not measured.
 pub type Measured = (Vec<Vec<(usize, PixelPoint)>>, usize);
 
@@ -29,7 +32,7 @@ pub fn measured_wall(campaign: &Campaign<'_>, measuring: &Measuring, key: Key<'_
     let images = images(&prepared, &[measuring], None, key)?;
     let is_used = |target: usize| campaign.is_control[target] || campaign.is_check[target];
     let mut missed = 0;
-    let mut station = |mut ways: Vec<Vec<(usize, Option<PixelPoint>)>>| -> Vec<(usize, PixelPoint)> {
+    let mut station = |mut ways: Vec<Found>| -> Vec<(usize, PixelPoint)> {
         let used = ways.swap_remove(0).into_iter().filter(|(target, _)| is_used(*target));
         used.filter_map(|(target, at)| {
             missed += usize::from(at.is_none());
@@ -46,7 +49,7 @@ pub struct BoardImages {
     /// The methods that measure, by their places.
     methods: Vec<usize>,
     /// Of each view, of each of them, each corner's place and image coordinates, px, if it was measured.
-    views: Vec<Vec<Vec<(usize, Option<PixelPoint>)>>>,
+    views: Vec<Vec<Found>>,
     /// Where the corners are meant to be, the board's units.
     corners: Vec<Point3<f64>>,
 }
@@ -88,7 +91,7 @@ impl BoardImages {
         self.ways(place).flatten().filter(|(_, at)| at.is_none()).count()
     }
 
-    fn ways(&self, place: usize) -> impl Iterator<Item = &Vec<(usize, Option<PixelPoint>)>> {
+    fn ways(&self, place: usize) -> impl Iterator<Item = &Found> {
         let way = self.methods.iter().position(|method| *method == place);
         self.views.iter().filter_map(move |view| view.get(way?))
     }
@@ -100,7 +103,7 @@ fn images(
     ways: &[&Measuring],
     detector: Option<&dyn BoardDetector>,
     key: Key<'_>,
-) -> Result<Vec<Vec<Vec<(usize, Option<PixelPoint>)>>>, RunError> {
+) -> Result<Vec<Vec<Found>>, RunError> {
     let view = |view: &crate::views::PreparedView<'_>| {
         let image = prepared.image(view, key)?.image;
         let points = pointed(prepared, view, &image, key);
@@ -109,16 +112,10 @@ fn images(
     prepared.views.par_iter().map(view).collect()
 }
 
-fn measured(
-    field: &Testfield,
-    way: &Measuring,
-    detector: Option<&dyn BoardDetector>,
-    image: &Image,
-    points: &[Pointed],
-) -> Vec<(usize, Option<PixelPoint>)> {
+fn measured(field: &Testfield, way: &Measuring, detector: Option<&dyn BoardDetector>, image: &Image, points: &[Pointed]) -> Found {
     let found = way.detected.then(|| {
         let corners = detector.and_then(|detector| detector.detect(image, counted(field)?));
-        corners.map(|corners| named(points, &corners)).unwrap_or_else(|| vec![None; points.len()])
+        corners.map_or_else(|| vec![None; points.len()], |corners| named(points, &corners))
     });
     let start = |(place, point): (usize, &Pointed)| {
         let start = point.start.filter(|_| way.operator.measures(Some(field.targets[point.target].kind)))?;

@@ -3,6 +3,7 @@
 use calibench_diagnostics::Problem;
 use calibench_measure::Registry;
 use calibench_model::camera::{Camera, CameraModel};
+use toml::Spanned;
 
 use super::board::ReadBoard;
 use super::wire::{MethodWire, Source, TransferWire};
@@ -52,9 +53,9 @@ fn only_of_a_board(wire: &MethodWire, from: Source, problems: &mut Vec<Problem>)
         return;
     }
     let keys = [
-        (wire.sigma_px.as_ref().map(|sigma| sigma.span()), "sigma_px", "that of a board's corners"),
-        (wire.measured_by.as_ref().map(|operator| operator.span()), "measured_by", "what measures a board's corners"),
-        (wire.solver.as_ref().map(|solver| solver.span()), "solver", "what makes a camera of a board's corners"),
+        (wire.sigma_px.as_ref().map(Spanned::span), "sigma_px", "that of a board's corners"),
+        (wire.measured_by.as_ref().map(Spanned::span), "measured_by", "what measures a board's corners"),
+        (wire.solver.as_ref().map(Spanned::span), "solver", "what makes a camera of a board's corners"),
     ];
     for (span, key, what) in keys {
         if let Some(span) = span {
@@ -85,12 +86,11 @@ fn measured_by(wire: &MethodWire, told: &Told<'_>, name: &str, problems: &mut Ve
 
 fn calibrates(wire: &MethodWire, told: &Told<'_>, model: Model, name: &str, problems: &mut Vec<Problem>) -> Option<Calibrates> {
     let solver = wire.solver.as_ref().map_or(Solver::Own, |solver| *solver.get_ref());
-    if let Some(written) = wire.solver.as_ref().filter(|_| solver == Solver::Opencv) {
-        if model != Model::Opencv || wire.parameters.is_some() {
-            let message =
-                "`solver = \"opencv\"` solves for all nine parameters of its own model: expected `model = \"opencv\"` and no `parameters`";
-            problems.push(Problem::new(written.span(), message));
-        }
+    let asks_opencv = wire.solver.as_ref().filter(|_| solver == Solver::Opencv);
+    if let Some(written) = asks_opencv.filter(|_| model != Model::Opencv || wire.parameters.is_some()) {
+        let message =
+            "`solver = \"opencv\"` solves for all nine parameters of its own model: expected `model = \"opencv\"` and no `parameters`";
+        problems.push(Problem::new(written.span(), message));
     }
     let sigma = told.board.and_then(|board| board.sigma_px).or(wire.sigma_px.as_ref().map(|sigma| sigma.get_ref().0));
     let missing = match wire.from.get_ref() {
