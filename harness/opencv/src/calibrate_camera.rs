@@ -156,8 +156,8 @@ mod tests {
             assert!((theirs - ours).abs() < 0.01 * sigma, "{}: {theirs} {ours} +- {sigma}", names[i]);
         }
         let own = 0.5 * (covariance[(0, 0)].sqrt() + covariance[(1, 1)].sqrt());
-        let (points, unknowns) = (12.0 * 54.0, 9.0 + 12.0 * 6.0);
-        let expected = own * ((2.0 * points - unknowns) / (points - unknowns) as f64).sqrt();
+        let (points, unknowns): (f64, f64) = (12.0 * 54.0, 9.0 + 12.0 * 6.0);
+        let expected = own * ((2.0 * points - unknowns) / (points - unknowns)).sqrt();
         let stated = theirs.sigma_f_px.unwrap();
         assert!((stated / expected - 1.0).abs() < 0.01, "{stated} {own} {expected}");
     }
