@@ -1,46 +1,14 @@
 //! `calibench records`: what a run left is printed as it is stored, and plainly.
 
 use crate::project::{copy, run, stderr, stdout, table};
-
-const SWEPT: &str = r#"why = "Two cells."
-source = "a test"
-seed = 7
-trials = 3
-[sweep]
-"optics.blur" = [0.5, 0.9]
-[scene]
-width = 80
-height = 70
-background = 0.8
-grey_noise = 0.02
-[scene.pointing]
-sigma = 0.3
-whole_pixels = true
-[[scene.polygon]]
-id = "a"
-grey = 0.2
-vertices = [[20, 20], [60, 20], [60, 50], [20, 50]]
-[[scene.target]]
-id = "1"
-kind = "corner"
-at = [20, 20]
-[[scene.target]]
-id = "2"
-kind = "corner"
-at = [60, 50]
-[optics]
-blur = 0.6
-[[method]]
-name = "forstner"
-window = 9
-"#;
+use crate::sweeps::swept;
 
 #[test]
 fn records_are_printed_as_they_are_stored() {
     let project = copy();
     std::fs::create_dir_all(project.path().join("scenarios/t")).unwrap();
-    std::fs::write(project.path().join("scenarios/t/s.toml"), SWEPT).unwrap();
-    let done = run(project.path(), &["run", "t/s"]);
+    std::fs::write(project.path().join("scenarios/t/s.toml"), swept("\"optics.blur\" = [0.5, 0.9]")).unwrap();
+    let done = run(project.path(), &["run", "t/s", "-m", "forstner:window=9"]);
     assert!(done.status.success(), "{}", stderr(&done));
     let print = |arguments: &[&str]| {
         let printed = run(project.path(), &[&["records"], arguments].concat());

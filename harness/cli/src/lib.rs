@@ -20,6 +20,7 @@ mod init;
 mod inputs;
 mod intersect;
 mod judge;
+mod lanes;
 mod list;
 mod measure;
 mod orient;

@@ -1,8 +1,12 @@
 //! Progress: a bar on a terminal, a line elsewhere, nothing when quiet. All on standard error.
 
 use std::io::IsTerminal;
+use std::sync::LazyLock;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+
+/// The bars of all tasks that run side by side, one below the other.
+static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// The progress of one task.
 pub struct Progress {
@@ -20,7 +24,7 @@ impl Progress {
             return Self { bar: None, line: Some(name.to_owned()) };
         }
         let style = ProgressStyle::with_template("{msg:40} {bar:30} {pos}/{len} {eta}").unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::new(steps).with_style(style).with_message(name.to_owned());
+        let bar = BARS.add(ProgressBar::new(steps).with_style(style).with_message(name.to_owned()));
         Self { bar: Some(bar), line: None }
     }
 
@@ -34,7 +38,7 @@ impl Progress {
         if let Some(bar) = self.bar {
             let name = bar.message();
             bar.finish_and_clear();
-            say!("{name}: {result}");
+            BARS.suspend(|| say!("{name}: {result}"));
         }
         if let Some(name) = self.line {
             say!("{name}: {result}");

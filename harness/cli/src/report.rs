@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use calibench_diagnostics::nearest;
 use calibench_report::{Written, conventions};
 use clap::Args;
+use rayon::prelude::*;
 
 use super::context::Context;
 use crate::failure::Failure;
@@ -39,16 +40,18 @@ impl Report {
                 return Err(Failure::input(format!("no report is called `{paper}`{near} Known are {}.", known.join(", "))));
             }
         }
-        for (family, scenarios) in &families {
-            if !self.papers.is_empty() && !self.papers.contains(family) {
-                continue;
+        if !self.papers.is_empty() {
+            families.retain(|family, _| self.papers.contains(family));
+        }
+        let write = |(family, scenarios): (&String, &Vec<String>)| {
+            if family == conventions::FAMILY {
+                return conventions::write(&places).map(Written::New);
             }
-            let written = if family == conventions::FAMILY {
-                Written::New(conventions::write(&places)?)
-            } else {
-                calibench_report::write(&places, family, scenarios)?
-            };
-            match written {
+            calibench_report::write(&places, family, scenarios)
+        };
+        let all: Vec<_> = families.par_iter().map(write).collect();
+        for written in all {
+            match written? {
                 Written::New(page) if !context.quiet => say!("{}", page.display()),
                 Written::Kept(page) if !context.quiet => {
                     say!("{}: kept as it is, nothing of it can be measured here", page.display());

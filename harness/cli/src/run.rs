@@ -9,6 +9,7 @@ use calibench_scenario::{Scenario, Subject, Sweep, Transfer};
 use clap::Args;
 
 use super::context::{Context, Pictured, origin};
+use super::lanes::{lanes, side_by_side};
 use super::output;
 use super::photos::say_turns;
 use super::progress::Progress;
@@ -61,16 +62,13 @@ impl Run {
         };
         let folders = names.iter().zip(&scenarios).map(folder).collect::<Result<Vec<_>, Failure>>()?;
         let revision = context.revision()?;
-        let mut nothing = Vec::new();
-        for (scenario, folder) in scenarios.iter().zip(&folders) {
-            let measured = match &scenario.sweep {
-                Some(sweep) => self.sweep(context, scenario, sweep, &methods, (folder, &revision))?,
-                None => self.one(context, scenario, &methods, (folder, &revision))?,
-            };
-            if measured == 0 {
-                nothing.push(scenario.name.as_str());
-            }
-        }
+        let each = |(scenario, folder): &(&Scenario, &RecordsFolder)| match &scenario.sweep {
+            Some(sweep) => self.sweep(context, scenario, sweep, &methods, (folder, &revision)),
+            None => self.one(context, scenario, &methods, (folder, &revision)),
+        };
+        let tasks: Vec<_> = scenarios.iter().zip(&folders).collect();
+        let measured = side_by_side(&tasks, lanes(), each)?;
+        let nothing: Vec<&str> = scenarios.iter().zip(measured).filter(|(_, points)| *points == 0).map(|(s, _)| s.name.as_str()).collect();
         // Of all that there is, some may be unavailable here; what was asked for by name may not.
         if nothing.is_empty() || (self.all && nothing.len() < scenarios.len()) {
             return Ok(());

@@ -65,13 +65,9 @@ pub fn nearest_detected(
     let admit = |start: &Start| window_centre(image, start, reach).and_then(|centre| finite_around(image, centre, reach));
     let admitted: Vec<Result<(), Rejection>> = starts.iter().map(admit).collect();
     let found = if admitted.iter().any(Result::is_ok) { detect() } else { Vec::new() };
-    let nearest = |start: &Start| {
-        let best = found.iter().min_by(|a, b| a.distance(start.position).total_cmp(&b.distance(start.position)));
-        best.filter(|at| at.distance(start.position) <= radius).copied()
-    };
     let measure = |(start, admitted): (&Start, Result<(), Rejection>)| {
         admitted?;
-        nearest(start).map(|position| Measurement { position, covariance: None }).ok_or(Rejection::NoCorner)
+        start.position.nearest(&found, radius).map(|position| Measurement { position, covariance: None }).ok_or(Rejection::NoCorner)
     };
     starts.iter().zip(admitted).map(measure).collect()
 }

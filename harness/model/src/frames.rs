@@ -47,6 +47,12 @@ impl PixelPoint {
         (self.x - other.x).hypot(self.y - other.y)
     }
 
+    /// The nearest of `others` that is at most `within` px away; the first of several.
+    pub fn nearest(self, others: &[Self], within: f64) -> Option<Self> {
+        let by_distance = others.iter().map(|other| (self.distance(*other), *other));
+        by_distance.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(distance, _)| *distance <= within).map(|(_, other)| other)
+    }
+
     /// Whether both coordinates are finite.
     #[inline]
     pub fn is_finite(self) -> bool {
@@ -155,6 +161,15 @@ mod tests {
         let frame = Frame::new(1362, 1021, 4.70).unwrap();
         let centre = frame.to_sensor(PixelPoint::new(680.5, 510.0));
         assert_eq!((centre.x, centre.y), (0.0, 0.0));
+    }
+
+    #[test]
+    fn the_nearest_is_the_first_of_those_within_reach() {
+        let at = |x, y| PixelPoint::new(x, y);
+        let others = [at(9.0, 0.0), at(3.0, 4.0), at(-3.0, 4.0)];
+        assert_eq!(at(0.0, 0.0).nearest(&others, 5.0), Some(others[1]), "as far as it may be");
+        assert_eq!(at(0.0, 0.0).nearest(&others, 4.999), None);
+        assert_eq!(at(0.0, 0.0).nearest(&[], f64::INFINITY), None);
     }
 
     #[test]

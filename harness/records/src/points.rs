@@ -97,7 +97,7 @@ impl<W: Write> RecordWriter<W> {
     }
 
     /// Adds a trial: a row for each point, with its errors where the truth is known, its bound and the method's own standard deviation where there are
-    /// such, or with the reason why it was rejected.
+    /// such, or with the reason why it was rejected. Coordinates and errors have nine decimals, standard deviations six significant digits.
     ///
     /// # Errors
     /// What the output refuses.
@@ -117,9 +117,9 @@ impl<W: Write> RecordWriter<W> {
                 Outcome::Measured { position, error } => {
                     let status = if point.outcome.is_lost() { "lost" } else { "measured" };
                     let [dx, dy] = [error.map(|e| e.0), error.map(|e| e.1)];
-                    let numbers = [Some(position.x), Some(position.y), dx, dy, point.bound, point.predicted];
-                    let numbers = numbers.map(|number| number.map_or_else(String::new, |number| number.to_string()));
-                    self.row(place, &numbers, "px", status, "")?;
+                    let [x, y, dx, dy] = [Some(position.x), Some(position.y), dx, dy].map(|at| at.map_or_else(String::new, coordinate));
+                    let [bound, predicted] = [point.bound, point.predicted].map(|sigma| sigma.map_or_else(String::new, deviation));
+                    self.row(place, &[x, y, dx, dy, bound, predicted], "px", status, "")?;
                 }
             }
         }
@@ -140,6 +140,21 @@ impl<W: Write> RecordWriter<W> {
         let tail = [unit, status, reason, &self.seed, &self.run.revision];
         write_row(&mut self.csv, head.chain(numbers.iter().map(String::as_str)).chain(tail))
     }
+}
+
+/// To how many parts of a pixel coordinates and errors are written: far more than an operator finds, in files a third smaller than with every digit.
+const PARTS: f64 = 1e9;
+
+/// A coordinate or an error, to nine decimals.
+fn coordinate(px: f64) -> String {
+    // Dividing by a power of ten gives the number nearest to the decimals; adding zero turns -0 into 0.
+    let rounded = (px * PARTS).round() / PARTS + 0.0;
+    (if rounded.is_finite() { rounded } else { px }).to_string()
+}
+
+/// A standard deviation, to six significant digits.
+fn deviation(px: f64) -> String {
+    format!("{px:.5e}").parse().map_or_else(|_| px.to_string(), |rounded: f64| rounded.to_string())
 }
 
 /// What a records file holds besides its trials.
@@ -255,15 +270,15 @@ mod tests {
         let info =
             |label: &str, why: Option<&str>| MethodInfo { label: label.into(), version: "1".into(), unavailable: why.map(str::to_owned) };
         let point = |method, target: &str, outcome| PointResult::new("v", target, method, outcome);
-        let measured = |x: f64, error| Outcome::Measured { position: PixelPoint::new(x, 1.0 / 3.0), error };
+        let measured = |x: f64, error| Outcome::Measured { position: PixelPoint::new(x, 0.333_333_333), error };
         let trials = vec![
             Trial {
                 number: 0,
                 points: vec![
                     PointResult {
                         bound: Some(0.012_345),
-                        predicted: Some(1.0 / 7.0),
-                        ..point(1, "a", measured(0.1 + 0.2, Some((1e-17, -3.5))))
+                        predicted: Some(0.142_857),
+                        ..point(1, "a", measured(0.3, Some((-0.000_000_001, -3.5))))
                     },
                     point(1, "b", Outcome::Rejected(Rejection::NoCorner)),
                     point(2, "a", measured(7.0, None)),
@@ -277,7 +292,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_again_to_the_last_bit() {
+    fn digits_are_those_that_are_worth_something() {
+        for (px, expected) in
+            [(0.1 + 0.2, "0.3"), (-1e-17, "0"), (1.0 / 3.0, "0.333333333"), (-2500.123_456_789_6, "-2500.12345679"), (1e-9, "0.000000001")]
+        {
+            assert_eq!(coordinate(px), expected);
+        }
+        // What is out of all bounds stays a number.
+        assert_eq!(coordinate(1e300).parse::<f64>().unwrap(), 1e300);
+        for (px, expected) in [(1.0 / 7.0, "0.142857"), (0.000_012_345_678, "0.0000123457"), (12.5, "12.5"), (0.0, "0")] {
+            assert_eq!(deviation(px), expected);
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
         let (methods, trials) = example();
         let detector = Some(("board".into(), "2".into()));
         let run = RunInfo { scenario: "f/s".into(), seed: 9, revision: "abc".into(), detector };

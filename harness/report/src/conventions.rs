@@ -7,12 +7,13 @@ use calibench_diagnostics::{Problem, Problems};
 use calibench_exchange::OutputFolder;
 use calibench_model::camera::{Camera, Fold, ImageSize, Photogrammetric, fold};
 use calibench_model::convert::{
-    ConvertError, ConvertOptions, Difference, DifferenceOptions, Mistake, Region, Tangential, Target, Vector, difference, from_naive,
-    mistaken,
+    ConvertError, ConvertOptions, Difference, DifferenceOptions, Mistake, Region, Tangential, Target, Vector, convert, difference,
+    from_naive, mistaken,
 };
+use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::canvas::Canvas;
+use super::canvas::{Canvas, write_pictures};
 use super::field::{Field, plain};
 use super::markdown::{MarkdownTable, contents};
 use super::{Places, ReportError};
@@ -61,9 +62,7 @@ pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
     }
     let text = format!("# {FAMILY}\n\n{}{INTRODUCTION}{}{body}", overview(&prices), contents(&body));
     OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| -> Result<(), ReportError> {
-        for (name, picture) in &pictures {
-            folder.write(name, |file| picture.encode(file))?;
-        }
+        write_pictures(folder, &pictures)?;
         Ok(folder.write(PAGE, |file| writeln!(file, "{}", text.trim_end()))?)
     })?;
     Ok(places.reports.join(FAMILY).join(PAGE))
@@ -132,8 +131,8 @@ fn section(
     text.push_str(&format!(
         "## {title}\n\n{source}.\n\n{read_as}\n\nImages of {width} x {height} px, pixel pitch {pitch_um} um, object at {distance_m} m.\n\n"
     ));
-    for printed in &cameras.camera {
-        let priced = price(cameras, printed)?;
+    let all = cameras.camera.par_iter().map(|printed| price(cameras, printed)).collect::<Result<Vec<_>, _>>()?;
+    for (printed, priced) in cameras.camera.iter().zip(all) {
         text.push_str(&format!("### {}\n\n", printed.name));
         if let Some(note) = &printed.note {
             text.push_str(&format!("{note}\n\n"));
@@ -180,7 +179,6 @@ fn price(cameras: &Cameras, printed: &Printed) -> Result<Priced, ReportError> {
     let options = ConvertOptions { region, accept: true, ..ConvertOptions::default() };
     let compare =
         |wrong: &Camera, rotation| difference(&truth, wrong, &DifferenceOptions { region, rotation, ..DifferenceOptions::default() });
-    let mut rows = Vec::new();
     let mistakes = [
         ("k / c^n and P / c taken as the inverse (Table 2)", Mistake::Naive),
         ("p1 and p2 swapped", Mistake::TangentialSwapped),
@@ -193,13 +191,14 @@ fn price(cameras: &Cameras, printed: &Printed) -> Result<Priced, ReportError> {
         ("sign of y0", Mistake::SignOfY0),
         ("principal point from the corner taken as from the centre", Mistake::PrincipalPointFromCorner),
     ];
-    let right = mistaken(&truth, pitch_um, Mistake::SignOfY0, &options)?.right.camera;
+    let right = convert(&truth, Target::photogrammetric(pitch_um), &options)?.camera;
+    let Camera::Photogrammetric(own) = right else { return Err(ConvertError::NotInTable.into()) };
     let both = |wrong: &Camera| -> Price { Ok((compare(wrong, false)?, compare(wrong, true)?)) };
-    rows.push(("none: converted by a fit".to_owned(), both(&right)));
-    for (name, mistake) in mistakes {
-        let wrong: Camera = mistaken(&truth, pitch_um, mistake, &options)?.wrong.into();
-        rows.push((name.to_owned(), both(&wrong)));
-    }
+    let wrong: Vec<Camera> =
+        mistakes.iter().map(|(_, mistake)| Ok(mistaken(&truth, &own, *mistake)?.into())).collect::<Result<_, ConvertError>>()?;
+    let all: Vec<(&str, Camera)> =
+        std::iter::once(("none: converted by a fit", right)).chain(mistakes.iter().map(|(name, _)| *name).zip(wrong)).collect();
+    let rows = all.iter().map(|(name, camera)| ((*name).to_owned(), both(camera))).collect();
     Ok(Priced { fold, rows })
 }
 

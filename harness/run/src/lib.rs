@@ -5,6 +5,7 @@ mod bounds;
 pub mod description;
 mod error;
 pub mod judgement;
+mod measured;
 pub mod network;
 mod photographs;
 mod plan;

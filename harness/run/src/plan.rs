@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 
 use calibench_exchange::NewFolder;
-use calibench_measure::{Configured, Operator};
-use calibench_model::{Image, Measurement, Rejection, Start, TargetKind, Unknowns};
+use calibench_measure::Configured;
+use calibench_model::{Image, Start, TargetKind, Unknowns};
 use calibench_records::results::MethodInfo;
 use calibench_scenario::transfer::{Calibrates, Solver};
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 
+use crate::measured::{Measured, of_its_kinds};
 use crate::printed::PRINT;
 use crate::tools::Tools;
 
@@ -50,7 +51,7 @@ impl<'a> Plan<'a> {
             let info = |(place, method): (usize, &calibench_scenario::transfer::Method)| MethodInfo {
                 label: method.name.as_str().into(),
                 version: self.version(method).into(),
-                unavailable: transfer.unavailable(place, self.tools.solver.is_some()),
+                unavailable: self.tools.lack(transfer, place),
             };
             return transfer.methods.iter().enumerate().map(info).collect();
         }
@@ -114,22 +115,10 @@ impl<'a> Plan<'a> {
     ///
     /// A target is its kind and its start; where nobody found it there is none, and no operator is asked.
     pub(crate) fn measure(&self, image: &Image, targets: &[(TargetKind, Option<Start>)]) -> Vec<(usize, Vec<Option<Measured>>)> {
-        let available = self.methods.iter().enumerate().filter_map(|(i, method)| Some((i, method, method.operator.as_deref().ok()?)));
-        let of = |(index, method, operator): (usize, &Configured, &dyn Operator)| {
-            let mine = |kind: TargetKind| method.measures(Some(kind));
-            let starts: Vec<Start> = targets.iter().filter(|(kind, _)| mine(*kind)).filter_map(|(_, start)| *start).collect();
-            let mut results = operator.measure_all(image, &starts).into_iter();
-            let missed = Err(Rejection::NotDetected);
-            let result =
-                |(kind, start): &(TargetKind, Option<Start>)| mine(*kind).then(|| start.and_then(|_| results.next()).unwrap_or(missed));
-            (index, targets.iter().map(result).collect())
-        };
-        available.map(of).collect()
+        let of = |(index, method): (usize, &Configured)| Some((index, of_its_kinds(method, image, targets)?));
+        self.methods.iter().enumerate().filter_map(of).collect()
     }
 }
-
-/// What an operator says of a target.
-type Measured = Result<Measurement, Rejection>;
 
 /// Why the photographs cannot be measured, if so.
 fn missing(plan: &Plan<'_>, subject: &PhotographsSubject) -> Option<String> {

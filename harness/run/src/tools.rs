@@ -2,6 +2,7 @@
 
 use calibench_calibrate::BoardSolver;
 use calibench_measure::BoardDetector;
+use calibench_scenario::Transfer;
 
 /// What a build has beside its methods; none of it by default.
 #[derive(Clone, Copy, Default)]
@@ -10,4 +11,11 @@ pub struct Tools<'a> {
     pub detector: Option<&'a dyn BoardDetector>,
     /// OpenCV's calibration from a board.
     pub solver: Option<&'a dyn BoardSolver>,
+}
+
+impl Tools<'_> {
+    /// Why the calibration at `place` cannot run with them, if so.
+    pub(crate) fn lack(&self, transfer: &Transfer, place: usize) -> Option<String> {
+        transfer.unavailable(place, self.solver.is_some(), self.detector.is_some())
+    }
 }

@@ -264,17 +264,17 @@ pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<
 
 /// Where measuring starts in `image`, that of `view`: of each target that is wholly in it and that the scenario's detector, if it has one, does not miss.
 pub fn starts<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>, image: &Image, key: Key<'_>) -> Vec<(&'p str, Start)> {
-    pointed(prepared, view, image, key).into_iter().filter_map(|point| Some((&*prepared.targets[point.target], point.start?))).collect()
+    pointed(prepared, view, image, key).into_iter().filter_map(|(point, start)| Some((&*prepared.targets[point.target], start?))).collect()
 }
 
-fn started(prepared: &Prepared<'_>, image: &Image, seen: &[SeenTarget]) -> Vec<Option<Start>> {
+fn started(prepared: &Prepared<'_>, image: &Image, seen: &[Pointed]) -> Vec<Option<Start>> {
     match &prepared.subject.detector {
         Some(detector) => detector.starts(image, seen.iter().map(|point| point.truth)),
         None => seen.iter().map(|point| Some(point.start)).collect(),
     }
 }
 
-fn kind_of(prepared: &Prepared<'_>, point: &SeenTarget) -> TargetKind {
+fn kind_of(prepared: &Prepared<'_>, point: &Pointed) -> TargetKind {
     prepared.subject.field.targets[point.target].kind
 }
 
@@ -284,22 +284,15 @@ pub(crate) struct Pointed {
     pub target: usize,
     /// Where it is, px.
     pub truth: PixelPoint,
-    /// Where measuring starts; `None` where nobody found it.
-    pub start: Option<Start>,
+    /// Where a hand points.
+    pub start: Start,
 }
 
-/// The targets that are pointed at in `image`, that of `view`.
-pub(crate) fn pointed(prepared: &Prepared<'_>, view: &PreparedView<'_>, image: &Image, key: Key<'_>) -> Vec<Pointed> {
+/// The targets that are pointed at in `image`, that of `view`, with where measuring starts; `None` where nobody found it.
+pub(crate) fn pointed(prepared: &Prepared<'_>, view: &PreparedView<'_>, image: &Image, key: Key<'_>) -> Vec<(Pointed, Option<Start>)> {
     let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
     let starts = started(prepared, image, &seen);
-    seen.iter().zip(starts).map(|(point, start)| Pointed { target: point.target, truth: point.truth, start }).collect()
-}
-
-/// A target that is pointed at.
-struct SeenTarget {
-    target: usize,
-    truth: PixelPoint,
-    start: Start,
+    seen.into_iter().zip(starts).collect()
 }
 
 /// Whether somebody points at a target: it is wholly in view, or, where the scenario says so, its reference point is.
@@ -307,7 +300,7 @@ pub fn is_pointed_at(subject: &ViewsSubject, truth: &TargetTruth) -> bool {
     truth.visibility == Visibility::Visible || (subject.clipped && truth.visibility == Visibility::Clipped)
 }
 
-fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<SeenTarget> {
+fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<Pointed> {
     let targets = &prepared.subject.field.targets;
     let pointed_at = view.truth.iter().enumerate().filter(|(_, truth)| is_pointed_at(prepared.subject, truth));
     let point = |(index, truth): (usize, &TargetTruth)| {
@@ -317,7 +310,7 @@ fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<S
         let pointed = hand.point(at, &mut rng);
         let affine = truth.affine.map(|map| hand.map.apply(map, &mut rng));
         let start = Start { kind: Some(target.kind), affine, ..Start::at(pointed) };
-        Some(SeenTarget { target: index, truth: at, start })
+        Some(Pointed { target: index, truth: at, start })
     };
     pointed_at.filter_map(point).collect()
 }

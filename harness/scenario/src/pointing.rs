@@ -130,11 +130,7 @@ impl Detector {
     pub fn starts(&self, image: &Image, truths: impl IntoIterator<Item = PixelPoint>) -> Vec<Option<Start>> {
         let found: Vec<PixelPoint> =
             self.detect(image).iter().map(|detection| PixelPoint::new(detection.pixel.0 as f64, detection.pixel.1 as f64)).collect();
-        let nearest = |truth: PixelPoint| {
-            let best = found.iter().min_by(|a, b| a.distance(truth).total_cmp(&b.distance(truth)))?;
-            (best.distance(truth) <= self.within).then(|| Start::at(*best))
-        };
-        truths.into_iter().map(nearest).collect()
+        truths.into_iter().map(|truth| truth.nearest(&found, self.within).map(Start::at)).collect()
     }
 }
 

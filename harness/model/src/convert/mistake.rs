@@ -1,7 +1,7 @@
 //! The common mistakes, each alone.
 
 use super::brown::frame;
-use super::{ConvertError, ConvertOptions, Tangential, Target, convert, naive};
+use super::{ConvertError, Tangential, Target, naive};
 use crate::camera::{Camera, Photogrammetric};
 use crate::{PixelPoint, SensorPoint};
 
@@ -36,27 +36,15 @@ pub enum Mistake {
     SignOfY0,
 }
 
-/// A camera and what a mistake makes of it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mistaken {
-    /// Converted as it should be, with the residuals of that.
-    pub right: super::Conversion,
-    /// With the mistake.
-    pub wrong: Photogrammetric,
-}
-
-/// `source` as a photogrammetric camera, right and with one mistake.
+/// What a mistake makes of `source`, whose right conversion is `right`.
 ///
 /// # Errors
-/// As [`convert`] and [`naive()`].
-pub fn mistaken(source: &Camera, pitch_um: f64, mistake: Mistake, options: &ConvertOptions) -> Result<Mistaken, ConvertError> {
-    let right = convert(source, Target::photogrammetric(pitch_um), options)?;
-    let wrong = match (mistake, right.camera) {
-        (Mistake::Naive, _) => naive(source, pitch_um, Tangential::Converted)?,
-        (_, Camera::Photogrammetric(camera)) => mistake.of(&camera)?,
-        _ => return Err(ConvertError::NotInTable),
-    };
-    Ok(Mistaken { right, wrong })
+/// As [`naive()`] and [`Mistake::of`].
+pub fn mistaken(source: &Camera, right: &Photogrammetric, mistake: Mistake) -> Result<Photogrammetric, ConvertError> {
+    match mistake {
+        Mistake::Naive => naive(source, right.pitch_um, Tangential::Converted),
+        _ => mistake.of(right),
+    }
 }
 
 impl Mistake {

@@ -28,7 +28,7 @@ use grid::{Sight, sights, spread};
 
 pub use difference::{Compensated, Difference, DifferenceOptions, difference, difference_at};
 pub use grid::{Region, Spread, Vector};
-pub use mistake::{Mistake, Mistaken, mistaken};
+pub use mistake::{Mistake, mistaken};
 pub use naive::{Tangential, from_naive, naive};
 pub use rotation::Rotation;
 pub use target::Target;

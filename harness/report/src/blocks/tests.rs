@@ -4,10 +4,11 @@ use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::description::Blocks;
 use calibench_records::points::RunInfo;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
-use calibench_records::stored::{Compressor, Table};
+use calibench_records::stored::Table;
 
 use super::tables;
 use crate::load::adjustments::{Summaries, load};
+use crate::tests::small::new_table;
 
 const SETS: [&str; 4] = ["one", "pairs", "residuals", "recognition"];
 
@@ -46,7 +47,7 @@ fn trial(number: u64) -> Vec<Calibrated> {
 fn summaries() -> Summaries {
     let folder = tempfile::tempdir().unwrap();
     let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
-    let file = Compressor::new(std::fs::File::create(folder.path().join(Table::Adjustments.file())).unwrap());
+    let file = new_table(folder.path(), Table::Adjustments);
     let methods = vec![MethodInfo { label: "lsm".into(), version: "1".into(), unavailable: None }];
     let mut writer = CalibrationWriter::new(file, run, methods, SETS.map(Into::into).to_vec()).unwrap();
     (0..2).for_each(|number| writer.trial(number, &trial(number)).unwrap());

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use calibench_records::description::{Description, read};
 use calibench_records::names::{DESCRIPTION, SCENARIO};
+use calibench_records::stored::StoredError;
 
 use super::LoadError;
 
@@ -20,7 +21,7 @@ pub fn description(folder: &Path, name: &str) -> Result<Option<Description>, Loa
             Err(LoadError::Undescribed { folder: folder.to_owned(), name: name.to_owned() })
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(LoadError::File { path, source }),
+        Err(source) => Err(StoredError::File { path, source }.into()),
         Ok(file) => read(BufReader::new(file)).map(Some).map_err(|source| LoadError::Description { path, source }),
     }
 }

@@ -1,9 +1,7 @@
 //! Why records cannot be read.
 
-use std::io;
 use std::path::PathBuf;
 
-use calibench_records::RecordError;
 use calibench_records::stored::StoredError;
 use thiserror::Error;
 
@@ -13,25 +11,9 @@ pub enum LoadError {
     /// There are none.
     #[error("no records of `{0}`: run it first with `calibench run {0}`")]
     None(String),
-    /// A table of a run that cannot be read.
+    /// A file of a run that cannot be read.
     #[error(transparent)]
     Stored(#[from] StoredError),
-    /// A file that cannot be read.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A file that is not what it should be.
-    #[error("{}: {source}", path.display())]
-    Records {
-        /// The file.
-        path: PathBuf,
-        /// The reason.
-        source: RecordError,
-    },
     /// They do not tell what their scenario is: an older version left them.
     #[error("{}: records without `scenario.json`, of an older version: run `{name}` again", folder.display())]
     Undescribed {

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufReader};
 use std::path::Path;
 
+use calibench_records::stored::StoredError;
 use calibench_records::theory::{THEORY, Theory, read};
 
 use super::LoadError;
@@ -16,7 +17,7 @@ pub fn theory(folder: &Path) -> Result<Vec<Theory>, LoadError> {
     let path = folder.join(THEORY);
     match File::open(&path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
-        Err(source) => Err(LoadError::File { path, source }),
-        Ok(file) => read(BufReader::new(file)).map_err(|source| LoadError::Records { path, source }),
+        Err(source) => Err(StoredError::File { path, source }.into()),
+        Ok(file) => read(BufReader::new(file)).map_err(|source| StoredError::Records { path, source }.into()),
     }
 }

@@ -3,12 +3,13 @@
 use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::points::RunInfo;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
-use calibench_records::stored::{Compressor, Table};
+use calibench_records::stored::Table;
 
 use super::tables;
 use crate::load::adjustments::{Summaries, load};
 use crate::published::adjustment::ours;
 use crate::published::{Cell, Metric};
+use crate::tests::small::new_table;
 
 fn calibrated(method: usize, c: [f64; 3], rmse_xy: f64, failed: bool) -> Calibrated {
     let [value, sigma, error] = c;
@@ -30,7 +31,7 @@ fn summaries() -> Summaries {
     let folder = tempfile::tempdir().unwrap();
     let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
     let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
-    let file = Compressor::new(std::fs::File::create(folder.path().join(Table::Adjustments.file())).unwrap());
+    let file = new_table(folder.path(), Table::Adjustments);
     let mut writer = CalibrationWriter::new(file, run, vec![info("pixel"), info("good")], vec!["c".into()]).unwrap();
     let pixel = [([16.5, 0.02, 0.002], 0.004), ([16.6, 0.02, 0.001], 0.002), ([16.7, 0.04, -0.002], 0.004), ([16.5, 0.02, 0.0], 0.004)];
     let good = [([16.51, 0.01, 0.001], 0.002), ([16.52, 0.02, -0.002], 0.001), ([16.53, 0.01, 0.003], 0.006), ([0.0; 3], 0.0)];

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibench_model::{PixelPoint, Rejection};
 use calibench_records::description::{self, Description, Subject};
@@ -107,6 +107,11 @@ pub struct Family {
     folder: TempDir,
 }
 
+/// A table in the folder of a run, to be filled.
+pub fn new_table(folder: &Path, table: Table) -> Compressor<fs::File> {
+    Compressor::new(fs::File::create(folder.join(table.file())).unwrap())
+}
+
 impl Family {
     pub fn new() -> Self {
         let family = Self { folder: tempfile::tempdir().unwrap() };
@@ -116,7 +121,7 @@ impl Family {
         fs::write(family.folder.path().join("published/small/table-1.toml"), TABLE).unwrap();
         let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
         let run = RunInfo { scenario: NAME.into(), seed: 5, revision: "r".into(), detector: None };
-        let file = Compressor::new(fs::File::create(family.records()).unwrap());
+        let file = new_table(family.records().parent().unwrap(), Table::Points);
         let mut writer = RecordWriter::new(file, run, vec![info("pixel"), info("centroid:window=15")]).unwrap();
         let first = [Some((0.03, 0.04)), Some((-0.01, 0.02)), None];
         let second = [Some((0.05, 0.0)), Some((3.0, 4.0)), Some((0.02, -0.02))];
@@ -134,8 +139,7 @@ impl Family {
 
     /// Puts plain CSV in the place of a table of the run.
     pub fn put(&self, table: Table, text: &str) {
-        let file = fs::File::create(self.records().with_file_name(table.file())).unwrap();
-        let mut file = Compressor::new(file);
+        let mut file = new_table(self.records().parent().unwrap(), table);
         file.write_all(text.as_bytes()).unwrap();
         file.finish().unwrap();
     }

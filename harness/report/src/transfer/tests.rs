@@ -3,11 +3,12 @@
 use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::points::RunInfo;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo};
-use calibench_records::stored::{Compressor, Table};
+use calibench_records::stored::Table;
 use tempfile::TempDir;
 
 use super::{boards, cases, decomposition, errors, is_transfer};
 use crate::load::adjustments::{Summaries, load};
+use crate::tests::small::new_table;
 
 const SETS: [&str; 2] = ["held", "split"];
 
@@ -54,7 +55,7 @@ fn run() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
     let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
-    let file = Compressor::new(std::fs::File::create(folder.path().join(Table::Adjustments.file())).unwrap());
+    let file = new_table(folder.path(), Table::Adjustments);
     let mut writer = CalibrationWriter::new(file, run, vec![info("board"), info("none")], SETS.map(Into::into).to_vec()).unwrap();
     for number in 0..2 {
         let of = |method, set, outcome| Calibrated { method, set, outcome, check_failed: None };

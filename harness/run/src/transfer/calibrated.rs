@@ -9,7 +9,7 @@ use calibench_scenario::transfer::{Calibrates, Conditions, Method, NO_SOLVER, So
 use nalgebra::Point3;
 
 use super::Campaign;
-use super::drawn::Drawn;
+use super::drawn::{Drawn, Seen};
 
 /// Control points from which an image is resected for a start.
 const ENOUGH: usize = 12;
@@ -23,19 +23,19 @@ pub struct Calibration {
     pub poses: Vec<Pose>,
     /// What the adjustment says of itself, if there was one.
     pub quality: Option<Quality>,
+    /// Points in rendered images that were not measured.
+    pub missed: usize,
 }
 
 /// What an adjustment says of itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// Standard deviation of the principal distance, mm, with the estimated variance factor.
-    pub sigma_c: f64,
+    /// Standard deviation of the principal distance, mm, with the estimated variance factor; none of a tool that gives none.
+    pub sigma_c: Option<f64>,
     /// Standard deviation of unit weight, a number.
     pub sigma0: f64,
     /// Observations minus unknowns.
     pub redundancy: i64,
-    /// Points in rendered images that were not measured.
-    pub missed: usize,
 }
 
 /// The calibration of the method at `place` under `conditions`. Exterior orientations of stations start from `near`, or from resections with the data sheet's camera.
@@ -51,21 +51,39 @@ pub fn calibration(
 ) -> Result<Calibration, String> {
     let method = &campaign.transfer.methods[place];
     match method.calibrates {
-        Calibrates::Never => Ok(Calibration { camera: method.start, poses: Vec::new(), quality: None }),
+        Calibrates::Never => Ok(Calibration { camera: method.start, poses: Vec::new(), quality: None, missed: 0 }),
         Calibrates::FromControl => from_control(campaign, drawn, method, conditions, near),
         Calibrates::FromBoard { sigma_px, solver } => {
             let sigma_px = conditions.board_sigma_px.unwrap_or(sigma_px);
             let (views, missed) = drawn.boards(place, sigma_px, conditions)?;
-            // A view in which nothing was found is none.
-            let views: Vec<Vec<Control>> = views.into_iter().filter(|view| !view.is_empty()).collect();
+            let targets = campaign.transfer.board.iter().flat_map(|board| &board.field.targets);
+            let corners: Vec<Point3<f64>> = targets.map(|target| target.surveyed).collect();
+            let (board, pitch_um) = (Board { corners: &corners, views: &views, sigma_px }, campaign.transfer.pitch_um);
             let found = match solver {
-                Solver::Own => from_board(method, &views, sigma_px, campaign.transfer.pitch_um)?,
-                Solver::Opencv => {
-                    by_another(campaign.tools.solver.ok_or(NO_SOLVER)?, method, &views, sigma_px, campaign.transfer.pitch_um)?
-                }
+                Solver::Own => from_board(method, &board, pitch_um)?,
+                Solver::Opencv => by_another(campaign.tools.solver.ok_or(NO_SOLVER)?, method, &board, pitch_um)?,
             };
-            Ok(Calibration { quality: found.quality.map(|quality| Quality { missed, ..quality }), ..found })
+            Ok(Calibration { missed, ..found })
         }
+    }
+}
+
+/// A board as it was measured.
+struct Board<'a> {
+    /// Where its corners are meant to be, the board's units.
+    corners: &'a [Point3<f64>],
+    /// What was measured in each view; nothing in one where it was not found.
+    views: &'a [Vec<Seen>],
+    /// Standard deviation of a coordinate, px.
+    sigma_px: f64,
+}
+
+impl Board<'_> {
+    /// The views in which it was found, with their numbers.
+    fn found(&self) -> impl Iterator<Item = (usize, &[Seen], Vec<Control>)> {
+        let control = |&(corner, image): &Seen| Control { object: self.corners[corner], image };
+        let found = self.views.iter().zip(1..).filter(|(view, _)| !view.is_empty());
+        found.map(move |(view, number)| (number, view.as_slice(), view.iter().map(control).collect()))
     }
 }
 
@@ -109,24 +127,18 @@ fn from_control(
         poses[station] = *pose;
     }
     let missed = if conditions.measurement { drawn.missed() } else { 0 };
-    Ok(Calibration { poses, quality: found.quality.map(|quality| Quality { missed, ..quality }), ..found })
+    Ok(Calibration { poses, missed, ..found })
 }
 
 /// What another tool makes of the same corners, with all its parameters and no start but its own.
-fn by_another(
-    solver: &dyn BoardSolver,
-    method: &Method,
-    views: &[Vec<Control>],
-    sigma_px: f64,
-    pitch_um: f64,
-) -> Result<Calibration, String> {
-    let found = solver.solve(method.start.size(), views)?;
+fn by_another(solver: &dyn BoardSolver, method: &Method, board: &Board<'_>, pitch_um: f64) -> Result<Calibration, String> {
+    let views: Vec<Vec<Control>> = board.found().map(|(.., control)| control).collect();
+    let found = solver.solve(method.start.size(), &views)?;
     let corners: usize = views.iter().map(Vec::len).sum();
     let redundancy = 2 * corners as i64 - 6 * views.len() as i64 - method.parameters.len() as i64;
-    let sigma0 = found.rms_px / sigma_px * (corners as f64 / redundancy.max(1) as f64).sqrt();
-    let sigma_c = found.sigma_f_px.map_or(f64::NAN, |sigma| sigma * pitch_um * 1e-3);
-    let quality = Quality { sigma_c, sigma0, redundancy, missed: 0 };
-    Ok(Calibration { camera: found.camera, poses: Vec::new(), quality: Some(quality) })
+    let sigma0 = found.rms_px / board.sigma_px * (corners as f64 / redundancy.max(1) as f64).sqrt();
+    let sigma_c = found.sigma_f_px.map(|sigma| sigma * pitch_um * 1e-3);
+    Ok(Calibration { camera: found.camera, poses: Vec::new(), quality: Some(Quality { sigma_c, sigma0, redundancy }), missed: 0 })
 }
 
 /// Some of many control points, spread over their order: start values need no more.
@@ -134,24 +146,16 @@ fn some(control: &[Control]) -> Vec<Control> {
     control.iter().step_by(control.len().div_ceil(ENOUGH).max(1)).copied().collect()
 }
 
-fn from_board(method: &Method, views: &[Vec<Control>], sigma_px: f64, pitch_um: f64) -> Result<Calibration, String> {
+fn from_board(method: &Method, board: &Board<'_>, pitch_um: f64) -> Result<Calibration, String> {
     let mut network = start(method)?;
-    let mut places: Vec<Point3<f64>> = Vec::new();
-    for (image, view) in views.iter().enumerate() {
-        let name = format!("view {}", image + 1);
-        let poses = planar_poses(&method.start, view).map_err(|error| format!("{name}: {error}"))?;
+    network.points = board.corners.iter().zip(1..).map(|(at, i)| ObjectPoint::fixed(format!("corner {i}"), *at)).collect();
+    for (image, (number, view, control)) in board.found().enumerate() {
+        let name = format!("view {number}");
+        let poses = planar_poses(&method.start, &control).map_err(|error| format!("{name}: {error}"))?;
         let best = poses.first().ok_or_else(|| format!("{name}: no pose before the board"))?;
         network.images.push(Exterior::free(name, 0, best.pose));
-        for corner in view {
-            let known = places.iter().position(|place| *place == corner.object);
-            let point = known.unwrap_or_else(|| {
-                places.push(corner.object);
-                places.len() - 1
-            });
-            network.observations.push(ImageObservation::new(image, point, corner.image, sigma_px));
-        }
+        network.observations.extend(view.iter().map(|&(corner, at)| ImageObservation::new(image, corner, at, board.sigma_px)));
     }
-    network.points = places.iter().enumerate().map(|(i, at)| ObjectPoint::fixed(format!("corner {}", i + 1), *at)).collect();
     Ok(Calibration { poses: Vec::new(), ..solved(&network, pitch_um)? })
 }
 
@@ -165,7 +169,7 @@ fn start(method: &Method) -> Result<Network, String> {
 fn solved(network: &Network, pitch_um: f64) -> Result<Calibration, String> {
     let solution = adjust(network, &Options::default()).map_err(|error| error.to_string())?;
     let quality = quality(&solution, pitch_um)?;
-    Ok(Calibration { camera: solution.cameras()[0], poses: solution.poses().to_vec(), quality: Some(quality) })
+    Ok(Calibration { camera: solution.cameras()[0], poses: solution.poses().to_vec(), quality: Some(quality), missed: 0 })
 }
 
 fn quality(solution: &Solution<'_>, pitch_um: f64) -> Result<Quality, String> {
@@ -183,6 +187,6 @@ fn quality(solution: &Solution<'_>, pitch_um: f64) -> Result<Quality, String> {
         .flat_map(|i| (0..weights.len()).map(move |j| (i, j)))
         .map(|(i, j)| weights[i] * matrix[(i, j)] * weights[j])
         .sum();
-    let (sigma_c, sigma0) = (variance.max(0.0).sqrt(), solution.sigma0().unwrap_or(0.0));
-    Ok(Quality { sigma_c, sigma0, redundancy: solution.counts().redundancy(), missed: 0 })
+    let (sigma_c, sigma0) = (Some(variance.max(0.0).sqrt()), solution.sigma0().unwrap_or(0.0));
+    Ok(Quality { sigma_c, sigma0, redundancy: solution.counts().redundancy() })
 }

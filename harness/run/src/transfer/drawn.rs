@@ -17,12 +17,15 @@ use super::camera::refocused;
 use super::imaged::{BoardImages, measured_wall};
 use crate::RunError;
 
+/// A target or corner, by its place in the field, and its image coordinates, px.
+pub type Seen = (usize, PixelPoint);
+
 /// What is measured in a trial, drawn or in rendered images, and its survey, which all conditions share, and its board's views.
 pub struct Drawn<'a> {
     campaign: &'a Campaign<'a>,
     key: Key<'a>,
     /// Of each station: target and image coordinates, px.
-    images: Vec<Vec<(usize, PixelPoint)>>,
+    images: Vec<Vec<Seen>>,
     /// How many targets were not measured.
     missed: usize,
     /// Of each target, errors of standard deviation 1.
@@ -63,7 +66,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// Of a station what is measured: target and image coordinates, px; with `measurement` off the truth of it.
-    pub fn seen(&self, station: usize, measurement: bool) -> &[(usize, PixelPoint)] {
+    pub fn seen(&self, station: usize, measurement: bool) -> &[Seen] {
         if measurement { &self.images[station] } else { &self.campaign.images[station] }
     }
 
@@ -75,17 +78,16 @@ impl<'a> Drawn<'a> {
 
     /// What is measured of control in a station.
     pub fn control(&self, station: usize, conditions: &Conditions) -> Vec<Control> {
-        let of = |&(target, image): &(usize, PixelPoint)| Control { object: self.surveyed(target, conditions.survey), image };
+        let of = |&(target, image): &Seen| Control { object: self.surveyed(target, conditions.survey), image };
         let seen = self.seen(station, conditions.measurement).iter();
         seen.filter(|(target, _)| self.campaign.is_control[*target]).map(of).collect()
     }
 
-    /// The corners of the board in each of its views as the method at `place` measures them: where they are meant to be on a flat board, the board's units,
-    /// and image coordinates. How many were not measured.
+    /// The corners of the board in each of its views as the method at `place` measures them, and how many were not measured.
     ///
     /// # Errors
     /// In words: no views within the bounds, a corner that is not pictured, images that cannot be rendered.
-    pub fn boards(&self, place: usize, sigma_px: f64, conditions: &Conditions) -> Result<(Vec<Vec<Control>>, usize), String> {
+    pub fn boards(&self, place: usize, sigma_px: f64, conditions: &Conditions) -> Result<(Vec<Vec<Seen>>, usize), String> {
         let campaign = self.campaign;
         let (board, method) = (campaign.transfer.board.as_ref().ok_or("there is no board")?, &campaign.transfer.methods[place]);
         let stations = self.boards.as_ref().map_err(Clone::clone)?;
@@ -100,13 +102,13 @@ impl<'a> Drawn<'a> {
             // Methods do not share their errors.
             let key = Key { view: &station.name, target: &method.name, ..self.key };
             let errors = errors(corners.len(), key, Purpose::DrawnPoint);
-            let corner = |((target, at), [x, y]): ((&calibench_model::ObjectTarget, &Point3<f64>), [f64; 2])| {
+            let corner = |((place, at), [x, y]): ((usize, &Point3<f64>), [f64; 2])| {
                 let seen = camera.project(station.pose.ray(at)).map_err(|error| format!("view {}: {error}", station.name))?;
-                Ok(Control { object: target.surveyed, image: PixelPoint::new(seen.x + sigma * x, seen.y + sigma * y) })
+                Ok((place, PixelPoint::new(seen.x + sigma * x, seen.y + sigma * y)))
             };
-            board.field.targets.iter().zip(&corners).zip(errors).map(corner).collect()
+            corners.iter().enumerate().zip(errors).map(corner).collect()
         };
-        let views: Result<Vec<Vec<Control>>, String> = stations.iter().map(of_view).collect();
+        let views: Result<Vec<Vec<Seen>>, String> = stations.iter().map(of_view).collect();
         Ok((views?, 0))
     }
 
@@ -130,11 +132,11 @@ impl<'a> Drawn<'a> {
 }
 
 /// Image coordinates of the field that are drawn.
-fn drawn_wall(campaign: &Campaign<'_>, key: Key<'_>) -> Vec<Vec<(usize, PixelPoint)>> {
+fn drawn_wall(campaign: &Campaign<'_>, key: Key<'_>) -> Vec<Vec<Seen>> {
     let (subject, sigma) = (campaign.subject, campaign.transfer.sigma_px);
-    let station = |(station, seen): (&Station, &Vec<(usize, PixelPoint)>)| {
+    let station = |(station, seen): (&Station, &Vec<Seen>)| {
         let errors = errors(subject.field.targets.len(), Key { view: &station.name, ..key }, Purpose::CommonError);
-        let point = |&(target, at): &(usize, PixelPoint)| {
+        let point = |&(target, at): &Seen| {
             let [x, y] = errors[target];
             (target, PixelPoint::new(at.x + sigma * x, at.y + sigma * y))
         };

@@ -28,7 +28,7 @@ pub fn over_frame(truth: &Camera, camera: &Camera) -> Result<f64, String> {
 /// In words: a camera without an axis.
 pub fn of_camera(campaign: &Campaign<'_>, calibration: &Calibration, applied: &Camera) -> Result<Vec<Figure>, String> {
     let (found, truth) = (interior(applied, campaign.transfer.pitch_um)?, campaign.interior);
-    let sigma = calibration.quality.map(|quality| quality.sigma_c).filter(|sigma| sigma.is_finite());
+    let sigma = calibration.quality.and_then(|quality| quality.sigma_c);
     let of = |(i, name): (usize, &str)| {
         let sigma = sigma.filter(|_| i == 0);
         Figure { group: Group::Iop, name: name.into(), value: found[i], sigma, error: Some(found[i] - truth[i]), unit: "mm" }
@@ -42,7 +42,7 @@ pub fn of_camera(campaign: &Campaign<'_>, calibration: &Calibration, applied: &C
         figures.push(Figure::plain(Group::Network, "sigma0", quality.sigma0, ""));
         figures.push(Figure::plain(Group::Network, "redundancy", quality.redundancy as f64, ""));
         if campaign.transfer.measured_by.is_some() {
-            figures.push(Figure::plain(Group::Network, "missed", quality.missed as f64, ""));
+            figures.push(Figure::plain(Group::Network, "missed", calibration.missed as f64, ""));
         }
     }
     Ok(figures)

@@ -1,26 +1,25 @@
 //! What operators measure in rendered images of a campaign.
 
-use calibench_adjust::approximate::Control;
 use calibench_measure::{Board as Counted, BoardDetector};
 use calibench_model::camera::Camera;
-use calibench_model::{Image, PixelPoint, Start, Testfield};
+use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
 use calibench_random::Key;
 use calibench_scenario::ViewsSubject;
 use calibench_scenario::transfer::{Board, Measuring};
 use calibench_synth::stations::Station;
-use nalgebra::Point3;
 use rayon::prelude::*;
 
 use super::Campaign;
-use super::drawn::bent_plate;
+use super::drawn::{Seen, bent_plate};
 use crate::RunError;
+use crate::measured::of_its_kinds;
 use crate::views::{Pointed, Prepared, pointed};
 
 /// Of each target that is pointed at its place, and its image coordinates if it was measured, px.
 type Found = Vec<(usize, Option<PixelPoint>)>;
 
 /// Of each station target and image coordinates, px; how many targets were not measured.
-pub type Measured = (Vec<Vec<(usize, PixelPoint)>>, usize);
+pub type Measured = (Vec<Vec<Seen>>, usize);
 
 /// The image coordinates of the field's control and check points.
 ///
@@ -32,7 +31,7 @@ pub fn measured_wall(campaign: &Campaign<'_>, measuring: &Measuring, key: Key<'_
     let images = images(&prepared, &[measuring], None, key)?;
     let is_used = |target: usize| campaign.is_control[target] || campaign.is_check[target];
     let mut missed = 0;
-    let mut station = |mut ways: Vec<Found>| -> Vec<(usize, PixelPoint)> {
+    let mut station = |mut ways: Vec<Found>| -> Vec<Seen> {
         let used = ways.swap_remove(0).into_iter().filter(|(target, _)| is_used(*target));
         used.filter_map(|(target, at)| {
             missed += usize::from(at.is_none());
@@ -48,10 +47,8 @@ pub fn measured_wall(campaign: &Campaign<'_>, measuring: &Measuring, key: Key<'_
 pub struct BoardImages {
     /// The methods that measure, by their places.
     methods: Vec<usize>,
-    /// Of each view, of each of them, each corner's place and image coordinates, px, if it was measured.
+    /// Of each view, of each of them.
     views: Vec<Vec<Found>>,
-    /// Where the corners are meant to be, the board's units.
-    corners: Vec<Point3<f64>>,
 }
 
 impl BoardImages {
@@ -66,7 +63,6 @@ impl BoardImages {
         key: Key<'_>,
     ) -> Result<Self, RunError> {
         let flat = &board.field;
-        let corners = flat.targets.iter().map(|target| target.surveyed).collect();
         let field = Testfield { plates: vec![bent_plate(flat, bend)], ..flat.clone() };
         let pictured = campaign.subject.board.as_deref().ok_or(RunError::NothingToRender)?;
         let subject = ViewsSubject { field, camera: *camera, stations: stations.to_vec(), ..pictured.clone() };
@@ -77,13 +73,12 @@ impl BoardImages {
         let name = format!("{}, board", key.scenario);
         let key = Key { scenario: &name, ..key };
         let prepared = Prepared::of(&subject, stations, key)?;
-        Ok(Self { methods, views: images(&prepared, &ways, campaign.tools.detector, key)?, corners })
+        Ok(Self { methods, views: images(&prepared, &ways, campaign.tools.detector, key)? })
     }
 
     /// The measured corners of each view, of the method at `place`.
-    pub fn of(&self, place: usize) -> Vec<Vec<Control>> {
-        let corner = |&(corner, at): &(usize, Option<PixelPoint>)| Some(Control { object: self.corners[corner], image: at? });
-        self.ways(place).map(|way| way.iter().filter_map(corner).collect()).collect()
+    pub fn of(&self, place: usize) -> Vec<Vec<Seen>> {
+        self.ways(place).map(|way| way.iter().filter_map(|&(corner, at)| Some((corner, at?))).collect()).collect()
     }
 
     /// How many corners the method at `place` did not measure.
@@ -112,24 +107,29 @@ fn images(
     prepared.views.par_iter().map(view).collect()
 }
 
-fn measured(field: &Testfield, way: &Measuring, detector: Option<&dyn BoardDetector>, image: &Image, points: &[Pointed]) -> Found {
-    let found = way.detected.then(|| {
+fn measured(
+    field: &Testfield,
+    way: &Measuring,
+    detector: Option<&dyn BoardDetector>,
+    image: &Image,
+    points: &[(Pointed, Option<Start>)],
+) -> Found {
+    let kind = |(point, _): &(Pointed, Option<Start>)| field.targets[point.target].kind;
+    let starts: Vec<Option<Start>> = if way.detected {
         let corners = detector.and_then(|detector| detector.detect(image, counted(field)?));
-        corners.map_or_else(|| vec![None; points.len()], |corners| named(points, &corners))
-    });
-    let start = |(place, point): (usize, &Pointed)| {
-        let start = point.start.filter(|_| way.operator.measures(Some(field.targets[point.target].kind)))?;
-        match &found {
-            Some(found) => Some(Start { position: found[place]?, ..start }),
-            None => Some(start),
-        }
+        let named = corners.map_or_else(|| vec![None; points.len()], |corners| named(points, &corners));
+        // A detector says where a corner is and nothing of its shape.
+        named.into_iter().zip(points).map(|(at, point)| Some(Start { kind: Some(kind(point)), ..Start::at(at?) })).collect()
+    } else {
+        points.iter().map(|(_, start)| *start).collect()
     };
-    let starts: Vec<Option<Start>> = points.iter().enumerate().map(start).collect();
-    let asked: Vec<Start> = starts.iter().flatten().copied().collect();
-    let mut results =
-        way.operator.operator.as_deref().map_or_else(|_| Vec::new(), |operator| operator.measure_all(image, &asked)).into_iter();
-    let at = |start: &Option<Start>| Some(start.and_then(|_| results.next())?.ok()?.position);
-    points.iter().map(|point| point.target).zip(starts.iter().map(at)).collect()
+    let asked: Vec<(TargetKind, Option<Start>)> = points.iter().map(kind).zip(starts).collect();
+    let results = of_its_kinds(&way.operator, image, &asked).unwrap_or_else(|| vec![None; points.len()]);
+    points
+        .iter()
+        .zip(results)
+        .map(|((point, _), result)| (point.target, result.and_then(Result::ok).map(|measured| measured.position)))
+        .collect()
 }
 
 /// The chessboard of a field, counted; `None` where its targets are no full rows.
@@ -142,14 +142,10 @@ fn counted(field: &Testfield) -> Option<Counted> {
 
 /// The detected corner of each point. A detector does not say which corner of a symmetric board is the first: that is told by where the corners are, and by
 /// nothing finer than half of the least distance between two.
-fn named(points: &[Pointed], corners: &[PixelPoint]) -> Vec<Option<PixelPoint>> {
+fn named(points: &[(Pointed, Option<Start>)], corners: &[PixelPoint]) -> Vec<Option<PixelPoint>> {
     let between = |i: usize| corners[i + 1..].iter().map(move |other| corners[i].distance(*other));
     let reach = 0.5 * (0..corners.len()).flat_map(between).fold(f64::INFINITY, f64::min);
-    let nearest = |point: &Pointed| {
-        let by_distance = corners.iter().map(|corner| (corner.distance(point.truth), *corner));
-        by_distance.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(distance, _)| *distance < reach).map(|(_, corner)| corner)
-    };
-    points.iter().map(nearest).collect()
+    points.iter().map(|(point, _)| point.truth.nearest(corners, reach)).collect()
 }
 
 #[cfg(test)]
@@ -158,7 +154,8 @@ mod tests {
 
     #[test]
     fn corners_are_named_by_where_they_are() {
-        let point = |target, x| Pointed { target, truth: PixelPoint::new(x, 0.0), start: Some(Start::at(PixelPoint::new(x, 0.0))) };
+        let at = |x| PixelPoint::new(x, 0.0);
+        let point = |target, x| (Pointed { target, truth: at(x), start: Start::at(at(x)) }, None);
         let points = [point(0, 10.0), point(1, 20.0), point(2, 30.0)];
         // The other way round, one far off.
         let corners = [PixelPoint::new(36.0, 0.0), PixelPoint::new(21.0, 0.0), PixelPoint::new(11.0, 0.0)];

@@ -22,7 +22,7 @@ pub fn run(campaign: &Campaign<'_>, key: Key<'_>) -> Result<Vec<Calibrated>, Run
     let mut bench = Bench { campaign, drawn: Drawn::new(campaign, key)?, calibrations: Vec::new(), compared: Vec::new() };
     let transfer = campaign.transfer;
     let mut all = Vec::new();
-    for method in (0..transfer.methods.len()).filter(|&method| transfer.unavailable(method, campaign.tools.solver.is_some()).is_none()) {
+    for method in (0..transfer.methods.len()).filter(|&method| campaign.tools.lack(transfer, method).is_none()) {
         for (set, case) in transfer.cases.iter().enumerate().filter(|(_, case)| case.methods.contains(&method)) {
             all.push(bench.case(method, set, case, key.trial == 0));
         }

@@ -160,11 +160,15 @@ impl Transfer {
         self.cases.iter().map(|case| case.name.clone()).chain(splits).collect()
     }
 
-    /// Why the method at `place` cannot run in a build, if so; `solver` is whether that has OpenCV's calibration from a board.
-    pub fn unavailable(&self, place: usize, solver: bool) -> Option<String> {
+    /// Why the method at `place` cannot run in a build, if so; `solver` and `detector` are whether that has OpenCV's calibration from a board and a detector
+    /// of chessboards.
+    pub fn unavailable(&self, place: usize, solver: bool, detector: bool) -> Option<String> {
         let method = &self.methods[place];
         if matches!(method.calibrates, Calibrates::FromBoard { solver: Solver::Opencv, .. }) && !solver {
             return Some(NO_SOLVER.into());
+        }
+        if method.measured_by.as_ref().is_some_and(|measuring| measuring.detected) && !detector {
+            return Some("this build has no chessboard detector".into());
         }
         let mut measuring = self.measured_by.iter().chain(&method.measured_by);
         measuring.find_map(|measuring| Some(format!("{}: {}", measuring.operator.label, measuring.operator.operator.as_ref().err()?)))

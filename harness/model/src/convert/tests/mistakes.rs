@@ -1,7 +1,8 @@
 //! What mistakes cost, against formulas of first order.
 
 use super::super::{
-    ConvertError, ConvertOptions, Difference, DifferenceOptions, Mistake, Tangential, Target, difference, from_naive, mistaken, naive,
+    ConvertError, ConvertOptions, Difference, DifferenceOptions, Mistake, Tangential, Target, convert, difference, from_naive, mistaken,
+    naive,
 };
 use super::{mild, photogrammetric, values};
 use crate::camera::{AgisoftVersion, Camera, OpenCv, Photogrammetric, TangentialOrder};
@@ -96,7 +97,9 @@ fn the_corner_is_far_from_the_centre() {
 #[test]
 fn naive_costs_the_second_order() {
     let options = ConvertOptions { accept: true, ..ConvertOptions::default() };
-    let found = mistaken(&mild(), 4.7, Mistake::Naive, &options).unwrap();
+    let converted = convert(&mild(), Target::photogrammetric(4.7), &options).unwrap();
+    let Camera::Photogrammetric(right_camera) = converted.camera else { panic!("{:?}", converted.camera) };
+    let found = mistaken(&mild(), &right_camera, Mistake::Naive).unwrap();
     // With one coefficient the inverse of r (1 + K r^2) is r (1 - K r^2 + 3 K^2 r^4): 3 K^2 r^5 f is neglected.
     let source = Camera::from(OpenCv { cx: 680.5, cy: 510.0, ..super::opencv(4, &[-0.02]) });
     let wrong = naive(&source, 4.7, Tangential::Converted).unwrap();
@@ -105,10 +108,10 @@ fn naive_costs_the_second_order() {
     let r = 680.5_f64.hypot(510.0) / 1500.0;
     let expected = 3.0 * 0.02_f64.powi(2) * r.powi(5) * 1500.0;
     assert!((lost.spread.max_px / expected - 1.0).abs() < 0.1, "{:?} {expected}", lost.spread);
-    let cost = difference(&found.right.camera, &found.wrong.into(), &options).unwrap().spread.max_px;
-    assert!(cost > 10.0 * found.right.residual.max_px, "{cost} {:?}", found.right.residual);
-    let sourceless = mistaken(&right().into(), 4.7, Mistake::Naive, &ConvertOptions::default());
-    assert_eq!(sourceless.map(|m| m.wrong), Err(ConvertError::NotInTable));
+    let cost = difference(&converted.camera, &found.into(), &options).unwrap().spread.max_px;
+    assert!(cost > 10.0 * converted.residual.max_px, "{cost} {:?}", converted.residual);
+    assert_eq!(mistaken(&right().into(), &right(), Mistake::Naive), Err(ConvertError::NotInTable));
+    assert_eq!(mistaken(&mild(), &right(), Mistake::SignOfX0), Mistake::SignOfX0.of(&right()));
 }
 
 #[test]

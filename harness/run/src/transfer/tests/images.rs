@@ -2,24 +2,19 @@
 
 use calibench_adjust::approximate::Control;
 use calibench_calibrate::{BoardSolution, BoardSolver};
+use calibench_measure::{Board, BoardDetector};
 use calibench_model::camera::ImageSize;
+use calibench_model::{Image, PixelPoint};
 
 use super::*;
 use crate::Tools;
 
-const MEASURED: &str = r#"
-[[transfer.method]]
-name = "control"
-from = "control"
-model = "metashape"
+/// Beside those of most tests, by its place.
+const SOLVER: usize = 3;
 
-[[transfer.method]]
-name = "board"
-from = "board"
-model = "opencv"
-measured_by = "parametric_corner"
-sigma_px = 0.01
-
+/// The study with fewer views and with images.
+fn measured() -> Scenario {
+    let solver = r#"
 [[transfer.method]]
 name = "solver"
 from = "board"
@@ -29,13 +24,28 @@ detected = true
 solver = "opencv"
 sigma_px = 0.01
 "#;
-const SOLVER: usize = 2;
-
-/// The study with fewer views and with images.
-fn measured() -> Scenario {
+    let methods = METHODS.replace("sigma_px = 0.03", "measured_by = \"parametric_corner\"\nsigma_px = 0.01") + solver;
     let case = "[[transfer.case]]\nname = \"plain\"\nposes = \"resected\"\nsurvey = false\n";
-    let text = text(MEASURED, case).replace("sigma_px = 0.5", "sigma_px = 0.01\nmeasured_by = \"parametric_corner\"");
+    let text = text(&methods, case).replace("sigma_px = 0.5", "sigma_px = 0.01\nmeasured_by = \"parametric_corner\"");
     read(&text.replace("views = 6", "views = 4").replace("trials = 2", "trials = 1"))
+}
+
+/// Finds nothing.
+struct Blind;
+
+impl BoardDetector for Blind {
+    fn name(&self) -> &'static str {
+        "blind"
+    }
+
+    fn version(&self) -> String {
+        "1".into()
+    }
+
+    fn detect(&self, image: &Image, board: Board) -> Option<Vec<PixelPoint>> {
+        assert_eq!((image.width(), board.columns, board.rows), (4272, 9, 6));
+        None
+    }
 }
 
 /// Tells how many views it was given.
@@ -59,7 +69,7 @@ impl BoardSolver for Counter {
 #[test]
 fn rendered_images_are_measured_and_calibrated() {
     let scenario = measured();
-    let tools = Tools { detector: None, solver: Some(&Counter) };
+    let tools = Tools { detector: Some(&Blind), solver: Some(&Counter) };
     let mut trials = Vec::new();
     let plan = Plan::new(&scenario, tools, "".into());
     plan.run(&|| (), &mut |trial| {
@@ -85,4 +95,6 @@ fn rendered_images_are_measured_and_calibrated() {
     let without = Plan::new(&scenario, Tools::default(), "".into()).method_infos();
     assert_eq!(without[SOLVER].unavailable.as_deref(), Some("this build is without OpenCV"));
     assert!(without[BOARD].unavailable.is_none());
+    let undetected = Plan::new(&scenario, Tools { detector: None, ..tools }, "".into()).method_infos();
+    assert_eq!(undetected[SOLVER].unavailable.as_deref(), Some("this build has no chessboard detector"));
 }
