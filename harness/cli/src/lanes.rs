@@ -15,7 +15,9 @@ pub fn lanes() -> usize {
 pub fn side_by_side<T: Sync, R: Send, E: Send>(items: &[T], lanes: usize, each: impl Fn(&T) -> Result<R, E> + Sync) -> Result<Vec<R>, E> {
     let (next, done) = (AtomicUsize::new(0), Mutex::new(Vec::with_capacity(items.len())));
     let lane = || {
-        while let Some((place, item)) = Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|place| Some((place, items.get(place)?))) {
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(item) = items.get(place) else { return };
             let result = each(item);
             if result.is_err() {
                 next.store(items.len(), Ordering::Relaxed);
@@ -54,6 +56,23 @@ mod tests {
             assert!(most.into_inner() <= lanes);
         }
         assert_eq!(side_by_side(&[], 2, |(): &()| Ok::<(), ()>(())), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn two_lanes_are_two_at_a_time() {
+        let (met, deadline) = (AtomicUsize::new(0), std::time::Instant::now() + std::time::Duration::from_secs(20));
+        // Each waits until the other has begun.
+        let meet = |(): &()| {
+            met.fetch_add(1, Ordering::SeqCst);
+            while met.load(Ordering::SeqCst) < 2 {
+                if std::time::Instant::now() > deadline {
+                    return Err("alone");
+                }
+                std::thread::yield_now();
+            }
+            Ok(())
+        };
+        assert_eq!(side_by_side(&[(), ()], 2, meet), Ok(vec![(), ()]));
     }
 
     #[test]

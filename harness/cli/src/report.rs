@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use calibench_diagnostics::nearest;
 use calibench_report::{Written, conventions};
 use clap::Args;
-use rayon::prelude::*;
 
 use super::context::Context;
+use super::lanes::{lanes, side_by_side};
 use crate::failure::Failure;
 
 #[derive(Args)]
@@ -43,22 +43,22 @@ impl Report {
         if !self.papers.is_empty() {
             families.retain(|family, _| self.papers.contains(family));
         }
-        let write = |(family, scenarios): (&String, &Vec<String>)| {
-            if family == conventions::FAMILY {
-                return conventions::write(&places).map(Written::New);
-            }
-            calibench_report::write(&places, family, scenarios)
-        };
-        let all: Vec<_> = families.par_iter().map(write).collect();
-        for written in all {
-            match written? {
+        let write = |(family, scenarios): &(&String, &Vec<String>)| {
+            let written = if *family == conventions::FAMILY {
+                Written::New(conventions::write(&places)?)
+            } else {
+                calibench_report::write(&places, family, scenarios)?
+            };
+            match written {
                 Written::New(page) if !context.quiet => say!("{}", page.display()),
                 Written::Kept(page) if !context.quiet => {
                     say!("{}: kept as it is, nothing of it can be measured here", page.display());
                 }
                 _ => {}
             }
-        }
+            Ok::<_, Failure>(())
+        };
+        side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), write)?;
         Ok(calibench_report::write_index(&places.reports)?)
     }
 }

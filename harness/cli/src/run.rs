@@ -48,6 +48,25 @@ impl Changes {
     }
 }
 
+/// A scenario that is run.
+struct Task<'a> {
+    scenario: &'a Scenario,
+    folder: &'a RecordsFolder,
+    /// In place of its own, if there are any.
+    methods: &'a [Configured],
+    revision: &'a str,
+    /// Whether another one is run beside it.
+    beside: bool,
+}
+
+impl Task<'_> {
+    /// What it took; beside another it waits for processors, too.
+    fn time(&self, started: Instant) -> String {
+        let beside = if self.beside { " beside another" } else { "" };
+        format!("in {:.1} s{beside}", started.elapsed().as_secs_f64())
+    }
+}
+
 impl Run {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let names = if self.all { context.catalogue()?.names()? } else { self.scenarios.clone() };
@@ -62,12 +81,13 @@ impl Run {
         };
         let folders = names.iter().zip(&scenarios).map(folder).collect::<Result<Vec<_>, Failure>>()?;
         let revision = context.revision()?;
-        let each = |(scenario, folder): &(&Scenario, &RecordsFolder)| match &scenario.sweep {
-            Some(sweep) => self.sweep(context, scenario, sweep, &methods, (folder, &revision)),
-            None => self.one(context, scenario, &methods, (folder, &revision)),
-        };
-        let tasks: Vec<_> = scenarios.iter().zip(&folders).collect();
-        let measured = side_by_side(&tasks, lanes(), each)?;
+        let beside = scenarios.len() > 1 && lanes() > 1;
+        let task = |(scenario, folder)| Task { scenario, folder, methods: &methods, revision: &revision, beside };
+        let tasks: Vec<Task<'_>> = scenarios.iter().zip(&folders).map(task).collect();
+        let measured = side_by_side(&tasks, lanes(), |task| match &task.scenario.sweep {
+            Some(sweep) => self.sweep(context, task, sweep),
+            None => self.one(context, task),
+        })?;
         let nothing: Vec<&str> = scenarios.iter().zip(measured).filter(|(_, points)| *points == 0).map(|(s, _)| s.name.as_str()).collect();
         // Of all that there is, some may be unavailable here; what was asked for by name may not.
         if nothing.is_empty() || (self.all && nothing.len() < scenarios.len()) {
@@ -77,13 +97,8 @@ impl Run {
     }
 
     /// How many points were measured.
-    fn one(
-        &self,
-        context: &Context<'_>,
-        scenario: &Scenario,
-        methods: &[Configured],
-        (folder, revision): (&RecordsFolder, &str),
-    ) -> Result<u64, Failure> {
+    fn one(&self, context: &Context<'_>, task: &Task<'_>) -> Result<u64, Failure> {
+        let Task { scenario, folder, methods, revision, .. } = *task;
         let mut plan = Plan::new(scenario, context.toolbox.tools(), context.data()?);
         if !methods.is_empty() {
             plan.methods = methods;
@@ -101,18 +116,12 @@ impl Run {
         let started = Instant::now();
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
         let measured = store::run(folder, &mut plan, revision, &|| progress.step())?;
-        progress.finish(&summary(&plan, started.elapsed().as_secs_f64()));
+        progress.finish(&summary(&plan, &task.time(started)));
         Ok(measured)
     }
 
-    fn sweep(
-        &self,
-        context: &Context<'_>,
-        scenario: &Scenario,
-        sweep: &Sweep,
-        methods: &[Configured],
-        (folder, revision): (&RecordsFolder, &str),
-    ) -> Result<u64, Failure> {
+    fn sweep(&self, context: &Context<'_>, task: &Task<'_>, sweep: &Sweep) -> Result<u64, Failure> {
+        let Task { scenario, folder, methods, revision, .. } = *task;
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
         }
@@ -124,7 +133,7 @@ impl Run {
         let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
         let measured = store::run_sweep(folder, &plan, revision, &|| progress.step())?;
         let trials = trials.unwrap_or(scenario.trials);
-        progress.finish(&format!("{cells} cells of {trials} trials in {:.1} s", started.elapsed().as_secs_f64()));
+        progress.finish(&format!("{cells} cells of {trials} trials {}", task.time(started)));
         Ok(measured)
     }
 }
@@ -149,7 +158,7 @@ fn trials(scenario: &Scenario, asked: Option<u64>) -> Result<u64, Failure> {
     }
 }
 
-fn summary(plan: &Plan<'_>, seconds: f64) -> String {
+fn summary(plan: &Plan<'_>, time: &str) -> String {
     if let Some(why) = plan.missing() {
         return format!("unavailable: {why}");
     }
@@ -157,5 +166,5 @@ fn summary(plan: &Plan<'_>, seconds: f64) -> String {
     let (count, steps) = (plan.method_infos().len(), plan.steps());
     let unit = if matches!(plan.scenario.subject, Subject::Photographs(_)) { "photograph" } else { "trial" };
     let plural = |n: u64, noun: &str| if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") };
-    format!("{} of {} in {seconds:.1} s{}", plural(steps, unit), plural(count as u64, "method"), missing.collect::<String>())
+    format!("{} of {} {time}{}", plural(steps, unit), plural(count as u64, "method"), missing.collect::<String>())
 }

@@ -194,11 +194,11 @@ fn price(cameras: &Cameras, printed: &Printed) -> Result<Priced, ReportError> {
     let right = convert(&truth, Target::photogrammetric(pitch_um), &options)?.camera;
     let Camera::Photogrammetric(own) = right else { return Err(ConvertError::NotInTable.into()) };
     let both = |wrong: &Camera| -> Price { Ok((compare(wrong, false)?, compare(wrong, true)?)) };
-    let wrong: Vec<Camera> =
-        mistakes.iter().map(|(_, mistake)| Ok(mistaken(&truth, &own, *mistake)?.into())).collect::<Result<_, ConvertError>>()?;
-    let all: Vec<(&str, Camera)> =
-        std::iter::once(("none: converted by a fit", right)).chain(mistakes.iter().map(|(name, _)| *name).zip(wrong)).collect();
-    let rows = all.iter().map(|(name, camera)| ((*name).to_owned(), both(camera))).collect();
+    let mut rows = vec![("none: converted by a fit".to_owned(), both(&right))];
+    for (name, mistake) in mistakes {
+        let wrong: Camera = mistaken(&truth, &own, mistake)?.into();
+        rows.push((name.to_owned(), both(&wrong)));
+    }
     Ok(Priced { fold, rows })
 }
 

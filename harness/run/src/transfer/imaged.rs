@@ -145,7 +145,8 @@ fn counted(field: &Testfield) -> Option<Counted> {
 fn named(points: &[(Pointed, Option<Start>)], corners: &[PixelPoint]) -> Vec<Option<PixelPoint>> {
     let between = |i: usize| corners[i + 1..].iter().map(move |other| corners[i].distance(*other));
     let reach = 0.5 * (0..corners.len()).flat_map(between).fold(f64::INFINITY, f64::min);
-    points.iter().map(|(point, _)| point.truth.nearest(corners, reach)).collect()
+    // Half way between two it is neither.
+    points.iter().map(|(point, _)| point.truth.nearest(corners, reach.next_down())).collect()
 }
 
 #[cfg(test)]
