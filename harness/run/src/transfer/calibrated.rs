@@ -190,3 +190,22 @@ fn quality(solution: &Solution<'_>, pitch_um: f64) -> Result<Quality, String> {
     let (sigma_c, sigma0) = (Some(variance.max(0.0).sqrt()), solution.sigma0().unwrap_or(0.0));
     Ok(Quality { sigma_c, sigma0, redundancy: solution.counts().redundancy() })
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_model::PixelPoint;
+
+    use super::*;
+
+    #[test]
+    fn views_keep_their_numbers_where_the_board_was_not_found() {
+        let corners = [0.0, 30.0, 60.0].map(|x| Point3::new(x, 0.0, 0.0));
+        let at = |x| PixelPoint::new(x, 7.0);
+        let views = [vec![(0, at(1.0))], Vec::new(), vec![(2, at(5.0)), (1, at(3.0))]];
+        let board = Board { corners: &corners, views: &views, sigma_px: 0.1 };
+        let found: Vec<_> = board.found().collect();
+        assert_eq!(found.iter().map(|(number, view, _)| (*number, *view)).collect::<Vec<_>>(), [(1, &views[0][..]), (3, &views[2][..])]);
+        let control: Vec<_> = found[1].2.iter().map(|control| (control.object, control.image)).collect();
+        assert_eq!(control, [(corners[2], at(5.0)), (corners[1], at(3.0))]);
+    }
+}

@@ -157,9 +157,9 @@ mod tests {
     fn corners_are_named_by_where_they_are() {
         let at = |x| PixelPoint::new(x, 0.0);
         let point = |target, x| (Pointed { target, truth: at(x), start: Start::at(at(x)) }, None);
-        let points = [point(0, 10.0), point(1, 20.0), point(2, 30.0)];
-        // The other way round, one far off.
+        let points = [point(0, 10.0), point(1, 20.0), point(2, 30.0), point(3, 16.0)];
+        // The other way round, one far off; the last point is half way between two.
         let corners = [PixelPoint::new(36.0, 0.0), PixelPoint::new(21.0, 0.0), PixelPoint::new(11.0, 0.0)];
-        assert_eq!(named(&points, &corners), [Some(corners[2]), Some(corners[1]), None]);
+        assert_eq!(named(&points, &corners), [Some(corners[2]), Some(corners[1]), None, None]);
     }
 }
