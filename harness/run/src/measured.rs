@@ -19,3 +19,29 @@ pub fn of_its_kinds(method: &Configured, image: &Image, targets: &[(TargetKind, 
     let result = |(kind, start): &(TargetKind, Option<Start>)| mine(*kind).then(|| start.and_then(|_| results.next()).unwrap_or(missed));
     Some(targets.iter().map(result).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use TargetKind::{Corner, Disc};
+    use calibench_measure::Registry;
+    use calibench_model::PixelPoint;
+
+    use super::*;
+
+    /// `pixel` says where it was asked, so that each answer tells whose it is.
+    #[test]
+    fn answers_go_to_those_who_were_asked_for() {
+        let image = Image::from_fn(40, 30, |_, _| 0.5);
+        let start = |x| Some(Start::at(PixelPoint::new(x, 9.0)));
+        let targets = [(Corner, None), (Corner, start(5.0)), (Disc, start(11.0)), (Corner, None), (Disc, None), (Corner, start(21.0))];
+        let said = |method: &str| {
+            let method = Registry::builtin().parse(method).unwrap();
+            let position = |one: Option<Measured>| one.map(|one| one.map(|found| found.position.x));
+            of_its_kinds(&method, &image, &targets).unwrap().into_iter().map(position).collect::<Vec<_>>()
+        };
+        let (missed, at) = (Some(Err(Rejection::NotDetected)), |x: f64| Some(Ok(x)));
+        assert_eq!(said("pixel"), [missed, at(5.0), at(11.0), missed, missed, at(21.0)]);
+        assert_eq!(said("corner=pixel"), [missed, at(5.0), None, missed, None, at(21.0)]);
+        assert_eq!(said("disc=pixel"), [None, None, at(11.0), None, missed, None]);
+    }
+}
