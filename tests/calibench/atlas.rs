@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibench_report::atlas::{Part, best, unmeasured};
 
-use crate::project::{copy_with, files, run, stderr};
+use crate::project::{copy_with, run, stderr};
 
 fn part(project: &Path, name: &str) -> Part {
     Part::load(&project.join("records"), name).expect("records").expect("a sweep")
@@ -24,31 +24,6 @@ fn the_atlas_measures_the_settings_that_the_search_finds() {
         assert_eq!(unmeasured(&search, &evaluation), Vec::<String>::new());
         assert!(best(&search).iter().all(|(_, found)| found.len() > 1), "{family}: each operator has a best setting");
     }
-}
-
-#[test]
-fn records_and_report_are_the_same_bytes_on_one_thread_and_two() {
-    let report = |threads: &str| {
-        let project = copy_with(&["atlas"]);
-        let atlas = project.path().join("scenarios/atlas");
-        for entry in std::fs::read_dir(&atlas).expect("scenarios").map(|entry| entry.expect("a file")) {
-            if entry.file_name() != "corners-window.toml" && entry.file_name() != "wedges.toml" {
-                std::fs::remove_file(entry.path()).expect("removed");
-            }
-        }
-        for scenario in ["atlas/corners-window", "atlas/wedges"] {
-            let ran = run(project.path(), &["run", "-q", "--threads", threads, scenario, "--trials", "2"]);
-            assert!(ran.status.success(), "{}", stderr(&ran));
-        }
-        let told = run(project.path(), &["report", "-q", "--threads", threads, "atlas"]);
-        assert!(told.status.success(), "{}", stderr(&told));
-        let mut all = files(&project.path().join("reports"));
-        all.extend(files(&project.path().join("records")));
-        all
-    };
-    let (one, two) = (report("1"), report("2"));
-    assert!(one.iter().any(|(path, _)| path.ends_with("which-operator.md")));
-    assert!(one == two, "one thread and two give other files");
 }
 
 #[test]

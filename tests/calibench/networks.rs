@@ -13,7 +13,7 @@ use calibench_run::Plan;
 use calibench_run::network::{ImagePoint, Job, calibrate, observe};
 use calibench_scenario::{Scenario, Subject, ViewsSubject, parse};
 
-use crate::project::{NETWORKS, copy_with, files, program, root};
+use crate::project::root;
 
 const NAME: &str = "galo-2011/network-coordinates";
 
@@ -181,22 +181,4 @@ fn mistakes_have_line_and_column() {
         let place = message.strip_prefix("network.toml:").unwrap().split(':').take(2).map(|n| n.parse::<usize>().unwrap());
         assert!(place.min().unwrap() >= 1, "{message}");
     }
-}
-
-#[test]
-fn threads_do_not_change_a_byte() {
-    let outputs = |threads: &str| {
-        let project = copy_with(&[NETWORKS]);
-        for name in ["galo-2011/network-coordinates", "galo-2011/network"] {
-            let arguments = ["run", name, "--trials", "3", "--quiet"];
-            assert!(program(project.path()).args(arguments).env("RAYON_NUM_THREADS", threads).status().unwrap().success(), "{name}");
-        }
-        files(&project.path().join("records"))
-    };
-    let (one, two) = (outputs("1"), outputs("2"));
-    assert!(one.iter().any(|(path, bytes)| path.ends_with("network/calibrations.csv.gz") && bytes.len() > 10_000));
-    for ((path, bytes), (_, other)) in one.iter().zip(&two) {
-        assert!(bytes == other, "{} differs", path.display());
-    }
-    assert_eq!(one.len(), two.len());
 }

@@ -8,32 +8,63 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("tests/ lies in the project").to_owned()
 }
 
-/// Families of scenarios whose run takes long: only tests of their own copy them.
-const LARGE: [&str; 4] = ["operators", "testfields", "sweeps", "atlas"];
+/// The scenarios of `galo-2011` that adjust every trial: hundreds of trials each.
+const NETWORKS: &str = "galo-2011/network";
 
-/// A temporary project with the real scenarios and references, but for the large ones, and no records or reports.
+/// Scenarios whose run takes long, by what their names begin with: only tests of their own copy them.
+const LONG: [&str; 7] = ["atlas/", "canon-t3/", NETWORKS, "operators/", "sweeps/", "testfields/", "vosselman-1988/"];
+
+/// A temporary project with the real scenarios and references, but for the long ones, and no records or reports.
 pub fn copy() -> tempfile::TempDir {
     copy_with(&[])
 }
 
-/// As [`copy`], with some of the large families.
-pub fn copy_with(families: &[&str]) -> tempfile::TempDir {
+/// As [`copy`], with the long scenarios whose names begin with one of `wanted`.
+pub fn copy_with(wanted: &[&str]) -> tempfile::TempDir {
+    let folder = whole();
+    let long = |name: &str| LONG.iter().any(|start| name.starts_with(start)) && !wanted.iter().any(|start| name.starts_with(start));
+    for family in entries(&folder.path().join("scenarios")).into_iter().filter(|path| path.is_dir()) {
+        remove(&family, |file| long(&format!("{}/{file}", name_of(&family))));
+        // Fails where something is left.
+        std::fs::remove_dir(&family).ok();
+    }
+    remove(&folder.path().join("reference/baselines"), |file| long(&file.replacen("--", "/", 1)));
+    list_baselines(folder.path());
+    folder
+}
+
+/// A temporary project with all scenarios and references, of each scenario `most` trials at most.
+pub fn copy_of_all(most: u64) -> tempfile::TempDir {
+    let folder = whole();
+    for (path, bytes) in files(&folder.path().join("scenarios")).into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "toml")) {
+        let text = String::from_utf8(bytes).expect("UTF-8");
+        let trials = |line: &str| line.strip_prefix("trials = ").and_then(|number| number.parse::<u64>().ok());
+        let few = |line: &str| if trials(line).is_some_and(|trials| trials > most) { format!("trials = {most}\n") } else { format!("{line}\n") };
+        std::fs::write(folder.path().join("scenarios").join(path), text.lines().map(few).collect::<String>()).expect("a scenario");
+    }
+    folder
+}
+
+fn whole() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for part in ["scenarios", "reference"] {
         copy_folder(&root().join(part), &folder.path().join(part));
     }
-    for family in LARGE.iter().filter(|family| !families.contains(family)) {
-        std::fs::remove_dir_all(folder.path().join("scenarios").join(family)).ok();
-        let baselines =
-            std::fs::read_dir(folder.path().join("reference/baselines")).expect("baselines").map(|entry| entry.expect("a file"));
-        let of_family = baselines.filter(|file| file.file_name().to_string_lossy().starts_with(&format!("{family}--")));
-        of_family.for_each(|file| std::fs::remove_file(file.path()).expect("a baseline"));
-    }
-    if !families.contains(&NETWORKS) {
-        remove_networks(folder.path());
-    }
-    list_baselines(folder.path());
     folder
+}
+
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect()
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().expect("a name").to_string_lossy().into_owned()
+}
+
+fn remove(folder: &Path, chosen: impl Fn(&str) -> bool) {
+    for path in entries(folder).into_iter().filter(|path| path.is_file() && chosen(&name_of(path))) {
+        std::fs::remove_file(path).expect("a file");
+    }
 }
 
 /// Takes out of the list of blessed files those that are not there.
@@ -46,22 +77,10 @@ fn list_baselines(project: &Path) {
     std::fs::write(list, kept).expect("the list of blessed files");
 }
 
-/// The scenarios of `galo-2011` that adjust every trial: hundreds of trials each.
-pub const NETWORKS: &str = "galo-2011/network";
-
-fn remove_networks(project: &Path) {
-    for (folder, start) in [("scenarios/galo-2011", "network"), ("reference/baselines", "galo-2011--network")] {
-        let files = std::fs::read_dir(project.join(folder)).expect("a folder").map(|entry| entry.expect("a file"));
-        let of_networks = files.filter(|file| file.file_name().to_string_lossy().starts_with(start));
-        of_networks.for_each(|file| std::fs::remove_file(file.path()).expect("a file"));
-    }
-}
-
 fn copy_folder(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).expect("a folder");
-    for entry in std::fs::read_dir(from).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let target = to.join(path.file_name().expect("a name"));
+    for path in entries(from) {
+        let target = to.join(name_of(&path));
         if path.is_dir() { copy_folder(&path, &target) } else { std::fs::copy(&path, &target).map(|_| ()).expect("a copy") }
     }
 }
