@@ -1,8 +1,9 @@
 //! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, packages of other
-//! tools as `cfg(peer_...)`.
+//! tools as `cfg(peer_...)`, Python as `cfg(python)`.
 
 use std::env;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 #[path = "../harness/test_data.rs"]
 mod test_data;
@@ -21,6 +22,10 @@ const SYSTEM: &str = "/usr/lib/python3/dist-packages";
 
 fn main() {
     test_data::announce(&[("photographs", "opencv-left"), ("camera_files", "cameras"), ("webcam", "webcam")]);
+    println!("cargo::rustc-check-cfg=cfg(python)");
+    if Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        println!("cargo::rustc-cfg=python");
+    }
     println!("cargo::rerun-if-env-changed=CALIBENCH_PEERS");
     let folder = env::var_os("CALIBENCH_PEERS").map(PathBuf::from).filter(|folder| folder.is_dir());
     let own = folder.as_deref().and_then(packages);

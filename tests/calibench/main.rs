@@ -33,6 +33,7 @@ mod outputs;
 mod paper;
 mod peers;
 mod photographs;
+mod plugins;
 mod priors;
 mod project;
 mod records;

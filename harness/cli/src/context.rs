@@ -2,18 +2,21 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
 use calibench_diagnostics::nearest;
 use calibench_exchange::Inputs;
 use calibench_measure::kinds::distinct;
-use calibench_measure::{Configured, KindsError, MethodError};
+use calibench_measure::{Configured, KindsError, MethodError, Registry};
 use calibench_model::TargetKind;
+use calibench_plugins::{Launcher, load};
 use calibench_report::Places;
 use calibench_scenario::catalogue::{Catalogue, LOCAL, is_toml};
 use calibench_scenario::data::data_folder;
 use calibench_scenario::{Scenario, Subject};
 
-use crate::failure::{Failure, scenario_failure};
+use crate::failure::{Failure, plugin_failure, scenario_failure};
+use crate::plugin::CONFINED;
 use crate::toolbox::Toolbox;
 
 /// What every command gets.
@@ -24,7 +27,14 @@ pub struct Context<'a> {
     pub quiet: bool,
     /// What this build can do.
     pub toolbox: &'a Toolbox,
+    /// The folder of plug-ins, if the user named it.
+    pub plugins: Option<PathBuf>,
+    /// All methods, once somebody asked for them.
+    pub methods: OnceLock<Registry>,
 }
+
+/// The project's folder of plug-ins.
+const PLUGINS: &str = "methods";
 
 /// What is measured.
 #[derive(Clone, Copy)]
@@ -35,9 +45,16 @@ pub enum Pictured {
     Photographs,
 }
 
+impl<'a> Context<'a> {
+    /// As a build is without any flag.
+    pub const fn new(toolbox: &'a Toolbox) -> Self {
+        Self { root: None, quiet: false, toolbox, plugins: None, methods: OnceLock::new() }
+    }
+}
+
 impl Context<'_> {
     /// The project's folder: named, or the nearest one upwards that holds scenarios/ and reference/, if there is one.
-    fn project(&self) -> Result<Option<PathBuf>, Failure> {
+    pub fn project(&self) -> Result<Option<PathBuf>, Failure> {
         let is_root = |folder: &Path| folder.join("scenarios").is_dir() && folder.join("reference").is_dir();
         if let Some(root) = &self.root {
             return if is_root(root) {
@@ -63,6 +80,27 @@ impl Context<'_> {
             Some(root) => root,
             None => std::env::current_dir()?,
         })
+    }
+
+    /// All methods: those of this build, and the plug-ins of the folder that the user named, or of the project.
+    pub fn registry(&self) -> Result<&Registry, Failure> {
+        if let Some(methods) = self.methods.get() {
+            return Ok(methods);
+        }
+        let project = self.project()?;
+        let own = project.as_ref().map(|root| root.join(PLUGINS)).filter(|folder| folder.is_dir());
+        let builtin = self.toolbox.registry.clone();
+        let methods = match self.plugins.clone().or(own) {
+            Some(folder) => load(&folder, builtin, &self.launcher(project)).map_err(plugin_failure)?,
+            None => builtin,
+        };
+        Ok(self.methods.get_or_init(|| methods))
+    }
+
+    /// How plug-ins are started: by this program, which restricts itself and then becomes the plug-in.
+    pub fn launcher(&self, project: Option<PathBuf>) -> Launcher {
+        let confiner = std::env::current_exe().ok().map(|program| vec![program.into_os_string(), CONFINED.into()]);
+        Launcher { confiner, project }
     }
 
     /// The project's scenarios.
@@ -91,7 +129,7 @@ impl Context<'_> {
                 )));
             }
         };
-        catalogue.load(name, &self.toolbox.registry).map_err(scenario_failure)
+        catalogue.load(name, self.registry()?).map_err(scenario_failure)
     }
 
     /// The scenarios of these names or files, each once and under a name of its own.
@@ -130,7 +168,7 @@ impl Context<'_> {
 
     /// The method that `text` names, with the nearest name for a misspelt one.
     fn method(&self, text: &str, pictured: Pictured) -> Result<Configured, Failure> {
-        let registry = &self.toolbox.registry;
+        let registry = self.registry()?;
         let parsed = match pictured {
             Pictured::Renders => registry.parse(text),
             Pictured::Photographs => registry.parse_for_photographs(text),

@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal};
 
 use calibench_diagnostics::Problems;
 use calibench_model::escape;
+use calibench_plugins::PluginError;
 use calibench_scenario::catalogue::CatalogueError;
 
 /// Why a command ends with another exit code than 0.
@@ -35,6 +36,14 @@ impl Failure {
 pub fn scenario_failure(error: CatalogueError) -> Failure {
     match error {
         CatalogueError::Problems(problems) => Failure::Picture(picture(&problems)),
+        other => other.into(),
+    }
+}
+
+/// A plug-in's file with its mistakes as a picture of the lines that they are about.
+pub fn plugin_failure(error: PluginError) -> Failure {
+    match error {
+        PluginError::Problems(problems) => Failure::Picture(picture(&problems)),
         other => other.into(),
     }
 }

@@ -117,7 +117,7 @@ fn swept(
     for index in 0..sweep.cells() {
         let label = sweep.label(index);
         let name = format!("{}@{label}", scenario.name);
-        let cell = parse_cell(scenario, sweep, index, &context.toolbox.registry).map_err(|problems| scenario_failure(problems.into()))?;
+        let cell = parse_cell(scenario, sweep, index, context.registry()?).map_err(|problems| scenario_failure(problems.into()))?;
         let plan = plan(context, &cell)?;
         let table = match records {
             Some(records) => {
@@ -169,7 +169,7 @@ fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Resul
         progress.finish("measured");
         return Ok(());
     };
-    let (registry, tools) = (&context.toolbox.registry, context.toolbox.tools());
+    let (registry, tools) = (context.registry()?, context.toolbox.tools());
     let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, tools, data: context.data()?, registry };
     store::run_sweep(&output, &plan, &revision, &|| ())?;
     Ok(())

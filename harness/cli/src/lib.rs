@@ -23,10 +23,12 @@ mod judge;
 mod lanes;
 mod list;
 mod measure;
+mod notes;
 mod orient;
 mod output;
 mod photos;
 mod plot;
+mod plugin;
 mod power;
 mod print;
 mod progress;
@@ -47,6 +49,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
+use plugin::CONFINED;
 pub use toolbox::Toolbox;
 
 /// Compares camera calibration methods on images whose truth is known exactly, and on photographs.
@@ -61,6 +64,9 @@ struct Arguments {
     /// Number of threads [default: all cores]
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// The folder of plug-ins: TOML files, each with programs that are methods [default: methods/ of the project]
+    #[arg(long, global = true, value_name = "DIR")]
+    plugins: Option<PathBuf>,
     /// No progress, only results and errors
     #[arg(long, short, global = true)]
     quiet: bool,
@@ -121,6 +127,12 @@ enum Command {
     Diff(diff::Diff),
     /// Write a camera's distortion as an ST-map for compositing programs, either way, or check one
     Stmap(stmap::StMapCommand),
+    /// Try a program of one's own that is a method: whether it does what every plug-in must
+    #[command(subcommand)]
+    Plugin(plugin::PluginCommand),
+    /// Restrict this process, then become another program: how plug-ins are started
+    #[command(name = CONFINED, hide = true)]
+    Confined(plugin::Confined),
     /// Print the JSON Schema of scenario files or of published tables, for editors
     Schema {
         /// Of which files
@@ -132,6 +144,10 @@ enum Command {
 /// Runs the command line of this process.
 pub fn main(toolbox: &Toolbox) -> ExitCode {
     let arguments = Arguments::parse();
+    // Before any thread: what restricts itself has one.
+    if let Command::Confined(confined) = &arguments.command {
+        return confined.execute();
+    }
     let threads = usize::from(arguments.threads.unwrap_or(0));
     if let (Some(threads), Some(bind)) = (arguments.threads, toolbox.bind_threads) {
         bind(usize::from(threads));
@@ -153,7 +169,8 @@ pub fn main(toolbox: &Toolbox) -> ExitCode {
 }
 
 fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
-    let context = context::Context { root: arguments.root, quiet: arguments.quiet, toolbox };
+    let context =
+        context::Context { root: arguments.root, quiet: arguments.quiet, plugins: arguments.plugins, ..context::Context::new(toolbox) };
     match arguments.command {
         Command::List { what } => list::list(&context, what),
         Command::Show(show) => show.run(&context),
@@ -180,6 +197,8 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Camera(camera) => camera.run(),
         Command::Diff(diff) => diff.run(),
         Command::Stmap(map) => map.run(),
-        Command::Schema { of } => deliver::print(&of.text(&toolbox.registry)),
+        Command::Plugin(plugin) => plugin.run(&context),
+        Command::Confined(confined) => Err(confined.failure()),
+        Command::Schema { of } => deliver::print(&of.text(context.registry()?)),
     }
 }

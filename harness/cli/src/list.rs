@@ -31,7 +31,7 @@ pub enum What {
 pub fn list(context: &Context<'_>, what: What) -> Result<(), Failure> {
     print(&match what {
         What::Scenarios => scenarios(context)?,
-        What::Methods => methods(context),
+        What::Methods => methods(context)?,
         What::Conventions => conventions(),
         What::Formats => formats(),
         What::Tables => tables(context)?,
@@ -50,9 +50,9 @@ fn scenarios(context: &Context<'_>) -> Result<String, Failure> {
     Ok(text)
 }
 
-fn methods(context: &Context<'_>) -> String {
+fn methods(context: &Context<'_>) -> Result<String, Failure> {
     let mut text = String::new();
-    for method in context.toolbox.registry.methods() {
+    for method in context.registry()?.methods() {
         let _ = writeln!(text, "{} (version {})\n    {}\n    source: {}", method.name, method.version, method.about, method.source);
         for parameter in method.parameters {
             let _ = writeln!(text, "    {}={}: {}; {}", parameter.name, parameter.default, parameter.about, parameter.domain.describe());
@@ -61,7 +61,7 @@ fn methods(context: &Context<'_>) -> String {
             let _ = writeln!(text, "    unavailable: {why}");
         }
     }
-    text
+    Ok(text)
 }
 
 fn conventions() -> String {

@@ -10,6 +10,7 @@ use clap::Args;
 
 use super::context::{Context, Pictured, origin};
 use super::lanes::{lanes, side_by_side};
+use super::notes::say_notes;
 use super::output;
 use super::photos::say_turns;
 use super::progress::Progress;
@@ -117,6 +118,7 @@ impl Run {
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
         let measured = store::run(folder, &mut plan, revision, &|| progress.step())?;
         progress.finish(&summary(&plan, &task.time(started)));
+        say_notes(plan.methods);
         Ok(measured)
     }
 
@@ -127,13 +129,14 @@ impl Run {
         }
         own_methods(scenario, methods)?;
         let Changes { seed, trials, .. } = self.changes;
-        let (registry, tools) = (&context.toolbox.registry, context.toolbox.tools());
+        let (registry, tools) = (context.registry()?, context.toolbox.tools());
         let plan = SweepPlan { scenario, sweep, methods, seed, trials, tools, data: context.data()?, registry };
         let (started, cells) = (Instant::now(), sweep.cells());
         let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
         let measured = store::run_sweep(folder, &plan, revision, &|| progress.step())?;
         let trials = trials.unwrap_or(scenario.trials);
         progress.finish(&format!("{cells} cells of {trials} trials {}", task.time(started)));
+        say_notes(if methods.is_empty() { &scenario.methods } else { methods });
         Ok(measured)
     }
 }

@@ -38,4 +38,4 @@ pub use kinds::{Kinds, KindsError, KindsGap};
 pub use operator::Operator;
 pub use operators::*;
 pub use parameter::{Parameter, Settings};
-pub use registry::{Configured, Method, Registry};
+pub use registry::{Build, Configured, Method, Outside, Registry};

@@ -35,6 +35,11 @@ pub trait Operator: Send + Sync {
     fn reads_grey_values(&self) -> bool {
         true
     }
+
+    /// What a reader of its results has to know of how they came about; asked for after measuring. Nothing, of operators that are part of this program.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// The whole pixel (column, row) nearest to a start, around which a window is laid.

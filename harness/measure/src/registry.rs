@@ -1,5 +1,7 @@
 //! Which methods there are, by name.
 
+use std::sync::Arc;
+
 use calibench_model::TargetKind;
 
 use crate::error::MethodError;
@@ -25,12 +27,22 @@ pub struct Method {
 }
 
 /// How an operator comes into being.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub enum Build {
     /// From checked settings.
     With(fn(&Settings) -> Box<dyn Operator>),
+    /// From outside of this program: whether it can run, and as which version, is known when it is asked for.
+    Outside(Arc<dyn Fn(&Settings) -> Outside + Send + Sync>),
     /// Not here, and why.
     Unavailable(&'static str),
+}
+
+/// A method that is no part of this program, with its parameters set.
+pub struct Outside {
+    /// Its version, as it says itself.
+    pub version: String,
+    /// The operator, or why there is none.
+    pub operator: Result<Box<dyn Operator>, String>,
 }
 
 /// A method with its parameters set.
@@ -48,7 +60,7 @@ pub struct Configured {
     /// The kinds of target that it is limited to, if it is.
     pub kinds: Option<Kinds>,
     /// The operator, or why there is none.
-    pub operator: Result<Box<dyn Operator>, &'static str>,
+    pub operator: Result<Box<dyn Operator>, String>,
 }
 
 impl Configured {
@@ -100,12 +112,16 @@ impl Registry {
             return Err(MethodError::UnknownMethod { name: name.to_owned(), known });
         };
         let settings = Settings::resolve(name, method.parameters, given)?;
-        let operator = match method.build {
-            Build::With(build) => Ok(build(&settings)),
-            Build::Unavailable(why) => Err(why),
+        let (version, operator) = match &method.build {
+            Build::With(build) => (method.version.clone(), Ok(build(&settings))),
+            Build::Outside(build) => {
+                let Outside { version, operator } = build(&settings);
+                (version, operator)
+            }
+            Build::Unavailable(why) => (method.version.clone(), Err((*why).to_owned())),
         };
         let default_label = label(method, &Settings::resolve(name, method.parameters, &[])?);
-        let (label, version) = (label(method, &settings), method.version.clone());
+        let label = label(method, &settings);
         Ok(Configured { unlimited_label: label.clone(), label, default_label, version, settings, kinds: None, operator })
     }
 

@@ -95,11 +95,21 @@ pub enum Rejection {
     UnknownKind,
     /// What the model leaves of the grey values is no noise: something else is in the window.
     Misfit,
+    /// A method from outside says itself that it cannot measure the point.
+    Declined,
+    /// A method from outside raised an error.
+    Raised,
+    /// The answer of a method from outside cannot be read, or is not about what was asked.
+    Malformed,
+    /// A method from outside took longer than it may.
+    TooSlow,
+    /// The program of a method from outside ended.
+    Ended,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 15] = [
         Self::Border,
         Self::NotFinite,
         Self::NoCorner,
@@ -110,6 +120,11 @@ impl Rejection {
         Self::NotDetected,
         Self::UnknownKind,
         Self::Misfit,
+        Self::Declined,
+        Self::Raised,
+        Self::Malformed,
+        Self::TooSlow,
+        Self::Ended,
     ];
 
     /// The name in files.
@@ -125,6 +140,11 @@ impl Rejection {
             Self::NotDetected => "not_detected",
             Self::UnknownKind => "unknown_kind",
             Self::Misfit => "misfit",
+            Self::Declined => "declined",
+            Self::Raised => "raised",
+            Self::Malformed => "malformed",
+            Self::TooSlow => "too_slow",
+            Self::Ended => "ended",
         }
     }
 
@@ -141,6 +161,11 @@ impl Rejection {
             Self::NotDetected => "the detector found nothing near the target",
             Self::UnknownKind => "what is pictured was not said (`kind`)",
             Self::Misfit => "something else is in the window",
+            Self::Declined => "the method says that it cannot measure the point",
+            Self::Raised => "the method raised an error",
+            Self::Malformed => "the method's answer cannot be read",
+            Self::TooSlow => "the method took longer than it may",
+            Self::Ended => "the method's program ended",
         }
     }
 }

@@ -49,6 +49,8 @@ pub enum Purpose {
     DrawnPoint = 62,
     /// Which of an image's points a block leaves out.
     LeftOut = 63,
+    /// The order in which points are shown to a method from outside.
+    Shown = 64,
 }
 
 /// Which stream.

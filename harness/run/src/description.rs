@@ -3,6 +3,7 @@
 use calibench_measure::Configured;
 use calibench_model::camera::{CameraModel, Photogrammetric};
 use calibench_model::convert::Tool;
+use calibench_model::escape::markdown;
 use calibench_records::description::{
     self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Station, Target, Value, Views, operator,
 };
@@ -24,7 +25,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     Description {
         why: scenario.why.clone(),
         source: scenario.source.clone(),
-        notes: scenario.notes.clone(),
+        notes: scenario.notes.iter().cloned().chain(told(if methods.is_empty() { &scenario.methods } else { methods })).collect(),
         seed: scenario.seed,
         trials: scenario.trials,
         bound_window: scenario.bound_window,
@@ -33,6 +34,18 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         subject,
         sweep: scenario.sweep.as_ref().map(sweep),
     }
+}
+
+/// What methods from outside leave to be known of how their results came about.
+fn told(methods: &[Configured]) -> impl Iterator<Item = String> {
+    let mut seen: Vec<String> = Vec::new();
+    let notes = methods.iter().filter_map(|method| Some((operator(&method.label), method.operator.as_ref().ok()?.notes())));
+    for (name, notes) in notes {
+        // Settings of one program tell the same.
+        let all = notes.iter().map(|note| format!("**`{name}`:** {}", markdown(note)));
+        all.for_each(|note| if !seen.contains(&note) { seen.push(note) });
+    }
+    seen.into_iter()
 }
 
 /// Those of methods that measure, or of calibrations that are applied.

@@ -59,7 +59,7 @@ impl<'a> Plan<'a> {
         let info = |method: &Configured| MethodInfo {
             label: method.label.as_str().into(),
             version: method.version.as_str().into(),
-            unavailable: missing.clone().or_else(|| method.operator.as_ref().err().map(|why| (*why).to_owned())),
+            unavailable: missing.clone().or_else(|| method.operator.as_ref().err().cloned()),
         };
         self.methods.iter().map(info).collect()
     }

@@ -6,6 +6,7 @@ use calibench_exchange::LostRow;
 use calibench_photographs::chessboard::{Chessboard, Corners, NOT_FOUND};
 
 use super::super::context::Context;
+use super::super::notes::say_notes;
 use super::super::photos::say_turns;
 use super::super::progress::Progress;
 use crate::failure::Failure;
@@ -29,6 +30,7 @@ pub fn corners(context: &Context<'_>, chessboard: Chessboard, photos: &[PathBuf]
         }
     }
     progress.finish(&format!("the board was found in {seen} of {} photographs, measured by {}", photos.len(), method.label));
+    say_notes([&method]);
     if seen == 0 {
         return Err(Failure::input(
             "no corner was measured: no board was found (expected one whose inner corners are all visible, counted as COLUMNSxROWS), or the method \

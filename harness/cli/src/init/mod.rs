@@ -32,7 +32,7 @@ impl Init {
         if let Some(first) = first_entry(folder).map_err(|error| failed(folder, &error))? {
             return Err(Failure::input(format!("{}: holds `{first}`; expected a new or an empty folder", folder.display())));
         }
-        let schema = format!("{:#}\n", calibench_scenario::schema::schema(&context.toolbox.registry));
+        let schema = format!("{:#}\n", calibench_scenario::schema::schema(context.registry()?));
         for (name, text) in FILES.into_iter().chain([("scenarios/scenario.schema.json", schema.as_str())]) {
             let path = folder.join(name);
             path.parent()
@@ -40,7 +40,7 @@ impl Init {
                 .and_then(|()| fs::write(&path, text))
                 .map_err(|error| failed(&path, &error))?;
         }
-        let inside = Context { root: Some(folder.clone()), quiet: context.quiet, toolbox: context.toolbox };
+        let inside = Context { root: Some(folder.clone()), quiet: context.quiet, ..Context::new(context.toolbox) };
         Bless::all().run(&inside)?;
         print(&format!(
             "{}: one scenario, blessed. Next: `calibench check` in that folder; its README.md has the commands\n",

@@ -13,6 +13,7 @@ use calibench_records::results::{MethodInfo, Trial};
 use rayon::prelude::*;
 
 use super::super::context::Context;
+use super::super::notes::say_notes;
 use super::super::photos::{one_size, say_turns};
 use super::super::progress::Progress;
 use super::Judge;
@@ -69,6 +70,7 @@ impl Judge {
         for (view, why) in &trial.missed_views {
             say!("{view}: {why}");
         }
+        say_notes(methods);
         Ok((trial, size))
     }
 }
@@ -83,6 +85,6 @@ fn info(method: &Configured) -> MethodInfo {
     MethodInfo {
         label: method.label.as_str().into(),
         version: method.version.as_str().into(),
-        unavailable: method.operator.as_ref().err().map(|why| (*why).to_owned()),
+        unavailable: method.operator.as_ref().err().cloned(),
     }
 }

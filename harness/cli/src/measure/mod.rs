@@ -14,6 +14,7 @@ use crate::context::{Context, Pictured};
 use crate::deliver::deliver;
 use crate::failure::Failure;
 use crate::inputs::read_measured;
+use crate::notes::say_notes;
 use crate::output;
 use crate::photos::say_turns;
 use crate::progress::Progress;
@@ -62,6 +63,7 @@ impl Measure {
         let rows = rows(&points, &methods, &found, &offsets).chain(rows_of_nobody(&points, &nobodys));
         deliver(output.as_ref(), |file| write_measured(file, rows))?;
         progress.finish(&summary(&found, &points));
+        say_notes(&methods);
         let unknown = offsets.iter().filter(|offset| matches!(offset, Offset::Unknown(_))).count();
         if unknown > 0 {
             say!(

@@ -1,0 +1,94 @@
+//! `calibench plugin`: trying a program of one's own; and how plug-ins are started.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use calibench_measure::Registry;
+use calibench_plugins::{Confinement, check, confine_and_execute, method, parse};
+use clap::{Args, Subcommand};
+
+use super::context::Context;
+use crate::deliver::print;
+use crate::failure::{Failure, plugin_failure};
+
+/// The command by which plug-ins are started.
+pub const CONFINED: &str = "confined";
+
+#[derive(Subcommand)]
+pub enum PluginCommand {
+    /// Try each plug-in of a file on small images and say what fails; exit code 1 if anything does
+    Test {
+        /// The TOML file that declares it, or several
+        file: PathBuf,
+    },
+}
+
+impl PluginCommand {
+    pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        let Self::Test { file } = self;
+        test(context, file)
+    }
+}
+
+fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
+    let declarations = parse(&file.display().to_string(), &text).map_err(|problems| plugin_failure(problems.into()))?;
+    let folder = file.canonicalize()?.parent().map(Path::to_owned).unwrap_or_default();
+    let launcher = context.launcher(context.project()?);
+    let mut failed = false;
+    for declaration in declarations {
+        let name = declaration.name.clone();
+        let registry = Registry::default().with(method(declaration, &folder, &launcher));
+        let configured = registry.configure(&name, &[])?;
+        print(&format!("{} {}\n", configured.label, configured.version))?;
+        for finding in check(&configured) {
+            failed |= finding.wrong.is_some();
+            let line = match &finding.wrong {
+                None => format!("  ok      {}\n", finding.what),
+                Some(wrong) => format!("  FAILED  {}: {wrong}\n", finding.what),
+            };
+            print(&line)?;
+        }
+        if let Ok(operator) = &configured.operator {
+            operator.notes().iter().try_for_each(|note| print(&format!("  note    {note}\n")))?;
+        }
+    }
+    if failed { Err(Failure::Gate) } else { Ok(()) }
+}
+
+/// The restrictions of a plug-in, and its command.
+#[derive(Args)]
+pub struct Confined {
+    /// The folder that it may write in
+    #[arg(long)]
+    scratch: PathBuf,
+    /// The folder that it may not read
+    #[arg(long)]
+    closed: Option<PathBuf>,
+    /// What it may read below that folder
+    #[arg(long)]
+    open: Vec<PathBuf>,
+    /// Memory, bytes
+    #[arg(long)]
+    memory: u64,
+    /// The program and its arguments
+    #[arg(last = true, required = true)]
+    command: Vec<OsString>,
+}
+
+impl Confined {
+    /// Returns only where it cannot.
+    pub fn execute(&self) -> ExitCode {
+        let Self { scratch, closed, open, memory, command } = self;
+        let confinement = Confinement { scratch: scratch.clone(), closed: closed.clone(), open: open.clone(), memory: *memory };
+        let error = confine_and_execute(&confinement, command);
+        say!("{}: {error}", command[0].display());
+        ExitCode::from(2)
+    }
+
+    /// It is executed before anything else.
+    pub fn failure(&self) -> Failure {
+        Failure::input(format!("{}: not started", self.command[0].display()))
+    }
+}

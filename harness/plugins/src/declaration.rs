@@ -1,0 +1,244 @@
+//! The file that declares plug-ins.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use calibench_diagnostics::{Problem, Problems};
+use calibench_measure::Parameter;
+use calibench_measure::parameter::Domain;
+use serde::Deserialize;
+use toml::Spanned;
+
+/// A declared plug-in.
+#[derive(Clone, Debug)]
+pub struct Declaration {
+    /// Its name among the methods.
+    pub name: String,
+    /// What it does, in a line.
+    pub about: String,
+    /// Where it is published.
+    pub source: String,
+    /// The program and its arguments; those that name a file beside the declaration are that file.
+    pub command: Vec<String>,
+    /// Its parameters. Their texts live as long as the program, as those of built-in methods do.
+    pub parameters: Vec<Parameter>,
+    /// Which grey values it gets.
+    pub grey: Grey,
+    /// Whether it gets approximate positions.
+    pub starts: Starts,
+    /// How long it may take for an image, s.
+    pub seconds: f64,
+    /// How much memory it may have, bytes.
+    pub memory: u64,
+}
+
+/// How grey values are written, row by row.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Grey {
+    /// A byte a pixel, 0 to 255.
+    #[default]
+    Gray8,
+    /// Two bytes a pixel, the lower one first, 0 to 65535.
+    Gray16le,
+    /// Four bytes a pixel, IEEE single precision, the lowest first, 0 to 1: the values as they are.
+    Gray32f,
+}
+
+impl Grey {
+    /// Its name in files and requests.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Gray8 => "gray8",
+            Self::Gray16le => "gray16le",
+            Self::Gray32f => "gray32f",
+        }
+    }
+}
+
+/// What a plug-in is told of where to look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Starts {
+    /// Approximate positions: it answers each of them.
+    Given,
+    /// Nothing: it finds what there is in the image, and of each target the nearest within this radius, px, counts.
+    None {
+        /// The radius, px.
+        radius: f64,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    plugin: Vec<Spanned<Wire>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Wire {
+    name: Spanned<String>,
+    about: Option<String>,
+    source: Option<String>,
+    command: Spanned<Vec<String>>,
+    mode: Option<Spanned<String>>,
+    #[serde(default)]
+    parameters: BTreeMap<String, Spanned<ParameterWire>>,
+    #[serde(default)]
+    image: Grey,
+    starts: Option<Spanned<String>>,
+    radius: Option<Spanned<f64>>,
+    seconds: Option<Spanned<f64>>,
+    memory: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParameterWire {
+    default: toml::Value,
+    min: toml::Value,
+    max: toml::Value,
+    #[serde(default)]
+    odd: bool,
+    about: Option<String>,
+}
+
+/// How long a plug-in may take for an image unless its file says otherwise, s.
+const SECONDS: f64 = 30.0;
+/// How much memory it may have unless its file says otherwise.
+const MEMORY: &str = "2 GB";
+/// How near a detection must be to a target unless the file says otherwise, px.
+const RADIUS: f64 = 5.0;
+
+/// The plug-ins that `text` declares, which is that of `file`.
+///
+/// # Errors
+/// Every mistake with line and column.
+pub fn parse(file: &str, text: &str) -> Result<Vec<Declaration>, Problems> {
+    let all = |problems| Problems { file: file.to_owned(), text: text.to_owned(), problems };
+    let wire: File =
+        toml::from_str(text).map_err(|error| all(vec![Problem::new(error.span().unwrap_or(0..0), error.message().to_owned())]))?;
+    if wire.plugin.is_empty() {
+        return Err(all(vec![Problem::new(0..0, "declares no plug-in: expected [[plugin]] with `name` and `command`")]));
+    }
+    let mut problems = Vec::new();
+    let found: Vec<Declaration> = wire.plugin.into_iter().filter_map(|plugin| checked(plugin.into_inner(), file, &mut problems)).collect();
+    if problems.is_empty() { Ok(found) } else { Err(all(problems)) }
+}
+
+fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declaration> {
+    let before = problems.len();
+    let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
+    let Wire { name, about, source, command, mode, parameters, image, starts, radius, seconds, memory } = wire;
+    if !is_name(name.as_ref()) {
+        wrong(name.span(), format!("`{}` is no name of a method: expected small letters, digits and _, a letter first", name.as_ref()));
+    }
+    if command.as_ref().first().is_none_or(String::is_empty) {
+        wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
+    }
+    if let Some(mode) = mode.filter(|mode| mode.as_ref() != "stream") {
+        wrong(mode.span(), format!("mode `{}` is not known: expected \"stream\"", mode.as_ref()));
+    }
+    let mut near = RADIUS;
+    if let Some(radius) = &radius {
+        near = *radius.as_ref();
+        if !(near > 0.0 && near <= 100.0) {
+            wrong(radius.span(), format!("expected a radius from more than 0 to 100 px, found {near}"));
+        }
+    }
+    let starts = match starts.as_ref().map(|word| (word.as_ref().as_str(), word.span())) {
+        None | Some(("given", _)) => {
+            if let Some(radius) = radius {
+                wrong(radius.span(), "`radius` is for starts = \"none\"".into());
+            }
+            Starts::Given
+        }
+        Some(("none", _)) => Starts::None { radius: near },
+        Some((other, span)) => {
+            wrong(span, format!("`{other}` is not known: expected \"given\" or \"none\""));
+            Starts::Given
+        }
+    };
+    let limit = seconds.as_ref().map_or(SECONDS, |seconds| *seconds.as_ref());
+    if let Some(seconds) = seconds.filter(|_| !(limit > 0.0 && limit <= 86_400.0)) {
+        wrong(seconds.span(), format!("expected seconds from more than 0 to 86400, found {limit}"));
+    }
+    let bytes = memory.as_ref().map_or(MEMORY, |memory| memory.as_ref().as_str());
+    let bytes = bytes_of(bytes).unwrap_or_else(|| {
+        wrong(memory.as_ref().map_or(0..0, Spanned::span), format!("`{bytes}` is no memory: expected as in \"2 GB\" or \"500 MB\""));
+        0
+    });
+    let mut declared = Vec::new();
+    for (key, parameter) in parameters {
+        match parameter_of(&key, parameter.as_ref()) {
+            Ok(parameter) => declared.push(parameter),
+            Err(message) => wrong(parameter.span(), message),
+        }
+    }
+    (problems.len() == before).then(|| Declaration {
+        about: about.unwrap_or_else(|| format!("{}, a plug-in", name.as_ref())),
+        source: source.unwrap_or_else(|| file.to_owned()),
+        name: name.into_inner(),
+        command: command.into_inner(),
+        parameters: declared,
+        grey: image,
+        starts,
+        seconds: limit,
+        memory: bytes,
+    })
+}
+
+fn is_name(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}
+
+/// Bytes from a text as `2 GB`: of 1000, as disks and this issue of words count.
+fn bytes_of(text: &str) -> Option<u64> {
+    let text = text.trim();
+    let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(digits);
+    let times = match unit.trim() {
+        "kB" | "KB" => 1e3,
+        "MB" => 1e6,
+        "GB" => 1e9,
+        "TB" => 1e12,
+        _ => return None,
+    };
+    let bytes = number.parse::<f64>().ok()? * times;
+    (1e6..=1e15).contains(&bytes).then_some(bytes as u64)
+}
+
+fn parameter_of(key: &str, wire: &ParameterWire) -> Result<Parameter, String> {
+    if !is_name(key) {
+        return Err(format!("`{key}` is no name of a parameter: expected small letters, digits and _, a letter first"));
+    }
+    let whole = [&wire.default, &wire.min, &wire.max].into_iter().all(toml::Value::is_integer);
+    let [default, min, max] = [("default", &wire.default), ("min", &wire.min), ("max", &wire.max)].map(|(name, value)| number(name, value));
+    let (default, min, max) = (default?, min?, max?);
+    let domain = match (whole, wire.odd) {
+        (false, true) => return Err("`odd` is for whole numbers".into()),
+        (false, false) => Domain::Real { min, max },
+        (true, odd) => {
+            let count = |value: f64| if (0.0..=f64::from(u32::MAX)).contains(&value) { Ok(value as u32) } else { Err("whole numbers are not negative here: write 1.0 for a real one") };
+            let (min, max) = (count(min)?, count(max)?);
+            if odd { Domain::Odd { min, max } } else { Domain::Whole { min, max } }
+        }
+    };
+    if !domain.holds(default) {
+        return Err(format!("the default must be {}, found {default}", domain.describe()));
+    }
+    let about = wire.about.clone().unwrap_or_else(|| "its own".to_owned());
+    // As long as the program lives, like those of built-in methods.
+    Ok(Parameter { name: leak(key.to_owned()), about: leak(about), domain, default, always_shown: key == "window" })
+}
+
+fn number(name: &str, value: &toml::Value) -> Result<f64, String> {
+    let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+    number.filter(|number| number.is_finite()).ok_or_else(|| format!("`{name}` must be a number"))
+}
+
+/// A text that lives as long as the program.
+pub fn leak(text: String) -> &'static str {
+    Box::leak(text.into_boxed_str())
+}

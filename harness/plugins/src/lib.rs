@@ -1,0 +1,24 @@
+//! Methods that are programs of their own, in any language.
+//!
+//! A TOML file declares a plug-in; its program is started once a thread and is asked image by image. What it is given is what any operator gets: the grey values
+//! and approximate positions, in an order that says nothing of the targets. Whatever it does, the run goes on: a point that it does not answer is rejected with
+//! the reason, and other methods' rows do not change.
+
+mod answer;
+mod confine;
+mod conformance;
+mod declaration;
+mod error;
+mod operator;
+mod process;
+mod program;
+mod request;
+
+pub use confine::{Confinement, confine_and_execute};
+pub use conformance::{Finding, check};
+pub use declaration::{Declaration, Grey, Starts, parse};
+pub use error::PluginError;
+pub use program::{Launcher, load, method};
+
+#[cfg(test)]
+mod tests;

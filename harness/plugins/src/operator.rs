@@ -1,0 +1,124 @@
+//! A plug-in as an operator.
+
+use std::sync::Arc;
+
+use calibench_measure::{Operator, Settings};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_random::{Key, Purpose, stream};
+use rand::seq::SliceRandom;
+
+use crate::answer::{Answer, Fault, read};
+use crate::declaration::Starts;
+use crate::program::Program;
+use crate::request::{body, head, rounds};
+
+/// Bytes of an answer for each position.
+const BYTES_A_POSITION: usize = 400;
+/// Detections in one image, at most.
+const MOST_DETECTED: usize = 100_000;
+
+/// A plug-in with its parameters set.
+pub struct Asked {
+    program: Arc<Program>,
+    settings: Settings,
+}
+
+type Measured = Result<Measurement, Rejection>;
+
+impl Asked {
+    pub fn new(program: Arc<Program>, settings: Settings) -> Self {
+        Self { program, settings }
+    }
+
+    /// Asks once; a process that failed is ended, and the next image gets a new one.
+    fn ask(&self, image: &Image, starts: Option<&[Start]>) -> Result<Answer, Fault> {
+        if self.program.is_given_up() {
+            return Err(Fault::new(Rejection::TooSlow, "it took too long too often and was asked no more"));
+        }
+        let grey = self.program.declaration.grey;
+        if rounds(image, grey) {
+            self.program.tell(&format!("grey values were rounded or clipped for it: its images are `{}`", grey.name()));
+        }
+        let (head, body) = (head(image, grey, starts), body(image, grey));
+        let most = starts.map_or(MOST_DETECTED, <[Start]>::len) * BYTES_A_POSITION + 4096;
+        let mut started = self.program.process(&self.settings)?;
+        let line = started.process.ask(&[&head, &body], self.program.limit(), most);
+        if line.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow) {
+            self.program.was_slow();
+        }
+        let answer = read(&line?, starts.map(<[Start]>::len), MOST_DETECTED)?;
+        self.program.keep(&self.settings, started);
+        Ok(answer)
+    }
+
+    /// Answers to `starts`, which are shown in an order that says nothing.
+    fn each(&self, image: &Image, starts: &[Start]) -> Result<Vec<Measured>, Fault> {
+        let order = shuffled(starts.len());
+        let shown: Vec<Start> = order.iter().map(|&place| starts[place]).collect();
+        let Answer { points, told } = self.ask(image, Some(&shown))?;
+        told.iter().for_each(|what| self.program.tell(what));
+        let mut results = vec![Err(Rejection::Malformed); starts.len()];
+        for (place, point) in order.into_iter().zip(points) {
+            results[place] = point;
+        }
+        Ok(results)
+    }
+
+    /// What it finds in the whole image, and of that the nearest to each start.
+    fn nearest(&self, image: &Image, starts: &[Start], radius: f64) -> Result<Vec<Measured>, Fault> {
+        let Answer { points, told } = self.ask(image, None)?;
+        told.iter().for_each(|what| self.program.tell(what));
+        let found: Vec<Measurement> = points.into_iter().filter_map(Result::ok).collect();
+        let distance = |at: PixelPoint, one: &Measurement| one.position.distance(at);
+        let near = |start: &Start| {
+            let nearest = found.iter().min_by(|a, b| distance(start.position, a).total_cmp(&distance(start.position, b)));
+            nearest.filter(|one| distance(start.position, one) <= radius).copied().ok_or(Rejection::NotDetected)
+        };
+        Ok(starts.iter().map(near).collect())
+    }
+}
+
+/// The places of `count` starts in an order that is the same whenever there are as many.
+fn shuffled(count: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..count).collect();
+    let key = Key { seed: 0, scenario: "", trial: count as u64, view: "", target: "" };
+    order.shuffle(&mut stream(key, Purpose::Shown));
+    order
+}
+
+impl Operator for Asked {
+    fn measure(&self, image: &Image, start: &Start) -> Measured {
+        self.measure_all(image, &[*start]).pop().unwrap_or(Err(Rejection::Malformed))
+    }
+
+    fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Measured> {
+        if starts.is_empty() {
+            return Vec::new();
+        }
+        // Neither goes through JSON, and no built-in operator is asked about it.
+        if let Some(bad) = starts.iter().position(|start| !start.position.is_finite()) {
+            let mut rest = starts.to_vec();
+            rest.remove(bad);
+            let mut results = self.measure_all(image, &rest);
+            results.insert(bad, Err(Rejection::NotFinite));
+            return results;
+        }
+        let asked = match self.program.declaration.starts {
+            Starts::Given => self.each(image, starts),
+            Starts::None { radius } => self.nearest(image, starts, radius),
+        };
+        asked.unwrap_or_else(|fault| {
+            self.program.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
+            vec![Err(fault.rejection); starts.len()]
+        })
+    }
+
+    fn is_local(&self) -> bool {
+        // An image goes over once.
+        false
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.program.told()
+    }
+}

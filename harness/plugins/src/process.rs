@@ -1,0 +1,207 @@
+//! A running plug-in: asked line by line, ended when it does not do as it should.
+
+use std::io;
+use std::os::fd::AsFd;
+use std::os::unix::process::CommandExt;
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use calibench_model::Rejection;
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::io::{Errno, ioctl_fionbio};
+use rustix::process::{Pid, Signal, kill_process_group};
+use rustix::time::Timespec;
+
+use crate::answer::Fault;
+
+/// How much of what it says on standard error is kept, bytes.
+const TAIL: usize = 4096;
+/// How much is read at once.
+const CHUNK: usize = 1 << 16;
+
+/// A started program and its pipes.
+pub struct Process {
+    child: Child,
+    stdin: ChildStdin,
+    stdout: ChildStdout,
+    stderr: ChildStderr,
+    /// Whether its standard error has ended.
+    silent: bool,
+    /// What it said beyond the last line.
+    pending: Vec<u8>,
+    /// The end of what it said on standard error.
+    tail: Vec<u8>,
+}
+
+impl Process {
+    /// Starts `command` in a process group of its own.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn start(command: &mut Command) -> io::Result<Self> {
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
+        let mut child = command.spawn()?;
+        let missing = || io::Error::other("no pipe to the program");
+        let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+        let process = Self {
+            stdin: stdin.ok_or_else(missing)?,
+            stdout: stdout.ok_or_else(missing)?,
+            stderr: stderr.ok_or_else(missing)?,
+            child,
+            silent: false,
+            pending: Vec::new(),
+            tail: Vec::new(),
+        };
+        ioctl_fionbio(&process.stdin, true)?;
+        ioctl_fionbio(&process.stdout, true)?;
+        ioctl_fionbio(&process.stderr, true)?;
+        Ok(process)
+    }
+
+    /// Writes `request` and reads one line of at most `most` bytes.
+    ///
+    /// # Errors
+    /// That it ended, took longer than `limit`, said something before it was asked or more than it may. It is of no use then.
+    pub fn ask(&mut self, request: &[&[u8]], limit: Duration, most: usize) -> Result<String, Fault> {
+        let deadline = Instant::now() + limit;
+        if !self.pending.is_empty() {
+            return Err(Fault::new(Rejection::Malformed, "it said more than one line"));
+        }
+        let mut left: Vec<&[u8]> = request.iter().rev().copied().filter(|part| !part.is_empty()).collect();
+        let mut closed = false;
+        loop {
+            let wait = deadline.checked_duration_since(Instant::now());
+            let Some(wait) = wait else {
+                let said = self.said();
+                return Err(Fault::new(Rejection::TooSlow, format!("no answer within {} s{said}", limit.as_secs_f64())));
+            };
+            let writes = !left.is_empty() && !closed;
+            let [readable, writable, erring] = self.wait(writes, wait).map_err(|error| Fault::new(Rejection::Ended, error.to_string()))?;
+            if erring {
+                self.hear();
+            }
+            if writable {
+                closed = !self.write(&mut left);
+            }
+            if readable {
+                if self.read() {
+                    return Err(self.ended());
+                }
+                if let Some(end) = self.pending.iter().position(|&byte| byte == b'\n') {
+                    let line: Vec<u8> = self.pending.drain(..=end).collect();
+                    if !left.is_empty() {
+                        return Err(Fault::new(Rejection::Malformed, "it answered before it had read the image"));
+                    }
+                    let line = String::from_utf8(line).map_err(|_| Fault::new(Rejection::Malformed, "its answer is no UTF-8"))?;
+                    return Ok(line.trim().to_owned());
+                }
+                if self.pending.len() > most {
+                    return Err(Fault::new(Rejection::Malformed, format!("its answer is longer than {most} bytes")));
+                }
+            }
+        }
+    }
+
+    /// Waits until something can be done: read, write, hear.
+    fn wait(&self, writes: bool, most: Duration) -> rustix::io::Result<[bool; 3]> {
+        let out = if writes { PollFlags::OUT } else { PollFlags::empty() };
+        let mut fds = vec![PollFd::new(&self.stdout, PollFlags::IN), PollFd::new(&self.stderr, PollFlags::IN)];
+        let stderr = if self.silent { fds.pop().map(|_| usize::MAX) } else { Some(1) };
+        if writes {
+            fds.push(PollFd::new(&self.stdin, out));
+        }
+        // Rounded up, so that the last turn does not spin.
+        let time = Timespec { tv_sec: most.as_secs() as i64, tv_nsec: i64::from(most.subsec_nanos()) };
+        match poll(&mut fds, Some(&time)) {
+            Ok(_) | Err(Errno::INTR) => {}
+            Err(error) => return Err(error),
+        }
+        let ready = |place: usize| fds.get(place).is_some_and(|fd| !fd.revents().is_empty());
+        Ok([ready(0), writes && ready(fds.len() - 1), stderr.is_some_and(ready)])
+    }
+
+    /// Writes what goes in; false when nobody reads any more.
+    fn write(&self, left: &mut Vec<&[u8]>) -> bool {
+        while let Some(part) = left.last_mut() {
+            match rustix::io::write(&self.stdin, part) {
+                Ok(count) => {
+                    *part = &part[count..];
+                    if part.is_empty() {
+                        left.pop();
+                    }
+                }
+                Err(Errno::AGAIN | Errno::INTR) => return true,
+                Err(_) => return false,
+            }
+        }
+        true
+    }
+
+    /// Reads what is there; true at the end.
+    fn read(&mut self) -> bool {
+        let mut chunk = vec![0; CHUNK];
+        match rustix::io::read(self.stdout.as_fd(), &mut chunk) {
+            Ok(0) => true,
+            Ok(count) => {
+                self.pending.extend_from_slice(&chunk[..count]);
+                false
+            }
+            Err(Errno::AGAIN | Errno::INTR) => false,
+            Err(_) => true,
+        }
+    }
+
+    /// Keeps the end of what it says on standard error.
+    fn hear(&mut self) {
+        let mut chunk = vec![0; CHUNK];
+        match rustix::io::read(self.stderr.as_fd(), &mut chunk) {
+            Ok(0) => self.silent = true,
+            Ok(count) => {
+                self.tail.extend_from_slice(&chunk[..count]);
+                let excess = self.tail.len().saturating_sub(TAIL);
+                self.tail.drain(..excess);
+            }
+            Err(Errno::AGAIN | Errno::INTR) => {}
+            Err(_) => self.silent = true,
+        }
+    }
+
+    /// How it ended, with the last that it said.
+    fn ended(&mut self) -> Fault {
+        // It closed its output; it may live on.
+        let mut status = None;
+        for _ in 0..50 {
+            status = self.child.try_wait().ok().flatten();
+            if status.is_some() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        while !self.silent {
+            let before = self.tail.len();
+            self.hear();
+            if self.tail.len() == before {
+                break;
+            }
+        }
+        let how = status.map_or_else(|| "it closed its output".to_owned(), |status| format!("it ended: {status}"));
+        Fault::new(Rejection::Ended, how + &self.said())
+    }
+
+    /// The last line that it said on standard error.
+    fn said(&self) -> String {
+        let text = String::from_utf8_lossy(&self.tail);
+        text.lines().rev().find(|line| !line.trim().is_empty()).map_or_else(String::new, |line| format!(": {}", line.trim()))
+    }
+}
+
+/// Its whole process group is ended.
+impl Drop for Process {
+    fn drop(&mut self) {
+        if let Some(group) = Pid::from_raw(self.child.id() as i32) {
+            kill_process_group(group, Signal::KILL).ok();
+        }
+        self.child.kill().ok();
+        self.child.wait().ok();
+    }
+}

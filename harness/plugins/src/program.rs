@@ -1,0 +1,251 @@
+//! A plug-in's program: where its files are, its processes, and what is told of them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use calibench_measure::{Build, Method, Outside, Registry, Settings};
+use calibench_model::escape;
+use serde::Deserialize;
+use tempfile::TempDir;
+
+use crate::answer::{Fault, greeted};
+use crate::confine::Confinement;
+use crate::declaration::{Declaration, leak, parse};
+use crate::error::PluginError;
+use crate::operator::Asked;
+use crate::process::Process;
+use crate::request::greeting;
+
+/// How many different things are told of one plug-in.
+const MOST_TOLD: usize = 8;
+/// How long one is, characters.
+const LONGEST_TOLD: usize = 200;
+/// After this many images that took too long it is asked no more.
+const PATIENCE: usize = 5;
+/// The longest answer to the greeting, bytes.
+const LONGEST_GREETING: usize = 1 << 16;
+
+/// How programs are started.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Launcher {
+    /// What restricts itself and then becomes the program: the program and its arguments before those of [`Launcher::arguments`]. `None` starts it as it is, which
+    /// is told.
+    pub confiner: Option<Vec<OsString>>,
+    /// The project's folder, which plug-ins do not read.
+    pub project: Option<PathBuf>,
+}
+
+impl Launcher {
+    /// The arguments by which a confiner is told `confinement` and `command`.
+    pub fn arguments(confinement: &Confinement, command: &[OsString]) -> Vec<OsString> {
+        let pair = |flag: &str, value: &Path| [flag.into(), value.as_os_str().to_owned()];
+        let closed = confinement.closed.iter().flat_map(|path| pair("--closed", path));
+        let open = confinement.open.iter().flat_map(|path| pair("--open", path));
+        let memory = ["--memory".into(), confinement.memory.to_string().into(), "--".into()];
+        pair("--scratch", &confinement.scratch).into_iter().chain(closed).chain(open).chain(memory).chain(command.iter().cloned()).collect()
+    }
+}
+
+/// A program and its idle processes.
+pub struct Program {
+    pub declaration: Declaration,
+    command: Vec<OsString>,
+    /// A hash of its files.
+    files: String,
+    folder: PathBuf,
+    launcher: Launcher,
+    idle: Mutex<BTreeMap<Vec<u8>, Vec<Started>>>,
+    told: Mutex<BTreeSet<String>>,
+    slow: Mutex<usize>,
+}
+
+/// A process that has been greeted, in its own empty folder.
+pub struct Started {
+    pub process: Process,
+    version: String,
+    _scratch: TempDir,
+}
+
+/// What a confiner says before it becomes the program.
+#[derive(Deserialize)]
+struct Confined {
+    lacking: Vec<String>,
+}
+
+impl Program {
+    fn new(declaration: Declaration, folder: &Path, launcher: Launcher) -> Self {
+        let beside = |word: &String| Some(folder.join(word)).filter(|path| path.is_file());
+        let found: Vec<Option<PathBuf>> = declaration.command.iter().map(beside).collect();
+        let command = declaration.command.iter().zip(&found);
+        let command = command.map(|(word, file)| file.as_ref().map_or_else(|| word.into(), |file| file.clone().into_os_string())).collect();
+        let mut hasher = blake3::Hasher::new();
+        for (word, file) in declaration.command.iter().zip(&found) {
+            hasher.update(word.as_bytes()).update(&[0]);
+            // One that cannot be read will not start either.
+            hasher.update(&file.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default());
+        }
+        let files = hasher.finalize().to_hex()[..8].to_owned();
+        Self {
+            declaration,
+            command,
+            files,
+            folder: folder.to_owned(),
+            launcher,
+            idle: Mutex::default(),
+            told: Mutex::default(),
+            slow: Mutex::default(),
+        }
+    }
+
+    /// How long it may take for an image.
+    pub fn limit(&self) -> Duration {
+        Duration::from_secs_f64(self.declaration.seconds)
+    }
+
+    /// A process that has been told the parameters: an idle one, or a new one.
+    pub fn process(&self, settings: &Settings) -> Result<Started, Fault> {
+        let greeting = greeting(settings.iter());
+        let idle = locked(&self.idle).get_mut(&greeting).and_then(Vec::pop);
+        idle.map_or_else(|| self.start(&greeting), Ok)
+    }
+
+    /// Keeps a process that did as it should.
+    pub fn keep(&self, settings: &Settings, started: Started) {
+        locked(&self.idle).entry(greeting(settings.iter())).or_default().push(started);
+    }
+
+    fn start(&self, greeting: &[u8]) -> Result<Started, Fault> {
+        let fault = |message: String| Fault::new(calibench_model::Rejection::Ended, message);
+        let scratch = TempDir::new().map_err(|error| fault(format!("no folder for it: {error}")))?;
+        let mut process = Process::start(&mut self.started_in(scratch.path())).map_err(|error| fault(format!("it does not start: {error}")))?;
+        if self.launcher.confiner.is_some() {
+            let line = process.ask(&[], self.limit(), LONGEST_GREETING)?;
+            let confined: Confined = serde_json::from_str(&line).map_err(|error| fault(format!("{line}: {error}")))?;
+            if !confined.lacking.is_empty() {
+                self.tell(&format!("not kept from: {}; this system cannot", confined.lacking.join(", ")));
+            }
+        } else {
+            self.tell("not kept from reading the project, writing and the network");
+        }
+        let line = process.ask(&[greeting], self.limit(), LONGEST_GREETING)?;
+        let greeted = greeted(&line).map_err(fault)?;
+        if let Some(error) = greeted.error {
+            return Err(fault(error));
+        }
+        let version = greeted.version.map_or_else(|| "0".to_owned(), |version| version.to_string());
+        Ok(Started { process, version: short(&version), _scratch: scratch })
+    }
+
+    /// The command in an empty folder, without a trace of where it was called from.
+    fn started_in(&self, scratch: &Path) -> Command {
+        let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let confinement = Confinement {
+            scratch: whole(scratch),
+            closed: self.launcher.project.as_deref().map(whole),
+            open: vec![whole(&self.folder)],
+            memory: self.declaration.memory,
+        };
+        let words = match &self.launcher.confiner {
+            Some(confiner) => [confiner.as_slice(), &Launcher::arguments(&confinement, &self.command)].concat(),
+            None => self.command.clone(),
+        };
+        let mut command = Command::new(&words[0]);
+        command.args(&words[1..]).current_dir(scratch).env("TMPDIR", scratch).env("PYTHONDONTWRITEBYTECODE", "1");
+        // Processes run one a thread: libraries' own threads would fight for the processors.
+        for threads in ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"] {
+            command.env(threads, "1");
+        }
+        for (name, _) in std::env::vars_os() {
+            if ["PWD", "OLDPWD"].contains(&&*name.to_string_lossy()) || name.to_string_lossy().starts_with("CALIBENCH_") {
+                command.env_remove(name);
+            }
+        }
+        command
+    }
+
+    /// Keeps something to be told, once.
+    pub fn tell(&self, what: &str) {
+        let mut told = locked(&self.told);
+        told.insert(short(what));
+        // The first in order stay, whichever thread came first.
+        while told.len() > MOST_TOLD {
+            told.pop_last();
+        }
+    }
+
+    /// What is to be told of it.
+    pub fn told(&self) -> Vec<String> {
+        locked(&self.told).iter().cloned().collect()
+    }
+
+    /// Whether it has taken too long too often.
+    pub fn is_given_up(&self) -> bool {
+        *locked(&self.slow) >= PATIENCE
+    }
+
+    /// Counts an image that took too long.
+    pub fn was_slow(&self) {
+        *locked(&self.slow) += 1;
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // What is kept here is whole at any time.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A text of others in a line: no command to a terminal, and not long.
+fn short(text: &str) -> String {
+    let text = escape::name(text.trim());
+    let start: String = text.chars().take(LONGEST_TOLD).collect();
+    if start.len() < text.len() { format!("{start}...") } else { start }
+}
+
+/// A declared plug-in as a method. `folder` is that of its file.
+pub fn method(declaration: Declaration, folder: &Path, launcher: &Launcher) -> Method {
+    let (name, about) = (leak(declaration.name.clone()), leak(declaration.about.clone()));
+    let (source, parameters) = (leak(declaration.source.clone()), Box::leak(declaration.parameters.clone().into_boxed_slice()));
+    let program = Arc::new(Program::new(declaration, folder, launcher.clone()));
+    let files = program.files.clone();
+    let build = move |settings: &Settings| match program.process(settings) {
+        Ok(started) => {
+            let version = format!("{} ({})", started.version, program.files);
+            program.keep(settings, started);
+            Outside { version, operator: Ok(Box::new(Asked::new(program.clone(), settings.clone()))) }
+        }
+        Err(fault) => Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) },
+    };
+    Method { name, about, source, version: format!("? ({files})"), parameters, build: Build::Outside(Arc::new(build)) }
+}
+
+/// `registry` with the plug-ins that the TOML files of `folder` declare, in the order of their names.
+///
+/// # Errors
+/// A folder or file that cannot be read, mistakes with line and column, a name that is taken.
+pub fn load(folder: &Path, mut registry: Registry, launcher: &Launcher) -> Result<Registry, PluginError> {
+    let file_error = |path: &Path, source| PluginError::File { path: path.to_owned(), source };
+    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+    let mut files: Vec<PathBuf> = entries.map_err(|error| file_error(folder, error))?.into_iter().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    let mut known: Vec<(String, PathBuf)> = Vec::new();
+    for path in files {
+        let text = std::fs::read_to_string(&path).map_err(|error| file_error(&path, error))?;
+        for declaration in parse(&path.display().to_string(), &text)? {
+            let name = declaration.name.clone();
+            if let Some((_, earlier)) = known.iter().find(|(other, _)| *other == name) {
+                return Err(PluginError::Twice { path, earlier: earlier.clone(), name });
+            }
+            if registry.methods().iter().any(|method| method.name == name) {
+                return Err(PluginError::Taken { path, name });
+            }
+            known.push((name, path.clone()));
+            registry = registry.with(method(declaration, folder, launcher));
+        }
+    }
+    Ok(registry)
+}

@@ -1,0 +1,101 @@
+//! Declarations, requests and answers; what processes do is tried with the whole program.
+
+use calibench_model::{Image, PixelPoint, Rejection, Start, TargetKind};
+
+use crate::answer::{Answer, read};
+use crate::declaration::{Grey, Starts, parse};
+use crate::request::{body, greeting, head, rounds};
+
+const GOOD: &str = r#"
+[[plugin]]
+name = "mine"
+command = ["python3", "mine.py"]
+parameters = { window = { default = 11, min = 3, max = 31, odd = true }, reach = { default = 0.5, min = 0.0, max = 2.0 } }
+memory = "1.5 GB"
+"#;
+
+#[test]
+fn a_declaration_is_read_with_its_defaults() {
+    let found = &parse("mine.toml", GOOD).unwrap()[0];
+    assert_eq!((found.name.as_str(), found.grey, found.starts, found.seconds), ("mine", Grey::Gray8, Starts::Given, 30.0));
+    assert_eq!(found.memory, 1_500_000_000);
+    let named: Vec<_> = found.parameters.iter().map(|p| (p.name, p.default, p.domain.describe())).collect();
+    assert_eq!(named[0], ("reach", 0.5, "a number from 0 to 2".to_owned()));
+    assert_eq!(named[1], ("window", 11.0, "an odd number from 3 to 31".to_owned()));
+}
+
+#[test]
+fn every_mistake_in_a_declaration_has_its_place() {
+    for (old, new, place, expected) in [
+        ("name = \"mine\"", "name = \"Mine\"", "3:8", "no name of a method"),
+        ("command = [\"python3\", \"mine.py\"]", "command = []", "4:11", "expected the program"),
+        ("default = 11", "default = 12", "5:", "the default must be an odd number from 3 to 31, found 12"),
+        ("default = 11", "default = \"x\"", "5:", "`default` must be a number"),
+        ("min = 3", "min = -3", "5:", "not negative"),
+        ("1.5 GB", "1.5", "6:10", "`1.5` is no memory"),
+        ("memory", "memry", "6:1", "unknown field `memry`"),
+        ("memory = \"1.5 GB\"", "starts = \"some\"", "6:10", "expected \"given\" or \"none\""),
+        ("memory = \"1.5 GB\"", "radius = 3.0", "6:10", "`radius` is for starts"),
+        ("memory = \"1.5 GB\"", "seconds = 0.0", "6:11", "expected seconds"),
+        ("memory = \"1.5 GB\"", "mode = \"folder\"", "6:8", "mode `folder` is not known"),
+        ("memory = \"1.5 GB\"", "image = \"rgb\"", "6:9", "unknown variant `rgb`"),
+    ] {
+        assert!(GOOD.contains(old));
+        let message = parse("mine.toml", &GOOD.replacen(old, new, 1)).expect_err(new).to_string();
+        assert!(message.starts_with(&format!("mine.toml:{place}")) && message.contains(expected), "{new}: {message}");
+    }
+    assert!(parse("empty.toml", "").unwrap_err().to_string().contains("declares no plug-in"));
+}
+
+#[test]
+fn requests_are_a_line_and_the_grey_values() {
+    let parameters = [("window", 11.0), ("reach", 0.5)];
+    assert_eq!(greeting(parameters.into_iter()), b"{\"calibench\":1,\"parameters\":{\"reach\":0.5,\"window\":11}}\n");
+    let image = Image::new(2, 1, vec![0.0, 128.0 / 255.0]);
+    let start = Start { kind: Some(TargetKind::ChessCorner), ..Start::at(PixelPoint::new(0.25, 0.0)) };
+    let line = String::from_utf8(head(&image, Grey::Gray16le, Some(&[start]))).unwrap();
+    let expected = r#"{"bytes":4,"format":"gray16le","height":1,"kinds":["chess_corner"],"starts":[[0.25,0.0]],"width":2}"#;
+    assert_eq!(line, format!("{expected}\n"));
+    assert!(!String::from_utf8(head(&image, Grey::Gray8, None)).unwrap().contains("starts"));
+    assert_eq!(body(&image, Grey::Gray8), [0, 128]);
+    assert_eq!(body(&image, Grey::Gray16le), [0, 0, 0x80, 0x80]);
+    assert_eq!(body(&image, Grey::Gray32f), [0.0_f32.to_le_bytes(), (128.0_f32 / 255.0).to_le_bytes()].concat());
+    assert_eq!([Grey::Gray8, Grey::Gray16le, Grey::Gray32f].map(|grey| rounds(&image, grey)), [false; 3]);
+    let deep = Image::new(2, 1, vec![0.5, 1.2]);
+    assert_eq!([Grey::Gray8, Grey::Gray16le, Grey::Gray32f].map(|grey| rounds(&deep, grey)), [true, true, false]);
+}
+
+#[test]
+fn answers_are_read_point_by_point() {
+    let line = r#"{"xy": [[1.5, 2], null, [NaN, 3], [Infinity, 0], [1], [4, 5], [6, 7]],
+        "cov": [[1e-4, 0, 2e-4], null, null, null, null, [1, 2, 1], [null, null, null]],
+        "reasons": [null, "NaN \"here\"", null, null, null, null, null]}"#;
+    let Answer { points, told } = read(line, Some(7), 100).unwrap();
+    let first = points[0].unwrap();
+    assert_eq!((first.position.x, first.position.y, first.covariance.unwrap().syy), (1.5, 2.0, 2e-4));
+    let reasons: Vec<_> = points[1..6].iter().map(|point| point.unwrap_err()).collect();
+    let (declined, malformed) = (Rejection::Declined, Rejection::Malformed);
+    assert_eq!(reasons, [declined, declined, malformed, malformed, malformed]);
+    assert_eq!(points[6].unwrap().covariance, None);
+    assert_eq!(told[0], "NaN \"here\"", "a text is not touched");
+    assert!(told[1].contains("infinite") && told[2].contains("not [x, y]") && told[3].contains("covariance"), "{told:?}");
+}
+
+#[test]
+fn answers_that_are_none_say_why() {
+    for (line, asked, expected) in [
+        ("", Some(1), "an empty line"),
+        ("[]", Some(1), "`[]`"),
+        ("{\"xy\": [[1, 2]", Some(1), "expected a line of JSON"),
+        ("{}", Some(1), "no `xy`"),
+        ("{\"xy\": [[1, 2], [3, 4]]}", Some(1), "2 positions, asked for were 1"),
+        ("{\"xy\": [[1, 2]], \"cov\": []}", Some(1), "`cov` has 0 entries"),
+        ("{\"xy\": [[1, 2], [3, 4], [5, 6]]}", None, "3 positions in one image"),
+    ] {
+        let fault = read(line, asked, 2).unwrap_err();
+        assert_eq!(fault.rejection, Rejection::Malformed);
+        assert!(fault.message.contains(expected), "{line}: {}", fault.message);
+    }
+    let raised = read("{\"error\": \"no memory\"}", Some(1), 2).unwrap_err();
+    assert_eq!((raised.rejection, raised.message.as_str()), (Rejection::Raised, "no memory"));
+}
