@@ -97,7 +97,7 @@ fn other_size(operator: &dyn Operator) -> Result<(), String> {
 }
 
 fn nothing(operator: &dyn Operator) -> Result<(), String> {
-    let flat = Image::from_fn(SIDE, SIDE, |_, _| 0.5);
+    let flat = Image::from_fn(SIDE, SIDE, |_, _| 128.0 / 255.0);
     match operator.measure(&flat, &middle(0.0, 0.0)) {
         Err(rejection @ (Rejection::Malformed | Rejection::TooSlow | Rejection::Ended | Rejection::Raised)) => {
             Err(format!("{}; expected null for a point that cannot be measured", failed(operator, rejection)))
