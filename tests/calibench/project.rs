@@ -36,10 +36,13 @@ pub fn copy_with(wanted: &[&str]) -> tempfile::TempDir {
 /// A temporary project with all scenarios and references, of each scenario `most` trials at most.
 pub fn copy_of_all(most: u64) -> tempfile::TempDir {
     let folder = whole();
-    for (path, bytes) in files(&folder.path().join("scenarios")).into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "toml")) {
+    for (path, bytes) in
+        files(&folder.path().join("scenarios")).into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "toml"))
+    {
         let text = String::from_utf8(bytes).expect("UTF-8");
         let trials = |line: &str| line.strip_prefix("trials = ").and_then(|number| number.parse::<u64>().ok());
-        let few = |line: &str| if trials(line).is_some_and(|trials| trials > most) { format!("trials = {most}\n") } else { format!("{line}\n") };
+        let few =
+            |line: &str| if trials(line).is_some_and(|trials| trials > most) { format!("trials = {most}\n") } else { format!("{line}\n") };
         std::fs::write(folder.path().join("scenarios").join(path), text.lines().map(few).collect::<String>()).expect("a scenario");
     }
     folder

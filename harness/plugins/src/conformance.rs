@@ -1,8 +1,8 @@
 //! What every plug-in must do: one check for all, for those who write one.
 
+use calibench_measure::conformance::chess_corner;
 use calibench_measure::{Configured, Operator};
 use calibench_model::{Image, PixelPoint, Rejection, Start};
-use calibench_measure::conformance::chess_corner;
 
 /// What one check found.
 #[derive(Clone, Debug, PartialEq, Eq)]

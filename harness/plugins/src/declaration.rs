@@ -220,7 +220,13 @@ fn parameter_of(key: &str, wire: &ParameterWire) -> Result<Parameter, String> {
         (false, true) => return Err("`odd` is for whole numbers".into()),
         (false, false) => Domain::Real { min, max },
         (true, odd) => {
-            let count = |value: f64| if (0.0..=f64::from(u32::MAX)).contains(&value) { Ok(value as u32) } else { Err("whole numbers are not negative here: write 1.0 for a real one") };
+            let count = |value: f64| {
+                if (0.0..=f64::from(u32::MAX)).contains(&value) {
+                    Ok(value as u32)
+                } else {
+                    Err("whole numbers are not negative here: write 1.0 for a real one")
+                }
+            };
             let (min, max) = (count(min)?, count(max)?);
             if odd { Domain::Odd { min, max } } else { Domain::Whole { min, max } }
         }

@@ -64,7 +64,11 @@ impl Process {
     /// That it ended, took longer than `limit`, said something before it was asked or more than it may. It is of no use then.
     pub fn ask(&mut self, request: &[&[u8]], limit: Duration, most: usize) -> Result<String, Fault> {
         let deadline = Instant::now() + limit;
-        if !self.pending.is_empty() {
+        // An answer that nobody asked for must not be taken for that to the next image.
+        if self.read() {
+            return Err(self.ended());
+        }
+        if !self.pending.is_empty() && !request.is_empty() {
             return Err(Fault::new(Rejection::Malformed, "it said more than one line"));
         }
         let mut left: Vec<&[u8]> = request.iter().rev().copied().filter(|part| !part.is_empty()).collect();

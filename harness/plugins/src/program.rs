@@ -78,6 +78,8 @@ struct Confined {
 
 impl Program {
     fn new(declaration: Declaration, folder: &Path, launcher: Launcher) -> Self {
+        // It is started somewhere else.
+        let folder = &folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         let beside = |word: &String| Some(folder.join(word)).filter(|path| path.is_file());
         let found: Vec<Option<PathBuf>> = declaration.command.iter().map(beside).collect();
         let command = declaration.command.iter().zip(&found);
@@ -121,7 +123,8 @@ impl Program {
     fn start(&self, greeting: &[u8]) -> Result<Started, Fault> {
         let fault = |message: String| Fault::new(calibench_model::Rejection::Ended, message);
         let scratch = TempDir::new().map_err(|error| fault(format!("no folder for it: {error}")))?;
-        let mut process = Process::start(&mut self.started_in(scratch.path())).map_err(|error| fault(format!("it does not start: {error}")))?;
+        let mut process =
+            Process::start(&mut self.started_in(scratch.path())).map_err(|error| fault(format!("it does not start: {error}")))?;
         if self.launcher.confiner.is_some() {
             let line = process.ask(&[], self.limit(), LONGEST_GREETING)?;
             let confined: Confined = serde_json::from_str(&line).map_err(|error| fault(format!("{line}: {error}")))?;

@@ -43,7 +43,11 @@ fn told(methods: &[Configured]) -> impl Iterator<Item = String> {
     for (name, notes) in notes {
         // Settings of one program tell the same.
         let all = notes.iter().map(|note| format!("**`{name}`:** {}", markdown(note)));
-        all.for_each(|note| if !seen.contains(&note) { seen.push(note) });
+        all.for_each(|note| {
+            if !seen.contains(&note) {
+                seen.push(note)
+            }
+        });
     }
     seen.into_iter()
 }

@@ -76,7 +76,8 @@ const WAYS: [(u32, &str, &str); 28] = [
     (13, "rejected,malformed", "expected a line of JSON"),
     (14, "rejected,malformed", "covariance"),
     (15, "rejected,malformed", "more than one line"),
-    (16, "rejected,malformed", "before it had read"),
+    // A small image fits into the pipe: nobody knows whether it was read.
+    (16, "measured,", ""),
     (17, "rejected,malformed", "longer than"),
     (18, "measured,", ""),
     (19, "rejected,ended", "MemoryError"),
@@ -102,14 +103,15 @@ fn none_hangs_ends_the_run_or_changes_another_methods_rows() {
     let (alone, _) = measure(&[]);
     for (way, expected, told) in WAYS {
         let started = Instant::now();
-        let (beside, said) = measure(&["-m", &format!("hostile:way={way}")]);
+        // On one thread the second image finds the process that has said too much.
+        let threads = if way == 15 { "1" } else { "2" };
+        let (beside, said) = measure(&["--threads", threads, "-m", &format!("hostile:way={way}")]);
         assert!(started.elapsed() < Duration::from_secs(20), "way {way}: {:?}", started.elapsed());
         assert!(beside == alone, "way {way} changes another method's rows");
         let own = rows(project.path(), "hostile");
         assert!(!own.is_empty(), "way {way}");
-        // Of two images the second may have found a process that had said too much.
         let right = own.iter().filter(|row| row.contains(expected)).count();
-        assert!(right == own.len() || (way == 15 && right > 0), "way {way}: expected {expected}, found {own:?}");
+        assert!(right == if way == 15 { own.len() / 2 } else { own.len() }, "way {way}: expected {expected}, found {own:?}");
         let notes = notes(project.path());
         let everything = format!("{notes}{said}{}", crate::project::table(&project.path().join("records/corners/noise/records.csv.gz")));
         assert!(everything.contains(told), "way {way}: {told}\n{notes}");
@@ -128,7 +130,9 @@ fn is_running(argument: &str) -> bool {
 #[test]
 fn plugin_test_says_what_fails() {
     let project = with_plugins(&[("hostile.py", SCRIPT)]);
-    for (way, expected) in [(1, "FAILED  it starts and says its version: it ended: exit status: 7"), (8, "asked for were"), (20, "ValueError: boom")] {
+    for (way, expected) in
+        [(1, "FAILED  it starts and says its version: it ended: exit status: 7"), (8, "asked for were"), (20, "ValueError: boom")]
+    {
         let path = project.path().join("methods/hostile.toml");
         std::fs::write(&path, TOML.replace("default = 0", &format!("default = {way}"))).unwrap();
         let output = run(project.path(), &["plugin", "test", "methods/hostile.toml"]);

@@ -21,7 +21,8 @@ fn rows(project: &Path, method: &str) -> Vec<String> {
 fn versions(project: &Path, method: &str) -> Vec<String> {
     let records = table(&project.join("records/corners/noise/records.csv.gz"));
     let cells = records.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let mut found: Vec<String> = cells.filter(|cells| cells[4].split(':').next() == Some(method)).map(|cells| cells[5].to_owned()).collect();
+    let mut found: Vec<String> =
+        cells.filter(|cells| cells[4].split(':').next() == Some(method)).map(|cells| cells[5].to_owned()).collect();
     found.dedup();
     found
 }
@@ -65,11 +66,11 @@ fn the_examples_measure_as_operators_do() {
     let output = run(project.path(), &[&["run", "corners/noise", "--trials", "3", "-q"][..], &methods].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     let [pixel, shell, python, cpp] = ["pixel", "start_sh", "forstner_py", "forstner_cpp"].map(|method| rows(project.path(), method));
-    assert!(pixel.len() > 30 && pixel == shell, "its starts are those of `pixel`, in their order");
+    assert!(pixel.len() > 20 && pixel == shell, "its starts are those of `pixel`, in their order");
     assert_eq!(python.len(), pixel.len());
     let number = |row: &str, column: usize| row.split(',').nth(column).unwrap().parse::<f64>().unwrap();
     let measured: Vec<_> = python.iter().zip(&cpp).filter(|(row, _)| row.contains("measured")).collect();
-    assert!(measured.len() > 20, "{python:?}");
+    assert!(measured.len() > 15, "{python:?}");
     for (a, b) in &measured {
         assert!((number(a, 3) - number(b, 3)).abs() < 1e-5 && (number(a, 4) - number(b, 4)).abs() < 1e-5, "{a} {b}");
     }
@@ -120,11 +121,12 @@ fn a_detector_of_whole_images_is_matched_with_the_truth_afterwards() {
     assert!(output.status.success(), "{}", stderr(&output));
     let (pixel, whole) = (rows(project.path(), "pixel"), rows(project.path(), "whole"));
     for (start, found) in pixel.iter().zip(&whole) {
-        let near = start.contains(",31,30,") || start.contains(",32,30,");
-        assert_eq!(found.contains("measured"), near, "{start} {found}");
+        let at: Vec<f64> = start.split(',').skip(3).take(2).map(|number| number.parse().unwrap()).collect();
+        let near = [[31.5, 30.25], [31.9, 30.0]].iter().any(|[x, y]| (x - at[0]).hypot(y - at[1]) <= 3.0);
+        assert_eq!(found.contains("measured") || found.contains("lost"), near, "{start} {found}");
         assert!(near || found.contains("not_detected"), "{found}");
     }
-    assert!(whole.iter().any(|row| row.contains("measured")), "{pixel:?}");
+    assert!(whole.iter().any(|row| row.contains(",31.5,30.25,")), "{pixel:?}");
 }
 
 #[cfg_attr(not(python), ignore = "no python3")]
