@@ -91,16 +91,10 @@ impl Context<'_> {
         let own = project.as_ref().map(|root| root.join(PLUGINS)).filter(|folder| folder.is_dir());
         let builtin = self.toolbox.registry.clone();
         let methods = match self.plugins.clone().or(own) {
-            Some(folder) => load(&folder, builtin, &self.launcher(project)).map_err(plugin_failure)?,
+            Some(folder) => load(&folder, builtin, &launcher(project)).map_err(plugin_failure)?,
             None => builtin,
         };
         Ok(self.methods.get_or_init(|| methods))
-    }
-
-    /// How plug-ins are started: by this program, which restricts itself and then becomes the plug-in.
-    pub fn launcher(&self, project: Option<PathBuf>) -> Launcher {
-        let confiner = std::env::current_exe().ok().map(|program| vec![program.into_os_string(), CONFINED.into()]);
-        Launcher { confiner, project }
     }
 
     /// The project's scenarios.
@@ -235,6 +229,12 @@ impl Context<'_> {
         let revision = self.project()?.and_then(describe);
         Ok(revision.unwrap_or_else(|| env!("CARGO_PKG_VERSION").to_owned()))
     }
+}
+
+/// How plug-ins are started: by this program, which restricts itself and then becomes the plug-in.
+pub fn launcher(project: Option<PathBuf>) -> Launcher {
+    let confiner = std::env::current_exe().ok().map(|program| vec![program.into_os_string(), CONFINED.into()]);
+    Launcher { confiner, project }
 }
 
 /// The file of `scenario`, which was asked for as `name`, if it is not one of the project's.

@@ -8,7 +8,7 @@ use calibench_measure::Registry;
 use calibench_plugins::{Confinement, check, confine_and_execute, method, parse};
 use clap::{Args, Subcommand};
 
-use super::context::Context;
+use super::context::{Context, launcher};
 use crate::deliver::print;
 use crate::failure::{Failure, plugin_failure};
 
@@ -35,7 +35,7 @@ fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
     let text = std::fs::read_to_string(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
     let declarations = parse(&file.display().to_string(), &text).map_err(|problems| plugin_failure(problems.into()))?;
     let folder = file.canonicalize()?.parent().map(Path::to_owned).unwrap_or_default();
-    let launcher = context.launcher(context.project()?);
+    let launcher = launcher(context.project()?);
     let mut failed = false;
     for declaration in declarations {
         let name = declaration.name.clone();

@@ -13,6 +13,9 @@ pub struct Finding {
     pub wrong: Option<String>,
 }
 
+/// What one try finds wrong.
+type Try = fn(&dyn Operator) -> Result<(), String>;
+
 const SIDE: usize = 91;
 
 fn image(dx: f64, dy: f64, width: usize, height: usize) -> Image {
@@ -35,7 +38,7 @@ pub fn check(method: &Configured) -> Vec<Finding> {
         Ok(operator) => operator.as_ref(),
         Err(why) => return vec![Finding { what: "it starts and says its version", wrong: Some(why.clone()) }],
     };
-    let tries: [(&'static str, fn(&dyn Operator) -> Result<(), String>); 6] = [
+    let tries: [(&'static str, Try); 6] = [
         ("a chess corner is found within 3 px", found),
         ("the same image gives the same answer", same),
         ("a shift by whole pixels shifts the answer", shifted),

@@ -45,7 +45,7 @@ fn told(methods: &[Configured]) -> impl Iterator<Item = String> {
         let all = notes.iter().map(|note| format!("**`{name}`:** {}", markdown(note)));
         all.for_each(|note| {
             if !seen.contains(&note) {
-                seen.push(note)
+                seen.push(note);
             }
         });
     }
