@@ -38,6 +38,6 @@ int main() {
             if (det <= 1e-3 * (sxx + syy) * (sxx + syy)) out << "null";
             else out << '[' << (syy * sx - sxy * sy) / det << ',' << (sxx * sy - sxy * sx) / det << ']';
         }
-        std::cout << "{\"xy\": [" << out.str() << "]}" << std::endl;
+        std::cout << "{\"image\": " << int(number(line, "image")) << ", \"xy\": [" << out.str() << "]}" << std::endl;
     }
 }

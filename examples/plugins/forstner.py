@@ -27,4 +27,4 @@ while line := stream.readline():
     asked = json.loads(line)
     grey = stream.read(asked["bytes"])
     found = [corner(grey, asked["width"], asked["height"], x, y, half) for x, y in asked["starts"]]
-    print(json.dumps({"xy": [xy for xy, _ in found], "reasons": [why for _, why in found]}), flush=True)
+    print(json.dumps({"image": asked["image"], "xy": [xy for xy, _ in found], "reasons": [why for _, why in found]}), flush=True)

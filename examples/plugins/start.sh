@@ -5,7 +5,8 @@ while IFS= read -r line; do
         bytes=${line#*\"bytes\":}
         head -c "${bytes%%[,\}]*}" >/dev/null
         starts=${line#*\"starts\":}
-        printf '{"xy":%s]]}\n' "${starts%%\]\]*}" ;;
+        image=${line#*\"image\":}
+        printf '{"image":%s,"xy":%s]]}\n' "${image%%[,\}]*}" "${starts%%\]\]*}" ;;
     *) echo '{"version":"1"}' ;;
     esac
 done

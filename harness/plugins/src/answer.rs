@@ -56,6 +56,8 @@ impl std::fmt::Display for Text {
 #[derive(Deserialize)]
 struct Wire {
     #[serde(default)]
+    image: Option<u64>,
+    #[serde(default)]
     xy: Option<Vec<Option<Vec<Option<f64>>>>>,
     #[serde(default)]
     cov: Option<Vec<Option<Vec<Option<f64>>>>>,
@@ -77,15 +79,20 @@ pub fn greeted(line: &str) -> Result<Greeted, String> {
     serde_json::from_str(line).map_err(|error| format!("expected a line of JSON as {{\"version\": \"1\"}}, found {}: {error}", shown(line)))
 }
 
-/// Reads an answer about `asked` positions, or of any number up to `most` where it was asked for none.
-pub fn read(line: &str, asked: Option<usize>, most: usize) -> Result<Answer, Fault> {
+/// Reads an answer about `asked` positions of image `number`, or of any number up to `most` where it was asked for none.
+pub fn read(line: &str, number: u64, asked: Option<usize>, most: usize) -> Result<Answer, Fault> {
     let malformed = |message: String| Fault::new(Rejection::Malformed, message);
-    let wire: Wire = serde_json::from_str(&without_nan(line))
-        .map_err(|error| malformed(format!("expected a line of JSON as {{\"xy\": [[1.5, 2.5], null]}}, found {}: {error}", shown(line))))?;
+    let wire: Wire = serde_json::from_str(&without_nan(line)).map_err(|error| {
+        malformed(format!("expected a line of JSON as {{\"image\": {number}, \"xy\": [[1.5, 2.5], null]}}, found {}: {error}", shown(line)))
+    })?;
     if let Some(error) = wire.error {
         return Err(Fault::new(Rejection::Raised, error));
     }
     let positions = wire.xy.ok_or_else(|| malformed("the answer has no `xy`".into()))?;
+    if wire.image != Some(number) {
+        let found = wire.image.map_or_else(|| "none".to_owned(), |found| found.to_string());
+        return Err(malformed(format!("`image` must be that of the request, {number}, found {found}")));
+    }
     let count = positions.len();
     match asked {
         Some(asked) if asked != count => return Err(malformed(format!("`xy` has {count} positions, asked for were {asked}"))),

@@ -39,14 +39,16 @@ impl Asked {
         if rounds(image, grey) {
             self.program.tell(&format!("grey values were rounded or clipped for it: its images are `{}`", grey.name()));
         }
-        let (head, body) = (head(image, grey, starts), body(image, grey));
+        let body = body(image, grey);
         let most = starts.map_or(MOST_DETECTED, <[Start]>::len) * BYTES_A_POSITION + 4096;
         let mut started = self.program.process(&self.settings)?;
+        started.asked += 1;
+        let head = head(started.asked, image, grey, starts);
         let line = started.process.ask(&[&head, &body], self.program.limit(), most);
         if line.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow) {
             self.program.was_slow();
         }
-        let answer = read(&line?, starts.map(<[Start]>::len), MOST_DETECTED)?;
+        let answer = read(&line?, started.asked, starts.map(<[Start]>::len), MOST_DETECTED)?;
         self.program.keep(&self.settings, started);
         Ok(answer)
     }

@@ -66,6 +66,8 @@ pub struct Program {
 /// A process that has been greeted, in its own empty folder.
 pub struct Started {
     pub process: Process,
+    /// How many images it was asked about.
+    pub asked: u64,
     version: String,
     _scratch: TempDir,
 }
@@ -140,7 +142,7 @@ impl Program {
             return Err(fault(error));
         }
         let version = greeted.version.map_or_else(|| "0".to_owned(), |version| version.to_string());
-        Ok(Started { process, version: short(&version), _scratch: scratch })
+        Ok(Started { process, asked: 0, version: short(&version), _scratch: scratch })
     }
 
     /// The command in an empty folder, without a trace of where it was called from.

@@ -20,10 +20,10 @@ fn plain(value: f64) -> Value {
     if value.fract() == 0.0 && value.abs() < 1e15 { json!(value as i64) } else { json!(value) }
 }
 
-/// The line before the grey values of an image. Without `starts` there is none to be found near.
-pub fn head(image: &Image, grey: Grey, starts: Option<&[Start]>) -> Vec<u8> {
+/// The line before the grey values of an image, which is counted so that no answer is taken for that to another. Without `starts` there is none to be found near.
+pub fn head(number: u64, image: &Image, grey: Grey, starts: Option<&[Start]>) -> Vec<u8> {
     let bytes = image.grey().len() * bytes_of(grey);
-    let mut request = json!({ "width": image.width(), "height": image.height(), "format": grey.name(), "bytes": bytes });
+    let mut request = json!({ "image": number, "width": image.width(), "height": image.height(), "format": grey.name(), "bytes": bytes });
     if let Some(starts) = starts {
         request["starts"] = starts.iter().map(|start| json!([start.position.x, start.position.y])).collect();
         if starts.iter().any(|start| start.kind.is_some()) {

@@ -53,10 +53,10 @@ fn requests_are_a_line_and_the_grey_values() {
     assert_eq!(greeting(parameters.into_iter()), b"{\"calibench\":1,\"parameters\":{\"reach\":0.5,\"window\":11}}\n");
     let image = Image::new(2, 1, vec![0.0, 128.0 / 255.0]);
     let start = Start { kind: Some(TargetKind::ChessCorner), ..Start::at(PixelPoint::new(0.25, 0.0)) };
-    let line = String::from_utf8(head(&image, Grey::Gray16le, Some(&[start]))).unwrap();
-    let expected = r#"{"bytes":4,"format":"gray16le","height":1,"kinds":["chess_corner"],"starts":[[0.25,0.0]],"width":2}"#;
+    let line = String::from_utf8(head(1, &image, Grey::Gray16le, Some(&[start]))).unwrap();
+    let expected = r#"{"bytes":4,"format":"gray16le","height":1,"image":1,"kinds":["chess_corner"],"starts":[[0.25,0.0]],"width":2}"#;
     assert_eq!(line, format!("{expected}\n"));
-    assert!(!String::from_utf8(head(&image, Grey::Gray8, None)).unwrap().contains("starts"));
+    assert!(!String::from_utf8(head(1, &image, Grey::Gray8, None)).unwrap().contains("starts"));
     assert_eq!(body(&image, Grey::Gray8), [0, 128]);
     assert_eq!(body(&image, Grey::Gray16le), [0, 0, 0x80, 0x80]);
     assert_eq!(body(&image, Grey::Gray32f), [0.0_f32.to_le_bytes(), (128.0_f32 / 255.0).to_le_bytes()].concat());
@@ -67,10 +67,10 @@ fn requests_are_a_line_and_the_grey_values() {
 
 #[test]
 fn answers_are_read_point_by_point() {
-    let line = r#"{"xy": [[1.5, 2], null, [NaN, 3], [Infinity, 0], [1], [4, 5], [6, 7]],
+    let line = r#"{"image": 3, "xy": [[1.5, 2], null, [NaN, 3], [Infinity, 0], [1], [4, 5], [6, 7]],
         "cov": [[1e-4, 0, 2e-4], null, null, null, null, [1, 2, 1], [null, null, null]],
         "reasons": [null, "NaN \"here\"", null, null, null, null, null]}"#;
-    let Answer { points, told } = read(line, Some(7), 100).unwrap();
+    let Answer { points, told } = read(line, 3, Some(7), 100).unwrap();
     let first = points[0].unwrap();
     assert_eq!((first.position.x, first.position.y, first.covariance.unwrap().syy), (1.5, 2.0, 2e-4));
     let reasons: Vec<_> = points[1..6].iter().map(|point| point.unwrap_err()).collect();
@@ -85,17 +85,19 @@ fn answers_are_read_point_by_point() {
 fn answers_that_are_none_say_why() {
     for (line, asked, expected) in [
         ("", Some(1), "an empty line"),
-        ("[]", Some(1), "`[]`"),
+        ("7", Some(1), "`7`"),
         ("{\"xy\": [[1, 2]", Some(1), "expected a line of JSON"),
         ("{}", Some(1), "no `xy`"),
-        ("{\"xy\": [[1, 2], [3, 4]]}", Some(1), "2 positions, asked for were 1"),
-        ("{\"xy\": [[1, 2]], \"cov\": []}", Some(1), "`cov` has 0 entries"),
-        ("{\"xy\": [[1, 2], [3, 4], [5, 6]]}", None, "3 positions in one image"),
+        ("{\"xy\": [[1, 2]]}", Some(1), "`image` must be that of the request, 3, found none"),
+        ("{\"image\": 2, \"xy\": [[1, 2]]}", Some(1), "found 2"),
+        ("{\"image\": 3, \"xy\": [[1, 2], [3, 4]]}", Some(1), "2 positions, asked for were 1"),
+        ("{\"image\": 3, \"xy\": [[1, 2]], \"cov\": []}", Some(1), "`cov` has 0 entries"),
+        ("{\"image\": 3, \"xy\": [[1, 2], [3, 4], [5, 6]]}", None, "3 positions in one image"),
     ] {
-        let fault = read(line, asked, 2).unwrap_err();
+        let fault = read(line, 3, asked, 2).unwrap_err();
         assert_eq!(fault.rejection, Rejection::Malformed);
         assert!(fault.message.contains(expected), "{line}: {}", fault.message);
     }
-    let raised = read("{\"error\": \"no memory\"}", Some(1), 2).unwrap_err();
+    let raised = read("{\"error\": \"no memory\"}", 3, Some(1), 2).unwrap_err();
     assert_eq!((raised.rejection, raised.message.as_str()), (Rejection::Raised, "no memory"));
 }

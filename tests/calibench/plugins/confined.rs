@@ -43,7 +43,7 @@ print(json.dumps({"version": "did " + (" ".join(done) or "nothing")}), flush=Tru
 while line := stream.readline():
     asked = json.loads(line)
     stream.read(asked["bytes"])
-    print(json.dumps({"xy": asked["starts"]}), flush=True)
+    print(json.dumps({"image": asked["image"], "xy": asked["starts"]}), flush=True)
 "#;
 
 #[cfg_attr(not(python), ignore = "no python3")]

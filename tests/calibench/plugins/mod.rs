@@ -114,7 +114,7 @@ fn a_detector_of_whole_images_is_matched_with_the_truth_afterwards() {
         \x20   a = json.loads(l)\n\
         \x20   i.read(a['bytes'])\n\
         \x20   assert 'starts' not in a\n\
-        \x20   print('{\"xy\": [[31.5, 30.25], [31.9, 30.0], [5000, 3], null]}', flush=True)\n";
+        \x20   print('{\"image\": %d, \"xy\": [[31.5, 30.25], [31.9, 30.0], [5000, 3], null]}' % a['image'], flush=True)\n";
     let toml = "[[plugin]]\nname = \"whole\"\ncommand = [\"python3\", \"whole.py\"]\nstarts = \"none\"\nradius = 3.0\n";
     let project = with_plugins(&[("whole.toml", toml), ("whole.py", script)]);
     let output = run(project.path(), &["run", "corners/noise", "--trials", "2", "-q", "-m", "pixel", "-m", "whole"]);
