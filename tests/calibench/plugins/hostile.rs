@@ -90,7 +90,7 @@ const WAYS: [(u32, &str, &str); 28] = [
     (23, "rejected,ended", "signal: 9"),
     (24, "rejected,malformed", "no UTF-8"),
     (25, "rejected,too_slow", "no answer"),
-    (26, "rejected,malformed", "recursion"),
+    (26, "rejected,malformed", "invalid type"),
     (27, "rejected,too_slow", "no answer"),
 ];
 
