@@ -71,10 +71,29 @@ impl Configured {
         Self { label: format!("{}{separator}{KINDS}={kinds}", self.unlimited_label), kinds: Some(kinds), ..self }
     }
 
+    /// The method's name, without parameters.
+    pub fn name(&self) -> &str {
+        self.label.split(':').next().unwrap_or(&self.label)
+    }
+
     /// Whether it measures targets of this kind. One that is limited measures none of which the kind is not known.
     pub fn measures(&self, kind: Option<TargetKind>) -> bool {
         self.kinds.as_ref().is_none_or(|kinds| kind.is_some_and(|kind| kinds.iter().any(|known| known == kind)))
     }
+}
+
+/// What is to be known of how the results of methods came about, with the method's name: each once, since settings of one program tell the same.
+pub fn notes<'m>(methods: impl IntoIterator<Item = &'m Configured>) -> Vec<(&'m str, String)> {
+    let mut found: Vec<(&str, String)> = Vec::new();
+    for method in methods {
+        let own = method.operator.as_ref().map_or_else(|_| Vec::new(), |operator| operator.notes());
+        for note in own.into_iter().map(|note| (method.name(), note)) {
+            if !found.contains(&note) {
+                found.push(note);
+            }
+        }
+    }
+    found
 }
 
 /// What the kinds are called among the parameters of a method.

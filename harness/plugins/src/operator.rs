@@ -30,8 +30,8 @@ impl Asked {
         Self { program, settings }
     }
 
-    /// Asks once; a process that failed is ended, and the next image gets a new one.
-    fn ask(&self, image: &Image, starts: Option<&[Start]>) -> Result<Answer, Fault> {
+    /// Asks once and tells what the answer tells; a process that failed is ended, and the next image gets a new one.
+    fn ask(&self, image: &Image, starts: Option<&[Start]>) -> Result<Vec<Measured>, Fault> {
         if self.program.is_given_up() {
             return Err(Fault::new(Rejection::TooSlow, "it took too long too often and was asked no more"));
         }
@@ -48,17 +48,32 @@ impl Asked {
         if line.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow) {
             self.program.was_slow();
         }
-        let answer = read(&line?, started.asked, starts.map(<[Start]>::len), MOST_DETECTED)?;
+        let Answer { points, told } = read(&line?, started.asked, starts.map(<[Start]>::len), MOST_DETECTED)?;
         self.program.keep(&self.settings, started);
-        Ok(answer)
+        told.iter().for_each(|what| self.program.tell(what));
+        Ok(points)
+    }
+
+    /// Answers to starts that are finite.
+    fn of_finite(&self, image: &Image, starts: &[Start]) -> Vec<Measured> {
+        if starts.is_empty() {
+            return Vec::new();
+        }
+        let asked = match self.program.declaration.starts {
+            Starts::Given => self.each(image, starts),
+            Starts::None { radius } => self.nearest(image, starts, radius),
+        };
+        asked.unwrap_or_else(|fault| {
+            self.program.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
+            vec![Err(fault.rejection); starts.len()]
+        })
     }
 
     /// Answers to `starts`, which are shown in an order that says nothing.
     fn each(&self, image: &Image, starts: &[Start]) -> Result<Vec<Measured>, Fault> {
         let order = shuffled(starts.len());
         let shown: Vec<Start> = order.iter().map(|&place| starts[place]).collect();
-        let Answer { points, told } = self.ask(image, Some(&shown))?;
-        told.iter().for_each(|what| self.program.tell(what));
+        let points = self.ask(image, Some(&shown))?;
         let mut results = vec![Err(Rejection::Malformed); starts.len()];
         for (place, point) in order.into_iter().zip(points) {
             results[place] = point;
@@ -68,9 +83,7 @@ impl Asked {
 
     /// What it finds in the whole image, and of that the nearest to each start.
     fn nearest(&self, image: &Image, starts: &[Start], radius: f64) -> Result<Vec<Measured>, Fault> {
-        let Answer { points, told } = self.ask(image, None)?;
-        told.iter().for_each(|what| self.program.tell(what));
-        let found: Vec<Measurement> = points.into_iter().filter_map(Result::ok).collect();
+        let found: Vec<Measurement> = self.ask(image, None)?.into_iter().filter_map(Result::ok).collect();
         let distance = |at: PixelPoint, one: &Measurement| one.position.distance(at);
         let near = |start: &Start| {
             let nearest = found.iter().min_by(|a, b| distance(start.position, a).total_cmp(&distance(start.position, b)));
@@ -94,25 +107,12 @@ impl Operator for Asked {
     }
 
     fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Measured> {
-        if starts.is_empty() {
-            return Vec::new();
-        }
-        // Neither goes through JSON, and no built-in operator is asked about it.
-        if let Some(bad) = starts.iter().position(|start| !start.position.is_finite()) {
-            let mut rest = starts.to_vec();
-            rest.remove(bad);
-            let mut results = self.measure_all(image, &rest);
-            results.insert(bad, Err(Rejection::NotFinite));
-            return results;
-        }
-        let asked = match self.program.declaration.starts {
-            Starts::Given => self.each(image, starts),
-            Starts::None { radius } => self.nearest(image, starts, radius),
-        };
-        asked.unwrap_or_else(|fault| {
-            self.program.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
-            vec![Err(fault.rejection); starts.len()]
-        })
+        // JSON has no other numbers.
+        let finite = |start: &&Start| start.position.is_finite();
+        let shown: Vec<Start> = starts.iter().filter(finite).copied().collect();
+        let mut results = self.of_finite(image, &shown).into_iter();
+        let result = |start: &Start| if start.position.is_finite() { results.next() } else { Some(Err(Rejection::NotFinite)) };
+        starts.iter().map(result).map(|one| one.unwrap_or(Err(Rejection::Malformed))).collect()
     }
 
     fn is_local(&self) -> bool {

@@ -101,3 +101,26 @@ fn answers_that_are_none_say_why() {
     let raised = read("{\"error\": \"no memory\"}", 3, Some(1), 2).unwrap_err();
     assert_eq!((raised.rejection, raised.message.as_str()), (Rejection::Raised, "no memory"));
 }
+
+/// The shell example returns its starts, so that each answer tells whose it is.
+#[test]
+fn answers_go_to_the_starts_that_they_are_about() {
+    let text = "[[plugin]]\nname = \"start_sh\"\ncommand = [\"sh\", \"start.sh\"]\n";
+    let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plugins"));
+    let launcher = crate::Launcher { confiner: None, project: None };
+    let registry = calibench_measure::Registry::default().with(crate::method(parse("a.toml", text).unwrap().remove(0), folder, &launcher));
+    let configured = registry.parse("start_sh").unwrap();
+    let operator = configured.operator.unwrap();
+    let at = |x: f64| Start::at(PixelPoint::new(x, 7.25));
+    let image = Image::from_fn(40, 30, |_, _| 1.0);
+    for (round, bad) in [(0.0, f64::NAN), (0.5, f64::INFINITY)] {
+        let starts: Vec<Start> =
+            (0..20).map(|i| at(f64::from(i) + round)).chain([at(bad)]).chain((20..30).map(|i| at(f64::from(i) + round))).collect();
+        for (start, found) in starts.iter().zip(operator.measure_all(&image, &starts)) {
+            let expected = if start.position.is_finite() { Ok(start.position) } else { Err(Rejection::NotFinite) };
+            assert_eq!(found.map(|found| found.position), expected);
+        }
+        assert!(operator.measure_all(&image, &[]).is_empty() && operator.measure_all(&image, &[at(bad)]) == [Err(Rejection::NotFinite)]);
+    }
+    assert!(operator.notes().concat().contains("not kept from"), "who is not restricted is told");
+}

@@ -1,6 +1,7 @@
 //! What the pages of a scenario tell of it, for its records.
 
 use calibench_measure::Configured;
+use calibench_measure::registry::notes;
 use calibench_model::camera::{CameraModel, Photogrammetric};
 use calibench_model::convert::Tool;
 use calibench_model::escape::markdown;
@@ -22,10 +23,12 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         Subject::Printed(printed) => description::Subject::Printed(Box::new(of_print(printed))),
         Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
     };
+    let told = notes(if methods.is_empty() { &scenario.methods } else { methods });
+    let told = told.into_iter().map(|(name, note)| format!("**`{name}`:** {}", markdown(&note)));
     Description {
         why: scenario.why.clone(),
         source: scenario.source.clone(),
-        notes: scenario.notes.iter().cloned().chain(told(if methods.is_empty() { &scenario.methods } else { methods })).collect(),
+        notes: scenario.notes.iter().cloned().chain(told).collect(),
         seed: scenario.seed,
         trials: scenario.trials,
         bound_window: scenario.bound_window,
@@ -34,22 +37,6 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         subject,
         sweep: scenario.sweep.as_ref().map(sweep),
     }
-}
-
-/// What methods from outside leave to be known of how their results came about.
-fn told(methods: &[Configured]) -> impl Iterator<Item = String> {
-    let mut seen: Vec<String> = Vec::new();
-    let notes = methods.iter().filter_map(|method| Some((operator(&method.label), method.operator.as_ref().ok()?.notes())));
-    for (name, notes) in notes {
-        // Settings of one program tell the same.
-        let all = notes.iter().map(|note| format!("**`{name}`:** {}", markdown(note)));
-        all.for_each(|note| {
-            if !seen.contains(&note) {
-                seen.push(note);
-            }
-        });
-    }
-    seen.into_iter()
 }
 
 /// Those of methods that measure, or of calibrations that are applied.
