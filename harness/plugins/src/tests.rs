@@ -59,6 +59,7 @@ fn requests_are_a_line_and_the_grey_values() {
     assert!(!String::from_utf8(head(1, &image, Grey::Gray8, None)).unwrap().contains("starts"));
     assert_eq!(body(&image, Grey::Gray8), [0, 128]);
     assert_eq!(body(&image, Grey::Gray16le), [0, 0, 0x80, 0x80]);
+    assert_eq!(body(&Image::new(1, 1, vec![0.25]), Grey::Gray16le), [0x00, 0x40], "the lower byte first");
     assert_eq!(body(&image, Grey::Gray32f), [0.0_f32.to_le_bytes(), (128.0_f32 / 255.0).to_le_bytes()].concat());
     assert_eq!([Grey::Gray8, Grey::Gray16le, Grey::Gray32f].map(|grey| rounds(&image, grey)), [false; 3]);
     let deep = Image::new(2, 1, vec![0.5, 1.2]);

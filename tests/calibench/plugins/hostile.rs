@@ -132,6 +132,19 @@ fn is_running(argument: &str) -> bool {
 
 #[cfg_attr(not(python), ignore = "no python3")]
 #[test]
+fn who_takes_too_long_too_often_is_asked_no_more() {
+    let project = with_plugins(&[("hostile.toml", &TOML.replace("seconds = 1.0", "seconds = 0.5")), ("hostile.py", SCRIPT)]);
+    let told = |trials: &str| {
+        let output = run(project.path(), &["run", "corners/noise", "--trials", trials, "-q", "--threads", "1", "-m", "hostile:way=0"]);
+        assert_eq!(output.status.code(), Some(2), "nothing was measured");
+        assert!(rows(project.path(), "hostile").iter().all(|row| row.contains("rejected,too_slow")));
+        notes(project.path()).contains("asked no more")
+    };
+    assert_eq!([told("5"), told("6")], [false, true]);
+}
+
+#[cfg_attr(not(python), ignore = "no python3")]
+#[test]
 fn plugin_test_says_what_fails() {
     let project = with_plugins(&[("hostile.py", SCRIPT)]);
     for (way, expected) in

