@@ -9,7 +9,7 @@ use calibench_synth::render;
 use crate::project::{run, stderr, stdout};
 
 /// A chess corner at (30.25, 28.5) and (70.25, 28.5), of low contrast.
-fn corners(contrast: f64) -> Image {
+fn corners(contrast: f64) -> Image<'static> {
     let square = |x: f64, y: f64| Polygon {
         id: "s".into(),
         vertices: [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)].map(|(u, v)| PixelPoint::new(x + u, y + v)).to_vec(),

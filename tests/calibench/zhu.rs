@@ -96,7 +96,7 @@ fn the_operator_measures_what_the_search_found() {
     assert!((m - 0.153).abs() < 5e-4, "printed: 0.153; {m}");
 }
 
-fn corner(angle: f64, phase: (f64, f64)) -> (calibench_model::Image, PixelPoint) {
+fn corner(angle: f64, phase: (f64, f64)) -> (calibench_model::Image<'static>, PixelPoint) {
     let at = PixelPoint::new(31.5 + phase.0, 31.5 + phase.1);
     let zhu = Zhu { side: 64, at, arm: 26.0, angle: Some(angle), stroke: 1.0, ..Zhu::default() };
     let scene = zhu.scene(Figure4::Solid30).unwrap();

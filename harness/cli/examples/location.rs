@@ -81,7 +81,7 @@ impl Setting {
     }
 
     /// The image without noise, and the truth.
-    fn image(&self, field: &Testfield, station: &Station) -> (Image, Vec<TargetTruth>) {
+    fn image(&self, field: &Testfield, station: &Station) -> (Image<'static>, Vec<TargetTruth>) {
         let view = self.view(field, station);
         let seen = view.seen(self.optics.reach()).expect("a field in view");
         (self.renderer.render(&seen.picture().expect("outlines in view"), &[]), seen.truth())
@@ -89,7 +89,7 @@ impl Setting {
 }
 
 /// The targets' numbers and the images in which they are: all in one, and with nothing near them.
-fn scenes(setting: &Setting, field: &Testfield, station: &Station) -> Vec<(Vec<usize>, bool, Image)> {
+fn scenes(setting: &Setting, field: &Testfield, station: &Station) -> Vec<(Vec<usize>, bool, Image<'static>)> {
     let near = |at: PlatePoint, size: f64, curve: &Curve| match curve {
         Curve::Line { from, .. } => (from[0] - at[0]).hypot(from[1] - at[1]) < 0.75 * size,
         Curve::Arc { centre, .. } => (centre[0] - at[0]).hypot(centre[1] - at[1]) < 1e-6,

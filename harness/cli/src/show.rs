@@ -197,7 +197,7 @@ fn views(text: &mut String, subject: &ViewsSubject) {
     let _ = writeln!(text, "clipped = {}", subject.clipped);
 }
 
-type Picture = (Image, Vec<(String, PixelPoint)>);
+type Picture = (Image<'static>, Vec<(String, PixelPoint)>);
 
 /// The image of the first trial with its targets, or the first photograph with its corners; or why there is none.
 fn picture(context: &Context<'_>, scenario: &Scenario) -> Result<Result<Picture, String>, Failure> {

@@ -29,7 +29,7 @@ fn erf(x: f64) -> f64 {
     (1.0 - series * (-x * x).exp()).copysign(x)
 }
 
-fn scene(covered: impl Fn(f64, f64) -> f64) -> Image {
+fn scene(covered: impl Fn(f64, f64) -> f64) -> Image<'static> {
     let mut seed = 1_u64;
     Image::from_fn(CELL * COLUMNS, CELL * ROWS, |x, y| {
         let (turn, cx, cy) = cell(y / CELL * COLUMNS + x / CELL);

@@ -12,7 +12,7 @@ const OFFSET: (f64, f64) = (0.9, 0.7);
 
 /// A blurred corner of 80 degrees at (0.31, -0.17) px from the middle of a square image of `side` px, with a faint texture that has no symmetry.
 #[cfg(test)]
-pub(crate) fn textured_corner(side: usize) -> Image {
+pub(crate) fn textured_corner(side: usize) -> Image<'static> {
     let middle = (side / 2) as f64;
     Image::from_fn(side, side, |x, y| grey(x as f64 - middle, y as f64 - middle))
 }
@@ -60,7 +60,7 @@ pub fn chessboard(x: f64, y: f64) -> f32 {
     (0.5 + 0.35 * (board * sign(u) * sign(v) + 1.0 - board) + texture(x, y)) as f32
 }
 
-fn image_of(picture: Picture) -> Image {
+fn image_of(picture: Picture) -> Image<'static> {
     let middle = (SIDE / 2) as f64;
     Image::from_fn(SIDE, SIDE, |x, y| picture(x as f64 - middle, y as f64 - middle))
 }

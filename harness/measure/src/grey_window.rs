@@ -4,7 +4,7 @@ use calibench_model::Image;
 
 /// The grey values of a window. Their unit is `half`, their zero `mean`: so single precision is enough.
 pub(crate) struct GreyWindow<'a> {
-    image: &'a Image,
+    image: &'a Image<'a>,
     pub(crate) side: usize,
     pub(crate) mean: f64,
     pub(crate) half: f64,
@@ -17,7 +17,7 @@ pub(crate) struct GreyWindow<'a> {
 
 impl<'a> GreyWindow<'a> {
     /// Of `side` x `side` px, not yet laid anywhere.
-    pub(crate) fn new(image: &'a Image, side: usize, mean: f64, half: f64) -> Self {
+    pub(crate) fn new(image: &'a Image<'a>, side: usize, mean: f64, half: f64) -> Self {
         Self { image, side, mean, half, left: 0, top: 0, grey: vec![0.0; side * side] }
     }
 

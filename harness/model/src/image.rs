@@ -1,29 +1,46 @@
 //! A grey-value image.
 
+use std::borrow::Cow;
+
 /// Grey values, row by row, as fractions of full scale: 0 is black, 1 is white.
 ///
-/// f32 tells all levels of a 16-bit image apart. Pixel (column, row) has its centre at [`crate::PixelPoint`] (column, row).
+/// f32 tells all levels of a 16-bit image apart. Pixel (column, row) has its centre at [`crate::PixelPoint`] (column, row). An image owns its grey values,
+/// or borrows them from whoever has them: one that is `'static` is its own.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Image {
+pub struct Image<'a> {
     width: usize,
     height: usize,
-    grey: Vec<f32>,
+    grey: Cow<'a, [f32]>,
 }
 
-impl Image {
+impl<'a> Image<'a> {
+    /// An image of `width` x `height` px whose grey values are somebody else's; `None` if there are not `width * height` of them.
+    pub fn borrowed(width: usize, height: usize, grey: &'a [f32]) -> Option<Self> {
+        (width.checked_mul(height) == Some(grey.len())).then_some(Self { width, height, grey: Cow::Borrowed(grey) })
+    }
+}
+
+impl Image<'static> {
     /// An image of `width` x `height` px.
     ///
     /// # Panics
     /// If `grey` does not hold `width * height` values: a mistake of the caller's.
     pub fn new(width: usize, height: usize, grey: Vec<f32>) -> Self {
         assert_eq!(grey.len(), width * height, "an image of {width} x {height} px");
-        Self { width, height, grey }
+        Self { width, height, grey: Cow::Owned(grey) }
     }
 
     /// An image of `width` x `height` px whose grey value (fraction of full scale) at (column, row) is `grey(column, row)`.
     pub fn from_fn(width: usize, height: usize, mut grey: impl FnMut(usize, usize) -> f32) -> Self {
         let values = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| grey(x, y)).collect();
         Self::new(width, height, values)
+    }
+}
+
+impl Image<'_> {
+    /// The same image, without a copy.
+    pub fn lent(&self) -> Image<'_> {
+        Image { width: self.width, height: self.height, grey: Cow::Borrowed(&self.grey) }
     }
 
     /// Columns, px.
@@ -44,9 +61,9 @@ impl Image {
         &self.grey
     }
 
-    /// All grey values, row by row, fractions of full scale, to be changed.
+    /// All grey values, row by row, fractions of full scale, to be changed; copied first where they are borrowed.
     pub fn grey_mut(&mut self) -> &mut [f32] {
-        &mut self.grey
+        self.grey.to_mut()
     }
 
     /// The grey values of row `y`, fractions of full scale.
@@ -90,7 +107,7 @@ impl Image {
 
     /// The image `factor` times smaller: means of whole squares of `factor` px; what is left over at the right and at the bottom is not used.
     #[must_use]
-    pub fn reduced(&self, factor: usize) -> Self {
+    pub fn reduced(&self, factor: usize) -> Image<'static> {
         let (width, height) = (self.width() / factor, self.height() / factor);
         let share = 1.0 / (factor * factor) as f32;
         let mut grey = vec![0.0_f32; width * height];
@@ -100,7 +117,7 @@ impl Image {
                 *sum += share * block.iter().sum::<f32>();
             }
         }
-        Self::new(width, height, grey)
+        Image::new(width, height, grey)
     }
 }
 
@@ -128,6 +145,17 @@ mod tests {
             let odd = [-1.0, -0.0, 0.0, 1.0, 1.5, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MIN_POSITIVE];
             halves.chain(odd).for_each(|grey| assert_eq!(level(grey, top), rounded(grey), "{grey} of {top}"));
         }
+    }
+
+    #[test]
+    fn borrowed_grey_values_are_not_copied_until_they_are_changed() {
+        let grey = [0.0, 0.25, 0.5, 0.75, 1.0, 0.125];
+        let mut image = Image::borrowed(3, 2, &grey).unwrap();
+        assert!(std::ptr::eq(image.grey().as_ptr(), grey.as_ptr()));
+        assert_eq!(image, Image::new(3, 2, grey.to_vec()));
+        image.grey_mut()[4] = 0.5;
+        assert_eq!((image.at(1, 1), grey[4]), (0.5, 1.0));
+        assert!(Image::borrowed(2, 2, &grey).is_none() && Image::borrowed(usize::MAX, 2, &grey).is_none());
     }
 
     #[test]

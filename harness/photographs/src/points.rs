@@ -201,7 +201,7 @@ mod tests {
     }
 
     /// Squares of 14 px whose grey values no two corners share, and a start half a pixel beside each corner: row by row.
-    fn board(columns: usize, rows: usize) -> (Image, Vec<Start>) {
+    fn board(columns: usize, rows: usize) -> (Image<'static>, Vec<Start>) {
         let (width, height) = (14 * (columns + 1), 14 * (rows + 1));
         let sharp =
             |x: usize, y: usize| if (x / 14 + y / 14).is_multiple_of(2) { 0.2 } else { 0.7 + 0.0001 * (x * 7 + y * 3) as f32 / 9.0 };

@@ -18,7 +18,7 @@ type Try = fn(&dyn Operator) -> Result<(), String>;
 
 const SIDE: usize = 91;
 
-fn image(dx: f64, dy: f64, width: usize, height: usize) -> Image {
+fn image(dx: f64, dy: f64, width: usize, height: usize) -> Image<'static> {
     let middle = (SIDE / 2) as f64;
     let grey = |x, y| chess_corner(x as f64 - middle - dx, y as f64 - middle - dy);
     let mut image = Image::from_fn(width, height, grey);

@@ -19,7 +19,7 @@ fn main() {
     for (blur, decibel) in [(0.6, 46.0), (0.6, 26.0), (1.0, 26.0)] {
         let setting = Setting::paper(7001, blur, decibel);
         let own = setting.testfield();
-        let images: Vec<Image> =
+        let images: Vec<Image<'static>> =
             shots(&setting, &own, &paper_tilts(), &[0.0, 90.0, 180.0, 270.0]).into_iter().map(|shot| shot.image).collect();
         let recognisers =
             [Classifier::Modern, Classifier::Contours].map(|classifier| Recogniser::new(&own, classifier).expect("a coded field"));
@@ -32,17 +32,17 @@ fn main() {
         large.camera.size.width *= times;
         large.camera.size.height *= times;
         large.camera.pitch_um /= f64::from(times);
-        let images: Vec<Image> = shots(&large, &own, &[(30.0, [0.0, 30.0])], &[12.0]).into_iter().map(|shot| shot.image).collect();
+        let images: Vec<Image<'static>> = shots(&large, &own, &[(30.0, [0.0, 30.0])], &[12.0]).into_iter().map(|shot| shot.image).collect();
         print(&format!("the field in {0} x {0} px", 240 * times), &recognisers, &images);
     }
-    let refused = |name: &str, image: Image| print(name, &recognisers, &[image]);
+    let refused = |name: &str, image: Image<'static>| print(name, &recognisers, &[image]);
     refused("blank, 240 x 240 px", Image::from_fn(240, 240, |_, _| 0.5));
     refused("noise, 240 x 240 px", noise(240, 240));
     refused("noise, 4000 x 3000 px", noise(4000, 3000));
     refused("chessboard, 4000 x 3000 px", Image::from_fn(4000, 3000, |x, y| if (x / 170 + y / 170).is_multiple_of(2) { 0.1 } else { 0.9 }));
 }
 
-fn noise(width: usize, height: usize) -> Image {
+fn noise(width: usize, height: usize) -> Image<'static> {
     let mut state = 1_u32;
     Image::from_fn(width, height, |_, _| {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -1,7 +1,5 @@
 //! The image as it is looked at: as it is, or smaller.
 
-use std::borrow::Cow;
-
 use calibench_model::{CornerPoint, Image, PixelPoint};
 
 /// The longer side of the smallest image that is looked at first, px at most.
@@ -12,13 +10,13 @@ const LAST: usize = 2600;
 /// An image some times smaller.
 #[derive(Clone, Debug)]
 pub(crate) struct Level<'a> {
-    pub image: Cow<'a, Image>,
+    pub image: Image<'a>,
     pub factor: usize,
 }
 
 impl<'a> Level<'a> {
     pub fn of(image: &'a Image, factor: usize) -> Self {
-        let image = if factor == 1 { Cow::Borrowed(image) } else { Cow::Owned(image.reduced(factor)) };
+        let image = if factor == 1 { image.lent() } else { image.reduced(factor) };
         Self { image, factor }
     }
 
@@ -60,7 +58,7 @@ mod tests {
 
     #[test]
     fn points_keep_their_place() {
-        let level = Level { image: Cow::Owned(Image::new(1, 1, vec![0.0])), factor: 3 };
+        let level = Level { image: Image::new(1, 1, vec![0.0]), factor: 3 };
         assert_eq!(level.original([0.0, 2.0]), PixelPoint::new(1.0, 7.0));
     }
 }

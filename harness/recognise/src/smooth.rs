@@ -3,7 +3,7 @@
 use calibench_model::Image;
 
 /// The image smoothed by a Gaussian of `sigma` px; beyond its border it goes on as at its border.
-pub(crate) fn smooth(image: &Image, sigma: f64) -> Image {
+pub(crate) fn smooth(image: &Image, sigma: f64) -> Image<'static> {
     let kernel = gaussian(sigma);
     let (width, height) = (image.width(), image.height());
     let reach = kernel.len() / 2;

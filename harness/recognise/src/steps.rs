@@ -20,13 +20,13 @@ const INK: f32 = 0.1;
 #[derive(Clone, Debug)]
 pub struct Steps {
     /// The whole squares as if seen from the front, as many pixels to a square as in the paper's normal image (60).
-    pub normal: Image,
+    pub normal: Image<'static>,
     /// One of them, enlarged by two (120 px).
-    pub enlarged: Image,
+    pub enlarged: Image<'static>,
     /// Its dark areas: ink is 0, paper 1.
-    pub binary: Image,
+    pub binary: Image<'static>,
     /// Their outer contours, black on white.
-    pub contours: Image,
+    pub contours: Image<'static>,
 }
 
 impl Recogniser {
@@ -52,7 +52,7 @@ fn grey(dark: f32) -> f32 {
 }
 
 /// All squares side by side, each two pixels to one; white where there is none.
-fn normal(squares: &[Square]) -> Image {
+fn normal(squares: &[Square]) -> Image<'static> {
     let side = SIDE / 2;
     let range = |axis: usize| {
         let all = squares.iter().map(|square| square.at[axis]);
@@ -69,15 +69,15 @@ fn normal(squares: &[Square]) -> Image {
     })
 }
 
-fn enlarged(square: &Square) -> Image {
+fn enlarged(square: &Square) -> Image<'static> {
     Image::from_fn(SIDE, SIDE, |x, y| grey(square.normal.dark[y * SIDE + x]))
 }
 
-fn binary(square: &Square) -> Image {
+fn binary(square: &Square) -> Image<'static> {
     Image::from_fn(SIDE, SIDE, |x, y| f32::from(u8::from(square.areas.labels[y * SIDE + x] == 0)))
 }
 
-fn contours(square: &Square) -> Image {
+fn contours(square: &Square) -> Image<'static> {
     let mut black = vec![false; SIDE * SIDE];
     for [x, y] in (0..square.areas.areas.len()).flat_map(|area| follow(&square.areas, area)) {
         black[y as usize * SIDE + x as usize] = true;

@@ -67,7 +67,7 @@ pub struct Panel<'a> {
     /// Its title.
     pub title: String,
     /// Its image.
-    pub image: &'a Image,
+    pub image: &'a Image<'a>,
     /// Its middle.
     pub centre: PixelPoint,
     /// Its marks.

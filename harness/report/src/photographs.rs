@@ -221,7 +221,8 @@ fn picture(loaded: &Loaded, chosen: &[Chosen<'_>], operators: &[usize]) -> Optio
     let mut layers = vec![Layer::start()];
     layers.extend(Layer::methods(available.iter().map(|&m| &*loaded.head.methods[m].label)));
     let start = loaded.method("pixel");
-    let images: BTreeMap<&str, Image> = chosen.iter().filter_map(|c| Some((&*c.point.key.0, loaded.image(&c.point.key.0)?))).collect();
+    let images: BTreeMap<&str, Image<'static>> =
+        chosen.iter().filter_map(|c| Some((&*c.point.key.0, loaded.image(&c.point.key.0)?))).collect();
     let panel = |Chosen { point, title }: &Chosen<'_>| {
         let started = start.and_then(|m| point.positions[m]);
         let mut marks: Vec<MarkAt> = started.map(|at| MarkAt { layer: 0, at }).into_iter().collect();

@@ -103,7 +103,7 @@ impl<'a> Prepared<'a> {
     }
 
     /// The image of a view before the sensor, without noise and without row jitter.
-    pub fn irradiance(&self, view: &PreparedView<'_>) -> Image {
+    pub fn irradiance(&self, view: &PreparedView<'_>) -> Image<'static> {
         self.renderer.render(&view.picture, &[])
     }
 
@@ -253,7 +253,7 @@ fn is_first(by_method: &[Vec<PointResult>], view: &str) -> bool {
 ///
 /// # Errors
 /// A view that cannot be pictured, or an image that the sensor cannot write.
-pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<(Image, Vec<Start>), RunError> {
+pub fn first_image(scenario: &str, seed: u64, subject: &ViewsSubject) -> Result<(Image<'static>, Vec<Start>), RunError> {
     let key = Key { seed, scenario, trial: 0, view: "", target: "" };
     let stations = subject.stations_of(key)?;
     let prepared = Prepared::of(subject, &stations, key)?;

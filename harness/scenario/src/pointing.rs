@@ -144,7 +144,7 @@ mod tests {
     }
 
     /// A light square on dark, its corners at the borders of pixels.
-    fn square() -> Image {
+    fn square() -> Image<'static> {
         Image::from_fn(60, 60, |x, y| if (20..40).contains(&x) && (20..40).contains(&y) { 1.0 } else { 0.0 })
     }
 

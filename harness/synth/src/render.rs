@@ -12,13 +12,13 @@ use crate::raster::{Picture, Renderer};
 ///
 /// # Panics
 /// Never: no optics are always in range.
-pub fn render(scene: &Scene) -> Image {
+pub fn render(scene: &Scene) -> Image<'static> {
     let renderer = Renderer::new(&Optics::default(), scene.width, scene.height).expect("no blur, full aperture");
     renderer.render(&Picture::from(scene), &[])
 }
 
 /// The image as a program draws it that knows no partial coverage: each pixel has the grey value of the scene at its centre.
-pub fn draw(scene: &Scene) -> Image {
+pub fn draw(scene: &Scene) -> Image<'static> {
     let mut grey = vec![scene.background; scene.width * scene.height];
     for polygon in &scene.polygons {
         let contrast = polygon.grey - scene.background;

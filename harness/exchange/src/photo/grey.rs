@@ -5,7 +5,7 @@ use calibench_model::Image;
 use image::DynamicImage;
 
 /// The grey values of a decoded image, fractions of full scale; colour becomes luma, transparency is ignored.
-pub(super) fn of(decoded: &DynamicImage) -> Image {
+pub(super) fn of(decoded: &DynamicImage) -> Image<'static> {
     let (width, height) = (decoded.width() as usize, decoded.height() as usize);
     let grey = match decoded {
         DynamicImage::ImageLuma8(i) => by_table::<1>(i),

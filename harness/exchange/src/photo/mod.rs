@@ -71,7 +71,7 @@ pub enum PhotoError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Photo {
     /// Its grey values, upright.
-    pub image: Image,
+    pub image: Image<'static>,
     /// How the pixels of the file were turned to be upright; `None` if the file asks for nothing.
     pub turn: Option<Turn>,
 }

@@ -21,14 +21,14 @@ impl Turn {
     }
 
     /// The image turned: of the file's pixels the image as it is meant to be seen.
-    pub(super) fn apply(self, image: &Image) -> Image {
+    pub(super) fn apply(self, image: &Image) -> Image<'static> {
         let (width, height) = (image.width(), image.height());
         let (right, bottom) = (width.saturating_sub(1), height.saturating_sub(1));
         let at = |x: usize, y: usize| image.row(y)[x];
         let upright = |of: &dyn Fn(usize, usize) -> f32| Image::from_fn(width, height, of);
         let on_its_side = |of: &dyn Fn(usize, usize) -> f32| Image::from_fn(height, width, of);
         match self.0 {
-            Orientation::NoTransforms => image.clone(),
+            Orientation::NoTransforms => upright(&at),
             Orientation::FlipHorizontal => upright(&|x, y| at(right - x, y)),
             Orientation::Rotate180 => upright(&|x, y| at(right - x, bottom - y)),
             Orientation::FlipVertical => upright(&|x, y| at(x, bottom - y)),

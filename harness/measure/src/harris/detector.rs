@@ -95,7 +95,7 @@ mod tests {
     /// Blobs of different contrast: (x, y, contrast).
     const BLOBS: [(f64, f64, f64); 4] = [(20.3, 25.1, 0.5), (50.0, 18.8, 0.8), (70.6, 45.4, 0.3), (33.2, 50.5, 0.65)];
 
-    fn blobs() -> Image {
+    fn blobs() -> Image<'static> {
         Image::from_fn(90, 70, |x, y| {
             let at = |(bx, by, contrast): (f64, f64, f64)| contrast * (-((x as f64 - bx).powi(2) + (y as f64 - by).powi(2)) / 8.0).exp();
             BLOBS.into_iter().map(at).sum::<f64>() as f32

@@ -48,7 +48,7 @@ impl HarrisLaplace {
     pub fn detect(&self, image: &Image) -> Vec<ScaledDetection> {
         // One level more on either side to compare with: a Laplacian that still grows there has its maximum elsewhere.
         let scales: Vec<f64> = (0..self.levels + 2).map(|n| self.first * self.ratio.powf(n as f64 - 1.0)).collect();
-        let smoothed: Vec<Image> = scales.iter().map(|scale| smooth(image, *scale)).collect();
+        let smoothed: Vec<Image<'static>> = scales.iter().map(|scale| smooth(image, *scale)).collect();
         let mut found = Vec::new();
         for level in 1..=self.levels {
             let scale = scales[level];
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
     use calibench_model::PixelPoint;
 
-    fn blob(spread: f64) -> Image {
+    fn blob(spread: f64) -> Image<'static> {
         Image::from_fn(121, 121, |x, y| (-((x as f64 - 60.3).powi(2) + (y as f64 - 59.8).powi(2)) / (2.0 * spread * spread)).exp() as f32)
     }
 

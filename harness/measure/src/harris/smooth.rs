@@ -3,14 +3,14 @@
 use calibench_model::Image;
 
 /// The image under a Gaussian of standard deviation `sigma` px, cut off at four sigma; at the border the outermost pixels are repeated.
-pub fn smooth(image: &Image, sigma: f64) -> Image {
+pub fn smooth(image: &Image, sigma: f64) -> Image<'static> {
     let radius = (4.0 * sigma).ceil() as usize;
     let raw: Vec<f64> = (0..=radius).map(|d| (-((d * d) as f64) / (2.0 * sigma * sigma)).exp()).collect();
     let sum = raw[0] + 2.0 * raw[1..].iter().sum::<f64>();
     let weights: Vec<f32> = raw.iter().map(|w| (w / sum) as f32).collect();
     let (width, height) = (image.width(), image.height());
     if width == 0 || height == 0 {
-        return image.clone();
+        return Image::new(width, height, Vec::new());
     }
     let mut along_rows = Vec::with_capacity(width * height);
     let mut padded = vec![0.0; width + 2 * radius];

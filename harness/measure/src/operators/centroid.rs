@@ -114,7 +114,7 @@ mod tests {
     }
 
     /// A disc of radius 6.3, its edge a smooth ramp.
-    fn disc(cx: f64, cy: f64, dark: bool) -> Image {
+    fn disc(cx: f64, cy: f64, dark: bool) -> Image<'static> {
         Image::from_fn(61, 61, |x, y| {
             let inside = 0.5 - 0.5 * ((x as f64 - cx).hypot(y as f64 - cy) - 6.3).tanh();
             (if dark { 0.8 - 0.6 * inside } else { 0.2 + 0.6 * inside }) as f32

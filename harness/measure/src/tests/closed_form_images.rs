@@ -129,7 +129,7 @@ impl Picture {
     }
 
     /// The image of [`Self::grey`].
-    pub(crate) fn image(&self, side: usize) -> Image {
+    pub(crate) fn image(&self, side: usize) -> Image<'static> {
         Image::new(side, side, self.grey(side).into_iter().map(|g| g as f32).collect())
     }
 }
@@ -150,7 +150,7 @@ impl Noise {
     }
 
     /// `image` with noise of standard deviation `sigma`.
-    pub(crate) fn on(&mut self, image: &Image, sigma: f64) -> Image {
+    pub(crate) fn on(&mut self, image: &Image, sigma: f64) -> Image<'static> {
         let grey = image.grey().iter().map(|&g| g + (sigma * self.normal()) as f32).collect();
         Image::new(image.width(), image.height(), grey)
     }

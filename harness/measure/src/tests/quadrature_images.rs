@@ -170,7 +170,7 @@ impl Ellipse {
 }
 
 /// The grey values as an image.
-pub(crate) fn image(grey: &[f64], side: usize) -> Image {
+pub(crate) fn image(grey: &[f64], side: usize) -> Image<'static> {
     Image::new(side, side, grey.iter().map(|g| *g as f32).collect())
 }
 

@@ -74,7 +74,7 @@ fn matching(image: &Image, starts: &[Start]) {
 }
 
 /// Turned squares, one in each cell of 40 x 30 px, smoothed by 0.7 px and with noise; and where to start.
-pub(crate) fn squares() -> (Image, Vec<Start>) {
+pub(crate) fn squares() -> (Image<'static>, Vec<Start>) {
     let (columns, rows) = (40, 30);
     let mut starts = Vec::new();
     let mut polygons = Vec::new();

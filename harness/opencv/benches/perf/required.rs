@@ -34,7 +34,7 @@ struct Row<'a> {
 }
 
 /// Name, operator, what it measures, the rival, and the least ratio or rate.
-type Pair<'a> = (&'a str, &'a str, (&'a Image, &'a [Start]), Option<&'a dyn Fn()>, f64);
+type Pair<'a> = (&'a str, &'a str, (&'a Image<'a>, &'a [Start]), Option<&'a dyn Fn()>, f64);
 
 pub(crate) fn run() {
     let (image, corners) = scene::corners();
@@ -70,7 +70,7 @@ fn control() {
 }
 
 /// An operator on what it is for: an image without noise and where the targets are in it.
-fn targets(blur: f64, (what, spec): (&str, &str), (image, places): (Image, Vec<PixelPoint>), least: f64) {
+fn targets(blur: f64, (what, spec): (&str, &str), (image, places): (Image<'static>, Vec<PixelPoint>), least: f64) {
     let (image, starts) = (scene::spoil(image), scene::starts(&places));
     let name = format!("{what}, blur {blur} px unknown, points/s");
     let Some(operator) = operator(spec) else {

@@ -33,7 +33,7 @@ fn cell(index: usize) -> Scene {
 }
 
 /// The image without noise, and the corner in each cell.
-pub(crate) fn corners() -> (Image, Vec<PixelPoint>) {
+pub(crate) fn corners() -> (Image<'static>, Vec<PixelPoint>) {
     let mut image = Image::new(WIDTH, HEIGHT, vec![0.0; WIDTH * HEIGHT]);
     let mut corners = Vec::new();
     let columns = WIDTH / CELL.0;
@@ -53,7 +53,7 @@ pub(crate) fn corners() -> (Image, Vec<PixelPoint>) {
 
 /// A crossing of two turned, tilted edges in each cell, through a lens of `blur` px; without noise. And where they are. Dark are those of two opposite areas
 /// whose signs are given: one is a corner, both a chess corner.
-pub(crate) fn crossings(blur: f64, dark: &[f64]) -> (Image, Vec<PixelPoint>) {
+pub(crate) fn crossings(blur: f64, dark: &[f64]) -> (Image<'static>, Vec<PixelPoint>) {
     through_lens(blur, |i, centre| {
         let turn = std::f64::consts::TAU * (i * 0.618_033_988_749_895).fract();
         // Edges that cross at 70 to 90 degrees.
@@ -71,7 +71,7 @@ pub(crate) fn crossings(blur: f64, dark: &[f64]) -> (Image, Vec<PixelPoint>) {
 }
 
 /// A dark disc of 14 px in each cell, through a lens of `blur` px; without noise. And where they are.
-pub(crate) fn discs(blur: f64) -> (Image, Vec<PixelPoint>) {
+pub(crate) fn discs(blur: f64) -> (Image<'static>, Vec<PixelPoint>) {
     const RADIUS: f64 = 7.0;
     through_lens(blur, |_, centre| {
         let vertex = |k: u32| {
@@ -83,7 +83,7 @@ pub(crate) fn discs(blur: f64) -> (Image, Vec<PixelPoint>) {
 }
 
 /// What `areas` says of each cell's number and centre, pictured by a lens, and the centres.
-fn through_lens(blur: f64, areas: impl Fn(f64, PixelPoint) -> Vec<Polygon>) -> (Image, Vec<PixelPoint>) {
+fn through_lens(blur: f64, areas: impl Fn(f64, PixelPoint) -> Vec<Polygon>) -> (Image<'static>, Vec<PixelPoint>) {
     let (mut image, mut places) = (Image::new(WIDTH, HEIGHT, vec![0.0; WIDTH * HEIGHT]), Vec::new());
     let optics = Optics { blur, ..Optics::default() };
     let renderer = Renderer::new(&optics, CELL.0, CELL.1).expect("a blur that can be rendered");
@@ -103,7 +103,7 @@ fn through_lens(blur: f64, areas: impl Fn(f64, PixelPoint) -> Vec<Polygon>) -> (
 }
 
 /// Noise of two grey levels, 8 bit.
-pub(crate) fn spoil(mut image: Image) -> Image {
+pub(crate) fn spoil(mut image: Image<'static>) -> Image<'static> {
     add_grey_noise(&mut image, 2.0 / 255.0, &mut stream(key("corners"), Purpose::GreyNoise));
     quantise(&mut image, 8);
     image
@@ -117,7 +117,7 @@ pub(crate) fn starts(corners: &[PixelPoint]) -> Vec<Start> {
 }
 
 /// A frame for the detector, by name.
-pub(crate) fn frames() -> Vec<(String, Image)> {
+pub(crate) fn frames() -> Vec<(String, Image<'static>)> {
     let grey = |sigma: f64| (format!("Gaussian noise, sigma {sigma}"), gaussian(flat(), sigma));
     let mut frames = vec![("uniform noise".to_owned(), by_uniform(|u| u as f32))];
     frames.extend([2.0, 5.0, 10.0, 20.0, 40.0, 60.0].map(grey));
@@ -140,11 +140,11 @@ pub(crate) fn frames() -> Vec<(String, Image)> {
     frames
 }
 
-fn flat() -> Image {
+fn flat() -> Image<'static> {
     Image::new(WIDTH, HEIGHT, vec![128.0 / 255.0; WIDTH * HEIGHT])
 }
 
-fn gaussian(mut image: Image, levels: f64) -> Image {
+fn gaussian(mut image: Image<'static>, levels: f64) -> Image<'static> {
     add_grey_noise(&mut image, levels / 255.0, &mut stream(key("detector"), Purpose::GreyNoise));
     quantise(&mut image, 8);
     image
@@ -157,13 +157,13 @@ fn hash(index: u64) -> f64 {
     ((mixed ^ (mixed >> 32)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-fn by_uniform(grey: impl Fn(f64) -> f32 + Sync) -> Image {
+fn by_uniform(grey: impl Fn(f64) -> f32 + Sync) -> Image<'static> {
     let values: Vec<f32> = (0..WIDTH * HEIGHT).into_par_iter().map(|index| grey(hash(index as u64))).collect();
     Image::new(WIDTH, HEIGHT, values)
 }
 
 /// Interpolated noise of all scales, each half as wide as the last and `decay` times as strong: like a photograph of gravel or leaves.
-fn field(decay: f64) -> Image {
+fn field(decay: f64) -> Image<'static> {
     let octaves: Vec<(f64, f64)> = (0..10).map(|k| (1.0 / f64::from(1024 >> k), decay.powi(k))).collect();
     let scale = octaves.iter().map(|(_, weight)| weight * weight).sum::<f64>().sqrt();
     let value = |index: usize| {
@@ -183,7 +183,7 @@ fn lattice(x: f64, y: f64, octave: u64) -> f64 {
 }
 
 /// A board of `columns` x `rows` squares of `side` px, turned a little.
-fn board(columns: usize, rows: usize, side: f64) -> Image {
+fn board(columns: usize, rows: usize, side: f64) -> Image<'static> {
     let (sin, cos) = 0.1_f64.sin_cos();
     let value = |index: usize| {
         let (dx, dy) = ((index % WIDTH) as f64 - 2030.3, (index / WIDTH) as f64 - 1480.8);

@@ -11,7 +11,7 @@ use super::{ChessboardDetector, enlarge};
 const BOARD: Board = Board { columns: 9, rows: 6 };
 
 /// A board of 10 x 7 squares of `side` px on white, turned by 0.1 rad, and its inner corners along the rows.
-pub(crate) fn drawn(width: usize, height: usize, side: f64) -> (Image, Vec<PixelPoint>) {
+pub(crate) fn drawn(width: usize, height: usize, side: f64) -> (Image<'static>, Vec<PixelPoint>) {
     let (sin, cos) = 0.1_f64.sin_cos();
     let middle = PixelPoint::new(width as f64 * 0.52, height as f64 * 0.47);
     let grey = |x: usize, y: usize| {
@@ -86,7 +86,7 @@ fn another_board_is_not_found_and_ends() {
     assert!(ChessboardDetector.detect(&image, Board { columns: 20, rows: 15 }).is_none());
 }
 
-pub(crate) fn photographs() -> Vec<(String, Image)> {
+pub(crate) fn photographs() -> Vec<(String, Image<'static>)> {
     let folder = Path::new(option_env!("CALIBENCH_PHOTOGRAPHS").unwrap_or_default());
     let numbers = (1..=14).filter(|&n| n != 10);
     let read = |name: String| {
@@ -115,7 +115,7 @@ fn all_thirteen_photographs_show_their_board_as_taken_and_enlarged() {
     }
 }
 
-fn enlarged(image: &Image, width: usize, height: usize) -> Image {
+fn enlarged(image: &Image, width: usize, height: usize) -> Image<'static> {
     let header = Mat::new_rows_cols_with_data(image.height() as i32, image.width() as i32, image.grey()).unwrap();
     let mut large = Mat::default();
     resize(&header, &mut large, Size::new(width as i32, height as i32), 0.0, 0.0, INTER_CUBIC).unwrap();

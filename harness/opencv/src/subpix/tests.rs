@@ -11,7 +11,7 @@ fn at(x: f64, y: f64) -> Start {
 }
 
 /// A chessboard's corner at (`cx`, `cy`), blurred.
-fn saddle(cx: f64, cy: f64) -> Image {
+fn saddle(cx: f64, cy: f64) -> Image<'static> {
     Image::from_fn(61, 61, |x, y| (0.5 + 0.4 * ((x as f64 - cx) * 0.9).tanh() * ((y as f64 - cy) * 0.9).tanh()) as f32)
 }
 

@@ -56,7 +56,7 @@ pub struct Shot {
     /// Degrees.
     pub phi: f64,
     pub name: String,
-    pub image: Image,
+    pub image: Image<'static>,
     pub truth: Vec<TargetTruth>,
     /// For each target of the field whether its square lies wholly in the image.
     pub whole: Vec<bool>,

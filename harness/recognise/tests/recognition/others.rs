@@ -6,7 +6,7 @@ use calibench_synth::testfield::Coded;
 use crate::campaign::{Setting, shots};
 use crate::{BOTH, recogniser, told};
 
-fn images(setting: &Setting, tilts: &[(f64, [f64; 2])]) -> Vec<Image> {
+fn images(setting: &Setting, tilts: &[(f64, [f64; 2])]) -> Vec<Image<'static>> {
     shots(setting, &setting.testfield(), tilts, &[0.0, 33.0]).into_iter().map(|shot| shot.image).collect()
 }
 

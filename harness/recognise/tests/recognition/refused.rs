@@ -13,7 +13,7 @@ fn key(seed: u64) -> Key<'static> {
 }
 
 /// Uniform noise around the middle grey, as wide as told.
-fn noise(width: usize, height: usize, wide: f32) -> Image {
+fn noise(width: usize, height: usize, wide: f32) -> Image<'static> {
     let mut state = 12_345_u32;
     Image::from_fn(width, height, |_, _| {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -85,7 +85,7 @@ pub fn recorded(records: &Path) -> Vec<String> {
 
 impl Loaded {
     /// The image of view `view` in the first trial, if it was kept.
-    pub fn image(&self, view: &str) -> Option<Image> {
+    pub fn image(&self, view: &str) -> Option<Image<'static>> {
         Some(read_photo(&kept_image(&self.folder, view)).ok()?.image)
     }
 

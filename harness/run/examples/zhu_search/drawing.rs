@@ -62,7 +62,7 @@ impl Picturing {
     }
 }
 
-fn render(scene: &Scene, blur: f64) -> Image {
+fn render(scene: &Scene, blur: f64) -> Image<'static> {
     let optics = Optics { blur, ..Optics::default() };
     Renderer::new(&optics, scene.width, scene.height).expect("optics").render(&Picture::from(scene), &[])
 }

@@ -67,7 +67,7 @@ impl Renderer {
     }
 
     /// The noise-free image. `jitter` is the shift of each row to the right, px, or empty.
-    pub fn render(&self, picture: &Picture, jitter: &[f64]) -> Image {
+    pub fn render(&self, picture: &Picture, jitter: &[f64]) -> Image<'static> {
         self.render_with(picture, jitter, |_, _| ())
     }
 
@@ -77,7 +77,7 @@ impl Renderer {
     ///
     /// # Panics
     /// If the picture is not of this renderer's size, or `jitter` neither empty nor one shift a row.
-    pub fn render_with(&self, picture: &Picture, jitter: &[f64], finish: impl Fn(usize, &mut [f32]) + Sync) -> Image {
+    pub fn render_with(&self, picture: &Picture, jitter: &[f64], finish: impl Fn(usize, &mut [f32]) + Sync) -> Image<'static> {
         assert_eq!((picture.width, picture.height), (self.width, self.height), "the renderer's size");
         assert!(jitter.is_empty() || jitter.len() == self.height, "one shift a row");
         let pieces = self.cut(&picture.pieces);

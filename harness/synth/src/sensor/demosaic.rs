@@ -37,7 +37,7 @@ impl Demosaic {
     }
 
     /// The grey image of the balanced mosaic `raw`. Beyond its border the mosaic goes on mirrored.
-    pub(super) fn interpolate(&self, raw: &Image, filter: &ColourFilter) -> Image {
+    pub(super) fn interpolate(&self, raw: &Image, filter: &ColourFilter) -> Image<'static> {
         let (width, height) = (raw.width(), raw.height());
         let mut grey = vec![0.0; width * height];
         grey.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, grey)| {

@@ -13,7 +13,7 @@ use super::SensorError;
 ///
 /// # Errors
 /// [`SensorError::JpegSize`] if a side is longer than JPEG's 65535 px or the image is empty, [`SensorError::Jpeg`] if the codec refuses.
-pub fn through_jpeg(mut image: Image, quality: u8) -> Result<Image, SensorError> {
+pub fn through_jpeg(mut image: Image<'static>, quality: u8) -> Result<Image<'static>, SensorError> {
     let (width, height) = (image.width(), image.height());
     let side = |length: usize| u16::try_from(length).ok().filter(|&length| length > 0).ok_or(SensorError::JpegSize { width, height });
     let (columns, rows) = (side(width)?, side(height)?);

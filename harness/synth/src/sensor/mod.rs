@@ -160,7 +160,7 @@ impl Sum for Clipped {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exposure {
     /// Grey values, fractions of full scale.
-    pub image: Image,
+    pub image: Image<'static>,
     /// What was clipped: at the well or the converter each pixel once, and in addition where white balance or gamma left the output's levels.
     pub clipped: Clipped,
 }
@@ -219,7 +219,7 @@ impl Sensor {
     ///
     /// # Errors
     /// [`SensorError::JpegSize`] or [`SensorError::Jpeg`] of an image that JPEG cannot hold.
-    pub fn expose(&self, mut irradiance: Image, key: Key<'_>) -> Result<Exposure, SensorError> {
+    pub fn expose(&self, mut irradiance: Image<'static>, key: Key<'_>) -> Result<Exposure, SensorError> {
         let frame = Frame { width: irradiance.width(), height: irradiance.height() };
         let rows = (BLOCK * frame.width).max(1);
         let blocks = irradiance.grey_mut().par_chunks_mut(rows).enumerate();
@@ -238,7 +238,7 @@ impl Sensor {
     ///
     /// # Errors
     /// As [`Sensor::expose`].
-    pub fn develop(&self, mut exposed: Image) -> Result<(Image, Clipped), SensorError> {
+    pub fn develop(&self, mut exposed: Image<'static>) -> Result<(Image<'static>, Clipped), SensorError> {
         let mut clipped = Clipped::default();
         if let (Some(demosaic), Some(filter)) = (&self.design.demosaic, &self.design.filter) {
             let width = exposed.width().max(1);

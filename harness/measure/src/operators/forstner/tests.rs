@@ -5,7 +5,7 @@ use crate::tests::closed_form_images::{Noise, Picture};
 use calibench_model::{Affine, TargetKind};
 
 /// A light quarter plane x >= 1, y >= 1: the pixel's edges, and so the corner, lie at (0.5, 0.5) from the pixel (`cx`, `cy`).
-fn quarter_plane(side: usize, cx: usize, cy: usize) -> Image {
+fn quarter_plane(side: usize, cx: usize, cy: usize) -> Image<'static> {
     Image::from_fn(side, side, |x, y| if x > cx && y > cy { 0.9 } else { 0.1 })
 }
 

@@ -24,7 +24,7 @@ const ASTRAY: f64 = 1.2;
 /// A window in an image.
 pub(super) struct Laid<'a> {
     /// The image.
-    pub(super) image: &'a Image,
+    pub(super) image: &'a Image<'a>,
     /// The window's middle pixel.
     pub(super) centre: (i64, i64),
     /// Half its width, px.

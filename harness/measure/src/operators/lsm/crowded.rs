@@ -100,7 +100,7 @@ fn scene(index: usize, variant: usize) -> Scene {
     Scene { target, alone, crowded }
 }
 
-fn image(coverage: &[f64]) -> Image {
+fn image(coverage: &[f64]) -> Image<'static> {
     Image::new(SIDE, SIDE, coverage.iter().map(|covered| (0.85 - 0.8 * covered) as f32).collect())
 }
 

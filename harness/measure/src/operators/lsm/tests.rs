@@ -246,7 +246,7 @@ fn the_image_gives_the_start() {
 }
 
 /// A dark bar across the window, its nearest border `away` px from the target's reference point.
-fn with_a_bar(image: &Image, at: [f64; 2], away: f64) -> Image {
+fn with_a_bar(image: &Image, at: [f64; 2], away: f64) -> Image<'static> {
     Image::from_fn(image.width(), image.height(), |x, y| {
         let covered = (x as f64 - at[0] - away + 0.5).clamp(0.0, 1.0) - (x as f64 - at[0] - away - 5.5).clamp(0.0, 1.0);
         let covered = covered as f32;

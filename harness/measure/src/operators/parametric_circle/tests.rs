@@ -141,7 +141,7 @@ fn coverage_is_exact_and_derivatives_are_those_of_differences() {
 }
 
 /// A disc of which something grey hides all that is more than so many px to the right of its centre.
-fn hidden(disc: &quadrature_images::Ellipse, beyond: f64, noise: f64) -> Image {
+fn hidden(disc: &quadrature_images::Ellipse, beyond: f64, noise: f64) -> Image<'static> {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
     let mut grey = noisy(&disc.render(SIDE), noise, &mut rng);
     for (index, grey) in grey.iter_mut().enumerate() {

@@ -50,7 +50,7 @@ fn pixels() -> impl Iterator<Item = (usize, usize)> {
     (6..SIZE - 6).flat_map(|y| (6..SIZE - 6).map(move |x| (x, y)))
 }
 
-fn picture(blur: f64, pieces: Vec<Piece>) -> calibench_model::Image {
+fn picture(blur: f64, pieces: Vec<Piece>) -> calibench_model::Image<'static> {
     let picture = Picture { width: SIZE, height: SIZE, background: 0.2, pieces };
     Renderer::new(&Optics { blur, ..Optics::default() }, SIZE, SIZE).unwrap().render(&picture, &[])
 }

@@ -18,7 +18,7 @@ pub(super) const KEY: Key<'_> = Key { seed: 20, scenario: "sensor", trial: 0, vi
 /// Ten million pixels.
 pub(super) const SIZE: (usize, usize) = (4000, 2500);
 
-pub(super) fn flat((width, height): (usize, usize), light: f32) -> Image {
+pub(super) fn flat((width, height): (usize, usize), light: f32) -> Image<'static> {
     Image::new(width, height, vec![light; width * height])
 }
 
@@ -26,7 +26,7 @@ pub(super) fn electrons(electrons: Electrons) -> Design {
     Design { noise: Noise::Electrons(electrons), ..Design::default() }
 }
 
-pub(super) fn expose(design: Design, light: Image, key: Key<'_>) -> Exposure {
+pub(super) fn expose(design: Design, light: Image<'static>, key: Key<'_>) -> Exposure {
     Sensor::new(design).unwrap().expose(light, key).unwrap()
 }
 

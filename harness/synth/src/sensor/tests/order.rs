@@ -32,7 +32,7 @@ fn everything() -> Design {
     }
 }
 
-fn scene() -> Image {
+fn scene() -> Image<'static> {
     Image::from_fn(333, 517, |x, y| if (x / 20 + y / 20) % 2 == 0 { 0.02 } else { 0.95 })
 }
 

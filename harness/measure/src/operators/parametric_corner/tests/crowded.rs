@@ -57,7 +57,7 @@ fn corners_of_small_squares_are_measured_with_smaller_windows() {
 }
 
 /// A corner and beside it, `away` px off, a dark bar of so many px.
-fn beside_a_bar(k: f64, away: f64, wide: f64) -> ([f64; 2], Image) {
+fn beside_a_bar(k: f64, away: f64, wide: f64) -> ([f64; 2], Image<'static>) {
     let (at, turn) = ([30.0 + (0.618 * k).fract() - 0.5, 30.0 + (0.755 * k).fract() - 0.5], 0.37 * k);
     let image = Image::from_fn(61, 61, |x, y| {
         let ([u, v], [across, _]) = (turned(x, y, at, turn), turned(x, y, at, turn + 0.5));

@@ -61,7 +61,7 @@ fn speed() {
             let grey = corner.render(SIDE);
             let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
             let normal = Normal::new(0.0, 0.02 * 0.6).unwrap();
-            let images: Vec<Image> = (0..200)
+            let images: Vec<Image<'static>> = (0..200)
                 .map(|_| quadrature_images::image(&grey.iter().map(|g| g + normal.sample(&mut rng)).collect::<Vec<_>>(), SIDE))
                 .collect();
             let operator = operator(spec);

@@ -11,7 +11,7 @@ fn speed() {
             let junction = junction(&[90.0, 270.0], 0.4, blur, [0.2, -0.3]);
             let grey = junction.render(SIDE);
             let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(1);
-            let images: Vec<Image> = (0..200).map(|_| quadrature_images::image(&noisy(&grey, 0.012, &mut rng), SIDE)).collect();
+            let images: Vec<Image<'static>> = (0..200).map(|_| quadrature_images::image(&noisy(&grey, 0.012, &mut rng), SIDE)).collect();
             let operator = operator(spec);
             print_rate(&format!("{spec} blur {blur}"), &*operator, &images, junction.position);
         }
