@@ -4,8 +4,7 @@ use std::io::{self, IsTerminal};
 
 use calibench_diagnostics::Problems;
 use calibench_model::escape;
-use calibench_plugins::PluginError;
-use calibench_scenario::catalogue::CatalogueError;
+use calibench_project::ProjectError;
 
 /// Why a command ends with another exit code than 0.
 pub enum Failure {
@@ -32,18 +31,10 @@ impl Failure {
     }
 }
 
-/// A scenario's problems as a picture of the lines that they are about.
-pub fn scenario_failure(error: CatalogueError) -> Failure {
+/// What is wrong with a project; mistakes in a file as a picture of the lines that they are about.
+pub fn project_failure(error: ProjectError) -> Failure {
     match error {
-        CatalogueError::Problems(problems) => Failure::Picture(picture(&problems)),
-        other => other.into(),
-    }
-}
-
-/// A plug-in's file with its mistakes as a picture of the lines that they are about.
-pub fn plugin_failure(error: PluginError) -> Failure {
-    match error {
-        PluginError::Problems(problems) => Failure::Picture(picture(&problems)),
+        ProjectError::Problems(problems) => Failure::Picture(picture(&problems)),
         other => other.into(),
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use calibench_gate::{Cells, Coordinates, FigureSums, Kept, Measured, PointSums, Results, Table, Verdicts, fingerprint, recorded};
 use calibench_measure::Configured;
 use calibench_measure::registry::KINDS;
+use calibench_project::ProjectError;
 use calibench_report::verdicts;
 use calibench_run::Plan;
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
@@ -12,7 +13,7 @@ use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
 use super::context::Context;
 use super::progress::Progress;
-use crate::failure::{Failure, scenario_failure};
+use crate::failure::{Failure, project_failure};
 
 /// Gets a table with its scenario and the cell of its sweep.
 pub type Seen<'a> = dyn FnMut(&Scenario, Option<usize>, &Table) -> Result<(), Failure> + 'a;
@@ -117,7 +118,8 @@ fn swept(
     for index in 0..sweep.cells() {
         let label = sweep.label(index);
         let name = format!("{}@{label}", scenario.name);
-        let cell = parse_cell(scenario, sweep, index, context.registry()?).map_err(|problems| scenario_failure(problems.into()))?;
+        let cell = parse_cell(scenario, sweep, index, context.registry()?)
+            .map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
         let plan = plan(context, &cell)?;
         let table = match records {
             Some(records) => {

@@ -42,15 +42,14 @@ mod schema;
 mod show;
 mod speed;
 mod stmap;
-mod toolbox;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+pub use calibench_project::Toolbox;
 use clap::{Parser, Subcommand};
 use failure::Failure;
 use plugin::CONFINED;
-pub use toolbox::Toolbox;
 
 /// Compares camera calibration methods on images whose truth is known exactly, and on photographs.
 #[derive(Parser)]
@@ -169,8 +168,7 @@ pub fn main(toolbox: &Toolbox) -> ExitCode {
 }
 
 fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
-    let context =
-        context::Context { root: arguments.root, quiet: arguments.quiet, plugins: arguments.plugins, ..context::Context::new(toolbox) };
+    let context = context::Context::new(toolbox, arguments.quiet, arguments.root, arguments.plugins);
     match arguments.command {
         Command::List { what } => list::list(&context, what),
         Command::Show(show) => show.run(&context),

@@ -11,7 +11,7 @@ use clap::ValueEnum;
 
 use super::context::Context;
 use crate::deliver::print;
-use crate::failure::{Failure, scenario_failure};
+use crate::failure::{Failure, project_failure};
 
 /// What can be listed.
 #[derive(Clone, Copy, ValueEnum)]
@@ -42,7 +42,7 @@ fn scenarios(context: &Context<'_>) -> Result<String, Failure> {
     let mut text = String::new();
     let catalogue = context.catalogue()?;
     for name in catalogue.names()? {
-        let why = catalogue.why(&name).map_err(scenario_failure)?;
+        let why = catalogue.why(&name).map_err(|error| project_failure(error.into()))?;
         let why: Vec<&str> = why.split_whitespace().collect();
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{name}\n    {}", why.join(" "));

@@ -6,11 +6,12 @@ use std::process::ExitCode;
 
 use calibench_measure::Registry;
 use calibench_plugins::{Confinement, check, confine_and_execute, method, parse};
+use calibench_project::ProjectError;
 use clap::{Args, Subcommand};
 
-use super::context::{Context, launcher};
+use super::context::Context;
 use crate::deliver::print;
-use crate::failure::{Failure, plugin_failure};
+use crate::failure::{Failure, project_failure};
 
 /// The command by which plug-ins are started.
 pub const CONFINED: &str = "confined";
@@ -33,9 +34,9 @@ impl PluginCommand {
 
 fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
     let text = std::fs::read_to_string(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
-    let declarations = parse(&file.display().to_string(), &text).map_err(|problems| plugin_failure(problems.into()))?;
+    let declarations = parse(&file.display().to_string(), &text).map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
     let folder = file.canonicalize()?.parent().map(Path::to_owned).unwrap_or_default();
-    let launcher = launcher(context.project()?);
+    let launcher = context.launcher()?;
     let mut failed = false;
     for declaration in declarations {
         let name = declaration.name.clone();

@@ -28,7 +28,7 @@ impl Report {
         for name in names {
             families.entry(name.split('/').next().unwrap_or(&name).to_owned()).or_default().push(name);
         }
-        if context.is_in_project()? {
+        if context.folder()?.is_some() {
             families.insert(conventions::FAMILY.to_owned(), Vec::new());
         } else if families.is_empty() {
             return Err(Failure::input(format!("{}: no records; `calibench run FILE.toml` makes them", places.records.display())));

@@ -28,7 +28,7 @@ fn main() {
     print("the same of an image of 40 e-", 1, &usual(), &night);
 }
 
-fn print(name: &str, threads: usize, design: &Design, image: &Image) {
+fn print(name: &str, threads: usize, design: &Design, image: &Image<'static>) {
     let Ok(sensor) = Sensor::new(design.clone()) else { return println!("{name:<44}{:>8}", "refused") };
     let Ok(pool) = ThreadPoolBuilder::new().num_threads(threads).build() else { return };
     let key = Key { seed: 1, scenario: "perf", trial: 0, view: "v", target: "" };

@@ -40,7 +40,7 @@ impl Init {
                 .and_then(|()| fs::write(&path, text))
                 .map_err(|error| failed(&path, &error))?;
         }
-        let inside = Context { root: Some(folder.clone()), quiet: context.quiet, ..Context::new(context.toolbox) };
+        let inside = Context::new(context.toolbox, context.quiet, Some(folder.clone()), None);
         Bless::all().run(&inside)?;
         print(&format!(
             "{}: one scenario, blessed. Next: `calibench check` in that folder; its README.md has the commands\n",

@@ -1,0 +1,14 @@
+//! Where a project is and what belongs to it: scenarios, methods with the plug-ins, folders of records and reports. What the command line and other languages
+//! share.
+
+mod error;
+mod methods;
+mod project;
+mod scenarios;
+mod toolbox;
+
+pub use error::ProjectError;
+pub use methods::Pictured;
+pub use project::Project;
+pub use scenarios::origin;
+pub use toolbox::Toolbox;

@@ -1,0 +1,75 @@
+//! Methods by their names, as users write them.
+
+use calibench_diagnostics::nearest;
+use calibench_measure::kinds::distinct;
+use calibench_measure::{Configured, KindsError, MethodError};
+use calibench_model::TargetKind;
+
+use crate::{Project, ProjectError};
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pictured {
+    /// What a scenario renders: methods as published.
+    Renders,
+    /// Photographs, in which there is more than targets.
+    Photographs,
+}
+
+impl Project<'_> {
+    /// The method that `text` names.
+    ///
+    /// # Errors
+    /// A text that names none, with the nearest name for a misspelt one.
+    pub fn method(&self, text: &str, pictured: Pictured) -> Result<Configured, ProjectError> {
+        let registry = self.registry()?;
+        let parsed = match pictured {
+            Pictured::Renders => registry.parse(text),
+            Pictured::Photographs => registry.parse_for_photographs(text),
+        };
+        parsed.map_err(|error| {
+            let proposal = match &error {
+                MethodError::UnknownMethod { name, known } => nearest(name, known.iter().map(String::as_str)),
+                MethodError::Kinds { error: KindsError::Unknown(unknown), .. } => {
+                    nearest(&unknown.0, TargetKind::ALL.map(TargetKind::name))
+                }
+                MethodError::UnknownParameter { key, known, .. } => nearest(key, known.iter().map(String::as_str)),
+                _ => None,
+            };
+            let proposal = proposal.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            ProjectError::Asked(format!("-m {text}: {error}{proposal}"))
+        })
+    }
+
+    /// As [`Self::method`], for the corners of a chessboard in photographs.
+    ///
+    /// # Errors
+    /// As [`Self::method`]; one that is limited to other kinds of targets.
+    pub fn method_of_boards(&self, text: &str) -> Result<Configured, ProjectError> {
+        let method = self.method(text, Pictured::Photographs)?;
+        let wanted = TargetKind::ChessCorner;
+        match method.kinds.as_ref().filter(|_| !method.measures(Some(wanted))) {
+            Some(kinds) => Err(ProjectError::Asked(format!(
+                "-m {text}: limited to targets of the kind `{kinds}`, and a board has none; expected `{wanted}` among the kinds, or no kinds"
+            ))),
+            None => Ok(method),
+        }
+    }
+
+    /// The methods of these names. None is there twice, and none measures a kind of target twice.
+    ///
+    /// # Errors
+    /// As [`Self::method`]; methods that are in each other's way.
+    pub fn methods(&self, texts: &[String], pictured: Pictured) -> Result<Vec<Configured>, ProjectError> {
+        let mut found: Vec<Configured> = Vec::new();
+        for text in texts {
+            let method = self.method(text, pictured)?;
+            if found.iter().any(|earlier| earlier.label == method.label) {
+                return Err(ProjectError::Asked(format!("-m {text}: `{}` is asked for twice", method.label)));
+            }
+            distinct(&found, &method).map_err(|gap| ProjectError::Asked(format!("-m {text}: {gap}")))?;
+            found.push(method);
+        }
+        Ok(found)
+    }
+}

@@ -1,0 +1,126 @@
+//! A project's folder and what belongs to it.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use calibench_measure::Registry;
+use calibench_plugins::{Launcher, load};
+use calibench_report::Places;
+use calibench_scenario::data::data_folder;
+
+use crate::{ProjectError, Toolbox};
+
+/// The project's folder of plug-ins.
+const PLUGINS: &str = "methods";
+
+/// Where the project is, and what this build can do.
+pub struct Project<'a> {
+    /// Its folder, if the user named it.
+    pub root: Option<PathBuf>,
+    /// The folder of plug-ins, if the user named it.
+    pub plugins: Option<PathBuf>,
+    /// What this build can do.
+    pub toolbox: &'a Toolbox,
+    /// What restricts itself and then becomes a plug-in: a program and its first arguments.
+    pub confiner: Option<Vec<OsString>>,
+    /// All methods, once somebody asked for them: empty at first.
+    pub methods: OnceLock<Registry>,
+}
+
+impl<'a> Project<'a> {
+    /// The project around the current folder, with plug-ins started as they are.
+    pub const fn new(toolbox: &'a Toolbox) -> Self {
+        Self { root: None, plugins: None, toolbox, confiner: None, methods: OnceLock::new() }
+    }
+}
+
+impl Project<'_> {
+    /// Its folder: named, or the nearest one upwards that holds scenarios/ and reference/, if there is one.
+    ///
+    /// # Errors
+    /// A named folder that is no project; a current folder that cannot be read.
+    pub fn folder(&self) -> Result<Option<PathBuf>, ProjectError> {
+        let is_root = |folder: &Path| folder.join("scenarios").is_dir() && folder.join("reference").is_dir();
+        if let Some(root) = &self.root {
+            return if is_root(root) { Ok(Some(root.clone())) } else { Err(ProjectError::NoProject(root.clone())) };
+        }
+        let here = std::env::current_dir()?;
+        Ok(here.ancestors().find(|folder| is_root(folder)).map(Path::to_owned))
+    }
+
+    /// Its folder, where there must be one.
+    ///
+    /// # Errors
+    /// As [`Self::folder`]; there is none.
+    pub fn root(&self) -> Result<PathBuf, ProjectError> {
+        self.folder()?.ok_or(ProjectError::Outside)
+    }
+
+    /// Its folder, or the current one outside of a project: there records and reports of one's own files are.
+    fn base(&self) -> Result<PathBuf, ProjectError> {
+        Ok(match self.folder()? {
+            Some(root) => root,
+            None => std::env::current_dir()?,
+        })
+    }
+
+    /// All methods: those of this build, and the plug-ins of the folder that the user named, or of the project.
+    ///
+    /// # Errors
+    /// As [`Self::folder`]; plug-ins that are none.
+    pub fn registry(&self) -> Result<&Registry, ProjectError> {
+        if let Some(methods) = self.methods.get() {
+            return Ok(methods);
+        }
+        let own = self.folder()?.map(|root| root.join(PLUGINS)).filter(|folder| folder.is_dir());
+        let builtin = self.toolbox.registry.clone();
+        let methods = match self.plugins.clone().or(own) {
+            Some(folder) => load(&folder, builtin, &self.launcher()?)?,
+            None => builtin,
+        };
+        Ok(self.methods.get_or_init(|| methods))
+    }
+
+    /// How plug-ins are started.
+    ///
+    /// # Errors
+    /// As [`Self::folder`].
+    pub fn launcher(&self) -> Result<Launcher, ProjectError> {
+        Ok(Launcher { confiner: self.confiner.clone(), project: self.folder()? })
+    }
+
+    /// Where photographs are.
+    ///
+    /// # Errors
+    /// As [`Self::folder`].
+    pub fn data(&self) -> Result<PathBuf, ProjectError> {
+        Ok(data_folder(&self.base()?))
+    }
+
+    /// Where records, published tables and reports are.
+    ///
+    /// # Errors
+    /// As [`Self::folder`].
+    pub fn places(&self) -> Result<Places, ProjectError> {
+        let root = self.base()?;
+        let [records, published, cameras, reports] =
+            ["records", "reference/published", "reference/cameras", "reports"].map(|folder| root.join(folder));
+        Ok(Places { records, published, cameras, reports })
+    }
+
+    /// The code's revision for records: that of the checkout, or the version of the program outside of one.
+    ///
+    /// # Errors
+    /// As [`Self::folder`].
+    pub fn revision(&self) -> Result<String, ProjectError> {
+        let describe = |root: PathBuf| {
+            let git =
+                Command::new("git").arg("-C").arg(root).args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]).output();
+            git.ok().filter(|output| output.status.success()).map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+        };
+        let revision = self.folder()?.and_then(describe);
+        Ok(revision.unwrap_or_else(|| env!("CARGO_PKG_VERSION").to_owned()))
+    }
+}
