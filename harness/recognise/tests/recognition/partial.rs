@@ -9,7 +9,7 @@ use crate::{BOTH, recogniser};
 const TILTS: [(f64, [f64; 2]); 3] = [(0.0, [0.0, 0.0]), (30.0, [0.0, 30.0]), (45.0, [45.0, 0.0])];
 
 /// Counts over images that are changed.
-fn counted(setting: &Setting, tilts: &[(f64, [f64; 2])], rolls: &[f64], change: impl Fn(&Image) -> Image<'static>) -> [Counts; 2] {
+fn counted(setting: &Setting, tilts: &[(f64, [f64; 2])], rolls: &[f64], change: impl Fn(&Image<'static>) -> Image<'static>) -> [Counts; 2] {
     let field = setting.testfield();
     let mut counts = [Counts::default(), Counts::default()];
     let taken: Vec<Shot> =
@@ -96,7 +96,7 @@ fn dark_images_and_uneven_light() {
     let setting = Setting::paper(2403, 0.6, 46.0);
     let dark = |image: &Image| Image::from_fn(240, 240, |x, y| (image.at(x, y) / 60.0 * 65535.0).round() / 65535.0);
     let slope = |image: &Image| Image::from_fn(240, 240, |x, y| image.at(x, y) * (1.0 - 0.66 * x as f32 / 239.0));
-    let negative_free: [&dyn Fn(&Image) -> Image<'static>; 2] = [&dark, &slope];
+    let negative_free: [&dyn Fn(&Image<'static>) -> Image<'static>; 2] = [&dark, &slope];
     for change in negative_free {
         for counts in counted(&setting, &TILTS, &[0.0], change) {
             assert!(counts.not_recognised.is_empty(), "{:?}", counts.not_recognised);
