@@ -36,6 +36,14 @@ pub const MODELS: [&str; 13] = [
     "opencv-fisheye+bent",
 ];
 
+/// The names of [`MODELS`], or of those without a board that may be bent where there is no board.
+pub fn usual_models(of_board: bool) -> Vec<String> {
+    MODELS.iter().filter(|text| of_board || !text.ends_with(BENT)).map(|text| (*text).to_owned()).collect()
+}
+
+/// How the name of a model ends that is of a board which may be bent.
+pub const BENT: &str = "+bent";
+
 /// How to judge.
 #[derive(Clone, Debug)]
 pub struct Options {

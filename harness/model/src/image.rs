@@ -61,6 +61,11 @@ impl Image<'_> {
         &self.grey
     }
 
+    /// All grey values, row by row, fractions of full scale, out of the image; copied where they are borrowed.
+    pub fn into_grey(self) -> Vec<f32> {
+        self.grey.into_owned()
+    }
+
     /// All grey values, row by row, fractions of full scale, to be changed; copied first where they are borrowed.
     pub fn grey_mut(&mut self) -> &mut [f32] {
         self.grey.to_mut()

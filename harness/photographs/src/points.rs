@@ -142,8 +142,8 @@ pub fn measure_points(
     Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// The results at `starts`, in their order.
-fn shared_out(operator: &dyn Operator, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
+/// The results at `starts`, in their order. The points of an image are shared out among the threads: the results are the same on any number of them.
+pub fn shared_out(operator: &dyn Operator, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
     if !operator.is_local() {
         return operator.measure_all(image, starts);
     }

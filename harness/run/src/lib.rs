@@ -13,6 +13,7 @@ pub mod printed;
 pub mod recognition;
 mod rmse;
 mod scene;
+pub mod shots;
 pub mod store;
 mod theory;
 mod tools;

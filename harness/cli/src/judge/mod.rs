@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_exchange::{Inputs, read_control};
-use calibench_judge::{CornerFile, Field, MODELS, Material, Options, judge, published_camera, stated_sigma};
+use calibench_judge::{BENT, CornerFile, Field, Material, Options, judge, published_camera, stated_sigma, usual_models};
 use calibench_model::camera::ImageSize;
 use calibench_photographs::Chessboard;
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
@@ -22,9 +22,6 @@ mod page;
 mod photographs;
 
 use files::corner_file;
-
-/// How the name of a model ends that is of a board which may be bent.
-const BENT: &str = "+bent";
 
 #[derive(Args)]
 pub struct Judge {
@@ -125,8 +122,7 @@ impl Judge {
                 "--model {text}: a board that may be bent is asked for, and --control is none; leave `{BENT}` out"
             )));
         }
-        let usual = || MODELS.iter().filter(|text| of_board || !bent(text)).map(|text| (*text).to_owned()).collect();
-        let texts: Vec<String> = if self.models.is_empty() { usual() } else { self.models.clone() };
+        let texts = if self.models.is_empty() { usual_models(of_board) } else { self.models.clone() };
         ModelChoice::parse_all(&texts).map_err(|(place, error)| Failure::input(format!("--model {}: {error}", texts[place])))
     }
 

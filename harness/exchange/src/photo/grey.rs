@@ -21,6 +21,16 @@ pub(super) fn of(decoded: &DynamicImage) -> Image<'static> {
     Image::new(width, height, grey)
 }
 
+/// The grey values of `width` x `height` 8-bit levels, row by row; `None` if there are not so many.
+pub fn of_bytes(width: usize, height: usize, levels: &[u8]) -> Option<Image<'static>> {
+    (width.checked_mul(height) == Some(levels.len())).then(|| Image::new(width, height, by_table::<1>(levels)))
+}
+
+/// The grey values of `width` x `height` 16-bit levels, row by row; `None` if there are not so many.
+pub fn of_words(width: usize, height: usize, levels: &[u16]) -> Option<Image<'static>> {
+    (width.checked_mul(height) == Some(levels.len())).then(|| Image::new(width, height, grey_of::<u16, 1>(levels, 65535.0)))
+}
+
 /// Of 8-bit grey values (the first of `CHANNELS`), by a table: a division for each pixel takes about half as long as decoding it.
 fn by_table<const CHANNELS: usize>(values: &[u8]) -> Vec<f32> {
     let table: [f32; 256] = std::array::from_fn(|level| (level as f64 / 255.0) as f32);

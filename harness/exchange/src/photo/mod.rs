@@ -1,7 +1,7 @@
 //! Photographs in, images out.
 
 mod budget;
-mod grey;
+pub mod grey;
 mod jpeg;
 mod turn;
 

@@ -1,0 +1,53 @@
+//! What was photographed: a chessboard in a word, or object coordinates as an array or by names.
+
+use calibench_exchange::ControlRow;
+use calibench_judge::Field;
+use calibench_photographs::Chessboard;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::rows;
+use crate::error::input;
+
+/// Points of known object coordinates, in the order in which arrays have them.
+pub struct Board {
+    /// Their names and coordinates.
+    pub control: Vec<ControlRow>,
+    /// As `judge` has it.
+    pub field: Field,
+    /// The chessboard, if it is one.
+    pub chessboard: Option<Chessboard>,
+}
+
+impl Board {
+    /// Of `9x6:25`, of an array of (n, 3), or of a dict of names and coordinates.
+    ///
+    /// # Errors
+    /// Anything else.
+    pub fn of(board: &Bound<'_, PyAny>) -> PyResult<Self> {
+        if let Ok(text) = board.extract::<String>() {
+            let chessboard: Chessboard = text.parse().map_err(input)?;
+            let field = Field::Board { board: chessboard.board, side: chessboard.side };
+            return Ok(Self { control: chessboard.control(), field, chessboard: Some(chessboard) });
+        }
+        let control: Vec<ControlRow> = if let Ok(named) = board.cast::<PyDict>() {
+            let row = |(name, xyz): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+                let wrong = || input("board: expected names and coordinates X, Y, Z, as in {\"P1\": (0.0, 0.0, 0.0)}");
+                Ok(ControlRow::new(name.extract::<String>().map_err(|_| wrong())?, xyz.extract::<[f64; 3]>().map_err(|_| wrong())?))
+            };
+            named.iter().map(row).collect::<PyResult<_>>()?
+        } else {
+            let all = rows::<3>(board, "board (a text as 9x6:25, an array of (n, 3), or a dict)")?;
+            all.into_iter().enumerate().map(|(index, xyz)| ControlRow::new(index.to_string(), xyz)).collect()
+        };
+        if let Some(row) = control.iter().find(|row| row.position.iter().any(|value| !value.is_finite())) {
+            return Err(input(format!("board: the coordinates of point {} are not finite", row.target)));
+        }
+        Ok(Self { field: Field::Points(control.clone()), control, chessboard: None })
+    }
+
+    /// Names of its points, in the order in which arrays have them.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.control.iter().map(|row| row.target.as_str())
+    }
+}

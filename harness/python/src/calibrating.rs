@@ -1,0 +1,227 @@
+//! `calibrate`: a camera from measured points.
+
+use std::collections::HashMap;
+
+use calibench_adjust::Use;
+use calibench_calibrate::{Calibration as Solved, Optics, Settings, calibrate as solve, prepare};
+use calibench_exchange::NamedCamera;
+use calibench_model::Pose as Exterior;
+use calibench_report::calibration::summary;
+use nalgebra::DMatrix;
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{of_matrix, table};
+use crate::boards::Board;
+use crate::camera::{Camera, size_of};
+use crate::error::{CalibrationError, doubt, input};
+use crate::points::{image_names, points};
+use crate::pose::Pose;
+
+/// A calibrated camera and its quality: see `calibench.Calibration`.
+#[pyclass(frozen, module = "calibench", name = "Calibration")]
+pub struct Calibration {
+    done: Done,
+    camera: Py<Camera>,
+}
+
+/// What is kept of a solution.
+struct Done {
+    named: NamedCamera,
+    /// The parameters that were solved for.
+    solved: Vec<String>,
+    covariance: DMatrix<f64>,
+    images: Vec<String>,
+    poses: Vec<Exterior>,
+    /// By image given: v of x and y in the order of the board, px; NaN where there is none.
+    residuals: Vec<Vec<[f64; 2]>>,
+    /// Of the same points: whether they took part.
+    used: Vec<Vec<bool>>,
+    sigma0: Option<f64>,
+    rms_px: f64,
+    doubts: Vec<String>,
+    summary: String,
+}
+
+#[pymethods]
+impl Calibration {
+    /// The camera, with its covariance.
+    #[getter]
+    fn camera(&self, py: Python<'_>) -> Py<Camera> {
+        self.camera.clone_ref(py)
+    }
+
+    /// Standard deviations of the parameters that were solved for, in their units.
+    #[getter]
+    fn sigma<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        let sigma = |i: usize| self.done.covariance[(i, i)].sqrt();
+        self.done.solved.iter().enumerate().try_for_each(|(i, name)| all.set_item(name, sigma(i)))?;
+        Ok(all)
+    }
+
+    /// Names of the parameters that were solved for: rows and columns of `covariance`.
+    #[getter]
+    fn solved(&self) -> Vec<String> {
+        self.done.solved.clone()
+    }
+
+    /// Covariance of these parameters, in their units.
+    #[getter]
+    fn covariance(&self, py: Python<'_>) -> PyResult<Py<PyArray2<f64>>> {
+        of_matrix(py, &self.done.covariance)
+    }
+
+    /// A (n, 2) array for each image given: adjusted less observed, px; NaN where there is no point.
+    #[getter]
+    fn residuals(&self, py: Python<'_>) -> PyResult<Vec<Py<PyArray2<f64>>>> {
+        self.done.residuals.iter().map(|image| table(py, image)).collect()
+    }
+
+    /// For each image given whether each point took part.
+    #[getter]
+    fn used(&self) -> Vec<Vec<bool>> {
+        self.done.used.clone()
+    }
+
+    /// Poses by the names of images; an image without a pose is not there.
+    #[getter]
+    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        self.done.images.iter().zip(&self.done.poses).try_for_each(|(name, pose)| all.set_item(name, Py::new(py, Pose(*pose))?))?;
+        Ok(all)
+    }
+
+    /// sigma0: the standard deviation of an image coordinate over the a-priori one; None without redundancy.
+    #[getter]
+    fn sigma0(&self) -> Option<f64> {
+        self.done.sigma0
+    }
+
+    /// Root mean square of the residuals in use, 2D, px.
+    #[getter]
+    fn rms_px(&self) -> f64 {
+        self.done.rms_px
+    }
+
+    /// What is doubtful, in words; with any the command line ends with exit code 3.
+    #[getter]
+    fn doubts(&self) -> Vec<String> {
+        self.done.doubts.clone()
+    }
+
+    /// What the command line prints.
+    #[getter]
+    fn summary(&self) -> &str {
+        &self.done.summary
+    }
+
+    fn __repr__(&self) -> String {
+        let doubts = self.done.doubts.len();
+        format!(
+            "Calibration({} images, {:.4} px RMS{})",
+            self.done.images.len(),
+            self.done.rms_px,
+            if doubts == 0 { String::new() } else { format!(", {doubts} doubts") }
+        )
+    }
+}
+
+/// Calibrates a camera from measured points: as `calibench calibrate --points --control` does.
+#[pyfunction]
+#[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = Vec::new(), start = None, datum = "control",
+    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = false, compare = Vec::new()))]
+#[expect(clippy::too_many_arguments, clippy::fn_params_excessive_bools, reason = "each is a keyword of Python's")]
+pub fn calibrate(
+    py: Python<'_>,
+    xy: Vec<Bound<'_, PyAny>>,
+    board: &Bound<'_, PyAny>,
+    size: (u32, u32),
+    images: Option<Vec<String>>,
+    model: Option<String>,
+    pitch: Option<f64>,
+    solve: Option<Vec<String>>,
+    priors: Vec<String>,
+    start: Option<&Camera>,
+    datum: &str,
+    board_shape: &str,
+    sigma: Option<f64>,
+    covariances: bool,
+    huber: Option<f64>,
+    snoop: bool,
+    compare: Vec<Vec<String>>,
+) -> PyResult<Calibration> {
+    let board = Board::of(board)?;
+    let names = image_names(images, xy.len())?;
+    let points = points(&xy, &names, &board)?;
+    let optics = Optics {
+        pitch_um: positive(pitch, "pitch")?,
+        model,
+        solve,
+        priors: priors.iter().map(|text| text.parse()).collect::<Result<_, _>>().map_err(input)?,
+        start: start.map(|camera| camera.named.camera),
+        ..Optics::new(size_of(size)?)
+    };
+    let settings = Settings {
+        datum: datum.parse().map_err(input)?,
+        shape: board_shape.parse().map_err(input)?,
+        huber: positive(huber, "huber")?,
+        snoop,
+        sigma_px: positive(sigma, "sigma")?,
+        covariances,
+        ..Settings::new(vec![optics])
+    };
+    if snoop && huber.is_some() {
+        return Err(input("huber and snoop: one or the other"));
+    }
+    let done = py.detach(|| {
+        let prepared = prepare(points, &board.control, &settings)?;
+        self::solve(&prepared, &compare, |calibration| done(calibration, &names, &board))
+    });
+    let done = done.map_err(|error| CalibrationError::new_err(error.to_string()))?.map_err(input)?;
+    for text in &done.doubts {
+        doubt(py, text)?;
+    }
+    Ok(Calibration { camera: Py::new(py, Camera::new(done.named.clone()))?, done })
+}
+
+/// A positive number, if there is one; `what` is its name in errors.
+///
+/// # Errors
+/// Zero, a negative number, one that is not finite.
+pub fn positive(value: Option<f64>, what: &str) -> PyResult<Option<f64>> {
+    match value {
+        Some(number) if !(number.is_finite() && number > 0.0) => Err(input(format!("{what}: {number}; expected a positive number"))),
+        value => Ok(value),
+    }
+}
+
+fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<Done, String> {
+    let (prepared, solution) = (calibration.prepared, &calibration.solution);
+    let image_of: HashMap<&str, usize> = names.iter().enumerate().map(|(index, name)| (name.as_str(), index)).collect();
+    let point_of: HashMap<&str, usize> = board.names().enumerate().map(|(index, name)| (name, index)).collect();
+    let mut residuals = vec![vec![[f64::NAN; 2]; board.control.len()]; names.len()];
+    let mut used = vec![vec![false; board.control.len()]; names.len()];
+    for residual in solution.each_residual() {
+        let sight = prepared.survey.sight(prepared.sights[residual.observation] as usize);
+        let image = image_of.get(prepared.survey.images[sight.image].as_str());
+        let (Some(&image), Some(&point)) = (image, point_of.get(prepared.survey.target(sight.target))) else { continue };
+        residuals[image][point] = residual.v.unwrap_or([f64::NAN; 2]);
+        used[image][point] = residual.used != Use::LeftOut;
+    }
+    let (solved, covariance) = calibration.covariances.of_camera(0);
+    Ok(Done {
+        named: calibration.named_camera(0)?,
+        solved: solved.into_iter().map(str::to_owned).collect(),
+        covariance,
+        images: prepared.survey.images.clone(),
+        poses: solution.poses().to_vec(),
+        residuals,
+        used,
+        sigma0: solution.sigma0(),
+        rms_px: calibration.rms_px(),
+        doubts: calibration.doubts().into_iter().map(str::to_owned).collect(),
+        summary: summary(calibration),
+    })
+}

@@ -1,0 +1,277 @@
+//! `Camera`: read, written, converted, and projected with.
+
+use std::path::PathBuf;
+
+use calibench_exchange::camera::conversion::{Converted, converted};
+use calibench_exchange::camera::fit::losses;
+use calibench_exchange::camera::for_file::for_file;
+use calibench_exchange::camera::open_points::OpenPoints;
+use calibench_exchange::camera::target::{Given, goal};
+use calibench_exchange::camera::{CameraFormat, NamedCamera, format_named, read_camera_with, write_camera};
+use calibench_exchange::st_map::{Overscan, Undistorted};
+use calibench_exchange::{OutputFile, ReadOptions};
+use calibench_model::PixelPoint;
+use calibench_model::camera::{CameraModel, ImageSize, Ray, Verification, fold};
+use calibench_model::convert::{ConvertOptions, Method, Region, Verdict};
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::arrays::{of_matrix, of_positions, positions, rows, table};
+use crate::error::{camera as refused, doubt, input};
+
+/// A camera: see `calibench.Camera`.
+#[pyclass(frozen, module = "calibench", name = "Camera")]
+pub struct Camera {
+    pub named: NamedCamera,
+    /// The format that it was read from or converted to.
+    format: Option<&'static CameraFormat>,
+    /// RMS and largest residual of the fit that made it, px; `None` if none did.
+    fit: Option<(f64, f64)>,
+}
+
+/// Points that a thread takes at a time.
+const SHARE: usize = 4096;
+
+impl Camera {
+    /// One that no file held.
+    pub fn new(named: NamedCamera) -> Self {
+        Self { named, format: None, fit: None }
+    }
+
+    /// What of its convention no numbers of its tool confirm, as a warning.
+    fn unverified(&self, py: Python<'_>) -> PyResult<()> {
+        let Verification::Unverified(open) = self.named.camera.convention().verification else { return Ok(()) };
+        doubt(py, &format!("unverified: {}: {open}", self.named.camera.convention().name))
+    }
+}
+
+/// The size of images.
+///
+/// # Errors
+/// No columns or no rows.
+pub fn size_of((width, height): (u32, u32)) -> PyResult<ImageSize> {
+    if width == 0 || height == 0 {
+        return Err(input(format!("size: ({width}, {height}); expected columns and rows")));
+    }
+    Ok(ImageSize { width, height })
+}
+
+#[pymethods]
+impl Camera {
+    /// The camera of a file of any known format, found by content.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, size = None, camera = None, format = None, fisheye = None))]
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        size: Option<(u32, u32)>,
+        camera: Option<&str>,
+        format: Option<&str>,
+        fisheye: Option<bool>,
+    ) -> PyResult<Self> {
+        let all = Self::read_all(py, path.clone(), size, format, fisheye)?;
+        let (count, shown) = (all.len(), path.display());
+        let Some(name) = camera else {
+            let first = all.into_iter().next().ok_or_else(|| refused(format!("{shown}: holds no camera")))?;
+            if count > 1 {
+                doubt(py, &format!("{shown}: the first of {count} cameras, `{}`; choose with camera=NAME", first.named.name))?;
+            }
+            return Ok(first);
+        };
+        let place = name.parse::<usize>().ok().and_then(|place| place.checked_sub(1));
+        let by_name = all.iter().position(|one| one.named.name == name).or(place.filter(|place| *place < count));
+        let found = by_name.and_then(|place| all.into_iter().nth(place));
+        found.ok_or_else(|| refused(format!("{shown}: no camera is called {name}")))
+    }
+
+    /// All cameras of a file.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, size = None, format = None, fisheye = None))]
+    fn read_all(
+        py: Python<'_>,
+        path: PathBuf,
+        size: Option<(u32, u32)>,
+        format: Option<&str>,
+        fisheye: Option<bool>,
+    ) -> PyResult<Vec<Self>> {
+        let from = format.map(|name| {
+            format_named(name).ok_or_else(|| input(format!("format: no such format as `{name}`; `calibench list formats` lists them")))
+        });
+        let options = ReadOptions { size: size.map(size_of).transpose()?, fisheye, lens: None, from: from.transpose()? };
+        let file = py.detach(|| read_camera_with(&path, &options)).map_err(refused)?;
+        let format = file.format;
+        let cameras = OpenPoints::default().read(file);
+        let all: Vec<Self> = cameras.into_iter().map(|named| Self { named, format: Some(format), fit: None }).collect();
+        if let Some(first) = all.first() {
+            first.unverified(py)?;
+        }
+        let mut said: Vec<&String> = Vec::new();
+        for note in all.iter().flat_map(|camera| &camera.named.notes) {
+            if !said.contains(&note) {
+                doubt(py, &format!("{}: {note}", path.display()))?;
+                said.push(note);
+            }
+        }
+        Ok(all)
+    }
+
+    /// The same camera in another convention, or for another tool.
+    #[pyo3(signature = (to, *, model = None, pitch = None, base = None, radius = None, rotation = false, accept = false))]
+    #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
+    fn convert(
+        &self,
+        py: Python<'_>,
+        to: &str,
+        model: Option<&str>,
+        pitch: Option<f64>,
+        base: Option<f64>,
+        radius: Option<f64>,
+        rotation: bool,
+        accept: bool,
+    ) -> PyResult<Self> {
+        let order = OpenPoints::default().order();
+        let given = Given { source: &self.named, pitch_um: pitch, base_mm: base, order, output: None };
+        let goal = goal(to, &given).map_err(refused)?;
+        let region = radius.map_or(Region::Frame, |px| Region::Radius { px });
+        let options = ConvertOptions { region, rotation, accept, ..ConvertOptions::default() };
+        let found = py.detach(|| converted(&self.named, &goal, model, pitch, &options)).map_err(refused)?;
+        let Converted { camera: named, conversion, .. } = found;
+        let (rms, most) = (conversion.residual.rms_px, conversion.residual.max_px);
+        if conversion.method != Method::Exact && conversion.verdict != Verdict::Good {
+            doubt(py, &format!("{to}: fitted with residuals of {rms:.3} px RMS, {most:.3} px at most"))?;
+        }
+        if let Some(fold) = fold(&conversion.camera).filter(|_| conversion.region == Region::Frame) {
+            let (radius, share) = (fold.radius_px, 100.0 * fold.share);
+            doubt(py, &format!("the camera folds over {radius:.1} px from the image of the axis: {share:.2} % of the frame have no ray"))?;
+        }
+        let mut all = [named];
+        OpenPoints::default().written(goal.format, &mut all);
+        let [named] = all;
+        for lost in losses(goal.format, &named) {
+            doubt(py, &format!("{to}: lost: {lost}"))?;
+        }
+        let fit = (conversion.method != Method::Exact).then_some((rms, most));
+        let made = Self { named, format: Some(goal.format), fit };
+        if made.named.camera.convention() != self.named.camera.convention() {
+            made.unverified(py)?;
+        }
+        Ok(made)
+    }
+
+    /// Writes a camera file: as it was converted, or in the convention `to`, or in the one that the file's ending asks for.
+    #[pyo3(signature = (path, *, to = None))]
+    fn write(&self, py: Python<'_>, path: PathBuf, to: Option<&str>) -> PyResult<()> {
+        OutputFile::open(&path).map_err(refused)?;
+        if let (Some(format), None) = (self.format, to) {
+            return write_camera(&path, format, std::slice::from_ref(&self.named)).map_err(refused);
+        }
+        let file = for_file(&path, &self.named, to).map_err(refused)?;
+        if let Some((to, conversion)) = &file.fitted {
+            let (rms, most) = (conversion.residual.rms_px, conversion.residual.max_px);
+            doubt(py, &format!("{}: converted to {to} by a fit: residuals {rms:.3} px RMS, {most:.3} px at most", path.display()))?;
+        }
+        for lost in losses(file.format, &file.camera) {
+            doubt(py, &format!("{}: lost: {lost}", path.display()))?;
+        }
+        write_camera(&path, file.format, &[file.camera]).map_err(refused)
+    }
+
+    /// Points of (n, 3) in the camera's axes (x right, y down, z forward) to pixels of (n, 2); NaN for what is not pictured.
+    fn project(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
+        let points = rows::<3>(points, "points")?;
+        let one = |[x, y, z]: &[f64; 3]| self.named.camera.project(Ray { x: *x, y: -y, z: -z }).unwrap_or(NOWHERE);
+        let found: Vec<PixelPoint> = py.detach(|| points.par_iter().with_min_len(SHARE).map(one).collect());
+        of_positions(py, found)
+    }
+
+    /// Pixels of (n, 2) to rays of (n, 3) of length 1 in the camera's axes; NaN for what no ray comes to.
+    fn unproject(&self, py: Python<'_>, px: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
+        let places = positions(px, "px")?;
+        let one = |at: &PixelPoint| {
+            let Ok(Ray { x, y, z }) = self.named.camera.unproject(*at) else { return [f64::NAN; 3] };
+            let length = (x * x + y * y + z * z).sqrt();
+            [x / length, -y / length, -z / length]
+        };
+        let found: Vec<[f64; 3]> = py.detach(|| places.par_iter().with_min_len(SHARE).map(one).collect());
+        table(py, &found)
+    }
+
+    /// Pixels of (n, 2) to where they would be without distortion, px, with the same focal lengths and principal point; NaN for what has no place there.
+    fn undistort(&self, py: Python<'_>, px: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
+        let places = positions(px, "px")?;
+        let plain = Undistorted::of(&self.named.camera, Overscan::Percent(0.0)).map_err(refused)?;
+        let one = |at: &PixelPoint| self.named.camera.unproject(*at).ok().and_then(|ray| plain.image(ray)).unwrap_or(NOWHERE);
+        let found: Vec<PixelPoint> = py.detach(|| places.par_iter().with_min_len(SHARE).map(one).collect());
+        of_positions(py, found)
+    }
+
+    /// Columns and rows, px.
+    #[getter]
+    fn size(&self) -> (u32, u32) {
+        let size = self.named.camera.size();
+        (size.width, size.height)
+    }
+
+    /// The name of its convention.
+    #[getter]
+    fn model(&self) -> &'static str {
+        self.named.camera.convention().name
+    }
+
+    /// Its name in the file; empty where the format has none.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.named.name
+    }
+
+    /// Pixel pitch, um, if known.
+    #[getter]
+    fn pitch(&self) -> Option<f64> {
+        self.named.pitch_um
+    }
+
+    /// The parameters by their names, in the convention's units.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
+        let all = pyo3::types::PyDict::new(py);
+        self.named.camera.parameters().iter().try_for_each(|parameter| all.set_item(parameter.name, parameter.value))?;
+        Ok(all)
+    }
+
+    /// The units of the parameters; empty for numbers.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyDict>> {
+        let all = pyo3::types::PyDict::new(py);
+        self.named.camera.parameters().iter().try_for_each(|parameter| all.set_item(parameter.name, parameter.unit))?;
+        Ok(all)
+    }
+
+    /// The covariance of all parameters in their order, zero for those that were held; None where none is stated.
+    #[getter]
+    fn covariance(&self, py: Python<'_>) -> PyResult<Option<Py<PyArray2<f64>>>> {
+        let Some(stated) = &self.named.covariance else { return Ok(None) };
+        let whole = stated.whole(&self.named.camera).map_err(refused)?;
+        of_matrix(py, &whole).map(Some)
+    }
+
+    /// RMS and largest residual of the fit that made it, px; None if it is as it was read, or exact.
+    #[getter]
+    fn fit(&self) -> Option<(f64, f64)> {
+        self.fit
+    }
+
+    /// What is to be known of how it was read.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.named.notes.clone()
+    }
+
+    fn __repr__(&self) -> String {
+        let (size, parameters) = (self.named.camera.size(), self.named.camera.parameters());
+        let parameters: Vec<String> = parameters.iter().map(|p| format!("{}={}", p.name, p.value)).collect();
+        format!("Camera({}, {} x {} px, {})", self.model(), size.width, size.height, parameters.join(", "))
+    }
+}
+
+const NOWHERE: PixelPoint = PixelPoint::new(f64::NAN, f64::NAN);

@@ -1,0 +1,69 @@
+//! `detect`: a chessboard's corners, or the targets of a coded field, as approximate positions.
+
+use std::path::PathBuf;
+
+use calibench_measure::Board;
+use calibench_photographs::Chessboard;
+use calibench_photographs::coded::coded_of;
+use calibench_photographs::corners::corners_of;
+use calibench_recognise::{Classifier, Recogniser};
+use calibench_scenario::Subject;
+use pyo3::prelude::*;
+
+use crate::error::{UnavailableError, doubt, input, project};
+use crate::grey::Grey;
+use crate::rendering::{Targets, starts};
+use crate::session::with_project;
+
+/// Finds a board, or the targets of the coded field that a scenario describes; None where it is not seen. As `calibench detect` does.
+#[pyfunction]
+#[pyo3(signature = (image, board = None, *, testfield = None, classifier = "modern", root = None))]
+pub fn detect(
+    py: Python<'_>,
+    image: &Bound<'_, PyAny>,
+    board: Option<&str>,
+    testfield: Option<&str>,
+    classifier: &str,
+    root: Option<PathBuf>,
+) -> PyResult<Option<Targets>> {
+    let grey = Grey::of(image)?;
+    let image = grey.image()?;
+    with_project(py, root, |here| match (board, testfield) {
+        (Some(board), None) => {
+            // With or without the side of a square.
+            let board: Board =
+                if board.contains(':') { board.parse::<Chessboard>().map_err(input)?.board } else { board.parse().map_err(input)? };
+            let none = || UnavailableError::new_err("there is no chessboard detector: install `cv2` (opencv-python-headless)");
+            let detector = here.toolbox.detector.as_deref().ok_or_else(none)?;
+            let found = py.detach(|| corners_of(detector, &image, "image", board));
+            let targets = starts(py, found.iter().map(|row| (row.target.as_str(), row.start)))?;
+            Ok(if found.is_empty() { None } else { Some(targets) })
+        }
+        (None, Some(name)) => {
+            let scenario = here.scenario(name).map_err(project)?;
+            let Subject::Views(subject) = &scenario.subject else {
+                return Err(input(format!("testfield: `{name}` has no testfield; expected a scenario with [testfield] kind = \"coded\"")));
+            };
+            let classifier = match classifier {
+                "modern" => Classifier::Modern,
+                "contours" => Classifier::Contours,
+                other => return Err(input(format!("classifier: `{other}`; expected modern or contours"))),
+            };
+            let recogniser = Recogniser::new(&subject.field, classifier)
+                .map_err(|error| input(format!("testfield: {name}: {error}; its [testfield] must have kind = \"coded\"")))?;
+            match py.detach(|| coded_of(&subject.field, &recogniser, &image, "image")) {
+                Ok(coded) => {
+                    if !coded.lost.is_empty() {
+                        doubt(py, &format!("{} targets of {} whole squares recognised, {}", coded.rows.len(), coded.squares, coded.lost))?;
+                    }
+                    Ok(Some(starts(py, coded.rows.iter().map(|row| (row.target.as_str(), row.start)))?))
+                }
+                Err(why) => {
+                    doubt(py, &format!("not recognised ({}): {why}", why.name()))?;
+                    Ok(None)
+                }
+            }
+        }
+        _ => Err(input("expected a board, as in 9x6, or testfield=SCENARIO")),
+    })
+}

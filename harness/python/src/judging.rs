@@ -1,0 +1,250 @@
+//! `judge`: which operator and which camera model to trust, without truth.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use calibench_calibrate::choice::ModelChoice;
+use calibench_exchange::read_photo;
+use calibench_exchange::{LostRow, LostRows, PointFile};
+use calibench_judge::{CornerFile, Expected, Field, METHODS, Material, OF_CAMERA, Options, judge as judged, stated_sigma, usual_models};
+use calibench_measure::Configured;
+use calibench_model::camera::{CameraModel, ImageSize};
+use calibench_photographs::measured_board;
+use calibench_photographs::names::{names, once, same_size};
+use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
+use calibench_records::results::{MethodInfo, Trial};
+use calibench_report::judgement::{in_use, section, verdict};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+
+use crate::boards::Board;
+use crate::calibrating::positive;
+use crate::camera::{Camera, size_of};
+use crate::error::{UnavailableError, doubt, input, project};
+use crate::measuring::Measured;
+use crate::points::{image_names, points};
+use crate::session::with_project;
+
+/// A verdict and the figures behind it: see `calibench.Judgement`.
+#[pyclass(frozen, module = "calibench", name = "Judgement")]
+pub struct Judgement {
+    /// The operator to be trusted.
+    #[pyo3(get)]
+    operator: String,
+    /// The camera model to be trusted.
+    #[pyo3(get)]
+    model: String,
+    /// What the command line prints.
+    #[pyo3(get)]
+    verdict: String,
+    /// Why the verdict is in doubt, if so.
+    #[pyo3(get)]
+    doubt: Option<&'static str>,
+    /// Below which the camera's error over the frame is in 95 of 100 cases, px RMS; None where that is not known.
+    #[pyo3(get)]
+    limit_px: Option<f64>,
+    /// Of a camera in use: `holds`, `moved` or `cannot tell`.
+    #[pyo3(get)]
+    in_use: Option<&'static str>,
+    rows: Vec<Row>,
+}
+
+#[pymethods]
+impl Judgement {
+    /// The figures as columns: method, model, measure, place, value, sigma, count, unit, status, reason.
+    #[getter]
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        let text = |of: fn(&Row) -> &Arc<str>| self.rows.iter().map(|row| of(row).to_string()).collect::<Vec<_>>();
+        let number = |of: fn(&Row) -> Option<f64>| PyArray1::from_iter(py, self.rows.iter().map(|row| of(row).unwrap_or(f64::NAN)));
+        all.set_item("method", text(|row| &row.method))?;
+        all.set_item("model", text(|row| &row.model))?;
+        all.set_item("measure", text(|row| &row.measure))?;
+        all.set_item("place", text(|row| &row.place))?;
+        all.set_item("value", number(|row| row.value))?;
+        all.set_item("sigma", number(|row| row.sigma))?;
+        all.set_item("count", number(|row| row.count.map(|count| count as f64)))?;
+        all.set_item("unit", text(|row| &row.unit))?;
+        all.set_item("status", text(|row| &row.status))?;
+        all.set_item("reason", text(|row| &row.reason))?;
+        Ok(all)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Judgement({} with {})", self.operator, self.model)
+    }
+}
+
+/// What is asked for besides the material.
+struct Asked {
+    models: Vec<ModelChoice>,
+    pitch_um: Option<f64>,
+    splits: u64,
+    seed: u64,
+    margin: f64,
+}
+
+/// Says which operator, or whose points, and which camera model to trust: as `calibench judge` does.
+#[pyfunction]
+#[pyo3(signature = (what, board, *, size = None, images = None, methods = None, models = None, pitch = None, splits = 10, seed = 0, camera = None,
+    margin = 1.0))]
+#[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
+pub fn judge(
+    py: Python<'_>,
+    what: &Bound<'_, PyAny>,
+    board: &Bound<'_, PyAny>,
+    size: Option<(u32, u32)>,
+    images: Option<Vec<String>>,
+    methods: Option<Vec<String>>,
+    models: Option<Vec<String>>,
+    pitch: Option<f64>,
+    splits: u64,
+    seed: u64,
+    camera: Option<&Camera>,
+    margin: f64,
+) -> PyResult<Judgement> {
+    let board = Board::of(board)?;
+    let texts = models.unwrap_or_else(|| usual_models(board.chessboard.is_some()));
+    let models = ModelChoice::parse_all(&texts).map_err(|(place, error)| input(format!("models: {}: {error}", texts[place])))?;
+    if !(1..=1000).contains(&splits) {
+        return Err(input(format!("splits: {splits}; expected 1 to 1000")));
+    }
+    positive(Some(margin), "margin")?;
+    let asked = Asked { models, pitch_um: positive(pitch, "pitch")?, splits, seed, margin };
+    let material = match what.extract::<Vec<PathBuf>>() {
+        Ok(_) if size.is_some() || images.is_some() => return Err(input("size and images are of points; photographs say both themselves")),
+        Ok(photos) => of_photographs(py, &photos, &board, methods, camera.is_some())?,
+        Err(_) if methods.is_some() => return Err(input("methods: measure photographs; points are measured already")),
+        Err(_) => of_points(what, &board, size, images)?,
+    };
+    verdict_of(py, &material, asked, camera)
+}
+
+fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<&Camera>) -> PyResult<Judgement> {
+    if let Some(own) = camera.map(|camera| camera.named.camera.size()).filter(|own| *own != material.size) {
+        return Err(input(format!("camera: is of images of {} x {} px", own.width, own.height)));
+    }
+    let options = Options {
+        models: asked.models,
+        pitch_um: asked.pitch_um,
+        splits: asked.splits,
+        seed: asked.seed,
+        name: "judge".into(),
+        published: camera.map(|camera| camera.named.camera),
+        published_sigma: camera.and_then(|camera| stated_sigma(&camera.named)),
+    };
+    let rows = py.detach(|| judged(material, &options)).map_err(input)?;
+    let summary = Summary::new(&rows, asked.seed);
+    let Some(trusted) = summary.trusted() else { return Err(input(section(&summary).0)) };
+    // Where the two cannot be compared over the frame the photographs cannot tell.
+    let unknown = InUse { verdict: StillHolds::CannotTell, apart: f64::NAN, error: f64::INFINITY, margin: asked.margin };
+    let found = camera.map(|_| trusted.in_use(asked.margin).unwrap_or(unknown));
+    let words = found.as_ref().map_or_else(String::new, |found| format!("- {}\n", in_use(found)));
+    if let Some(why) = trusted.doubt() {
+        doubt(py, why)?;
+    }
+    Ok(Judgement {
+        operator: trusted.cell.method.to_string(),
+        model: trusted.cell.model.to_string(),
+        verdict: format!("{words}{}", verdict(&summary, &trusted)),
+        doubt: trusted.doubt(),
+        limit_px: trusted.limit,
+        in_use: found.map(|found| match found.verdict {
+            StillHolds::Holds => "holds",
+            StillHolds::Moved => "moved",
+            StillHolds::CannotTell => "cannot tell",
+        }),
+        rows,
+    })
+}
+
+/// Points by operators: a dict of lists of arrays, or one such list.
+fn of_points(what: &Bound<'_, PyAny>, board: &Board, size: Option<(u32, u32)>, images: Option<Vec<String>>) -> PyResult<Material> {
+    let size = size_of(size.ok_or_else(|| input("size: expected (columns, rows) of the images that the points are of"))?)?;
+    let one = || PyDict::new(what.py());
+    let by_operator = match what.cast::<PyDict>() {
+        Ok(dict) => dict.clone(),
+        Err(_) => {
+            let dict = one();
+            dict.set_item("points", what)?;
+            dict
+        }
+    };
+    let expected = Expected::new(board.field.clone(), size);
+    let (mut files, mut read) = (Vec::new(), Vec::new());
+    for (name, arrays) in by_operator.iter() {
+        let name: String = name.extract()?;
+        let arrays: Vec<Bound<'_, PyAny>> =
+            arrays.extract().map_err(|_| input(format!("{name}: expected a list of arrays, one for each image")))?;
+        let names = image_names(images.clone(), arrays.len())?;
+        let points = points(&arrays, &names, board)?;
+        points.rows().try_for_each(|row| {
+            expected
+                .check(&row)
+                .map_err(|(column, why)| input(format!("{name}: image {}, point {}, {column}: {why}", row.image, row.target)))
+        })?;
+        read.push(PointFile { points, lost: lost(&arrays, &names, board) });
+        files.push(CornerFile { path: PathBuf::from(&name), name: name.into() });
+    }
+    Material::of_corner_files(&files, &read, &expected).map_err(input)
+}
+
+/// What methods rejected, where they say so.
+fn lost(arrays: &[Bound<'_, PyAny>], images: &[String], board: &Board) -> LostRows {
+    let measured = images.iter().zip(arrays).filter_map(|(image, array)| Some((image, array.cast::<Measured>().ok()?.get())));
+    let of = |(image, found): (&String, &Measured)| {
+        let row = |(target, why): (&str, &Option<&'static str>)| {
+            let (image, target, status) = (image.clone(), target.to_owned(), "rejected".to_owned());
+            why.map(|why| LostRow { image, target, status, reason: why.to_owned() })
+        };
+        board.names().zip(found.reasons()).filter_map(row).collect::<Vec<_>>()
+    };
+    measured.flat_map(of).collect()
+}
+
+/// The corners of photographs in the hands of methods.
+fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Option<Vec<String>>, in_use: bool) -> PyResult<Material> {
+    let chessboard =
+        board.chessboard.ok_or_else(|| input("board: photographs are of a chessboard; expected COLUMNSxROWS:SIDE, as in 9x6:25"))?;
+    let usual = || if in_use { vec![OF_CAMERA.to_owned()] } else { METHODS.map(str::to_owned).to_vec() };
+    let texts = methods.unwrap_or_else(usual);
+    with_project(py, None, |here| {
+        let methods = texts.iter().map(|text| here.method_of_boards(text)).collect::<Result<Vec<_>, _>>().map_err(project)?;
+        if let Some(twice) =
+            methods.iter().enumerate().find_map(|(i, m)| methods[..i].iter().any(|earlier| earlier.label == m.label).then_some(m))
+        {
+            return Err(input(format!("methods: {} asked for twice; expected each once", twice.label)));
+        }
+        let detector = here.toolbox.detector.as_deref();
+        let detector =
+            detector.ok_or_else(|| UnavailableError::new_err("there is no chessboard detector: install `cv2` (opencv-python-headless)"))?;
+        once(photos).map_err(input)?;
+        let one = |(path, name): (&PathBuf, &String)| {
+            let image = read_photo(path).map_err(input)?.image;
+            let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
+            Ok((measured_board(&image, name, (detector, chessboard.board), &methods), size))
+        };
+        let found = py.detach(|| photos.par_iter().zip(&names(photos)).map(one).collect::<PyResult<Vec<(Trial, ImageSize)>>>())?;
+        let size = same_size(photos.iter().zip(found.iter().map(|(_, size)| *size))).map_err(input)?;
+        let mut trial = Trial::default();
+        for (view, _) in found {
+            trial.points.extend(view.points);
+            trial.missed_views.extend(view.missed_views);
+        }
+        for (view, why) in &trial.missed_views {
+            doubt(py, &format!("{view}: {why}"))?;
+        }
+        let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
+        Ok(Material::new(&trial, &infos, Field::Board { board: chessboard.board, side: chessboard.side }, size))
+    })
+}
+
+fn info(method: &Configured) -> MethodInfo {
+    MethodInfo {
+        label: method.label.as_str().into(),
+        version: method.version.as_str().into(),
+        unavailable: method.operator.as_ref().err().cloned(),
+    }
+}

@@ -1,0 +1,44 @@
+//! The Python package `calibench`: arrays in, results out. What is computed here is what the command line computes; this crate only hands it over.
+
+mod arrays;
+mod boards;
+mod calibrating;
+mod camera;
+mod cv2;
+mod detecting;
+mod difference;
+mod error;
+mod grey;
+mod judging;
+mod measuring;
+mod method;
+mod points;
+mod pose;
+mod rendering;
+mod session;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _calibench {
+    #[pymodule_export]
+    use super::calibrating::{Calibration, calibrate};
+    #[pymodule_export]
+    use super::camera::Camera;
+    #[pymodule_export]
+    use super::detecting::detect;
+    #[pymodule_export]
+    use super::difference::{Difference, diff};
+    #[pymodule_export]
+    use super::error::{CalibrationError, CameraError, DoubtWarning, Error, InputError, ScenarioError, UnavailableError};
+    #[pymodule_export]
+    use super::judging::{Judgement, judge};
+    #[pymodule_export]
+    use super::measuring::{Measured, measure};
+    #[pymodule_export]
+    use super::method::add_method;
+    #[pymodule_export]
+    use super::pose::Pose;
+    #[pymodule_export]
+    use super::rendering::{Shot, Targets, render};
+}

@@ -1,0 +1,133 @@
+//! `render`: images whose truth is known.
+
+use std::path::PathBuf;
+
+use calibench_exchange::NamedCamera;
+use calibench_model::PixelPoint;
+use calibench_run::shots::{Shot as Rendered, TrueTarget, shots};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+
+use crate::arrays::{of_positions, table};
+use crate::camera::Camera;
+use crate::error::{input, project};
+use crate::pose::Pose;
+use crate::session::with_project;
+
+/// An image and all that is known of it: see `calibench.Shot`.
+#[pyclass(frozen, get_all, module = "calibench", name = "Shot")]
+pub struct Shot {
+    /// The station's name.
+    name: String,
+    /// (rows, columns), fractions of full scale.
+    image: Py<PyArray2<f32>>,
+    /// The truth about every target.
+    truth: Py<Targets>,
+    /// Where measuring starts.
+    starts: Py<Targets>,
+    /// The camera; None in a flat scene.
+    camera: Option<Py<Camera>>,
+    /// Where it stood; None in a flat scene.
+    pose: Option<Py<Pose>>,
+}
+
+#[pymethods]
+impl Shot {
+    fn __repr__(&self, py: Python<'_>) -> String {
+        format!("Shot({}, {} targets)", self.name, self.truth.get().target.len().max(self.starts.get().__len__(py)))
+    }
+}
+
+/// Targets in an image: see `calibench.Targets`.
+#[pyclass(frozen, get_all, module = "calibench", name = "Targets")]
+pub struct Targets {
+    /// Names.
+    pub target: Vec<String>,
+    /// Kinds; None where not known.
+    pub kind: Vec<Option<&'static str>>,
+    /// Positions, px; NaN where there is none.
+    pub xy: Py<PyArray2<f64>>,
+    /// (n, 2, 2): columns are the target's own axes in the image, px; NaN where not known.
+    pub axes: Py<PyArray3<f64>>,
+    /// Object coordinates; NaN in a flat scene and where not known.
+    pub object: Py<PyArray2<f64>>,
+    /// `visible`, `clipped`, `hidden` or `outside`; of starts all are visible.
+    pub visibility: Vec<&'static str>,
+}
+
+#[pymethods]
+impl Targets {
+    fn __len__(&self, _py: Python<'_>) -> usize {
+        self.target.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Targets({})", self.target.len())
+    }
+}
+
+/// Own axes of targets as matrices; NaN where they are not known.
+pub fn axes(py: Python<'_>, all: impl IntoIterator<Item = Option<calibench_model::Affine>>) -> PyResult<Py<PyArray3<f64>>> {
+    let four = |map: Option<calibench_model::Affine>| map.map_or([f64::NAN; 4], |a| [a.axx, a.axy, a.ayx, a.ayy]);
+    let values: Vec<f64> = all.into_iter().flat_map(four).collect();
+    let n = values.len() / 4;
+    Ok(PyArray1::from_vec(py, values).reshape([n, 2, 2])?.unbind())
+}
+
+const NOWHERE: PixelPoint = PixelPoint::new(f64::NAN, f64::NAN);
+
+fn truth(py: Python<'_>, targets: &[TrueTarget]) -> PyResult<Targets> {
+    Ok(Targets {
+        target: targets.iter().map(|target| target.id.clone()).collect(),
+        kind: targets.iter().map(|target| Some(target.kind.name())).collect(),
+        xy: of_positions(py, targets.iter().map(|target| target.at.unwrap_or(NOWHERE)))?,
+        axes: axes(py, targets.iter().map(|target| target.affine))?,
+        object: table(py, &targets.iter().map(|target| target.object.map_or([f64::NAN; 3], |p| [p.x, p.y, p.z])).collect::<Vec<_>>())?,
+        visibility: targets.iter().map(|target| target.visibility.name()).collect(),
+    })
+}
+
+/// Starts as targets.
+pub fn starts<'s>(py: Python<'_>, all: impl Iterator<Item = (&'s str, calibench_model::Start)>) -> PyResult<Targets> {
+    let all: Vec<_> = all.collect();
+    Ok(Targets {
+        target: all.iter().map(|(name, _)| (*name).to_owned()).collect(),
+        kind: all.iter().map(|(_, start)| start.kind.map(calibench_model::TargetKind::name)).collect(),
+        xy: of_positions(py, all.iter().map(|(_, start)| start.position))?,
+        axes: axes(py, all.iter().map(|(_, start)| start.affine))?,
+        object: table(py, &vec![[f64::NAN; 3]; all.len()])?,
+        visibility: vec!["visible"; all.len()],
+    })
+}
+
+fn shot(py: Python<'_>, rendered: Rendered) -> PyResult<Shot> {
+    let Rendered { name, image, targets, starts: begin, camera } = rendered;
+    let shape = [image.height(), image.width()];
+    let (camera, pose) = camera.unzip();
+    Ok(Shot {
+        name,
+        image: PyArray1::from_vec(py, image.into_grey()).reshape(shape)?.unbind(),
+        truth: Py::new(py, truth(py, &targets)?)?,
+        starts: Py::new(py, starts(py, begin.iter().map(|(name, start)| (name.as_str(), *start)))?)?,
+        camera: camera.map(|camera| Py::new(py, Camera::new(NamedCamera::new("", camera)))).transpose()?,
+        pose: pose.map(|pose| Py::new(py, Pose(pose))).transpose()?,
+    })
+}
+
+/// The images of one trial of a scenario, with their truth: what `calibench render` writes.
+#[pyfunction]
+#[pyo3(signature = (scenario, *, trial = 0, seed = None, stations = Vec::new(), root = None))]
+pub fn render(
+    py: Python<'_>,
+    scenario: &str,
+    trial: u64,
+    seed: Option<u64>,
+    stations: Vec<String>,
+    root: Option<PathBuf>,
+) -> PyResult<Vec<Shot>> {
+    with_project(py, root, |here| {
+        let scenario = here.scenario(scenario).map_err(project)?;
+        let rendered = py.detach(|| shots(&scenario, seed.unwrap_or(scenario.seed), trial, &stations)).map_err(input)?;
+        rendered.into_iter().map(|rendered| shot(py, rendered)).collect()
+    })
+}
