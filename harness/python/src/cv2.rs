@@ -11,15 +11,13 @@ use crate::arrays::positions;
 const MODULE: &str = "calibench._cv2";
 
 /// OpenCV's detector, in Python.
-pub struct Cv2Detector {
-    version: String,
-}
+pub struct Cv2Detector;
 
 impl Cv2Detector {
-    /// It, if `cv2` can be imported.
+    /// It, if there is a `cv2`.
     pub fn installed(py: Python<'_>) -> Option<Self> {
-        let version = py.import(MODULE).ok()?.call_method0("version").ok()?;
-        Some(Self { version: version.extract().ok()? })
+        let installed = py.import(MODULE).and_then(|module| module.call_method0("installed")?.extract());
+        installed.unwrap_or(false).then_some(Self)
     }
 }
 
@@ -29,7 +27,8 @@ impl BoardDetector for Cv2Detector {
     }
 
     fn version(&self) -> String {
-        self.version.clone()
+        let asked = |py: Python<'_>| py.import(MODULE)?.call_method0("version")?.extract::<String>();
+        Python::attach(asked).unwrap_or_else(|error| error.to_string())
     }
 
     fn detect(&self, image: &Image, board: Board) -> Option<Vec<PixelPoint>> {

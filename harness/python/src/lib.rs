@@ -10,6 +10,7 @@ mod difference;
 mod error;
 mod grey;
 mod judging;
+mod listing;
 mod measuring;
 mod method;
 mod points;
@@ -22,6 +23,9 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _calibench {
     #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "as Python calls it")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+    #[pymodule_export]
     use super::calibrating::{Calibration, calibrate};
     #[pymodule_export]
     use super::camera::Camera;
@@ -33,6 +37,8 @@ mod _calibench {
     use super::error::{CalibrationError, CameraError, DoubtWarning, Error, InputError, ScenarioError, UnavailableError};
     #[pymodule_export]
     use super::judging::{Judgement, judge};
+    #[pymodule_export]
+    use super::listing::{confine, methods, scenarios};
     #[pymodule_export]
     use super::measuring::{Measured, measure};
     #[pymodule_export]

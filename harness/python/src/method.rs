@@ -20,7 +20,6 @@ const MOST_TOLD: usize = 8;
 
 /// A method as Python declares it.
 struct Declared {
-    name: String,
     callable: Py<PyAny>,
     /// The radius within which a detection counts, px, of one that finds by itself; `None` for one that is given starts.
     radius: Option<f64>,
@@ -39,7 +38,7 @@ struct Asked {
 #[pyfunction]
 pub fn add_method(
     name: String,
-    version: String,
+    version: Py<PyAny>,
     about: String,
     source: String,
     callable: Py<PyAny>,
@@ -57,11 +56,13 @@ pub fn add_method(
         Parameter { name: leak(&name), about: leak(&about), domain, default, always_shown: name == "window" }
     };
     let parameters: Vec<Parameter> = parameters.into_iter().map(parameter).collect();
-    let declared = Arc::new(Declared { name: name.clone(), callable, radius, told: Mutex::default() });
-    let own = version.clone();
+    let declared = Arc::new(Declared { callable, radius, told: Mutex::default() });
     let build = move |settings: &Settings| {
         let asked = Asked { declared: declared.clone(), settings: settings.clone(), whole: whole.clone() };
-        Outside { version: own.clone(), operator: Ok(Box::new(asked)) }
+        match Python::attach(|py| version_of(version.bind(py)).map_err(|error| error.to_string())) {
+            Ok(version) => Outside { version, operator: Ok(Box::new(asked)) },
+            Err(why) => Outside { version: UNKNOWN.into(), operator: Err(why) },
+        }
     };
     // Names live as long as the process: methods are few.
     let parameters = Box::leak(parameters.into_boxed_slice());
@@ -69,10 +70,19 @@ pub fn add_method(
         name: leak(&name),
         about: leak(&about),
         source: leak(&source),
-        version,
+        version: UNKNOWN.into(),
         parameters,
         build: Build::Outside(Arc::new(build)),
     })
+}
+
+/// The version of a method that was not asked yet.
+const UNKNOWN: &str = "?";
+
+/// A text, or what a function knows.
+fn version_of(version: &Bound<'_, PyAny>) -> PyResult<String> {
+    let known = if version.is_callable() { version.call0()? } else { version.clone() };
+    Ok(known.str()?.to_string())
 }
 
 fn leak(text: &str) -> &'static str {
@@ -187,7 +197,6 @@ impl Operator for Asked {
     }
 
     fn notes(&self) -> Vec<String> {
-        let told = self.declared.told.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        told.into_iter().map(|what| format!("{}: {what}", self.declared.name)).collect()
+        self.declared.told.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
     }
 }

@@ -1,0 +1,378 @@
+"""What calibench computes, in Rust. Use it through `calibench`."""
+
+import os
+from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+_Path = Union[str, "os.PathLike[str]"]
+_Size = Tuple[int, int]
+#: `9x6:25` (inner corners and the side of a square), (n, 3) object coordinates, or names with coordinates.
+_Board = Union[str, ArrayLike, Mapping[str, Sequence[float]]]
+
+class Error(Exception):
+    """What calibench cannot do, in the words of the command line."""
+
+class InputError(Error):
+    """What was given cannot be used: the message says what was expected, and what to do."""
+
+class ScenarioError(InputError):
+    """A scenario or a plug-in's file with mistakes, each with its line and column."""
+
+class CameraError(InputError):
+    """A camera file that cannot be read or written, or a camera that cannot be converted."""
+
+class CalibrationError(Error):
+    """No calibration: too few points, unknowns that nothing determines, no convergence."""
+
+class UnavailableError(Error):
+    """What this build or machine cannot do."""
+
+class DoubtWarning(UserWarning):
+    """A result that is doubtful, and why: what the command line says on standard error, or ends with exit code 3 for."""
+
+@final
+class Pose:
+    """Exterior orientation: X_camera = R X + t, with camera axes x right, y down, z forward, as in OpenCV."""
+
+    @property
+    def R(self) -> NDArray[np.float64]:
+        """(3, 3): from object axes to the camera's."""
+    @property
+    def t(self) -> NDArray[np.float64]:
+        """(3,), object units."""
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """(3,): the projection centre, object units."""
+    @property
+    def angles(self) -> Tuple[float, float, float]:
+        """omega, phi, kappa, degrees: of the photogrammetric camera, which looks along its -z."""
+
+@final
+class Camera:
+    """A camera with what is known of it: parameters in its own convention, covariance, pixel pitch."""
+
+    @staticmethod
+    def read(
+        path: _Path, *, size: Optional[_Size] = None, camera: Optional[str] = None, format: Optional[str] = None, fisheye: Optional[bool] = None
+    ) -> "Camera":
+        """The camera of a file of any known format, found by content: the first, or the one called or numbered `camera`.
+
+        `size` is that of the images, (columns, rows), where the file does not state it; `format` decides where more than
+        one reads the file; `fisheye` says which of OpenCV's cameras it is where the file does not.
+        """
+    @staticmethod
+    def read_all(
+        path: _Path, *, size: Optional[_Size] = None, format: Optional[str] = None, fisheye: Optional[bool] = None
+    ) -> List["Camera"]:
+        """All cameras of a file."""
+    def convert(
+        self,
+        to: str,
+        *,
+        model: Optional[str] = None,
+        pitch: Optional[float] = None,
+        base: Optional[float] = None,
+        radius: Optional[float] = None,
+        rotation: bool = False,
+        accept: bool = False,
+    ) -> "Camera":
+        """The same camera in another convention, or for another tool: as `calibench convert` does.
+
+        `pitch` (um) for conventions in mm, `base` (mm) for Ebner's; `radius` (px) fits and holds only so far from the axis;
+        `rotation` lets the fit turn the camera; `accept` takes residuals above 0.5 px, which are refused otherwise.
+        """
+    def write(self, path: _Path, *, to: Optional[str] = None) -> None:
+        """Write a file: as converted or read, in the convention `to`, or in the one that the file's ending asks for."""
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """(n, 3) in the camera's axes (x right, y down, z forward) to (n, 2) px; NaN for what is not pictured."""
+    def unproject(self, px: ArrayLike) -> NDArray[np.float64]:
+        """(n, 2) px to rays (n, 3) of length 1 in the camera's axes; NaN for what no ray comes to."""
+    def undistort(self, px: ArrayLike) -> NDArray[np.float64]:
+        """(n, 2) px to where they would be without distortion, with the same focal lengths and principal point."""
+    @property
+    def size(self) -> _Size:
+        """Columns and rows, px."""
+    @property
+    def model(self) -> str:
+        """The name of its convention."""
+    @property
+    def name(self) -> str:
+        """Its name in the file; empty where the format has none."""
+    @property
+    def pitch(self) -> Optional[float]:
+        """Pixel pitch, um, if known."""
+    @property
+    def parameters(self) -> Dict[str, float]:
+        """The parameters by their names, in the convention's units."""
+    @property
+    def units(self) -> Dict[str, str]:
+        """The units of the parameters; empty for numbers."""
+    @property
+    def covariance(self) -> Optional[NDArray[np.float64]]:
+        """Of all parameters in their order, zero for those that were held; None where none is stated."""
+    @property
+    def fit(self) -> Optional[Tuple[float, float]]:
+        """RMS and largest residual of the fit that made it, px; None if it is as it was read, or exact."""
+    @property
+    def notes(self) -> List[str]:
+        """What is to be known of how it was read."""
+
+@final
+class Targets:
+    """Targets in an image, one a row."""
+
+    @property
+    def target(self) -> List[str]:
+        """Names."""
+    @property
+    def kind(self) -> List[Optional[str]]:
+        """Kinds; None where not known."""
+    @property
+    def xy(self) -> NDArray[np.float64]:
+        """(n, 2), px; NaN for what has no place in the image plane."""
+    @property
+    def axes(self) -> NDArray[np.float64]:
+        """(n, 2, 2): columns are the target's own axes (u right, v down, in its size) in the image, px; NaN where not known."""
+    @property
+    def object(self) -> NDArray[np.float64]:
+        """(n, 3), object units; NaN in a flat scene and where not known."""
+    @property
+    def visibility(self) -> List[str]:
+        """visible, clipped, hidden or outside."""
+    def __len__(self) -> int: ...
+
+@final
+class Shot:
+    """An image and all that is known of it."""
+
+    @property
+    def name(self) -> str:
+        """The station's name, or `image` in a flat scene."""
+    @property
+    def image(self) -> NDArray[np.float32]:
+        """(rows, columns), fractions of full scale."""
+    @property
+    def truth(self) -> Targets:
+        """Every target."""
+    @property
+    def starts(self) -> Targets:
+        """Where measuring starts: what the scenario's hand or detector gives a method."""
+    @property
+    def camera(self) -> Optional[Camera]:
+        """The true camera; None in a flat scene."""
+    @property
+    def pose(self) -> Optional[Pose]:
+        """Where it stood; None in a flat scene."""
+
+@final
+class Measured:
+    """What a method made of points, one a row."""
+
+    @property
+    def xy(self) -> NDArray[np.float64]:
+        """(n, 2), px; NaN for what was rejected."""
+    @property
+    def cov(self) -> NDArray[np.float64]:
+        """(n, 2, 2), px^2; NaN where the method gives none."""
+    @property
+    def status(self) -> List[str]:
+        """measured or rejected."""
+    @property
+    def reason(self) -> List[Optional[str]]:
+        """Why a point was rejected."""
+    @property
+    def method(self) -> str:
+        """The method with its parameters, in one word."""
+    @property
+    def version(self) -> str:
+        """Its version."""
+    def __len__(self) -> int: ...
+
+@final
+class Calibration:
+    """A calibrated camera and its quality."""
+
+    @property
+    def camera(self) -> Camera:
+        """With its covariance."""
+    @property
+    def sigma(self) -> Dict[str, float]:
+        """Standard deviations of the parameters that were solved for, in their units."""
+    @property
+    def solved(self) -> List[str]:
+        """Their names: rows and columns of `covariance`."""
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """(p, p), in their units."""
+    @property
+    def residuals(self) -> List[NDArray[np.float64]]:
+        """(n, 2) for each image given: adjusted less observed, px; NaN where there is no point."""
+    @property
+    def used(self) -> List[List[bool]]:
+        """For each image given whether each point took part."""
+    @property
+    def poses(self) -> Dict[str, Pose]:
+        """By the names of images."""
+    @property
+    def sigma0(self) -> Optional[float]:
+        """The standard deviation of an image coordinate over the a-priori one; None without redundancy."""
+    @property
+    def rms_px(self) -> float:
+        """Root mean square of the residuals in use, 2D, px."""
+    @property
+    def doubts(self) -> List[str]:
+        """What is doubtful, in words; with any the command line ends with exit code 3."""
+    @property
+    def summary(self) -> str:
+        """What the command line prints."""
+
+@final
+class Difference:
+    """How far two cameras differ over the frame."""
+
+    @property
+    def rms_px(self) -> float: ...
+    @property
+    def max_px(self) -> float: ...
+    @property
+    def max_at(self) -> Tuple[float, float]:
+        """Where the largest is, px."""
+    @property
+    def rotation_deg(self) -> float:
+        """The best rotation, which was taken out."""
+    @property
+    def compensated_rms_px(self) -> Optional[float]:
+        """What remains after the best change of principal distance and point."""
+    @property
+    def not_comparable(self) -> float:
+        """Share of the region that one of the cameras does not picture."""
+    @property
+    def vectors(self) -> NDArray[np.float64]:
+        """(n, 4): x, y, dx, dy on a grid over the frame, px."""
+
+@final
+class Judgement:
+    """A verdict and the figures behind it."""
+
+    @property
+    def operator(self) -> str:
+        """The operator to be trusted."""
+    @property
+    def model(self) -> str:
+        """The camera model to be trusted."""
+    @property
+    def verdict(self) -> str:
+        """What the command line prints."""
+    @property
+    def doubt(self) -> Optional[str]:
+        """Why the verdict is in doubt, if so."""
+    @property
+    def limit_px(self) -> Optional[float]:
+        """Below which the camera's error over the frame is in 95 of 100 cases, px RMS."""
+    @property
+    def in_use(self) -> Optional[Literal["holds", "moved", "cannot tell"]]:
+        """What the photographs say of the camera in use, if one was given."""
+    @property
+    def columns(self) -> Dict[str, Any]:
+        """The figures: method, model, measure, place, value, sigma, count, unit, status, reason."""
+
+def render(
+    scenario: str, *, trial: int = 0, seed: Optional[int] = None, stations: Sequence[str] = (), root: Optional[_Path] = None
+) -> List[Shot]:
+    """The images of one trial of a scenario (a name of the project, or a TOML file), with their truth. Of a sweep the first cell's."""
+
+def measure(
+    image: NDArray[Any],
+    xy: ArrayLike,
+    method: str = "forstner",
+    *,
+    kind: Union[None, str, Sequence[str]] = None,
+    axes: Optional[ArrayLike] = None,
+    cov: Optional[ArrayLike] = None,
+) -> Measured:
+    """Measure points of an image, from approximate positions (n, 2): as `calibench measure` does.
+
+    The image is (rows, columns) of uint8, uint16, float32 or float64; floats are fractions of full scale. `kind` says what
+    is pictured, of all points or of each; `axes` (n, 2, 2) its own axes in the image, `cov` (n, 2, 2) how far the start may
+    be off, px^2.
+    """
+
+def detect(
+    image: NDArray[Any], board: Optional[str] = None, *, testfield: Optional[str] = None, classifier: str = "modern", root: Optional[_Path] = None
+) -> Optional[Targets]:
+    """Find a chessboard (`9x6`; where cv2 is installed), or the coded field of a scenario; None where it is not seen."""
+
+def calibrate(
+    xy: Sequence[Union[ArrayLike, Measured]],
+    board: _Board,
+    *,
+    size: _Size,
+    images: Optional[Sequence[str]] = None,
+    model: Optional[str] = None,
+    pitch: Optional[float] = None,
+    solve: Optional[Sequence[str]] = None,
+    priors: Sequence[str] = (),
+    start: Optional[Camera] = None,
+    datum: str = "control",
+    board_shape: str = "tested",
+    sigma: Optional[float] = None,
+    covariances: bool = False,
+    huber: Optional[float] = None,
+    snoop: bool = False,
+    compare: Sequence[Sequence[str]] = (),
+) -> Calibration:
+    """Calibrate a camera: as `calibench calibrate --points --control` does.
+
+    `xy` has one array for each image, with a row for each point of the board, NaN where it was not measured; what `measure`
+    returned does as well, and brings its covariances. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `datum`,
+    `board_shape`, `sigma` (px), `huber`, `snoop` and `compare` are as on the command line.
+    """
+
+def diff(
+    first: Camera, second: Camera, *, rotation: bool = True, radius: Optional[float] = None, points: Optional[ArrayLike] = None
+) -> Difference:
+    """How far two cameras differ over the frame, after the best rotation: as `calibench diff` says."""
+
+def judge(
+    what: Union[Sequence[_Path], Sequence[Union[ArrayLike, Measured]], Mapping[str, Sequence[Union[ArrayLike, Measured]]]],
+    board: _Board,
+    *,
+    size: Optional[_Size] = None,
+    images: Optional[Sequence[str]] = None,
+    methods: Optional[Sequence[str]] = None,
+    models: Optional[Sequence[str]] = None,
+    pitch: Optional[float] = None,
+    splits: int = 10,
+    seed: int = 0,
+    camera: Optional[Camera] = None,
+    margin: float = 1.0,
+) -> Judgement:
+    """Say which operator and which camera model to trust, without truth: as `calibench judge` does.
+
+    Photographs of a chessboard by their paths; or points as `calibrate` takes them, of one operator, or of several by name.
+    With `camera`: whether it still holds within `margin` px.
+    """
+
+def methods(*, root: Optional[_Path] = None) -> List[Tuple[str, str]]:
+    """All methods: names and what they are."""
+
+def scenarios(*, root: Optional[_Path] = None) -> List[str]:
+    """The names of the project's scenarios; outside of a project there are none."""
+
+def add_method(
+    name: str,
+    version: Union[str, Callable[[], str]],
+    about: str,
+    source: str,
+    callable: Callable[..., Any],
+    parameters: Sequence[Tuple[str, float, float, float, bool, bool, str]],
+    radius: Optional[float],
+) -> None:
+    """What `calibench.method` calls."""
+
+def confine(scratch: _Path, closed: Optional[_Path], open: Sequence[_Path], memory: int, command: Sequence[str]) -> str:
+    """Restrict this process, then become the command; why not, where it cannot."""

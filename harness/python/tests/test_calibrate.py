@@ -1,0 +1,147 @@
+"""Calibration and verdicts."""
+
+import json
+import warnings
+
+import numpy as np
+import pytest
+from conftest import ROOT, rows, same
+
+import calibench as cb
+
+SCENARIO = "testfields/chessboard"
+
+
+@pytest.fixture(scope="module")
+def shots():
+    return cb.render(SCENARIO, root=ROOT)
+
+
+@pytest.fixture(scope="module")
+def measured(shots):
+    """Every point of the board in every image, NaN where it is not seen."""
+    names = shots[0].truth.target
+    place = {name: index for index, name in enumerate(names)}
+    found = []
+    for shot in shots:
+        points = cb.measure(shot.image, shot.starts.xy, "parametric_corner", kind="chess_corner")
+        xy = np.full((len(names), 2), np.nan)
+        xy[[place[name] for name in shot.starts.target]] = points.xy
+        found.append(xy)
+    return found
+
+
+def calibrated(*words, **keys):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cb.DoubtWarning)
+        return cb.calibrate(*words, **keys)
+
+
+@pytest.fixture(scope="module")
+def control(shots):
+    return dict(zip(shots[0].truth.target, shots[0].truth.object.tolist()))
+
+
+def test_it_calibrates_as_the_command_line_does(shots, measured, control, program, tmp_path):
+    """To the last bit: parameters, covariance, residuals and what is said."""
+    size = shots[0].image.shape[::-1]
+    found = calibrated(measured, control, size=size, model="opencv5", images=[shot.name for shot in shots])
+    with open(tmp_path / "points.csv", "w") as points, open(tmp_path / "control.csv", "w") as known:
+        points.write("image,target,x,y\n")
+        known.write("target,X,Y,Z\n")
+        for shot, xy in zip(shots, measured):
+            for name, (x, y) in zip(control, xy):
+                if not np.isnan(x):
+                    points.write(f"{shot.name},{name},{float(x)!r},{float(y)!r}\n")
+        for name, xyz in control.items():
+            known.write(f"{name},{','.join(repr(value) for value in xyz)}\n")
+    words = ["--points", "points.csv", "--control", "control.csv", "--size", f"{size[0]}x{size[1]}", "--model", "opencv5"]
+    printed = program("calibrate", *words, "-o", "camera.json", "--report", "report", code=3 if found.doubts else 0)
+    assert found.summary == printed
+    found.camera.write(tmp_path / "ours.json")
+    assert (tmp_path / "ours.json").read_bytes() == (tmp_path / "camera.json").read_bytes()
+    table = {(row["image"], row["target"]): row for row in rows(tmp_path / "report/residuals.csv")}
+    for shot, residuals, xy in zip(shots, found.residuals, measured):
+        for name, v, at in zip(control, residuals, xy):
+            row = table.get((shot.name, name))
+            assert (row is None) == np.isnan(at[0])
+            if row is not None:
+                assert abs(float(row["vx"]) - v[0]) < 1e-6 and abs(float(row["vy"]) - v[1]) < 1e-6
+
+
+def test_the_camera_is_the_true_one_within_its_sigmas(shots, measured, control):
+    size, true = shots[0].image.shape[::-1], shots[0].camera
+    found = calibrated(measured, control, size=size, pitch=true.pitch or 6.0, solve=["c", "x0", "y0", "k1", "k2", "p1", "p2"])
+    assert set(found.sigma) == set(found.solved) and found.covariance.shape == (len(found.solved),) * 2
+    assert same(np.sqrt(np.diag(found.covariance)), [found.sigma[name] for name in found.solved])
+    for name, sigma in found.sigma.items():
+        assert abs(found.camera.parameters[name] - true.parameters[name]) < 5 * sigma, name
+    assert cb.diff(found.camera, true).rms_px < 0.1
+    for shot, name in zip(shots, found.poses):
+        assert np.abs(found.poses[name].centre - shot.pose.centre).max() < 0.01 * np.linalg.norm(shot.pose.centre)
+    predicted = found.camera.project(np.array(list(control.values())) @ found.poses["0"].R.T + found.poses["0"].t)
+    seen = ~np.isnan(measured[0][:, 0])
+    assert np.abs(predicted[seen] - measured[0][seen] - found.residuals[0][seen]).max() < 1e-9
+
+
+def test_points_that_are_missed_are_left_out(shots, measured, control):
+    size = shots[0].image.shape[::-1]
+    fewer = [xy.copy() for xy in measured]
+    fewer[0][:5] = np.nan
+    found = calibrated(fewer, control, size=size, model="opencv4")
+    assert np.isnan(found.residuals[0][:5]).all() and not any(found.used[0][:5]) and any(found.used[0][5:])
+
+
+def test_gross_errors_are_found_and_said(shots, measured, control):
+    size = shots[0].image.shape[::-1]
+    wrong = [xy.copy() for xy in measured]
+    place = int(np.flatnonzero(~np.isnan(wrong[1][:, 0]))[3])
+    wrong[1][place] += [4.0, -3.0]
+    found = calibrated(wrong, control, size=size, model="opencv5", snoop=True)
+    assert not found.used[1][place]
+
+
+def test_mistakes_are_named(measured, control):
+    size = (640, 480)
+    for keys, said in [
+        ({"model": "opncv5"}, "did you mean"),
+        ({"datum": "somewhere"}, "datum"),
+        ({"board_shape": "wavy"}, "shape"),
+        ({"sigma": -1.0}, "sigma"),
+        ({"priors": ["k1"]}, "k1"),
+        ({"images": ["a"]}, "images"),
+        ({"huber": 2.0, "snoop": True}, "huber and snoop"),
+        ({"size": (0, 3)}, "size"),
+    ]:
+        with pytest.raises(cb.Error, match=said):
+            cb.calibrate(measured, control, **{"size": size, **keys})
+    with pytest.raises(cb.InputError, match="found 3 rows"):
+        cb.calibrate([np.zeros((3, 2))], control, size=size)
+    with pytest.raises(cb.InputError, match="no point was measured"):
+        cb.calibrate([], control, size=size)
+    with pytest.raises(cb.InputError, match="no chessboard"):
+        cb.calibrate(measured, "9x6", size=size)
+    with pytest.raises(cb.InputError, match="not finite"):
+        cb.calibrate([np.full((len(control), 2), np.inf)], control, size=size)
+
+
+def test_a_verdict_on_points_is_that_of_the_command_line(shots, measured, control, program, tmp_path):
+    size = shots[0].image.shape[::-1]
+    if len(shots) < 6:
+        pytest.skip("six images at least")
+    with open(tmp_path / "points.csv", "w") as points, open(tmp_path / "control.csv", "w") as known:
+        points.write("image,target,x,y\n")
+        known.write("target,X,Y,Z\n")
+        for shot, xy in zip(shots, measured):
+            for name, (x, y) in zip(control, xy):
+                if not np.isnan(x):
+                    points.write(f"{shot.name},{name},{float(x)!r},{float(y)!r}\n")
+        for name, xyz in control.items():
+            known.write(f"{name},{','.join(repr(value) for value in xyz)}\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cb.DoubtWarning)
+        found = cb.judge({"points": measured}, control, size=size, images=[shot.name for shot in shots], models=["opencv4", "opencv5"])
+    words = ["--points", "points.csv", "--control", "control.csv", "--size", f"{size[0]}x{size[1]}", "--model", "opencv4", "--model", "opencv5"]
+    printed = program("judge", *words, code=3 if found.doubt else 0)
+    assert printed == found.verdict and found.model in ("opencv4", "opencv5") and found.operator == "points"
+    assert len(found.columns["measure"]) == len(found.columns["value"]) > 10
