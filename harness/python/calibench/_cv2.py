@@ -20,14 +20,14 @@ def installed() -> bool:
 
 def version() -> str:
     """The version of OpenCV."""
-    import cv2
+    import cv2  # type: ignore[import-not-found,unused-ignore]
 
     return f"cv2 {cv2.__version__}"
 
 
 def find_chessboard(image: Any, columns: int, rows: int) -> Optional[Any]:
     """The inner corners of a board in an 8-bit image, along its rows; None where it is not seen whole."""
-    import cv2
+    import cv2  # type: ignore[import-not-found,unused-ignore]
 
     reduction = max(1.0, max(image.shape) / _SEARCHED)
     size = (round(image.shape[1] / reduction), round(image.shape[0] / reduction))
@@ -51,7 +51,7 @@ def find_chessboard(image: Any, columns: int, rows: int) -> Optional[Any]:
 
 def cv2_subpix(image: Any, starts: Any, window: int, iterations: int, epsilon: float) -> Any:
     """cornerSubPix of the installed cv2, as it answers: it does not say when it fails."""
-    import cv2
+    import cv2  # type: ignore[import-not-found,unused-ignore]
 
     half = window // 2
     height, width = image.shape
