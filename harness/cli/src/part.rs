@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_records::parts::{Manifest, Part};
-use calibench_run::parts::{Done, Wanted, merge};
+use calibench_run::parts::{Done, Merged, Wanted, merge};
 use calibench_run::store::RecordsFolder;
 use calibench_scenario::Scenario;
 use clap::Args;
@@ -70,17 +70,18 @@ pub fn told(done: &Done, missing: Option<String>, time: &str) -> String {
     let Manifest { part, of, cells, pieces, swept, .. } = &done.manifest;
     let (mine, all) = (done.manifest.trials(), done.manifest.all_trials());
     let trials = match (mine, all) {
-        (0, 1) => "nothing: one trial, which is part 1".to_owned(),
-        (0, _) => format!("nothing: {all} trials are fewer than the parts"),
-        _ if *swept => format!("{mine} of {all} trials, in {} of {} cells", pieces.len(), cells.len()),
+        (0, 1) => "nothing, what cannot be cut is part 1".to_owned(),
+        (0, _) => format!("nothing, {all} trials are fewer than the parts"),
+        _ if *swept => format!("{mine} of {all} trials, of {} of {} cells,", pieces.len(), cells.len()),
         _ => format!("{mine} of {all} trials"),
     };
-    let how = match missing.filter(|_| mine > 0) {
-        _ if done.there => "already there".to_owned(),
-        Some(why) => format!("unavailable: {why}"),
-        None => time.to_owned(),
+    let how = match missing {
+        _ if done.there => ", already there".to_owned(),
+        _ if mine == 0 => String::new(),
+        Some(why) => format!(", unavailable: {why}"),
+        None => format!(" {time}"),
     };
-    format!("part {part}/{of}: {trials}, {how}")
+    format!("part {part}/{of}: {trials}{how}")
 }
 
 /// `calibench merge`.
@@ -102,11 +103,17 @@ impl Merge {
         };
         let merged = merge(&self.parts, &records)?;
         for run in merged.iter().filter(|_| !context.quiet) {
-            let cells = if run.cells > 1 { format!(" in {} cells", run.cells) } else { String::new() };
-            say!("{}: {} trials{cells} of {} parts, in {}", run.scenario, run.trials, run.parts, records.join(&run.scenario).display());
+            say!("{}: {}, in {}", run.scenario, summary(run), records.join(&run.scenario).display());
         }
         // As a run says it.
         let nothing: Vec<&str> = merged.iter().filter(|run| run.measured == 0).map(|run| run.scenario.as_str()).collect();
         if nothing.len() < merged.len() { Ok(()) } else { Err(Failure::input(format!("{}: nothing was measured", nothing.join(", ")))) }
     }
+}
+
+fn summary(run: &Merged) -> String {
+    let plural = |count: u64, noun: &str| if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") };
+    let cells = if run.cells > 1 { format!(" of {} cells", run.cells) } else { String::new() };
+    let nothing = if run.measured == 0 { ", in which nothing was measured" } else { "" };
+    format!("{}{cells} from {}{nothing}", plural(run.trials, "trial"), plural(run.parts, "part"))
 }

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use calibench_measure::Configured;
-use calibench_run::{Plan, parts};
 use calibench_run::store::{self, SweepPlan};
+use calibench_run::{Plan, parts};
 use calibench_scenario::{Scenario, Subject, Sweep, Transfer};
 use clap::Args;
 
@@ -86,7 +86,8 @@ impl Run {
             Some(sweep) => self.sweep(context, task, sweep),
             None => self.one(context, task),
         })?;
-        let nothing: Vec<&str> = scenarios.iter().zip(measured).filter(|(_, points)| *points == Some(0)).map(|(s, _)| s.name.as_str()).collect();
+        let nothing: Vec<&str> =
+            scenarios.iter().zip(measured).filter(|(_, points)| *points == Some(0)).map(|(s, _)| s.name.as_str()).collect();
         // Of all that there is, some may be unavailable here; what was asked for by name may not.
         if nothing.is_empty() || (self.all && nothing.len() < scenarios.len()) {
             return Ok(());

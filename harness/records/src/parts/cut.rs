@@ -162,7 +162,8 @@ mod tests {
     fn a_part_is_written_as_it_is_read() {
         assert_eq!("3/8".parse::<Part>().unwrap().to_string(), "3/8");
         assert_eq!("3/8".parse::<Part>().unwrap().folder(), "3-of-8");
-        for text in ["", "3", "0/8", "9/8", "3/0", "a/b", "-1/8", "+3/8", "3/8/1", "1/100001", " 3/8", "3/", "/8", "1/99999999999999999999"] {
+        for text in ["", "3", "0/8", "9/8", "3/0", "a/b", "-1/8", "+3/8", "3/8/1", "1/100001", " 3/8", "3/", "/8", "1/99999999999999999999"]
+        {
             assert_eq!(text.parse::<Part>(), Err(PartError), "{text}");
         }
     }

@@ -20,7 +20,9 @@ pub enum JoinError {
     #[error(transparent)]
     Stored(#[from] StoredError),
     /// The columns, or what is said of all trials (what was unavailable, the detector), are others than those of the first table.
-    #[error("begins with `{found}`, the part before it with `{expected}`: all parts are to be run with the same program, methods and tools")]
+    #[error(
+        "begins with `{found}`, the part before it with `{expected}`: all parts are to be run with the same program, methods and tools"
+    )]
     Head {
         /// The first row that differs; empty if there is none.
         found: String,
@@ -134,7 +136,8 @@ fn shown(row: &ByteRecord) -> String {
 }
 
 fn misplaced(row: &ByteRecord, Span { from, to }: Span) -> RecordError {
-    let problem = format!("column `trial` holds `{}`; expected rising numbers from {from}, below {to}", String::from_utf8_lossy(trial_of(row)));
+    let problem =
+        format!("column `trial` holds `{}`; expected rising numbers from {from}, below {to}", String::from_utf8_lossy(trial_of(row)));
     RecordError::Row { line: row.position().map_or(0, csv::Position::line), problem }
 }
 
