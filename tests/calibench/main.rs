@@ -31,6 +31,7 @@ mod operators;
 mod orient;
 mod outputs;
 mod paper;
+mod parts;
 mod peers;
 mod photographs;
 mod plugins;

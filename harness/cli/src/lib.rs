@@ -26,6 +26,7 @@ mod measure;
 mod notes;
 mod orient;
 mod output;
+mod part;
 mod photos;
 mod plot;
 mod plugin;
@@ -82,6 +83,8 @@ enum Command {
     Show(show::Show),
     /// Run scenarios and write their records
     Run(run::Run),
+    /// Put the parts of runs together, as one run would have written them
+    Merge(part::Merge),
     /// Print the records of a run, as they lie compressed in its folder
     Records(records::Records),
     /// Write a scenario's images with the truth about every target, the camera and the poses
@@ -173,6 +176,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::List { what } => list::list(&context, what),
         Command::Show(show) => show.run(&context),
         Command::Run(run) => run.run(&context),
+        Command::Merge(merge) => merge.run(&context),
         Command::Records(records) => records.run(&context),
         Command::Print(print) => print.run(&context),
         Command::Render(render) => render.run(&context),

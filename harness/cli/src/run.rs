@@ -3,15 +3,15 @@
 use std::time::Instant;
 
 use calibench_measure::Configured;
-use calibench_run::Plan;
-use calibench_run::store::{self, RecordsFolder, SweepPlan};
+use calibench_run::store::{self, SweepPlan};
+use calibench_run::{Plan, parts};
 use calibench_scenario::{Scenario, Subject, Sweep, Transfer};
 use clap::Args;
 
-use super::context::{Context, Pictured, origin};
+use super::context::{Context, Pictured};
 use super::lanes::{lanes, side_by_side};
 use super::notes::say_notes;
-use super::output;
+use super::part::{Parts, Place, told};
 use super::photos::say_turns;
 use super::progress::Progress;
 use crate::failure::Failure;
@@ -26,6 +26,8 @@ pub struct Run {
     all: bool,
     #[command(flatten)]
     changes: Changes,
+    #[command(flatten)]
+    parts: Parts,
 }
 
 /// What differs from the scenario's file.
@@ -52,7 +54,7 @@ impl Changes {
 /// A scenario that is run.
 struct Task<'a> {
     scenario: &'a Scenario,
-    folder: &'a RecordsFolder,
+    place: &'a Place,
     /// In place of its own, if there are any.
     methods: &'a [Configured],
     revision: &'a str,
@@ -74,22 +76,18 @@ impl Run {
         // All are checked before the first is run.
         let scenarios = context.scenarios(&names)?;
         let methods = self.changes.methods(context)?;
-        let records = context.places()?.records;
-        let folder = |(name, scenario): (&String, &Scenario)| -> Result<RecordsFolder, Failure> {
-            let path = records.join(&scenario.name);
-            output::apart(&path, &context.inputs(name, scenario))?;
-            Ok(RecordsFolder::open(&records, &scenario.name, origin(name, scenario))?)
-        };
-        let folders = names.iter().zip(&scenarios).map(folder).collect::<Result<Vec<_>, Failure>>()?;
+        let place = |(name, scenario): (&String, &Scenario)| self.parts.place(context, name, scenario);
+        let places = names.iter().zip(&scenarios).map(place).collect::<Result<Vec<_>, Failure>>()?;
         let revision = context.revision()?;
         let beside = scenarios.len() > 1 && lanes() > 1;
-        let task = |(scenario, folder)| Task { scenario, folder, methods: &methods, revision: &revision, beside };
-        let tasks: Vec<Task<'_>> = scenarios.iter().zip(&folders).map(task).collect();
+        let task = |(scenario, place)| Task { scenario, place, methods: &methods, revision: &revision, beside };
+        let tasks: Vec<Task<'_>> = scenarios.iter().zip(&places).map(task).collect();
         let measured = side_by_side(&tasks, lanes(), |task| match &task.scenario.sweep {
             Some(sweep) => self.sweep(context, task, sweep),
             None => self.one(context, task),
         })?;
-        let nothing: Vec<&str> = scenarios.iter().zip(measured).filter(|(_, points)| *points == 0).map(|(s, _)| s.name.as_str()).collect();
+        let nothing: Vec<&str> =
+            scenarios.iter().zip(measured).filter(|(_, points)| *points == Some(0)).map(|(s, _)| s.name.as_str()).collect();
         // Of all that there is, some may be unavailable here; what was asked for by name may not.
         if nothing.is_empty() || (self.all && nothing.len() < scenarios.len()) {
             return Ok(());
@@ -97,9 +95,9 @@ impl Run {
         Err(Failure::input(format!("{}: nothing was measured", nothing.join(", "))))
     }
 
-    /// How many points were measured.
-    fn one(&self, context: &Context<'_>, task: &Task<'_>) -> Result<u64, Failure> {
-        let Task { scenario, folder, methods, revision, .. } = *task;
+    /// How many points were measured, of all trials; of a part nothing is said here.
+    fn one(&self, context: &Context<'_>, task: &Task<'_>) -> Result<Option<u64>, Failure> {
+        let Task { scenario, place, methods, revision, .. } = *task;
         let mut plan = Plan::new(scenario, context.toolbox.tools(), context.data()?);
         if !methods.is_empty() {
             plan.methods = methods;
@@ -114,16 +112,29 @@ impl Run {
             let photos = plan.data.join(&subject.folder);
             say_turns(&subject.files.iter().map(|file| photos.join(file)).collect::<Vec<_>>())?;
         }
+        if let Place::Part(part) = place {
+            plan.only = Some(parts::trials(&plan, part.part));
+        }
         let started = Instant::now();
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
-        let measured = store::run(folder, &mut plan, revision, &|| progress.step())?;
-        progress.finish(&summary(&plan, &task.time(started)));
+        let measured = match place {
+            Place::Records(folder) => {
+                let measured = store::run(folder, &mut plan, revision, &|| progress.step())?;
+                progress.finish(&summary(&plan, &task.time(started)));
+                Some(measured)
+            }
+            Place::Part(part) => {
+                let done = parts::run(&part.wanted(revision), &plan, &|| progress.step())?;
+                progress.finish(&told(&done, plan.missing(), &task.time(started)));
+                None
+            }
+        };
         say_notes(plan.methods);
         Ok(measured)
     }
 
-    fn sweep(&self, context: &Context<'_>, task: &Task<'_>, sweep: &Sweep) -> Result<u64, Failure> {
-        let Task { scenario, folder, methods, revision, .. } = *task;
+    fn sweep(&self, context: &Context<'_>, task: &Task<'_>, sweep: &Sweep) -> Result<Option<u64>, Failure> {
+        let Task { scenario, place, methods, revision, .. } = *task;
         if sweep.changes_methods() && !methods.is_empty() {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
         }
@@ -132,10 +143,21 @@ impl Run {
         let (registry, tools) = (context.registry()?, context.toolbox.tools());
         let plan = SweepPlan { scenario, sweep, methods, seed, trials, tools, data: context.data()?, registry };
         let (started, cells) = (Instant::now(), sweep.cells());
-        let progress = Progress::start(&scenario.name, cells as u64, context.quiet);
-        let measured = store::run_sweep(folder, &plan, revision, &|| progress.step())?;
-        let trials = trials.unwrap_or(scenario.trials);
-        progress.finish(&format!("{cells} cells of {trials} trials {}", task.time(started)));
+        let parts = if let Place::Part(part) = place { part.part.of() } else { 1 };
+        let progress = Progress::start(&scenario.name, (cells as u64).div_ceil(parts), context.quiet);
+        let measured = match place {
+            Place::Records(folder) => {
+                let measured = store::run_sweep(folder, &plan, revision, &|| progress.step())?;
+                let trials = trials.unwrap_or(scenario.trials);
+                progress.finish(&format!("{cells} cells of {trials} trials {}", task.time(started)));
+                Some(measured)
+            }
+            Place::Part(part) => {
+                let done = parts::run_sweep(&part.wanted(revision), &plan, &|| progress.step())?;
+                progress.finish(&told(&done, None, &task.time(started)));
+                None
+            }
+        };
         say_notes(if methods.is_empty() { &scenario.methods } else { methods });
         Ok(measured)
     }

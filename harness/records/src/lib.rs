@@ -5,6 +5,7 @@ mod cells;
 pub mod description;
 pub mod judgement;
 pub mod names;
+pub mod parts;
 pub mod plain;
 pub mod points;
 pub mod results;

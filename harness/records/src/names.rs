@@ -10,6 +10,9 @@ pub const DESCRIPTION: &str = "scenario.json";
 /// In the same folder, the path of the scenario's file, if it is not one of the project's.
 pub const ORIGIN: &str = "origin.txt";
 
+/// In the folder of a part of a run, what the part is: a [`Manifest`](crate::parts::Manifest). Such a folder is no run.
+pub const PART: &str = "part.json";
+
 /// The name of the folder of a cell's records in that of its scenario.
 pub fn cell_name(index: usize) -> String {
     format!("cell-{:04}", index + 1)

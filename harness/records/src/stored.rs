@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use crate::adjustments::{self, Row};
 use crate::cells::RecordError;
+use crate::names::PART;
 use crate::points::{self, RecordHead};
 use crate::results::{MethodInfo, Trial};
 
@@ -32,6 +33,9 @@ pub enum StoredError {
     /// An older version left it, in a form that is no longer read.
     #[error("{}: records of an older version, which are not read any more: run the scenario again", .0.display())]
     Older(PathBuf),
+    /// It is of a part of a run.
+    #[error("{}: is a part of a run, and no run: put all parts together with `calibench merge`, then name what that wrote", .0.display())]
+    Part(PathBuf),
     /// A file that cannot be read.
     #[error("{}: {source}", path.display())]
     File {
@@ -70,8 +74,9 @@ impl Table {
     /// Whether the run in `folder` has the table.
     ///
     /// # Errors
-    /// [`StoredError::Older`] where an older version left it.
+    /// [`StoredError::Older`] where an older version left it, [`StoredError::Part`] where the folder is of a part of a run.
     pub fn is_in(self, folder: &Path) -> Result<bool, StoredError> {
+        whole(folder)?;
         let (path, older) = (folder.join(self.file()), folder.join(self.older()));
         match (path.is_file(), older.is_file()) {
             (false, true) => Err(StoredError::Older(older)),
@@ -100,8 +105,23 @@ impl Table {
 /// The compressed CSV file at `path` as plain CSV.
 ///
 /// # Errors
-/// A file that cannot be opened.
+/// A file that cannot be opened, [`StoredError::Part`] for one of a part of a run.
 pub fn open(path: &Path) -> Result<impl Read + use<>, StoredError> {
+    path.parent().map_or(Ok(()), whole)?;
+    decompressed(path)
+}
+
+/// A part of a run must never be taken for the run: it would look like one of fewer trials.
+///
+/// # Errors
+/// [`StoredError::Part`] for the folder of a part, or of a cell in it.
+pub fn whole(folder: &Path) -> Result<(), StoredError> {
+    let part = [Some(folder), folder.parent()].into_iter().flatten().find(|folder| folder.join(PART).is_file());
+    part.map_or(Ok(()), |folder| Err(StoredError::Part(folder.to_owned())))
+}
+
+/// As [`open()`], of a run or of a part of one.
+pub(crate) fn decompressed(path: &Path) -> Result<impl Read + use<>, StoredError> {
     let file = File::open(path).map_err(|source| StoredError::File { path: path.to_owned(), source })?;
     Ok(MultiGzDecoder::new(BufReader::with_capacity(1 << 16, file)))
 }

@@ -7,6 +7,7 @@ mod error;
 pub mod judgement;
 mod measured;
 pub mod network;
+pub mod parts;
 mod photographs;
 mod plan;
 pub mod printed;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use calibench_exchange::NewFolder;
 use calibench_measure::Configured;
 use calibench_model::{Image, Start, TargetKind, Unknowns};
+use calibench_records::parts::Span;
 use calibench_records::results::MethodInfo;
 use calibench_scenario::transfer::{Calibrates, Solver};
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
@@ -26,6 +27,8 @@ pub struct Plan<'a> {
     pub seed: u64,
     /// How many trials: the scenario's number or another.
     pub trials: u64,
+    /// Which of them, where not all are run: a trial is the same whichever others are run.
+    pub only: Option<Span>,
     /// What this build has beside its methods.
     pub tools: Tools<'a>,
     /// Where photographs are.
@@ -39,7 +42,22 @@ pub struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// The scenario as its file says, with no images kept.
     pub fn new(scenario: &'a Scenario, tools: Tools<'a>, data: PathBuf) -> Self {
-        Self { scenario, methods: &scenario.methods, seed: scenario.seed, trials: scenario.trials, tools, data, bounds: true, images: None }
+        let Scenario { methods, seed, trials, .. } = scenario;
+        Self { scenario, methods, seed: *seed, trials: *trials, only: None, tools, data, bounds: true, images: None }
+    }
+
+    /// How many trials there are, whichever of them are run: one where nothing is drawn.
+    pub fn all_trials(&self) -> u64 {
+        match &self.scenario.subject {
+            Subject::Scene(_) | Subject::Views(_) => self.trials,
+            Subject::Photographs(_) | Subject::Printed(_) => 1,
+        }
+    }
+
+    /// The trials that are run.
+    pub fn span(&self) -> Span {
+        let all = self.all_trials();
+        self.only.map_or(Span { from: 0, to: all }, |only| Span { from: only.from, to: only.to.min(all) })
     }
 
     /// The methods as results list them.

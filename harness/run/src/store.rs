@@ -8,7 +8,8 @@ use calibench_exchange::{NewFile, NewFolder, OutputFolder};
 use calibench_measure::{Configured, Registry};
 use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::description::write as write_description;
-use calibench_records::names::{DESCRIPTION, ORIGIN, SCENARIO, cell_name};
+use calibench_records::names::{DESCRIPTION, ORIGIN, PART, SCENARIO, cell_name};
+use calibench_records::parts::Span;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::Outcome;
 use calibench_records::stored::{Compressor, Table};
@@ -29,6 +30,11 @@ fn keep_camera(scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> 
     Ok(folder.folder(KEPT)?.write(name, |file| file.write_all(&bytes))?)
 }
 
+/// The path of a scenario's file as records keep it.
+fn kept(origin: Option<&Path>) -> io::Result<Option<String>> {
+    origin.map(|file| Ok(file.canonicalize()?.to_string_lossy().into_owned())).transpose()
+}
+
 /// The folder of a scenario's records.
 pub struct RecordsFolder {
     output: OutputFolder,
@@ -41,11 +47,29 @@ impl RecordsFolder {
     /// folders may give their scenarios one name.
     ///
     /// # Errors
-    /// As [`OutputFolder::open`]; records of another file that is still there.
+    /// As [`OutputFolder::open`]; records of another file that is still there; a part of a run.
     pub fn open(records: &Path, name: &str, origin: Option<&Path>) -> io::Result<Self> {
+        Self::whole(records, name, kept(origin)?)
+    }
+
+    /// As [`Self::open`]; `origin` is as it is kept.
+    pub(crate) fn whole(records: &Path, name: &str, origin: Option<String>) -> io::Result<Self> {
+        let path = records.join(name);
+        if path.join(PART).is_file() {
+            let why = "holds a part of a run, which a whole one does not replace: move it elsewhere, or delete it";
+            return Err(io::Error::new(io::ErrorKind::AlreadyExists, format!("{}: {why}", path.display())));
+        }
+        Self::of(records, name, origin)
+    }
+
+    /// That of a part of a run of scenario `name`, below a folder of such parts.
+    pub(crate) fn of_part(parts: &Path, name: &str, origin: Option<&Path>) -> io::Result<Self> {
+        Self::of(parts, name, kept(origin)?)
+    }
+
+    fn of(records: &Path, name: &str, origin: Option<String>) -> io::Result<Self> {
         let path = records.join(name);
         let output = OutputFolder::open(&path)?;
-        let origin = origin.map(|file| Ok::<_, io::Error>(file.canonicalize()?.to_string_lossy().into_owned())).transpose()?;
         let there = match fs::read_to_string(path.join(ORIGIN)) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
             other => Some(other?.trim_end().to_owned()),
@@ -58,6 +82,11 @@ impl RecordsFolder {
         let Some(other) = other else { return Ok(Self { output, origin }) };
         let why = "whose name is the same; nothing was written: rename one of them, or delete these records";
         Err(io::Error::new(io::ErrorKind::AlreadyExists, format!("{}: holds the records of {other}, {why}", path.display())))
+    }
+
+    /// Puts what `fill` writes in the place of what is there, at once.
+    pub(crate) fn replace<E: From<io::Error>>(&self, fill: impl FnOnce(&NewFolder) -> Result<(), E>) -> Result<(), E> {
+        self.output.replace(fill)
     }
 
     /// Keeps what tells the scenario, which was run with `methods`.
@@ -77,13 +106,28 @@ impl RecordsFolder {
 /// # Errors
 /// What the run or the file system refuses; older records are then as they were.
 pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
-    let (name, mut measured) = (plan.scenario.name.clone(), 0);
-    records.output.replace(|folder| {
-        let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
-        measured = write_records(folder, &name, &plan, revision, step)?;
-        records.keep(plan.scenario, plan.methods, folder)
+    let mut measured = 0;
+    records.replace(|folder| {
+        measured = fill(records, folder, plan, revision, step)?;
+        Ok::<_, RunError>(())
     })?;
     Ok(measured)
+}
+
+/// Runs the trials of `plan` that are wanted and writes what there is of them into `folder`; how many points were measured.
+pub(crate) fn fill(
+    records: &RecordsFolder,
+    folder: &NewFolder,
+    plan: &Plan<'_>,
+    revision: &str,
+    step: &(dyn Fn() + Sync),
+) -> Result<u64, RunError> {
+    records.keep(plan.scenario, plan.methods, folder)?;
+    if plan.span().count() == 0 {
+        return Ok(0);
+    }
+    let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
+    write_records(folder, &plan.scenario.name, &plan, revision, step)
 }
 
 /// Runs `plan` and writes its records into `folder`, under the name `name`; how many points were measured.
@@ -147,6 +191,32 @@ pub struct SweepPlan<'a> {
     pub registry: &'a Registry,
 }
 
+impl SweepPlan<'_> {
+    /// The cell of place `index`.
+    fn cell(&self, index: usize) -> Result<Scenario, RunError> {
+        Ok(parse_cell(self.scenario, self.sweep, index, self.registry).map_err(io::Error::other)?)
+    }
+
+    /// How `cell` is run.
+    fn plan<'c>(&'c self, cell: &'c Scenario) -> Plan<'c> {
+        let mut plan = Plan::new(cell, self.tools, self.data.clone());
+        if !self.methods.is_empty() {
+            plan.methods = self.methods;
+        }
+        plan.seed = self.seed.unwrap_or(cell.seed);
+        plan.trials = self.trials.filter(|_| !cell.is_deterministic()).unwrap_or(cell.trials);
+        plan
+    }
+
+    /// How many trials each cell has.
+    ///
+    /// # Errors
+    /// A cell whose files have changed since the scenario was read.
+    pub fn trials_of_cells(&self) -> Result<Vec<u64>, RunError> {
+        (0..self.sweep.cells()).map(|index| Ok(self.plan(&self.cell(index)?).all_trials())).collect()
+    }
+}
+
 /// Runs the cells of `plan` one after the other and puts their records, each in a folder of its own, in the place of older ones, all at once.
 ///
 /// The random numbers of a cell are those of the scenario without its sweep: cells share phase, noise and stations, so that curves differ by what
@@ -155,21 +225,31 @@ pub struct SweepPlan<'a> {
 /// # Errors
 /// What a run or the file system refuses; older records are then as they were.
 pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
-    let (scenario, mut measured) = (plan.scenario, 0);
-    records.output.replace(|folder| {
-        for index in 0..plan.sweep.cells() {
-            let cell = parse_cell(scenario, plan.sweep, index, plan.registry).map_err(io::Error::other)?;
-            let mut run = Plan::new(&cell, plan.tools, plan.data.clone());
-            if !plan.methods.is_empty() {
-                run.methods = plan.methods;
-            }
-            run.seed = plan.seed.unwrap_or(cell.seed);
-            run.trials = plan.trials.filter(|_| !cell.is_deterministic()).unwrap_or(cell.trials);
-            let (cell, label) = (folder.folder(&cell_name(index))?, plan.sweep.label(index));
-            measured += write_records(&cell, &format!("{}@{label}", scenario.name), &run, revision, &|| ())?;
-            step();
-        }
-        records.keep(scenario, plan.methods, folder)
+    let mut measured = 0;
+    records.replace(|folder| {
+        measured = fill_sweep(records, folder, plan, (0..plan.sweep.cells()).map(|cell| (cell, None)), revision, step)?;
+        Ok::<_, RunError>(())
     })?;
+    Ok(measured)
+}
+
+/// Runs `cells` of `plan`, of each all trials or those that are wanted, and writes what there is of them into `folder`; how many points were measured.
+pub(crate) fn fill_sweep(
+    records: &RecordsFolder,
+    folder: &NewFolder,
+    plan: &SweepPlan<'_>,
+    cells: impl Iterator<Item = (usize, Option<Span>)>,
+    revision: &str,
+    step: &(dyn Fn() + Sync),
+) -> Result<u64, RunError> {
+    let mut measured = 0;
+    for (index, only) in cells {
+        let cell = plan.cell(index)?;
+        let run = Plan { only, ..plan.plan(&cell) };
+        let (folder, label) = (folder.folder(&cell_name(index))?, plan.sweep.label(index));
+        measured += write_records(&folder, &format!("{}@{label}", plan.scenario.name), &run, revision, &|| ())?;
+        step();
+    }
+    records.keep(plan.scenario, plan.methods, folder)?;
     Ok(measured)
 }

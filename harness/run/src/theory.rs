@@ -27,7 +27,7 @@ const OPERATOR: &str = "harris_paraboloid";
 pub fn write_theory(plan: &Plan<'_>, run: &RunInfo) -> Result<(), RunError> {
     let (Subject::Scene(subject), Some(folder)) = (&plan.scenario.subject, plan.images) else { return Ok(()) };
     let methods: Vec<&Configured> = plan.methods.iter().filter(|method| operator(&method.label) == OPERATOR).collect();
-    if methods.is_empty() || !plan.scenario.is_deterministic() {
+    if methods.is_empty() || !plan.scenario.is_deterministic() || !plan.span().holds(0) {
         return Ok(());
     }
     let image = read_photo(&kept_image(folder.path(), VIEW))?.image;

@@ -2,6 +2,7 @@
 
 use calibench_measure::kinds::cover;
 use calibench_random::Key;
+use calibench_records::parts::Span;
 use calibench_records::results::Trial;
 use calibench_scenario::{Subject, ViewsSubject};
 use rayon::prelude::*;
@@ -16,17 +17,20 @@ impl Plan<'_> {
     /// How many steps [`Plan::run`] reports.
     pub fn steps(&self) -> u64 {
         match &self.scenario.subject {
-            Subject::Scene(_) | Subject::Views(_) | Subject::Printed(_) => self.trials,
-            Subject::Photographs(photographs) => photographs.files.len() as u64,
+            Subject::Scene(_) | Subject::Views(_) | Subject::Printed(_) => self.span().count(),
+            Subject::Photographs(photographs) => photographs.files.len() as u64 * self.span().count(),
         }
     }
 
-    /// Runs all trials and hands them to `sink` in their order; `step` is called after each step, on any thread.
+    /// Runs all trials, or those that are wanted, and hands them to `sink` in their order; `step` is called after each step, on any thread.
     ///
     /// # Errors
     /// Targets of a kind that no method measures, a method without targets of its kinds; photographs that cannot be read; what `sink` returns.
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
         cover(self.methods, self.scenario.subject.kinds().iter().copied())?;
+        if self.span().count() == 0 {
+            return Ok(());
+        }
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
             Subject::Printed(printed) => {
@@ -72,8 +76,9 @@ impl Plan<'_> {
         sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
         trial: &(dyn Fn(u64) -> Result<Trial, RunError> + Sync),
     ) -> Result<(), RunError> {
-        for first in (0..self.trials).step_by(BATCH as usize) {
-            let batch = first..(first + BATCH).min(self.trials);
+        let Span { from, to } = self.span();
+        for first in (from..to).step_by(BATCH as usize) {
+            let batch = first..(first + BATCH).min(to);
             let counted = |number| {
                 let trial = trial(number);
                 step();

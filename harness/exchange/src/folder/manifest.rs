@@ -144,6 +144,11 @@ impl Manifest {
         self.files.insert(name.to_owned(), [digest.to_owned()].into());
     }
 
+    /// The names that are listed.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.files.keys().map(String::as_str)
+    }
+
     /// Whether a file of this name is listed.
     pub fn lists(&self, name: &str) -> bool {
         self.files.contains_key(name)

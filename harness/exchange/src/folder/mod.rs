@@ -4,6 +4,7 @@
 //! which a file was changed since, is refused. A new one is filled beside the old one and exchanged with it at once.
 
 mod foreign_folder;
+mod intact;
 mod manifest;
 mod new;
 mod place;
@@ -15,6 +16,7 @@ use std::path::{Path, PathBuf};
 
 use crate::atomic::{at, named};
 pub use foreign_folder::write_beside;
+pub use intact::intact;
 pub use manifest::MANIFEST;
 use manifest::Manifest;
 pub use new::{NewFile, NewFolder};

@@ -6,15 +6,17 @@ use std::path::Path;
 
 use calibench_records::description::{Description, read};
 use calibench_records::names::{DESCRIPTION, SCENARIO};
-use calibench_records::stored::StoredError;
+use calibench_records::stored::{StoredError, whole};
 
 use super::LoadError;
 
 /// The description of scenario `name` in the folder of its records; `None` without records.
 ///
 /// # Errors
-/// [`LoadError::Undescribed`] for records of an older version, [`LoadError::Description`] for a file of another form, and what the file system refuses.
+/// A part of a run, [`LoadError::Undescribed`] for records of an older version, [`LoadError::Description`] for a file of another form, and what the file system
+/// refuses.
 pub fn description(folder: &Path, name: &str) -> Result<Option<Description>, LoadError> {
+    whole(folder)?;
     let path = folder.join(DESCRIPTION);
     match File::open(&path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound && folder.join(SCENARIO).is_file() => {
