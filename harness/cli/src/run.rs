@@ -128,6 +128,12 @@ impl Run {
             return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
         }
         own_methods(scenario, methods)?;
+        if let Some(method) = scenario.methods.iter().chain(methods).find(|method| method.recorded().is_some()) {
+            let (label, name) = (&method.label, &scenario.name);
+            return Err(Failure::input(format!(
+                "`{label}` is a file of positions, and `{name}` is a sweep, of which `render` makes the first cell alone; expected a scenario without [sweep]"
+            )));
+        }
         let Changes { seed, trials, .. } = self.changes;
         let (registry, tools) = (context.registry()?, context.toolbox.tools());
         let plan = SweepPlan { scenario, sweep, methods, seed, trials, tools, data: context.data()?, registry };

@@ -9,6 +9,8 @@ use calibench_measure::parameter::Domain;
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::recorded::{self, Recording, RecordingWire};
+
 /// A declared plug-in.
 #[derive(Clone, Debug)]
 pub struct Declaration {
@@ -73,6 +75,8 @@ pub enum Starts {
 struct File {
     #[serde(default)]
     plugin: Vec<Spanned<Wire>>,
+    #[serde(default)]
+    method: Vec<Spanned<RecordingWire>>,
 }
 
 #[derive(Deserialize)]
@@ -111,19 +115,42 @@ const MEMORY: &str = "2 GB";
 /// How near a detection must be to a target unless the file says otherwise, px.
 const RADIUS: f64 = 5.0;
 
-/// The plug-ins that `text` declares, which is that of `file`.
+/// What a file declares.
+#[derive(Clone, Debug)]
+pub enum Declared {
+    /// A program.
+    Program(Declaration),
+    /// A file of positions.
+    Recording(Recording),
+}
+
+impl Declared {
+    /// Its name among the methods.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Program(program) => &program.name,
+            Self::Recording(recording) => &recording.name,
+        }
+    }
+}
+
+/// The methods that `text` declares, which is that of `file`: programs, then files of positions.
 ///
 /// # Errors
 /// Every mistake with line and column.
-pub fn parse(file: &str, text: &str) -> Result<Vec<Declaration>, Problems> {
+pub fn parse(file: &str, text: &str) -> Result<Vec<Declared>, Problems> {
     let all = |problems| Problems { file: file.to_owned(), text: text.to_owned(), problems };
     let wire: File =
         toml::from_str(text).map_err(|error| all(vec![Problem::new(error.span().unwrap_or(0..0), error.message().to_owned())]))?;
-    if wire.plugin.is_empty() {
-        return Err(all(vec![Problem::new(0..0, "declares no plug-in: expected [[plugin]] with `name` and `command`")]));
+    if wire.plugin.is_empty() && wire.method.is_empty() {
+        let expected = "[[plugin]] with `name` and `command`, or [[method]] with `name`, `file` and `images`";
+        return Err(all(vec![Problem::new(0..0, format!("declares no plug-in: expected {expected}"))]));
     }
     let mut problems = Vec::new();
-    let found: Vec<Declaration> = wire.plugin.into_iter().filter_map(|plugin| checked(plugin.into_inner(), file, &mut problems)).collect();
+    let programs = wire.plugin.into_iter().filter_map(|plugin| checked(plugin.into_inner(), file, &mut problems));
+    let mut found: Vec<Declared> = programs.map(Declared::Program).collect();
+    let recordings = wire.method.into_iter().filter_map(|method| recorded::checked(method.into_inner(), file, &mut problems));
+    found.extend(recordings.map(Declared::Recording));
     if problems.is_empty() { Ok(found) } else { Err(all(problems)) }
 }
 
@@ -189,7 +216,8 @@ fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declar
     })
 }
 
-fn is_name(name: &str) -> bool {
+/// Whether a text may be a method's name.
+pub(crate) fn is_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 

@@ -14,7 +14,7 @@ use tempfile::TempDir;
 
 use crate::answer::{Fault, greeted};
 use crate::confine::Confinement;
-use crate::declaration::{Declaration, leak, parse};
+use crate::declaration::{Declaration, Declared, leak, parse};
 use crate::error::PluginError;
 use crate::operator::Asked;
 use crate::process::Process;
@@ -204,7 +204,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// A text of others in a line: no command to a terminal, and not long.
-fn short(text: &str) -> String {
+pub(crate) fn short(text: &str) -> String {
     let text = escape::name(text.trim());
     let start: String = text.chars().take(LONGEST_TOLD).collect();
     if start.len() < text.len() { format!("{start}...") } else { start }
@@ -220,9 +220,9 @@ pub fn method(declaration: Declaration, folder: &Path, launcher: &Launcher) -> M
         Ok(started) => {
             let version = format!("{} ({})", started.version, program.files);
             program.keep(settings, started);
-            Outside { version, operator: Ok(Box::new(Asked::new(program.clone(), settings.clone()))) }
+            Ok(Outside { version, operator: Ok(Box::new(Asked::new(program.clone(), settings.clone()))) })
         }
-        Err(fault) => Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) },
+        Err(fault) => Ok(Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) }),
     };
     Method { name, about, source, version: format!("? ({files})"), parameters, build: Build::Outside(Arc::new(build)) }
 }
@@ -240,8 +240,8 @@ pub fn load(folder: &Path, mut registry: Registry, launcher: &Launcher) -> Resul
     let mut known: Vec<(String, PathBuf)> = Vec::new();
     for path in files {
         let text = std::fs::read_to_string(&path).map_err(|error| file_error(&path, error))?;
-        for declaration in parse(&path.display().to_string(), &text)? {
-            let name = declaration.name.clone();
+        for declared in parse(&path.display().to_string(), &text)? {
+            let name = declared.name().to_owned();
             if let Some((_, earlier)) = known.iter().find(|(other, _)| *other == name) {
                 return Err(PluginError::Twice { path, earlier: earlier.clone(), name });
             }
@@ -249,7 +249,10 @@ pub fn load(folder: &Path, mut registry: Registry, launcher: &Launcher) -> Resul
                 return Err(PluginError::Taken { path, name });
             }
             known.push((name, path.clone()));
-            registry = registry.with(method(declaration, folder, launcher));
+            registry = registry.with(match declared {
+                Declared::Program(declaration) => method(declaration, folder, launcher),
+                Declared::Recording(recording) => recording.method(folder),
+            });
         }
     }
     Ok(registry)

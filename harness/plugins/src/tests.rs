@@ -3,7 +3,7 @@
 use calibench_model::{Image, PixelPoint, Rejection, Start, TargetKind};
 
 use crate::answer::{Answer, read};
-use crate::declaration::{Grey, Starts, parse};
+use crate::declaration::{Declaration, Declared, Grey, Starts, parse};
 use crate::request::{body, greeting, head, rounds};
 
 const GOOD: &str = r#"
@@ -14,9 +14,15 @@ parameters = { window = { default = 11, min = 3, max = 31, odd = true }, reach =
 memory = "1.5 GB"
 "#;
 
+/// The first plug-in that a text declares.
+fn program(text: &str) -> Declaration {
+    let Declared::Program(program) = parse("mine.toml", text).unwrap().remove(0) else { panic!("a program") };
+    program
+}
+
 #[test]
 fn a_declaration_is_read_with_its_defaults() {
-    let found = &parse("mine.toml", GOOD).unwrap()[0];
+    let found = program(GOOD);
     assert_eq!((found.name.as_str(), found.grey, found.starts, found.seconds), ("mine", Grey::Gray8, Starts::Given, 30.0));
     assert_eq!(found.memory, 1_500_000_000);
     let named: Vec<_> = found.parameters.iter().map(|p| (p.name, p.default, p.domain.describe())).collect();
@@ -109,7 +115,7 @@ fn answers_go_to_the_starts_that_they_are_about() {
     let text = "[[plugin]]\nname = \"start_sh\"\ncommand = [\"sh\", \"start.sh\"]\n";
     let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plugins"));
     let launcher = crate::Launcher { confiner: None, project: None };
-    let registry = calibench_measure::Registry::default().with(crate::method(parse("a.toml", text).unwrap().remove(0), folder, &launcher));
+    let registry = calibench_measure::Registry::default().with(crate::method(program(text), folder, &launcher));
     let configured = registry.parse("start_sh").unwrap();
     let operator = configured.operator.unwrap();
     let at = |x: f64| Start::at(PixelPoint::new(x, 7.25));

@@ -29,6 +29,14 @@ pub enum RunError {
     /// Methods that are limited to kinds of targets, and other targets.
     #[error(transparent)]
     Kinds(#[from] KindsGap),
+    /// A recorded method with names that the run does not have.
+    #[error("`{method}`: {problem}")]
+    Recorded {
+        /// The method.
+        method: String,
+        /// The name with its place.
+        problem: String,
+    },
     /// A view that cannot be pictured.
     #[error("station `{station}`: {source}")]
     View {

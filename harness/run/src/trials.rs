@@ -24,9 +24,10 @@ impl Plan<'_> {
     /// Runs all trials and hands them to `sink` in their order; `step` is called after each step, on any thread.
     ///
     /// # Errors
-    /// Targets of a kind that no method measures, a method without targets of its kinds; photographs that cannot be read; what `sink` returns.
+    /// Targets of a kind that no method measures, a method without targets of its kinds; a recorded one with names of others; photographs that cannot be read; what `sink` returns.
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
         cover(self.methods, self.scenario.subject.kinds().iter().copied())?;
+        self.check_recorded()?;
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
             Subject::Printed(printed) => {
