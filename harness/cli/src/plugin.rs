@@ -48,12 +48,12 @@ fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
 
 /// Tries a program and says what it does; whether anything fails.
 fn program_fails(declaration: Declaration, folder: &Path, launcher: &Launcher) -> Result<bool, Failure> {
-    let name = declaration.name.clone();
+    let (name, mode) = (declaration.name.clone(), declaration.mode.clone());
     let registry = Registry::default().with(method(declaration, folder, launcher));
     let configured = registry.configure(&name, &[])?;
     print(&format!("{} {}\n", configured.label, configured.version))?;
     let mut failed = false;
-    for Finding { what, wrong } in check(&configured) {
+    for Finding { what, wrong } in check(&configured, &mode) {
         failed |= wrong.is_some();
         say_finding(what, wrong.as_deref())?;
     }

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use calibench_exchange::{Fingerprint, NewFolder, Points, RENDERED, RenderedImage, encode_png, write_rendered};
-use calibench_model::{Image, Start};
 use calibench_model::camera::CameraModel;
+use calibench_model::{Image, Start};
 use calibench_random::Key;
 use calibench_records::names::kept_image_name;
 use calibench_run::views::{self, Prepared, PreparedView};

@@ -51,7 +51,8 @@ pub fn write_rendered(output: impl Write, images: &[RenderedImage]) -> io::Resul
 pub fn read_rendered(folder: &Path) -> Result<Vec<RenderedImage>, PointFileError> {
     let path = folder.join(RENDERED);
     let file = path.display().to_string();
-    let wrong = |line, column: Option<&str>, problem| PointFileError { file: file.clone(), line, column: column.map(str::to_owned), problem };
+    let wrong =
+        |line, column: Option<&str>, problem| PointFileError { file: file.clone(), line, column: column.map(str::to_owned), problem };
     let text = fs::read(&path).map_err(|error| wrong(None, None, format!("{error}; expected the list that `calibench render` writes")))?;
     let mut reader = csv::Reader::from_reader(&text[..]);
     if *reader.headers().map_err(|error| csv_error(&file, &error))? != COLUMNS[..] {

@@ -7,8 +7,8 @@ use calibench_model::TargetKind;
 use crate::error::MethodError;
 use crate::kinds::Kinds;
 use crate::operator::Operator;
-use crate::recorded::Recorded;
 use crate::parameter::{ON_PHOTOGRAPHS, Parameter, SIGNIFICANCE, Settings};
+use crate::recorded::Recorded;
 
 /// A method as it is listed: an operator whose parameters are yet to be set.
 #[derive(Clone)]

@@ -22,7 +22,9 @@ pub fn measured_board(image: &Image, view: &str, (detector, board): (&dyn BoardD
     let names: Vec<String> = (0..starts.len()).map(|index| board.target(index)).collect();
     for (method, operator) in methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?))) {
         let results = match operator.recorded() {
-            Some(recorded) => recorded.recall(ImageId { trial: 0, view: &view }, image, &names.iter().map(String::as_str).collect::<Vec<_>>()),
+            Some(recorded) => {
+                recorded.recall(ImageId { trial: 0, view: &view }, image, &names.iter().map(String::as_str).collect::<Vec<_>>())
+            }
             None => operator.measure_all(image, &starts),
         };
         for (index, result) in results.into_iter().enumerate() {

@@ -9,6 +9,7 @@ mod confine;
 mod conformance;
 mod declaration;
 mod error;
+mod folder;
 mod operator;
 mod process;
 mod program;
@@ -17,7 +18,7 @@ mod request;
 
 pub use confine::{Confinement, confine_and_execute};
 pub use conformance::{Finding, check};
-pub use declaration::{Declaration, Declared, Grey, Starts, parse};
+pub use declaration::{Declaration, Declared, Grey, Mode, Starts, parse};
 pub use error::PluginError;
 pub use program::{Launcher, load, method};
 pub use recorded::{Images, Positions, Recording};

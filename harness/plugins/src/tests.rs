@@ -43,7 +43,8 @@ fn every_mistake_in_a_declaration_has_its_place() {
         ("memory = \"1.5 GB\"", "starts = \"some\"", "6:10", "expected \"given\" or \"none\""),
         ("memory = \"1.5 GB\"", "radius = 3.0", "6:10", "`radius` is for starts"),
         ("memory = \"1.5 GB\"", "seconds = 0.0", "6:11", "expected seconds"),
-        ("memory = \"1.5 GB\"", "mode = \"folder\"", "6:8", "mode `folder` is not known"),
+        ("memory = \"1.5 GB\"", "mode = \"files\"", "6:8", "mode `files` is not known"),
+        ("memory = \"1.5 GB\"", "version = \"1\"", "6:11", "`version` is for mode"),
         ("memory = \"1.5 GB\"", "image = \"rgb\"", "6:9", "unknown variant `rgb`"),
     ] {
         assert!(GOOD.contains(old));

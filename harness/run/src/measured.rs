@@ -28,7 +28,8 @@ pub fn of_its_kinds(
 ) -> Option<Vec<Option<Measured>>> {
     let operator = method.operator.as_deref().ok()?;
     let mine = |target: &Asked<'_>| method.measures(Some(target.kind));
-    let asked: Vec<(&str, Start)> = targets.iter().filter(|target| mine(target)).filter_map(|target| Some((target.name, target.start?))).collect();
+    let asked: Vec<(&str, Start)> =
+        targets.iter().filter(|target| mine(target)).filter_map(|target| Some((target.name, target.start?))).collect();
     let mut results = match (operator.recorded(), which) {
         (Some(recorded), Some(which)) => recorded.recall(which, image, &asked.iter().map(|(name, _)| *name).collect::<Vec<_>>()),
         _ => operator.measure_all(image, &asked.iter().map(|(_, start)| *start).collect::<Vec<_>>()),

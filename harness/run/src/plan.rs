@@ -138,8 +138,12 @@ impl<'a> Plan<'a> {
         }
         let corners = self.corners();
         let known = match &self.scenario.subject {
-            Subject::Scene(subject) => Known { targets: subject.scene.targets.iter().map(|target| target.id.as_str()).collect(), ..Known::default() },
-            Subject::Views(subject) => Known { targets: subject.field.targets.iter().map(|target| target.id.as_str()).collect(), ..Known::default() },
+            Subject::Scene(subject) => {
+                Known { targets: subject.scene.targets.iter().map(|target| target.id.as_str()).collect(), ..Known::default() }
+            }
+            Subject::Views(subject) => {
+                Known { targets: subject.field.targets.iter().map(|target| target.id.as_str()).collect(), ..Known::default() }
+            }
             Subject::Photographs(subject) => Known {
                 targets: corners.iter().map(String::as_str).collect(),
                 photographs: subject.files.iter().map(String::as_str).collect(),

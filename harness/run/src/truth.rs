@@ -138,10 +138,7 @@ pub fn warnings(subject: &ViewsSubject, view: &PreparedView<'_>, name: &str) -> 
             None => counted.push((warning, 1)),
         }
     }
-    counted
-        .into_iter()
-        .map(|(warning, count)| format!("{name}: {count} of {} targets: {warning}", view.truth.len()))
-        .collect()
+    counted.into_iter().map(|(warning, count)| format!("{name}: {count} of {} targets: {warning}", view.truth.len())).collect()
 }
 
 /// How much of an image was clipped, if any.

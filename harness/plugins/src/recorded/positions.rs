@@ -71,7 +71,9 @@ impl Positions {
             None if !run.photographs => {
                 Some(format!("`{file}` does not say which rendered images were measured: give `images`, the folder that `render` wrote"))
             }
-            Some((seed, _)) if *seed != run.seed => Some(format!("`{file}` is of images of the seed {seed}, and this run has the seed {}", run.seed)),
+            Some((seed, _)) if *seed != run.seed => {
+                Some(format!("`{file}` is of images of the seed {seed}, and this run has the seed {}", run.seed))
+            }
             _ => None,
         }
     }
@@ -90,7 +92,9 @@ impl Positions {
         // It is read again for the line.
         let whose = format!("the scenario `{}`", self.scenario);
         let check: Check<'_> = &|row| match () {
-            () if of_photographs && !photographs.contains(&row.image) => Err(("image", stranger("photograph", row.image, &whose, photographs))),
+            () if of_photographs && !photographs.contains(&row.image) => {
+                Err(("image", stranger("photograph", row.image, &whose, photographs)))
+            }
             () if !targets.contains(&row.target) => Err(("target", stranger("target", row.target, &whose, targets))),
             () => Ok(()),
         };
@@ -149,7 +153,9 @@ fn lost(file: &PointFile) -> Result<HashMap<String, HashMap<String, Rejection>>,
     }
     let twice = |row: &PointRef<'_>| found.get(row.image).is_some_and(|lost| lost.contains_key(row.target));
     match file.points.rows().find(|row| !found.is_empty() && twice(row)) {
-        Some(row) => Err(format!("target `{}` of image `{}` has a row with a position and one without; expected each once", row.target, row.image)),
+        Some(row) => {
+            Err(format!("target `{}` of image `{}` has a row with a position and one without; expected each once", row.target, row.image))
+        }
         None => Ok(found),
     }
 }

@@ -71,7 +71,10 @@ fn each_target_of_each_trial_gets_its_own_row() {
     assert_eq!(covariance.iter().map(|one| one.unwrap().covariance.map(|c| c.syy)).collect::<Vec<_>>(), [Some(0.02), None]);
     let told = method.operator.unwrap().notes();
     assert_eq!(told[0], "`mine.csv` has no row of 3 of 7 images, that of view `right` in trial 0 for one");
-    assert!(told[1].starts_with("1 of 7 images are not those that were rendered for `mine.csv`, that of view `left` in trial 1"), "{told:?}");
+    assert!(
+        told[1].starts_with("1 of 7 images are not those that were rendered for `mine.csv`, that of view `left` in trial 1"),
+        "{told:?}"
+    );
     assert!(told[2].contains("no row of 5 targets in images that it has, `five` of view `left` in trial 0"), "{told:?}");
     assert!(told[3].contains("rounded"), "{told:?}");
 }
@@ -118,10 +121,14 @@ fn names_that_a_run_does_not_have_are_refused_with_their_line() {
         let Declared::Recording(recording) = parse("a.toml", toml).unwrap().remove(0) else { panic!("a file of positions") };
         Positions::read(&recording, folder.path()).unwrap().check(&known)
     };
-    let known = |targets: &[&'static str], photographs: &[&'static str]| Known { targets: targets.to_vec(), photographs: photographs.to_vec() };
+    let known =
+        |targets: &[&'static str], photographs: &[&'static str]| Known { targets: targets.to_vec(), photographs: photographs.to_vec() };
     assert_eq!(check(TOML, known(&["one", "two", "unmeasured"], &[])), Ok(()));
     let wrong = check(TOML, known(&["one", "twox"], &[])).unwrap_err();
-    assert!(wrong.contains("mine.csv:3, column `target`: no target of the scenario `s/t` is called `two`; did you mean `twox`?"), "{wrong}");
+    assert!(
+        wrong.contains("mine.csv:3, column `target`: no target of the scenario `s/t` is called `two`; did you mean `twox`?"),
+        "{wrong}"
+    );
     let photographs = TOML.replace("images = \"pictures\"", "photographs = \"s/t\"");
     assert_eq!(check(&photographs, known(&["one", "two"], &["a-0.png", "a-1.png"])), Ok(()));
     let wrong = check(&photographs, known(&["one", "two"], &["a-0.png", "b-1.png"])).unwrap_err();
