@@ -21,7 +21,7 @@ pub use conformance::{Finding, check};
 pub use declaration::{Declaration, Declared, Grey, Mode, Starts, parse};
 pub use error::PluginError;
 pub use program::{Launcher, load, method};
-pub use recorded::{Images, Positions, Recording};
+pub use recorded::{Images, Origin, Positions, Recording};
 
 #[cfg(test)]
 mod tests;

@@ -132,3 +132,44 @@ fn answers_go_to_the_starts_that_they_are_about() {
     }
     assert!(operator.notes().concat().contains("not kept from"), "who is not restricted is told");
 }
+
+/// What is read of `measured.csv` below a header, about three points.
+fn by_file(header: &str, rows: &str, asked: Option<usize>) -> Result<Answer, crate::answer::Fault> {
+    crate::folder::read(format!("{header}\n{rows}").as_bytes(), "0001.png", asked, 2)
+}
+
+#[test]
+fn files_are_read_by_the_numbers_of_their_points() {
+    let rows = "0001.png,3,5,6,,,,measured,\n0001.png,1,1.5,2.5,1e-4,0,2e-4,measured,\n0001.png,2,,,,,,rejected,no corner\n";
+    let header = "image,target,x,y,sxx,sxy,syy,status,reason";
+    let Answer { points, told } = by_file(header, rows, Some(4)).unwrap();
+    let at = |place: usize| points[place].map(|found| (found.position.x, found.position.y));
+    let declined = Err(Rejection::Declined);
+    assert_eq!([0, 1, 2, 3].map(at), [Ok((1.5, 2.5)), declined, Ok((5.0, 6.0)), declined], "in the order in which they were asked");
+    assert_eq!(
+        (points[0].unwrap().covariance.unwrap().syy, points[2].unwrap().covariance, told),
+        (2e-4, None, vec!["no corner".to_owned()])
+    );
+    assert_eq!(by_file(header, "", Some(2)).unwrap().points, [Err(Rejection::Declined); 2]);
+    let found = by_file("image,target,x,y", "0001.png,left,1,2\n0001.png,right,3,4\n", None).unwrap().points;
+    assert_eq!(found.iter().map(|one| one.unwrap().position.x).collect::<Vec<_>>(), [1.0, 3.0]);
+}
+
+#[test]
+fn files_that_are_no_answer_say_why() {
+    for (rows, asked, expected) in [
+        ("0001.png,4,1,2\n", Some(3), "measured.csv:2, column `target`: expected one of 1 to 3 as in points.csv, found `4`"),
+        ("0001.png,0,1,2\n", Some(3), "found `0`"),
+        ("left.png,1,1,2\n", Some(3), "measured.csv:2, column `image`: expected `0001.png`, found `left.png`"),
+        ("0001.png,1,1,2\n0001.png,1,1,2\n", Some(3), "measured.csv:3: target `1` of image `0001.png` is already on line 2"),
+        ("0001.png,1,1\n", Some(3), "measured.csv:2: expected 4 cells"),
+        ("0001.png,1,inf,1\n", Some(3), "column `x`: expected a finite number"),
+        ("0001.png,a,1,1\n0001.png,b,1,1\n0001.png,c,1,1\n", None, "3 rows; expected 2 at most"),
+    ] {
+        let fault = by_file("image,target,x,y", rows, asked).unwrap_err();
+        assert_eq!(fault.rejection, Rejection::Malformed);
+        assert!(fault.message.contains(expected), "{rows}: {}", fault.message);
+    }
+    let both = by_file("image,target,x,y,status", "0001.png,1,1,2,measured\n0001.png,1,,,rejected\n", Some(1)).unwrap_err();
+    assert!(both.message.contains("has a position beside"), "{}", both.message);
+}

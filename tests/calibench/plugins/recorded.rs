@@ -4,9 +4,9 @@ use std::path::Path;
 use std::process::Output;
 
 use super::{notes, rows, versions, with_plugins};
-use crate::project::{files, root, run, stderr, stdout};
+use crate::project::{files, root, run, stderr, stdout, table};
 
-/// The project with six rendered trials, their positions by `forstner` and the example that declares them.
+/// The project with four rendered trials, their positions by `forstner` and the example that declares them.
 fn project() -> tempfile::TempDir {
     let project = with_plugins(&[]);
     std::fs::copy(root().join("examples/plugins/recorded.toml"), project.path().join("methods/recorded.toml")).unwrap();
@@ -130,6 +130,43 @@ fn trials_are_rendered_together_as_they_are_alone() {
         let own = text(&one, name);
         assert_eq!(of_one(text(&all, name)), own.split_once('\n').unwrap().1.trim_end(), "{name}");
     }
-    let refused = run(project.path(), &["render", "corners/exact", "--trials", "2", "-o", "none"]);
-    assert_eq!(refused.status.code(), Some(2));
+    let refused = run(project.path(), &["render", "galo-2011/corners", "--trials", "2", "-o", "none"]);
+    assert!(refused.status.code() == Some(2) && stderr(&refused).contains("nothing is random"), "{}", stderr(&refused));
+}
+
+const PHOTOGRAPHS: &str = r#"
+why = "Three photographs."
+source = "a test"
+
+[photographs]
+folder = "opencv-left"
+files = ["left01.jpg", "left02.jpg", "left03.jpg"]
+board = "9x6"
+
+[[method]]
+name = "forstner"
+"#;
+
+/// Photographs and corners are known by their names.
+#[cfg_attr(not(photographs), ignore = "the photographs left01.jpg to left14.jpg are absent: see the README, `Data`")]
+#[test]
+fn photographs_of_a_scenario_have_files_of_positions_too() {
+    let toml = "[[method]]\nname = \"recorded\"\nfile = \"mine.csv\"\nphotographs = \"photographs/few\"\n";
+    let project = with_plugins(&[("recorded.toml", toml)]);
+    std::fs::write(project.path().join("scenarios/photographs/few.toml"), PHOTOGRAPHS).unwrap();
+    let positions = |method: &str| -> Vec<String> {
+        let records = table(&project.path().join("records/photographs/few/records.csv.gz"));
+        let cells = records.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+        let own = cells.filter(|cells| cells[4].split(':').next() == Some(method));
+        own.map(|cells| [&cells[2..4], &cells[6..8]].concat().join(",")).collect()
+    };
+    assert!(run(project.path(), &["run", "photographs/few", "-q"]).status.success());
+    let own = positions("forstner");
+    std::fs::write(project.path().join("methods/mine.csv"), format!("image,target,x,y\n{}\n", own.join("\n"))).unwrap();
+    let output = run(project.path(), &["run", "photographs/few", "-q", "-m", "recorded"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(own.len() == 3 * 54 && positions("recorded") == own);
+    std::fs::write(project.path().join("methods/mine.csv"), "image,target,x,y\nleft04.jpg,r1c1,3,4\n").unwrap();
+    let output = run(project.path(), &["run", "photographs/few", "-q", "-m", "recorded"]);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("no photograph of"), "{}", stderr(&output));
 }

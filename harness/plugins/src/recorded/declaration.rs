@@ -1,6 +1,7 @@
 //! The `[[method]]` tables of a file of plug-ins.
 
 use calibench_diagnostics::Problem;
+use calibench_model::{CornerPoint, PixelPoint};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -19,8 +20,31 @@ pub struct Recording {
     pub version: String,
     /// The file, seen from that of the declaration.
     pub file: String,
+    /// What its position (0, 0) is.
+    pub origin: Origin,
     /// Which images were measured.
     pub images: Images,
+}
+
+/// What the position (0, 0) of a file is.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Origin {
+    /// The centre of the first pixel.
+    #[default]
+    Centre,
+    /// Its outer corner.
+    Corner,
+}
+
+impl Origin {
+    /// A position of the file as ours.
+    pub fn position(self, at: PixelPoint) -> PixelPoint {
+        match self {
+            Self::Centre => at,
+            Self::Corner => CornerPoint { x: at.x, y: at.y }.to_pixel(),
+        }
+    }
 }
 
 /// Which images were measured.
@@ -40,6 +64,8 @@ pub(crate) struct Wire {
     source: Option<String>,
     version: Option<String>,
     file: Spanned<String>,
+    #[serde(default)]
+    origin: Origin,
     images: Option<Spanned<String>>,
     photographs: Option<Spanned<String>>,
 }
@@ -47,7 +73,7 @@ pub(crate) struct Wire {
 /// The checked declaration of `file`; mistakes are added to `problems`.
 pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Recording> {
     let before = problems.len();
-    let Wire { name, about, source, version, file: positions, images, photographs } = wire;
+    let Wire { name, about, source, version, file: positions, origin, images, photographs } = wire;
     if !is_name(name.as_ref()) {
         let message = format!("`{}` is no name of a method: expected small letters, digits and _, a letter first", name.as_ref());
         problems.push(Problem::new(name.span(), message));
@@ -75,6 +101,7 @@ pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Op
         version: version.unwrap_or_else(|| "0".to_owned()),
         name: name.into_inner(),
         file: positions.into_inner(),
+        origin,
         images,
     })
 }

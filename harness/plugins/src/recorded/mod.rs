@@ -16,7 +16,7 @@ use crate::declaration::leak;
 use crate::program::short;
 use operator::Recalled;
 
-pub use declaration::{Images, Recording};
+pub use declaration::{Images, Origin, Recording};
 pub(crate) use declaration::{Wire as RecordingWire, checked};
 pub use positions::Positions;
 

@@ -9,7 +9,7 @@ use calibench_exchange::{Fingerprint, Groups, Names, PointFile, PointRef, Points
 use calibench_measure::{ImageId, Known, RunId};
 use calibench_model::{Measurement, Rejection};
 
-use super::declaration::{Images, Recording};
+use super::declaration::{Images, Origin, Recording};
 
 /// The positions of a file. They take as much memory as the file has rows, whatever is run.
 pub struct Positions {
@@ -17,13 +17,18 @@ pub struct Positions {
     pub file: String,
     path: PathBuf,
     scenario: String,
-    /// Where images are rendered: the seed, and the images by trial and view.
-    rendered: Option<(u64, BTreeMap<u64, HashMap<String, (String, Fingerprint)>>)>,
+    origin: Origin,
+    /// Where images are rendered: the seed, and the images.
+    rendered: Option<(u64, ByTrial)>,
     points: Points,
     by_image: Groups,
-    /// Rows without a position, by image and target.
-    lost: HashMap<String, HashMap<String, Rejection>>,
+    lost: Lost,
 }
+
+/// The name and the fingerprint of each image, by trial and view.
+type ByTrial = BTreeMap<u64, HashMap<String, (String, Fingerprint)>>;
+/// Why rows have no position, by image and target.
+type Lost = HashMap<String, HashMap<String, Rejection>>;
 
 /// An image that has a row: its name in the file, and by what it is known again.
 pub struct Found<'a> {
@@ -54,7 +59,7 @@ impl Positions {
         let lost = lost(&file).map_err(|why| format!("{}: {why}", path.display()))?;
         let rendered = rendered.map(|(seed, images)| (seed, by_trial(images)));
         let by_image = file.points.by_image();
-        Ok(Self { file: recording.file.clone(), path, scenario, rendered, points: file.points, by_image, lost })
+        Ok(Self { file: recording.file.clone(), path, origin: recording.origin, scenario, rendered, points: file.points, by_image, lost })
     }
 
     /// How many positions and images there are.
@@ -91,12 +96,11 @@ impl Positions {
         }
         // It is read again for the line.
         let whose = format!("the scenario `{}`", self.scenario);
-        let check: Check<'_> = &|row| match () {
-            () if of_photographs && !photographs.contains(&row.image) => {
-                Err(("image", stranger("photograph", row.image, &whose, photographs)))
+        let check: Check<'_> = &|row| {
+            if of_photographs && !photographs.contains(&row.image) {
+                return Err(("image", stranger("photograph", row.image, &whose, photographs)));
             }
-            () if !targets.contains(&row.target) => Err(("target", stranger("target", row.target, &whose, targets))),
-            () => Ok(()),
+            if targets.contains(&row.target) { Ok(()) } else { Err(("target", stranger("target", row.target, &whose, targets))) }
         };
         read_points_checked(&self.path, check).map(|_| ()).map_err(|error| error.to_string())
     }
@@ -118,7 +122,9 @@ impl Positions {
         let rows = place.into_iter().flat_map(|place| self.by_image.of_group(place));
         let rows: HashMap<usize, usize> = rows.map(|row| (self.points.target_of(row), row)).collect();
         let one = |target: &&str| match self.points.targets().find(target).and_then(|target| rows.get(&target)) {
-            Some(&row) => Ok(Measurement { position: self.points.position(row), covariance: self.points.covariance(row) }),
+            Some(&row) => {
+                Ok(Measurement { position: self.origin.position(self.points.position(row)), covariance: self.points.covariance(row) })
+            }
             None => Err(lost.and_then(|lost| lost.get(*target)).copied().unwrap_or(Rejection::NotGiven)),
         };
         Some(targets.iter().map(one).collect())
@@ -134,8 +140,8 @@ fn of_one_run(images: &[RenderedImage]) -> Result<(String, u64), String> {
     }
 }
 
-fn by_trial(images: Vec<RenderedImage>) -> BTreeMap<u64, HashMap<String, (String, Fingerprint)>> {
-    let mut found: BTreeMap<u64, HashMap<String, (String, Fingerprint)>> = BTreeMap::new();
+fn by_trial(images: Vec<RenderedImage>) -> ByTrial {
+    let mut found = ByTrial::new();
     for RenderedImage { image, trial, view, fingerprint, .. } in images {
         found.entry(trial).or_default().insert(view, (image, fingerprint));
     }
@@ -143,8 +149,8 @@ fn by_trial(images: Vec<RenderedImage>) -> BTreeMap<u64, HashMap<String, (String
 }
 
 /// Rows without a position: what measured says why, in its own words or in ours.
-fn lost(file: &PointFile) -> Result<HashMap<String, HashMap<String, Rejection>>, String> {
-    let mut found: HashMap<String, HashMap<String, Rejection>> = HashMap::new();
+fn lost(file: &PointFile) -> Result<Lost, String> {
+    let mut found = Lost::new();
     for [image, target, _, reason] in file.lost.iter() {
         let why = Rejection::ALL.into_iter().find(|why| why.name() == reason).unwrap_or(Rejection::Declined);
         if found.entry(image.to_owned()).or_default().insert(target.to_owned(), why).is_some() {

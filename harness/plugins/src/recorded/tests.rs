@@ -92,6 +92,8 @@ fn a_file_of_other_images_is_of_no_use() {
     assert!(method.recorded().unwrap().unfit(&RUN).unwrap().contains("give `images`"));
     assert_eq!(method.recorded().unwrap().unfit(&RunId { photographs: true, ..RUN }), None);
     assert_eq!(said(&method, 0, "a-1.png", 7)[1], Ok([5.0, 6.0]), "photographs are known by their names");
+    let corner = configured(folder.path(), &format!("{photographs}origin = \"corner\"\n")).unwrap();
+    assert_eq!(said(&corner, 0, "a-1.png", 7)[1], Ok([4.5, 5.5]), "the centre of the first pixel is (0.5, 0.5) there");
 }
 
 #[test]
@@ -143,6 +145,7 @@ fn every_mistake_in_a_declaration_has_its_place() {
         ("images = \"pictures\"\n", "", "2:8", "does not say which images were measured"),
         ("images", "photographs = \"s/t\"\nimages", "4:15", "`photographs` stands beside `images`"),
         ("images", "image", "4:1", "unknown field `image`"),
+        ("images", "origin = \"left\"\nimages", "4:10", "unknown variant `left`"),
         ("file = \"mine.csv\"\n", "", "1:1", "missing field `file`"),
     ] {
         let message = parse("a.toml", &TOML.replacen(old, new, 1)).expect_err(new).to_string();
