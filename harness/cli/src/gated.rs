@@ -172,7 +172,7 @@ fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Resul
         return Ok(());
     };
     let (registry, tools) = (context.registry()?, context.toolbox.tools());
-    let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, tools, data: context.data()?, registry };
+    let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, tools, data: context.data()?, registry, stop: None };
     store::run_sweep(&output, &plan, &revision, &|| ())?;
     Ok(())
 }

@@ -43,6 +43,16 @@ pub struct PartPlace {
     again: bool,
 }
 
+impl Place {
+    /// For a run of the code's `revision`.
+    pub fn of_run<'a>(&'a self, revision: &'a str) -> calibench_run::Place<'a> {
+        match self {
+            Self::Records(folder) => calibench_run::Place::Records(folder),
+            Self::Part(part) => calibench_run::Place::Part(part.wanted(revision)),
+        }
+    }
+}
+
 impl PartPlace {
     /// The part that is wanted.
     pub fn wanted<'a>(&'a self, revision: &'a str) -> Wanted<'a> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use calibench_measure::Registry;
-use calibench_plugins::{Confinement, check, confine_and_execute, method, parse};
+use calibench_plugins::{Confinement, Declaration, Declared, Finding, Launcher, Recording, check, confine_and_execute, method, parse};
 use calibench_project::ProjectError;
 use clap::{Args, Subcommand};
 
@@ -34,28 +34,54 @@ impl PluginCommand {
 
 fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
     let text = std::fs::read_to_string(file).map_err(|error| Failure::input(format!("{}: {error}", file.display())))?;
-    let declarations = parse(&file.display().to_string(), &text).map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
+    let declared = parse(&file.display().to_string(), &text).map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
     let folder = file.canonicalize()?.parent().map(Path::to_owned).unwrap_or_default();
     let launcher = context.launcher()?;
     let mut failed = false;
-    for declaration in declarations {
-        let name = declaration.name.clone();
-        let registry = Registry::default().with(method(declaration, &folder, &launcher));
-        let configured = registry.configure(&name, &[])?;
-        print(&format!("{} {}\n", configured.label, configured.version))?;
-        for finding in check(&configured) {
-            failed |= finding.wrong.is_some();
-            let line = match &finding.wrong {
-                None => format!("  ok      {}\n", finding.what),
-                Some(wrong) => format!("  FAILED  {}: {wrong}\n", finding.what),
-            };
-            print(&line)?;
-        }
-        if let Ok(operator) = &configured.operator {
-            operator.notes().iter().try_for_each(|note| print(&format!("  note    {note}\n")))?;
-        }
+    for declared in declared {
+        failed |= match declared {
+            Declared::Program(declaration) => program_fails(declaration, &folder, &launcher)?,
+            Declared::Recording(recording) => recording_fails(recording, &folder)?,
+        };
     }
     if failed { Err(Failure::Gate) } else { Ok(()) }
+}
+
+/// Tries a program and says what it does; whether anything fails.
+fn program_fails(declaration: Declaration, folder: &Path, launcher: &Launcher) -> Result<bool, Failure> {
+    let (name, mode) = (declaration.name.clone(), declaration.mode.clone());
+    let registry = Registry::default().with(method(declaration, folder, launcher));
+    let configured = registry.configure(&name, &[])?;
+    print(&format!("{} {}\n", configured.label, configured.version))?;
+    let mut failed = false;
+    for Finding { what, wrong } in check(&configured, &mode) {
+        failed |= wrong.is_some();
+        say_finding(what, wrong.as_deref())?;
+    }
+    if let Ok(operator) = &configured.operator {
+        operator.notes().iter().try_for_each(|note| print(&format!("  note    {note}\n")))?;
+    }
+    Ok(failed)
+}
+
+/// Reads a file of positions; whether anything is wrong with it.
+fn recording_fails(recording: Recording, folder: &Path) -> Result<bool, Failure> {
+    let read = recording.read(folder);
+    let method = recording.method(folder);
+    print(&format!("{} {}\n", method.name, method.version))?;
+    say_finding("its file and its images are read", read.as_ref().err().map(String::as_str))?;
+    if let Ok(positions) = &read {
+        let [points, images] = positions.counts();
+        print(&format!("  note    {points} positions in {images} images\n"))?;
+    }
+    Ok(read.is_err())
+}
+
+fn say_finding(what: &str, wrong: Option<&str>) -> Result<(), Failure> {
+    print(&match wrong {
+        None => format!("  ok      {what}\n"),
+        Some(wrong) => format!("  FAILED  {what}: {wrong}\n"),
+    })
 }
 
 /// The restrictions of a plug-in, and its command.

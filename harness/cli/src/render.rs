@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::{NewFolder, Points, encode_png};
-use calibench_model::Start;
+use calibench_exchange::{Fingerprint, NewFolder, Points, RENDERED, RenderedImage, encode_png, write_rendered};
 use calibench_model::camera::CameraModel;
+use calibench_model::{Image, Start};
 use calibench_random::Key;
 use calibench_records::names::kept_image_name;
 use calibench_run::views::{self, Prepared, PreparedView};
@@ -33,6 +33,9 @@ pub struct Render {
     /// Which trial, counted from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     trial: u64,
+    /// The first N trials in place of one; the names of images and what is written of each say the trial
+    #[arg(long, value_name = "N", conflicts_with = "trial", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    trials: Option<u64>,
     /// Seed in place of the scenario's
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
@@ -46,30 +49,63 @@ pub struct Render {
 
 /// What is said of an image that was drawn.
 struct Drawn<'p> {
-    name: &'p str,
-    row: truth::StationRow<'p>,
+    row: truth::StationRow,
     starts: Vec<(&'p str, Start)>,
+    listed: RenderedImage,
+    notes: Vec<String>,
+}
+
+/// What is written of all trials together.
+#[derive(Default)]
+struct Lists {
+    images: Vec<RenderedImage>,
+    starts: Points,
     notes: Vec<String>,
 }
 
 impl Render {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let scenario = context.scenario(&self.scenario)?;
+        if self.trials.is_some_and(|trials| trials > 1) && scenario.is_deterministic() {
+            let message = format!("--trials: nothing is random in `{}`, every trial would be the same; expected 1", scenario.name);
+            return Err(Failure::input(message));
+        }
         let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario))?;
-        let key = Key { seed: self.seed.unwrap_or(scenario.seed), scenario: &scenario.name, trial: self.trial, view: "", target: "" };
-        let mut notes = Vec::new();
+        let seed = self.seed.unwrap_or(scenario.seed);
+        let key = |trial| Key { seed, scenario: &scenario.name, trial, view: "", target: "" };
+        let trials = self.trials.map_or(self.trial..self.trial + 1, |trials| 0..trials);
+        let mut lists = Lists::default();
         output.replace::<RunError>(|folder| {
-            notes = match &scenario.subject {
-                Subject::Views(subject) => self.views(context, &scenario, subject, key, folder)?,
-                Subject::Scene(subject) => self.scene(subject, key, folder)?,
+            match &scenario.subject {
+                Subject::Views(subject) => self.views(context, &scenario, subject, trials.map(key), folder, &mut lists)?,
+                Subject::Scene(subject) => trials.map(key).try_for_each(|key| self.scene(subject, key, folder, &mut lists))?,
                 Subject::Photographs(_) | Subject::Printed(_) => return Err(RunError::NothingToRender),
-            };
-            Ok(())
+            }
+            truth::write_starts(folder, "starts.csv", &lists.starts)?;
+            Ok(folder.write(RENDERED, |file| write_rendered(file, &lists.images))?)
         })?;
+        let mut notes = lists.notes;
         if let Some(sweep) = &scenario.sweep {
             notes.insert(0, format!("of the sweep's {} cells the first: {}", sweep.cells(), sweep.label(0)));
         }
         print(&format!("{}\n{}", self.output.display(), notes.iter().map(|note| format!("  {note}\n")).collect::<String>()))
+    }
+
+    /// What is written of `view` is called so.
+    fn name(&self, view: &str, key: Key<'_>) -> String {
+        if self.trials.is_some() { format!("{view}-trial-{:04}", key.trial) } else { view.to_owned() }
+    }
+
+    /// An image in the list of images.
+    fn listed(&self, view: &str, (image, deep): (&Image, bool), key: Key<'_>) -> RenderedImage {
+        RenderedImage {
+            image: kept_image_name(&self.name(view, key)),
+            scenario: key.scenario.to_owned(),
+            seed: key.seed,
+            trial: key.trial,
+            view: view.to_owned(),
+            fingerprint: Fingerprint::of(image, deep),
+        }
     }
 
     /// Draws the image of one station.
@@ -81,53 +117,73 @@ impl Render {
         key: Key<'_>,
         folder: &NewFolder,
     ) -> Result<Drawn<'p>, RunError> {
-        let name = &view.station.name;
+        let name = self.name(&view.station.name, key);
         let exposure = prepared.image(view, key)?;
-        folder.write(&kept_image_name(name), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
+        folder.write(&kept_image_name(&name), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
         if self.noise_free {
             folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
         }
-        truth::write_view(folder, &format!("{name}.csv"), subject, view)?;
-        let clipped = truth::clipping_note(name, exposure.clipped, exposure.image.grey().len());
+        truth::write_view(folder, &name, subject, view)?;
+        let clipped = truth::clipping_note(&name, exposure.clipped, exposure.image.grey().len());
         Ok(Drawn {
-            name,
-            row: truth::StationRow::new(view.station, exposure.clipped),
+            row: truth::StationRow::new(view.station, &name, exposure.clipped),
             starts: views::starts(prepared, view, &exposure.image, key),
-            notes: clipped.into_iter().chain(truth::warnings(subject, view)).collect(),
+            listed: self.listed(&view.station.name, (&exposure.image, prepared.is_deep()), key),
+            notes: clipped.into_iter().chain(truth::warnings(subject, view, &name)).collect(),
         })
     }
 
-    fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &NewFolder) -> Result<Vec<String>, RunError> {
+    fn scene(&self, subject: &SceneSubject, key: Key<'_>, folder: &NewFolder, lists: &mut Lists) -> Result<(), RunError> {
         if let Some(name) = self.stations.iter().find(|name| *name != VIEW) {
             return Err(RunError::NoStation { name: name.clone(), known: VIEW.into() });
         }
-        let key = Key { view: VIEW, ..key };
+        let (key, name) = (Key { view: VIEW, ..key }, self.name(VIEW, key));
         let scene = trial_truth(subject, key);
         let renderer = subject.renderer()?;
         let exposure = trial_picture(subject, &renderer, &scene, key)?;
-        folder.write(&kept_image_name(VIEW), |file| encode_png(file, &exposure.image, subject.is_deep()))?;
+        folder.write(&kept_image_name(&name), |file| encode_png(file, &exposure.image, subject.is_deep()))?;
         if self.noise_free {
             let picture = calibench_synth::raster::Picture::from(&scene);
             let noise_free = renderer.render(&picture, &[]);
-            folder.write(&format!("{VIEW}{NOISE_FREE}.png"), |file| encode_png(file, &noise_free, true))?;
+            folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &noise_free, true))?;
         }
-        truth::write_scene(folder, &format!("{VIEW}.csv"), &scene)?;
-        let mut points = Points::default();
+        truth::write_scene(folder, &name, &scene)?;
         for (target, start) in scene.targets.iter().zip(starts(subject, &exposure.image, &scene, key)) {
-            start.into_iter().for_each(|start| points.push(&kept_image_name(VIEW), &target.id, start));
+            start.into_iter().for_each(|start| lists.starts.push(&kept_image_name(&name), &target.id, start));
         }
-        truth::write_starts(folder, "starts.csv", &points)?;
-        Ok(truth::clipping_note(VIEW, exposure.clipped, exposure.image.grey().len()).into_iter().collect())
+        lists.images.push(self.listed(VIEW, (&exposure.image, subject.is_deep()), key));
+        lists.notes.extend(truth::clipping_note(&name, exposure.clipped, exposure.image.grey().len()));
+        Ok(())
     }
 
-    fn views(
+    fn views<'k>(
+        &self,
+        context: &Context<'_>,
+        scenario: &Scenario,
+        subject: &ViewsSubject,
+        trials: impl Iterator<Item = Key<'k>>,
+        folder: &NewFolder,
+        lists: &mut Lists,
+    ) -> Result<(), RunError> {
+        let mut rows = Vec::new();
+        for key in trials {
+            rows.extend(self.trial(context, scenario, subject, key, folder, lists)?);
+        }
+        truth::write_stations(folder, "stations.csv", &rows)?;
+        truth::write_control(folder, "control.csv", subject)?;
+        Ok(truth::write_camera(folder, "camera", &subject.camera)?)
+    }
+
+    /// Draws the images of one trial: the rows of its stations.
+    fn trial(
         &self,
         context: &Context<'_>,
         scenario: &Scenario,
         subject: &ViewsSubject,
         key: Key<'_>,
         folder: &NewFolder,
-    ) -> Result<Vec<String>, RunError> {
+        lists: &mut Lists,
+    ) -> Result<Vec<truth::StationRow>, RunError> {
         let drawn = subject.stations_of(key)?;
         if let Some(unknown) = self.stations.iter().find(|name| drawn.iter().all(|station| station.name != **name)) {
             let known: Vec<&str> = drawn.iter().map(|station| station.name.as_str()).collect();
@@ -142,30 +198,27 @@ impl Render {
             progress.step();
             drawn
         };
-        let (mut notes, mut rows, mut points) = (Vec::new(), Vec::new(), Points::default());
+        let mut rows = Vec::new();
         // In batches: as many images as threads are in memory, and a thread that waits for the bands of its image does not begin with another one.
         for batch in prepared.views.chunks(rayon::current_num_threads()) {
             let drawn = batch.par_iter().map(draw).collect::<Vec<Result<Drawn<'_>, RunError>>>();
             for one in drawn {
                 let one = one?;
-                one.starts.into_iter().for_each(|(target, start)| points.push(&kept_image_name(one.name), target, start));
-                notes.extend(one.notes);
+                one.starts.into_iter().for_each(|(target, start)| lists.starts.push(&one.listed.image, target, start));
+                lists.notes.extend(one.notes);
+                lists.images.push(one.listed);
                 rows.push(one.row);
             }
         }
-        truth::write_stations(folder, "stations.csv", &rows)?;
-        truth::write_starts(folder, "starts.csv", &points)?;
-        truth::write_control(folder, "control.csv", subject)?;
-        truth::write_camera(folder, "camera", &subject.camera)?;
         if let Some(local) = subject.local_of(key)? {
-            let name = format!("{LOCAL_DISTORTION}.csv");
+            let name = format!("{}.csv", self.name(LOCAL_DISTORTION, key));
             truth::write_local(folder, &name, &local, subject.camera.size())?;
             let LocalDesign { sigma, correlation } = local.design();
-            notes.push(format!(
+            lists.notes.push(format!(
                 "the camera's local distortion ({sigma} px, correlation {correlation} px) is in {name} and in no camera file"
             ));
         }
         progress.finish(&format!("{} images", stations.len()));
-        Ok(notes)
+        Ok(rows)
     }
 }

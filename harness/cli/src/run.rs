@@ -3,9 +3,8 @@
 use std::time::Instant;
 
 use calibench_measure::Configured;
-use calibench_run::store::{self, SweepPlan};
-use calibench_run::{Plan, parts};
-use calibench_scenario::{Scenario, Subject, Sweep, Transfer};
+use calibench_run::{Order, Plan, Planned, Ran};
+use calibench_scenario::{Scenario, Subject, Transfer};
 use clap::Args;
 
 use super::context::{Context, Pictured};
@@ -82,10 +81,7 @@ impl Run {
         let beside = scenarios.len() > 1 && lanes() > 1;
         let task = |(scenario, place)| Task { scenario, place, methods: &methods, revision: &revision, beside };
         let tasks: Vec<Task<'_>> = scenarios.iter().zip(&places).map(task).collect();
-        let measured = side_by_side(&tasks, lanes(), |task| match &task.scenario.sweep {
-            Some(sweep) => self.sweep(context, task, sweep),
-            None => self.one(context, task),
-        })?;
+        let measured = side_by_side(&tasks, lanes(), |task| self.one(context, task))?;
         let nothing: Vec<&str> =
             scenarios.iter().zip(measured).filter(|(_, points)| *points == Some(0)).map(|(s, _)| s.name.as_str()).collect();
         // Of all that there is, some may be unavailable here; what was asked for by name may not.
@@ -98,89 +94,48 @@ impl Run {
     /// How many points were measured, of all trials; of a part nothing is said here.
     fn one(&self, context: &Context<'_>, task: &Task<'_>) -> Result<Option<u64>, Failure> {
         let Task { scenario, place, methods, revision, .. } = *task;
-        let mut plan = Plan::new(scenario, context.toolbox.tools(), context.data()?);
-        if !methods.is_empty() {
-            plan.methods = methods;
-        }
-        own_methods(scenario, methods)?;
-        if let Some(warning) = plan.transfer().and_then(Transfer::warning) {
-            say!("{}: {warning}", scenario.name);
-        }
-        plan.seed = self.changes.seed.unwrap_or(scenario.seed);
-        plan.trials = trials(scenario, self.changes.trials)?;
-        if let (Subject::Photographs(subject), None) = (&scenario.subject, plan.missing()) {
-            let photos = plan.data.join(&subject.folder);
-            say_turns(&subject.files.iter().map(|file| photos.join(file)).collect::<Vec<_>>())?;
-        }
-        if let Place::Part(part) = place {
-            plan.only = Some(parts::trials(&plan, part.part));
-        }
-        let started = Instant::now();
-        let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
-        let measured = match place {
-            Place::Records(folder) => {
-                let measured = store::run(folder, &mut plan, revision, &|| progress.step())?;
-                progress.finish(&summary(&plan, &task.time(started)));
-                Some(measured)
-            }
-            Place::Part(part) => {
-                let done = parts::run(&part.wanted(revision), &plan, &|| progress.step())?;
-                progress.finish(&told(&done, plan.missing(), &task.time(started)));
-                None
-            }
-        };
-        say_notes(plan.methods);
-        Ok(measured)
-    }
-
-    fn sweep(&self, context: &Context<'_>, task: &Task<'_>, sweep: &Sweep) -> Result<Option<u64>, Failure> {
-        let Task { scenario, place, methods, revision, .. } = *task;
-        if sweep.changes_methods() && !methods.is_empty() {
-            return Err(Failure::input(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
-        }
-        own_methods(scenario, methods)?;
         let Changes { seed, trials, .. } = self.changes;
-        let (registry, tools) = (context.registry()?, context.toolbox.tools());
-        let plan = SweepPlan { scenario, sweep, methods, seed, trials, tools, data: context.data()?, registry };
-        let (started, cells) = (Instant::now(), sweep.cells());
-        let parts = if let Place::Part(part) = place { part.part.of() } else { 1 };
-        let progress = Progress::start(&scenario.name, (cells as u64).div_ceil(parts), context.quiet);
-        let measured = match place {
-            Place::Records(folder) => {
-                let measured = store::run_sweep(folder, &plan, revision, &|| progress.step())?;
-                let trials = trials.unwrap_or(scenario.trials);
-                progress.finish(&format!("{cells} cells of {trials} trials {}", task.time(started)));
-                Some(measured)
+        let (registry, tools, data) = (context.registry()?, context.toolbox.tools(), context.data()?);
+        let mut planned = Order { scenario, methods, trials, seed, tools, data, registry, stop: None }.planned()?;
+        if let Planned::One(plan) = &planned {
+            say_before(plan)?;
+        }
+        let place = place.of_run(revision);
+        let started = Instant::now();
+        let progress = Progress::start(&scenario.name, planned.steps(&place), context.quiet);
+        let ran = planned.run(&place, revision, &|| progress.step())?;
+        progress.finish(&self.told(&planned, &ran, &task.time(started)));
+        say_notes(planned.methods());
+        Ok(match ran {
+            Ran::Whole(measured) => Some(measured),
+            Ran::Part(_) => None,
+        })
+    }
+
+    /// What was run.
+    fn told(&self, planned: &Planned<'_>, ran: &Ran, time: &str) -> String {
+        match (planned, ran) {
+            (Planned::One(plan), Ran::Whole(_)) => summary(plan, time),
+            (Planned::One(plan), Ran::Part(done)) => told(done, plan.missing(), time),
+            (Planned::Sweep(_), Ran::Part(done)) => told(done, None, time),
+            (Planned::Sweep(plan), Ran::Whole(_)) => {
+                let trials = self.changes.trials.unwrap_or(plan.scenario.trials);
+                format!("{} cells of {trials} trials {time}", plan.sweep.cells())
             }
-            Place::Part(part) => {
-                let done = parts::run_sweep(&part.wanted(revision), &plan, &|| progress.step())?;
-                progress.finish(&told(&done, None, &task.time(started)));
-                None
-            }
-        };
-        say_notes(if methods.is_empty() { &scenario.methods } else { methods });
-        Ok(measured)
+        }
     }
 }
 
-/// Calibrations that are applied, and printed figures, are a scenario's own: none of the methods that measure takes their place.
-fn own_methods(scenario: &Scenario, methods: &[Configured]) -> Result<(), Failure> {
-    let own = match &scenario.subject {
-        Subject::Views(views) => views.transfer.is_some(),
-        subject => matches!(subject, Subject::Printed(_)),
-    };
-    let message = || format!("-m: `{}` measures nothing: its calibrations or printed figures are its own; leave out -m", scenario.name);
-    if own && !methods.is_empty() { Err(Failure::input(message())) } else { Ok(()) }
-}
-
-fn trials(scenario: &Scenario, asked: Option<u64>) -> Result<u64, Failure> {
-    match asked {
-        Some(trials) if trials > 1 && scenario.is_deterministic() => Err(Failure::input(format!(
-            "--trials {trials}: nothing is random in `{}`, every trial would be the same; expected 1",
-            scenario.name
-        ))),
-        asked => Ok(asked.unwrap_or(scenario.trials)),
+/// Says what is doubtful of a scenario, and how its photographs are turned.
+fn say_before(plan: &Plan<'_>) -> Result<(), Failure> {
+    if let Some(warning) = plan.transfer().and_then(Transfer::warning) {
+        say!("{}: {warning}", plan.scenario.name);
     }
+    if let (Subject::Photographs(subject), None) = (&plan.scenario.subject, plan.missing()) {
+        let photos = plan.data.join(&subject.folder);
+        say_turns(&subject.files.iter().map(|file| photos.join(file)).collect::<Vec<_>>())?;
+    }
+    Ok(())
 }
 
 fn summary(plan: &Plan<'_>, time: &str) -> String {

@@ -74,8 +74,10 @@ impl SpeedCommand {
     /// Every method in every round; what the machine does beside it hits all of them.
     fn time(&self, scenario: &Scenario, methods: &[Configured], image: &Image, starts: &[Start], step: &dyn Fn()) -> Vec<Speed> {
         let of = |method: &Configured| starts.iter().copied().filter(|start| method.measures(start.kind)).collect::<Vec<_>>();
+        // What was recorded takes no time.
+        let measures = |method: &&Configured| method.recorded().is_none();
         let operators: Vec<(&Configured, &dyn Operator, Vec<Start>)> =
-            methods.iter().filter_map(|method| Some((method, method.operator.as_deref().ok()?, of(method)))).collect();
+            methods.iter().filter(measures).filter_map(|method| Some((method, method.operator.as_deref().ok()?, of(method)))).collect();
         let mut found: Vec<Vec<f64>> = vec![Vec::new(); operators.len()];
         for _ in 0..self.rounds {
             for ((_, operator, starts), rates) in operators.iter().zip(&mut found) {

@@ -53,6 +53,14 @@ pub enum MethodError {
         /// What is wrong with them.
         error: KindsError,
     },
+    /// A method from outside whose files are wrong.
+    #[error("`{method}`: {problem}")]
+    File {
+        /// The method.
+        method: String,
+        /// What is wrong, with its place.
+        problem: String,
+    },
     /// Not of the form `name:key=value,key=value`.
     #[error(
         "`{text}` is no method: expected `name` or `name:key=value,key=value`, as in `forstner:window=11`, or kinds of targets before it, as in \

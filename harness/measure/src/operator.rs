@@ -2,6 +2,8 @@
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
 
+use crate::recorded::Recorded;
+
 /// A way of measuring points in an image, with its parameters set.
 pub trait Operator: Send + Sync {
     /// Measures one point, starting at `start`.
@@ -34,6 +36,11 @@ pub trait Operator: Send + Sync {
     /// Whether the result depends on the grey values: true of all operators but the one that returns its start.
     fn reads_grey_values(&self) -> bool {
         true
+    }
+
+    /// What it was recorded as, if it does not measure but was recorded: it is asked by name then, and [`Self::measure`] finds nothing.
+    fn recorded(&self) -> Option<&dyn Recorded> {
+        None
     }
 
     /// What a reader of its results has to know of how they came about; asked for after measuring. Nothing, of operators that are part of this program.

@@ -8,6 +8,7 @@ use crate::error::MethodError;
 use crate::kinds::Kinds;
 use crate::operator::Operator;
 use crate::parameter::{ON_PHOTOGRAPHS, Parameter, SIGNIFICANCE, Settings};
+use crate::recorded::Recorded;
 
 /// A method as it is listed: an operator whose parameters are yet to be set.
 #[derive(Clone)]
@@ -31,8 +32,8 @@ pub struct Method {
 pub enum Build {
     /// From checked settings.
     With(fn(&Settings) -> Box<dyn Operator>),
-    /// From outside of this program: whether it can run, and as which version, is known when it is asked for.
-    Outside(Arc<dyn Fn(&Settings) -> Outside + Send + Sync>),
+    /// From outside of this program: whether it can run, and as which version, is known when it is asked for; or what is wrong with its files.
+    Outside(Arc<dyn Fn(&Settings) -> Result<Outside, String> + Send + Sync>),
     /// Not here, and why.
     Unavailable(&'static str),
 }
@@ -74,6 +75,11 @@ impl Configured {
     /// The method's name, without parameters.
     pub fn name(&self) -> &str {
         self.label.split(':').next().unwrap_or(&self.label)
+    }
+
+    /// What it was recorded as, if it was.
+    pub fn recorded(&self) -> Option<&dyn Recorded> {
+        self.operator.as_ref().ok()?.recorded()
     }
 
     /// Whether it measures targets of this kind. One that is limited measures none of which the kind is not known.
@@ -124,7 +130,7 @@ impl Registry {
     /// The method called `name`, with `given` parameters: keys, and values in the unit of the parameter.
     ///
     /// # Errors
-    /// An unknown method or parameter, a value outside its domain.
+    /// An unknown method or parameter, a value outside its domain, files of a method from outside that are wrong.
     pub fn configure(&self, name: &str, given: &[(String, f64)]) -> Result<Configured, MethodError> {
         let Some(method) = self.methods.iter().find(|m| m.name == name) else {
             let known = self.methods.iter().map(|m| m.name.to_owned()).collect();
@@ -134,7 +140,8 @@ impl Registry {
         let (version, operator) = match &method.build {
             Build::With(build) => (method.version.clone(), Ok(build(&settings))),
             Build::Outside(build) => {
-                let Outside { version, operator } = build(&settings);
+                let Outside { version, operator } =
+                    build(&settings).map_err(|problem| MethodError::File { method: name.to_owned(), problem })?;
                 (version, operator)
             }
             Build::Unavailable(why) => (method.version.clone(), Err((*why).to_owned())),

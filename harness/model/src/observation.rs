@@ -105,11 +105,15 @@ pub enum Rejection {
     TooSlow,
     /// The program of a method from outside ended.
     Ended,
+    /// The file that is the method has no position of the point.
+    NotGiven,
+    /// The file that is the method is of another image.
+    OtherImage,
 }
 
 impl Rejection {
     /// Every reason.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 17] = [
         Self::Border,
         Self::NotFinite,
         Self::NoCorner,
@@ -125,6 +129,8 @@ impl Rejection {
         Self::Malformed,
         Self::TooSlow,
         Self::Ended,
+        Self::NotGiven,
+        Self::OtherImage,
     ];
 
     /// The name in files.
@@ -145,6 +151,8 @@ impl Rejection {
             Self::Malformed => "malformed",
             Self::TooSlow => "too_slow",
             Self::Ended => "ended",
+            Self::NotGiven => "not_given",
+            Self::OtherImage => "other_image",
         }
     }
 
@@ -166,6 +174,8 @@ impl Rejection {
             Self::Malformed => "the method's answer cannot be read",
             Self::TooSlow => "the method took longer than it may",
             Self::Ended => "the method's program ended",
+            Self::NotGiven => "the method's file has no position of the point",
+            Self::OtherImage => "the method's file is of another image",
         }
     }
 }

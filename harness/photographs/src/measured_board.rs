@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_measure::{Board, BoardDetector, Configured};
+use calibench_measure::{Board, BoardDetector, Configured, ImageId};
 use calibench_model::{Image, PixelPoint, Start, TargetKind};
 use calibench_records::results::{Outcome, PointResult, Trial};
 
@@ -19,13 +19,20 @@ pub fn measured_board(image: &Image, view: &str, (detector, board): (&dyn BoardD
         ..Start::at(PixelPoint::new(corner.x.round(), corner.y.round()))
     };
     let starts: Vec<Start> = corners.iter().map(start).collect();
+    let names: Vec<String> = (0..starts.len()).map(|index| board.target(index)).collect();
     for (method, operator) in methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?))) {
-        for (index, result) in operator.measure_all(image, &starts).into_iter().enumerate() {
+        let results = match operator.recorded() {
+            Some(recorded) => {
+                recorded.recall(ImageId { trial: 0, view: &view }, image, &names.iter().map(String::as_str).collect::<Vec<_>>())
+            }
+            None => operator.measure_all(image, &starts),
+        };
+        for (index, result) in results.into_iter().enumerate() {
             let outcome = match result {
                 Ok(found) => Outcome::Measured { position: found.position, error: None },
                 Err(rejection) => Outcome::Rejected(rejection),
             };
-            trial.points.push(PointResult::new(view.clone(), board.target(index), method, outcome));
+            trial.points.push(PointResult::new(view.clone(), names[index].clone(), method, outcome));
         }
     }
     trial

@@ -4,6 +4,8 @@ use calibench_measure::conformance::chess_corner;
 use calibench_measure::{Configured, Operator};
 use calibench_model::{Image, PixelPoint, Rejection, Start};
 
+use crate::declaration::Mode;
+
 /// What one check found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
@@ -33,10 +35,14 @@ fn middle(dx: f64, dy: f64) -> Start {
 
 /// Tries a plug-in on small images: whether it answers, answers the same again, as many as were asked, on other sizes of images, and keeps to its word when an
 /// image shows nothing. How accurate it is, scenarios tell.
-pub fn check(method: &Configured) -> Vec<Finding> {
+pub fn check(method: &Configured, mode: &Mode) -> Vec<Finding> {
+    let starts = match mode {
+        Mode::Stream => "it starts and says its version",
+        Mode::Folder { .. } => "there is such a program",
+    };
     let operator = match &method.operator {
         Ok(operator) => operator.as_ref(),
-        Err(why) => return vec![Finding { what: "it starts and says its version", wrong: Some(why.clone()) }],
+        Err(why) => return vec![Finding { what: starts, wrong: Some(why.clone()) }],
     };
     let tries: [(&'static str, Try); 6] = [
         ("a chess corner is found within 3 px", found),
@@ -46,7 +52,7 @@ pub fn check(method: &Configured) -> Vec<Finding> {
         ("an image of another size is read whole", other_size),
         ("an image that shows nothing is no reason to fail", nothing),
     ];
-    let start = Finding { what: "it starts and says its version", wrong: None };
+    let start = Finding { what: starts, wrong: None };
     let tried = tries.into_iter().map(|(what, check)| Finding { what, wrong: check(operator).err() });
     std::iter::once(start).chain(tried).collect()
 }

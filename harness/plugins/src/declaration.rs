@@ -9,6 +9,8 @@ use calibench_measure::parameter::Domain;
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::recorded::{self, Recording, RecordingWire};
+
 /// A declared plug-in.
 #[derive(Clone, Debug)]
 pub struct Declaration {
@@ -20,6 +22,8 @@ pub struct Declaration {
     pub source: String,
     /// The program and its arguments; those that name a file beside the declaration are that file.
     pub command: Vec<String>,
+    /// How it is asked.
+    pub mode: Mode,
     /// Its parameters. Their texts live as long as the program, as those of built-in methods do.
     pub parameters: Vec<Parameter>,
     /// Which grey values it gets.
@@ -32,6 +36,18 @@ pub struct Declaration {
     pub memory: u64,
 }
 
+/// How a plug-in is asked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// By its standard input, image by image.
+    Stream,
+    /// By files; it is started for each image.
+    Folder {
+        /// Its version, which it cannot say itself.
+        version: String,
+    },
+}
+
 /// How grey values are written, row by row.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
@@ -39,7 +55,8 @@ pub enum Grey {
     /// A byte a pixel, 0 to 255.
     #[default]
     Gray8,
-    /// Two bytes a pixel, the lower one first, 0 to 65535.
+    /// Two bytes a pixel, 0 to 65535: in a stream the lower one first, in a folder PNG.
+    #[serde(alias = "gray16")]
     Gray16le,
     /// Four bytes a pixel, IEEE single precision, the lowest first, 0 to 1: the values as they are.
     Gray32f,
@@ -73,6 +90,8 @@ pub enum Starts {
 struct File {
     #[serde(default)]
     plugin: Vec<Spanned<Wire>>,
+    #[serde(default)]
+    method: Vec<Spanned<RecordingWire>>,
 }
 
 #[derive(Deserialize)]
@@ -83,6 +102,7 @@ struct Wire {
     source: Option<String>,
     command: Spanned<Vec<String>>,
     mode: Option<Spanned<String>>,
+    version: Option<Spanned<String>>,
     #[serde(default)]
     parameters: BTreeMap<String, Spanned<ParameterWire>>,
     #[serde(default)]
@@ -111,35 +131,59 @@ const MEMORY: &str = "2 GB";
 /// How near a detection must be to a target unless the file says otherwise, px.
 const RADIUS: f64 = 5.0;
 
-/// The plug-ins that `text` declares, which is that of `file`.
+/// What a file declares.
+#[derive(Clone, Debug)]
+pub enum Declared {
+    /// A program.
+    Program(Declaration),
+    /// A file of positions.
+    Recording(Recording),
+}
+
+impl Declared {
+    /// Its name among the methods.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Program(program) => &program.name,
+            Self::Recording(recording) => &recording.name,
+        }
+    }
+}
+
+/// The methods that `text` declares, which is that of `file`: programs, then files of positions.
 ///
 /// # Errors
 /// Every mistake with line and column.
-pub fn parse(file: &str, text: &str) -> Result<Vec<Declaration>, Problems> {
+pub fn parse(file: &str, text: &str) -> Result<Vec<Declared>, Problems> {
     let all = |problems| Problems { file: file.to_owned(), text: text.to_owned(), problems };
     let wire: File =
         toml::from_str(text).map_err(|error| all(vec![Problem::new(error.span().unwrap_or(0..0), error.message().to_owned())]))?;
-    if wire.plugin.is_empty() {
-        return Err(all(vec![Problem::new(0..0, "declares no plug-in: expected [[plugin]] with `name` and `command`")]));
+    if wire.plugin.is_empty() && wire.method.is_empty() {
+        let expected = "[[plugin]] with `name` and `command`, or [[method]] with `name`, `file` and `images`";
+        return Err(all(vec![Problem::new(0..0, format!("declares no plug-in: expected {expected}"))]));
     }
     let mut problems = Vec::new();
-    let found: Vec<Declaration> = wire.plugin.into_iter().filter_map(|plugin| checked(plugin.into_inner(), file, &mut problems)).collect();
+    let programs = wire.plugin.into_iter().filter_map(|plugin| checked(plugin.into_inner(), file, &mut problems));
+    let mut found: Vec<Declared> = programs.map(Declared::Program).collect();
+    let recordings = wire.method.into_iter().filter_map(|method| recorded::checked(method.into_inner(), file, &mut problems));
+    found.extend(recordings.map(Declared::Recording));
     if problems.is_empty() { Ok(found) } else { Err(all(problems)) }
 }
 
 fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declaration> {
     let before = problems.len();
     let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
-    let Wire { name, about, source, command, mode, parameters, image, starts, radius, seconds, memory } = wire;
+    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, seconds, memory } = wire;
     if !is_name(name.as_ref()) {
         wrong(name.span(), format!("`{}` is no name of a method: expected small letters, digits and _, a letter first", name.as_ref()));
     }
     if command.as_ref().first().is_none_or(String::is_empty) {
         wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
     }
-    if let Some(mode) = mode.filter(|mode| mode.as_ref() != "stream") {
-        wrong(mode.span(), format!("mode `{}` is not known: expected \"stream\"", mode.as_ref()));
-    }
+    let mode = mode_of(mode, version).unwrap_or_else(|(span, message)| {
+        wrong(span, message);
+        Mode::Stream
+    });
     let mut near = RADIUS;
     if let Some(radius) = &radius {
         near = *radius.as_ref();
@@ -181,6 +225,7 @@ fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declar
         source: source.unwrap_or_else(|| file.to_owned()),
         name: name.into_inner(),
         command: command.into_inner(),
+        mode,
         parameters: declared,
         grey: image,
         starts,
@@ -189,7 +234,22 @@ fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declar
     })
 }
 
-fn is_name(name: &str) -> bool {
+fn mode_of(mode: Option<Spanned<String>>, version: Option<Spanned<String>>) -> Result<Mode, (Range<usize>, String)> {
+    match (mode.as_ref().map_or("stream", |mode| mode.as_ref().as_str()), version) {
+        ("folder", version) => Ok(Mode::Folder { version: version.map_or_else(|| "0".to_owned(), Spanned::into_inner) }),
+        ("stream", None) => Ok(Mode::Stream),
+        ("stream", Some(version)) => {
+            Err((version.span(), "`version` is for mode = \"folder\": in a stream the program says it".to_owned()))
+        }
+        (other, _) => {
+            let span = mode.as_ref().map_or(0..0, Spanned::span);
+            Err((span, format!("mode `{other}` is not known: expected \"stream\" or \"folder\"")))
+        }
+    }
+}
+
+/// Whether a text may be a method's name.
+pub(crate) fn is_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 

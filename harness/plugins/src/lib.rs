@@ -1,4 +1,4 @@
-//! Methods that are programs of their own, in any language.
+//! Methods that are programs of their own, in any language, or files of what such programs measured.
 //!
 //! A TOML file declares a plug-in; its program is started once a thread and is asked image by image. What it is given is what any operator gets: the grey values
 //! and approximate positions, in an order that says nothing of the targets. Whatever it does, the run goes on: a point that it does not answer is rejected with
@@ -9,16 +9,19 @@ mod confine;
 mod conformance;
 mod declaration;
 mod error;
+mod folder;
 mod operator;
 mod process;
 mod program;
+mod recorded;
 mod request;
 
 pub use confine::{Confinement, confine_and_execute};
 pub use conformance::{Finding, check};
-pub use declaration::{Declaration, Grey, Starts, parse};
+pub use declaration::{Declaration, Declared, Grey, Mode, Starts, parse};
 pub use error::PluginError;
 pub use program::{Launcher, load, method};
+pub use recorded::{Images, Origin, Positions, Recording};
 
 #[cfg(test)]
 mod tests;

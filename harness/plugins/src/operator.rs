@@ -8,7 +8,8 @@ use calibench_random::{Key, Purpose, stream};
 use rand::seq::SliceRandom;
 
 use crate::answer::{Answer, Fault, read};
-use crate::declaration::Starts;
+use crate::declaration::{Mode, Starts};
+use crate::folder;
 use crate::program::Program;
 use crate::request::{body, head, rounds};
 
@@ -16,6 +17,11 @@ use crate::request::{body, head, rounds};
 const BYTES_A_POSITION: usize = 400;
 /// Detections in one image, at most.
 const MOST_DETECTED: usize = 100_000;
+
+/// The longest answer.
+fn bytes(starts: Option<&[Start]>) -> usize {
+    starts.map_or(MOST_DETECTED, <[Start]>::len) * BYTES_A_POSITION + 4096
+}
 
 /// A plug-in with its parameters set.
 pub struct Asked {
@@ -39,19 +45,28 @@ impl Asked {
         if rounds(image, grey) {
             self.program.tell(&format!("grey values were rounded or clipped for it: its images are `{}`", grey.name()));
         }
+        let answer = match self.program.declaration.mode {
+            Mode::Stream => self.by_stream(image, starts),
+            Mode::Folder { .. } => folder::ask(&self.program, &self.settings, image, starts, (MOST_DETECTED, bytes(starts) as u64)),
+        };
+        if answer.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow) {
+            self.program.was_slow();
+        }
+        let Answer { points, told } = answer?;
+        told.iter().for_each(|what| self.program.tell(what));
+        Ok(points)
+    }
+
+    fn by_stream(&self, image: &Image, starts: Option<&[Start]>) -> Result<Answer, Fault> {
+        let grey = self.program.declaration.grey;
         let body = body(image, grey);
-        let most = starts.map_or(MOST_DETECTED, <[Start]>::len) * BYTES_A_POSITION + 4096;
         let mut started = self.program.process(&self.settings)?;
         started.asked += 1;
         let head = head(started.asked, image, grey, starts);
-        let line = started.process.ask(&[&head, &body], self.program.limit(), most);
-        if line.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow) {
-            self.program.was_slow();
-        }
-        let Answer { points, told } = read(&line?, started.asked, starts.map(<[Start]>::len), MOST_DETECTED)?;
+        let line = started.process.ask(&[&head, &body], self.program.limit(), bytes(starts));
+        let answer = read(&line?, started.asked, starts.map(<[Start]>::len), MOST_DETECTED)?;
         self.program.keep(&self.settings, started);
-        told.iter().for_each(|what| self.program.tell(what));
-        Ok(points)
+        Ok(answer)
     }
 
     /// Answers to starts that are finite.

@@ -16,13 +16,18 @@ use crate::answer::Fault;
 
 /// How much of what it says on standard error is kept, bytes.
 const TAIL: usize = 4096;
+/// How often it is seen whether a program has ended that holds its output open.
+const WAIT: Duration = Duration::from_millis(10);
+/// The same of one that has closed it.
+const LOOK: Duration = Duration::from_micros(500);
 /// How much is read at once.
 const CHUNK: usize = 1 << 16;
 
 /// A started program and its pipes.
 pub struct Process {
     child: Child,
-    stdin: ChildStdin,
+    /// `None` once it has been told all.
+    stdin: Option<ChildStdin>,
     stdout: ChildStdout,
     stderr: ChildStderr,
     /// Whether its standard error has ended.
@@ -44,7 +49,7 @@ impl Process {
         let missing = || io::Error::other("no pipe to the program");
         let (stdin, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let process = Self {
-            stdin: stdin.ok_or_else(missing)?,
+            stdin: Some(stdin.ok_or_else(missing)?),
             stdout: stdout.ok_or_else(missing)?,
             stderr: stderr.ok_or_else(missing)?,
             child,
@@ -52,7 +57,7 @@ impl Process {
             pending: Vec::new(),
             tail: Vec::new(),
         };
-        ioctl_fionbio(&process.stdin, true)?;
+        process.stdin.iter().try_for_each(|stdin| ioctl_fionbio(stdin, true))?;
         ioctl_fionbio(&process.stdout, true)?;
         ioctl_fionbio(&process.stderr, true)?;
         Ok(process)
@@ -106,13 +111,49 @@ impl Process {
         }
     }
 
+    /// Tells it nothing more and waits until it has ended by itself; what it says is read over.
+    ///
+    /// # Errors
+    /// That it failed, or took longer than `limit`.
+    pub fn finish(&mut self, limit: Duration) -> Result<(), Fault> {
+        let deadline = Instant::now() + limit;
+        self.stdin = None;
+        let mut closed = false;
+        loop {
+            match self.child.try_wait() {
+                Ok(None) => {}
+                Ok(Some(status)) if status.success() => return Ok(()),
+                _ => return Err(self.ended()),
+            }
+            let Some(left) = deadline.checked_duration_since(Instant::now()) else {
+                let said = self.said();
+                return Err(Fault::new(Rejection::TooSlow, format!("it did not end within {} s{said}", limit.as_secs_f64())));
+            };
+            if closed {
+                self.hear();
+                std::thread::sleep(LOOK.min(left));
+                continue;
+            }
+            // What it started may hold its output open after its end.
+            let [readable, _, erring] =
+                self.wait(false, WAIT.min(left)).map_err(|error| Fault::new(Rejection::Ended, error.to_string()))?;
+            if erring {
+                self.hear();
+            }
+            if readable {
+                closed = self.read();
+                self.pending.clear();
+            }
+        }
+    }
+
     /// Waits until something can be done: read, write, hear.
     fn wait(&self, writes: bool, most: Duration) -> rustix::io::Result<[bool; 3]> {
         let out = if writes { PollFlags::OUT } else { PollFlags::empty() };
         let mut fds = vec![PollFd::new(&self.stdout, PollFlags::IN), PollFd::new(&self.stderr, PollFlags::IN)];
         let stderr = if self.silent { fds.pop().map(|_| usize::MAX) } else { Some(1) };
-        if writes {
-            fds.push(PollFd::new(&self.stdin, out));
+        if let Some(stdin) = self.stdin.as_ref().filter(|_| writes) {
+            fds.push(PollFd::new(stdin, out));
         }
         // Rounded up, so that the last turn does not spin.
         let time = Timespec { tv_sec: most.as_secs() as i64, tv_nsec: i64::from(most.subsec_nanos()) };
@@ -126,8 +167,9 @@ impl Process {
 
     /// Writes what goes in; false when nobody reads any more.
     fn write(&self, left: &mut Vec<&[u8]>) -> bool {
+        let Some(stdin) = &self.stdin else { return false };
         while let Some(part) = left.last_mut() {
-            match rustix::io::write(&self.stdin, part) {
+            match rustix::io::write(stdin, part) {
                 Ok(count) => {
                     *part = &part[count..];
                     if part.is_empty() {

@@ -5,16 +5,16 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use calibench_measure::{Build, Method, Outside, Registry, Settings};
-use calibench_model::escape;
+use calibench_measure::{Build, Method, Operator, Outside, Registry, Settings};
+use calibench_model::{Rejection, escape};
 use serde::Deserialize;
 use tempfile::TempDir;
 
 use crate::answer::{Fault, greeted};
 use crate::confine::Confinement;
-use crate::declaration::{Declaration, leak, parse};
+use crate::declaration::{Declaration, Declared, Mode, leak, parse};
 use crate::error::PluginError;
 use crate::operator::Asked;
 use crate::process::Process;
@@ -122,24 +122,49 @@ impl Program {
         locked(&self.idle).entry(greeting(settings.iter())).or_default().push(started);
     }
 
-    fn start(&self, greeting: &[u8]) -> Result<Started, Fault> {
-        let fault = |message: String| Fault::new(calibench_model::Rejection::Ended, message);
-        let scratch = TempDir::new().map_err(|error| fault(format!("no folder for it: {error}")))?;
-        let mut process =
-            Process::start(&mut self.started_in(scratch.path())).map_err(|error| fault(format!("it does not start: {error}")))?;
+    /// Starts the command, which restricts itself.
+    fn launch(&self, command: &mut Command) -> Result<Process, Fault> {
+        let mut process = Process::start(command).map_err(|error| ended(format!("it does not start: {error}")))?;
         if self.launcher.confiner.is_some() {
             let line = process.ask(&[], self.limit(), LONGEST_GREETING)?;
-            let confined: Confined = serde_json::from_str(&line).map_err(|error| fault(format!("{line}: {error}")))?;
+            let confined: Confined = serde_json::from_str(&line).map_err(|error| ended(format!("{line}: {error}")))?;
             if !confined.lacking.is_empty() {
                 self.tell(&format!("not kept from: {}; this system cannot", confined.lacking.join(", ")));
             }
         } else {
             self.tell("not kept from reading the project, writing and the network");
         }
+        Ok(process)
+    }
+
+    /// Starts it in `folder`, with its parameters in the environment, and waits for its end.
+    pub fn run_in(&self, folder: &Path, settings: &Settings) -> Result<(), Fault> {
+        let (mut command, started) = (self.started_in(folder), Instant::now());
+        for (name, value) in settings.iter() {
+            command.env(format!("CALIBENCH_{}", name.to_uppercase()), value.to_string());
+        }
+        self.launch(&mut command)?.finish(self.limit().saturating_sub(started.elapsed()))
+    }
+
+    /// Why there is no such program, if so.
+    fn lacking(&self) -> Option<String> {
+        let program = Path::new(self.command.first()?);
+        let there = if program.components().count() > 1 {
+            program.is_file()
+        } else {
+            let folders = std::env::var_os("PATH").unwrap_or_default();
+            std::env::split_paths(&folders).any(|folder| folder.join(program).is_file())
+        };
+        (!there).then(|| format!("there is no program `{}`", self.declaration.command[0]))
+    }
+
+    fn start(&self, greeting: &[u8]) -> Result<Started, Fault> {
+        let scratch = TempDir::new().map_err(|error| ended(format!("no folder for it: {error}")))?;
+        let mut process = self.launch(&mut self.started_in(scratch.path()))?;
         let line = process.ask(&[greeting], self.limit(), LONGEST_GREETING)?;
-        let greeted = greeted(&line).map_err(fault)?;
+        let greeted = greeted(&line).map_err(ended)?;
         if let Some(error) = greeted.error {
-            return Err(fault(error));
+            return Err(ended(error));
         }
         let version = greeted.version.map_or_else(|| "0".to_owned(), |version| version.to_string());
         Ok(Started { process, asked: 0, version: short(&version), _scratch: scratch })
@@ -198,13 +223,17 @@ impl Program {
     }
 }
 
+fn ended(message: String) -> Fault {
+    Fault::new(Rejection::Ended, message)
+}
+
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     // What is kept here is whole at any time.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A text of others in a line: no command to a terminal, and not long.
-fn short(text: &str) -> String {
+pub(crate) fn short(text: &str) -> String {
     let text = escape::name(text.trim());
     let start: String = text.chars().take(LONGEST_TOLD).collect();
     if start.len() < text.len() { format!("{start}...") } else { start }
@@ -216,13 +245,24 @@ pub fn method(declaration: Declaration, folder: &Path, launcher: &Launcher) -> M
     let (source, parameters) = (leak(declaration.source.clone()), Box::leak(declaration.parameters.clone().into_boxed_slice()));
     let program = Arc::new(Program::new(declaration, folder, launcher.clone()));
     let files = program.files.clone();
+    let asked = |program: &Arc<Program>, settings: &Settings| Box::new(Asked::new(program.clone(), settings.clone()));
+    if let Mode::Folder { version } = &program.declaration.mode {
+        // It is not started before there is an image.
+        let version = format!("{} ({files})", short(version));
+        let known = version.clone();
+        let build = move |settings: &Settings| {
+            let operator = program.lacking().map_or_else(|| Ok(asked(&program, settings) as Box<dyn Operator>), Err);
+            Ok(Outside { version: known.clone(), operator })
+        };
+        return Method { name, about, source, version, parameters, build: Build::Outside(Arc::new(build)) };
+    }
     let build = move |settings: &Settings| match program.process(settings) {
         Ok(started) => {
             let version = format!("{} ({})", started.version, program.files);
             program.keep(settings, started);
-            Outside { version, operator: Ok(Box::new(Asked::new(program.clone(), settings.clone()))) }
+            Ok(Outside { version, operator: Ok(asked(&program, settings)) })
         }
-        Err(fault) => Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) },
+        Err(fault) => Ok(Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) }),
     };
     Method { name, about, source, version: format!("? ({files})"), parameters, build: Build::Outside(Arc::new(build)) }
 }
@@ -240,8 +280,8 @@ pub fn load(folder: &Path, mut registry: Registry, launcher: &Launcher) -> Resul
     let mut known: Vec<(String, PathBuf)> = Vec::new();
     for path in files {
         let text = std::fs::read_to_string(&path).map_err(|error| file_error(&path, error))?;
-        for declaration in parse(&path.display().to_string(), &text)? {
-            let name = declaration.name.clone();
+        for declared in parse(&path.display().to_string(), &text)? {
+            let name = declared.name().to_owned();
             if let Some((_, earlier)) = known.iter().find(|(other, _)| *other == name) {
                 return Err(PluginError::Twice { path, earlier: earlier.clone(), name });
             }
@@ -249,7 +289,10 @@ pub fn load(folder: &Path, mut registry: Registry, launcher: &Launcher) -> Resul
                 return Err(PluginError::Taken { path, name });
             }
             known.push((name, path.clone()));
-            registry = registry.with(method(declaration, folder, launcher));
+            registry = registry.with(match declared {
+                Declared::Program(declaration) => method(declaration, folder, launcher),
+                Declared::Recording(recording) => recording.method(folder),
+            });
         }
     }
     Ok(registry)

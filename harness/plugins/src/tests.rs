@@ -3,7 +3,7 @@
 use calibench_model::{Image, PixelPoint, Rejection, Start, TargetKind};
 
 use crate::answer::{Answer, read};
-use crate::declaration::{Grey, Starts, parse};
+use crate::declaration::{Declaration, Declared, Grey, Starts, parse};
 use crate::request::{body, greeting, head, rounds};
 
 const GOOD: &str = r#"
@@ -14,9 +14,15 @@ parameters = { window = { default = 11, min = 3, max = 31, odd = true }, reach =
 memory = "1.5 GB"
 "#;
 
+/// The first plug-in that a text declares.
+fn program(text: &str) -> Declaration {
+    let Declared::Program(program) = parse("mine.toml", text).unwrap().remove(0) else { panic!("a program") };
+    program
+}
+
 #[test]
 fn a_declaration_is_read_with_its_defaults() {
-    let found = &parse("mine.toml", GOOD).unwrap()[0];
+    let found = program(GOOD);
     assert_eq!((found.name.as_str(), found.grey, found.starts, found.seconds), ("mine", Grey::Gray8, Starts::Given, 30.0));
     assert_eq!(found.memory, 1_500_000_000);
     let named: Vec<_> = found.parameters.iter().map(|p| (p.name, p.default, p.domain.describe())).collect();
@@ -37,7 +43,8 @@ fn every_mistake_in_a_declaration_has_its_place() {
         ("memory = \"1.5 GB\"", "starts = \"some\"", "6:10", "expected \"given\" or \"none\""),
         ("memory = \"1.5 GB\"", "radius = 3.0", "6:10", "`radius` is for starts"),
         ("memory = \"1.5 GB\"", "seconds = 0.0", "6:11", "expected seconds"),
-        ("memory = \"1.5 GB\"", "mode = \"folder\"", "6:8", "mode `folder` is not known"),
+        ("memory = \"1.5 GB\"", "mode = \"files\"", "6:8", "mode `files` is not known"),
+        ("memory = \"1.5 GB\"", "version = \"1\"", "6:11", "`version` is for mode"),
         ("memory = \"1.5 GB\"", "image = \"rgb\"", "6:9", "unknown variant `rgb`"),
     ] {
         assert!(GOOD.contains(old));
@@ -109,7 +116,7 @@ fn answers_go_to_the_starts_that_they_are_about() {
     let text = "[[plugin]]\nname = \"start_sh\"\ncommand = [\"sh\", \"start.sh\"]\n";
     let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plugins"));
     let launcher = crate::Launcher { confiner: None, project: None };
-    let registry = calibench_measure::Registry::default().with(crate::method(parse("a.toml", text).unwrap().remove(0), folder, &launcher));
+    let registry = calibench_measure::Registry::default().with(crate::method(program(text), folder, &launcher));
     let configured = registry.parse("start_sh").unwrap();
     let operator = configured.operator.unwrap();
     let at = |x: f64| Start::at(PixelPoint::new(x, 7.25));
@@ -124,4 +131,45 @@ fn answers_go_to_the_starts_that_they_are_about() {
         assert!(operator.measure_all(&image, &[]).is_empty() && operator.measure_all(&image, &[at(bad)]) == [Err(Rejection::NotFinite)]);
     }
     assert!(operator.notes().concat().contains("not kept from"), "who is not restricted is told");
+}
+
+/// What is read of `measured.csv` below a header, about three points.
+fn by_file(header: &str, rows: &str, asked: Option<usize>) -> Result<Answer, crate::answer::Fault> {
+    crate::folder::read(format!("{header}\n{rows}").as_bytes(), "0001.png", asked, 2)
+}
+
+#[test]
+fn files_are_read_by_the_numbers_of_their_points() {
+    let rows = "0001.png,3,5,6,,,,measured,\n0001.png,1,1.5,2.5,1e-4,0,2e-4,measured,\n0001.png,2,,,,,,rejected,no corner\n";
+    let header = "image,target,x,y,sxx,sxy,syy,status,reason";
+    let Answer { points, told } = by_file(header, rows, Some(4)).unwrap();
+    let at = |place: usize| points[place].map(|found| (found.position.x, found.position.y));
+    let declined = Err(Rejection::Declined);
+    assert_eq!([0, 1, 2, 3].map(at), [Ok((1.5, 2.5)), declined, Ok((5.0, 6.0)), declined], "in the order in which they were asked");
+    assert_eq!(
+        (points[0].unwrap().covariance.unwrap().syy, points[2].unwrap().covariance, told),
+        (2e-4, None, vec!["no corner".to_owned()])
+    );
+    assert_eq!(by_file(header, "", Some(2)).unwrap().points, [Err(Rejection::Declined); 2]);
+    let found = by_file("image,target,x,y", "0001.png,left,1,2\n0001.png,right,3,4\n", None).unwrap().points;
+    assert_eq!(found.iter().map(|one| one.unwrap().position.x).collect::<Vec<_>>(), [1.0, 3.0]);
+}
+
+#[test]
+fn files_that_are_no_answer_say_why() {
+    for (rows, asked, expected) in [
+        ("0001.png,4,1,2\n", Some(3), "measured.csv:2, column `target`: expected one of 1 to 3 as in points.csv, found `4`"),
+        ("0001.png,0,1,2\n", Some(3), "found `0`"),
+        ("left.png,1,1,2\n", Some(3), "measured.csv:2, column `image`: expected `0001.png`, found `left.png`"),
+        ("0001.png,1,1,2\n0001.png,1,1,2\n", Some(3), "measured.csv:3: target `1` of image `0001.png` is already on line 2"),
+        ("0001.png,1,1\n", Some(3), "measured.csv:2: expected 4 cells"),
+        ("0001.png,1,inf,1\n", Some(3), "column `x`: expected a finite number"),
+        ("0001.png,a,1,1\n0001.png,b,1,1\n0001.png,c,1,1\n", None, "3 rows; expected 2 at most"),
+    ] {
+        let fault = by_file("image,target,x,y", rows, asked).unwrap_err();
+        assert_eq!(fault.rejection, Rejection::Malformed);
+        assert!(fault.message.contains(expected), "{rows}: {}", fault.message);
+    }
+    let both = by_file("image,target,x,y,status", "0001.png,1,1,2,measured\n0001.png,1,,,rejected\n", Some(1)).unwrap_err();
+    assert!(both.message.contains("has a position beside"), "{}", both.message);
 }

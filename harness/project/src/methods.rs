@@ -27,7 +27,7 @@ impl Project<'_> {
             Pictured::Renders => registry.parse(text),
             Pictured::Photographs => registry.parse_for_photographs(text),
         };
-        parsed.map_err(|error| {
+        let method = parsed.map_err(|error| {
             let proposal = match &error {
                 MethodError::UnknownMethod { name, known } => nearest(name, known.iter().map(String::as_str)),
                 MethodError::Kinds { error: KindsError::Unknown(unknown), .. } => {
@@ -38,7 +38,13 @@ impl Project<'_> {
             };
             let proposal = proposal.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
             ProjectError::Asked(format!("-m {text}: {error}{proposal}"))
-        })
+        })?;
+        match pictured {
+            Pictured::Photographs if method.recorded().is_some() => Err(ProjectError::Asked(format!(
+                "-m {text}: a file of positions measures nothing; it is for `run` with the scenario of its images (`judge` and `calibrate` take positions of photographs by --points)"
+            ))),
+            _ => Ok(method),
+        }
     }
 
     /// As [`Self::method`], for the corners of a chessboard in photographs.

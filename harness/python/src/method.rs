@@ -59,10 +59,10 @@ pub fn add_method(
     let declared = Arc::new(Declared { callable, radius, told: Mutex::default() });
     let build = move |settings: &Settings| {
         let asked = Asked { declared: declared.clone(), settings: settings.clone(), whole: whole.clone() };
-        match Python::attach(|py| version_of(version.bind(py)).map_err(|error| error.to_string())) {
+        Ok(match Python::attach(|py| version_of(version.bind(py)).map_err(|error| error.to_string())) {
             Ok(version) => Outside { version, operator: Ok(Box::new(asked)) },
             Err(why) => Outside { version: UNKNOWN.into(), operator: Err(why) },
-        }
+        })
     };
     // Names live as long as the process: methods are few.
     let parameters = Box::leak(parameters.into_boxed_slice());

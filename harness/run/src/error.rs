@@ -26,9 +26,23 @@ pub enum RunError {
         /// The names that there are.
         known: String,
     },
+    /// What was asked for cannot be, in words.
+    #[error("{0}")]
+    Asked(String),
+    /// It was asked to end.
+    #[error("stopped; older records are as they were")]
+    Stopped,
     /// Methods that are limited to kinds of targets, and other targets.
     #[error(transparent)]
     Kinds(#[from] KindsGap),
+    /// A recorded method with names that the run does not have.
+    #[error("`{method}`: {problem}")]
+    Recorded {
+        /// The method.
+        method: String,
+        /// The name with its place.
+        problem: String,
+    },
     /// A view that cannot be pictured.
     #[error("station `{station}`: {source}")]
     View {

@@ -7,6 +7,7 @@ mod error;
 pub mod judgement;
 mod measured;
 pub mod network;
+mod order;
 pub mod parts;
 mod photographs;
 mod plan;
@@ -24,6 +25,7 @@ pub mod truth;
 pub mod views;
 
 pub use error::RunError;
+pub use order::{Order, Place, Planned, Ran};
 pub use plan::Plan;
 pub use scene::{VIEW, starts, trial_picture, trial_truth};
 pub use tools::Tools;

@@ -24,8 +24,7 @@ pub(super) fn run(plan: &Plan<'_>, subject: &PhotographsSubject, step: &(dyn Fn(
     };
     let views = subject.files.par_iter().map(one).collect::<Result<Vec<_>, RunError>>()?;
     let mut trial = Trial::default();
-    let methods = plan.methods.len();
-    for method in 0..methods {
+    for method in plan.available() {
         trial.points.extend(views.iter().flat_map(|view| view.points.iter().filter(|point| point.method == method).cloned()));
     }
     trial.missed_views = views.into_iter().flat_map(|view| view.missed_views).collect();

@@ -1,16 +1,18 @@
 //! What is run, and with what.
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use calibench_exchange::NewFolder;
-use calibench_measure::Configured;
-use calibench_model::{Image, Start, TargetKind, Unknowns};
+use calibench_measure::{Configured, ImageId, Known, Recorded, RunId};
+use calibench_model::{Image, Unknowns};
 use calibench_records::parts::Span;
 use calibench_records::results::MethodInfo;
 use calibench_scenario::transfer::{Calibrates, Solver};
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 
-use crate::measured::{Measured, of_its_kinds};
+use crate::RunError;
+use crate::measured::{Asked, Measured, of_its_kinds};
 use crate::printed::PRINT;
 use crate::tools::Tools;
 
@@ -35,6 +37,8 @@ pub struct Plan<'a> {
     pub data: PathBuf,
     /// Whether the Cramér-Rao bound of each target is computed.
     pub bounds: bool,
+    /// Ends the run before its next trial, once it is true.
+    pub stop: Option<&'a AtomicBool>,
     /// Where the images of the first trial are written, if anywhere.
     pub images: Option<&'a NewFolder>,
 }
@@ -43,7 +47,7 @@ impl<'a> Plan<'a> {
     /// The scenario as its file says, with no images kept.
     pub fn new(scenario: &'a Scenario, tools: Tools<'a>, data: PathBuf) -> Self {
         let Scenario { methods, seed, trials, .. } = scenario;
-        Self { scenario, methods, seed: *seed, trials: *trials, only: None, tools, data, bounds: true, images: None }
+        Self { scenario, methods, seed: *seed, trials: *trials, only: None, tools, data, bounds: true, stop: None, images: None }
     }
 
     /// How many trials there are, whichever of them are run: one where nothing is drawn.
@@ -58,6 +62,12 @@ impl<'a> Plan<'a> {
     pub fn span(&self) -> Span {
         let all = self.all_trials();
         self.only.map_or(Span { from: 0, to: all }, |only| Span { from: only.from, to: only.to.min(all) })
+    }
+
+    /// # Errors
+    /// [`RunError::Stopped`] once it is to end.
+    pub(crate) fn go_on(&self) -> Result<(), RunError> {
+        if self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) { Err(RunError::Stopped) } else { Ok(()) }
     }
 
     /// The methods as results list them.
@@ -77,7 +87,7 @@ impl<'a> Plan<'a> {
         let info = |method: &Configured| MethodInfo {
             label: method.label.as_str().into(),
             version: method.version.as_str().into(),
-            unavailable: missing.clone().or_else(|| method.operator.as_ref().err().cloned()),
+            unavailable: missing.clone().or_else(|| self.unavailable(method)),
         };
         self.methods.iter().map(info).collect()
     }
@@ -129,12 +139,60 @@ impl<'a> Plan<'a> {
         (0..self.methods.len()).map(|index| self.unknowns(index))
     }
 
+    /// Why a method cannot measure, if so.
+    fn unavailable(&self, method: &Configured) -> Option<String> {
+        let photographs = matches!(self.scenario.subject, Subject::Photographs(_));
+        let run = RunId { scenario: &self.scenario.name, seed: self.seed, photographs };
+        method.operator.as_ref().map_or_else(|why| Some(why.clone()), |_| method.recorded()?.unfit(&run))
+    }
+
+    /// Whether method `index` can measure.
+    pub(crate) fn is_available(&self, index: usize) -> bool {
+        self.unavailable(&self.methods[index]).is_none()
+    }
+
+    /// The places of the methods that can measure.
+    pub(crate) fn available(&self) -> Vec<usize> {
+        (0..self.methods.len()).filter(|&index| self.is_available(index)).collect()
+    }
+
+    /// Whether the names of recorded methods that are of this run are those of its targets.
+    pub(crate) fn check_recorded(&self) -> Result<(), RunError> {
+        let recorded: Vec<(&Configured, &dyn Recorded)> =
+            self.available().into_iter().filter_map(|index| Some((&self.methods[index], self.methods[index].recorded()?))).collect();
+        if recorded.is_empty() {
+            return Ok(());
+        }
+        let corners = self.corners();
+        let known = match &self.scenario.subject {
+            Subject::Scene(subject) => {
+                Known { targets: subject.scene.targets.iter().map(|target| target.id.as_str()).collect(), ..Known::default() }
+            }
+            Subject::Views(subject) => {
+                Known { targets: subject.field.targets.iter().map(|target| target.id.as_str()).collect(), ..Known::default() }
+            }
+            Subject::Photographs(subject) => Known {
+                targets: corners.iter().map(String::as_str).collect(),
+                photographs: subject.files.iter().map(String::as_str).collect(),
+            },
+            Subject::Printed(_) => return Ok(()),
+        };
+        let wrong = |(method, recorded): (&Configured, &dyn Recorded)| {
+            recorded.check(&known).map_err(|problem| RunError::Recorded { method: method.label.clone(), problem })
+        };
+        recorded.into_iter().try_for_each(wrong)
+    }
+
+    /// The names of a board's corners in photographs.
+    fn corners(&self) -> Vec<String> {
+        let Subject::Photographs(subject) = &self.scenario.subject else { return Vec::new() };
+        (0..subject.board.corners()).map(|index| subject.board.target(index)).collect()
+    }
+
     /// Every available method on one image, at the targets of its kinds: (method, results in the order of `targets`, `None` where it is not to measure).
-    ///
-    /// A target is its kind and its start; where nobody found it there is none, and no operator is asked.
-    pub(crate) fn measure(&self, image: &Image, targets: &[(TargetKind, Option<Start>)]) -> Vec<(usize, Vec<Option<Measured>>)> {
-        let of = |(index, method): (usize, &Configured)| Some((index, of_its_kinds(method, image, targets)?));
-        self.methods.iter().enumerate().filter_map(of).collect()
+    pub(crate) fn measure(&self, (which, image): (ImageId<'_>, &Image), targets: &[Asked<'_>]) -> Vec<(usize, Vec<Option<Measured>>)> {
+        let of = |index| Some((index, of_its_kinds(&self.methods[index], (Some(which), image), targets)?));
+        self.available().into_iter().filter_map(of).collect()
     }
 }
 

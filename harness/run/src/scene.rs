@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use calibench_exchange::encode_png;
+use calibench_measure::ImageId;
 use calibench_model::{Image, Scene, Start};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::names::kept_image_name;
@@ -16,6 +17,7 @@ use rand::RngExt;
 
 use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
+use crate::measured::Asked;
 
 /// The name of the only view.
 pub const VIEW: &str = "image";
@@ -59,8 +61,9 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     let picture = Picture::from(&truth);
     let by_target: Vec<BySet> = truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.at))).collect();
     let mut points = Vec::new();
-    let to_measure: Vec<_> = truth.targets.iter().map(|target| target.kind).zip(starts).collect();
-    for (method, results) in plan.measure(&image, &to_measure) {
+    let asked = truth.targets.iter().zip(starts).map(|(target, start)| Asked { name: &target.id, kind: target.kind, start });
+    let which = ImageId { trial: number, view: VIEW };
+    for (method, results) in plan.measure((which, &image), &asked.collect::<Vec<_>>()) {
         let unknowns = plan.unknowns(method);
         for (((target, truth), by_set), result) in targets.iter().zip(&truth.targets).zip(&by_target).zip(results) {
             let Some(result) = result else { continue };

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use calibench_exchange::{NewFile, NewFolder, OutputFolder};
 use calibench_measure::{Configured, Registry};
@@ -189,6 +190,8 @@ pub struct SweepPlan<'a> {
     pub data: PathBuf,
     /// All methods that there are.
     pub registry: &'a Registry,
+    /// Ends the run before its next trial, once it is true.
+    pub stop: Option<&'a AtomicBool>,
 }
 
 impl SweepPlan<'_> {
@@ -204,6 +207,7 @@ impl SweepPlan<'_> {
             plan.methods = self.methods;
         }
         plan.seed = self.seed.unwrap_or(cell.seed);
+        plan.stop = self.stop;
         plan.trials = self.trials.filter(|_| !cell.is_deterministic()).unwrap_or(cell.trials);
         plan
     }

@@ -25,12 +25,13 @@ impl Plan<'_> {
     /// Runs all trials, or those that are wanted, and hands them to `sink` in their order; `step` is called after each step, on any thread.
     ///
     /// # Errors
-    /// Targets of a kind that no method measures, a method without targets of its kinds; photographs that cannot be read; what `sink` returns.
+    /// Targets of a kind that no method measures, a method without targets of its kinds; a recorded one with names of others; photographs that cannot be read; what `sink` returns.
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
         cover(self.methods, self.scenario.subject.kinds().iter().copied())?;
         if self.span().count() == 0 {
             return Ok(());
         }
+        self.check_recorded()?;
         match &self.scenario.subject {
             Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
             Subject::Printed(printed) => {
@@ -80,6 +81,7 @@ impl Plan<'_> {
         for first in (from..to).step_by(BATCH as usize) {
             let batch = first..(first + BATCH).min(to);
             let counted = |number| {
+                self.go_on()?;
                 let trial = trial(number);
                 step();
                 trial

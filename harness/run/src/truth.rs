@@ -5,7 +5,7 @@ use std::io;
 use calibench_exchange::camera::{FORMATS, NamedCamera, camera_text};
 use calibench_exchange::{ControlDisc, ControlRow, NewFolder, POSE_COLUMNS, Points, station_numbers, write_points, write_table};
 use calibench_model::camera::{Camera, ImageSize};
-use calibench_model::{Affine, ObjectTarget, PixelPoint, Scene, TargetKind};
+use calibench_model::{Affine, ObjectTarget, PixelPoint, Pose, Scene, TargetKind};
 use calibench_records::names::kept_image_name;
 use calibench_scenario::ViewsSubject;
 use calibench_synth::local::LocalDistortion;
@@ -41,15 +41,16 @@ const VIEW_COLUMNS: [&str; 20] = [
 ];
 
 /// A station and what its image clipped.
-pub struct StationRow<'a> {
-    station: &'a Station,
+pub struct StationRow {
+    image: String,
+    pose: Pose,
     clipped: Clipped,
 }
 
-impl<'a> StationRow<'a> {
-    /// Of `station`.
-    pub fn new(station: &'a Station, clipped: Clipped) -> Self {
-        Self { station, clipped }
+impl StationRow {
+    /// Of `station`, whose image is called `image`.
+    pub fn new(station: &Station, image: &str, clipped: Clipped) -> Self {
+        Self { image: image.to_owned(), pose: station.pose, clipped }
     }
 }
 
@@ -65,35 +66,36 @@ pub fn write_starts(folder: &NewFolder, name: &str, starts: &Points) -> io::Resu
     folder.write(name, |file| write_points(file, starts.rows()))
 }
 
-/// All targets of a flat scene: name, kind, true position (px).
+/// All targets of a flat scene, whose image is called `name`: name, kind, true position (px).
 ///
 /// # Errors
 /// What the file system refuses.
 pub fn write_scene(folder: &NewFolder, name: &str, scene: &Scene) -> io::Result<()> {
     let row = |target: &calibench_model::SceneTarget| {
-        vec![kept_image_name(crate::VIEW), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
+        vec![kept_image_name(name), target.id.clone(), target.kind.to_string(), target.at.x.to_string(), target.at.y.to_string()]
     };
-    table(folder, name, &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
+    table(folder, &format!("{name}.csv"), &VIEW_COLUMNS[..5], scene.targets.iter().map(row))
 }
 
 /// Rows that are put into words before they are written: bounds the memory.
 const ROWS: usize = 1 << 12;
 
-/// All targets of a testfield in one image, with what is to be known of each.
+/// All targets of a testfield in the image called `name`, with what is to be known of each.
 ///
 /// # Errors
 /// What the file system refuses.
 pub fn write_view(folder: &NewFolder, name: &str, subject: &ViewsSubject, view: &PreparedView<'_>) -> io::Result<()> {
+    let image = kept_image_name(name);
     let targets = subject.field.targets.chunks(ROWS).zip(view.truth.chunks(ROWS));
     let rows = targets.flat_map(|(targets, truth)| {
-        let row = |(target, truth)| view_row(subject, view, target, truth);
+        let row = |(target, truth)| view_row(subject, &image, target, truth);
         targets.par_iter().zip(truth).map(row).collect::<Vec<_>>()
     });
-    table(folder, name, &VIEW_COLUMNS, rows)
+    table(folder, &format!("{name}.csv"), &VIEW_COLUMNS, rows)
 }
 
-fn view_row(subject: &ViewsSubject, view: &PreparedView<'_>, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
-    let mut row = vec![kept_image_name(&view.station.name), target.id.clone(), target.kind.to_string()];
+fn view_row(subject: &ViewsSubject, image: &str, target: &ObjectTarget, truth: &TargetTruth) -> Vec<String> {
+    let mut row = vec![image.to_owned(), target.id.clone(), target.kind.to_string()];
     let numbers = |row: &mut Vec<String>, values: Option<&[f64]>, count: usize| match values {
         Some(values) => row.extend(values.iter().map(f64::to_string)),
         None => row.extend(vec![String::new(); count]),
@@ -127,8 +129,8 @@ fn warning(subject: &ViewsSubject, truth: &TargetTruth) -> Option<&'static str> 
     }
 }
 
-/// The warnings of a view, each with the number of targets that it concerns.
-pub fn warnings(subject: &ViewsSubject, view: &PreparedView<'_>) -> Vec<String> {
+/// The warnings of a view, whose image is called `name`, each with the number of targets that it concerns.
+pub fn warnings(subject: &ViewsSubject, view: &PreparedView<'_>, name: &str) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
     for warning in view.truth.iter().filter_map(|truth| warning(subject, truth)) {
         match counted.iter_mut().find(|(known, _)| *known == warning) {
@@ -136,10 +138,7 @@ pub fn warnings(subject: &ViewsSubject, view: &PreparedView<'_>) -> Vec<String> 
             None => counted.push((warning, 1)),
         }
     }
-    counted
-        .into_iter()
-        .map(|(warning, count)| format!("{}: {count} of {} targets: {warning}", view.station.name, view.truth.len()))
-        .collect()
+    counted.into_iter().map(|(warning, count)| format!("{name}: {count} of {} targets: {warning}", view.truth.len())).collect()
 }
 
 /// How much of an image was clipped, if any.
@@ -153,11 +152,11 @@ pub fn clipping_note(view: &str, clipped: Clipped, pixels: usize) -> Option<Stri
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_stations(folder: &NewFolder, name: &str, rows: &[StationRow<'_>]) -> io::Result<()> {
+pub fn write_stations(folder: &NewFolder, name: &str, rows: &[StationRow]) -> io::Result<()> {
     let columns = [&["image"], &POSE_COLUMNS[..], &["clipped_low", "clipped_high"]].concat();
-    let row = |row: &StationRow<'_>| {
-        let mut cells = vec![row.station.name.clone()];
-        cells.extend(station_numbers(&row.station.pose).iter().map(f64::to_string));
+    let row = |row: &StationRow| {
+        let mut cells = vec![row.image.clone()];
+        cells.extend(station_numbers(&row.pose).iter().map(f64::to_string));
         cells.extend([row.clipped.low, row.clipped.high].iter().map(u64::to_string));
         cells
     };

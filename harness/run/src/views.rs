@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use calibench_exchange::encode_png;
+use calibench_measure::ImageId;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
@@ -18,6 +19,7 @@ use rayon::prelude::*;
 use super::bounds::{BySet, TargetBounds};
 use super::recognition::{Counted, keep_steps, recognise, shown};
 use super::{Plan, RunError};
+use crate::measured::Asked;
 use crate::network::Job;
 use crate::{blocks, network};
 
@@ -155,7 +157,7 @@ fn calibrated(plan: &Plan<'_>, prepared: &Prepared<'_>, calibration: &Calibratio
         None => run_views(plan, prepared, key)?,
     };
     let ViewsSubject { camera, field, unit, stations, .. } = subject;
-    let available: Vec<usize> = (0..plan.methods.len()).filter(|&method| plan.methods[method].operator.is_ok()).collect();
+    let available = plan.available();
     let job = Job { calibration, field, unit: *unit, camera, stations };
     trial.calibrations = network::calibrate(&job, &trial.points, &available, key);
     if key.trial > 0 && !calibration.keep_points {
@@ -168,7 +170,7 @@ fn calibrated(plan: &Plan<'_>, prepared: &Prepared<'_>, calibration: &Calibratio
 fn in_blocks(plan: &Plan<'_>, prepared: &Prepared<'_>, blocks: &Blocks, key: Key<'_>) -> Result<Trial, RunError> {
     let subject = prepared.subject;
     let mut trial = run_views(plan, prepared, key)?;
-    let available: Vec<usize> = (0..plan.methods.len()).filter(|&method| plan.methods[method].operator.is_ok()).collect();
+    let available = plan.available();
     let job = blocks::Job { blocks, field: &subject.field, unit: subject.unit, stations: &subject.stations, key };
     let recognised = std::mem::replace(&mut trial.calibrations, blocks::adjust_blocks(&job, &trial.points, &available, key.trial == 0));
     trial.calibrations.extend(recognised);
@@ -210,7 +212,6 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
     for (place, view) in prepared.views.iter().enumerate() {
         let image = prepared.image(view, key)?.image;
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
-        let kinds = seen.iter().map(|point| kind_of(prepared, point));
         let starts = match &subject.recognition {
             Some(recognition) => {
                 if let Some(folder) = plan.images.filter(|_| number == 0) {
@@ -222,8 +223,10 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
             }
             None => started(prepared, &image, &seen),
         };
-        let to_measure: Vec<_> = kinds.zip(starts).collect();
-        for (method, results) in plan.measure(&image, &to_measure) {
+        let name = |point: &Pointed| &*prepared.targets[point.target];
+        let asked = seen.iter().zip(starts).map(|(point, start)| Asked { name: name(point), kind: kind_of(prepared, point), start });
+        let which = ImageId { trial: number, view: &view.station.name };
+        for (method, results) in plan.measure((which, &image), &asked.collect::<Vec<_>>()) {
             let unknowns = plan.unknowns(method);
             let points = seen.iter().zip(results).filter_map(|(point, result)| Some((point, result?))).map(|(point, result)| {
                 let bound = view.bounds[point.target].get(&unknowns).copied().flatten();

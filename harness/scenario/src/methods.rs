@@ -82,7 +82,7 @@ fn method(mut section: Section<'_>, registry: &Registry, problems: &mut Vec<Prob
         MethodError::Domain { key, .. } | MethodError::Twice { key, .. } => {
             Problem::new(span_of(key).map_or(section.span.clone(), |spans| spans.1), error.to_string())
         }
-        MethodError::Form { .. } | MethodError::Kinds { .. } => Problem::new(value.span(), error.to_string()),
+        MethodError::Form { .. } | MethodError::Kinds { .. } | MethodError::File { .. } => Problem::new(value.span(), error.to_string()),
     };
     let configured = registry.configure(name, &given).map_err(|error| problems.push(problem(error))).ok()?;
     Some(match kinds {

@@ -125,7 +125,7 @@ fn none_hangs_ends_the_run_or_changes_another_methods_rows() {
 }
 
 /// Whether a process with this argument runs.
-fn is_running(argument: &str) -> bool {
+pub fn is_running(argument: &str) -> bool {
     let lines = std::fs::read_dir("/proc").into_iter().flatten().filter_map(|entry| std::fs::read(entry.ok()?.path().join("cmdline")).ok());
     lines.into_iter().any(|line| line.split(|byte| *byte == 0).any(|word| word == argument.as_bytes()))
 }

@@ -1,7 +1,9 @@
 //! Methods that are programs of their own: the examples, what they are kept from, and programs that do not do as they should.
 
 mod confined;
+mod folder;
 mod hostile;
+mod recorded;
 
 use std::path::Path;
 use std::process::Command;
@@ -45,7 +47,7 @@ fn with_plugins(files: &[(&str, &str)]) -> tempfile::TempDir {
 /// The examples, the C++ one compiled.
 fn with_examples() -> tempfile::TempDir {
     let project = with_plugins(&[]);
-    for name in ["plugins.toml", "forstner.py", "forstner.cpp", "start.sh"] {
+    for name in ["plugins.toml", "forstner.py", "forstner.cpp", "start.sh", "start_folder.sh"] {
         std::fs::copy(root().join("examples/plugins").join(name), project.path().join("methods").join(name)).unwrap();
     }
     let methods = project.path().join("methods");
@@ -60,7 +62,7 @@ fn the_examples_measure_as_operators_do() {
     let tested = run(project.path(), &["plugin", "test", "methods/plugins.toml"]);
     let text = stdout(&tested);
     assert_eq!(tested.status.code(), Some(0), "{text}");
-    assert!(!text.contains("FAILED") && text.matches("  ok      ").count() == 21, "{text}");
+    assert!(!text.contains("FAILED") && text.matches("  ok      ").count() == 28, "{text}");
     assert!(text.contains("start_sh 1 (") && text.contains("note    no corner"), "{text}");
     let methods = ["-m", "pixel", "-m", "forstner", "-m", "start_sh", "-m", "forstner_py", "-m", "forstner_cpp"];
     let output = run(project.path(), &[&["run", "corners/noise", "--trials", "3", "-q"][..], &methods].concat());

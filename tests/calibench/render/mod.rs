@@ -68,7 +68,7 @@ fn every_station_has_its_image_and_truth_beside_the_camera_and_the_control() {
     let folder = render(project.path(), "testfields/wall", "out", &["--noise-free"]);
     let mut names: Vec<String> = files(&folder).iter().map(|(path, _)| path.display().to_string()).collect();
     names.retain(|name| !name.starts_with('.'));
-    let mut expected: Vec<String> = ["camera.toml", "control.csv", "starts.csv", "stations.csv"].map(str::to_owned).into();
+    let mut expected: Vec<String> = ["camera.toml", "control.csv", "rendered.csv", "starts.csv", "stations.csv"].map(str::to_owned).into();
     for station in (1..=4).flat_map(|i| [format!("s0{i}-r1"), format!("s0{i}-r2")]) {
         expected.extend([".csv", ".png", "-noise-free.png"].map(|end| format!("{station}{end}")));
     }

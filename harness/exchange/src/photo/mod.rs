@@ -6,13 +6,14 @@ mod jpeg;
 mod turn;
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, Write};
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use calibench_model::{Image, level};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader};
 use thiserror::Error;
+use tiff::encoder::{TiffEncoder, colortype};
 
 use crate::atomic::write_atomically;
 
@@ -107,7 +108,7 @@ pub fn turn_of(path: &Path) -> Result<Option<Turn>, PhotoError> {
     let mut head = Vec::new();
     open(path)?.take(HEAD).read_to_end(&mut head).map_err(in_file)?;
     let content = |source| PhotoError::Content { path: path.to_owned(), source };
-    match turn_in(io::Cursor::new(head)) {
+    match turn_in(Cursor::new(head)) {
         Ok(turn) => Ok(turn),
         // What a TIFF says of itself may stand at its end.
         Err(_) => turn_in(BufReader::new(open(path)?)).map_err(content),
@@ -125,7 +126,7 @@ fn turn_in(input: impl BufRead + Seek) -> Result<Option<Turn>, ImageError> {
 /// # Errors
 /// As [`read_photo`].
 pub fn parse_photo(path: &Path, bytes: &[u8]) -> Result<Photo, PhotoError> {
-    decode(path, io::Cursor::new(bytes))
+    decode(path, Cursor::new(bytes))
 }
 
 fn decode(path: &Path, mut input: impl BufRead + Seek) -> Result<Photo, PhotoError> {
@@ -170,6 +171,18 @@ pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> 
     };
     let encoder = PngEncoder::new_with_quality(output, CompressionType::Fast, FilterType::Adaptive);
     encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
+}
+
+/// Encodes the grey values as they are, as TIFF of single precision: 0 is black and 1 is white.
+///
+/// # Errors
+/// An image that is too large for the format.
+pub fn encode_float_tiff(image: &Image) -> io::Result<Vec<u8>> {
+    let mut file = Cursor::new(Vec::new());
+    let (width, height) = (image.width() as u32, image.height() as u32);
+    let mut encoder = TiffEncoder::new(&mut file).map_err(io::Error::other)?;
+    encoder.write_image::<colortype::Gray32Float>(width, height, image.grey()).map_err(io::Error::other)?;
+    Ok(file.into_inner())
 }
 
 #[cfg(test)]

@@ -92,7 +92,7 @@ pub type Check<'c> = &'c (dyn Fn(&PointRef<'_>) -> Result<(), (&'static str, Str
 pub fn read_points_checked(path: &Path, check: Check<'_>) -> Result<PointFile, PointFileError> {
     let name = path.display().to_string();
     let file = File::open(path).map_err(|e| PointFileError { file: name.clone(), line: None, column: None, problem: e.to_string() })?;
-    parse_checked(&name, file, check)
+    not_empty(&name, parse_points_checked(&name, file, check)?)
 }
 
 /// As [`read_points`], from anything that can be read; `file` is its name in errors.
@@ -100,22 +100,30 @@ pub fn read_points_checked(path: &Path, check: Check<'_>) -> Result<PointFile, P
 /// # Errors
 /// As [`read_points`].
 pub fn parse_points(file: &str, input: impl Read) -> Result<PointFile, PointFileError> {
-    parse_checked(file, input, &|_| Ok(()))
+    not_empty(file, parse_points_checked(file, input, &|_| Ok(()))?)
 }
 
-fn parse_checked(file: &str, mut input: impl Read, check: Check<'_>) -> Result<PointFile, PointFileError> {
+fn not_empty(file: &str, found: PointFile) -> Result<PointFile, PointFileError> {
+    if found.points.is_empty() && found.lost.is_empty() {
+        let problem = "holds no point; expected one row a point below the header".to_owned();
+        return Err(PointFileError { file: file.to_owned(), line: None, column: None, problem });
+    }
+    Ok(found)
+}
+
+/// As [`parse_points`], of rows that pass `check`; there may be none.
+///
+/// # Errors
+/// As [`parse_points`], but for a file without a row; the first row that `check` refuses, with line and column.
+pub fn parse_points_checked(file: &str, mut input: impl Read, check: Check<'_>) -> Result<PointFile, PointFileError> {
     let mut text = Vec::new();
     let whole = |problem: String| PointFileError { file: file.to_owned(), line: None, column: None, problem };
     input.read_to_end(&mut text).map_err(|error| whole(error.to_string()))?;
-    let found = match parallel::parse(file, &text, check) {
-        Some(found) => found,
+    match parallel::parse(file, &text, check) {
+        Some(found) => Ok(found),
         // Whatever is wrong is said with its line.
-        None => in_turn(file, &text, check)?,
-    };
-    if found.points.is_empty() && found.lost.is_empty() {
-        return Err(whole("holds no point; expected one row a point below the header".to_owned()));
+        None => in_turn(file, &text, check),
     }
-    Ok(found)
 }
 
 /// Reads row by row up to the first mistake.

@@ -40,7 +40,7 @@ fn tables(scenario: &Scenario) -> BTreeMap<String, Vec<std::collections::HashMap
     let path = folder.path().join("truth");
     let prepared = Prepared::new(subject, KEY).unwrap();
     let name = |station: &str| format!("{station}.csv");
-    fill(&path, |folder| prepared.views.iter().try_for_each(|view| truth::write_view(folder, &name(&view.station.name), subject, view)));
+    fill(&path, |folder| prepared.views.iter().try_for_each(|view| truth::write_view(folder, &view.station.name, subject, view)));
     prepared.views.iter().map(|view| (view.station.name.clone(), rows(&path.join(name(&view.station.name))))).collect()
 }
 

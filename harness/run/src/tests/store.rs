@@ -109,6 +109,7 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
         calibench_scenario::parse(NAME, "wall.toml", &text, &Registry::builtin()).unwrap_or_else(|problems| panic!("{problems}"));
     let registry = Registry::builtin();
     let plan = SweepPlan {
+        stop: None,
         scenario: &scenario,
         sweep: scenario.sweep.as_ref().unwrap(),
         methods: &[],

@@ -37,7 +37,7 @@ fn a_view_s_table_is_the_drawing_on_paper() {
     let folder = tempfile::tempdir().unwrap();
     let prepared = Prepared::new(subject, KEY).unwrap();
     let path = folder.path().join("truth");
-    fill(&path, |folder| truth::write_view(folder, "front.csv", subject, &prepared.views[0]));
+    fill(&path, |folder| truth::write_view(folder, "front", subject, &prepared.views[0]));
     let found = rows(&path.join("front.csv"));
     assert_eq!(found.len(), 12);
     for row in &found {
@@ -58,8 +58,8 @@ fn stations_control_and_camera_are_read_again() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("truth");
     let at = |name: &str| path.join(name);
-    let stations: Vec<StationRow<'_>> =
-        subject.stations.iter().map(|station| StationRow::new(station, Clipped { low: 3, high: 70 })).collect();
+    let stations: Vec<StationRow> =
+        subject.stations.iter().map(|station| StationRow::new(station, &station.name, Clipped { low: 3, high: 70 })).collect();
     fill(&path, |folder| {
         truth::write_stations(folder, "stations.csv", &stations)?;
         truth::write_control(folder, "control.csv", subject)?;
@@ -96,11 +96,11 @@ fn targets_that_the_image_cannot_show_are_warned_of() {
         let changed = scenario(&[("size = 0.06", &format!("size = {size}")), ("\n[pointing]", &format!("{blur}\n[pointing]"))]);
         let subject = views(&changed);
         let prepared = Prepared::new(subject, KEY).unwrap();
-        assert_eq!(truth::warnings(subject, &prepared.views[0]), [format!("front: 12 of 12 targets: {word}")]);
+        assert_eq!(truth::warnings(subject, &prepared.views[0], "front"), [format!("front: 12 of 12 targets: {word}")]);
     }
     let usual = scenario(&[]);
     let prepared = Prepared::new(views(&usual), KEY).unwrap();
-    assert!(truth::warnings(views(&usual), &prepared.views[0]).is_empty());
+    assert!(truth::warnings(views(&usual), &prepared.views[0], "front").is_empty());
 }
 
 #[test]

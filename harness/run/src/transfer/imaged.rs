@@ -2,7 +2,7 @@
 
 use calibench_measure::{Board as Counted, BoardDetector};
 use calibench_model::camera::Camera;
-use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
+use calibench_model::{Image, PixelPoint, Start, Testfield};
 use calibench_random::Key;
 use calibench_scenario::ViewsSubject;
 use calibench_scenario::transfer::{Board, Measuring};
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::Campaign;
 use super::drawn::{Seen, bent_plate};
 use crate::RunError;
-use crate::measured::of_its_kinds;
+use crate::measured::{Asked, of_its_kinds};
 use crate::views::{Pointed, Prepared, pointed};
 
 /// Of each target that is pointed at its place, and its image coordinates if it was measured, px.
@@ -123,8 +123,8 @@ fn measured(
     } else {
         points.iter().map(|(_, start)| *start).collect()
     };
-    let asked: Vec<(TargetKind, Option<Start>)> = points.iter().map(kind).zip(starts).collect();
-    let results = of_its_kinds(&way.operator, image, &asked).unwrap_or_else(|| vec![None; points.len()]);
+    let asked: Vec<Asked<'_>> = points.iter().zip(starts).map(|(point, start)| Asked { name: "", kind: kind(point), start }).collect();
+    let results = of_its_kinds(&way.operator, (None, image), &asked).unwrap_or_else(|| vec![None; points.len()]);
     points
         .iter()
         .zip(results)

@@ -25,7 +25,7 @@ pub const KINDS: [&str; 5] = ["convergent", "arc", "board", "random", "stand"];
 /// The keys of `[stations]` that every kind has.
 const COMMON: [&str; 5] = ["sees", "middle", "facing", "up", "each_trial"];
 /// The files that are written beside the images, without their endings.
-const TAKEN: [&str; 6] = ["stations", "control", "camera", "starts", LOCAL_DISTORTION, "records"];
+const TAKEN: [&str; 7] = ["stations", "control", "camera", "starts", "rendered", LOCAL_DISTORTION, "records"];
 /// The file of the camera's local distortion, without its ending.
 pub const LOCAL_DISTORTION: &str = "local-distortion";
 

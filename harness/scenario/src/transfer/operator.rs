@@ -25,6 +25,11 @@ impl fmt::Debug for Measuring {
 /// The operator that `text` names.
 pub fn read(text: &Spanned<String>, detected: bool, registry: &Registry, problems: &mut Vec<Problem>) -> Option<Measuring> {
     match registry.parse(text.get_ref()) {
+        Ok(operator) if operator.recorded().is_some() => {
+            let message = format!("`{}` is a file of positions, which calibrations do not start from", operator.label);
+            problems.push(Problem::new(text.span(), message).help("expected a method that measures"));
+            None
+        }
         Ok(operator) => Some(Measuring { operator: Arc::new(operator), detected }),
         Err(error) => {
             problems.push(Problem::new(text.span(), error.to_string()));
