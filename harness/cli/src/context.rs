@@ -1,5 +1,6 @@
 //! The project, as commands see it: what is wrong with it is why a command fails.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use calibench_exchange::Inputs;
@@ -39,10 +40,6 @@ impl Context<'_> {
         self.project.root().map_err(project_failure)
     }
 
-    pub fn folder(&self) -> Result<Option<PathBuf>, Failure> {
-        self.project.folder().map_err(project_failure)
-    }
-
     pub fn registry(&self) -> Result<&Registry, Failure> {
         self.project.registry().map_err(project_failure)
     }
@@ -53,10 +50,6 @@ impl Context<'_> {
 
     pub fn catalogue(&self) -> Result<Catalogue, Failure> {
         self.project.catalogue().map_err(project_failure)
-    }
-
-    pub fn scenario_names(&self) -> Result<Vec<String>, Failure> {
-        self.project.scenario_names().map_err(project_failure)
     }
 
     pub fn scenario(&self, name: &str) -> Result<Scenario, Failure> {
@@ -85,6 +78,10 @@ impl Context<'_> {
 
     pub fn revision(&self) -> Result<String, Failure> {
         self.project.revision().map_err(project_failure)
+    }
+
+    pub fn families(&self, papers: &[String]) -> Result<BTreeMap<String, Vec<String>>, Failure> {
+        self.project.families(papers).map_err(project_failure)
     }
 
     pub fn inputs(&self, name: &str, scenario: &Scenario) -> Inputs {

@@ -1,9 +1,7 @@
 //! `calibench report`.
 
-use std::collections::BTreeMap;
-
-use calibench_diagnostics::nearest;
-use calibench_report::{Written, conventions};
+use calibench_project::write_family;
+use calibench_report::Written;
 use clap::Args;
 
 use super::context::Context;
@@ -19,36 +17,9 @@ pub struct Report {
 
 impl Report {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let mut families: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        let places = context.places()?;
-        let mut names = context.scenario_names()?;
-        names.extend(calibench_report::recorded(&places.records).into_iter().filter(|name| name.starts_with("local/")));
-        names.sort();
-        names.dedup();
-        for name in names {
-            families.entry(name.split('/').next().unwrap_or(&name).to_owned()).or_default().push(name);
-        }
-        if context.folder()?.is_some() {
-            families.insert(conventions::FAMILY.to_owned(), Vec::new());
-        } else if families.is_empty() {
-            return Err(Failure::input(format!("{}: no records; `calibench run FILE.toml` makes them", places.records.display())));
-        }
-        for paper in &self.papers {
-            if !families.contains_key(paper) {
-                let known: Vec<&str> = families.keys().map(String::as_str).collect();
-                let near = nearest(paper, known.iter().copied()).map_or(String::from("."), |near| format!(", did you mean `{near}`?"));
-                return Err(Failure::input(format!("no report is called `{paper}`{near} Known are {}.", known.join(", "))));
-            }
-        }
-        if !self.papers.is_empty() {
-            families.retain(|family, _| self.papers.contains(family));
-        }
+        let (places, families) = (context.places()?, context.families(&self.papers)?);
         let write = |(family, scenarios): &(&String, &Vec<String>)| {
-            let written = if *family == conventions::FAMILY {
-                Written::New(conventions::write(&places)?)
-            } else {
-                calibench_report::write(&places, family, scenarios)?
-            };
+            let written = write_family(&places, family, scenarios)?;
             match written {
                 Written::New(page) if !context.quiet => say!("{}", page.display()),
                 Written::Kept(page) if !context.quiet => {

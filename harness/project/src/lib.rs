@@ -4,11 +4,13 @@
 mod error;
 mod methods;
 mod project;
+mod reports;
 mod scenarios;
 mod toolbox;
 
 pub use error::ProjectError;
 pub use methods::Pictured;
 pub use project::Project;
+pub use reports::write_family;
 pub use scenarios::origin;
 pub use toolbox::Toolbox;

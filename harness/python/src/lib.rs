@@ -4,6 +4,7 @@ mod arrays;
 mod boards;
 mod calibrating;
 mod camera;
+mod columns;
 mod cv2;
 mod detecting;
 mod difference;
@@ -16,7 +17,10 @@ mod method;
 mod points;
 mod pose;
 mod rendering;
+mod reporting;
+mod running;
 mod session;
+mod stopped;
 
 use pyo3::prelude::*;
 
@@ -47,4 +51,8 @@ mod _calibench {
     use super::pose::Pose;
     #[pymodule_export]
     use super::rendering::{Shot, Targets, render};
+    #[pymodule_export]
+    use super::reporting::report;
+    #[pymodule_export]
+    use super::running::{Records, merge, run, run_part, shipped};
 }

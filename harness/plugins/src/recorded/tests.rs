@@ -18,7 +18,7 @@ const CSV: &str = "image,target,x,y,sxx,sxy,syy,method,status,reason\n\
     a-1.png,one,5,6,,,,m,measured,\n";
 
 /// The image of a trial; no two are alike.
-fn image(trial: u64) -> Image {
+fn image(trial: u64) -> Image<'static> {
     Image::from_fn(30, 20, |x, y| ((x * y + 7 * trial as usize) % 11) as f32 / 10.0)
 }
 

@@ -1,0 +1,191 @@
+//! `run`, `run_part` and `merge`: scenarios to records.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use calibench_measure::registry::notes;
+use calibench_project::{Pictured, Project, origin};
+use calibench_records::names::SCENARIO;
+use calibench_records::parts::Part;
+use calibench_records::stored::Table;
+use calibench_run::parts::{Wanted, merge as merged};
+use calibench_run::store::RecordsFolder;
+use calibench_run::{Order, Place, Planned, Ran, RunError};
+use calibench_scenario::{Scenario, Subject, Transfer};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use tempfile::TempDir;
+
+use crate::columns::columns;
+use crate::error::{doubt, input, project};
+use crate::session::with_project;
+use crate::stopped::stoppable;
+
+/// What a run left: see `calibench.Records`.
+#[pyclass(frozen, module = "calibench", name = "Records")]
+pub struct Records {
+    folder: PathBuf,
+    /// Where nobody asked for a folder it goes with this.
+    temporary: Option<TempDir>,
+}
+
+#[pymethods]
+impl Records {
+    /// The records of a run that are there.
+    #[staticmethod]
+    fn read(folder: PathBuf) -> PyResult<Self> {
+        if folder.join(SCENARIO).is_file() {
+            return Ok(Self { folder, temporary: None });
+        }
+        Err(input(format!("{}: holds no records; expected the folder of a run", folder.display())))
+    }
+
+    /// Where they are; None where they go with this object.
+    #[getter]
+    fn folder(&self) -> Option<&Path> {
+        self.temporary.is_none().then_some(self.folder.as_path())
+    }
+
+    /// What was measured, a row a point, as columns.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        columns(py, &self.folder, Table::Points)
+    }
+
+    /// What was adjusted, a row a figure, as columns; empty where nothing was.
+    #[getter]
+    fn adjustments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        columns(py, &self.folder, Table::Adjustments)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Records({})", self.folder().map_or_else(|| "temporary".to_owned(), |folder| folder.display().to_string()))
+    }
+}
+
+/// What differs from a scenario's file.
+struct Changes {
+    methods: Vec<String>,
+    trials: Option<u64>,
+    seed: Option<u64>,
+}
+
+impl Changes {
+    fn checked(self) -> PyResult<Self> {
+        match (self.trials, self.seed) {
+            (Some(trials), _) if !(1..=1_000_000).contains(&trials) => Err(input(format!("trials: {trials}; expected 1 to 1000000"))),
+            (_, Some(seed)) if seed > i64::MAX as u64 => Err(input(format!("seed: {seed}; expected at most {}", i64::MAX))),
+            _ => Ok(self),
+        }
+    }
+}
+
+/// Runs `scenario` into the place that `place` makes, and says what is doubtful of it.
+fn ran(
+    py: Python<'_>,
+    here: &Project<'_>,
+    scenario: &Scenario,
+    changes: &Changes,
+    threads: Option<usize>,
+    place: &Place<'_>,
+    revision: &str,
+) -> PyResult<Ran> {
+    let methods = here.methods(&changes.methods, Pictured::Renders).map_err(project)?;
+    let (registry, data, tools) = (here.registry().map_err(project)?, here.data().map_err(project)?, here.toolbox.tools());
+    let stop = AtomicBool::new(false);
+    let (trials, seed) = (changes.trials, changes.seed);
+    let order = Order { scenario, methods: &methods, trials, seed, tools, data, registry, stop: Some(&stop) };
+    let mut planned = order.planned().map_err(input)?;
+    if let Planned::One(plan) = &planned {
+        plan.transfer().and_then(Transfer::warning).map_or(Ok(()), |warning| doubt(py, &format!("{}: {warning}", scenario.name)))?;
+        plan.missing().map_or(Ok(()), |why| doubt(py, &format!("{}: unavailable: {why}", scenario.name)))?;
+        for info in plan.method_infos() {
+            info.unavailable.map_or(Ok(()), |why| doubt(py, &format!("{}: {} unavailable: {why}", scenario.name, info.label)))?;
+        }
+    }
+    let done = stoppable(py, threads, &stop, || planned.run(place, revision, &|| ()).map_err(|error: RunError| input(error)))?;
+    for (name, note) in notes(planned.methods()) {
+        doubt(py, &format!("{name}: {note}"))?;
+    }
+    Ok(done)
+}
+
+/// Runs a scenario: as `calibench run` does, into `records`, or into a folder that goes with the result.
+#[pyfunction]
+#[pyo3(signature = (scenario, *, methods = Vec::new(), trials = None, seed = None, records = None, threads = None, root = None))]
+#[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
+pub fn run(
+    py: Python<'_>,
+    scenario: &str,
+    methods: Vec<String>,
+    trials: Option<u64>,
+    seed: Option<u64>,
+    records: Option<PathBuf>,
+    threads: Option<usize>,
+    root: Option<PathBuf>,
+) -> PyResult<Records> {
+    let changes = Changes { methods, trials, seed }.checked()?;
+    with_project(py, root, |here| {
+        let named = here.scenario(scenario).map_err(project)?;
+        let temporary = records.is_none().then(TempDir::new).transpose()?;
+        let all = records.or_else(|| temporary.as_ref().map(|folder| folder.path().to_owned())).unwrap_or_default();
+        let folder = RecordsFolder::open(&all, &named.name, origin(scenario, &named))?;
+        let revision = here.revision().map_err(project)?;
+        match ran(py, here, &named, &changes, threads, &Place::Records(&folder), &revision)? {
+            Ran::Whole(0) => Err(input(format!("{}: nothing was measured", named.name))),
+            _ => Ok(Records { folder: all.join(&named.name), temporary }),
+        }
+    })
+}
+
+/// Runs one part of a run into a folder of parts: as `calibench run --part` does. Where it is.
+#[pyfunction]
+#[pyo3(signature = (scenario, part, folder, *, methods = Vec::new(), trials = None, seed = None, again = false, threads = None, root = None,
+    revision = None))]
+#[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
+pub fn run_part(
+    py: Python<'_>,
+    scenario: &str,
+    part: &str,
+    folder: PathBuf,
+    methods: Vec<String>,
+    trials: Option<u64>,
+    seed: Option<u64>,
+    again: bool,
+    threads: Option<usize>,
+    root: Option<PathBuf>,
+    revision: Option<String>,
+) -> PyResult<PathBuf> {
+    let changes = Changes { methods, trials, seed }.checked()?;
+    let part: Part = part.parse().map_err(|error| input(format!("part: {error}")))?;
+    with_project(py, root, |here| {
+        let named = here.scenario(scenario).map_err(project)?;
+        let revision = revision.map_or_else(|| here.revision().map_err(project), Ok)?;
+        let wanted = Wanted { folder: &folder, part, origin: origin(scenario, &named), again, revision: &revision };
+        match ran(py, here, &named, &changes, threads, &Place::Part(wanted), &revision)? {
+            Ran::Part(done) => Ok(done.folder),
+            Ran::Whole(_) => Err(input("a part was asked for")),
+        }
+    })
+}
+
+/// Puts parts together, byte for byte to what one run would have written: as `calibench merge` does.
+#[pyfunction]
+pub fn merge(py: Python<'_>, folders: Vec<PathBuf>, records: PathBuf) -> PyResult<Vec<Records>> {
+    let all = py.detach(|| merged(&folders, &records)).map_err(input)?;
+    Ok(all.into_iter().map(|one| Records { folder: records.join(one.scenario), temporary: None }).collect())
+}
+
+/// What a part needs on another machine: a scenario's name, its text, its camera's file if it has one, and the revision of the code.
+#[pyfunction]
+#[pyo3(signature = (scenario, *, root = None))]
+pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<PathBuf>, String)> {
+    with_project(py, root, |here| {
+        let named = here.scenario(scenario).map_err(project)?;
+        let camera = match &named.subject {
+            Subject::Views(views) => views.camera_file.clone(),
+            Subject::Photographs(_) | Subject::Scene(_) | Subject::Printed(_) => None,
+        };
+        Ok((named.name.clone(), named.text.clone(), camera, here.revision().map_err(project)?))
+    })
+}
