@@ -10,6 +10,9 @@ export INSTA_UPDATE := env("INSTA_UPDATE", "no")
 # The tools' own packages, where `./bootstrap peers` put them; without them the tests that ask them are skipped, by name.
 export CALIBENCH_PEERS := if path_exists(justfile_directory() / "target/peers") == "true" { justfile_directory() / "target/peers" } else { "" }
 
+# The Python package, where `./bootstrap python` put it; without it its tests are skipped, by name.
+export CALIBENCH_PYTHON := if path_exists(justfile_directory() / "target/python/wheels") == "true" { justfile_directory() / "target/python" } else { "" }
+
 # List the recipes
 default:
     @just --list --unsorted
@@ -80,6 +83,16 @@ deny:
 # Points per second of every operator, of cameras, milliseconds of the recognition, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
     cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns
+
+# The Python package: its wheel in target/wheels, installed in target/python (`./bootstrap python` makes that)
+python: build
+    target/python/bin/maturin build --quiet --manifest-path harness/python/Cargo.toml --out target/wheels
+    target/python/bin/python -m pip install --quiet --no-deps --force-reinstall target/wheels/calibench-*.whl
+    touch target/python/pyvenv.cfg
+
+# What the Python package costs beyond the program, beside the command line
+perf-python: python
+    target/python/bin/python harness/python/perf.py
 
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:

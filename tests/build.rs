@@ -1,5 +1,5 @@
 //! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, packages of other
-//! tools as `cfg(peer_...)`, Python as `cfg(python)`.
+//! tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -26,6 +26,7 @@ fn main() {
     if Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success()) {
         println!("cargo::rustc-cfg=python");
     }
+    python_package();
     println!("cargo::rerun-if-env-changed=CALIBENCH_PEERS");
     let folder = env::var_os("CALIBENCH_PEERS").map(PathBuf::from).filter(|folder| folder.is_dir());
     let own = folder.as_deref().and_then(packages);
@@ -40,6 +41,18 @@ fn main() {
         // Not the folder: Python writes into it.
         println!("cargo::rerun-if-changed={}", folder.join("pyvenv.cfg").display());
         println!("cargo::rustc-env=CALIBENCH_PEERS={}", folder.display());
+    }
+}
+
+/// Our own package for Python, where `just python` put it.
+fn python_package() {
+    println!("cargo::rustc-check-cfg=cfg(python_package)");
+    println!("cargo::rerun-if-env-changed=CALIBENCH_PYTHON");
+    let Some(folder) = env::var_os("CALIBENCH_PYTHON").map(PathBuf::from).filter(|folder| folder.is_dir()) else { return };
+    println!("cargo::rerun-if-changed={}", folder.join("pyvenv.cfg").display());
+    if packages(&folder).is_some_and(|packages| packages.join("calibench").is_dir()) {
+        println!("cargo::rustc-cfg=python_package");
+        println!("cargo::rustc-env=CALIBENCH_PYTHON={}", folder.display());
     }
 }
 

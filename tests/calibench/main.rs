@@ -37,6 +37,7 @@ mod photographs;
 mod plugins;
 mod priors;
 mod project;
+mod python;
 mod records;
 mod render;
 mod schema;

@@ -1,6 +1,7 @@
 """What calibench computes, in Rust. Use it through `calibench`."""
 
 import os
+from pathlib import Path
 from typing import Any, Callable, Dict, List, Literal, Mapping, Optional, Sequence, Tuple, Union, final
 
 import numpy as np
@@ -280,6 +281,23 @@ class Judgement:
     def columns(self) -> Dict[str, Any]:
         """The figures: method, model, measure, place, value, sigma, count, unit, status, reason."""
 
+@final
+class Records:
+    """What a run left."""
+
+    @staticmethod
+    def read(folder: _Path) -> "Records":
+        """The records of a run that are there."""
+    @property
+    def folder(self) -> Optional[Path]:
+        """Where they are; None where they go with this object."""
+    @property
+    def points(self) -> Dict[str, Any]:
+        """What was measured, a row a point: numbers as arrays (NaN where there is none), texts as lists. Of a sweep all cells."""
+    @property
+    def adjustments(self) -> Dict[str, Any]:
+        """What was adjusted, a row a figure; empty where nothing was."""
+
 def render(
     scenario: str, *, trial: int = 0, seed: Optional[int] = None, stations: Sequence[str] = (), root: Optional[_Path] = None
 ) -> List[Shot]:
@@ -356,6 +374,45 @@ def judge(
     Photographs of a chessboard by their paths; or points as `calibrate` takes them, of one operator, or of several by name.
     With `camera`: whether it still holds within `margin` px.
     """
+
+def run(
+    scenario: str,
+    *,
+    methods: Sequence[str] = (),
+    trials: Optional[int] = None,
+    seed: Optional[int] = None,
+    records: Optional[_Path] = None,
+    threads: Optional[int] = None,
+    root: Optional[_Path] = None,
+) -> Records:
+    """Run a scenario: as `calibench run` does, into the folder `records`, or into one that goes with the result.
+
+    `methods`, `trials` and `seed` take the place of the scenario's own. Ctrl-C ends it; older records are then as they were.
+    """
+
+def run_part(
+    scenario: str,
+    part: str,
+    folder: _Path,
+    *,
+    methods: Sequence[str] = (),
+    trials: Optional[int] = None,
+    seed: Optional[int] = None,
+    again: bool = False,
+    threads: Optional[int] = None,
+    root: Optional[_Path] = None,
+    revision: Optional[str] = None,
+) -> Path:
+    """Run one part of a run, as 3/8, into a folder of parts: as `calibench run --part` does. One that is there is left as it is."""
+
+def merge(folders: Sequence[_Path], records: _Path) -> List[Records]:
+    """Put parts together, byte for byte to what one run would have written: as `calibench merge` does."""
+
+def report(*papers: str, root: Optional[_Path] = None) -> List[Path]:
+    """Write the reports of papers, all where none is named, from the project's records alone. Their pages."""
+
+def shipped(scenario: str, *, root: Optional[_Path] = None) -> Tuple[str, str, Optional[Tuple[Path, Path]], str]:
+    """What a part needs on another machine: name, text, its camera's file (from its folder, and where it is), revision."""
 
 def methods(*, root: Optional[_Path] = None) -> List[Tuple[str, str]]:
     """All methods: names and what they are."""

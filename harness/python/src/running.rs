@@ -176,16 +176,25 @@ pub fn merge(py: Python<'_>, folders: Vec<PathBuf>, records: PathBuf) -> PyResul
     Ok(all.into_iter().map(|one| Records { folder: records.join(one.scenario), temporary: None }).collect())
 }
 
+/// A file beside a scenario: its path from the scenario's folder, and where it is.
+type Beside = (PathBuf, PathBuf);
+
 /// What a part needs on another machine: a scenario's name, its text, its camera's file if it has one, and the revision of the code.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, root = None))]
-pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<PathBuf>, String)> {
+pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<Beside>, String)> {
     with_project(py, root, |here| {
         let named = here.scenario(scenario).map_err(project)?;
         let camera = match &named.subject {
             Subject::Views(views) => views.camera_file.clone(),
             Subject::Photographs(_) | Subject::Scene(_) | Subject::Printed(_) => None,
         };
-        Ok((named.name.clone(), named.text.clone(), camera, here.revision().map_err(project)?))
+        let folder = here.root().map_err(project)?.join("scenarios").join(&named.name);
+        let beside = |path: PathBuf| {
+            let own = folder.parent().and_then(|folder| path.strip_prefix(folder).ok()).map(Path::to_owned);
+            own.map(|own| (own, path.clone()))
+                .ok_or_else(|| input(format!("{}: the camera's file is not in the scenario's folder", path.display())))
+        };
+        Ok((named.name.clone(), named.text.clone(), camera.map(beside).transpose()?, here.revision().map_err(project)?))
     })
 }
