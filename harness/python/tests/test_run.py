@@ -164,3 +164,25 @@ def test_a_plug_in_of_the_project_is_a_method_here(tmp_path):
     points = quiet(cb.run, SCENARIO, methods=["pixel", name], trials=1, root=tmp_path).points
     mine = np.array(points["method"]) == name
     assert mine.any() and np.array_equal(points["x"][mine], points["x"][~mine])
+
+
+def test_a_network_is_a_method(tmp_path):
+    """The example of an ONNX model, which is Förstner's corner, beside the example that computes it."""
+    pytest.importorskip("onnxruntime")
+    pytest.importorskip("onnx")
+    scenario = "testfields/chessboard"
+    (tmp_path / "scenarios/testfields").mkdir(parents=True)
+    (tmp_path / "reference").mkdir()
+    (tmp_path / "methods").mkdir()
+    (tmp_path / "scenarios" / f"{scenario}.toml").write_text((ROOT / "scenarios" / f"{scenario}.toml").read_text())
+    example = ROOT / "examples/plugins"
+    for file in ("onnx/refiner.py", "onnx/plugins.toml", "forstner.py"):
+        text = (example / file).read_text().replace('"python3"', f'"{sys.executable}"')
+        (tmp_path / "methods" / file.rpartition("/")[2]).write_text(text)
+    beside = '[[plugin]]\nname = "forstner_py"\nimage = "gray8"\ncommand = ["%s", "forstner.py"]\nparameters = { window = { default = 11 } }\n'
+    (tmp_path / "methods/python.toml").write_text(beside % sys.executable)
+    subprocess.run([sys.executable, example / "onnx/make_model.py", tmp_path / "methods/refiner.onnx"], check=True)
+    points = quiet(cb.run, scenario, methods=["refiner_onnx", "forstner_py"], trials=1, root=tmp_path).points
+    network = np.array(points["method"]) == "refiner_onnx"
+    both = np.hypot(points["x"][network] - points["x"][~network], points["y"][network] - points["y"][~network])
+    assert np.isfinite(both).sum() > 100 and np.nanmax(both) < 1e-3, np.nanmax(both)
