@@ -147,6 +147,19 @@ fn a_part_is_no_run() {
 }
 
 #[test]
+fn records_of_another_file_of_the_same_name_stay() {
+    let folder = copy();
+    let project = folder.path();
+    std::fs::create_dir(project.join("elsewhere")).unwrap();
+    for file in ["mine.toml", "elsewhere/mine.toml"] {
+        std::fs::copy(project.join("scenarios/corners/noise.toml"), project.join(file)).unwrap();
+    }
+    good(project, &["run", "elsewhere/mine.toml", "--trials", "1", "-q"]);
+    part(project, &["mine.toml"], "1/1", &["--trials", "1", "-q"]);
+    refused(project, &["merge", "parts"], &["local/mine: holds the records of ", "elsewhere/mine.toml"]);
+}
+
+#[test]
 fn a_part_of_a_sweep_is_no_sweep() {
     let folder = copy();
     let project = folder.path();
