@@ -72,6 +72,24 @@ name = "centroid_binary"
 window = 13
 "#;
 
+/// Photographs, if the folder of data holds them.
+const PHOTOGRAPHS: &str = r#"why = "To see photographs in parts."
+source = "a test"
+seed = 0
+
+[photographs]
+folder = "opencv-left"
+files = ["left01.jpg", "left02.jpg"]
+board = "9x6"
+
+[[method]]
+name = "pixel"
+
+[[method]]
+name = "forstner"
+window = 11
+"#;
+
 /// One scenario of each kind: a scene, a rendered network, a drawn one, calibrations that are applied, sweeps of each, blocks of recognised images; and what
 /// cannot be cut: printed figures, a scene without anything random, photographs.
 const KINDS: [&str; 10] = [
@@ -84,7 +102,7 @@ const KINDS: [&str; 10] = [
     "t/blocks",
     "canon-t3/printed",
     "zhu-2007/table-1",
-    "photographs/opencv-left",
+    "t/photographs",
 ];
 
 /// Runs the program, which must succeed.
@@ -116,6 +134,7 @@ fn three_parts_on_any_threads_are_one_run() {
     let project = folder.path();
     std::fs::create_dir(project.join("scenarios/t")).unwrap();
     std::fs::write(project.join("scenarios/t/blocks.toml"), BLOCKS).unwrap();
+    std::fs::write(project.join("scenarios/t/photographs.toml"), PHOTOGRAPHS).unwrap();
     good(project, &[&["run", "-q", "--threads", "2"], &KINDS[..]].concat());
     for (place, threads) in [("3/3", "1"), ("1/3", "2"), ("2/3", "1")] {
         part(project, &KINDS, place, &["--threads", threads]);
@@ -128,10 +147,10 @@ fn three_parts_on_any_threads_are_one_run() {
     }
     same(&project.join("records"), &project.join("merged"));
     // Of a run the folder holds more than tables.
-    for file in ["corners/noise/image.png", "photographs/opencv-left/judgement.csv", "zhu-2007/table-1/theory.csv"] {
+    for file in ["corners/noise/image.png", "t/photographs/scenario.json", "zhu-2007/table-1/theory.csv"] {
         assert!(project.join("merged").join(file).is_file(), "{file}");
     }
-    // Parts that are there already in the place of the records are merged as a run replaces: the folder is the same again.
+    // What is merged takes the place of older records, as a run does.
     good(project, &["merge", "parts", "-q"]);
     same(&project.join("merged"), &project.join("records"));
 }

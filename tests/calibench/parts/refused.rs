@@ -109,7 +109,7 @@ fn parts_that_are_not_whole_are_named() {
     good(project, &MERGE);
     let (records, json) = (project.join("parts/2-of-3/corners/noise/records.csv.gz"), project.join("parts/2-of-3/corners/noise/part.json"));
     let whole = std::fs::read(&records).unwrap();
-    let rows = table(&records);
+    let rows = table(&project.join("merged/corners/noise/records.csv.gz"));
     let refuse = |words: &[&str]| refused(project, &MERGE, words);
     std::fs::write(&records, &whole[..whole.len() / 2]).unwrap();
     refuse(&["2-of-3/corners/noise/records.csv.gz: is not as it was written", "copy the part again"]);
@@ -144,6 +144,19 @@ fn a_part_is_no_run() {
     // Nor does what is merged take the place of a part.
     refused(project, &["merge", "parts", "-o", "parts/1-of-3"], &["parts/1-of-3/corners/noise: holds a part of a run"]);
     refused(project, &["merge", "parts", "-o", "scenarios/corners/noise.toml"], &["noise.toml"]);
+}
+
+#[test]
+fn records_of_another_file_of_the_same_name_stay() {
+    let folder = copy();
+    let project = folder.path();
+    std::fs::create_dir(project.join("elsewhere")).unwrap();
+    for file in ["mine.toml", "elsewhere/mine.toml"] {
+        std::fs::copy(project.join("scenarios/corners/noise.toml"), project.join(file)).unwrap();
+    }
+    good(project, &["run", "elsewhere/mine.toml", "--trials", "1", "-q"]);
+    part(project, &["mine.toml"], "1/1", &["--trials", "1", "-q"]);
+    refused(project, &["merge", "parts"], &["local/mine: holds the records of ", "elsewhere/mine.toml"]);
 }
 
 #[test]
