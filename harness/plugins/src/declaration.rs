@@ -180,7 +180,7 @@ fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declar
     if command.as_ref().first().is_none_or(String::is_empty) {
         wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
     }
-    let mode = mode_of(mode, version).unwrap_or_else(|(span, message)| {
+    let mode = mode_of(mode.as_ref(), version).unwrap_or_else(|(span, message)| {
         wrong(span, message);
         Mode::Stream
     });
@@ -234,15 +234,15 @@ fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declar
     })
 }
 
-fn mode_of(mode: Option<Spanned<String>>, version: Option<Spanned<String>>) -> Result<Mode, (Range<usize>, String)> {
-    match (mode.as_ref().map_or("stream", |mode| mode.as_ref().as_str()), version) {
+fn mode_of(mode: Option<&Spanned<String>>, version: Option<Spanned<String>>) -> Result<Mode, (Range<usize>, String)> {
+    match (mode.map_or("stream", |mode| mode.as_ref().as_str()), version) {
         ("folder", version) => Ok(Mode::Folder { version: version.map_or_else(|| "0".to_owned(), Spanned::into_inner) }),
         ("stream", None) => Ok(Mode::Stream),
         ("stream", Some(version)) => {
             Err((version.span(), "`version` is for mode = \"folder\": in a stream the program says it".to_owned()))
         }
         (other, _) => {
-            let span = mode.as_ref().map_or(0..0, Spanned::span);
+            let span = mode.map_or(0..0, Spanned::span);
             Err((span, format!("mode `{other}` is not known: expected \"stream\" or \"folder\"")))
         }
     }

@@ -114,9 +114,9 @@ impl Process {
     /// Tells it nothing more and waits until it has ended by itself; what it says is read over.
     ///
     /// # Errors
-    /// That it failed, or took longer than `limit`.
-    pub fn finish(&mut self, limit: Duration) -> Result<(), Fault> {
-        let deadline = Instant::now() + limit;
+    /// That it failed, or took longer than `limit` from when it was `started`.
+    pub fn finish(&mut self, started: Instant, limit: Duration) -> Result<(), Fault> {
+        let deadline = started + limit;
         self.stdin = None;
         let mut closed = false;
         loop {

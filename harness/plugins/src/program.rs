@@ -143,7 +143,7 @@ impl Program {
         for (name, value) in settings.iter() {
             command.env(format!("CALIBENCH_{}", name.to_uppercase()), value.to_string());
         }
-        self.launch(&mut command)?.finish(self.limit().saturating_sub(started.elapsed()))
+        self.launch(&mut command)?.finish(started, self.limit())
     }
 
     /// Why there is no such program, if so.

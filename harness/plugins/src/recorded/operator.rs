@@ -73,7 +73,7 @@ impl Recorded for Recalled {
                 told.absent.add(1, &(which.trial, which.view.to_owned(), (*target).to_owned()));
             }
         }
-        self.told.lock().unwrap_or_else(PoisonError::into_inner).join(told);
+        self.told.lock().unwrap_or_else(PoisonError::into_inner).join(&told);
         results
     }
 }
@@ -93,7 +93,7 @@ impl Operator for Recalled {
 }
 
 impl Told {
-    fn join(&mut self, other: Self) {
+    fn join(&mut self, other: &Self) {
         self.images += other.images;
         self.rounded |= other.rounded;
         other.missing.said(|count, first| self.missing.add(count, first));

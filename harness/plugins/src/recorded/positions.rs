@@ -84,6 +84,9 @@ impl Positions {
     }
 
     /// Whether its targets, and its photographs, are those of a run.
+    ///
+    /// # Errors
+    /// The first name that is not, with line and column and the nearest right one.
     pub fn check(&self, known: &Known<'_>) -> Result<(), String> {
         let Known { targets, photographs } = known;
         let foreign = |names: &Names, known: &[&str]| {
@@ -91,7 +94,8 @@ impl Positions {
             names.iter().any(|name| !known.contains(name))
         };
         let of_photographs = self.rendered.is_none();
-        if !foreign(self.points.targets(), targets) && !(of_photographs && foreign(self.points.images(), photographs)) {
+        let any = foreign(self.points.targets(), targets) || (of_photographs && foreign(self.points.images(), photographs));
+        if !any {
             return Ok(());
         }
         // It is read again for the line.
