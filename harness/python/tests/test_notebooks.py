@@ -49,6 +49,12 @@ def test_the_stubs_are_those_of_the_package():
     assert done.returncode == 0, done.stdout
 
 
+def test_the_package_itself_is_typed():
+    pytest.importorskip("mypy")
+    done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "-p", "calibench"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+
+
 def test_wrong_types_are_found(tmp_path):
     """The stubs can fail."""
     pytest.importorskip("mypy")
