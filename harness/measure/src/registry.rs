@@ -33,10 +33,13 @@ pub enum Build {
     /// From checked settings.
     With(fn(&Settings) -> Box<dyn Operator>),
     /// From outside of this program: whether it can run, and as which version, is known when it is asked for; or what is wrong with its files.
-    Outside(Arc<dyn Fn(&Settings) -> Result<Outside, String> + Send + Sync>),
+    Outside(Arc<FromOutside>),
     /// Not here, and why.
     Unavailable(&'static str),
 }
+
+/// Makes an operator from checked settings, or says what is wrong with its files.
+pub type FromOutside = dyn Fn(&Settings) -> Result<Outside, String> + Send + Sync;
 
 /// A method that is no part of this program, with its parameters set.
 pub struct Outside {

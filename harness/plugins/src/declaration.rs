@@ -3,13 +3,11 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use calibench_diagnostics::{Problem, Problems};
+use calibench_diagnostics::Problem;
 use calibench_measure::Parameter;
 use calibench_measure::parameter::Domain;
 use serde::Deserialize;
 use toml::Spanned;
-
-use crate::recorded::{self, Recording, RecordingWire};
 
 /// A declared plug-in.
 #[derive(Clone, Debug)]
@@ -87,16 +85,7 @@ pub enum Starts {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
-    #[serde(default)]
-    plugin: Vec<Spanned<Wire>>,
-    #[serde(default)]
-    method: Vec<Spanned<RecordingWire>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Wire {
+pub(crate) struct Wire {
     name: Spanned<String>,
     about: Option<String>,
     source: Option<String>,
@@ -131,46 +120,8 @@ const MEMORY: &str = "2 GB";
 /// How near a detection must be to a target unless the file says otherwise, px.
 const RADIUS: f64 = 5.0;
 
-/// What a file declares.
-#[derive(Clone, Debug)]
-pub enum Declared {
-    /// A program.
-    Program(Declaration),
-    /// A file of positions.
-    Recording(Recording),
-}
-
-impl Declared {
-    /// Its name among the methods.
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Program(program) => &program.name,
-            Self::Recording(recording) => &recording.name,
-        }
-    }
-}
-
-/// The methods that `text` declares, which is that of `file`: programs, then files of positions.
-///
-/// # Errors
-/// Every mistake with line and column.
-pub fn parse(file: &str, text: &str) -> Result<Vec<Declared>, Problems> {
-    let all = |problems| Problems { file: file.to_owned(), text: text.to_owned(), problems };
-    let wire: File =
-        toml::from_str(text).map_err(|error| all(vec![Problem::new(error.span().unwrap_or(0..0), error.message().to_owned())]))?;
-    if wire.plugin.is_empty() && wire.method.is_empty() {
-        let expected = "[[plugin]] with `name` and `command`, or [[method]] with `name`, `file` and `images`";
-        return Err(all(vec![Problem::new(0..0, format!("declares no plug-in: expected {expected}"))]));
-    }
-    let mut problems = Vec::new();
-    let programs = wire.plugin.into_iter().filter_map(|plugin| checked(plugin.into_inner(), file, &mut problems));
-    let mut found: Vec<Declared> = programs.map(Declared::Program).collect();
-    let recordings = wire.method.into_iter().filter_map(|method| recorded::checked(method.into_inner(), file, &mut problems));
-    found.extend(recordings.map(Declared::Recording));
-    if problems.is_empty() { Ok(found) } else { Err(all(problems)) }
-}
-
-fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declaration> {
+/// The checked declaration of `file`; mistakes are added to `problems`.
+pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declaration> {
     let before = problems.len();
     let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
     let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, seconds, memory } = wire;

@@ -9,6 +9,7 @@ mod confine;
 mod conformance;
 mod declaration;
 mod error;
+mod file;
 mod folder;
 mod operator;
 mod process;
@@ -18,9 +19,10 @@ mod request;
 
 pub use confine::{Confinement, confine_and_execute};
 pub use conformance::{Finding, check};
-pub use declaration::{Declaration, Declared, Grey, Mode, Starts, parse};
+pub use declaration::{Declaration, Grey, Mode, Starts};
 pub use error::PluginError;
-pub use program::{Launcher, load, method};
+pub use file::{Declared, load, parse};
+pub use program::{Launcher, method};
 pub use recorded::{Images, Origin, Positions, Recording};
 
 #[cfg(test)]

@@ -7,15 +7,14 @@ use std::process::Command;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use calibench_measure::{Build, Method, Operator, Outside, Registry, Settings};
+use calibench_measure::{Build, Method, Operator, Outside, Settings};
 use calibench_model::{Rejection, escape};
 use serde::Deserialize;
 use tempfile::TempDir;
 
 use crate::answer::{Fault, greeted};
 use crate::confine::Confinement;
-use crate::declaration::{Declaration, Declared, Mode, leak, parse};
-use crate::error::PluginError;
+use crate::declaration::{Declaration, Mode, leak};
 use crate::operator::Asked;
 use crate::process::Process;
 use crate::request::greeting;
@@ -265,35 +264,4 @@ pub fn method(declaration: Declaration, folder: &Path, launcher: &Launcher) -> M
         Err(fault) => Ok(Outside { version: format!("? ({})", program.files), operator: Err(short(&fault.message)) }),
     };
     Method { name, about, source, version: format!("? ({files})"), parameters, build: Build::Outside(Arc::new(build)) }
-}
-
-/// `registry` with the plug-ins that the TOML files of `folder` declare, in the order of their names.
-///
-/// # Errors
-/// A folder or file that cannot be read, mistakes with line and column, a name that is taken.
-pub fn load(folder: &Path, mut registry: Registry, launcher: &Launcher) -> Result<Registry, PluginError> {
-    let file_error = |path: &Path, source| PluginError::File { path: path.to_owned(), source };
-    let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-    let mut files: Vec<PathBuf> = entries.map_err(|error| file_error(folder, error))?.into_iter().map(|entry| entry.path()).collect();
-    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
-    files.sort();
-    let mut known: Vec<(String, PathBuf)> = Vec::new();
-    for path in files {
-        let text = std::fs::read_to_string(&path).map_err(|error| file_error(&path, error))?;
-        for declared in parse(&path.display().to_string(), &text)? {
-            let name = declared.name().to_owned();
-            if let Some((_, earlier)) = known.iter().find(|(other, _)| *other == name) {
-                return Err(PluginError::Twice { path, earlier: earlier.clone(), name });
-            }
-            if registry.methods().iter().any(|method| method.name == name) {
-                return Err(PluginError::Taken { path, name });
-            }
-            known.push((name, path.clone()));
-            registry = registry.with(match declared {
-                Declared::Program(declaration) => method(declaration, folder, launcher),
-                Declared::Recording(recording) => recording.method(folder),
-            });
-        }
-    }
-    Ok(registry)
 }

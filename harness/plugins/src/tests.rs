@@ -3,7 +3,8 @@
 use calibench_model::{Image, PixelPoint, Rejection, Start, TargetKind};
 
 use crate::answer::{Answer, read};
-use crate::declaration::{Declaration, Declared, Grey, Starts, parse};
+use crate::declaration::{Declaration, Grey, Starts};
+use crate::file::{Declared, parse};
 use crate::request::{body, greeting, head, rounds};
 
 const GOOD: &str = r#"

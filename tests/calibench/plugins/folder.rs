@@ -62,7 +62,7 @@ command = ["python3", "hostile.py"]
 mode = "folder"
 version = "3"
 parameters = { way = { default = 0, min = 0, max = 99 } }
-seconds = 1.0
+seconds = 4.0
 memory = "1 GB"
 "#;
 
@@ -71,7 +71,7 @@ const MEASURED: &str = "measured,";
 
 /// Of each way: what its rows say, and what is told.
 const WAYS: [(u32, &str, &str); 24] = [
-    (0, "rejected,too_slow", "did not end within 1 s"),
+    (0, "rejected,too_slow", "did not end within 4 s"),
     (1, "rejected,ended", "exit status: 1: no licence"),
     (2, "rejected,malformed", "wrote no measured.csv"),
     (3, "rejected,malformed", "measured.csv"),
@@ -112,7 +112,7 @@ fn none_hangs_ends_the_run_or_changes_another_methods_rows() {
     for (way, expected, told) in WAYS {
         let started = Instant::now();
         let (beside, said) = measure(&["--threads", "2", "-m", &format!("hostile:way={way}")]);
-        assert!(started.elapsed() < Duration::from_secs(20), "way {way}: {:?}", started.elapsed());
+        assert!(started.elapsed() < Duration::from_secs(40), "way {way}: {:?}", started.elapsed());
         assert!(beside == alone, "way {way} changes another method's rows");
         let own = rows(project.path(), "hostile");
         let right = |row: &String| row.contains(expected) || (expected == MEASURED && row.contains(",lost,"));

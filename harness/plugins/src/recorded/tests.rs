@@ -7,7 +7,7 @@ use calibench_measure::{Configured, ImageId, Known, Registry, RunId};
 use calibench_model::{Image, Rejection};
 
 use super::Positions;
-use crate::declaration::{Declared, parse};
+use crate::file::{Declared, parse};
 
 const TOML: &str = "[[method]]\nname = \"mine\"\nfile = \"mine.csv\"\nimages = \"pictures\"\n";
 const CSV: &str = "image,target,x,y,sxx,sxy,syy,method,status,reason\n\
