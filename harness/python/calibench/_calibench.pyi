@@ -8,6 +8,40 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 __version__: str
+__all__ = [
+    "Calibration",
+    "CalibrationError",
+    "Camera",
+    "CameraError",
+    "Difference",
+    "DoubtWarning",
+    "Error",
+    "InputError",
+    "Judgement",
+    "Measured",
+    "Pose",
+    "Records",
+    "ScenarioError",
+    "Shot",
+    "Targets",
+    "UnavailableError",
+    "__version__",
+    "add_method",
+    "calibrate",
+    "confine",
+    "detect",
+    "diff",
+    "judge",
+    "measure",
+    "merge",
+    "methods",
+    "render",
+    "report",
+    "run",
+    "run_part",
+    "scenarios",
+    "shipped",
+]
 
 _Path = Union[str, "os.PathLike[str]"]
 _Size = Tuple[int, int]
@@ -299,7 +333,7 @@ class Records:
         """What was adjusted, a row a figure; empty where nothing was."""
 
 def render(
-    scenario: str, *, trial: int = 0, seed: Optional[int] = None, stations: Sequence[str] = (), root: Optional[_Path] = None
+    scenario: str, *, trial: int = 0, seed: Optional[int] = None, stations: Optional[Sequence[str]] = None, root: Optional[_Path] = None
 ) -> List[Shot]:
     """The images of one trial of a scenario (a name of the project, or a TOML file), with their truth. Of a sweep the first cell's."""
 
@@ -333,7 +367,7 @@ def calibrate(
     model: Optional[str] = None,
     pitch: Optional[float] = None,
     solve: Optional[Sequence[str]] = None,
-    priors: Sequence[str] = (),
+    priors: Optional[Sequence[str]] = None,
     start: Optional[Camera] = None,
     datum: str = "control",
     board_shape: str = "tested",
@@ -341,7 +375,7 @@ def calibrate(
     covariances: bool = False,
     huber: Optional[float] = None,
     snoop: bool = False,
-    compare: Sequence[Sequence[str]] = (),
+    compare: Optional[Sequence[Sequence[str]]] = None,
 ) -> Calibration:
     """Calibrate a camera: as `calibench calibrate --points --control` does.
 
@@ -378,7 +412,7 @@ def judge(
 def run(
     scenario: str,
     *,
-    methods: Sequence[str] = (),
+    methods: Optional[Sequence[str]] = None,
     trials: Optional[int] = None,
     seed: Optional[int] = None,
     records: Optional[_Path] = None,
@@ -395,7 +429,7 @@ def run_part(
     part: str,
     folder: _Path,
     *,
-    methods: Sequence[str] = (),
+    methods: Optional[Sequence[str]] = None,
     trials: Optional[int] = None,
     seed: Optional[int] = None,
     again: bool = False,

@@ -60,7 +60,7 @@ def cv2_subpix(image: Any, starts: Any, window: int, iterations: int, epsilon: f
     inside = np.all((near >= ring) & (near < np.array([width, height]) - ring), axis=1)
     found = np.full(starts.shape, np.nan)
     if inside.any() and min(height, width) >= window + 4:
-        corners = starts[inside].astype(np.float32)[:, None, :]
+        corners = starts[inside].astype(np.float32).reshape(-1, 1, 2)
         found[inside] = cv2.cornerSubPix(image, corners, (half, half), (-1, -1), (3, iterations, epsilon)).reshape(-1, 2)
     return found
 

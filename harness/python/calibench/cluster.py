@@ -63,11 +63,11 @@ def run(
         for number in missing
     ]
     try:
-        for future in as_completed(futures):
+        for future in as_completed(futures):  # type: ignore[no-untyped-call,unused-ignore]
             _keep(future.result(), kept)
             future.release()
     except BaseException:
-        client.cancel(futures)
+        client.cancel(futures)  # type: ignore[no-untyped-call,unused-ignore]
         raise
     merged = merge([kept], records)
     shutil.rmtree(kept)

@@ -130,8 +130,8 @@ impl Calibration {
 
 /// Calibrates a camera from measured points: as `calibench calibrate --points --control` does.
 #[pyfunction]
-#[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = Vec::new(), start = None, datum = "control",
-    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = false, compare = Vec::new()))]
+#[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = None, start = None, datum = "control",
+    board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = false, compare = None))]
 #[expect(clippy::too_many_arguments, clippy::fn_params_excessive_bools, reason = "each is a keyword of Python's")]
 pub fn calibrate(
     py: Python<'_>,
@@ -142,7 +142,7 @@ pub fn calibrate(
     model: Option<String>,
     pitch: Option<f64>,
     solve: Option<Vec<String>>,
-    priors: Vec<String>,
+    priors: Option<Vec<String>>,
     start: Option<&Camera>,
     datum: &str,
     board_shape: &str,
@@ -150,7 +150,7 @@ pub fn calibrate(
     covariances: bool,
     huber: Option<f64>,
     snoop: bool,
-    compare: Vec<Vec<String>>,
+    compare: Option<Vec<Vec<String>>>,
 ) -> PyResult<Calibration> {
     let board = Board::of(board)?;
     let names = image_names(images, xy.len())?;
@@ -159,7 +159,7 @@ pub fn calibrate(
         pitch_um: positive(pitch, "pitch")?,
         model,
         solve,
-        priors: priors.iter().map(|text| text.parse()).collect::<Result<_, _>>().map_err(input)?,
+        priors: priors.unwrap_or_default().iter().map(|text| text.parse()).collect::<Result<_, _>>().map_err(input)?,
         start: start.map(|camera| camera.named.camera),
         ..Optics::new(size_of(size)?)
     };
@@ -177,7 +177,7 @@ pub fn calibrate(
     }
     let done = py.detach(|| {
         let prepared = prepare(points, &board.control, &settings)?;
-        self::solve(&prepared, &compare, |calibration| done(calibration, &names, &board))
+        self::solve(&prepared, &compare.unwrap_or_default(), |calibration| done(calibration, &names, &board))
     });
     let done = done.map_err(|error| CalibrationError::new_err(error.to_string()))?.map_err(input)?;
     for text in &done.doubts {

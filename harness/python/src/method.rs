@@ -95,7 +95,7 @@ type Answer = (Vec<PixelPoint>, Option<Vec<[[f64; 2]; 2]>>);
 impl Declared {
     fn tell(&self, what: &str) {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        told.insert(what.lines().next().unwrap_or_default().chars().take(200).collect());
+        told.insert(what.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(200).collect());
         while told.len() > MOST_TOLD {
             told.pop_last();
         }

@@ -116,18 +116,19 @@ fn shot(py: Python<'_>, rendered: Rendered) -> PyResult<Shot> {
 
 /// The images of one trial of a scenario, with their truth: what `calibench render` writes.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, trial = 0, seed = None, stations = Vec::new(), root = None))]
+#[pyo3(signature = (scenario, *, trial = 0, seed = None, stations = None, root = None))]
 pub fn render(
     py: Python<'_>,
     scenario: &str,
     trial: u64,
     seed: Option<u64>,
-    stations: Vec<String>,
+    stations: Option<Vec<String>>,
     root: Option<PathBuf>,
 ) -> PyResult<Vec<Shot>> {
     with_project(py, root, |here| {
         let scenario = here.scenario(scenario).map_err(project)?;
-        let rendered = py.detach(|| shots(&scenario, seed.unwrap_or(scenario.seed), trial, &stations)).map_err(input)?;
+        let rendered =
+            py.detach(|| shots(&scenario, seed.unwrap_or(scenario.seed), trial, &stations.unwrap_or_default())).map_err(input)?;
         rendered.into_iter().map(|rendered| shot(py, rendered)).collect()
     })
 }

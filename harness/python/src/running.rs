@@ -112,19 +112,19 @@ fn ran(
 
 /// Runs a scenario: as `calibench run` does, into `records`, or into a folder that goes with the result.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, methods = Vec::new(), trials = None, seed = None, records = None, threads = None, root = None))]
+#[pyo3(signature = (scenario, *, methods = None, trials = None, seed = None, records = None, threads = None, root = None))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
 pub fn run(
     py: Python<'_>,
     scenario: &str,
-    methods: Vec<String>,
+    methods: Option<Vec<String>>,
     trials: Option<u64>,
     seed: Option<u64>,
     records: Option<PathBuf>,
     threads: Option<usize>,
     root: Option<PathBuf>,
 ) -> PyResult<Records> {
-    let changes = Changes { methods, trials, seed }.checked()?;
+    let changes = Changes { methods: methods.unwrap_or_default(), trials, seed }.checked()?;
     with_project(py, root, |here| {
         let named = here.scenario(scenario).map_err(project)?;
         let temporary = records.is_none().then(TempDir::new).transpose()?;
@@ -140,7 +140,7 @@ pub fn run(
 
 /// Runs one part of a run into a folder of parts: as `calibench run --part` does. Where it is.
 #[pyfunction]
-#[pyo3(signature = (scenario, part, folder, *, methods = Vec::new(), trials = None, seed = None, again = false, threads = None, root = None,
+#[pyo3(signature = (scenario, part, folder, *, methods = None, trials = None, seed = None, again = false, threads = None, root = None,
     revision = None))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
 pub fn run_part(
@@ -148,7 +148,7 @@ pub fn run_part(
     scenario: &str,
     part: &str,
     folder: PathBuf,
-    methods: Vec<String>,
+    methods: Option<Vec<String>>,
     trials: Option<u64>,
     seed: Option<u64>,
     again: bool,
@@ -156,7 +156,7 @@ pub fn run_part(
     root: Option<PathBuf>,
     revision: Option<String>,
 ) -> PyResult<PathBuf> {
-    let changes = Changes { methods, trials, seed }.checked()?;
+    let changes = Changes { methods: methods.unwrap_or_default(), trials, seed }.checked()?;
     let part: Part = part.parse().map_err(|error| input(format!("part: {error}")))?;
     with_project(py, root, |here| {
         let named = here.scenario(scenario).map_err(project)?;

@@ -62,7 +62,10 @@ def test_it_projects_as_opencv_does(camera):
     assert np.abs(camera.project(points) - theirs.reshape(-1, 2)).max() < 1e-9
     pixels = camera.project(points)
     criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 200, 1e-12)
-    plain = cv2.undistortPointsIter(pixels[:, None], k, d, np.eye(3), k, criteria).reshape(-1, 2)
+    pixels = pixels.reshape(-1, 1, 2)
+    older = getattr(cv2, "undistortPointsIter", None)  # before OpenCV 5
+    plain = older(pixels, k, d, np.eye(3), k, criteria) if older else cv2.undistortPoints(pixels, k, d, None, np.eye(3), k, criteria)
+    plain, pixels = plain.reshape(-1, 2), pixels.reshape(-1, 2)
     assert np.abs(camera.undistort(pixels) - plain).max() < 1e-6
 
 
