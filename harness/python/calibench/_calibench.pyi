@@ -18,6 +18,7 @@ __all__ = [
     "Error",
     "InputError",
     "Judgement",
+    "LossWarning",
     "Measured",
     "Pose",
     "Records",
@@ -27,6 +28,7 @@ __all__ = [
     "UnavailableError",
     "__version__",
     "add_method",
+    "board",
     "calibrate",
     "confine",
     "detect",
@@ -44,7 +46,7 @@ __all__ = [
 ]
 
 _Path = Union[str, "os.PathLike[str]"]
-_Size = Tuple[int, int]
+_Size = Sequence[int]
 #: `9x6:25` (inner corners and the side of a square), (n, 3) object coordinates, or names with coordinates.
 _Board = Union[str, ArrayLike, Mapping[str, Sequence[float]]]
 
@@ -68,6 +70,9 @@ class UnavailableError(Error):
 
 class DoubtWarning(UserWarning):
     """A result that is doubtful, and why: what the command line says on standard error, or ends with exit code 3 for."""
+
+class LossWarning(UserWarning):
+    """What a file or a convention has no place for, or what was left out of a file that was read."""
 
 @final
 class Pose:
@@ -129,7 +134,7 @@ class Camera:
     def undistort(self, px: ArrayLike) -> NDArray[np.float64]:
         """(n, 2) px to where they would be without distortion, with the same focal lengths and principal point."""
     @property
-    def size(self) -> _Size:
+    def size(self) -> Tuple[int, int]:
         """Columns and rows, px."""
     @property
     def model(self) -> str:
@@ -262,6 +267,9 @@ class Calibration:
     def doubts(self) -> List[str]:
         """What is doubtful, in words; with any the command line ends with exit code 3."""
     @property
+    def warnings(self) -> List[str]:
+        """What is to be known and is no doubt: what the summary calls warnings."""
+    @property
     def summary(self) -> str:
         """What the command line prints."""
 
@@ -358,6 +366,9 @@ def detect(
 ) -> Optional[Targets]:
     """Find a chessboard (`9x6`; where cv2 is installed), or the coded field of a scenario; None where it is not seen."""
 
+def board(text: str) -> List[Tuple[str, List[float]]]:
+    """Names and object coordinates of a chessboard's inner corners, as of 9x6:25: X along the rows, Y upwards, Z towards the viewer."""
+
 def calibrate(
     xy: Sequence[Union[ArrayLike, Measured]],
     board: _Board,
@@ -380,7 +391,7 @@ def calibrate(
     """Calibrate a camera: as `calibench calibrate --points --control` does.
 
     `xy` has one array for each image, with a row for each point of the board, NaN where it was not measured; what `measure`
-    returned does as well, and brings its covariances. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `datum`,
+    returned does as well, and its covariances are weights with `covariances=True`. `images` are their names; `solve`, `priors` (as k1=-3e-4:1e-5), `datum`,
     `board_shape`, `sigma` (px), `huber`, `snoop` and `compare` are as on the command line.
     """
 

@@ -19,6 +19,8 @@ pub fn rows<const N: usize>(array: &Bound<'_, PyAny>, what: &str) -> PyResult<Ve
         return Ok(Vec::new());
     }
     let wrong = || input(format!("{what}: found an array of shape {shape:?}; expected (n, {N})"));
+    // As OpenCV has them.
+    let array = if matches!(shape[..], [_, 1, _]) { array.call_method1("reshape", (shape[0], shape[2]))? } else { array };
     let values: PyReadonlyArray2<'_, f64> = array.extract().map_err(|_| wrong())?;
     let values = values.as_array();
     if values.ncols() != N {

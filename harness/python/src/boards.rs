@@ -9,6 +9,13 @@ use pyo3::types::PyDict;
 use crate::arrays::rows;
 use crate::error::input;
 
+/// The object coordinates of a chessboard's inner corners by their names: X along the rows, Y upwards, Z towards the viewer, from the first corner.
+#[pyfunction]
+pub fn board(text: &str) -> PyResult<Vec<(String, [f64; 3])>> {
+    let chessboard: Chessboard = text.parse().map_err(input)?;
+    Ok(chessboard.control().into_iter().map(|row| (row.target, row.position)).collect())
+}
+
 /// Points of known object coordinates, in the order in which arrays have them.
 pub struct Board {
     /// Their names and coordinates.

@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use calibench_adjust::Use;
-use calibench_calibrate::{Calibration as Solved, Optics, Settings, calibrate as solve, prepare};
+use calibench_calibrate::{BoardShape, Calibration as Solved, Optics, Settings, calibrate as solve, prepare};
 use calibench_exchange::NamedCamera;
+use calibench_judge::BENT;
 use calibench_model::Pose as Exterior;
 use calibench_report::calibration::summary;
 use nalgebra::DMatrix;
@@ -15,8 +16,9 @@ use pyo3::types::PyDict;
 use crate::arrays::{of_matrix, table};
 use crate::boards::Board;
 use crate::camera::{Camera, size_of};
-use crate::error::{CalibrationError, doubt, input};
+use crate::error::{CalibrationError, doubt, in_python, input};
 use crate::points::{image_names, points};
+use crate::pool::released;
 use crate::pose::Pose;
 
 /// A calibrated camera and its quality: see `calibench.Calibration`.
@@ -111,6 +113,12 @@ impl Calibration {
         self.done.doubts.clone()
     }
 
+    /// What is to be known and is no doubt: what the summary calls warnings.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.done.summary.lines().filter_map(|line| line.trim().strip_prefix("warning: ")).map(in_python).collect()
+    }
+
     /// What the command line prints.
     #[getter]
     fn summary(&self) -> &str {
@@ -132,12 +140,12 @@ impl Calibration {
 #[pyfunction]
 #[pyo3(signature = (xy, board, *, size, images = None, model = None, pitch = None, solve = None, priors = None, start = None, datum = "control",
     board_shape = "tested", sigma = None, covariances = false, huber = None, snoop = false, compare = None))]
-#[expect(clippy::too_many_arguments, clippy::fn_params_excessive_bools, reason = "each is a keyword of Python's")]
+#[expect(clippy::too_many_arguments, reason = "each is a keyword of Python's")]
 pub fn calibrate(
     py: Python<'_>,
     xy: Vec<Bound<'_, PyAny>>,
     board: &Bound<'_, PyAny>,
-    size: (u32, u32),
+    size: &Bound<'_, PyAny>,
     images: Option<Vec<String>>,
     model: Option<String>,
     pitch: Option<f64>,
@@ -155,6 +163,7 @@ pub fn calibrate(
     let board = Board::of(board)?;
     let names = image_names(images, xy.len())?;
     let points = points(&xy, &names, &board)?;
+    let (model, bent) = lens_and_board(model);
     let optics = Optics {
         pitch_um: positive(pitch, "pitch")?,
         model,
@@ -165,7 +174,7 @@ pub fn calibrate(
     };
     let settings = Settings {
         datum: datum.parse().map_err(input)?,
-        shape: board_shape.parse().map_err(input)?,
+        shape: if bent && board_shape == "tested" { BoardShape::Bent } else { board_shape.parse().map_err(input)? },
         huber: positive(huber, "huber")?,
         snoop,
         sigma_px: positive(sigma, "sigma")?,
@@ -175,15 +184,23 @@ pub fn calibrate(
     if snoop && huber.is_some() {
         return Err(input("huber and snoop: one or the other"));
     }
-    let done = py.detach(|| {
+    let done = released(py, || {
         let prepared = prepare(points, &board.control, &settings)?;
         self::solve(&prepared, &compare.unwrap_or_default(), |calibration| done(calibration, &names, &board))
-    });
-    let done = done.map_err(|error| CalibrationError::new_err(error.to_string()))?.map_err(input)?;
+    })?;
+    let done = done.map_err(|error| CalibrationError::new_err(in_python(&error.to_string())))?.map_err(input)?;
     for text in &done.doubts {
         doubt(py, text)?;
     }
     Ok(Calibration { camera: Py::new(py, Camera::new(done.named.clone()))?, done })
+}
+
+/// A model as `judge` names it: the lens, and whether the board is bent.
+fn lens_and_board(model: Option<String>) -> (Option<String>, bool) {
+    match model.as_deref().and_then(|model| model.strip_suffix(BENT)) {
+        Some(lens) => (Some(lens.to_owned()), true),
+        None => (model, false),
+    }
 }
 
 /// A positive number, if there is one; `what` is its name in errors.
@@ -221,7 +238,7 @@ fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<Don
         used,
         sigma0: solution.sigma0(),
         rms_px: calibration.rms_px(),
-        doubts: calibration.doubts().into_iter().map(str::to_owned).collect(),
+        doubts: calibration.doubts().into_iter().map(in_python).collect(),
         summary: summary(calibration),
     })
 }

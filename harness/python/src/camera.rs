@@ -18,7 +18,8 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::{of_matrix, of_positions, positions, rows, table};
-use crate::error::{camera as refused, doubt, input};
+use crate::error::{camera as refused, doubt, input, lost};
+use crate::pool::released;
 
 /// A camera: see `calibench.Camera`.
 #[pyclass(frozen, module = "calibench", name = "Camera")]
@@ -50,11 +51,11 @@ impl Camera {
 ///
 /// # Errors
 /// No columns or no rows.
-pub fn size_of((width, height): (u32, u32)) -> PyResult<ImageSize> {
-    if width == 0 || height == 0 {
-        return Err(input(format!("size: ({width}, {height}); expected columns and rows")));
-    }
-    Ok(ImageSize { width, height })
+pub fn size_of(size: &Bound<'_, PyAny>) -> PyResult<ImageSize> {
+    let wrong = || input(format!("size: {size}; expected (columns, rows) of the images, px, as in (640, 480)"));
+    let Ok([width, height]) = size.extract::<[i64; 2]>() else { return Err(wrong()) };
+    let side = |side: i64| u32::try_from(side).ok().filter(|side| *side > 0).ok_or_else(wrong);
+    Ok(ImageSize { width: side(width)?, height: side(height)? })
 }
 
 #[pymethods]
@@ -65,7 +66,7 @@ impl Camera {
     fn read(
         py: Python<'_>,
         path: PathBuf,
-        size: Option<(u32, u32)>,
+        size: Option<&Bound<'_, PyAny>>,
         camera: Option<&str>,
         format: Option<&str>,
         fisheye: Option<bool>,
@@ -91,7 +92,7 @@ impl Camera {
     fn read_all(
         py: Python<'_>,
         path: PathBuf,
-        size: Option<(u32, u32)>,
+        size: Option<&Bound<'_, PyAny>>,
         format: Option<&str>,
         fisheye: Option<bool>,
     ) -> PyResult<Vec<Self>> {
@@ -99,7 +100,7 @@ impl Camera {
             format_named(name).ok_or_else(|| input(format!("format: no such format as `{name}`; `calibench list formats` lists them")))
         });
         let options = ReadOptions { size: size.map(size_of).transpose()?, fisheye, lens: None, from: from.transpose()? };
-        let file = py.detach(|| read_camera_with(&path, &options)).map_err(refused)?;
+        let file = released(py, || read_camera_with(&path, &options))?.map_err(refused)?;
         let format = file.format;
         let cameras = OpenPoints::default().read(file);
         let all: Vec<Self> = cameras.into_iter().map(|named| Self { named, format: Some(format), fit: None }).collect();
@@ -109,7 +110,7 @@ impl Camera {
         let mut said: Vec<&String> = Vec::new();
         for note in all.iter().flat_map(|camera| &camera.named.notes) {
             if !said.contains(&note) {
-                doubt(py, &format!("{}: {note}", path.display()))?;
+                lost(py, &format!("{}: {note}", path.display()))?;
                 said.push(note);
             }
         }
@@ -135,7 +136,7 @@ impl Camera {
         let goal = goal(to, &given).map_err(refused)?;
         let region = radius.map_or(Region::Frame, |px| Region::Radius { px });
         let options = ConvertOptions { region, rotation, accept, ..ConvertOptions::default() };
-        let found = py.detach(|| converted(&self.named, &goal, model, pitch, &options)).map_err(refused)?;
+        let found = released(py, || converted(&self.named, &goal, model, pitch, &options))?.map_err(refused)?;
         let Converted { camera: named, conversion, .. } = found;
         let (rms, most) = (conversion.residual.rms_px, conversion.residual.max_px);
         if conversion.method != Method::Exact && conversion.verdict != Verdict::Good {
@@ -148,8 +149,8 @@ impl Camera {
         let mut all = [named];
         OpenPoints::default().written(goal.format, &mut all);
         let [named] = all;
-        for lost in losses(goal.format, &named) {
-            doubt(py, &format!("{to}: lost: {lost}"))?;
+        for what in losses(goal.format, &named) {
+            lost(py, &format!("{to}: lost: {what}"))?;
         }
         let fit = (conversion.method != Method::Exact).then_some((rms, most));
         let made = Self { named, format: Some(goal.format), fit };
@@ -171,8 +172,8 @@ impl Camera {
             let (rms, most) = (conversion.residual.rms_px, conversion.residual.max_px);
             doubt(py, &format!("{}: converted to {to} by a fit: residuals {rms:.3} px RMS, {most:.3} px at most", path.display()))?;
         }
-        for lost in losses(file.format, &file.camera) {
-            doubt(py, &format!("{}: lost: {lost}", path.display()))?;
+        for what in losses(file.format, &file.camera) {
+            lost(py, &format!("{}: lost: {what}", path.display()))?;
         }
         write_camera(&path, file.format, &[file.camera]).map_err(refused)
     }
@@ -181,7 +182,7 @@ impl Camera {
     fn project(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
         let points = rows::<3>(points, "points")?;
         let one = |[x, y, z]: &[f64; 3]| self.named.camera.project(Ray { x: *x, y: -y, z: -z }).unwrap_or(NOWHERE);
-        let found: Vec<PixelPoint> = py.detach(|| points.par_iter().with_min_len(SHARE).map(one).collect());
+        let found: Vec<PixelPoint> = released(py, || points.par_iter().with_min_len(SHARE).map(one).collect())?;
         of_positions(py, found)
     }
 
@@ -193,7 +194,7 @@ impl Camera {
             let length = (x * x + y * y + z * z).sqrt();
             [x / length, -y / length, -z / length]
         };
-        let found: Vec<[f64; 3]> = py.detach(|| places.par_iter().with_min_len(SHARE).map(one).collect());
+        let found: Vec<[f64; 3]> = released(py, || places.par_iter().with_min_len(SHARE).map(one).collect())?;
         table(py, &found)
     }
 
@@ -202,7 +203,7 @@ impl Camera {
         let places = positions(px, "px")?;
         let plain = Undistorted::of(&self.named.camera, Overscan::Percent(0.0)).map_err(refused)?;
         let one = |at: &PixelPoint| self.named.camera.unproject(*at).ok().and_then(|ray| plain.image(ray)).unwrap_or(NOWHERE);
-        let found: Vec<PixelPoint> = py.detach(|| places.par_iter().with_min_len(SHARE).map(one).collect());
+        let found: Vec<PixelPoint> = released(py, || places.par_iter().with_min_len(SHARE).map(one).collect())?;
         of_positions(py, found)
     }
 

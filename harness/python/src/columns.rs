@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
 
 use crate::error::input;
+use crate::pool::released;
 
 /// Columns of numbers; empty cells are NaN.
 const NUMBERS: [&str; 9] = ["x", "y", "dx", "dy", "bound", "predicted", "value", "sigma", "error"];
@@ -30,7 +31,7 @@ enum Column {
 #[derive(Default)]
 pub struct Columns {
     names: Vec<String>,
-    columns: Vec<Column>,
+    values: Vec<Column>,
     texts: Vec<String>,
     places: HashMap<String, u32>,
 }
@@ -61,12 +62,12 @@ impl Columns {
         let mut reader = ReaderBuilder::new().from_reader(file);
         if self.names.is_empty() {
             self.names = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
-            self.columns = self.names.iter().map(|name| Column::of(name)).collect();
+            self.values = self.names.iter().map(|name| Column::of(name)).collect();
         }
         let mut row = StringRecord::new();
         while reader.read_record(&mut row).map_err(wrong)? {
             for (place, cell) in row.iter().enumerate().take(self.names.len()) {
-                let text = match &mut self.columns[place] {
+                let text = match &mut self.values[place] {
                     Column::Numbers(values) => {
                         values.push(if cell.is_empty() { f64::NAN } else { cell.parse().map_err(|_| format!("`{cell}` is no number"))? });
                         continue;
@@ -77,7 +78,7 @@ impl Columns {
                     }
                     Column::Texts(_) => self.place(cell),
                 };
-                if let Column::Texts(values) = &mut self.columns[place] {
+                if let Column::Texts(values) = &mut self.values[place] {
                     values.push(text);
                 }
             }
@@ -102,7 +103,7 @@ impl Columns {
     pub fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let texts: Vec<Bound<'_, PyString>> = self.texts.iter().map(|text| PyString::new(py, text)).collect();
         let dict = PyDict::new(py);
-        for (name, column) in self.names.into_iter().zip(self.columns) {
+        for (name, column) in self.names.into_iter().zip(self.values) {
             match column {
                 Column::Numbers(values) => dict.set_item(name, PyArray1::from_vec(py, values))?,
                 Column::Whole(values) => dict.set_item(name, PyArray1::from_vec(py, values))?,
@@ -130,5 +131,5 @@ impl Column {
 /// # Errors
 /// As [`Columns::of`].
 pub fn columns<'py>(py: Python<'py>, folder: &Path, table: Table) -> PyResult<Bound<'py, PyDict>> {
-    py.detach(|| Columns::of(folder, table)).map_err(input)?.into_dict(py)
+    released(py, || Columns::of(folder, table))?.map_err(input)?.into_dict(py)
 }

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 
 use crate::error::{UnavailableError, doubt, input, project};
 use crate::grey::Grey;
+use crate::pool::released;
 use crate::rendering::{Targets, starts};
 use crate::session::with_project;
 
@@ -35,7 +36,7 @@ pub fn detect(
                 if board.contains(':') { board.parse::<Chessboard>().map_err(input)?.board } else { board.parse().map_err(input)? };
             let none = || UnavailableError::new_err("there is no chessboard detector: install `cv2` (opencv-python-headless)");
             let detector = here.toolbox.detector.as_deref().ok_or_else(none)?;
-            let found = py.detach(|| corners_of(detector, &image, "image", board));
+            let found = released(py, || corners_of(detector, &image, "image", board))?;
             let targets = starts(py, found.iter().map(|row| (row.target.as_str(), row.start)))?;
             Ok(if found.is_empty() { None } else { Some(targets) })
         }
@@ -51,7 +52,7 @@ pub fn detect(
             };
             let recogniser = Recogniser::new(&subject.field, classifier)
                 .map_err(|error| input(format!("testfield: {name}: {error}; its [testfield] must have kind = \"coded\"")))?;
-            match py.detach(|| coded_of(&subject.field, &recogniser, &image, "image")) {
+            match released(py, || coded_of(&subject.field, &recogniser, &image, "image"))? {
                 Ok(coded) => {
                     if !coded.lost.is_empty() {
                         doubt(py, &format!("{} targets of {} whole squares recognised, {}", coded.rows.len(), coded.squares, coded.lost))?;
@@ -64,6 +65,6 @@ pub fn detect(
                 }
             }
         }
-        _ => Err(input("expected a board, as in 9x6, or testfield=SCENARIO")),
+        _ => Err(input("expected either a board, as in 9x6, or testfield=SCENARIO")),
     })
 }

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use crate::arrays::{positions, table};
 use crate::camera::Camera;
 use crate::error::{camera as refused, input};
+use crate::pool::released;
 
 /// How far two cameras differ over the frame: see `calibench.Difference`.
 #[pyclass(frozen, get_all, module = "calibench", name = "Difference")]
@@ -66,10 +67,10 @@ pub fn diff(
     let region = radius.map_or(Region::Frame, |px| Region::Radius { px });
     let options = DifferenceOptions { region, rotation, compensation: true, ..DifferenceOptions::default() };
     let places = points.map(|points| positions(points, "points")).transpose()?;
-    let found = py.detach(|| match &places {
+    let found = released(py, || match &places {
         Some(places) => difference_at(a, b, places, &options),
         None => difference(a, b, &options),
-    });
+    })?;
     let found = found.map_err(refused)?;
     Ok(Difference {
         rms_px: found.spread.rms_px,

@@ -24,14 +24,41 @@ create_exception!(
     "A result that is doubtful, and why: what the command line says on standard error, or ends with exit code 3 for."
 );
 
+create_exception!(
+    calibench,
+    LossWarning,
+    PyUserWarning,
+    "What a file or a convention has no place for, or what was left out of a file that was read."
+);
+
 /// Whatever a crate refuses as bad input.
 pub fn input(error: impl std::fmt::Display) -> PyErr {
-    InputError::new_err(error.to_string())
+    InputError::new_err(in_python(&error.to_string()))
 }
+
+/// A message of the command line with its options as Python has them: `pitch=` for `--pitch`, `snoop=True` for `--snoop`.
+pub fn in_python(message: &str) -> String {
+    let message = message.strip_prefix("-m: ").or_else(|| message.strip_prefix("-m ")).unwrap_or(message);
+    let mut words = String::with_capacity(message.len());
+    let mut rest = message;
+    while let Some(at) = rest.find("--") {
+        let (before, after) = (&rest[..at], &rest[at + 2..]);
+        let end = after.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(after.len());
+        let (name, value) = (after[..end].replace('-', "_"), if SWITCHES.contains(&&after[..end]) { "=True" } else { "=" });
+        words.push_str(before);
+        words.push_str(&if name.is_empty() { "--".to_owned() } else { format!("{name}{value}") });
+        rest = &after[end..];
+    }
+    words.push_str(rest);
+    words
+}
+
+/// Options without a value.
+const SWITCHES: [&str; 4] = ["snoop", "covariances", "accept", "again"];
 
 /// What a crate refuses of a camera.
 pub fn camera(error: impl std::fmt::Display) -> PyErr {
-    CameraError::new_err(error.to_string())
+    CameraError::new_err(in_python(&error.to_string()))
 }
 
 /// What is wrong with a project.
@@ -42,9 +69,15 @@ pub fn project(error: ProjectError) -> PyErr {
     }
 }
 
+/// Says what of a camera a file or a convention has no place for.
+pub fn lost(py: Python<'_>, text: &str) -> PyResult<()> {
+    let text = CString::new(in_python(text).replace('\0', " ")).unwrap_or_default();
+    PyErr::warn(py, &py.get_type::<LossWarning>(), &text, 1)
+}
+
 /// Says something doubtful, as a warning that users can turn into an error.
 pub fn doubt(py: Python<'_>, text: &str) -> PyResult<()> {
     // A text of others may hold anything.
-    let text = CString::new(text.replace('\0', " ")).unwrap_or_default();
+    let text = CString::new(in_python(text).replace('\0', " ")).unwrap_or_default();
     PyErr::warn(py, &py.get_type::<DoubtWarning>(), &text, 1)
 }

@@ -16,6 +16,8 @@ pub enum Grey<'py> {
 /// What an image may be.
 const EXPECTED: &str =
     "expected a two-dimensional array (rows, columns) of uint8, uint16, float32 or float64; floats are fractions of full scale";
+/// All levels of a camera of 12 bits are below.
+const TWELVE_BITS: u16 = 4096;
 /// Grey values beyond this are no fractions of full scale.
 const NO_FRACTION: f32 = 2.0;
 
@@ -38,6 +40,10 @@ impl<'py> Grey<'py> {
             return own(of_bytes(width, height, &in_rows(&levels)));
         }
         if let Ok(levels) = array.extract::<PyReadonlyArray2<'py, u16>>() {
+            let most = levels.as_array().iter().copied().max().unwrap_or(0);
+            if most < TWELVE_BITS {
+                doubt(array.py(), &format!("image: levels up to {most} of 65535; of 10 or 12 bits multiply them, by 64 or 16"))?;
+            }
             return own(of_words(width, height, &in_rows(&levels)));
         }
         let grey = if let Ok(values) = array.extract::<PyReadonlyArray2<'py, f32>>() {

@@ -25,6 +25,7 @@ use crate::camera::{Camera, size_of};
 use crate::error::{UnavailableError, doubt, input, project};
 use crate::measuring::Measured;
 use crate::points::{image_names, points};
+use crate::pool::released;
 use crate::session::with_project;
 
 /// A verdict and the figures behind it: see `calibench.Judgement`.
@@ -95,7 +96,7 @@ pub fn judge(
     py: Python<'_>,
     what: &Bound<'_, PyAny>,
     board: &Bound<'_, PyAny>,
-    size: Option<(u32, u32)>,
+    size: Option<&Bound<'_, PyAny>>,
     images: Option<Vec<String>>,
     methods: Option<Vec<String>>,
     models: Option<Vec<String>>,
@@ -135,7 +136,7 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
         published: camera.map(|camera| camera.named.camera),
         published_sigma: camera.and_then(|camera| stated_sigma(&camera.named)),
     };
-    let rows = py.detach(|| judged(material, &options)).map_err(input)?;
+    let rows = released(py, || judged(material, &options))?.map_err(input)?;
     let summary = Summary::new(&rows, asked.seed);
     let Some(trusted) = summary.trusted() else { return Err(input(section(&summary).0)) };
     // Where the two cannot be compared over the frame the photographs cannot tell.
@@ -161,7 +162,7 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
 }
 
 /// Points by operators: a dict of lists of arrays, or one such list.
-fn of_points(what: &Bound<'_, PyAny>, board: &Board, size: Option<(u32, u32)>, images: Option<Vec<String>>) -> PyResult<Material> {
+fn of_points(what: &Bound<'_, PyAny>, board: &Board, size: Option<&Bound<'_, PyAny>>, images: Option<Vec<String>>) -> PyResult<Material> {
     let size = size_of(size.ok_or_else(|| input("size: expected (columns, rows) of the images that the points are of"))?)?;
     let one = || PyDict::new(what.py());
     let by_operator = match what.cast::<PyDict>() {
@@ -195,11 +196,11 @@ fn of_points(what: &Bound<'_, PyAny>, board: &Board, size: Option<(u32, u32)>, i
 fn lost(arrays: &[Bound<'_, PyAny>], images: &[String], board: &Board) -> LostRows {
     let measured = images.iter().zip(arrays).filter_map(|(image, array)| Some((image, array.cast::<Measured>().ok()?.get())));
     let of = |(image, found): (&String, &Measured)| {
-        let row = |(target, why): (&str, &Option<&'static str>)| {
+        let row = |(target, why): (&str, Option<&'static str>)| {
             let (image, target, status) = (image.clone(), target.to_owned(), "rejected".to_owned());
             why.map(|why| LostRow { image, target, status, reason: why.to_owned() })
         };
-        board.names().zip(found.reasons()).filter_map(row).collect::<Vec<_>>()
+        board.names().zip(found.reasons().iter().copied()).filter_map(row).collect::<Vec<_>>()
     };
     measured.flat_map(of).collect()
 }
@@ -226,7 +227,7 @@ fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Op
             let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
             Ok((measured_board(&image, name, (detector, chessboard.board), &methods), size))
         };
-        let found = py.detach(|| photos.par_iter().zip(&names(photos)).map(one).collect::<PyResult<Vec<(Trial, ImageSize)>>>())?;
+        let found = released(py, || photos.par_iter().zip(&names(photos)).map(one).collect::<PyResult<Vec<(Trial, ImageSize)>>>())??;
         let size = same_size(photos.iter().zip(found.iter().map(|(_, size)| *size))).map_err(input)?;
         let mut trial = Trial::default();
         for (view, _) in found {

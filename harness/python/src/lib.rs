@@ -1,5 +1,7 @@
 //! The Python package `calibench`: arrays in, results out. What is computed here is what the command line computes; this crate only hands it over.
 
+#![allow(clippy::needless_pass_by_value, reason = "Python hands values over")]
+
 mod arrays;
 mod boards;
 mod calibrating;
@@ -15,6 +17,7 @@ mod listing;
 mod measuring;
 mod method;
 mod points;
+mod pool;
 mod pose;
 mod rendering;
 mod reporting;
@@ -30,6 +33,8 @@ mod _calibench {
     #[expect(non_upper_case_globals, reason = "as Python calls it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
     #[pymodule_export]
+    use super::boards::board;
+    #[pymodule_export]
     use super::calibrating::{Calibration, calibrate};
     #[pymodule_export]
     use super::camera::Camera;
@@ -38,7 +43,7 @@ mod _calibench {
     #[pymodule_export]
     use super::difference::{Difference, diff};
     #[pymodule_export]
-    use super::error::{CalibrationError, CameraError, DoubtWarning, Error, InputError, ScenarioError, UnavailableError};
+    use super::error::{CalibrationError, CameraError, DoubtWarning, Error, InputError, LossWarning, ScenarioError, UnavailableError};
     #[pymodule_export]
     use super::judging::{Judgement, judge};
     #[pymodule_export]

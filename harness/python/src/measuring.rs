@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays::{matrices, of_covariances, of_positions, positions};
 use crate::error::{UnavailableError, doubt, input, project};
 use crate::grey::Grey;
+use crate::pool::released;
 use crate::session::with_project;
 
 /// What a method made of points: see `calibench.Measured`.
@@ -91,7 +92,7 @@ pub fn measure(
         }
         let grey = Grey::of(image)?;
         let picture = grey.image()?;
-        let found = py.detach(|| shared_out(operator, &picture, &starts));
+        let found = released(py, || shared_out(operator, &picture, &starts))?;
         for note in operator.notes() {
             doubt(py, &format!("{}: {note}", configured.name()))?;
         }
@@ -150,7 +151,7 @@ fn kinds(kind: Option<&Bound<'_, PyAny>>, n: usize) -> PyResult<Option<Vec<Targe
         TargetKind::ALL
             .into_iter()
             .find(|kind| kind.name() == name)
-            .ok_or_else(|| input(format!("kind: `{name}` is none; expected one of {}", known())))
+            .ok_or_else(|| input(format!("kind: `{name}` is no kind of target; expected one of {}", known())))
     };
     if let Ok(name) = kind.extract::<String>() {
         return Ok(Some(vec![named(&name)?; n]));

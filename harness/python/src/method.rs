@@ -110,7 +110,7 @@ impl Asked {
             Rejection::Raised
         };
         let answer = self.answer(py, image, starts).map_err(raised)?;
-        self.read(&answer, starts.map(<[Start]>::len)).map_err(|error| {
+        read(&answer, starts.map(<[Start]>::len)).map_err(|error| {
             self.declared.tell(&error.value(py).to_string());
             Rejection::Malformed
         })
@@ -131,22 +131,23 @@ impl Asked {
             None => callable.call((grey,), Some(&named)),
         }
     }
+}
 
-    fn read(&self, answer: &Bound<'_, PyAny>, expected: Option<usize>) -> PyResult<Answer> {
-        let (xy, cov) = match answer.cast::<PyTuple>() {
-            Ok(pair) if pair.len() == 2 => (pair.get_item(0)?, Some(pair.get_item(1)?)),
-            _ => (answer.clone(), None),
-        };
-        let found = positions(&xy, "xy")?;
-        if let Some(count) = expected.filter(|count| *count != found.len()) {
-            return Err(crate::error::input(format!(
-                "xy: {} positions for {count} starts; expected one for each, NaN where there is none",
-                found.len()
-            )));
-        }
-        let cov = cov.filter(|cov| !cov.is_none()).map(|cov| matrices(&cov, found.len(), "cov")).transpose()?;
-        Ok((found, cov))
+/// Positions, and covariances if there are any; `expected` is how many.
+fn read(answer: &Bound<'_, PyAny>, expected: Option<usize>) -> PyResult<Answer> {
+    let (xy, cov) = match answer.cast::<PyTuple>() {
+        Ok(pair) if pair.len() == 2 => (pair.get_item(0)?, Some(pair.get_item(1)?)),
+        _ => (answer.clone(), None),
+    };
+    let found = positions(&xy, "xy")?;
+    if let Some(count) = expected.filter(|count| *count != found.len()) {
+        return Err(crate::error::input(format!(
+            "xy: {} positions for {count} starts; expected one for each, NaN where there is none",
+            found.len()
+        )));
     }
+    let cov = cov.filter(|cov| !cov.is_none()).map(|cov| matrices(&cov, found.len(), "cov")).transpose()?;
+    Ok((found, cov))
 }
 
 /// A point of an answer.
@@ -170,10 +171,14 @@ impl Operator for Asked {
             Some(radius) => {
                 let mut failed = None;
                 let found = || {
-                    asked(None).map(|(found, _)| found.into_iter().filter(|at| at.is_finite()).collect()).unwrap_or_else(|why| {
-                        failed = Some(why);
-                        Vec::new()
-                    })
+                    let kept = |(found, _): Answer| found.into_iter().filter(|at| at.is_finite()).collect();
+                    asked(None).map_or_else(
+                        |why| {
+                            failed = Some(why);
+                            Vec::new()
+                        },
+                        kept,
+                    )
                 };
                 let results = nearest_detected((image, starts), (0, radius), found);
                 results

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use crate::arrays::{of_positions, table};
 use crate::camera::Camera;
 use crate::error::{input, project};
+use crate::pool::released;
 use crate::pose::Pose;
 use crate::session::with_project;
 
@@ -128,7 +129,7 @@ pub fn render(
     with_project(py, root, |here| {
         let scenario = here.scenario(scenario).map_err(project)?;
         let rendered =
-            py.detach(|| shots(&scenario, seed.unwrap_or(scenario.seed), trial, &stations.unwrap_or_default())).map_err(input)?;
+            released(py, || shots(&scenario, seed.unwrap_or(scenario.seed), trial, &stations.unwrap_or_default()))?.map_err(input)?;
         rendered.into_iter().map(|rendered| shot(py, rendered)).collect()
     })
 }

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::error::{doubt, input, project};
+use crate::pool::released;
 use crate::session::with_project;
 
 /// Writes the reports of papers or other families of scenarios, all where none is named, from the project's records alone: as `calibench report` does. Their pages.
@@ -18,7 +19,7 @@ pub fn report(py: Python<'_>, papers: Vec<String>, root: Option<PathBuf>) -> PyR
         let (places, families) = (here.places().map_err(project)?, here.families(&papers).map_err(project)?);
         let families: Vec<(&String, &Vec<String>)> = families.iter().collect();
         let write = |(family, scenarios): &(&String, &Vec<String>)| write_family(&places, family, scenarios);
-        let written = py.detach(|| families.par_iter().map(write).collect::<Result<Vec<_>, _>>()).map_err(input)?;
+        let written = released(py, || families.par_iter().map(write).collect::<Result<Vec<_>, _>>())?.map_err(input)?;
         write_index(&places.reports)?;
         let mut pages = Vec::new();
         for one in written {

@@ -18,6 +18,7 @@ use tempfile::TempDir;
 
 use crate::columns::columns;
 use crate::error::{doubt, input, project};
+use crate::pool::released;
 use crate::session::with_project;
 use crate::stopped::stoppable;
 
@@ -172,7 +173,7 @@ pub fn run_part(
 /// Puts parts together, byte for byte to what one run would have written: as `calibench merge` does.
 #[pyfunction]
 pub fn merge(py: Python<'_>, folders: Vec<PathBuf>, records: PathBuf) -> PyResult<Vec<Records>> {
-    let all = py.detach(|| merged(&folders, &records)).map_err(input)?;
+    let all = released(py, || merged(&folders, &records))?.map_err(input)?;
     Ok(all.into_iter().map(|one| Records { folder: records.join(one.scenario), temporary: None }).collect())
 }
 

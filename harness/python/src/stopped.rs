@@ -1,11 +1,16 @@
 //! Long work that Ctrl-C ends.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
+
+use crate::error::input;
+use crate::pool::all_threads;
 
 /// How often Python is asked whether it was interrupted.
 const ASKED: Duration = Duration::from_millis(50);
@@ -20,15 +25,14 @@ pub fn stoppable<T: Send>(
     stop: &AtomicBool,
     work: impl FnOnce() -> PyResult<T> + Send,
 ) -> PyResult<T> {
-    let pool = threads.map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build()).transpose();
-    let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let pool = match threads {
+        Some(threads) => Arc::new(ThreadPoolBuilder::new().num_threads(threads).build().map_err(input)?),
+        None => all_threads()?,
+    };
     let (caller, mut interrupted) = (thread::current(), None);
     let result = thread::scope(|scope| {
         let worker = scope.spawn(move || {
-            let result = match &pool {
-                Some(pool) => pool.install(work),
-                None => work(),
-            };
+            let result = pool.install(work);
             caller.unpark();
             result
         });

@@ -1,6 +1,8 @@
 """Calibration and verdicts."""
 
-import json
+import os
+import subprocess
+import sys
 import warnings
 
 import numpy as np
@@ -145,3 +147,66 @@ def test_a_verdict_on_points_is_that_of_the_command_line(shots, measured, contro
     printed = program("judge", *words, code=3 if found.doubt else 0)
     assert printed == found.verdict and found.model in ("opencv4", "opencv5") and found.operator == "points"
     assert len(found.columns["measure"]) == len(found.columns["value"]) > 10
+
+
+def test_what_cannot_be_is_a_doubt(shots, measured):
+    """A board that is turned, images whose sides are exchanged: said, whatever comes out."""
+    size = shots[0].image.shape[::-1]
+    with pytest.warns(cb.DoubtWarning, match="no operator's"):
+        assert cb.calibrate(measured, "6x9:25", size=size).rms_px > 5
+    with pytest.warns(cb.DoubtWarning, match="outside the images"):
+        cb.calibrate(measured, "9x6:25", size=(64, 48))
+    # In words of Python.
+    assert "--" not in "".join(calibrated(measured, "9x6:25", size=(64, 48)).doubts)
+
+
+def test_points_and_sizes_are_taken_as_opencv_has_them(shots, measured):
+    size = shots[0].image.shape[::-1]
+    usual = calibrated(measured, "9x6:25", size=size, model="opencv5")
+    opencv = calibrated([xy[:, None, :] for xy in measured], "9x6:25", size=list(size), model="opencv5")
+    assert usual.camera.parameters == opencv.camera.parameters
+    bent = calibrated(measured, "9x6:25", size=size, model="opencv5+bent")
+    assert bent.camera.parameters == calibrated(measured, "9x6:25", size=size, model="opencv5", board_shape="bent").camera.parameters
+    names = [name for name, _ in cb.board("9x6:25")]
+    assert names[0] == "r1c1" and names[53] == "r6c9" and dict(cb.board("9x6:25"))["r2c2"] == [25.0, -25.0, 0.0]
+
+
+def test_it_is_what_opencv_finds(shots, measured):
+    cv2 = pytest.importorskip("cv2")
+    size = shots[0].image.shape[::-1]
+    flat = [np.array([xyz for _, xyz in cb.board("9x6:25")], np.float32)] * len(measured)
+    for xyz in flat:
+        xyz[:, 1:] *= -1
+    points = [xy.astype(np.float32).reshape(-1, 1, 2) for xy in measured]
+    _, matrix, distortion, *_ = cv2.calibrateCamera(flat, points, size, None, None, criteria=(3, 1000, 1e-14))
+    ours = calibrated(points, "9x6:25", size=size, model="opencv5", board_shape="flat").camera.parameters
+    theirs = dict(zip(["fx", "fy", "cx", "cy"], matrix[[0, 1, 0, 1], [0, 1, 2, 2]]), **dict(zip(["k1", "k2", "p1", "p2", "k3"], distortion.ravel())))
+    assert all(abs(ours[name] - theirs[name]) < 1e-4 * max(1.0, abs(theirs[name])) for name in theirs), (ours, theirs)
+
+
+def test_a_forked_process_goes_on(shots, measured):
+    """It has none of its parent's threads."""
+    if not hasattr(os, "fork"):
+        pytest.skip("no fork here")
+    size = shots[0].image.shape[::-1]
+    calibrated(measured, "9x6:25", size=size)
+    code = f"""
+import multiprocessing, sys, warnings
+import numpy as np, calibench as cb
+warnings.simplefilter("ignore")
+xy = [np.array(rows) for rows in {[xy.tolist() for xy in measured[:8]]!r}]
+def work(queue=None):
+    result = cb.calibrate(xy, "9x6:25", size={tuple(size)!r}).rms_px
+    if queue is not None:
+        queue.put(result)
+    return result
+own = work()
+context = multiprocessing.get_context("fork")
+queue = context.SimpleQueue()
+child = context.Process(target=work, args=(queue,))
+child.start()
+child.join(60)
+assert child.exitcode == 0, child.exitcode
+assert queue.get() == own
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=120)

@@ -131,3 +131,10 @@ def test_the_true_camera_pictures_the_truth():
     seen = ~np.isnan(shot.truth.xy[:, 0])
     assert np.abs(shot.camera.project(points)[seen] - shot.truth.xy[seen]).max() < 1e-9
     assert np.abs(shot.pose.R @ shot.pose.centre + shot.pose.t).max() < 1e-9 and np.linalg.det(shot.pose.R) == pytest.approx(1)
+
+
+def test_what_is_lost_is_said_apart(camera, tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", cb.DoubtWarning)
+        warnings.simplefilter("ignore", cb.LossWarning)
+        camera.convert("colmap").write(tmp_path / "cameras.txt")

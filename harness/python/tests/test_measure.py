@@ -181,3 +181,9 @@ def test_other_threads_of_python_run_while_it_measures():
     stop.set()
     thread.join()
     assert during > 10 or seconds < 0.05, f"{during} in {seconds} s"
+
+
+def test_levels_of_twelve_bits_are_doubted():
+    image = (np.random.default_rng(1).uniform(0, 1, (40, 40)) * 4095).astype(np.uint16)
+    with pytest.warns(cb.DoubtWarning, match="10 or 12 bits"):
+        cb.measure(image, [[20, 20]])

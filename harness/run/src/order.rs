@@ -51,7 +51,7 @@ pub enum Ran {
     /// How many points were measured, or calibrations applied, or sets of printed figures recomputed.
     Whole(u64),
     /// A part is there.
-    Part(Done),
+    Part(Box<Done>),
 }
 
 impl<'a> Order<'a> {
@@ -136,9 +136,9 @@ impl Planned<'_> {
     pub fn run(&mut self, place: &Place<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<Ran, RunError> {
         Ok(match (self, place) {
             (Self::One(plan), Place::Records(folder)) => Ran::Whole(store::run(folder, plan, revision, step)?),
-            (Self::One(plan), Place::Part(wanted)) => Ran::Part(parts::run(wanted, plan, step)?),
+            (Self::One(plan), Place::Part(wanted)) => Ran::Part(Box::new(parts::run(wanted, plan, step)?)),
             (Self::Sweep(plan), Place::Records(folder)) => Ran::Whole(store::run_sweep(folder, plan, revision, step)?),
-            (Self::Sweep(plan), Place::Part(wanted)) => Ran::Part(parts::run_sweep(wanted, plan, step)?),
+            (Self::Sweep(plan), Place::Part(wanted)) => Ran::Part(Box::new(parts::run_sweep(wanted, plan, step)?)),
         })
     }
 }

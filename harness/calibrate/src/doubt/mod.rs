@@ -2,6 +2,7 @@
 
 mod control;
 mod gross;
+mod impossible;
 mod lens;
 mod motion;
 mod overlap;
@@ -91,6 +92,7 @@ impl Calibration<'_> {
             ("one pose for all rows of an image", shutter),
         ];
         self.checked = all.map(|(what, verdict)| Checked { what, verdict }).into();
+        self.impossible = impossible::found(self);
     }
 
     /// The checks that adjust again; of many image points none, which would take as long and as much memory once more.
@@ -104,7 +106,7 @@ impl Calibration<'_> {
         (gross, [control, lens, shutter])
     }
 
-    /// The most likely causes of doubt, first the one that explains most.
+    /// What cannot be, then the most likely causes of doubt, first the one that explains most.
     pub fn doubts(&self) -> Vec<&str> {
         let explains = |checked: &&Checked| match checked.verdict {
             Verdict::Doubt(Finding { explains, .. }, _) => explains,
@@ -112,7 +114,7 @@ impl Calibration<'_> {
         };
         let mut doubts: Vec<&Checked> = self.checked.iter().filter(|checked| checked.doubt().is_some()).collect();
         doubts.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
-        doubts.into_iter().filter_map(Checked::doubt).collect()
+        self.impossible.iter().map(String::as_str).chain(doubts.into_iter().filter_map(Checked::doubt)).collect()
     }
 
     /// The verdict on a network that is adjusted with `more` unknowns.

@@ -1,6 +1,6 @@
 //! What a user must know of a calibration.
 
-use calibench_adjust::{ImageObservation, Significance, Use};
+use calibench_adjust::{Significance, Use};
 use calibench_calibrate::{Calibration, Rival};
 use calibench_model::camera::CameraModel;
 
@@ -31,7 +31,6 @@ pub(super) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     warnings.extend(board::warning(calibration));
     warnings.extend(discs::warnings(calibration));
     warnings.extend(held(calibration));
-    warnings.extend(outside(calibration));
     warnings.extend(scale::warnings(calibration));
     warnings.extend(half(calibration));
     warnings.extend(checks::slight(calibration));
@@ -69,16 +68,6 @@ fn held(calibration: &Calibration<'_>) -> Option<String> {
             held.join(", ")
         )
     })
-}
-
-/// Image points outside the frame: of another size, or swapped coordinates.
-fn outside(calibration: &Calibration<'_>) -> Option<String> {
-    let is_outside = |o: &&ImageObservation| {
-        let (size, at) = (calibration.camera(calibration.owner(o.image)).size(), o.position.to_corner());
-        !((0.0..=f64::from(size.width)).contains(&at.x) && (0.0..=f64::from(size.height)).contains(&at.y))
-    };
-    let count = calibration.prepared.network.observations.iter().filter(is_outside).count();
-    (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
 }
 
 /// Photographs without a board.

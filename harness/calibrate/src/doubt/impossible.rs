@@ -1,0 +1,26 @@
+//! What cannot be as it is said to be: points outside of their images, residuals that no operator leaves.
+
+use crate::Calibration;
+
+/// Residuals beyond this, px RMS, are no operator's: names, counts, sizes or the model are wrong.
+const MOST_PX: f64 = 5.0;
+
+/// What is wrong for sure, in words.
+pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
+    outside(calibration).into_iter().chain(far(calibration)).collect()
+}
+
+/// Image points outside the frame: of another size, or swapped coordinates.
+fn outside(calibration: &Calibration<'_>) -> Option<String> {
+    let count = calibration.outside();
+    (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
+}
+
+fn far(calibration: &Calibration<'_>) -> Option<String> {
+    let rms = calibration.rms_px();
+    (rms > MOST_PX).then(|| {
+        format!(
+            "residuals of {rms:.1} px RMS are no operator's: are the columns and rows of the board, the names of points and their object coordinates right, and is the model the lens's?"
+        )
+    })
+}
