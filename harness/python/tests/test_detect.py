@@ -53,7 +53,7 @@ def test_mistakes_are_named():
         cb.detect(image, testfield="testfields/wall", root=ROOT)
     with pytest.raises(cb.InputError, match="classifier"):
         cb.detect(image, testfield="testfields/coded", classifier="new", root=ROOT)
-    with pytest.raises(cb.InputError, match="expected a board"):
+    with pytest.raises(cb.InputError, match="expected either a board"):
         cb.detect(image)
 
 
