@@ -136,6 +136,18 @@ fn points_outside_the_images_are_said() {
     let arguments = CALIBRATE.map(|argument| if argument == "1600x1200" { "1000x800" } else { argument });
     let output = run(folder.path(), &[&arguments[..], &["camera.yaml"]].concat());
     assert!(stdout(&output).contains("image points lie outside the images: is their size right (--size)"), "{}", stdout(&output));
+    assert_eq!(output.status.code(), Some(3), "{}", stdout(&output));
+}
+
+#[test]
+fn residuals_that_no_operator_leaves_are_a_doubt() {
+    let folder = board([0.0; 3]);
+    // Corner after corner as if six stood in a row, and not nine.
+    let corner = |i: usize| format!("r{}c{},{},{},0\n", i / 9 + 1, i % 9 + 1, 25 * (i % 6), -25 * (i as i64 / 6));
+    write(folder.path(), "control.csv", &(0..54).fold("target,X,Y,Z\n".to_owned(), |all, i| all + &corner(i)));
+    let output = run(folder.path(), &[&CALIBRATE[..], &["camera.yaml"]].concat());
+    assert_eq!(output.status.code(), Some(3), "{}{}", stdout(&output), stderr(&output));
+    assert!(stdout(&output).starts_with("doubtful: residuals of ") && stdout(&output).contains("no operator's"), "{}", stdout(&output));
 }
 
 #[test]

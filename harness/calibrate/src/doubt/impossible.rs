@@ -5,9 +5,10 @@ use crate::Calibration;
 /// Residuals beyond this, px RMS, are no operator's: names, counts, sizes or the model are wrong.
 const MOST_PX: f64 = 5.0;
 
-/// What is wrong for sure, in words.
+/// What is wrong for sure, in words. Of large residuals only where no check has found their cause.
 pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
-    outside(calibration).into_iter().chain(far(calibration)).collect()
+    let explained = calibration.checked.iter().any(|checked| checked.doubt().is_some());
+    outside(calibration).into_iter().chain(far(calibration).filter(|_| !explained)).collect()
 }
 
 /// Image points outside the frame: of another size, or swapped coordinates.

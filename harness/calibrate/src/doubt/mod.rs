@@ -106,7 +106,7 @@ impl Calibration<'_> {
         (gross, [control, lens, shutter])
     }
 
-    /// What cannot be, then the most likely causes of doubt, first the one that explains most.
+    /// The most likely causes of doubt, first the one that explains most; then what cannot be.
     pub fn doubts(&self) -> Vec<&str> {
         let explains = |checked: &&Checked| match checked.verdict {
             Verdict::Doubt(Finding { explains, .. }, _) => explains,
@@ -114,7 +114,7 @@ impl Calibration<'_> {
         };
         let mut doubts: Vec<&Checked> = self.checked.iter().filter(|checked| checked.doubt().is_some()).collect();
         doubts.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
-        self.impossible.iter().map(String::as_str).chain(doubts.into_iter().filter_map(Checked::doubt)).collect()
+        doubts.into_iter().filter_map(Checked::doubt).chain(self.impossible.iter().map(String::as_str)).collect()
     }
 
     /// The verdict on a network that is adjusted with `more` unknowns.
