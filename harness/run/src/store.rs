@@ -123,12 +123,14 @@ pub(crate) fn fill(
     revision: &str,
     step: &(dyn Fn() + Sync),
 ) -> Result<u64, RunError> {
-    records.keep(plan.scenario, plan.methods, folder)?;
-    if plan.span().count() == 0 {
-        return Ok(0);
+    let mut measured = 0;
+    if plan.span().count() > 0 {
+        let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
+        measured = write_records(folder, &plan.scenario.name, &plan, revision, step)?;
     }
-    let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
-    write_records(folder, &plan.scenario.name, &plan, revision, step)
+    // What methods tell of themselves they tell after measuring.
+    records.keep(plan.scenario, plan.methods, folder)?;
+    Ok(measured)
 }
 
 /// Runs `plan` and writes its records into `folder`, under the name `name`; how many points were measured.

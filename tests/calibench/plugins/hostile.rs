@@ -133,7 +133,7 @@ pub fn is_running(argument: &str) -> bool {
 #[cfg_attr(not(python), ignore = "no python3")]
 #[test]
 fn who_takes_too_long_too_often_is_asked_no_more() {
-    let project = with_plugins(&[("hostile.toml", &TOML.replace("seconds = 1.0", "seconds = 0.5")), ("hostile.py", SCRIPT)]);
+    let project = with_plugins(&[("hostile.toml", TOML), ("hostile.py", SCRIPT)]);
     let told = |trials: &str| {
         let output = run(project.path(), &["run", "corners/noise", "--trials", trials, "-q", "--threads", "1", "-m", "hostile:way=0"]);
         assert_eq!(output.status.code(), Some(2), "nothing was measured");

@@ -2,7 +2,7 @@
 
 use crate::Calibration;
 
-/// Residuals beyond this, px RMS, are no operator's: names, counts, sizes or the model are wrong.
+/// Residuals beyond this, px, at half of the points are no operator's: names, counts, sizes or the model are wrong.
 const MOST_PX: f64 = 5.0;
 
 /// What is wrong for sure, in words. Of large residuals only where no check has found their cause.
@@ -18,10 +18,16 @@ fn outside(calibration: &Calibration<'_>) -> Option<String> {
 }
 
 fn far(calibration: &Calibration<'_>) -> Option<String> {
-    let rms = calibration.rms_px();
-    (rms > MOST_PX).then(|| {
+    let mut lengths: Vec<f64> = calibration.solution.each_residual().filter_map(|r| r.v).map(|[x, y]| x.hypot(y)).collect();
+    if lengths.is_empty() {
+        return None;
+    }
+    let middle = lengths.len() / 2;
+    // Half of them, so that gross errors do not count, whether they were left out or not.
+    let half = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
+    (half > MOST_PX).then(|| {
         format!(
-            "residuals of {rms:.1} px RMS are no operator's: are the columns and rows of the board, the names of points and their object coordinates right, and is the model the lens's?"
+            "residuals of {half:.1} px and more at half of the points are no operator's: are the columns and rows of the board, the names of points and their object coordinates right, and is the model the lens's?"
         )
     })
 }
