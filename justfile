@@ -92,7 +92,7 @@ python: build
 
 # What the Python package costs beyond the program, beside the command line
 perf-python: python
-    target/python/bin/python harness/python/perf.py
+    target/python/bin/python harness/python/benches/perf.py
 
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:
