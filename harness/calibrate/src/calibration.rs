@@ -1,12 +1,11 @@
 //! The adjustment of a network, and its quality.
 
 use calibench_adjust::{
-    Covariances, Found, ImageObservation, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust,
-    adjust_robustly, snoop,
+    Covariances, Found, Network, Options, Reliability, Snooping, Solution, Status, Test, Variance, adjust, adjust_robustly, snoop,
 };
 use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
-use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::camera::Camera;
 
 use crate::ended::{ITERATIONS, ended};
 use crate::{CalibrationError, Checked, Compared, Prepared, Resampled};
@@ -120,15 +119,6 @@ impl Calibration<'_> {
     /// The camera of an image.
     pub fn owner(&self, image: usize) -> usize {
         self.prepared.network.images[image].camera
-    }
-
-    /// How many image points lie outside the frame of their camera.
-    pub fn outside(&self) -> usize {
-        let is_outside = |o: &&ImageObservation| {
-            let (size, at) = (self.camera(self.owner(o.image)).size(), o.position.to_corner());
-            !((0.0..=f64::from(size.width)).contains(&at.x) && (0.0..=f64::from(size.height)).contains(&at.y))
-        };
-        self.prepared.network.observations.iter().filter(is_outside).count()
     }
 
     /// Root mean square of the residuals in use, px: `sqrt(mean(vx^2 + vy^2))`.

@@ -64,6 +64,10 @@ impl Context<'_> {
         self.project.method_of_boards(text).map_err(project_failure)
     }
 
+    pub fn methods_of_boards(&self, texts: &[String]) -> Result<Vec<Configured>, Failure> {
+        self.project.methods_of_boards(texts).map_err(project_failure)
+    }
+
     pub fn methods(&self, texts: &[String], pictured: Pictured) -> Result<Vec<Configured>, Failure> {
         self.project.methods(texts, pictured).map_err(project_failure)
     }

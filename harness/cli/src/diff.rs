@@ -47,8 +47,7 @@ impl Diff {
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
         let camera = |path: &Path| {
             let named = self.reading.one(path)?;
-            let doubt = named.splines.as_ref().and_then(|splines| splines.doubt());
-            doubt.map_or(Ok(named.camera), |doubt| Err(Failure::input(format!("{}: {doubt}", shown(path)))))
+            named.doubt().map_or(Ok(named.camera), |doubt| Err(Failure::input(format!("{}: {doubt}", shown(path)))))
         };
         let (first, second) = (camera(&self.first)?, camera(&self.second)?);
         let (a, b) = (first.size(), second.size());

@@ -7,8 +7,8 @@ use calibench_measure::Configured;
 use calibench_measure::registry::KINDS;
 use calibench_project::ProjectError;
 use calibench_report::verdicts;
-use calibench_run::Plan;
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
+use calibench_run::{Order, Plan};
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
 use super::context::Context;
@@ -172,7 +172,8 @@ fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Resul
         return Ok(());
     };
     let (registry, tools) = (context.registry()?, context.toolbox.tools());
-    let plan = SweepPlan { scenario, sweep, methods: &[], seed: None, trials: None, tools, data: context.data()?, registry, stop: None };
+    let order = Order { scenario, methods: &[], seed: None, trials: None, tools, data: context.data()?, registry, stop: None };
+    let plan = SweepPlan { order, sweep };
     store::run_sweep(&output, &plan, &revision, &|| ())?;
     Ok(())
 }

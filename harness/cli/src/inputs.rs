@@ -46,7 +46,7 @@ pub fn camera(path: &Path, size: Option<ImageSize>) -> Result<Camera, Failure> {
         say!("{}: the first of {count} cameras", path.display());
     }
     let first = cameras.first().ok_or_else(|| Failure::input(format!("{}: holds no camera", path.display())))?;
-    if let Some(doubt) = first.splines.as_ref().and_then(|splines| splines.doubt()) {
+    if let Some(doubt) = first.doubt() {
         return Err(Failure::input(format!("{}: {doubt}", path.display())));
     }
     Ok(first.camera)

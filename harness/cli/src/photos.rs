@@ -16,8 +16,13 @@ pub fn say_turns(photos: &[PathBuf]) -> Result<(), Failure> {
 
 /// The size that all photographs have; several cameras have an option.
 pub fn one_size<'p>(photos: impl IntoIterator<Item = (&'p PathBuf, ImageSize)>) -> Result<ImageSize, Failure> {
-    same_size(photos).map_err(|error| match error {
+    same_size(photos).map_err(of_one_camera)
+}
+
+/// What is wrong with photographs of one camera.
+pub fn of_one_camera(error: PhotographsError) -> Failure {
+    match error {
         PhotographsError::Sizes { .. } => Failure::input(format!("{error} (several cameras: `calibrate --camera`)")),
         other => other.into(),
-    })
+    }
 }

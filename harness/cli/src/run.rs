@@ -119,7 +119,7 @@ impl Run {
             (Planned::One(plan), Ran::Part(done)) => told(done, plan.missing(), time),
             (Planned::Sweep(_), Ran::Part(done)) => told(done, None, time),
             (Planned::Sweep(plan), Ran::Whole(_)) => {
-                let trials = self.changes.trials.unwrap_or(plan.scenario.trials);
+                let trials = self.changes.trials.unwrap_or(plan.order.scenario.trials);
                 format!("{} cells of {trials} trials {time}", plan.sweep.cells())
             }
         }

@@ -31,7 +31,7 @@ use thiserror::Error;
 pub use corner_files::{CornerFile, CornerFilesError};
 pub use field::Field;
 pub use material::{Corners, FEWEST, Material};
-pub use options::{BENT, METHODS, MODELS, OF_CAMERA, Options, usual_models};
+pub use options::{BENT, METHODS, MODELS, OF_CAMERA, Options, usual_methods, usual_models};
 pub use point_files::Expected;
 pub use published::{published_camera, stated_sigma};
 

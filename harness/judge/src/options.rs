@@ -36,6 +36,11 @@ pub const MODELS: [&str; 13] = [
     "opencv-fisheye+bent",
 ];
 
+/// The names of [`METHODS`], or [`OF_CAMERA`] alone when a calibration in use is checked.
+pub fn usual_methods(of_camera: bool) -> Vec<String> {
+    if of_camera { vec![OF_CAMERA.to_owned()] } else { METHODS.map(str::to_owned).to_vec() }
+}
+
 /// The names of [`MODELS`], or of those without a board that may be bent where there is no board.
 pub fn usual_models(of_board: bool) -> Vec<String> {
     MODELS.iter().filter(|text| of_board || !text.ends_with(BENT)).map(|text| (*text).to_owned()).collect()

@@ -11,5 +11,5 @@ mod turns;
 
 pub use chessboard::{Chessboard, Corners, Photo};
 pub use error::PhotographsError;
-pub use measured_board::measured_board;
+pub use measured_board::{measured_board, measured_boards, method_info};
 pub use turns::turns;

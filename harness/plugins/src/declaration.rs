@@ -123,11 +123,9 @@ const RADIUS: f64 = 5.0;
 /// The checked declaration of `file`; mistakes are added to `problems`.
 pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declaration> {
     let before = problems.len();
+    problems.extend(no_name(&wire.name));
     let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
     let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, seconds, memory } = wire;
-    if !is_name(name.as_ref()) {
-        wrong(name.span(), format!("`{}` is no name of a method: expected small letters, digits and _, a letter first", name.as_ref()));
-    }
     if command.as_ref().first().is_none_or(String::is_empty) {
         wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
     }
@@ -199,8 +197,14 @@ fn mode_of(mode: Option<&Spanned<String>>, version: Option<Spanned<String>>) -> 
     }
 }
 
+/// What is wrong with the name of a method, if it is none.
+pub(crate) fn no_name(name: &Spanned<String>) -> Option<Problem> {
+    let message = || format!("`{}` is no name of a method: expected small letters, digits and _, a letter first", name.as_ref());
+    (!is_name(name.as_ref())).then(|| Problem::new(name.span(), message()))
+}
+
 /// Whether a text may be a method's name.
-pub(crate) fn is_name(name: &str) -> bool {
+pub fn is_name(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 

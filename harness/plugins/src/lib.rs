@@ -16,14 +16,16 @@ mod process;
 mod program;
 mod recorded;
 mod request;
+mod told;
 
 pub use confine::{Confinement, confine_and_execute};
 pub use conformance::{Finding, check};
-pub use declaration::{Declaration, Grey, Mode, Starts};
+pub use declaration::{Declaration, Grey, Mode, Starts, is_name};
 pub use error::PluginError;
 pub use file::{Declared, load, parse};
 pub use program::{Launcher, method};
 pub use recorded::{Images, Origin, Positions, Recording};
+pub use told::Told;
 
 #[cfg(test)]
 mod tests;

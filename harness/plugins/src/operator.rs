@@ -43,7 +43,7 @@ impl Asked {
         }
         let grey = self.program.declaration.grey;
         if rounds(image, grey) {
-            self.program.tell(&format!("grey values were rounded or clipped for it: its images are `{}`", grey.name()));
+            self.program.told.tell(&format!("grey values were rounded or clipped for it: its images are `{}`", grey.name()));
         }
         let answer = match self.program.declaration.mode {
             Mode::Stream => self.by_stream(image, starts),
@@ -53,7 +53,7 @@ impl Asked {
             self.program.was_slow();
         }
         let Answer { points, told } = answer?;
-        told.iter().for_each(|what| self.program.tell(what));
+        told.iter().for_each(|what| self.program.told.tell(what));
         Ok(points)
     }
 
@@ -79,7 +79,7 @@ impl Asked {
             Starts::None { radius } => self.nearest(image, starts, radius),
         };
         asked.unwrap_or_else(|fault| {
-            self.program.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
+            self.program.told.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
             vec![Err(fault.rejection); starts.len()]
         })
     }
@@ -136,6 +136,6 @@ impl Operator for Asked {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.program.told()
+        self.program.told.all()
     }
 }

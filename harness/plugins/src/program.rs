@@ -1,6 +1,6 @@
 //! A plug-in's program: where its files are, its processes, and what is told of them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use calibench_measure::{Build, Method, Operator, Outside, Settings};
-use calibench_model::{Rejection, escape};
+use calibench_model::Rejection;
 use serde::Deserialize;
 use tempfile::TempDir;
 
@@ -18,11 +18,8 @@ use crate::declaration::{Declaration, Mode, leak};
 use crate::operator::Asked;
 use crate::process::Process;
 use crate::request::greeting;
+use crate::told::{Told, short};
 
-/// How many different things are told of one plug-in.
-const MOST_TOLD: usize = 8;
-/// How long one is, characters.
-const LONGEST_TOLD: usize = 200;
 /// After this many images that took too long it is asked no more.
 const PATIENCE: usize = 5;
 /// The longest answer to the greeting, bytes.
@@ -58,7 +55,8 @@ pub struct Program {
     folder: PathBuf,
     launcher: Launcher,
     idle: Mutex<BTreeMap<Vec<u8>, Vec<Started>>>,
-    told: Mutex<BTreeSet<String>>,
+    /// What is to be told of it.
+    pub told: Told,
     slow: Mutex<usize>,
 }
 
@@ -99,7 +97,7 @@ impl Program {
             folder: folder.to_owned(),
             launcher,
             idle: Mutex::default(),
-            told: Mutex::default(),
+            told: Told::default(),
             slow: Mutex::default(),
         }
     }
@@ -128,10 +126,10 @@ impl Program {
             let line = process.ask(&[], self.limit(), LONGEST_GREETING)?;
             let confined: Confined = serde_json::from_str(&line).map_err(|error| ended(format!("{line}: {error}")))?;
             if !confined.lacking.is_empty() {
-                self.tell(&format!("not kept from: {}; this system cannot", confined.lacking.join(", ")));
+                self.told.tell(&format!("not kept from: {}; this system cannot", confined.lacking.join(", ")));
             }
         } else {
-            self.tell("not kept from reading the project, writing and the network");
+            self.told.tell("not kept from reading the project, writing and the network");
         }
         Ok(process)
     }
@@ -196,21 +194,6 @@ impl Program {
         command
     }
 
-    /// Keeps something to be told, once.
-    pub fn tell(&self, what: &str) {
-        let mut told = locked(&self.told);
-        told.insert(short(what));
-        // The first in order stay, whichever thread came first.
-        while told.len() > MOST_TOLD {
-            told.pop_last();
-        }
-    }
-
-    /// What is to be told of it.
-    pub fn told(&self) -> Vec<String> {
-        locked(&self.told).iter().cloned().collect()
-    }
-
     /// Whether it has taken too long too often.
     pub fn is_given_up(&self) -> bool {
         *locked(&self.slow) >= PATIENCE
@@ -229,13 +212,6 @@ fn ended(message: String) -> Fault {
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     // What is kept here is whole at any time.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A text of others in a line: no command to a terminal, and not long.
-pub(crate) fn short(text: &str) -> String {
-    let text = escape::name(text.trim());
-    let start: String = text.chars().take(LONGEST_TOLD).collect();
-    if start.len() < text.len() { format!("{start}...") } else { start }
 }
 
 /// A declared plug-in as a method. `folder` is that of its file.

@@ -62,6 +62,19 @@ impl Project<'_> {
         }
     }
 
+    /// As [`Self::method_of_boards`], of these names, none of them twice.
+    ///
+    /// # Errors
+    /// As [`Self::method_of_boards`]; one that is asked for twice.
+    pub fn methods_of_boards(&self, texts: &[String]) -> Result<Vec<Configured>, ProjectError> {
+        let methods = texts.iter().map(|text| self.method_of_boards(text)).collect::<Result<Vec<_>, _>>()?;
+        let twice = methods.iter().enumerate().find(|(i, method)| methods[..*i].iter().any(|earlier| earlier.label == method.label));
+        match twice {
+            Some((_, method)) => Err(ProjectError::Asked(format!("-m {}: asked for twice; expected each once", method.label))),
+            None => Ok(methods),
+        }
+    }
+
     /// The methods of these names. None is there twice, and none measures a kind of target twice.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 from typing import Any, Optional
 
@@ -13,8 +14,9 @@ from ._method import method
 _SEARCHED = 1280
 
 
+@functools.lru_cache(maxsize=None)
 def installed() -> bool:
-    """Whether there is a `cv2`; it is imported when it is first asked for something."""
+    """Whether there is a `cv2`; it is imported when it is first asked for something. Every call asks: it is looked for once."""
     return importlib.util.find_spec("cv2") is not None
 
 

@@ -40,8 +40,6 @@ def method(
     A callable runs in the process that also knows the truth. Whoever wants to be believed enters as a plug-in, a program
     of its own that is kept from it (docs/plugins.md).
     """
-    if not name or not name.replace("_", "").isalnum() or not name.isascii() or name != name.lower():
-        raise InputError(f"name: {name!r}; expected lower-case letters, digits and _")
     if starts not in ("given", "none"):
         raise InputError(f"starts: {starts!r}; expected 'given' or 'none'")
     if not radius > 0:

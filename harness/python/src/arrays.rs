@@ -1,6 +1,6 @@
 //! Positions, covariances and matrices as arrays, both ways.
 
-use calibench_model::{Covariance, PixelPoint};
+use calibench_model::{Affine, Covariance, PixelPoint};
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -79,10 +79,22 @@ pub fn of_matrix(py: Python<'_>, matrix: &DMatrix<f64>) -> PyResult<Py<PyArray2<
     shaped(py, matrix.transpose().iter().copied().collect(), [matrix.nrows(), matrix.ncols()])
 }
 
+/// No position.
+pub const NOWHERE: PixelPoint = PixelPoint::new(f64::NAN, f64::NAN);
+
 /// Covariances as an array of (n, 2, 2), px^2; NaN where there is none.
 pub fn of_covariances(py: Python<'_>, all: impl IntoIterator<Item = Option<Covariance>>) -> PyResult<Py<PyArray3<f64>>> {
-    let four = |covariance: Option<Covariance>| covariance.map_or([f64::NAN; 4], |s| [s.sxx, s.sxy, s.sxy, s.syy]);
-    let values: Vec<f64> = all.into_iter().flat_map(four).collect();
+    of_matrices(py, all.into_iter().map(|covariance| covariance.map(|s| [s.sxx, s.sxy, s.sxy, s.syy])))
+}
+
+/// Own axes of targets as an array of (n, 2, 2), px: the columns; NaN where they are not known.
+pub fn of_axes(py: Python<'_>, all: impl IntoIterator<Item = Option<Affine>>) -> PyResult<Py<PyArray3<f64>>> {
+    of_matrices(py, all.into_iter().map(|map| map.map(|a| [a.axx, a.axy, a.ayx, a.ayy])))
+}
+
+/// Matrices of 2 x 2, row by row.
+fn of_matrices(py: Python<'_>, all: impl IntoIterator<Item = Option<[f64; 4]>>) -> PyResult<Py<PyArray3<f64>>> {
+    let values: Vec<f64> = all.into_iter().flat_map(|matrix| matrix.unwrap_or([f64::NAN; 4])).collect();
     let n = values.len() / 4;
     Ok(PyArray1::from_vec(py, values).reshape([n, 2, 2])?.unbind())
 }

@@ -17,7 +17,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
-use crate::arrays::{of_matrix, of_positions, positions, rows, table};
+use crate::arrays::{NOWHERE, of_matrix, of_positions, positions, rows, table};
 use crate::error::{camera as refused, doubt, input, lost};
 use crate::pool::released;
 
@@ -274,5 +274,3 @@ impl Camera {
         format!("Camera({}, {} x {} px, {})", self.model(), size.width, size.height, parameters.join(", "))
     }
 }
-
-const NOWHERE: PixelPoint = PixelPoint::new(f64::NAN, f64::NAN);

@@ -27,13 +27,31 @@ enum Column {
     Texts(Vec<u32>),
 }
 
-/// A table that is read; each text is there once.
+/// A table that is read.
 #[derive(Default)]
 pub struct Columns {
     names: Vec<String>,
     values: Vec<Column>,
-    texts: Vec<String>,
+    texts: Texts,
+}
+
+/// Texts, each once.
+#[derive(Default)]
+struct Texts {
+    all: Vec<String>,
     places: HashMap<String, u32>,
+}
+
+impl Texts {
+    fn place(&mut self, text: &str) -> u32 {
+        if let Some(&place) = self.places.get(text) {
+            return place;
+        }
+        let place = self.all.len() as u32;
+        self.all.push(text.to_owned());
+        self.places.insert(text.to_owned(), place);
+        place
+    }
 }
 
 impl Columns {
@@ -66,34 +84,9 @@ impl Columns {
         }
         let mut row = StringRecord::new();
         while reader.read_record(&mut row).map_err(wrong)? {
-            for (place, cell) in row.iter().enumerate().take(self.names.len()) {
-                let text = match &mut self.values[place] {
-                    Column::Numbers(values) => {
-                        values.push(if cell.is_empty() { f64::NAN } else { cell.parse().map_err(|_| format!("`{cell}` is no number"))? });
-                        continue;
-                    }
-                    Column::Whole(values) => {
-                        values.push(cell.parse().map_err(|_| format!("`{cell}` is no whole number"))?);
-                        continue;
-                    }
-                    Column::Texts(_) => self.place(cell),
-                };
-                if let Column::Texts(values) = &mut self.values[place] {
-                    values.push(text);
-                }
-            }
+            row.iter().zip(&mut self.values).try_for_each(|(cell, column)| column.push(cell, &mut self.texts))?;
         }
         Ok(())
-    }
-
-    fn place(&mut self, text: &str) -> u32 {
-        if let Some(&place) = self.places.get(text) {
-            return place;
-        }
-        let place = self.texts.len() as u32;
-        self.texts.push(text.to_owned());
-        self.places.insert(text.to_owned(), place);
-        place
     }
 
     /// As a dict of arrays, and of lists of texts.
@@ -101,7 +94,7 @@ impl Columns {
     /// # Errors
     /// What Python refuses.
     pub fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
-        let texts: Vec<Bound<'_, PyString>> = self.texts.iter().map(|text| PyString::new(py, text)).collect();
+        let texts: Vec<Bound<'_, PyString>> = self.texts.all.iter().map(|text| PyString::new(py, text)).collect();
         let dict = PyDict::new(py);
         for (name, column) in self.names.into_iter().zip(self.values) {
             match column {
@@ -115,6 +108,16 @@ impl Columns {
 }
 
 impl Column {
+    fn push(&mut self, cell: &str, texts: &mut Texts) -> Result<(), String> {
+        match self {
+            Self::Numbers(values) if cell.is_empty() => values.push(f64::NAN),
+            Self::Numbers(values) => values.push(cell.parse().map_err(|_| format!("`{cell}` is no number"))?),
+            Self::Whole(values) => values.push(cell.parse().map_err(|_| format!("`{cell}` is no whole number"))?),
+            Self::Texts(values) => values.push(texts.place(cell)),
+        }
+        Ok(())
+    }
+
     fn of(name: &str) -> Self {
         if NUMBERS.contains(&name) {
             Self::Numbers(Vec::new())

@@ -52,7 +52,7 @@ pub fn diff(
 ) -> PyResult<Difference> {
     let (a, b) = (&first.named.camera, &second.named.camera);
     for named in [&first.named, &second.named] {
-        if let Some(doubt) = named.splines.as_ref().and_then(|splines| splines.doubt()) {
+        if let Some(doubt) = named.doubt() {
             return Err(refused(doubt));
         }
     }

@@ -3,7 +3,7 @@
 use calibench_project::ProjectError;
 use pyo3::exceptions::{PyException, PyUserWarning};
 use pyo3::prelude::*;
-use pyo3::{PyErr, create_exception};
+use pyo3::{PyErr, PyTypeInfo, create_exception};
 use std::ffi::CString;
 
 create_exception!(calibench, Error, PyException, "What calibench cannot do, in the words of the command line.");
@@ -42,15 +42,22 @@ pub fn in_python(message: &str) -> String {
     let mut words = String::with_capacity(message.len());
     let mut rest = message;
     while let Some(at) = rest.find("--") {
-        let (before, after) = (&rest[..at], &rest[at + 2..]);
-        let end = after.find(|c: char| !(c.is_ascii_lowercase() || c == '-')).unwrap_or(after.len());
-        let (name, value) = (after[..end].replace('-', "_"), if SWITCHES.contains(&&after[..end]) { "=True" } else { "=" });
+        let (before, after) = rest.split_at(at);
+        let end = after[2..].find(|c: char| !(c.is_ascii_lowercase() || c == '-')).map_or(after.len(), |end| end + 2);
+        let (option, behind) = after.split_at(end);
         words.push_str(before);
-        words.push_str(&if name.is_empty() { "--".to_owned() } else { format!("{name}{value}") });
-        rest = &after[end..];
+        // In the name of a file it is no option.
+        let begins = before.chars().next_back().is_none_or(|c| c.is_whitespace() || "(`\"".contains(c)) && option.len() > 2;
+        words.push_str(&if begins { keyword(&option[2..]) } else { option.to_owned() });
+        rest = behind;
     }
     words.push_str(rest);
     words
+}
+
+/// An option of the command line as a keyword.
+fn keyword(option: &str) -> String {
+    format!("{}={}", option.replace('-', "_"), if SWITCHES.contains(&option) { "True" } else { "" })
 }
 
 /// Options without a value.
@@ -71,13 +78,16 @@ pub fn project(error: ProjectError) -> PyErr {
 
 /// Says what of a camera a file or a convention has no place for.
 pub fn lost(py: Python<'_>, text: &str) -> PyResult<()> {
-    let text = CString::new(in_python(text).replace('\0', " ")).unwrap_or_default();
-    PyErr::warn(py, &py.get_type::<LossWarning>(), &text, 1)
+    warn::<LossWarning>(py, text)
 }
 
 /// Says something doubtful, as a warning that users can turn into an error.
 pub fn doubt(py: Python<'_>, text: &str) -> PyResult<()> {
+    warn::<DoubtWarning>(py, text)
+}
+
+fn warn<W: PyTypeInfo>(py: Python<'_>, text: &str) -> PyResult<()> {
     // A text of others may hold anything.
     let text = CString::new(in_python(text).replace('\0', " ")).unwrap_or_default();
-    PyErr::warn(py, &py.get_type::<DoubtWarning>(), &text, 1)
+    PyErr::warn(py, &py.get_type::<W>(), &text, 1)
 }

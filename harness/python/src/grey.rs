@@ -40,11 +40,12 @@ impl<'py> Grey<'py> {
             return own(of_bytes(width, height, &in_rows(&levels)));
         }
         if let Ok(levels) = array.extract::<PyReadonlyArray2<'py, u16>>() {
-            let most = levels.as_array().iter().copied().max().unwrap_or(0);
+            let levels = in_rows(&levels);
+            let most = levels.iter().fold(0, |most, level| level.max(&most).to_owned());
             if most < TWELVE_BITS {
                 doubt(array.py(), &format!("image: levels up to {most} of 65535; of 10 or 12 bits multiply them, by 64 or 16"))?;
             }
-            return own(of_words(width, height, &in_rows(&levels)));
+            return own(of_words(width, height, &levels));
         }
         let grey = if let Ok(values) = array.extract::<PyReadonlyArray2<'py, f32>>() {
             if values.is_c_contiguous() { Self::Lent(values) } else { Self::Own(Image::new(width, height, in_rows(&values).into_owned())) }
@@ -53,8 +54,7 @@ impl<'py> Grey<'py> {
         } else {
             return Err(wrong(format!("an array of {}", untyped.dtype())));
         };
-        let most = grey.image()?.grey().iter().fold(0.0_f32, |most, grey| most.max(*grey));
-        if most > NO_FRACTION {
+        if let Some(most) = beyond(grey.image()?.grey()) {
             doubt(array.py(), &format!("image: grey values up to {most}; floats are fractions of full scale, 0 is black and 1 is white"))?;
         }
         Ok(grey)
@@ -73,6 +73,12 @@ impl<'py> Grey<'py> {
             }
         }
     }
+}
+
+/// The largest grey value, if any is no fraction of full scale. The values are looked at in lanes, which an early end would forbid.
+fn beyond(grey: &[f32]) -> Option<f32> {
+    let any = grey.chunks(4096).any(|chunk| chunk.iter().map(|grey| u32::from(*grey > NO_FRACTION)).sum::<u32>() > 0);
+    any.then(|| grey.iter().fold(0.0_f32, |most, grey| most.max(*grey)))
 }
 
 /// The values row by row: as they lie, or copied where they do not lie so.

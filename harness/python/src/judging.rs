@@ -4,20 +4,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use calibench_calibrate::choice::ModelChoice;
-use calibench_exchange::read_photo;
 use calibench_exchange::{LostRow, LostRows, PointFile};
-use calibench_judge::{CornerFile, Expected, Field, METHODS, Material, OF_CAMERA, Options, judge as judged, stated_sigma, usual_models};
-use calibench_measure::Configured;
-use calibench_model::camera::{CameraModel, ImageSize};
-use calibench_photographs::measured_board;
-use calibench_photographs::names::{names, once, same_size};
+use calibench_judge::{CornerFile, Expected, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models};
+use calibench_model::camera::CameraModel;
+use calibench_photographs::{measured_boards, method_info};
 use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
-use calibench_records::results::{MethodInfo, Trial};
 use calibench_report::judgement::{in_use, section, verdict};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rayon::prelude::*;
 
 use crate::boards::Board;
 use crate::calibrating::positive;
@@ -140,8 +135,7 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
     let summary = Summary::new(&rows, asked.seed);
     let Some(trusted) = summary.trusted() else { return Err(input(section(&summary).0)) };
     // Where the two cannot be compared over the frame the photographs cannot tell.
-    let unknown = InUse { verdict: StillHolds::CannotTell, apart: f64::NAN, error: f64::INFINITY, margin: asked.margin };
-    let found = camera.map(|_| trusted.in_use(asked.margin).unwrap_or(unknown));
+    let found = camera.map(|_| trusted.in_use(asked.margin).unwrap_or(InUse::unknown(asked.margin)));
     let words = found.as_ref().map_or_else(String::new, |found| format!("- {}\n", in_use(found)));
     if let Some(why) = trusted.doubt() {
         doubt(py, why)?;
@@ -164,11 +158,10 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
 /// Points by operators: a dict of lists of arrays, or one such list.
 fn of_points(what: &Bound<'_, PyAny>, board: &Board, size: Option<&Bound<'_, PyAny>>, images: Option<Vec<String>>) -> PyResult<Material> {
     let size = size_of(size.ok_or_else(|| input("size: expected (columns, rows) of the images that the points are of"))?)?;
-    let one = || PyDict::new(what.py());
     let by_operator = match what.cast::<PyDict>() {
         Ok(dict) => dict.clone(),
         Err(_) => {
-            let dict = one();
+            let dict = PyDict::new(what.py());
             dict.set_item("points", what)?;
             dict
         }
@@ -209,43 +202,18 @@ fn lost(arrays: &[Bound<'_, PyAny>], images: &[String], board: &Board) -> LostRo
 fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Option<Vec<String>>, in_use: bool) -> PyResult<Material> {
     let chessboard =
         board.chessboard.ok_or_else(|| input("board: photographs are of a chessboard; expected COLUMNSxROWS:SIDE, as in 9x6:25"))?;
-    let usual = || if in_use { vec![OF_CAMERA.to_owned()] } else { METHODS.map(str::to_owned).to_vec() };
-    let texts = methods.unwrap_or_else(usual);
+    let texts = methods.unwrap_or_else(|| usual_methods(in_use));
     with_project(py, None, |here| {
-        let methods = texts.iter().map(|text| here.method_of_boards(text)).collect::<Result<Vec<_>, _>>().map_err(project)?;
-        if let Some(twice) =
-            methods.iter().enumerate().find_map(|(i, m)| methods[..i].iter().any(|earlier| earlier.label == m.label).then_some(m))
-        {
-            return Err(input(format!("methods: {} asked for twice; expected each once", twice.label)));
-        }
+        let methods = here.methods_of_boards(&texts).map_err(project)?;
         let detector = here.toolbox.detector.as_deref();
         let detector =
             detector.ok_or_else(|| UnavailableError::new_err("there is no chessboard detector: install `cv2` (opencv-python-headless)"))?;
-        once(photos).map_err(input)?;
-        let one = |(path, name): (&PathBuf, &String)| {
-            let image = read_photo(path).map_err(input)?.image;
-            let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
-            Ok((measured_board(&image, name, (detector, chessboard.board), &methods), size))
-        };
-        let found = released(py, || photos.par_iter().zip(&names(photos)).map(one).collect::<PyResult<Vec<(Trial, ImageSize)>>>())??;
-        let size = same_size(photos.iter().zip(found.iter().map(|(_, size)| *size))).map_err(input)?;
-        let mut trial = Trial::default();
-        for (view, _) in found {
-            trial.points.extend(view.points);
-            trial.missed_views.extend(view.missed_views);
-        }
+        let measured = released(py, || measured_boards(photos, (detector, chessboard.board), &methods, &|| ()))?;
+        let (trial, size) = measured.map_err(input)?;
         for (view, why) in &trial.missed_views {
             doubt(py, &format!("{view}: {why}"))?;
         }
-        let infos: Vec<MethodInfo> = methods.iter().map(info).collect();
-        Ok(Material::new(&trial, &infos, Field::Board { board: chessboard.board, side: chessboard.side }, size))
+        let infos: Vec<_> = methods.iter().map(method_info).collect();
+        Ok(Material::new(&trial, &infos, board.field.clone(), size))
     })
-}
-
-fn info(method: &Configured) -> MethodInfo {
-    MethodInfo {
-        label: method.label.as_str().into(),
-        version: method.version.as_str().into(),
-        unavailable: method.operator.as_ref().err().cloned(),
-    }
 }

@@ -7,7 +7,7 @@ use calibench_project::Pictured;
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{matrices, of_covariances, of_positions, positions};
+use crate::arrays::{NOWHERE, matrices, of_covariances, of_positions, positions};
 use crate::error::{UnavailableError, doubt, input, project};
 use crate::grey::Grey;
 use crate::pool::released;
@@ -101,9 +101,8 @@ pub fn measure(
 }
 
 fn of_results(py: Python<'_>, found: &[Result<Measurement, Rejection>], method: String, version: String) -> PyResult<Measured> {
-    let nowhere = calibench_model::PixelPoint::new(f64::NAN, f64::NAN);
     Ok(Measured {
-        xy: of_positions(py, found.iter().map(|result| result.as_ref().map_or(nowhere, |found| found.position)))?,
+        xy: of_positions(py, found.iter().map(|result| result.as_ref().map_or(NOWHERE, |found| found.position)))?,
         cov: of_covariances(py, found.iter().map(|result| result.as_ref().ok().and_then(|found| found.covariance)))?,
         status: found.iter().map(|result| if result.is_ok() { MEASURED } else { "rejected" }).collect(),
         reason: found.iter().map(|result| result.as_ref().err().map(|why| why.name())).collect(),

@@ -1,12 +1,12 @@
 //! Callables of Python's as methods.
 
-use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use calibench_measure::operator::nearest_detected;
 use calibench_measure::parameter::{Domain, Parameter};
 use calibench_measure::{Build, Method, Operator, Outside, Settings};
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_plugins::Told;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -15,15 +15,12 @@ use crate::arrays::{matrices, positions, table};
 use crate::measuring::covariance;
 use crate::session::add;
 
-/// How many different things are told of one method.
-const MOST_TOLD: usize = 8;
-
 /// A method as Python declares it.
 struct Declared {
     callable: Py<PyAny>,
     /// The radius within which a detection counts, px, of one that finds by itself; `None` for one that is given starts.
     radius: Option<f64>,
-    told: Mutex<BTreeSet<String>>,
+    told: Told,
 }
 
 /// One whose parameters are set.
@@ -56,7 +53,7 @@ pub fn add_method(
         Parameter { name: leak(&name), about: leak(&about), domain, default, always_shown: name == "window" }
     };
     let parameters: Vec<Parameter> = parameters.into_iter().map(parameter).collect();
-    let declared = Arc::new(Declared { callable, radius, told: Mutex::default() });
+    let declared = Arc::new(Declared { callable, radius, told: Told::default() });
     let build = move |settings: &Settings| {
         let asked = Asked { declared: declared.clone(), settings: settings.clone(), whole: whole.clone() };
         Ok(match Python::attach(|py| version_of(version.bind(py)).map_err(|error| error.to_string())) {
@@ -92,26 +89,16 @@ fn leak(text: &str) -> &'static str {
 /// What an answer is: positions and covariances.
 type Answer = (Vec<PixelPoint>, Option<Vec<[[f64; 2]; 2]>>);
 
-impl Declared {
-    fn tell(&self, what: &str) {
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        told.insert(what.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(200).collect());
-        while told.len() > MOST_TOLD {
-            told.pop_last();
-        }
-    }
-}
-
 impl Asked {
     /// Calls the callable; why not, with what is told, where it raises or answers something else.
     fn call(&self, py: Python<'_>, image: &Image, starts: Option<&[Start]>) -> Result<Answer, Rejection> {
         let raised = |error: PyErr| {
-            self.declared.tell(&error.to_string());
+            self.declared.told.tell(&in_a_line(&error.to_string()));
             Rejection::Raised
         };
         let answer = self.answer(py, image, starts).map_err(raised)?;
         read(&answer, starts.map(<[Start]>::len)).map_err(|error| {
-            self.declared.tell(&error.value(py).to_string());
+            self.declared.told.tell(&in_a_line(&error.value(py).to_string()));
             Rejection::Malformed
         })
     }
@@ -148,6 +135,11 @@ fn read(answer: &Bound<'_, PyAny>, expected: Option<usize>) -> PyResult<Answer> 
     }
     let cov = cov.filter(|cov| !cov.is_none()).map(|cov| matrices(&cov, found.len(), "cov")).transpose()?;
     Ok((found, cov))
+}
+
+/// A message of several lines in one.
+fn in_a_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// A point of an answer.
@@ -202,6 +194,6 @@ impl Operator for Asked {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.declared.told.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+        self.declared.told.all()
     }
 }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use calibench_exchange::NamedCamera;
-use calibench_model::PixelPoint;
+use calibench_model::{Start, TargetKind};
 use calibench_run::shots::{Shot as Rendered, TrueTarget, shots};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{of_positions, table};
+use crate::arrays::{NOWHERE, of_axes, of_positions, table};
 use crate::camera::Camera;
 use crate::error::{input, project};
 use crate::pool::released;
@@ -34,8 +34,8 @@ pub struct Shot {
 
 #[pymethods]
 impl Shot {
-    fn __repr__(&self, py: Python<'_>) -> String {
-        format!("Shot({}, {} targets)", self.name, self.truth.get().target.len().max(self.starts.get().__len__(py)))
+    fn __repr__(&self) -> String {
+        format!("Shot({}, {} targets)", self.name, self.truth.get().target.len())
     }
 }
 
@@ -58,7 +58,7 @@ pub struct Targets {
 
 #[pymethods]
 impl Targets {
-    fn __len__(&self, _py: Python<'_>) -> usize {
+    fn __len__(&self) -> usize {
         self.target.len()
     }
 
@@ -67,35 +67,25 @@ impl Targets {
     }
 }
 
-/// Own axes of targets as matrices; NaN where they are not known.
-pub fn axes(py: Python<'_>, all: impl IntoIterator<Item = Option<calibench_model::Affine>>) -> PyResult<Py<PyArray3<f64>>> {
-    let four = |map: Option<calibench_model::Affine>| map.map_or([f64::NAN; 4], |a| [a.axx, a.axy, a.ayx, a.ayy]);
-    let values: Vec<f64> = all.into_iter().flat_map(four).collect();
-    let n = values.len() / 4;
-    Ok(PyArray1::from_vec(py, values).reshape([n, 2, 2])?.unbind())
-}
-
-const NOWHERE: PixelPoint = PixelPoint::new(f64::NAN, f64::NAN);
-
 fn truth(py: Python<'_>, targets: &[TrueTarget]) -> PyResult<Targets> {
     Ok(Targets {
         target: targets.iter().map(|target| target.id.clone()).collect(),
         kind: targets.iter().map(|target| Some(target.kind.name())).collect(),
         xy: of_positions(py, targets.iter().map(|target| target.at.unwrap_or(NOWHERE)))?,
-        axes: axes(py, targets.iter().map(|target| target.affine))?,
+        axes: of_axes(py, targets.iter().map(|target| target.affine))?,
         object: table(py, &targets.iter().map(|target| target.object.map_or([f64::NAN; 3], |p| [p.x, p.y, p.z])).collect::<Vec<_>>())?,
         visibility: targets.iter().map(|target| target.visibility.name()).collect(),
     })
 }
 
 /// Starts as targets.
-pub fn starts<'s>(py: Python<'_>, all: impl Iterator<Item = (&'s str, calibench_model::Start)>) -> PyResult<Targets> {
+pub fn starts<'s>(py: Python<'_>, all: impl Iterator<Item = (&'s str, Start)>) -> PyResult<Targets> {
     let all: Vec<_> = all.collect();
     Ok(Targets {
         target: all.iter().map(|(name, _)| (*name).to_owned()).collect(),
-        kind: all.iter().map(|(_, start)| start.kind.map(calibench_model::TargetKind::name)).collect(),
+        kind: all.iter().map(|(_, start)| start.kind.map(TargetKind::name)).collect(),
         xy: of_positions(py, all.iter().map(|(_, start)| start.position))?,
-        axes: axes(py, all.iter().map(|(_, start)| start.affine))?,
+        axes: of_axes(py, all.iter().map(|(_, start)| start.affine))?,
         object: table(py, &vec![[f64::NAN; 3]; all.len()])?,
         visibility: vec!["visible"; all.len()],
     })

@@ -13,6 +13,7 @@ use calibench_run::store::RecordsFolder;
 use calibench_run::{Order, Place, Planned, Ran, RunError};
 use calibench_scenario::{Scenario, Subject, Transfer};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use tempfile::TempDir;
 
@@ -28,6 +29,23 @@ pub struct Records {
     folder: PathBuf,
     /// Where nobody asked for a folder it goes with this.
     temporary: Option<TempDir>,
+    /// Tables that were asked for.
+    points: PyOnceLock<Py<PyDict>>,
+    adjustments: PyOnceLock<Py<PyDict>>,
+}
+
+impl Records {
+    fn in_folder(folder: PathBuf, temporary: Option<TempDir>) -> Self {
+        Self { folder, temporary, points: PyOnceLock::new(), adjustments: PyOnceLock::new() }
+    }
+
+    fn table<'py>(&self, py: Python<'py>, table: Table) -> PyResult<Bound<'py, PyDict>> {
+        let read = match table {
+            Table::Points => &self.points,
+            Table::Adjustments => &self.adjustments,
+        };
+        Ok(read.get_or_try_init(py, || Ok::<_, PyErr>(columns(py, &self.folder, table)?.unbind()))?.bind(py).clone())
+    }
 }
 
 #[pymethods]
@@ -36,7 +54,7 @@ impl Records {
     #[staticmethod]
     fn read(folder: PathBuf) -> PyResult<Self> {
         if folder.join(SCENARIO).is_file() {
-            return Ok(Self { folder, temporary: None });
+            return Ok(Self::in_folder(folder, None));
         }
         Err(input(format!("{}: holds no records; expected the folder of a run", folder.display())))
     }
@@ -50,13 +68,13 @@ impl Records {
     /// What was measured, a row a point, as columns.
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        columns(py, &self.folder, Table::Points)
+        self.table(py, Table::Points)
     }
 
     /// What was adjusted, a row a figure, as columns; empty where nothing was.
     #[getter]
     fn adjustments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        columns(py, &self.folder, Table::Adjustments)
+        self.table(py, Table::Adjustments)
     }
 
     fn __repr__(&self) -> String {
@@ -134,7 +152,7 @@ pub fn run(
         let revision = here.revision().map_err(project)?;
         match ran(py, here, &named, &changes, threads, &Place::Records(&folder), &revision)? {
             Ran::Whole(0) => Err(input(format!("{}: nothing was measured", named.name))),
-            _ => Ok(Records { folder: all.join(&named.name), temporary }),
+            _ => Ok(Records::in_folder(all.join(&named.name), temporary)),
         }
     })
 }
@@ -174,7 +192,7 @@ pub fn run_part(
 #[pyfunction]
 pub fn merge(py: Python<'_>, folders: Vec<PathBuf>, records: PathBuf) -> PyResult<Vec<Records>> {
     let all = released(py, || merged(&folders, &records))?.map_err(input)?;
-    Ok(all.into_iter().map(|one| Records { folder: records.join(one.scenario), temporary: None }).collect())
+    Ok(all.into_iter().map(|one| Records::in_folder(records.join(one.scenario), None)).collect())
 }
 
 /// A file beside a scenario: its path from the scenario's folder, and where it is.

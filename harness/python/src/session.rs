@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use calibench_measure::registry::Build;
 use calibench_measure::{BoardDetector, Method, Registry, opencv_chessboard_sb, opencv_subpix};
+use calibench_plugins::is_name;
 use calibench_project::{Project, Toolbox};
 use pyo3::prelude::*;
 
@@ -21,8 +22,11 @@ static ADDED: Mutex<Vec<Method>> = Mutex::new(Vec::new());
 /// Adds a method for all calls to come, in place of an earlier one of Python's of that name.
 ///
 /// # Errors
-/// A name that one of calibench's own methods has.
+/// A name that is none, or that one of calibench's own methods has.
 pub fn add(method: Method) -> PyResult<()> {
+    if !is_name(method.name) {
+        return Err(input(format!("name: `{}`; expected lower-case letters, digits and _, a letter first", method.name)));
+    }
     if Registry::builtin().methods().iter().any(|own| own.name == method.name) {
         return Err(input(format!("`{}` is a method of calibench itself; expected another name", method.name)));
     }

@@ -33,6 +33,19 @@ def measured(shots):
     return found
 
 
+def write_files(folder, shots, measured, control):
+    """What the command line reads."""
+    with open(folder / "points.csv", "w") as points, open(folder / "control.csv", "w") as known:
+        points.write("image,target,x,y\n")
+        known.write("target,X,Y,Z\n")
+        for shot, xy in zip(shots, measured):
+            for name, (x, y) in zip(control, xy):
+                if not np.isnan(x):
+                    points.write(f"{shot.name},{name},{float(x)!r},{float(y)!r}\n")
+        for name, xyz in control.items():
+            known.write(f"{name},{','.join(repr(value) for value in xyz)}\n")
+
+
 def calibrated(*words, **keys):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cb.DoubtWarning)
@@ -48,15 +61,7 @@ def test_it_calibrates_as_the_command_line_does(shots, measured, control, progra
     """To the last bit: parameters, covariance, residuals and what is said."""
     size = shots[0].image.shape[::-1]
     found = calibrated(measured, control, size=size, model="opencv5", images=[shot.name for shot in shots])
-    with open(tmp_path / "points.csv", "w") as points, open(tmp_path / "control.csv", "w") as known:
-        points.write("image,target,x,y\n")
-        known.write("target,X,Y,Z\n")
-        for shot, xy in zip(shots, measured):
-            for name, (x, y) in zip(control, xy):
-                if not np.isnan(x):
-                    points.write(f"{shot.name},{name},{float(x)!r},{float(y)!r}\n")
-        for name, xyz in control.items():
-            known.write(f"{name},{','.join(repr(value) for value in xyz)}\n")
+    write_files(tmp_path, shots, measured, control)
     words = ["--points", "points.csv", "--control", "control.csv", "--size", f"{size[0]}x{size[1]}", "--model", "opencv5"]
     printed = program("calibrate", *words, "-o", "camera.json", "--report", "report", code=3 if found.doubts else 0)
     assert found.summary == printed
@@ -131,15 +136,7 @@ def test_a_verdict_on_points_is_that_of_the_command_line(shots, measured, contro
     size = shots[0].image.shape[::-1]
     if len(shots) < 6:
         pytest.skip("six images at least")
-    with open(tmp_path / "points.csv", "w") as points, open(tmp_path / "control.csv", "w") as known:
-        points.write("image,target,x,y\n")
-        known.write("target,X,Y,Z\n")
-        for shot, xy in zip(shots, measured):
-            for name, (x, y) in zip(control, xy):
-                if not np.isnan(x):
-                    points.write(f"{shot.name},{name},{float(x)!r},{float(y)!r}\n")
-        for name, xyz in control.items():
-            known.write(f"{name},{','.join(repr(value) for value in xyz)}\n")
+    write_files(tmp_path, shots, measured, control)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cb.DoubtWarning)
         found = cb.judge({"points": measured}, control, size=size, images=[shot.name for shot in shots], models=["opencv4", "opencv5"])

@@ -138,3 +138,10 @@ def test_what_is_lost_is_said_apart(camera, tmp_path):
         warnings.simplefilter("error", cb.DoubtWarning)
         warnings.simplefilter("ignore", cb.LossWarning)
         camera.convert("colmap").write(tmp_path / "cameras.txt")
+
+
+def test_the_name_of_a_file_is_no_option(tmp_path):
+    """Options of the command line are said as keywords; what looks like one in a name is left."""
+    with pytest.raises(cb.CameraError) as error:
+        cb.Camera.read(tmp_path / "my--size.yaml")
+    assert "my--size.yaml" in str(error.value)

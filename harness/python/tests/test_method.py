@@ -68,6 +68,16 @@ def test_what_it_raised_is_said():
         measured(lambda image, starts: (_ for _ in ()).throw(ValueError("no luck")))
 
 
+def test_what_it_raised_commands_no_terminal():
+    def raising(image, starts):
+        raise ValueError("red \x1b[31m\u202e " + "long " * 100 + "\nand a line")
+
+    with pytest.warns(cb.DoubtWarning, match="mine: .*red") as said:
+        measured(raising)
+    text = str(said[0].message)
+    assert "\x1b" not in text and "\u202e" not in text and "\n" not in text and len(text) < 400
+
+
 def test_one_point_that_is_missed_does_not_cost_the_others():
     missed = STARTS.copy()
     missed[1] = np.nan
@@ -106,6 +116,7 @@ def test_a_later_one_of_the_same_name_takes_its_place():
         ({"name": "forstner"}, "method of calibench itself"),
         ({"name": "My Method"}, "lower-case"),
         ({"name": ""}, "lower-case"),
+        ({"name": "1st"}, "a letter first"),
         ({"starts": "maybe"}, "'given' or 'none'"),
         ({"starts": "none", "radius": 0}, "radius"),
         ({"parameters": {"window": "eleven"}}, "window"),

@@ -61,6 +61,8 @@ def test_records_are_columns(project):
     assert np.isnan(points["x"][rejected]).all() and not np.isnan(points["x"][~rejected]).any()
     assert all(reason for reason, lost in zip(points["reason"], rejected) if lost)
     assert records.adjustments == {}
+    # Read once, however often it is asked for.
+    assert records.points is points
 
 
 def test_a_method_of_pythons_is_run_as_any_other(project, tmp_path):

@@ -11,6 +11,7 @@ mod order;
 pub mod parts;
 mod photographs;
 mod plan;
+mod planned;
 pub mod printed;
 pub mod recognition;
 mod rmse;
@@ -25,8 +26,9 @@ pub mod truth;
 pub mod views;
 
 pub use error::RunError;
-pub use order::{Order, Place, Planned, Ran};
+pub use order::Order;
 pub use plan::Plan;
+pub use planned::{Place, Planned, Ran};
 pub use scene::{VIEW, starts, trial_picture, trial_truth};
 pub use tools::Tools;
 

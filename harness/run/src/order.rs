@@ -4,11 +4,9 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use calibench_measure::{Configured, Registry};
-use calibench_scenario::{Scenario, Subject};
+use calibench_scenario::Scenario;
 
-use crate::parts::{self, Done, Wanted};
-use crate::store::{self, RecordsFolder, SweepPlan};
-use crate::{Plan, RunError, Tools};
+use crate::{Plan, Tools};
 
 /// What is asked for.
 pub struct Order<'a> {
@@ -30,115 +28,27 @@ pub struct Order<'a> {
     pub stop: Option<&'a AtomicBool>,
 }
 
-/// How it is run.
-pub enum Planned<'a> {
-    /// A scenario by itself.
-    One(Box<Plan<'a>>),
-    /// A scenario that is swept.
-    Sweep(SweepPlan<'a>),
-}
-
-/// Where what is run goes.
-pub enum Place<'a> {
-    /// To records.
-    Records(&'a RecordsFolder),
-    /// To a folder of parts.
-    Part(Wanted<'a>),
-}
-
-/// What became of a run.
-pub enum Ran {
-    /// How many points were measured, or calibrations applied, or sets of printed figures recomputed.
-    Whole(u64),
-    /// A part is there.
-    Part(Box<Done>),
-}
-
 impl<'a> Order<'a> {
-    /// How it is run.
-    ///
-    /// # Errors
-    /// [`RunError::Asked`]: methods in a scenario whose methods are its own, several trials where nothing is random, a file of positions in a sweep.
-    pub fn planned(&self) -> Result<Planned<'a>, RunError> {
-        self.own_methods()?;
-        let Some(sweep) = &self.scenario.sweep else { return Ok(Planned::One(Box::new(self.plan()?))) };
-        let (scenario, methods) = (self.scenario, self.methods);
-        if sweep.changes_methods() && !methods.is_empty() {
-            return Err(RunError::Asked(format!("-m: `{}` sweeps the parameters of its own methods; leave out -m", scenario.name)));
-        }
-        if let Some(method) = scenario.methods.iter().chain(methods).find(|method| method.recorded().is_some()) {
-            let (label, name) = (&method.label, &scenario.name);
-            return Err(RunError::Asked(format!(
-                "`{label}` is a file of positions, and `{name}` is a sweep, of which `render` makes the first cell alone; expected a scenario without [sweep]"
-            )));
-        }
-        let (seed, trials, tools, data) = (self.seed, self.trials, self.tools, self.data.clone());
-        Ok(Planned::Sweep(SweepPlan { scenario, sweep, methods, seed, trials, tools, data, registry: self.registry, stop: self.stop }))
+    /// The methods that measure.
+    pub fn measuring(&self) -> &'a [Configured] {
+        if self.methods.is_empty() { &self.scenario.methods } else { self.methods }
     }
 
-    fn plan(&self) -> Result<Plan<'a>, RunError> {
-        let mut plan = Plan::new(self.scenario, self.tools, self.data.clone());
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed.unwrap_or(self.scenario.seed)
+    }
+
+    /// How `scenario`, its own or a cell of its own, is run with its own number of trials.
+    pub(crate) fn plan_of<'p>(&self, scenario: &'p Scenario) -> Plan<'p>
+    where
+        'a: 'p,
+    {
+        let mut plan = Plan { stop: self.stop, ..Plan::new(scenario, self.tools, self.data.clone()) };
         if !self.methods.is_empty() {
             plan.methods = self.methods;
         }
-        plan.seed = self.seed.unwrap_or(self.scenario.seed);
-        plan.trials = match self.trials {
-            Some(trials) if trials > 1 && self.scenario.is_deterministic() => {
-                return Err(RunError::Asked(format!(
-                    "--trials {trials}: nothing is random in `{}`, every trial would be the same; expected 1",
-                    self.scenario.name
-                )));
-            }
-            asked => asked.unwrap_or(self.scenario.trials),
-        };
-        plan.stop = self.stop;
-        Ok(plan)
-    }
-
-    /// Calibrations that are applied, and printed figures, are a scenario's own: none of the methods that measure takes their place.
-    fn own_methods(&self) -> Result<(), RunError> {
-        let own = match &self.scenario.subject {
-            Subject::Views(views) => views.transfer.is_some(),
-            subject => matches!(subject, Subject::Printed(_)),
-        };
-        if !own || self.methods.is_empty() {
-            return Ok(());
-        }
-        let name = &self.scenario.name;
-        Err(RunError::Asked(format!("-m: `{name}` measures nothing: its calibrations or printed figures are its own; leave out -m")))
-    }
-}
-
-impl Planned<'_> {
-    /// How many steps [`Self::run`] reports, about.
-    pub fn steps(&self, place: &Place<'_>) -> u64 {
-        match (self, place) {
-            (Self::One(plan), Place::Records(_)) => plan.steps(),
-            (Self::One(plan), Place::Part(wanted)) => parts::trials(plan, wanted.part).count(),
-            (Self::Sweep(plan), Place::Records(_)) => plan.sweep.cells() as u64,
-            (Self::Sweep(plan), Place::Part(wanted)) => (plan.sweep.cells() as u64).div_ceil(wanted.part.of()),
-        }
-    }
-
-    /// The methods that measure.
-    pub fn methods(&self) -> &[Configured] {
-        match self {
-            Self::One(plan) => plan.methods,
-            Self::Sweep(plan) if plan.methods.is_empty() => &plan.scenario.methods,
-            Self::Sweep(plan) => plan.methods,
-        }
-    }
-
-    /// Runs it; `step` is called after each step, on any thread.
-    ///
-    /// # Errors
-    /// What the run or the file system refuses, or that it was stopped; what was there before is then as it was.
-    pub fn run(&mut self, place: &Place<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<Ran, RunError> {
-        Ok(match (self, place) {
-            (Self::One(plan), Place::Records(folder)) => Ran::Whole(store::run(folder, plan, revision, step)?),
-            (Self::One(plan), Place::Part(wanted)) => Ran::Part(Box::new(parts::run(wanted, plan, step)?)),
-            (Self::Sweep(plan), Place::Records(folder)) => Ran::Whole(store::run_sweep(folder, plan, revision, step)?),
-            (Self::Sweep(plan), Place::Part(wanted)) => Ran::Part(Box::new(parts::run_sweep(wanted, plan, step)?)),
-        })
+        plan.seed = self.seed.unwrap_or(scenario.seed);
+        plan
     }
 }

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use calibench_exchange::NewFolder;
 use calibench_measure::{Configured, ImageId, Known, Recorded, RunId};
 use calibench_model::{Image, Unknowns};
+use calibench_photographs::method_info;
 use calibench_records::parts::Span;
 use calibench_records::results::MethodInfo;
 use calibench_scenario::transfer::{Calibrates, Solver};
@@ -84,11 +85,8 @@ impl<'a> Plan<'a> {
             return transfer.methods.iter().enumerate().map(info).collect();
         }
         let missing = self.missing();
-        let info = |method: &Configured| MethodInfo {
-            label: method.label.as_str().into(),
-            version: method.version.as_str().into(),
-            unavailable: missing.clone().or_else(|| self.unavailable(method)),
-        };
+        let info =
+            |method: &Configured| MethodInfo { unavailable: missing.clone().or_else(|| self.unavailable(method)), ..method_info(method) };
         self.methods.iter().map(info).collect()
     }
 

@@ -2,11 +2,10 @@
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::path::Path;
 
 use calibench_exchange::{NewFile, NewFolder, OutputFolder};
-use calibench_measure::{Configured, Registry};
+use calibench_measure::Configured;
 use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::description::write as write_description;
 use calibench_records::names::{DESCRIPTION, ORIGIN, PART, SCENARIO, cell_name};
@@ -20,7 +19,7 @@ use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 use crate::description::description;
 use crate::judgement::write_judgement;
 use crate::theory::write_theory;
-use crate::{Plan, RunError, Tools};
+use crate::{Order, Plan, RunError};
 
 /// Copies the scenario's camera file to where the scenario as it was run looks for it.
 fn keep_camera(scenario: &Scenario, folder: &NewFolder) -> Result<(), RunError> {
@@ -174,44 +173,24 @@ fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str)
     Ok(Some(writer))
 }
 
-/// How a swept scenario is run: what of its cells differs from the file, and with what they are measured.
+/// How a swept scenario is run.
 pub struct SweepPlan<'a> {
-    /// The scenario.
-    pub scenario: &'a Scenario,
-    /// Its sweep.
+    /// What is asked for: methods in place of those of each cell, if there are any; of trials a cell in which nothing is random has one.
+    pub order: Order<'a>,
+    /// The scenario's sweep.
     pub sweep: &'a Sweep,
-    /// The methods; those of each cell if there are none here.
-    pub methods: &'a [Configured],
-    /// The seed in place of the scenario's.
-    pub seed: Option<u64>,
-    /// The number of trials in place of the scenario's; a cell in which nothing is random has one.
-    pub trials: Option<u64>,
-    /// What this build has beside its methods.
-    pub tools: Tools<'a>,
-    /// Where photographs are.
-    pub data: PathBuf,
-    /// All methods that there are.
-    pub registry: &'a Registry,
-    /// Ends the run before its next trial, once it is true.
-    pub stop: Option<&'a AtomicBool>,
 }
 
 impl SweepPlan<'_> {
     /// The cell of place `index`.
     fn cell(&self, index: usize) -> Result<Scenario, RunError> {
-        Ok(parse_cell(self.scenario, self.sweep, index, self.registry).map_err(io::Error::other)?)
+        Ok(parse_cell(self.order.scenario, self.sweep, index, self.order.registry).map_err(io::Error::other)?)
     }
 
     /// How `cell` is run.
     fn plan<'c>(&'c self, cell: &'c Scenario) -> Plan<'c> {
-        let mut plan = Plan::new(cell, self.tools, self.data.clone());
-        if !self.methods.is_empty() {
-            plan.methods = self.methods;
-        }
-        plan.seed = self.seed.unwrap_or(cell.seed);
-        plan.stop = self.stop;
-        plan.trials = self.trials.filter(|_| !cell.is_deterministic()).unwrap_or(cell.trials);
-        plan
+        let trials = self.order.trials.filter(|_| !cell.is_deterministic());
+        Plan { trials: trials.unwrap_or(cell.trials), ..self.order.plan_of(cell) }
     }
 
     /// How many trials each cell has.
@@ -253,9 +232,9 @@ pub(crate) fn fill_sweep(
         let cell = plan.cell(index)?;
         let run = Plan { only, ..plan.plan(&cell) };
         let (folder, label) = (folder.folder(&cell_name(index))?, plan.sweep.label(index));
-        measured += write_records(&folder, &format!("{}@{label}", plan.scenario.name), &run, revision, &|| ())?;
+        measured += write_records(&folder, &format!("{}@{label}", plan.order.scenario.name), &run, revision, &|| ())?;
         step();
     }
-    records.keep(plan.scenario, plan.methods, folder)?;
+    records.keep(plan.order.scenario, plan.order.methods, folder)?;
     Ok(measured)
 }

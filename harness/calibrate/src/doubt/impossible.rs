@@ -1,5 +1,8 @@
 //! What cannot be as it is said to be: points outside of their images, residuals that no operator leaves.
 
+use calibench_adjust::ImageObservation;
+use calibench_model::camera::CameraModel;
+
 use crate::Calibration;
 
 /// Residuals beyond this, px, at half of the points are no operator's: names, counts, sizes or the model are wrong.
@@ -13,7 +16,11 @@ pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
 
 /// Image points outside the frame: of another size, or swapped coordinates.
 fn outside(calibration: &Calibration<'_>) -> Option<String> {
-    let count = calibration.outside();
+    let is_outside = |o: &&ImageObservation| {
+        let (size, at) = (calibration.camera(calibration.owner(o.image)).size(), o.position.to_corner());
+        !((0.0..=f64::from(size.width)).contains(&at.x) && (0.0..=f64::from(size.height)).contains(&at.y))
+    };
+    let count = calibration.prepared.network.observations.iter().filter(is_outside).count();
     (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
 }
 

@@ -111,8 +111,7 @@ impl Judge {
     fn in_use(&self, trusted: &Trusted<'_>) -> Option<InUse> {
         self.camera.as_ref()?;
         // Where the two cannot be compared over the frame the photographs cannot tell.
-        let unknown = InUse { verdict: StillHolds::CannotTell, apart: f64::NAN, error: f64::INFINITY, margin: self.margin };
-        Some(trusted.in_use(self.margin).unwrap_or(unknown))
+        Some(trusted.in_use(self.margin).unwrap_or(InUse::unknown(self.margin)))
     }
 
     fn models(&self) -> Result<Vec<ModelChoice>, Failure> {

@@ -95,6 +95,11 @@ impl NamedCamera {
             notes: Vec::new(),
         }
     }
+
+    /// Why [`Self::camera`] is not to be taken for what the file says, if so: splines that no other model comes near.
+    pub fn doubt(&self) -> Option<String> {
+        self.splines.as_ref()?.doubt()
+    }
 }
 
 /// What a file says of all its cameras goes with each.

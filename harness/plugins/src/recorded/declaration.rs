@@ -5,7 +5,7 @@ use calibench_model::{CornerPoint, PixelPoint};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::declaration::is_name;
+use crate::declaration::no_name;
 
 /// A declared file of positions.
 #[derive(Clone, Debug)]
@@ -74,10 +74,7 @@ pub(crate) struct Wire {
 pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Recording> {
     let before = problems.len();
     let Wire { name, about, source, version, file: positions, origin, images, photographs } = wire;
-    if !is_name(name.as_ref()) {
-        let message = format!("`{}` is no name of a method: expected small letters, digits and _, a letter first", name.as_ref());
-        problems.push(Problem::new(name.span(), message));
-    }
+    problems.extend(no_name(&name));
     if positions.as_ref().is_empty() {
         problems.push(Problem::new(positions.span(), "expected the file of positions, as in \"mine.csv\""));
     }

@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 use calibench_measure::{Build, Method, Outside};
 
 use crate::declaration::leak;
-use crate::program::short;
+use crate::told::short;
 use operator::Recalled;
 
 pub use declaration::{Images, Origin, Recording};

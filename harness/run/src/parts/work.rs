@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::NewFolder;
 use calibench_exchange::folder::intact;
-use calibench_measure::Configured;
 use calibench_records::names::PART;
 use calibench_records::parts::{FORMAT, Manifest, Method, Part, Span, pieces, write};
 use calibench_scenario::Scenario;
@@ -56,10 +55,8 @@ pub fn run(wanted: &Wanted<'_>, plan: &Plan<'_>, step: &(dyn Fn() + Sync)) -> Re
 /// # Errors
 /// As [`run`].
 pub fn run_sweep(wanted: &Wanted<'_>, plan: &SweepPlan<'_>, step: &(dyn Fn() + Sync)) -> Result<Done, RunError> {
-    let methods: &[Configured] = if plan.methods.is_empty() { &plan.scenario.methods } else { plan.methods };
-    let labels = methods.iter().map(|method| Method { label: method.label.clone(), version: method.version.clone() });
-    let seed = plan.seed.unwrap_or(plan.scenario.seed);
-    let manifest = wanted.manifest(plan.scenario, seed, plan.trials_of_cells()?, labels.collect());
+    let labels = plan.order.measuring().iter().map(|method| Method { label: method.label.clone(), version: method.version.clone() });
+    let manifest = wanted.manifest(plan.order.scenario, plan.order.seed(), plan.trials_of_cells()?, labels.collect());
     let cells: Vec<_> = manifest.pieces.iter().map(|piece| (piece.cell, Some(piece.trials))).collect();
     wanted.put(manifest, |records, folder| fill_sweep(records, folder, plan, cells.into_iter(), wanted.revision, step))
 }

@@ -9,6 +9,7 @@ use calibench_records::stored::{read_adjustments, read_points};
 use calibench_scenario::Scenario;
 
 use super::{NAME, SCENARIO, scenario, trials};
+use crate::Order;
 use crate::store::{RecordsFolder, SweepPlan, run, run_sweep};
 use crate::{Plan, RunError};
 
@@ -108,17 +109,17 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
     let scenario =
         calibench_scenario::parse(NAME, "wall.toml", &text, &Registry::builtin()).unwrap_or_else(|problems| panic!("{problems}"));
     let registry = Registry::builtin();
-    let plan = SweepPlan {
-        stop: None,
+    let order = Order {
         scenario: &scenario,
-        sweep: scenario.sweep.as_ref().unwrap(),
         methods: &[],
         seed: None,
         trials: None,
         tools: crate::Tools::default(),
         data: PathBuf::new(),
         registry: &registry,
+        stop: None,
     };
+    let plan = SweepPlan { order, sweep: scenario.sweep.as_ref().unwrap() };
     let parent = tempfile::tempdir().unwrap();
     let steps = std::sync::atomic::AtomicU64::new(0);
     let count = || {

@@ -29,6 +29,13 @@ pub struct InUse {
     pub margin: f64,
 }
 
+impl InUse {
+    /// Of two cameras that cannot be compared over the frame: the photographs cannot tell.
+    pub const fn unknown(margin: f64) -> Self {
+        Self { verdict: StillHolds::CannotTell, apart: f64::NAN, error: f64::INFINITY, margin }
+    }
+}
+
 impl Trusted<'_> {
     /// The published camera as one that is in use, which may differ by `margin`, px RMS over the frame; `None` without one.
     ///
