@@ -1,5 +1,6 @@
 //! The vocabulary of calibench: frames, images, targets, observations. No I/O, no randomness.
 
+pub mod boards;
 pub mod camera;
 pub mod coded;
 pub mod convert;

@@ -1,0 +1,112 @@
+//! Boards as options write them.
+
+use std::str::FromStr;
+
+use super::{AprilGrid, Board, BoardError, Charuco, Circles, Dictionary, Rings};
+
+/// The kinds of board, how each is written, and an example.
+pub const KINDS: [(&str, &str, &str); 5] = [
+    ("charuco", "COLUMNSxROWS:SQUARE:MARKER:DICTIONARY[:FIRST][:legacy]", "charuco:8x5:30:21:DICT_4X4_50"),
+    ("aprilgrid", "COLUMNSxROWS:TAG:SPACING[:FIRST][:border1][:plain]", "aprilgrid:6x6:0.088:0.3"),
+    ("circles", "COLUMNSxROWS:SPACING[:DIAMETER]", "circles:7x5:20"),
+    ("acircles", "COLUMNSxROWS:SPACING[:DIAMETER]", "acircles:4x11:20"),
+    ("rings", "BITS:COLUMNSxROWS:SPACING:DIAMETER", "rings:12:6x5:50:8"),
+];
+
+impl FromStr for Board {
+    type Err = BoardError;
+
+    fn from_str(text: &str) -> Result<Self, BoardError> {
+        let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
+        let Some((_, form, example)) = KINDS.iter().find(|(name, ..)| *name == kind) else {
+            let known = KINDS.map(|(name, ..)| name).join(", ");
+            return Err(BoardError::Text(format!("`{kind}` is no kind of board: expected one of {known}")));
+        };
+        let mut parts = Parts { all: rest.split(':').filter(|part| !part.is_empty()).collect(), next: 0 };
+        let board = match kind {
+            "charuco" => parts.charuco(),
+            "aprilgrid" => parts.aprilgrid(),
+            "rings" => parts.rings(),
+            _ => parts.circles(kind == "acircles"),
+        };
+        let wrong = |why: String| BoardError::Text(format!("`{text}`: {why}; expected {kind}:{form}, as in {example}"));
+        let board = board.map_err(wrong)?;
+        if let Some(more) = parts.all.get(parts.next) {
+            return Err(wrong(format!("`{more}` is one too many")));
+        }
+        board.layout().map_err(|error| BoardError::Text(format!("`{text}`: {error}")))?;
+        Ok(board)
+    }
+}
+
+/// The parts of a text between its colons.
+struct Parts<'a> {
+    all: Vec<&'a str>,
+    next: usize,
+}
+
+impl<'a> Parts<'a> {
+    fn take(&mut self, what: &str) -> Result<&'a str, String> {
+        let part = self.all.get(self.next).copied().ok_or_else(|| format!("no {what}"))?;
+        self.next += 1;
+        Ok(part)
+    }
+
+    /// The next part, if it reads as a `T`.
+    fn optional<T: FromStr>(&mut self) -> Option<T> {
+        let read = self.all.get(self.next)?.parse().ok()?;
+        self.next += 1;
+        Some(read)
+    }
+
+    fn flag(&mut self, name: &str) -> bool {
+        let found = self.all.get(self.next).is_some_and(|part| part.eq_ignore_ascii_case(name));
+        self.next += usize::from(found);
+        found
+    }
+
+    fn number<T: FromStr>(&mut self, what: &str) -> Result<T, String> {
+        let part = self.take(what)?;
+        part.parse().map_err(|_| format!("`{part}` is no {what}"))
+    }
+
+    fn counts(&mut self) -> Result<(usize, usize), String> {
+        let part = self.take("count")?;
+        let read = part.split_once(['x', 'X']).and_then(|(columns, rows)| Some((columns.parse().ok()?, rows.parse().ok()?)));
+        read.ok_or_else(|| format!("`{part}` is no count of columns and rows"))
+    }
+
+    fn charuco(&mut self) -> Result<Board, String> {
+        let (columns, rows) = self.counts()?;
+        let (square, marker) = (self.number("side of a square")?, self.number("side of a marker")?);
+        let name = self.take("dictionary")?;
+        let dictionary = Dictionary::named(name)
+            .ok_or_else(|| format!("`{name}` is no dictionary ({})", Dictionary::names().collect::<Vec<_>>().join(", ")))?;
+        let (first, legacy) = (self.optional().unwrap_or(0), self.flag("legacy"));
+        Ok(Board::Charuco(Charuco { columns, rows, square, marker, dictionary, first, legacy }))
+    }
+
+    fn aprilgrid(&mut self) -> Result<Board, String> {
+        let (columns, rows) = self.counts()?;
+        let (tag, spacing) = (self.number("side of a tag")?, self.number("spacing")?);
+        let dictionary = Dictionary::named("DICT_APRILTAG_36h11").ok_or("no dictionary")?;
+        let first = self.optional().unwrap_or(0);
+        let border = if self.flag("border1") { 1 } else { 2 };
+        let squares = (!self.flag("plain")).then_some(0.0);
+        Ok(Board::AprilGrid(AprilGrid { columns, rows, tag, spacing, dictionary, first, border, squares }))
+    }
+
+    fn circles(&mut self, asymmetric: bool) -> Result<Board, String> {
+        let (columns, rows) = self.counts()?;
+        let spacing: f64 = self.number("spacing")?;
+        let diameter = self.optional().unwrap_or(0.5 * spacing);
+        Ok(Board::Circles(Circles { columns, rows, spacing, diameter, hole: None, asymmetric }))
+    }
+
+    fn rings(&mut self) -> Result<Board, String> {
+        let bits = self.number("number of sectors")?;
+        let (columns, rows) = self.counts()?;
+        let (spacing, diameter) = (self.number("spacing")?, self.number("diameter")?);
+        Ok(Board::Rings(Rings { bits, columns, rows, spacing, diameter, ring: [2.0, 3.0], even: false, first: 1 }))
+    }
+}
