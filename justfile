@@ -94,6 +94,10 @@ python: build
 perf-python: python
     target/python/bin/python harness/python/benches/perf.py
 
+# Boards found, how well and how fast, beside OpenCV on the same images
+perf-boards: python
+    RAYON_NUM_THREADS=1 target/python/bin/python harness/python/benches/boards.py
+
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:
     cargo bench --workspace --bench rows

@@ -2,6 +2,7 @@
 
 mod architecture;
 mod atlas;
+mod boards;
 mod bootstrap;
 mod calibrate;
 mod cameras;

@@ -5,6 +5,9 @@ use std::path::PathBuf;
 
 use calibench_exchange::Inputs;
 use calibench_measure::{Configured, Registry};
+use calibench_model::TargetKind;
+use calibench_model::boards::Board;
+use calibench_photographs::Finder;
 use calibench_plugins::Launcher;
 use calibench_project::{Project, Toolbox};
 use calibench_report::Places;
@@ -60,12 +63,18 @@ impl Context<'_> {
         self.project.scenarios(names).map_err(project_failure)
     }
 
-    pub fn method_of_boards(&self, text: &str) -> Result<Configured, Failure> {
-        self.project.method_of_boards(text).map_err(project_failure)
+    pub fn method_of_boards(&self, text: &str, kind: TargetKind) -> Result<Configured, Failure> {
+        self.project.method_of_boards(text, kind).map_err(project_failure)
     }
 
-    pub fn methods_of_boards(&self, texts: &[String]) -> Result<Vec<Configured>, Failure> {
-        self.project.methods_of_boards(texts).map_err(project_failure)
+    pub fn methods_of_boards(&self, texts: &[String], kind: TargetKind) -> Result<Vec<Configured>, Failure> {
+        self.project.methods_of_boards(texts, kind).map_err(project_failure)
+    }
+
+    /// What finds a board in photographs.
+    pub fn finder(&self, board: Board) -> Result<Finder<'_>, Failure> {
+        let finder = Finder::new(board, self.toolbox.detector.as_deref()).map_err(|error| Failure::input(error.to_string()))?;
+        finder.missing().map_or(Ok(finder), |why| Err(Failure::input(why)))
     }
 
     pub fn methods(&self, texts: &[String], pictured: Pictured) -> Result<Vec<Configured>, Failure> {

@@ -1,9 +1,10 @@
-//! `calibench control`: the control file of a chessboard.
+//! `calibench control`: the control file of a board.
 
 use std::path::PathBuf;
 
 use calibench_exchange::{Inputs, write_control};
-use calibench_photographs::Chessboard;
+use calibench_model::boards::Board;
+use calibench_photographs::{Finder, board_of};
 use clap::Args;
 
 use super::output;
@@ -12,10 +13,10 @@ use crate::failure::Failure;
 
 #[derive(Args)]
 pub struct Control {
-    /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
-    #[arg(value_name = "COLUMNSxROWS:SIDE")]
-    chessboard: Chessboard,
-    /// The control file: CSV with target,X,Y,Z; targets are named as `detect` names them, r1c1 the first of the first row, X along it, Y up [default: standard output]
+    /// The board: a chessboard's inner corners and the side of a square in object units, as in 9x6:25, or another, as in aprilgrid:6x6:0.088:0.3 or Kalibr's target.yaml
+    #[arg(value_name = "BOARD", value_parser = board_of)]
+    board: Board,
+    /// The control file: CSV with target,X,Y,Z; targets are named as `detect` names them, of a chessboard r1c1 the first of the first row, X along it, Y up [default: standard output]
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
 }
@@ -23,6 +24,7 @@ pub struct Control {
 impl Control {
     pub fn run(&self) -> Result<(), Failure> {
         let output = output::table("-o", self.output.as_deref(), &Inputs::default())?;
-        deliver(output.as_ref(), |file| write_control(file, &self.chessboard.control()))
+        let finder = Finder::new(self.board, None).map_err(|error| Failure::input(error.to_string()))?;
+        deliver(output.as_ref(), |file| write_control(file, &finder.control()))
     }
 }

@@ -1,12 +1,13 @@
-//! `calibench detect`: a chessboard's corners, or the targets of a coded field, as approximate positions.
+//! `calibench detect`: a board's points, or the targets of a coded field, as approximate positions.
 
 use std::path::PathBuf;
 
 use calibench_exchange::{Inputs, PointRef, PointRow, write_points};
-use calibench_measure::Board;
+use calibench_measure::Board as Counts;
+use calibench_model::boards::Board;
 use calibench_photographs::coded::{Coded, recognise_coded};
-use calibench_photographs::corners::detect_corners;
 use calibench_photographs::names::once;
+use calibench_photographs::{Chessboard, board_of};
 use calibench_recognise::{Classifier, NotRecognised, Recogniser};
 use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject, ViewsSubject};
@@ -25,13 +26,16 @@ pub struct Detect {
     #[arg(required = true, value_name = "PHOTO")]
     photos: Vec<PathBuf>,
     /// The chessboard's inner corners, as in 9x6
-    #[arg(long, value_name = "COLUMNSxROWS", required_unless_present = "testfield", conflicts_with = "testfield")]
-    chessboard: Option<Board>,
+    #[arg(long, value_name = "COLUMNSxROWS", required_unless_present_any = ["board", "testfield"], conflicts_with_all = ["board", "testfield"])]
+    chessboard: Option<Counts>,
+    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, or a target file of Kalibr's (.yaml)
+    #[arg(long, value_name = "BOARD", value_parser = board_of, conflicts_with = "testfield")]
+    board: Option<Board>,
     /// The coded field that a scenario describes, by its name or TOML file: the targets of its whole squares in view
     #[arg(long, value_name = "SCENARIO")]
     testfield: Option<String>,
     /// What tells the shapes of a coded field's targets apart
-    #[arg(long, value_enum, default_value_t, conflicts_with = "chessboard")]
+    #[arg(long, value_enum, default_value_t, conflicts_with_all = ["board", "chessboard"])]
     classifier: Shapes,
     /// Where the points go [default: standard output]
     #[arg(short, long, value_name = "CSV")]
@@ -50,32 +54,36 @@ enum Shapes {
 
 impl Detect {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        match (&self.testfield, self.chessboard) {
+        let chessboard = self.chessboard.map(|board| Board::from(Chessboard { board, side: 1.0 }));
+        match (&self.testfield, self.board.or(chessboard)) {
             (Some(name), _) => self.field(context, name),
             (None, Some(board)) => self.board(context, board),
-            (None, None) => Err(Failure::input("expected --chessboard or --testfield")),
+            (None, None) => Err(Failure::input("expected --board, --chessboard or --testfield")),
         }
     }
 
     fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {
         let output = output::table("-o", self.output.as_deref(), &Inputs::new(&self.photos))?;
-        let detector = context.toolbox.detector.as_deref();
-        let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
+        let finder = context.finder(board)?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
         say_turns(&self.photos)?;
-        let found = detect_corners(&self.photos, board, detector, &|| progress.step())?;
-        let seen = found.iter().filter(|rows| !rows.is_empty()).count();
+        let found = finder.find_all(&self.photos, &|| progress.step())?;
+        let seen = found.iter().filter(|sighting| !sighting.rows.is_empty()).count();
         progress.finish(&format!("the board was found in {seen} of {} photographs", found.len()));
-        for (path, rows) in self.photos.iter().zip(&found) {
-            if rows.is_empty() {
-                say!("{}: no board of {} x {} inner corners found", path.display(), board.columns, board.rows);
-            }
+        let mut doubtful = false;
+        for (path, sighting) in self.photos.iter().zip(&found) {
+            sighting.why.iter().for_each(|why| say!("{}: {why}", path.display()));
+            sighting.doubts.iter().for_each(|doubt| say!("{}: in doubt: {doubt}", path.display()));
+            doubtful |= !sighting.doubts.is_empty();
         }
         if seen == 0 {
-            return Err(Failure::input("no board was found; expected one whose inner corners are all visible, counted as COLUMNSxROWS"));
+            return Err(Failure::input(
+                "no board was found; expected one as it was described (of a chessboard all inner corners visible, counted as COLUMNSxROWS)",
+            ));
         }
-        deliver(output.as_ref(), |file| write_points(file, found.iter().flatten().map(PointRef::from)))
+        deliver(output.as_ref(), |file| write_points(file, found.iter().flat_map(|sighting| &sighting.rows).map(PointRef::from)))?;
+        if doubtful { Err(Failure::Doubt) } else { Ok(()) }
     }
 
     fn field(&self, context: &Context<'_>, name: &str) -> Result<(), Failure> {

@@ -6,6 +6,7 @@ use std::cmp::Ordering;
 use calibench_diagnostics::nearest;
 use calibench_exchange::ControlRow;
 use calibench_measure::Board;
+use calibench_model::boards::{self, BoardError};
 use calibench_model::escape;
 
 /// A chessboard, or any points of known coordinates: marks on a house, a wall of targets.
@@ -20,6 +21,18 @@ pub enum Field {
     },
     /// Points by their names.
     Points(Vec<ControlRow>),
+}
+
+/// A board as what was photographed: a chessboard, or points of known coordinates.
+///
+/// # Errors
+/// A board that cannot be.
+pub fn field_of(board: &boards::Board) -> Result<Field, BoardError> {
+    if let boards::Board::Chessboard(boards::Chessboard { columns, rows, square }) = *board {
+        return Ok(Field::Board { board: Board { columns, rows }, side: square });
+    }
+    let point = |point: boards::BoardPoint| ControlRow::new(point.id, [point.at[0], point.at[1], 0.0]);
+    Ok(Field::Points(board.layout()?.points.into_iter().map(point).collect()))
 }
 
 impl Field {

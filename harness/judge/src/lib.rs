@@ -29,7 +29,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 pub use corner_files::{CornerFile, CornerFilesError};
-pub use field::Field;
+pub use field::{Field, field_of};
 pub use material::{Corners, FEWEST, Material};
 pub use options::{BENT, METHODS, MODELS, OF_CAMERA, Options, usual_methods, usual_models};
 pub use point_files::Expected;

@@ -1,6 +1,7 @@
 //! How to judge.
 
 use calibench_calibrate::choice::ModelChoice;
+use calibench_model::TargetKind;
 use calibench_model::camera::Camera;
 
 /// The methods that measure a chessboard's corners unless others are asked for.
@@ -36,8 +37,14 @@ pub const MODELS: [&str; 13] = [
     "opencv-fisheye+bent",
 ];
 
-/// The names of [`METHODS`], or [`OF_CAMERA`] alone when a calibration in use is checked.
-pub fn usual_methods(of_camera: bool) -> Vec<String> {
+/// What is compared on discs.
+pub const OF_DISCS: [&str; 4] = ["centroid", "parametric_circle", "ellipse_edges", "lsm:window=15"];
+
+/// The names of [`METHODS`], of discs of [`OF_DISCS`]; or what measures best alone when a calibration in use is checked.
+pub fn usual_methods(kind: TargetKind, of_camera: bool) -> Vec<String> {
+    if kind == TargetKind::Disc {
+        return if of_camera { vec!["ellipse_edges".to_owned()] } else { OF_DISCS.map(str::to_owned).to_vec() };
+    }
     if of_camera { vec![OF_CAMERA.to_owned()] } else { METHODS.map(str::to_owned).to_vec() }
 }
 

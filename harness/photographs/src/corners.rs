@@ -1,37 +1,11 @@
 //! A chessboard's corners as approximate positions.
 
-use std::path::PathBuf;
-
-use calibench_exchange::{PointRow, read_photo};
+use calibench_exchange::PointRow;
 use calibench_measure::{Board, BoardDetector};
 use calibench_model::{Affine, Image, PixelPoint, Start, TargetKind};
-use rayon::prelude::*;
-
-use crate::PhotographsError;
-use crate::names::{names, once};
-
-/// The corners of a board in photographs, one list a photograph, empty where the board is not seen whole; `step` is called after each, on any thread.
-///
-/// # Errors
-/// A photograph that cannot be read, or that is given twice.
-pub fn detect_corners(
-    photos: &[PathBuf],
-    board: Board,
-    detector: &dyn BoardDetector,
-    step: &(dyn Fn() + Sync),
-) -> Result<Vec<Vec<PointRow>>, PhotographsError> {
-    once(photos)?;
-    let one = |(path, name): (&PathBuf, &String)| {
-        let image = read_photo(path)?.image;
-        let rows = corners_of(detector, &image, name, board);
-        step();
-        Ok(rows)
-    };
-    photos.par_iter().zip(&names(photos)).map(one).collect()
-}
 
 /// The corners of a board in the photograph `name`; none if it is not seen whole.
-pub fn corners_of(detector: &dyn BoardDetector, image: &Image, name: &str, board: Board) -> Vec<PointRow> {
+pub(crate) fn corners_of(detector: &dyn BoardDetector, image: &Image, name: &str, board: Board) -> Vec<PointRow> {
     let corners = detector.detect(image, board).unwrap_or_default();
     let row = |(index, position): (usize, &PixelPoint)| PointRow {
         image: name.to_owned(),

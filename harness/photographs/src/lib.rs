@@ -2,14 +2,20 @@
 
 pub mod chessboard;
 pub mod coded;
-pub mod corners;
+mod corners;
 mod error;
+mod finder;
+pub mod measured;
 mod measured_board;
 pub mod names;
+mod option;
 pub mod points;
 mod turns;
 
-pub use chessboard::{Chessboard, Corners, Photo};
+pub use chessboard::Chessboard;
 pub use error::PhotographsError;
-pub use measured_board::{measured_board, measured_boards, method_info};
+pub use finder::{Finder, Sighting};
+pub use measured::{Corners, Photo};
+pub use measured_board::{MeasuredBoards, measured_board, measured_boards, method_info};
+pub use option::board_of;
 pub use turns::turns;

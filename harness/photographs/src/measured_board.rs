@@ -1,44 +1,55 @@
-//! A chessboard in an image, in the hands of many methods.
+//! A board in an image, in the hands of many methods.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use calibench_exchange::read_photo;
-use calibench_measure::{Board, BoardDetector, Configured, ImageId};
+use calibench_measure::{Configured, ImageId};
 use calibench_model::camera::ImageSize;
-use calibench_model::{Image, PixelPoint, Start, TargetKind};
+use calibench_model::{Image, PixelPoint, Start};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
 use rayon::prelude::*;
 
-use crate::PhotographsError;
 use crate::names::{names, once, same_size};
+use crate::{Finder, PhotographsError};
 
-/// A board's corners in photographs, all of one size, in the hands of every available method: by photograph, in the order given; and that size. `step` is called
-/// after each photograph, on any thread.
+/// A board in photographs of one camera, in the hands of many methods.
+#[derive(Debug)]
+pub struct MeasuredBoards {
+    /// What was measured, by photograph, in the order given.
+    pub trial: Trial,
+    /// The size of the photographs.
+    pub size: ImageSize,
+    /// What is in doubt of where the board was found.
+    pub doubts: Vec<String>,
+}
+
+/// A board's points in photographs, all of one size, in the hands of every available method. `step` is called after each photograph, on any thread.
 ///
 /// # Errors
 /// A photograph that cannot be read, or that is given twice; photographs of several sizes.
 pub fn measured_boards(
     photos: &[PathBuf],
-    board: (&dyn BoardDetector, Board),
+    finder: &Finder<'_>,
     methods: &[Configured],
     step: &(dyn Fn() + Sync),
-) -> Result<(Trial, ImageSize), PhotographsError> {
+) -> Result<MeasuredBoards, PhotographsError> {
     once(photos)?;
     let one = |(path, name): (&PathBuf, &String)| {
         let image = read_photo(path)?.image;
-        let trial = measured_board(&image, name, board, methods);
+        let found = measured_board(&image, name, finder, methods);
         step();
-        Ok((trial, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
+        Ok((found, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
     };
     let found = photos.par_iter().zip(&names(photos)).map(one).collect::<Result<Vec<_>, PhotographsError>>()?;
     let size = same_size(photos.iter().zip(found.iter().map(|(_, size)| *size)))?;
-    let mut whole = Trial::default();
-    for (view, _) in found {
-        whole.points.extend(view.points);
-        whole.missed_views.extend(view.missed_views);
+    let mut whole = MeasuredBoards { size, trial: Trial::default(), doubts: Vec::new() };
+    for ((trial, doubts), _) in found {
+        whole.trial.points.extend(trial.points);
+        whole.trial.missed_views.extend(trial.missed_views);
+        whole.doubts.extend(doubts);
     }
-    Ok((whole, size))
+    Ok(whole)
 }
 
 /// A method as results list it.
@@ -50,20 +61,23 @@ pub fn method_info(method: &Configured) -> MethodInfo {
     }
 }
 
-/// A board's corners in an image called `view`, in the hands of every available method, from the same whole pixels.
-pub fn measured_board(image: &Image, view: &str, (detector, board): (&dyn BoardDetector, Board), methods: &[Configured]) -> Trial {
+/// A board's points in an image called `view`, in the hands of every available method, from the same whole pixels; and what is in doubt.
+pub fn measured_board(image: &Image, view: &str, finder: &Finder<'_>, methods: &[Configured]) -> (Trial, Vec<String>) {
+    let found = finder.find(image, view);
+    let doubts = found.doubts.iter().map(|doubt| format!("{view}: {doubt}")).collect();
     let (mut trial, view): (Trial, Arc<str>) = (Trial::default(), view.into());
-    let Some(corners) = detector.detect(image, board) else {
-        trial.missed_views.push((view, format!("no board of {} x {} corners found", board.columns, board.rows)));
-        return trial;
-    };
+    if let Some(why) = found.why {
+        trial.missed_views.push((view, why));
+        return (trial, doubts);
+    }
     // Whole pixels, as a hand would point: no operator starts from another's result.
-    let start = |corner: &PixelPoint| Start {
-        kind: Some(TargetKind::ChessCorner),
-        ..Start::at(PixelPoint::new(corner.x.round(), corner.y.round()))
+    let start = |given: Start| Start {
+        kind: given.kind,
+        affine: given.affine.filter(|_| finder.tells_size()),
+        ..Start::at(PixelPoint::new(given.position.x.round(), given.position.y.round()))
     };
-    let starts: Vec<Start> = corners.iter().map(start).collect();
-    let names: Vec<String> = (0..starts.len()).map(|index| board.target(index)).collect();
+    let starts: Vec<Start> = found.rows.iter().map(|row| start(row.start)).collect();
+    let names: Vec<String> = found.rows.into_iter().map(|row| row.target).collect();
     for (method, operator) in methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?))) {
         let results = match operator.recorded() {
             Some(recorded) => {
@@ -79,5 +93,5 @@ pub fn measured_board(image: &Image, view: &str, (detector, board): (&dyn BoardD
             trial.points.push(PointResult::new(view.clone(), names[index].clone(), method, outcome));
         }
     }
-    trial
+    (trial, doubts)
 }

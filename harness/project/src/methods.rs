@@ -47,13 +47,12 @@ impl Project<'_> {
         }
     }
 
-    /// As [`Self::method`], for the corners of a chessboard in photographs.
+    /// As [`Self::method`], for the points of a board in photographs, which are of the kind `wanted`.
     ///
     /// # Errors
     /// As [`Self::method`]; one that is limited to other kinds of targets.
-    pub fn method_of_boards(&self, text: &str) -> Result<Configured, ProjectError> {
+    pub fn method_of_boards(&self, text: &str, wanted: TargetKind) -> Result<Configured, ProjectError> {
         let method = self.method(text, Pictured::Photographs)?;
-        let wanted = TargetKind::ChessCorner;
         match method.kinds.as_ref().filter(|_| !method.measures(Some(wanted))) {
             Some(kinds) => Err(ProjectError::Asked(format!(
                 "-m {text}: limited to targets of the kind `{kinds}`, and a board has none; expected `{wanted}` among the kinds, or no kinds"
@@ -66,8 +65,8 @@ impl Project<'_> {
     ///
     /// # Errors
     /// As [`Self::method_of_boards`]; one that is asked for twice.
-    pub fn methods_of_boards(&self, texts: &[String]) -> Result<Vec<Configured>, ProjectError> {
-        let methods = texts.iter().map(|text| self.method_of_boards(text)).collect::<Result<Vec<_>, _>>()?;
+    pub fn methods_of_boards(&self, texts: &[String], wanted: TargetKind) -> Result<Vec<Configured>, ProjectError> {
+        let methods = texts.iter().map(|text| self.method_of_boards(text, wanted)).collect::<Result<Vec<_>, _>>()?;
         let twice = methods.iter().enumerate().find(|(i, method)| methods[..*i].iter().any(|earlier| earlier.label == method.label));
         match twice {
             Some((_, method)) => Err(ProjectError::Asked(format!("-m {}: asked for twice; expected each once", method.label))),

@@ -47,7 +47,7 @@ __all__ = [
 
 _Path = Union[str, "os.PathLike[str]"]
 _Size = Sequence[int]
-#: `9x6:25` (inner corners and the side of a square), (n, 3) object coordinates, or names with coordinates.
+#: `9x6:25` (inner corners and the side of a square) or another board in a word, (n, 3) object coordinates, or names with coordinates.
 _Board = Union[str, ArrayLike, Mapping[str, Sequence[float]]]
 
 class Error(Exception):
@@ -364,10 +364,10 @@ def measure(
 def detect(
     image: NDArray[Any], board: Optional[str] = None, *, testfield: Optional[str] = None, classifier: str = "modern", root: Optional[_Path] = None
 ) -> Optional[Targets]:
-    """Find a chessboard (`9x6`; where cv2 is installed), or the coded field of a scenario; None where it is not seen."""
+    """Find a board (`9x6`, where cv2 is installed; `charuco:8x5:30:21:DICT_4X4_50`, ...) or the coded field of a scenario; None where it is not seen."""
 
 def board(text: str) -> List[Tuple[str, List[float]]]:
-    """Names and object coordinates of a chessboard's inner corners, as of 9x6:25: X along the rows, Y upwards, Z towards the viewer."""
+    """Names and object coordinates of a board's points, as of 9x6:25: X to the right, Y upwards, Z towards the viewer."""
 
 def calibrate(
     xy: Sequence[Union[ArrayLike, Measured]],

@@ -1,19 +1,20 @@
-//! What was photographed: a chessboard in a word, or object coordinates as an array or by names.
+//! What was photographed: a board in a word, or object coordinates as an array or by names.
 
 use calibench_exchange::ControlRow;
-use calibench_judge::Field;
-use calibench_photographs::Chessboard;
+use calibench_judge::{Field, field_of};
+use calibench_model::boards;
+use calibench_photographs::{Finder, board_of};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::rows;
 use crate::error::input;
 
-/// The object coordinates of a chessboard's inner corners by their names: X along the rows, Y upwards, Z towards the viewer, from the first corner.
+/// The object coordinates of a board's points by their names: X to the right, Y upwards, Z towards the viewer, from the first point.
 #[pyfunction]
 pub fn board(text: &str) -> PyResult<Vec<(String, [f64; 3])>> {
-    let chessboard: Chessboard = text.parse().map_err(input)?;
-    Ok(chessboard.control().into_iter().map(|row| (row.target, row.position)).collect())
+    let finder = Finder::new(board_of(text).map_err(input)?, None).map_err(input)?;
+    Ok(finder.control().into_iter().map(|row| (row.target, row.position)).collect())
 }
 
 /// Points of known object coordinates, in the order in which arrays have them.
@@ -22,20 +23,20 @@ pub struct Board {
     pub control: Vec<ControlRow>,
     /// As `judge` has it.
     pub field: Field,
-    /// The chessboard, if it is one.
-    pub chessboard: Option<Chessboard>,
+    /// The board, if it was given in a word.
+    pub pictured: Option<boards::Board>,
 }
 
 impl Board {
-    /// Of `9x6:25`, of an array of (n, 3), or of a dict of names and coordinates.
+    /// Of `9x6:25` or another board in a word, of an array of (n, 3), or of a dict of names and coordinates.
     ///
     /// # Errors
     /// Anything else.
     pub fn of(board: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(text) = board.extract::<String>() {
-            let chessboard: Chessboard = text.parse().map_err(input)?;
-            let field = Field::Board { board: chessboard.board, side: chessboard.side };
-            return Ok(Self { control: chessboard.control(), field, chessboard: Some(chessboard) });
+            let pictured = board_of(&text).map_err(input)?;
+            let control = Finder::new(pictured, None).map_err(input)?.control();
+            return Ok(Self { control, field: field_of(&pictured).map_err(input)?, pictured: Some(pictured) });
         }
         let control: Vec<ControlRow> = if let Ok(named) = board.cast::<PyDict>() {
             let row = |(name, xyz): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
@@ -50,7 +51,7 @@ impl Board {
         if let Some(row) = control.iter().find(|row| row.position.iter().any(|value| !value.is_finite())) {
             return Err(input(format!("board: the coordinates of point {} are not finite", row.target)));
         }
-        Ok(Self { field: Field::Points(control.clone()), control, chessboard: None })
+        Ok(Self { field: Field::Points(control.clone()), control, pictured: None })
     }
 
     /// Names of its points, in the order in which arrays have them.

@@ -2,15 +2,13 @@
 
 use std::path::PathBuf;
 
-use calibench_measure::Board;
-use calibench_photographs::Chessboard;
 use calibench_photographs::coded::coded_of;
-use calibench_photographs::corners::corners_of;
+use calibench_photographs::{Finder, board_of};
 use calibench_recognise::{Classifier, Recogniser};
 use calibench_scenario::Subject;
 use pyo3::prelude::*;
 
-use crate::error::{UnavailableError, doubt, input, project};
+use crate::error::{doubt, input, no_detector, project};
 use crate::grey::Grey;
 use crate::pool::released;
 use crate::rendering::{Targets, starts};
@@ -31,14 +29,14 @@ pub fn detect(
     let image = grey.image()?;
     with_project(py, root, |here| match (board, testfield) {
         (Some(board), None) => {
-            // With or without the side of a square.
-            let board: Board =
-                if board.contains(':') { board.parse::<Chessboard>().map_err(input)?.board } else { board.parse().map_err(input)? };
-            let none = || UnavailableError::new_err("there is no chessboard detector: install `cv2` (opencv-python-headless)");
-            let detector = here.toolbox.detector.as_deref().ok_or_else(none)?;
-            let found = released(py, || corners_of(detector, &image, "image", board))?;
-            let targets = starts(py, found.iter().map(|row| (row.target.as_str(), row.start)))?;
-            Ok(if found.is_empty() { None } else { Some(targets) })
+            // A chessboard with or without the side of a square.
+            let with_side = if board.contains(':') || board.contains('.') { board.to_owned() } else { format!("{board}:1") };
+            let finder = Finder::new(board_of(&with_side).map_err(input)?, here.toolbox.detector.as_deref()).map_err(input)?;
+            finder.missing().map_or(Ok(()), |_| Err(no_detector()))?;
+            let found = released(py, || finder.find(&image, "image"))?;
+            found.doubts.iter().try_for_each(|what| doubt(py, what))?;
+            let targets = starts(py, found.rows.iter().map(|row| (row.target.as_str(), row.start)))?;
+            Ok(if found.rows.is_empty() { None } else { Some(targets) })
         }
         (None, Some(name)) => {
             let scenario = here.scenario(name).map_err(project)?;

@@ -7,7 +7,7 @@ use calibench_calibrate::choice::ModelChoice;
 use calibench_exchange::{LostRow, LostRows, PointFile};
 use calibench_judge::{CornerFile, Expected, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models};
 use calibench_model::camera::CameraModel;
-use calibench_photographs::{measured_boards, method_info};
+use calibench_photographs::{Finder, MeasuredBoards, measured_boards, method_info};
 use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
 use calibench_report::judgement::{in_use, section, verdict};
 use numpy::PyArray1;
@@ -17,7 +17,7 @@ use pyo3::types::PyDict;
 use crate::boards::Board;
 use crate::calibrating::positive;
 use crate::camera::{Camera, size_of};
-use crate::error::{UnavailableError, doubt, input, project};
+use crate::error::{doubt, input, no_detector, project};
 use crate::measuring::Measured;
 use crate::points::{image_names, points};
 use crate::pool::released;
@@ -102,7 +102,7 @@ pub fn judge(
     margin: f64,
 ) -> PyResult<Judgement> {
     let board = Board::of(board)?;
-    let texts = models.unwrap_or_else(|| usual_models(board.chessboard.is_some()));
+    let texts = models.unwrap_or_else(|| usual_models(board.pictured.is_some()));
     let models = ModelChoice::parse_all(&texts).map_err(|(place, error)| input(format!("models: {}: {error}", texts[place])))?;
     if !(1..=1000).contains(&splits) {
         return Err(input(format!("splits: {splits}; expected 1 to 1000")));
@@ -200,16 +200,15 @@ fn lost(arrays: &[Bound<'_, PyAny>], images: &[String], board: &Board) -> LostRo
 
 /// The corners of photographs in the hands of methods.
 fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Option<Vec<String>>, in_use: bool) -> PyResult<Material> {
-    let chessboard =
-        board.chessboard.ok_or_else(|| input("board: photographs are of a chessboard; expected COLUMNSxROWS:SIDE, as in 9x6:25"))?;
-    let texts = methods.unwrap_or_else(|| usual_methods(in_use));
+    let pictured = board.pictured.ok_or_else(|| input("board: photographs are of a board; expected it in a word, as 9x6:25"))?;
     with_project(py, None, |here| {
-        let methods = here.methods_of_boards(&texts).map_err(project)?;
-        let detector = here.toolbox.detector.as_deref();
-        let detector =
-            detector.ok_or_else(|| UnavailableError::new_err("there is no chessboard detector: install `cv2` (opencv-python-headless)"))?;
-        let measured = released(py, || measured_boards(photos, (detector, chessboard.board), &methods, &|| ()))?;
-        let (trial, size) = measured.map_err(input)?;
+        let finder = Finder::new(pictured, here.toolbox.detector.as_deref()).map_err(input)?;
+        finder.missing().map_or(Ok(()), |_| Err(no_detector()))?;
+        let texts = methods.unwrap_or_else(|| usual_methods(finder.kind(), in_use));
+        let methods = here.methods_of_boards(&texts, finder.kind()).map_err(project)?;
+        let measured = released(py, || measured_boards(photos, &finder, &methods, &|| ()))?;
+        let MeasuredBoards { trial, size, doubts } = measured.map_err(input)?;
+        doubts.iter().try_for_each(|what| doubt(py, what))?;
         for (view, why) in &trial.missed_views {
             doubt(py, &format!("{view}: {why}"))?;
         }

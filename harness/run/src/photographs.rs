@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use calibench_exchange::{encode_png, read_photo};
-use calibench_photographs::measured_board;
+use calibench_photographs::{Chessboard, Finder, measured_board};
 use calibench_records::names::kept_image_name;
 use calibench_records::results::Trial;
 use calibench_scenario::PhotographsSubject;
@@ -37,5 +37,9 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
     if let Some(folder) = plan.images {
         folder.write(&kept_image_name(file), |file| encode_png(file, &image, false))?;
     }
-    Ok(plan.tools.detector.map_or_else(Trial::default, |detector| measured_board(&image, &view, (detector, subject.board), plan.methods)))
+    let Some(detector) = plan.tools.detector else { return Ok(Trial::default()) };
+    // The side of its squares is for the judgement alone.
+    let board = Chessboard { board: subject.board, side: 1.0 };
+    let finder = Finder::new(board.into(), Some(detector)).map_err(|error| RunError::Asked(error.to_string()))?;
+    Ok(measured_board(&image, &view, &finder, plan.methods).0)
 }

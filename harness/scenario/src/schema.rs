@@ -19,6 +19,7 @@ use super::recognition::{ImagesWire, RecognitionWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::sweep::wire::SweepWire;
+use super::testfield::boards::wire::{AprilGridWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
@@ -107,8 +108,19 @@ fn testfield() -> Value {
         wall["properties"][key] = schema;
     }
     let unit = json!({ "description": "The object unit. Default mm.", "enum": ["mm", "m"] });
-    let kinds =
-        [("chessboard", table::<ChessboardWire>()), ("wall", wall), ("coded", table::<CodedWire>()), ("house", table::<HouseWire>())];
+    let mut tags = table::<TagsWire>();
+    tags["properties"]["tag"] = list(&table::<TagWire>());
+    let kinds = [
+        ("chessboard", table::<ChessboardWire>()),
+        ("wall", wall),
+        ("coded", table::<CodedWire>()),
+        ("house", table::<HouseWire>()),
+        ("charuco", with(table::<CharucoWire>(), &table::<SheetWire>())),
+        ("aprilgrid", with(table::<AprilGridWire>(), &table::<SheetWire>())),
+        ("circles", with(table::<CirclesWire>(), &table::<SheetWire>())),
+        ("rings", with(table::<RingsWire>(), &table::<SheetWire>())),
+        ("tags", tags),
+    ];
     one_of(kinds.into_iter().map(|(kind, mut schema)| {
         schema["properties"]["unit"] = unit.clone();
         (kind, schema)
@@ -124,12 +136,15 @@ fn stations() -> Value {
         ("random", table::<RandomWire>()),
         ("stand", table::<StandWire>()),
     ];
-    one_of(kinds.into_iter().map(|(kind, mut schema)| {
-        for (key, property) in common["properties"].as_object().into_iter().flatten() {
-            schema["properties"][key] = property.clone();
-        }
-        (kind, schema)
-    }))
+    one_of(kinds.into_iter().map(|(kind, schema)| (kind, with(schema, &common))))
+}
+
+/// A table with the keys of another.
+fn with(mut table: Value, common: &Value) -> Value {
+    for (key, property) in common["properties"].as_object().into_iter().flatten() {
+        table["properties"][key] = property.clone();
+    }
+    table
 }
 
 /// Tables that their key `kind` tells apart.

@@ -51,6 +51,17 @@ impl<'i> Section<'i> {
         Some(sections)
     }
 
+    /// Takes those of `keys` that there are out of this table, as one of their own.
+    pub fn take_keys(&mut self, keys: &[&str]) -> Section<'i> {
+        let mut table = DeTable::new();
+        for key in keys {
+            if let Some((key, value)) = self.table.remove_entry(*key) {
+                table.insert(key, value);
+            }
+        }
+        Section { name: self.name, span: self.span.clone(), table }
+    }
+
     /// Takes key `key` and its value out of the table.
     pub fn take(&mut self, key: &str) -> Option<(Range<usize>, Spanned<DeValue<'i>>)> {
         let (key, value) = self.table.remove_entry(key)?;

@@ -116,7 +116,7 @@ fn none_hangs_ends_the_run_or_changes_another_methods_rows() {
         assert!(beside == alone, "way {way} changes another method's rows");
         let own = rows(project.path(), "hostile");
         let right = |row: &String| row.contains(expected) || (expected == MEASURED && row.contains(",lost,"));
-        assert!(own.len() == 16 && own.iter().all(right), "way {way}: expected {expected}, found {own:?}");
+        assert!(own.len() == 16 && own.iter().all(right), "way {way}: expected {expected}, found {own:?}\n{said}");
         if expected == MEASURED {
             assert!(own == alone, "way {way}: its starts");
         }

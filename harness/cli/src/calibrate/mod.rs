@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Discs, Settings, calibrate, prepare};
 use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
-use calibench_photographs::{Chessboard, Corners, Photo};
+use calibench_model::boards::Board;
+use calibench_photographs::{Chessboard, Corners, Photo, board_of};
 use calibench_report::calibration::{summary, write_report};
 use clap::Args;
 
@@ -22,15 +23,18 @@ use cameras::Cameras;
 
 #[derive(Args)]
 pub struct Calibrate {
-    /// Photographs of a chessboard, in place of --points and --control
-    #[arg(value_name = "PHOTO", requires = "chessboard")]
+    /// Photographs of a board, in place of --points and --control
+    #[arg(value_name = "PHOTO", requires = "pictured")]
     photos: Vec<PathBuf>,
     /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
-    #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos")]
+    #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos", group = "pictured")]
     chessboard: Option<Chessboard>,
-    /// The method that measures the chessboard's corners
-    #[arg(short, long, value_name = "METHOD", default_value = "parametric_corner", requires = "photos")]
-    method: String,
+    /// The board: 9x6:25, charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, or a target file of Kalibr's (.yaml); lengths in object units
+    #[arg(long, value_name = "BOARD", value_parser = board_of, requires = "photos", group = "pictured")]
+    board: Option<Board>,
+    /// The method that measures the board's points [default: parametric_corner; of circles and rings ellipse_edges]
+    #[arg(short, long, value_name = "METHOD", requires = "photos")]
+    method: Option<String>,
     /// Measured points: CSV with image,target,x,y, as `measure` writes it
     #[arg(long, value_name = "CSV", required_unless_present = "photos", conflicts_with = "photos")]
     points: Option<PathBuf>,
@@ -85,6 +89,8 @@ struct Input {
     /// Where the points were measured here.
     photos: Vec<Photo>,
     control: Vec<ControlRow>,
+    /// Whether it is in doubt where a board was found.
+    doubts: bool,
 }
 
 impl Calibrate {
@@ -93,34 +99,38 @@ impl Calibrate {
         let inputs = Inputs::new(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
         let output = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
-        let Input { points, lost, photos, control } = self.input(context)?;
-        let settings = self.settings(&photos)?;
+        let Input { points, lost, photos, control, doubts } = self.input(context)?;
+        // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
+        let of_discs = !photos.is_empty() && control.iter().any(|row| row.disc.is_some());
+        let settings = self.settings(&photos, self.eccentricity.or(of_discs.then_some(Discs::Control)))?;
         let mut prepared = prepare(points, &control, &settings)?;
         prepared.unmeasured = lost;
         drop(control);
         calibrate(&prepared, &sets(&self.compare)?, |calibration| {
             self.deliver(calibration, output.as_ref(), report.as_ref())?;
             print(&summary(calibration))?;
-            if calibration.doubts().is_empty() { Ok(()) } else { Err(Failure::Doubt) }
+            if calibration.doubts().is_empty() && !doubts { Ok(()) } else { Err(Failure::Doubt) }
         })?
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
-        match (&self.points, &self.control, self.chessboard) {
+        match (&self.points, &self.control, self.board.or(self.chessboard.map(Board::from))) {
             (Some(points), Some(control), _) => {
                 let PointFile { points, lost } = inputs::measured(points)?;
-                Ok(Input { points, lost, photos: Vec::new(), control: read_control(control)? })
+                Ok(Input { points, lost, photos: Vec::new(), control: read_control(control)?, doubts: false })
             }
-            (_, _, Some(chessboard)) => {
-                let Corners { points, lost, photos } = photographs::corners(context, chessboard, &self.photos, &self.method)?;
+            (_, _, Some(board)) => {
+                let finder = context.finder(board)?;
+                let Corners { points, lost, photos, doubts } =
+                    photographs::corners(context, &finder, &self.photos, self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
-                Ok(Input { points, lost, photos, control: chessboard.control() })
+                Ok(Input { points, lost, photos, control: finder.control(), doubts: !doubts.is_empty() })
             }
-            _ => Err(Failure::input("expected --points, --control and --size, or photographs and --chessboard")),
+            _ => Err(Failure::input("expected --points, --control and --size, or photographs and --board")),
         }
     }
 
-    fn settings(&self, photos: &[Photo]) -> Result<Settings, Failure> {
+    fn settings(&self, photos: &[Photo], discs: Option<Discs>) -> Result<Settings, Failure> {
         Ok(Settings {
             datum: self.datum.clone(),
             shape: self.board_shape,
@@ -128,7 +138,7 @@ impl Calibrate {
             snoop: self.snoop,
             sigma_px: self.sigma,
             covariances: self.covariances,
-            discs: self.eccentricity,
+            discs,
             stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
             ..Settings::new(self.cameras.optics(photos)?)
         })

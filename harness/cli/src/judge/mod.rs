@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
 use calibench_exchange::{Inputs, read_control};
-use calibench_judge::{BENT, CornerFile, Field, Material, Options, judge, published_camera, stated_sigma, usual_models};
+use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, published_camera, stated_sigma, usual_models};
+use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
-use calibench_photographs::Chessboard;
+use calibench_photographs::{Chessboard, board_of};
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
 use calibench_report::judgement::{in_use as in_words, section, verdict};
 use clap::Args;
@@ -25,7 +26,7 @@ use files::corner_file;
 
 #[derive(Args)]
 pub struct Judge {
-    /// Photographs of a chessboard, all by one camera: at least six
+    /// Photographs of a board, all by one camera: at least six
     #[arg(value_name = "PHOTO", required_unless_present = "points")]
     photos: Vec<PathBuf>,
     /// Points that were measured beforehand, in place of photographs: CSV with image,target,x,y; of a chessboard targets r1c1, r1c2, ... as `detect` and `control` name
@@ -36,8 +37,11 @@ pub struct Judge {
     #[arg(long, value_name = "WxH", value_parser = reading::size, requires = "points", conflicts_with = "photos")]
     size: Option<ImageSize>,
     /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
-    #[arg(long, value_name = "COLUMNSxROWS:SIDE", required_unless_present = "control", conflicts_with = "control")]
+    #[arg(long, value_name = "COLUMNSxROWS:SIDE", required_unless_present_any = ["board", "control"], conflicts_with_all = ["board", "control"])]
     chessboard: Option<Chessboard>,
+    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, or a target file of Kalibr's (.yaml)
+    #[arg(long, value_name = "BOARD", value_parser = board_of, conflicts_with = "control")]
+    board: Option<Board>,
     /// In place of a chessboard: points of known object coordinates, as of a house, whose names the files of --points use: CSV with target,X,Y,Z and, if known, sX,sY,sZ
     #[arg(long, value_name = "CSV", requires = "points")]
     control: Option<PathBuf>,
@@ -115,7 +119,8 @@ impl Judge {
     }
 
     fn models(&self) -> Result<Vec<ModelChoice>, Failure> {
-        let (bent, of_board) = (|text: &str| text.ends_with(BENT), self.control.is_none());
+        let of_board = self.pictured().is_some();
+        let bent = |text: &str| text.ends_with(BENT);
         if let Some(text) = self.models.iter().find(|text| !of_board && bent(text)) {
             return Err(Failure::input(format!(
                 "--model {text}: a board that may be bent is asked for, and --control is none; leave `{BENT}` out"
@@ -125,14 +130,24 @@ impl Judge {
         ModelChoice::parse_all(&texts).map_err(|(place, error)| Failure::input(format!("--model {}: {error}", texts[place])))
     }
 
+    /// The board that was photographed.
+    fn pictured(&self) -> Option<Board> {
+        self.board.or(self.chessboard.map(Board::from))
+    }
+
     /// The corners to judge by: measured here, or read.
     fn material(&self, context: &Context<'_>) -> Result<Material, Failure> {
-        match (self.size, &self.control, self.chessboard) {
+        match (self.size, &self.control, self.pictured()) {
             (Some(size), Some(control), _) => files::material(&self.points, Field::Points(read_control(control)?), size),
-            (Some(size), None, Some(Chessboard { board, side })) => files::material(&self.points, Field::Board { board, side }, size),
-            (_, _, Some(chessboard)) => self.measured(context, chessboard),
+            (Some(size), None, Some(board)) => files::material(&self.points, field_of(board)?, size),
+            (_, _, Some(board)) => self.measured(context, board),
             // The arguments' own rules leave nothing else.
-            _ => Err(Failure::input("expected --chessboard, or --control with --points and --size")),
+            _ => Err(Failure::input("expected --board, or --control with --points and --size")),
         }
     }
+}
+
+/// What is judged by: a chessboard, or points of known coordinates.
+fn field_of(board: Board) -> Result<Field, Failure> {
+    field(&board).map_err(|error| Failure::input(error.to_string()))
 }

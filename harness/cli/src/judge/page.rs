@@ -2,8 +2,8 @@
 
 use calibench_exchange::NewFolder;
 use calibench_judge::{CornerFile, Material};
+use calibench_model::boards::{Board, Chessboard};
 use calibench_model::escape::code;
-use calibench_photographs::Chessboard;
 use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
 use calibench_records::points::RunInfo;
 use calibench_report::judgement::{in_use as in_words, section};
@@ -52,11 +52,12 @@ impl Judge {
     }
 
     fn field(&self) -> String {
-        match (&self.control, self.chessboard) {
+        match (&self.control, self.pictured()) {
             (Some(control), _) => format!("the points of {}", code(&control.display().to_string())),
-            (None, Some(Chessboard { board, side })) => {
-                format!("a chessboard of {} x {} inner corners, squares of {side}", board.columns, board.rows)
+            (None, Some(Board::Chessboard(Chessboard { columns, rows, square }))) => {
+                format!("a chessboard of {columns} x {rows} inner corners, squares of {square}")
             }
+            (None, Some(board)) => format!("the board `{board}`"),
             (None, None) => "a chessboard".into(),
         }
     }

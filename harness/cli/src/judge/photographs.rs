@@ -1,38 +1,43 @@
-//! A chessboard's corners in photographs, by several methods.
+//! A board's points in photographs, by several methods.
 
 use calibench_calibrate::choice::HALF;
-use calibench_judge::{Field, JudgementError, Material, usual_methods};
-use calibench_photographs::{Chessboard, measured_boards, method_info};
+use calibench_judge::{JudgementError, Material, usual_methods};
+use calibench_model::TargetKind;
+use calibench_model::boards::Board;
+use calibench_photographs::{MeasuredBoards, measured_boards, method_info};
 
 use super::super::context::Context;
 use super::super::notes::say_notes;
 use super::super::photos::{of_one_camera, say_turns};
 use super::super::progress::Progress;
-use super::Judge;
+use super::{Judge, field_of};
 use crate::failure::Failure;
 
 impl Judge {
-    /// All corners of all photographs in the hands of all methods.
-    pub fn measured(&self, context: &Context<'_>, chessboard: Chessboard) -> Result<Material, Failure> {
-        let texts = if self.methods.is_empty() { usual_methods(self.camera.is_some()) } else { self.methods.clone() };
-        let methods = context.methods_of_boards(&texts)?;
+    /// All points of all photographs in the hands of all methods.
+    pub fn measured(&self, context: &Context<'_>, board: Board) -> Result<Material, Failure> {
+        let finder = context.finder(board)?;
+        let texts = if self.methods.is_empty() { usual_methods(finder.kind(), self.camera.is_some()) } else { self.methods.clone() };
+        let methods = context.methods_of_boards(&texts, finder.kind())?;
         let needed = 2 * HALF;
         if self.photos.len() < needed {
             return Err(JudgementError::TooFewViews { found: self.photos.len(), needed }.into());
         }
-        let Chessboard { board, side } = chessboard;
-        let detector = context.toolbox.detector.as_deref();
-        let detector = detector.ok_or_else(|| Failure::input("this build has no chessboard detector (it is built without OpenCV)"))?;
         let progress = Progress::start("judge", self.photos.len() as u64, context.quiet);
         say_turns(&self.photos)?;
-        let (trial, size) = measured_boards(&self.photos, (detector, board), &methods, &|| progress.step()).map_err(of_one_camera)?;
+        let measured = measured_boards(&self.photos, &finder, &methods, &|| progress.step()).map_err(of_one_camera)?;
+        let MeasuredBoards { trial, size, doubts } = measured;
         let seen = self.photos.len() - trial.missed_views.len();
         progress.finish(&format!("the board was found in {seen} of {} photographs", self.photos.len()));
         for (view, why) in &trial.missed_views {
             say!("{view}: {why}");
         }
+        doubts.iter().for_each(|doubt| say!("in doubt: {doubt}"));
+        if finder.kind() == TargetKind::Disc {
+            say!("the centre of a disc's picture is not the picture of its centre, which is left in here: `calibrate` takes it out");
+        }
         say_notes(&methods);
         let infos: Vec<_> = methods.iter().map(method_info).collect();
-        Ok(Material::new(&trial, &infos, Field::Board { board, side }, size))
+        Ok(Material::new(&trial, &infos, field_of(board)?, size))
     }
 }

@@ -73,22 +73,17 @@ impl AprilGrid {
         Marker { id, corners: square_marker(self.at(row, column), self.tag, 2) }
     }
 
-    /// The small square whose upper right corner is the lower left one of a tag.
+    /// The small square whose upper right corner is the lower left one of a tag. Its corners are those of the tags around it, to the last bit.
     fn square(&self, row: usize, column: usize, cut: f64) -> Shape {
-        let ([u, v], side) = (self.at(row, column), self.gap());
-        let (u, v, cut) = (u - side, v - side, cut * side);
-        let corner = |x: f64, y: f64, before: [f64; 2], after: [f64; 2]| {
-            let at = [u + x * side, v + y * side];
-            [[at[0] + cut * before[0], at[1] + cut * before[1]], [at[0] + cut * after[0], at[1] + cut * after[1]]]
+        let [right, high] = self.at(row, column);
+        let pitch = self.tag + self.gap();
+        let [left, low] = [column, row].map(|count| (count as f64 - 1.0) * pitch + self.tag);
+        let corners = [[left, low], [right, low], [right, high], [left, high]];
+        let cut_off = |index: usize| {
+            let [before, at, after] = [index + 3, index, index + 1].map(|corner| corners[corner % 4]);
+            [before, after].map(|towards| [0, 1].map(|i| at[i] + cut * (towards[i] - at[i])))
         };
-        let cuts = [
-            corner(0.0, 0.0, [0.0, 1.0], [1.0, 0.0]),
-            corner(1.0, 0.0, [-1.0, 0.0], [0.0, 1.0]),
-            corner(1.0, 1.0, [0.0, -1.0], [-1.0, 0.0]),
-            corner(0.0, 1.0, [1.0, 0.0], [0.0, -1.0]),
-        ];
-        let mut vertices: Vec<PlatePoint> = cuts.into_iter().flatten().collect();
-        vertices.dedup();
+        let vertices: Vec<PlatePoint> = if cut == 0.0 { corners.to_vec() } else { (0..4).flat_map(cut_off).collect() };
         Shape::dark(Outline::polygon(&vertices))
     }
 

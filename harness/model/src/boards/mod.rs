@@ -4,6 +4,7 @@
 
 mod aprilgrid;
 mod charuco;
+mod chessboard;
 mod circles;
 mod dictionary;
 mod layout;
@@ -16,6 +17,7 @@ use thiserror::Error;
 
 pub use aprilgrid::AprilGrid;
 pub use charuco::Charuco;
+pub use chessboard::Chessboard;
 pub use circles::Circles;
 pub use dictionary::{Dictionary, Identified};
 pub use layout::{BoardPoint, Layout, Marker, Shape, marker_shapes, square_marker};
@@ -25,6 +27,8 @@ pub use text::KINDS;
 /// A board with coded or uncoded marks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Board {
+    /// A chessboard.
+    Chessboard(Chessboard),
     /// A chessboard with markers.
     Charuco(Charuco),
     /// Rows of AprilTags.
@@ -42,6 +46,7 @@ impl Board {
     /// A parameter out of its range.
     pub fn layout(&self) -> Result<Layout, BoardError> {
         match self {
+            Self::Chessboard(board) => board.layout(),
             Self::Charuco(board) => board.layout(),
             Self::AprilGrid(board) => board.layout(),
             Self::Circles(board) => board.layout(),
@@ -54,7 +59,7 @@ impl Board {
         match self {
             Self::Charuco(board) => Some((board.dictionary, 1)),
             Self::AprilGrid(board) => Some((board.dictionary, board.border)),
-            Self::Circles(_) | Self::Rings(_) => None,
+            Self::Chessboard(_) | Self::Circles(_) | Self::Rings(_) => None,
         }
     }
 }

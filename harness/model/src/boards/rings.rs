@@ -39,6 +39,9 @@ pub fn ring_codes(bits: usize, even: bool) -> Vec<u32> {
 }
 
 /// The smallest of the rotations of a ring's sectors.
+///
+/// # Panics
+/// For a ring without sectors.
 pub fn least_rotation(code: u32, bits: usize) -> u32 {
     let all = (1_u32 << bits) - 1;
     (0..bits).map(|turn| (code << turn | code >> (bits - turn)) & all).min().expect("at least one sector")

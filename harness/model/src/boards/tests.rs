@@ -44,6 +44,15 @@ fn every_kind_of_board_conforms() {
 }
 
 #[test]
+fn boards_are_written_as_they_are_read() {
+    let more = ["charuco:8x5:30:21:DICT_5X5_100:7:legacy", "aprilgrid:6x5:0.03:0.25:4:border1:plain", "acircles:4x11:20:8"];
+    for text in KINDS.iter().map(|(_, _, example)| *example).chain(more) {
+        let board: Board = text.parse().unwrap();
+        assert_eq!(board.to_string().parse(), Ok(board), "{text}: {board}");
+    }
+}
+
+#[test]
 fn outlines_are_closed_and_of_their_area() {
     for (kind, _, layout) in all() {
         for shape in &layout.shapes {
@@ -113,7 +122,8 @@ fn ring_codes_are_as_many_as_necklaces() {
 #[test]
 fn texts_that_describe_no_board_are_told_what_was_expected() {
     for (text, said) in [
-        ("chess:3x3", "`chess` is no kind of board: expected one of charuco"),
+        ("chess:3x3", "`chess` is no kind of board: expected one of chessboard, charuco"),
+        ("chessboard:9x2:25", "`rows` is 2"),
         ("charuco", "no count; expected charuco:COLUMNSxROWS"),
         ("charuco:8x5:30:21", "no dictionary"),
         ("charuco:8x5:30:21:DICT_9X9_50", "`DICT_9X9_50` is no dictionary"),

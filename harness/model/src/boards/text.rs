@@ -1,11 +1,13 @@
 //! Boards as options write them.
 
+use std::fmt;
 use std::str::FromStr;
 
-use super::{AprilGrid, Board, BoardError, Charuco, Circles, Dictionary, Rings};
+use super::{AprilGrid, Board, BoardError, Charuco, Chessboard, Circles, Dictionary, Rings};
 
 /// The kinds of board, how each is written, and an example.
-pub const KINDS: [(&str, &str, &str); 5] = [
+pub const KINDS: [(&str, &str, &str); 6] = [
+    ("chessboard", "COLUMNSxROWS:SQUARE", "chessboard:9x6:25"),
     ("charuco", "COLUMNSxROWS:SQUARE:MARKER:DICTIONARY[:FIRST][:legacy]", "charuco:8x5:30:21:DICT_4X4_50"),
     ("aprilgrid", "COLUMNSxROWS:TAG:SPACING[:FIRST][:border1][:plain]", "aprilgrid:6x6:0.088:0.3"),
     ("circles", "COLUMNSxROWS:SPACING[:DIAMETER]", "circles:7x5:20"),
@@ -24,6 +26,7 @@ impl FromStr for Board {
         };
         let mut parts = Parts { all: rest.split(':').filter(|part| !part.is_empty()).collect(), next: 0 };
         let board = match kind {
+            "chessboard" => parts.chessboard(),
             "charuco" => parts.charuco(),
             "aprilgrid" => parts.aprilgrid(),
             "rings" => parts.rings(),
@@ -37,6 +40,36 @@ impl FromStr for Board {
         board.layout().map_err(|error| BoardError::Text(format!("`{text}`: {error}")))?;
         Ok(board)
     }
+}
+
+/// As options write it.
+impl fmt::Display for Board {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Chessboard(Chessboard { columns, rows, square }) => write!(f, "chessboard:{columns}x{rows}:{square}"),
+            Self::Charuco(Charuco { columns, rows, square, marker, dictionary, first, legacy }) => {
+                write!(f, "charuco:{columns}x{rows}:{square}:{marker}:{}", dictionary.name)?;
+                optional(f, *first != 0, first)?;
+                optional(f, *legacy, "legacy")
+            }
+            Self::AprilGrid(AprilGrid { columns, rows, tag, spacing, first, border, squares, .. }) => {
+                write!(f, "aprilgrid:{columns}x{rows}:{tag}:{spacing}")?;
+                optional(f, *first != 0, first)?;
+                optional(f, *border == 1, "border1")?;
+                optional(f, squares.is_none(), "plain")
+            }
+            Self::Circles(Circles { columns, rows, spacing, diameter, asymmetric, .. }) => {
+                write!(f, "{}circles:{columns}x{rows}:{spacing}:{diameter}", if *asymmetric { "a" } else { "" })
+            }
+            Self::Rings(Rings { bits, columns, rows, spacing, diameter, .. }) => {
+                write!(f, "rings:{bits}:{columns}x{rows}:{spacing}:{diameter}")
+            }
+        }
+    }
+}
+
+fn optional(f: &mut fmt::Formatter<'_>, is_there: bool, what: impl fmt::Display) -> fmt::Result {
+    if is_there { write!(f, ":{what}") } else { Ok(()) }
 }
 
 /// The parts of a text between its colons.
@@ -74,6 +107,11 @@ impl<'a> Parts<'a> {
         let part = self.take("count")?;
         let read = part.split_once(['x', 'X']).and_then(|(columns, rows)| Some((columns.parse().ok()?, rows.parse().ok()?)));
         read.ok_or_else(|| format!("`{part}` is no count of columns and rows"))
+    }
+
+    fn chessboard(&mut self) -> Result<Board, String> {
+        let (columns, rows) = self.counts()?;
+        Ok(Board::Chessboard(Chessboard { columns, rows, square: self.number("side of a square")? }))
     }
 
     fn charuco(&mut self) -> Result<Board, String> {

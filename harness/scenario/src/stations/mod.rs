@@ -8,7 +8,6 @@ use calibench_synth::stations::{
     Aim, Arc, BoardViews, RandomViews, Ring, Stand, StandBend, Station, StationError, check_names, check_sight, sees,
 };
 use nalgebra::{Point3, Vector3};
-use toml::de::DeTable;
 
 use super::section::Section;
 use super::testfield::{Spans, take_kind, wire::Degrees};
@@ -149,7 +148,7 @@ pub fn read(stations: Option<Section<'_>>, given: Vec<Section<'_>>, problems: &m
     let mut common = None;
     let mut generator = None;
     if let Some(mut section) = stations {
-        common = take_common(&mut section).read::<CommonWire>(&[], problems);
+        common = section.take_keys(&COMMON).read::<CommonWire>(&[], problems);
         generator = read_generator(section, problems);
     }
     let given: Vec<Given> = given.into_iter().filter_map(|section| read_given(section, problems)).collect();
@@ -169,17 +168,6 @@ pub fn read(stations: Option<Section<'_>>, given: Vec<Section<'_>>, problems: &m
     }
     let aim = common.map_or([None; 3], |common| [common.middle, common.facing, common.up].map(|tuple| tuple.map(|tuple| tuple.0)));
     Some(StationPlan { generator, sees: least, each_trial, given, aim, spans })
-}
-
-/// The keys that every kind has, as a table of their own.
-fn take_common<'i>(section: &mut Section<'i>) -> Section<'i> {
-    let mut table = DeTable::new();
-    for key in COMMON {
-        if let Some((key, value)) = section.table.remove_entry(key) {
-            table.insert(key, value);
-        }
-    }
-    Section { name: "[stations]", span: section.span.clone(), table }
 }
 
 fn read_generator(mut section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Generator> {

@@ -3,6 +3,7 @@ use calibench_model::camera::{ImageSize, Photogrammetric};
 use calibench_synth::testfield::{Chessboard, Levels};
 
 use super::*;
+use toml::de::DeTable;
 
 const KEY: Key<'_> = Key { seed: 1, scenario: "test", trial: 0, view: "", target: "" };
 

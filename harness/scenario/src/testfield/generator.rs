@@ -1,6 +1,6 @@
 //! What makes a testfield.
 
-use calibench_synth::testfield::{Chessboard, Coded, House, Panels, Wall};
+use calibench_synth::testfield::{BoardSheet, Chessboard, Coded, House, Panels, Tags, Wall};
 
 /// What makes the testfield.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,4 +13,8 @@ pub enum Generator {
     Coded(Coded),
     /// The house.
     House(House),
+    /// A board with markers, circles or ring codes.
+    Board(BoardSheet),
+    /// Free-standing markers.
+    Tags(Tags),
 }

@@ -8,6 +8,7 @@ use toml::de::DeValue;
 
 use super::section::Section;
 
+pub mod boards;
 mod common;
 mod generator;
 mod spans;
@@ -20,7 +21,7 @@ pub(super) use spans::Spans;
 use wire::{ChessboardWire, CodedWire, Height, HouseWire};
 
 /// The kinds of testfield.
-pub const KINDS: [&str; 4] = ["chessboard", "wall", "coded", "house"];
+pub const KINDS: [&str; 9] = ["chessboard", "wall", "coded", "house", "charuco", "aprilgrid", "circles", "rings", "tags"];
 
 /// The unit of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,6 +76,8 @@ impl FieldPlan {
             }
             Generator::Coded(field) => field.generate(key),
             Generator::House(house) => house.generate(key),
+            Generator::Board(sheet) => sheet.generate(key),
+            Generator::Tags(tags) => tags.generate(),
         }
     }
 
@@ -109,7 +112,9 @@ pub fn read(mut section: Section<'_>, key: Key<'_>, problems: &mut Vec<Problem>)
         "chessboard" => Generator::Chessboard(chessboard(&section.read(&[], problems)?)),
         "coded" => Generator::Coded(coded(&section.read(&[], problems)?, unit)),
         "house" => Generator::House(house(&section.read(&[], problems)?)),
-        _ => wall::read(section, &mut spans, problems)?,
+        "wall" => wall::read(section, &mut spans, problems)?,
+        "tags" => boards::read_tags(section, &mut spans, problems)?,
+        kind => boards::read(section, kind, problems)?,
     };
     let plan = FieldPlan { unit, generator, spans };
     match plan.generate(key) {

@@ -94,10 +94,16 @@ fn a_wall_is_its_plates_its_panels_and_its_targets() {
 #[test]
 fn mistakes_are_told_with_their_places() {
     let board = "[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\n";
-    refused("[testfield]\nrows = 3", "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house)");
+    refused(
+        "[testfield]\nrows = 3",
+        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, charuco, aprilgrid, circles, rings, tags)",
+    );
     refused("[testfield]\nkind = \"chesboard\"", "2:8: `kind` of [testfield] is one of");
     refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
-    refused("[testfield]\nkind = 3", "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house; found a value of type integer");
+    refused(
+        "[testfield]\nkind = 3",
+        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, charuco, aprilgrid, circles, rings, tags; found a value of type integer",
+    );
     refused("[testfield]\nkind = \"house\"\nunit = \"cm\"\nwidth = 3", "3:8: `unit` is \"mm\" or \"m\"; found `cm`");
     refused(board, "[testfield] has no `square`");
     refused(&format!("{board}sqare = 30"), "5:1: unknown key `sqare` in [testfield]");
@@ -131,4 +137,56 @@ fn mistakes_in_a_wall_are_told_with_their_places() {
     refused(&changed("kinds = [\"cross\", \"disc\", \"corner\"]", "kinds = []"), "30:9: `kinds` is empty");
     refused(&changed("angles = [30, 150]", "angles = [30, 170]"), "`angle` is 170");
     refused(&changed("survey_sigma", "survey_sgma"), "4:1: unknown key `survey_sgma`");
+}
+
+#[test]
+fn boards_are_read_with_their_defaults() {
+    use calibench_model::boards::Board;
+
+    let board = |text: &str| match plan(&format!("[testfield]\n{text}")).unwrap().generator {
+        Generator::Board(sheet) => (sheet.board, sheet.margin),
+        other => panic!("{other:?}"),
+    };
+    let same = |text: &str, option: &str, margin: f64| assert_eq!(board(text), (option.parse::<Board>().unwrap(), margin), "{text}");
+    same(
+        "kind = \"charuco\"\ncolumns = 8\nrows = 5\nsquare = 30\nmarker = 21\ndictionary = \"DICT_4X4_50\"",
+        "charuco:8x5:30:21:DICT_4X4_50",
+        30.0,
+    );
+    same("kind = \"aprilgrid\"\nunit = \"m\"\ncolumns = 6\nrows = 6\ntag = 0.088", "aprilgrid:6x6:0.088:0.3", 0.088);
+    same(
+        "kind = \"aprilgrid\"\ncolumns = 6\nrows = 5\ntag = 88\nborder = 1\nsquares = false\nfirst = 4",
+        "aprilgrid:6x5:88:0.3:4:border1:plain",
+        88.0,
+    );
+    same("kind = \"circles\"\ncolumns = 4\nrows = 11\nspacing = 20\nasymmetric = true\nmargin = 3", "acircles:4x11:20", 3.0);
+    same("kind = \"rings\"\ncolumns = 6\nrows = 5\nspacing = 50\ndiameter = 8", "rings:12:6x5:50:8", 50.0);
+}
+
+const TAGS: &str = "[testfield]
+kind = \"tags\"
+unit = \"m\"
+dictionary = \"DICT_APRILTAG_36h11\"
+[[testfield.tag]]
+id = 4
+middle = [0, 0, 0]
+right = [1, 0, 0]
+up = [0, 1, 0]
+side = 0.2
+";
+
+#[test]
+fn markers_stand_by_themselves() {
+    let field = plan(TAGS).unwrap().generate(KEY).unwrap();
+    assert_eq!((field.plates.len(), field.targets.len(), field.targets[3].id.as_str()), (1, 4, "t4c3"));
+    let changed = |from: &str, to: &str, message: &str| refused(&TAGS.replace(from, to), message);
+    changed("36h11", "36h12", "4:14: `DICT_APRILTAG_36h12` is no dictionary of markers");
+    changed("id = 4", "id = 587", "6:6: `id` is 587: expected 0 to 586");
+    changed("up = [0, 1, 0]", "up = [1, 1, 0]", "the axes of plate `tag 4`");
+    changed("side = 0.2", "size = 0.2", "10:1: unknown key `size` in [[testfield.tag]]");
+    let charuco = "[testfield]\nkind = \"charuco\"\ncolumns = 8\nrows = 5\nsquare = 30\n";
+    refused(&format!("{charuco}marker = 40\ndictionary = \"DICT_4X4_50\""), "6:10: `marker` is 40");
+    refused(&format!("{charuco}marker = 20\ndictionary = \"DICT_4X4\""), "did you mean `DICT_4X4_50`?");
+    refused(&format!("{charuco}marker = 20\ndictionary = \"DICT_4X4_50\"\nfirst = 40"), "8:9: `first` is 40: expected at most 50");
+    refused(&format!("{charuco}marker = 20\ndictionary = \"DICT_4X4_50\"\nmargn = 4"), "8:1: unknown key `margn` in [testfield]");
 }

@@ -3,6 +3,7 @@
 //! Each generator is a struct of checked parameters with `generate`, in a file of its own. Lengths are in the object unit of the scenario, angles in
 //! radians. What is random is keyed by the target that it concerns: another target more or less moves none of the others.
 
+pub mod board;
 mod check;
 pub mod chessboard;
 pub mod coded;
@@ -14,13 +15,16 @@ pub mod panels;
 pub mod pen;
 pub mod shape;
 mod sheet_layout;
+pub mod tags;
 pub mod wall;
 mod zhu;
 
 use calibench_model::PixelPoint;
+use calibench_model::boards::BoardError;
 use calibench_model::testfield::{Bend, PlatePoint};
 use thiserror::Error;
 
+pub use board::BoardSheet;
 pub use chessboard::Chessboard;
 pub use coded::Coded;
 pub use fill::{Arrangement, Fill, Turn};
@@ -28,6 +32,7 @@ pub use house::House;
 pub use join::Join;
 pub use panels::Panels;
 pub use shape::Shape;
+pub use tags::{Tag, Tags};
 pub use wall::{Sheet, Wall, WallTarget};
 pub use zhu::{Figure4, Zhu};
 
@@ -129,7 +134,19 @@ pub enum FieldError {
     /// A square of a coded field for which no unambiguous arrangement was found.
     #[error("no arrangement of targets tells square {0} from the others")]
     Ambiguous(String),
+    /// A text that describes no board.
+    #[error("{0}")]
+    Board(String),
     /// A field without plates or targets.
     #[error("the testfield has no {0}")]
     Nothing(&'static str),
+}
+
+impl From<BoardError> for FieldError {
+    fn from(error: BoardError) -> Self {
+        match error {
+            BoardError::Parameter { parameter, value, expected } => Self::Parameter { parameter, value, expected },
+            BoardError::Text(text) => Self::Board(text),
+        }
+    }
 }

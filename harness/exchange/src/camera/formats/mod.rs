@@ -35,6 +35,8 @@ mod theia;
 #[path = "../../../../../examples/camera_format.rs"]
 mod example;
 
+pub(super) use opencv_yaml::tree as yaml;
+
 use super::format::{CameraFormat, PLAIN};
 
 /// Every format; all are asked, and of those that read the same cameras the first is taken.

@@ -45,7 +45,7 @@ fn read(source: &Source<'_>, options: &ReadOptions) -> Result<Vec<NamedCamera>, 
 }
 
 /// The tree of a FileStorage, or of any YAML.
-pub(super) fn tree(text: &str) -> Result<Entry, CameraFileError> {
+pub(in crate::camera) fn tree(text: &str) -> Result<Entry, CameraFileError> {
     // OpenCV writes `%YAML:1.0`, which is no directive of YAML's.
     let (body, skipped) = match text.split_once('\n') {
         Some((first, rest)) if first.starts_with("%YAML") => (rest, version(first).map(|()| 1)?),

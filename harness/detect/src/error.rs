@@ -1,0 +1,147 @@
+//! Why an image does not show the board.
+
+use calibench_model::boards::BoardError;
+use thiserror::Error;
+
+/// Why an image does not show the board, or not so that its points can be numbered.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum NotFound {
+    /// A board that cannot be.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+    /// A board that is found by another detector.
+    #[error("chessboards are found by a detector of their own")]
+    Elsewhere,
+    /// An image of no use for its size.
+    #[error("the image has {width} x {height} px: expected at least {least} px a side")]
+    TooSmall {
+        /// Columns, px.
+        width: usize,
+        /// Rows, px.
+        height: usize,
+        /// The least of both, px.
+        least: usize,
+    },
+    /// No marker of any dictionary.
+    #[error("no marker of {dictionary} is seen; {frames} dark frames with cells in them are, which belong to no dictionary")]
+    NoMarker {
+        /// The board's dictionary.
+        dictionary: &'static str,
+        /// Dark frames of the right width with cells in them.
+        frames: usize,
+    },
+    /// Markers of another dictionary.
+    #[error("{seen} markers of {other} are seen, and {fitting} of {dictionary}, which the board has")]
+    OtherDictionary {
+        /// The dictionary of most markers; of several, one.
+        other: &'static str,
+        /// Its markers.
+        seen: usize,
+        /// The board's dictionary.
+        dictionary: &'static str,
+        /// Markers of it.
+        fitting: usize,
+    },
+    /// Markers whose frames are wider or narrower than the board's.
+    #[error("{seen} markers of {dictionary} are seen with frames {border} cells wide: the board's are {expected} wide")]
+    OtherFrames {
+        /// The board's dictionary.
+        dictionary: &'static str,
+        /// Such markers.
+        seen: usize,
+        /// The width of their frames, cells.
+        border: usize,
+        /// The width of the board's, cells.
+        expected: usize,
+    },
+    /// Markers of the board's dictionary that the board does not have.
+    #[error("markers {seen:?} of {dictionary} are seen: the board has {first} to {last}")]
+    OtherIds {
+        /// The dictionary.
+        dictionary: &'static str,
+        /// Their ids, ascending.
+        seen: Vec<u32>,
+        /// The board's lowest id.
+        first: u32,
+        /// The board's highest id.
+        last: u32,
+    },
+    /// The board's mirror image.
+    #[error("the image is mirrored: {markers} marks are those of the board when read in a mirror")]
+    Mirrored {
+        /// Marks that can be read so.
+        markers: usize,
+    },
+    /// Marks in the board's order, at other distances.
+    #[error("another board: the distances of its marks are {times:.3} times those of the board, measured in the size of a mark")]
+    OtherSpacing {
+        /// By how much they are larger, in the median.
+        times: f64,
+    },
+    /// Marks in another order than the board's.
+    #[error(
+        "another board: of {marks} marks that were read {together} stand to each other as the board has them; the image is of a board with other rows and \
+         columns, in another order (legacy or not), or of several boards"
+    )]
+    OtherArrangement {
+        /// Marks of the board's ids.
+        marks: usize,
+        /// The most of them that agree with each other.
+        together: usize,
+    },
+    /// Markers without the chessboard.
+    #[error(
+        "{markers} markers are seen, and {corners} of the {expected} corners of squares beside them: not this board, or too blurred or covered"
+    )]
+    NoCorners {
+        /// Markers that were read.
+        markers: usize,
+        /// Corners of squares that were found.
+        corners: usize,
+        /// Corners that should be seen beside them.
+        expected: usize,
+    },
+    /// No grid of circles of the board's rows and columns.
+    #[error("{round} round areas are seen, and the largest grid of them has {largest}: expected a whole grid of {expected}")]
+    NoGrid {
+        /// Round areas.
+        round: usize,
+        /// Those of the largest grid.
+        largest: usize,
+        /// The board's.
+        expected: usize,
+    },
+    /// No ring code of the board.
+    #[error(
+        "{round} round areas are seen, and {codes} of them have ring codes of {bits} sectors; the board's are not among them, or too few to be sure of"
+    )]
+    NoCode {
+        /// Round areas.
+        round: usize,
+        /// Those with a ring of sectors.
+        codes: usize,
+        /// The board's sectors.
+        bits: usize,
+    },
+}
+
+impl NotFound {
+    /// The reason's name in files.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Board(_) => "board",
+            Self::Elsewhere => "elsewhere",
+            Self::TooSmall { .. } => "too_small",
+            Self::NoMarker { .. } => "no_marker",
+            Self::OtherDictionary { .. } => "other_dictionary",
+            Self::OtherFrames { .. } => "other_frames",
+            Self::OtherIds { .. } => "other_ids",
+            Self::Mirrored { .. } => "mirrored",
+            Self::OtherSpacing { .. } => "other_spacing",
+            Self::OtherArrangement { .. } => "other_arrangement",
+            Self::NoCorners { .. } => "no_corners",
+            Self::NoGrid { .. } => "no_grid",
+            Self::NoCode { .. } => "no_code",
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! What was found in an image.
+
+use std::fmt;
+
+use calibench_model::{Affine, PixelPoint};
+
+/// What was found of a board.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// Its points that are seen, in the order of the layout, each once.
+    pub points: Vec<FoundPoint>,
+    /// Markers or codes that were read and stand where the board has them; circles of a grid without codes.
+    pub markers: usize,
+    /// What was left out because it is in doubt.
+    pub doubts: Vec<Doubt>,
+}
+
+/// A point that is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FoundPoint {
+    /// An index into [`calibench_model::boards::Layout::points`].
+    pub index: usize,
+    /// Where, to about a pixel.
+    pub position: PixelPoint,
+    /// The map from the target's own axes (unit its size, v down) to the image, px, to some per cent.
+    pub affine: Affine,
+}
+
+/// What was seen and left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// A mark that the board has, seen more than once: none of them is used.
+    Twice {
+        /// Its id.
+        id: u32,
+    },
+    /// A mark that the board has, where the others say that it cannot be.
+    Stray {
+        /// Its id.
+        id: u32,
+    },
+    /// A marker of the dictionary that the board does not have.
+    Foreign {
+        /// Its id.
+        id: u32,
+    },
+}
+
+impl Doubt {
+    /// The doubt's name in files.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Twice { .. } => "twice",
+            Self::Stray { .. } => "stray",
+            Self::Foreign { .. } => "foreign",
+        }
+    }
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Twice { id } => write!(f, "mark {id} is seen more than once"),
+            Self::Stray { id } => write!(f, "mark {id} is seen where the other marks say it cannot be"),
+            Self::Foreign { id } => write!(f, "mark {id} is none of the board's"),
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Boards in pictures that are drawn from their layouts, and in photographs.
+
+mod conformance;
+mod photographs;
+mod picture;
+mod refusals;

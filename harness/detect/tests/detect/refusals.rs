@@ -1,0 +1,72 @@
+//! What is no picture of the board is refused by name.
+
+use calibench_detect::{NotFound, detect};
+use calibench_model::Image;
+use calibench_model::boards::KINDS;
+
+use crate::picture::{View, board, noisy, scale};
+
+fn reason(pictured: &str, asked: &str, change: impl Fn(View) -> View) -> NotFound {
+    let (of, layout) = board(pictured);
+    let view = change(View { turn: 12.0, tilt: [25.0, 60.0], ..View::whole(&layout, scale(&of, &layout, 6.0)) });
+    let found = detect(&view.draw(&layout), &board(asked).0);
+    found.expect_err(&format!("{pictured} as {asked}"))
+}
+
+#[test]
+fn mirror_images_are_named() {
+    for (_, _, example) in KINDS.into_iter().filter(|(name, ..)| *name != "chessboard" && !name.contains("circles")) {
+        let error = reason(example, example, |view| View { mirrored: true, ..view });
+        assert_eq!(error.name(), "mirrored", "{example}: {error}");
+    }
+}
+
+#[test]
+fn other_boards_are_named() {
+    for (pictured, asked, name) in [
+        ("aprilgrid:6x6:0.088:0.3", "aprilgrid:6x6:0.088:0.2", "other_spacing"),
+        ("aprilgrid:6x6:0.088:0.3", "aprilgrid:6x6:0.088:0.45", "other_spacing"),
+        ("charuco:8x5:30:21:DICT_4X4_50", "charuco:8x5:30:24:DICT_4X4_50", "other_spacing"),
+        ("charuco:8x5:30:21:DICT_4X4_50", "charuco:8x5:30:16:DICT_4X4_50", "other_spacing"),
+        ("charuco:8x6:30:21:DICT_4X4_50", "charuco:8x6:30:21:DICT_4X4_50:legacy", "other_arrangement"),
+        ("charuco:8x5:30:21:DICT_4X4_50", "charuco:7x6:30:21:DICT_4X4_50", "other_arrangement"),
+        ("aprilgrid:6x6:0.088:0.3", "aprilgrid:5x7:0.088:0.3", "other_arrangement"),
+        ("charuco:8x5:30:21:DICT_4X4_50", "charuco:8x5:30:21:DICT_5X5_50", "other_dictionary"),
+        ("charuco:8x5:30:21:DICT_5X5_50", "charuco:8x5:30:21:DICT_4X4_50", "other_dictionary"),
+        ("charuco:8x5:30:21:DICT_6X6_50", "charuco:8x5:30:21:DICT_APRILTAG_36h11", "other_dictionary"),
+        ("charuco:8x5:30:21:DICT_4X4_50:25", "charuco:8x5:30:21:DICT_4X4_50", "other_ids"),
+        ("aprilgrid:6x6:0.088:0.3", "aprilgrid:6x6:0.088:0.3:border1", "other_frames"),
+        ("circles:7x5:20", "circles:6x5:20", "no_grid"),
+        ("circles:7x5:20", "circles:8x5:20", "no_grid"),
+        ("circles:7x5:20", "acircles:7x5:20", "no_grid"),
+        ("rings:12:6x5:50:8", "rings:12:6x5:30:8", "other_spacing"),
+        ("rings:12:6x5:50:8", "rings:12:5x6:50:8", "other_arrangement"),
+    ] {
+        let error = reason(pictured, asked, |view| view);
+        assert_eq!(error.name(), name, "{pictured} as {asked}: {error}");
+    }
+}
+
+#[test]
+fn a_grid_of_circles_that_is_cut_off_is_refused() {
+    let error = reason("circles:7x5:20", "circles:7x5:20", |view| View { middle: [0.2 * view.middle[0], view.middle[1]], ..view });
+    assert_eq!(error.name(), "no_grid", "{error}");
+}
+
+#[test]
+fn noise_and_nothing_are_no_board() {
+    for (_, _, example) in KINDS.into_iter().filter(|(name, ..)| *name != "chessboard") {
+        let board = board(example).0;
+        let flat = Image::from_fn(400, 300, |_, _| 0.5);
+        for (image, what) in [(flat.lent(), "flat"), (noisy(&flat, 0.01, 5), "noisy"), (noisy(&flat, 0.3, 5), "very noisy")] {
+            let error = detect(&image, &board).expect_err(what);
+            assert!(matches!(error.name(), "no_marker" | "no_grid" | "no_code"), "{example} {what}: {error}");
+        }
+        for (image, what) in
+            [(Image::from_fn(300, 200, |_, _| f32::NAN), "no numbers"), (Image::from_fn(300, 200, |x, _| x as f32 / 300.0), "ramp")]
+        {
+            detect(&image, &board).expect_err(what);
+        }
+        assert_eq!(detect(&Image::from_fn(3, 0, |_, _| 0.0), &board).unwrap_err().name(), "too_small");
+    }
+}

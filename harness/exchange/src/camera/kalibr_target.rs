@@ -1,0 +1,160 @@
+//! Kalibr's target files: `target.yaml`.
+
+use std::path::Path;
+
+use calibench_model::boards::{AprilGrid, Board, Chessboard, Circles, Dictionary};
+
+use super::CameraFileError;
+use super::formats::yaml;
+use super::source::{self, Source};
+use super::tree::Entry;
+
+/// Reads a board from a target file of Kalibr's. Lengths are in m.
+///
+/// # Errors
+/// A file that cannot be read or is no such file; a target that Kalibr has and we have not; values out of their range.
+pub fn read_kalibr_target(path: &Path) -> Result<Board, CameraFileError> {
+    let bytes = source::read(path)?;
+    parse(Source::new(&bytes)?.text)
+}
+
+fn parse(text: &str) -> Result<Board, CameraFileError> {
+    let root = yaml(text)?;
+    let kind = root.text_of("target_type")?;
+    let board = match kind.trim_matches('\'') {
+        "aprilgrid" => aprilgrid(&root)?,
+        "checkerboard" => checkerboard(&root)?,
+        "circlegrid" => circlegrid(&root)?,
+        other => {
+            let message = format!("is `{other}`; expected aprilgrid, checkerboard or circlegrid");
+            return Err(root.required("target_type")?.wrong(&message).of("target_type"));
+        }
+    };
+    board.layout().map_err(|error| CameraFileError::new(error.to_string()))?;
+    Ok(board)
+}
+
+fn count(root: &Entry, name: &str) -> Result<usize, CameraFileError> {
+    let value = root.number_of(name)?;
+    if value.fract() == 0.0 && (1.0..=1000.0).contains(&value) {
+        return Ok(value as usize);
+    }
+    Err(root.required(name)?.wrong("expected a whole number from 1 to 1000").of(name))
+}
+
+fn aprilgrid(root: &Entry) -> Result<Board, CameraFileError> {
+    let known = ["target_type", "tagCols", "tagRows", "tagSize", "tagSpacing", "lowId"];
+    refuse_unknown(root, &known)?;
+    Ok(Board::AprilGrid(AprilGrid {
+        columns: count(root, "tagCols")?,
+        rows: count(root, "tagRows")?,
+        tag: root.number_of("tagSize")?,
+        spacing: root.number_of("tagSpacing")?,
+        dictionary: Dictionary::named("DICT_APRILTAG_36h11").expect("a dictionary of ours"),
+        first: root.number_or_zero("lowId")? as u32,
+        border: 2,
+        squares: Some(0.0),
+    }))
+}
+
+fn checkerboard(root: &Entry) -> Result<Board, CameraFileError> {
+    refuse_unknown(root, &["target_type", "targetCols", "targetRows", "rowSpacingMeters", "colSpacingMeters"])?;
+    let (square, other) = (root.number_of("colSpacingMeters")?, root.number_of("rowSpacingMeters")?);
+    if square != other {
+        let message = format!("is {other}, and `colSpacingMeters` is {square}; expected squares");
+        return Err(root.required("rowSpacingMeters")?.wrong(&message).of("rowSpacingMeters"));
+    }
+    Ok(Board::Chessboard(Chessboard { columns: count(root, "targetCols")?, rows: count(root, "targetRows")?, square }))
+}
+
+fn circlegrid(root: &Entry) -> Result<Board, CameraFileError> {
+    refuse_unknown(root, &["target_type", "targetCols", "targetRows", "spacingMeters", "asymmetricGrid"])?;
+    let spacing = root.number_of("spacingMeters")?;
+    let asymmetric = root.key("asymmetricGrid")?.map_or(Ok(false), |entry| match entry.text()?.to_lowercase().as_str() {
+        "true" => Ok(true),
+        "false" => Ok(false),
+        _ => Err(entry.wrong("expected True or False").of("asymmetricGrid")),
+    })?;
+    Ok(Board::Circles(Circles {
+        columns: count(root, "targetCols")?,
+        rows: count(root, "targetRows")?,
+        spacing,
+        diameter: 0.5 * spacing,
+        hole: None,
+        asymmetric,
+    }))
+}
+
+/// A key that nobody here knows may change what the target is.
+fn refuse_unknown(root: &Entry, known: &[&str]) -> Result<(), CameraFileError> {
+    match root.entries()?.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+        Some((name, entry)) => Err(entry.wrong(&format!("is no key of this target; expected {}", known.join(", "))).of(name)),
+        None => Ok(()),
+    }
+}
+
+/// An AprilGrid as a target file of Kalibr's; lengths are `metres` of an object unit. `None` for a board that Kalibr cannot say.
+pub fn kalibr_target(board: &Board, metres: f64) -> Option<String> {
+    // Twelve places: 30 mm are 0.03 m.
+    let number = |value: f64| (value * metres * 1e12).round() / 1e12;
+    match board {
+        Board::AprilGrid(AprilGrid { columns, rows, tag, spacing, first: 0, border: 2, squares: Some(_), dictionary })
+            if dictionary.name == "DICT_APRILTAG_36h11" =>
+        {
+            Some(format!(
+                "target_type: 'aprilgrid'\ntagCols: {columns}\ntagRows: {rows}\ntagSize: {}\ntagSpacing: {spacing}\n",
+                number(*tag)
+            ))
+        }
+        Board::Chessboard(Chessboard { columns, rows, square }) => {
+            let side = number(*square);
+            Some(format!(
+                "target_type: 'checkerboard'\ntargetCols: {columns}\ntargetRows: {rows}\nrowSpacingMeters: {side}\ncolSpacingMeters: {side}\n"
+            ))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As Kalibr's documentation gives it.
+    const GRID: &str = "target_type: 'aprilgrid' #gridtype\ntagCols: 6   #number of apriltags\ntagRows: 6\ntagSize: 0.088 #edge to edge [m]\ntagSpacing: 0.3\n";
+
+    #[test]
+    fn an_aprilgrid_goes_both_ways() {
+        let board = parse(GRID).unwrap();
+        assert_eq!(board, "aprilgrid:6x6:0.088:0.3".parse().unwrap());
+        let written = kalibr_target(&board, 1.0).unwrap();
+        assert_eq!(parse(&written).unwrap(), board, "{written}");
+        let in_mm: Board = "aprilgrid:6x6:88:0.3".parse().unwrap();
+        assert_eq!(kalibr_target(&in_mm, 1e-3), Some(written));
+        assert_eq!(kalibr_target(&"aprilgrid:6x6:88:0.3:border1".parse().unwrap(), 1e-3), None);
+    }
+
+    #[test]
+    fn other_targets_are_read() {
+        let chess = "target_type: 'checkerboard'\ntargetCols: 9\ntargetRows: 6\nrowSpacingMeters: 0.06\ncolSpacingMeters: 0.06\n";
+        assert_eq!(parse(chess).unwrap(), "chessboard:9x6:0.06".parse().unwrap());
+        assert_eq!(kalibr_target(&parse(chess).unwrap(), 1.0).unwrap(), chess);
+        let circles = "target_type: 'circlegrid'\ntargetCols: 6\ntargetRows: 7\nspacingMeters: 0.02\nasymmetricGrid: False\n";
+        assert_eq!(parse(circles).unwrap(), "circles:6x7:0.02".parse().unwrap());
+    }
+
+    #[test]
+    fn mistakes_are_told_with_line_and_key() {
+        for (from, to, said) in [
+            ("'aprilgrid'", "'apriltag'", "is `apriltag`; expected aprilgrid"),
+            ("tagCols: 6", "tagCols: 6.5", "expected a whole number"),
+            ("tagSize: 0.088", "tagSize: wide", "tagSize"),
+            ("tagSpacing: 0.3", "tagSpcing: 0.3", "tagSpcing"),
+            ("tagSpacing: 0.3", "tagSpacing: -1", "`spacing` is -1"),
+            ("target_type: 'aprilgrid'", "cam0: 3", "target_type"),
+        ] {
+            let error = parse(&GRID.replace(from, to)).unwrap_err().to_string();
+            assert!(error.contains(said), "{error}\nexpected {said}");
+        }
+    }
+}

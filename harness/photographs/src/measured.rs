@@ -1,0 +1,92 @@
+//! A board's points in photographs, found and measured by one method.
+
+use std::path::{Path, PathBuf};
+
+use calibench_exchange::{LostRow, PointRow, read_photo};
+use calibench_measure::Operator;
+use calibench_model::Start;
+use calibench_model::camera::ImageSize;
+use rayon::prelude::*;
+
+use crate::names::{names, once};
+use crate::{Finder, PhotographsError, Sighting};
+
+/// The status of a photograph in which the board was not found.
+pub const NOT_FOUND: &str = "not_found";
+
+/// A photograph: the name of its image, where it is, and its size.
+pub type Photo = (String, PathBuf, ImageSize);
+
+/// Measured points, and the photographs that they are of.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Corners {
+    /// Those with a position.
+    pub points: Vec<PointRow>,
+    /// Those without.
+    pub lost: Vec<LostRow>,
+    /// The photographs; none where the points were given.
+    pub photos: Vec<Photo>,
+    /// What is in doubt of where the board was found.
+    pub doubts: Vec<String>,
+}
+
+impl FromIterator<Corners> for Corners {
+    fn from_iter<I: IntoIterator<Item = Corners>>(all: I) -> Self {
+        let mut whole = Self::default();
+        for one in all {
+            whole.points.extend(one.points);
+            whole.lost.extend(one.lost);
+            whole.photos.extend(one.photos);
+            whole.doubts.extend(one.doubts);
+        }
+        whole
+    }
+}
+
+impl Finder<'_> {
+    /// The board's points in photographs: approximately where it is found, then by the operator called `method`. Those that it rejects, and photographs without
+    /// the board, are listed among the lost. One list a photograph; `step` is called after each, on any thread.
+    ///
+    /// # Errors
+    /// A photograph that cannot be read, or that is given twice.
+    pub fn measure(
+        &self,
+        photos: &[PathBuf],
+        (method, operator): (&str, &dyn Operator),
+        step: &(dyn Fn() + Sync),
+    ) -> Result<Vec<Corners>, PhotographsError> {
+        once(photos)?;
+        let one = |(path, name): (&PathBuf, &String)| {
+            let found = self.in_photo((path, name), operator, method);
+            step();
+            found
+        };
+        photos.par_iter().zip(&names(photos)).map(one).collect()
+    }
+
+    fn in_photo(&self, (path, name): (&Path, &str), operator: &dyn Operator, method: &str) -> Result<Corners, PhotographsError> {
+        let image = read_photo(path)?.image;
+        let Sighting { rows, why, doubts } = self.find(&image, name);
+        let starts: Vec<Start> = rows.iter().map(|row| row.start).collect();
+        let measured = operator.measure_all(&image, &starts);
+        let size = ImageSize { width: image.width() as u32, height: image.height() as u32 };
+        let photo = (name.to_owned(), path.to_owned(), size);
+        let doubts = doubts.into_iter().map(|doubt| format!("{name}: {doubt}")).collect();
+        let mut corners = Corners { points: Vec::new(), lost: Vec::new(), photos: vec![photo], doubts };
+        let lost =
+            |image: String, target: String, status: &str, reason: String| LostRow { image, target, status: status.to_owned(), reason };
+        if let Some(why) = why {
+            corners.lost.push(lost(name.to_owned(), String::new(), NOT_FOUND, why));
+        }
+        for (row, result) in rows.into_iter().zip(measured) {
+            match result {
+                Ok(found) => {
+                    let start = Start { position: found.position, covariance: found.covariance, ..row.start };
+                    corners.points.push(PointRow { start, ..row });
+                }
+                Err(rejection) => corners.lost.push(lost(row.image, row.target, "rejected", format!("{method}: {rejection}"))),
+            }
+        }
+        Ok(corners)
+    }
+}

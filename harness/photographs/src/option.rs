@@ -1,0 +1,50 @@
+//! A board as options write it: in words, or as a file.
+
+use std::path::Path;
+
+use calibench_exchange::camera::read_kalibr_target;
+use calibench_model::boards::{Board, KINDS};
+
+use crate::Chessboard;
+
+/// The board of a text: `9x6:25` for a chessboard, a kind with its counts and lengths, or a target file of Kalibr's (`.yaml`).
+///
+/// # Errors
+/// A text that describes no board, with the kinds that there are; a file that cannot be read.
+pub fn board_of(text: &str) -> Result<Board, String> {
+    let ending = Path::new(text).extension().map(|ending| ending.to_ascii_lowercase());
+    if ending.is_some_and(|ending| ending == "yaml" || ending == "yml") {
+        return read_kalibr_target(Path::new(text)).map_err(|error| format!("{text}: {error}"));
+    }
+    if text.starts_with(|first: char| first.is_ascii_digit()) {
+        return text.parse::<Chessboard>().map(Board::from);
+    }
+    text.parse::<Board>().map_err(|error| {
+        let kinds = KINDS.map(|(kind, form, _)| format!("{kind}:{form}")).join(", ");
+        format!("{error} ({kinds}, or a target file of Kalibr's)")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boards_are_written_in_three_ways() {
+        assert_eq!(board_of("9x6:25"), Ok("chessboard:9x6:25".parse().unwrap()));
+        assert_eq!(board_of("charuco:8x5:30:21:DICT_4X4_50"), Ok("charuco:8x5:30:21:DICT_4X4_50".parse().unwrap()));
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("target.yaml");
+        std::fs::write(&file, "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\ntagSpacing: 0.3\n").unwrap();
+        assert_eq!(board_of(file.to_str().unwrap()), Ok("aprilgrid:6x6:0.088:0.3".parse().unwrap()));
+        for (text, said) in [
+            ("9x6", "is no chessboard"),
+            ("mine", "is no kind of board: expected one of chessboard"),
+            ("rings:12", "no count"),
+            ("missing.yaml", "missing.yaml: "),
+        ] {
+            let error = board_of(text).unwrap_err();
+            assert!(error.contains(said), "{error}");
+        }
+    }
+}

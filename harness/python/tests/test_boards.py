@@ -1,0 +1,159 @@
+"""Boards: drawn by us and read by OpenCV, drawn by OpenCV and read by us, photographs that others made."""
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import calibench as cb
+
+cv2 = pytest.importorskip("cv2")
+aruco = pytest.importorskip("cv2.aruco")
+
+DATA = ROOT.parent / "shared/data/targets"
+FILES = ROOT / "harness/model/data/dictionaries"
+
+
+def opencv_s(name):
+    return aruco.getPredefinedDictionary(getattr(aruco, name))
+
+
+@pytest.mark.parametrize("file", sorted(FILES.glob("*.txt")), ids=lambda file: file.stem)
+def test_a_dictionary_is_opencv_s(file):
+    """Every cell of every marker, as OpenCV draws it."""
+    text = file.read_text()
+    name = text.split("Codes of ")[1].split(":")[0]
+    codes = [int(word, 16) for line in text.splitlines() if not line.startswith("#") for word in line.split()]
+    theirs = opencv_s(name)
+    side = theirs.markerSize
+    assert len(codes) == len(theirs.bytesList)
+    for marker, code in enumerate(codes):
+        drawn = aruco.generateImageMarker(theirs, marker, side + 2, borderBits=1)[1:-1, 1:-1] > 127
+        cells = [code >> (side * side - 1 - cell) & 1 for cell in range(side * side)]
+        assert cells == drawn.ravel().astype(int).tolist(), marker
+
+
+def eight_bits(image):
+    return np.clip(np.rint(np.asarray(image) * 255), 0, 255).astype(np.uint8)
+
+
+def scenario(tmp_path, name, change=lambda text: text):
+    """One of `scenarios/targets`, turned four ways, with a change."""
+    text = (ROOT / f"scenarios/targets/{name}.toml").read_text().replace("rolls = [0, 90]", "rolls = [0, 90, 180, 270]")
+    assert "270" in text
+    file = tmp_path / f"{name}.toml"
+    file.write_text(change(text).replace("#:schema ../scenario.schema.json\n", ""))
+    return str(file)
+
+
+def read_charuco(image, legacy=False):
+    board = aruco.CharucoBoard((10, 7), 38, 26.6, opencv_s("DICT_4X4_50"))
+    board.setLegacyPattern(legacy)
+    corners, ids, _, markers = aruco.CharucoDetector(board).detectBoard(eight_bits(image))
+    names = [f"r{i // 9 + 1}c{i % 9 + 1}" for i in (ids.ravel() if ids is not None else [])]
+    return names, corners, (0 if markers is None else len(markers))
+
+
+def test_opencv_reads_a_charuco_board_of_ours_in_all_rotations(tmp_path):
+    for shot in cb.render(scenario(tmp_path, "charuco"), root=ROOT):
+        names, corners, markers = read_charuco(shot.image)
+        assert markers == 35 and len(names) == 54, shot.name
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        off = np.array([corner.ravel() - truth[name] for name, corner in zip(names, corners)])
+        # Up to OpenCV 4.13 half a pixel of another origin; never another corner.
+        assert np.abs(np.median(off, axis=0)).max() < 0.55 and np.abs(off - np.median(off, axis=0)).max() < 0.5
+
+
+@pytest.mark.parametrize(("kind", "border"), [("aprilgrid", 2), ("aprilgrid", 1)])
+def test_opencv_reads_an_aprilgrid_of_ours_in_all_rotations(tmp_path, kind, border):
+    parameters = aruco.DetectorParameters()
+    parameters.markerBorderBits = border
+    detector = aruco.ArucoDetector(opencv_s("DICT_APRILTAG_36h11"), parameters)
+    for shot in cb.render(scenario(tmp_path, kind, lambda text: text.replace("tag = 48", f"tag = 48\nborder = {border}")), root=ROOT):
+        corners, ids, _ = detector.detectMarkers(eight_bits(shot.image))
+        assert sorted(ids.ravel()) == list(range(24)), shot.name
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        for found, marker in zip(corners, ids.ravel()):
+            # Tags stand upside down: the upper left corner as it is read is the lower right one of the board.
+            ours = np.array([truth[f"t{marker}c{k}"] for k in (1, 0, 3, 2)])
+            assert np.abs(found.reshape(4, 2) - ours).max() < 8.0, (shot.name, marker)  # unrefined, tags of 85 px
+
+
+def test_opencv_finds_a_grid_of_circles_of_ours():
+    for shot in cb.render("targets/circles", root=ROOT):
+        found, centres = cv2.findCirclesGrid(eight_bits(shot.image), (10, 7), flags=cv2.CALIB_CB_SYMMETRIC_GRID)
+        assert found, shot.name
+        off = np.linalg.norm(centres.reshape(-1, 1, 2) - shot.truth.xy[None], axis=2).min(axis=1)
+        assert off.max() < 0.5
+
+
+WORDS = {
+    "charuco": "charuco:10x7:38:26.6:DICT_4X4_50",
+    "aprilgrid": "aprilgrid:6x4:48:0.3",
+    "circles": "circles:10x7:38:20",
+    "rings": "rings:12:10x7:38:10",
+}
+
+
+@pytest.mark.parametrize("kind", WORDS)
+def test_every_kind_is_found_by_name(tmp_path, kind):
+    """All points that are in view, none by another's name; of a symmetric grid, which looks the same upside down, up to that."""
+    for shot in cb.render(scenario(tmp_path, kind), root=ROOT):
+        found = cb.detect(shot.image, WORDS[kind])
+        assert found is not None and sorted(found.target) == sorted(shot.truth.target), (kind, shot.name)
+        assert len(set(found.kind)) == 1 and set(found.kind) == set(shot.truth.kind)
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        off = np.array([np.linalg.norm(xy - truth[name]) for name, xy in zip(found.target, found.xy)])
+        if kind == "circles":
+            off = np.minimum(off, [np.linalg.norm(xy - truth[name]) for name, xy in zip(found.target[::-1], found.xy)])
+        assert off.max() < 1.5, (kind, shot.name, off.max())
+
+
+def test_another_board_is_refused(tmp_path):
+    shots = cb.render(scenario(tmp_path, "charuco"), root=ROOT)[:2]
+    for wrong in ["charuco:10x7:38:26.6:DICT_5X5_50", "charuco:7x10:38:26.6:DICT_4X4_50", "charuco:10x7:38:15:DICT_4X4_50", "rings:12:10x7:38:10"]:
+        for shot in shots:
+            assert cb.detect(shot.image, wrong) is None, wrong
+    for shot in shots:
+        assert cb.detect(np.ascontiguousarray(shot.image[:, ::-1]), WORDS["charuco"]) is None, "a mirror image"
+    # Its order of squares is another where the number of rows is even.
+    even = scenario(tmp_path, "charuco", lambda text: text.replace("rows = 7", "rows = 6"))
+    shot = cb.render(even, root=ROOT)[0]
+    assert cb.detect(shot.image, "charuco:10x6:38:26.6:DICT_4X4_50") is not None
+    assert cb.detect(shot.image, "charuco:10x6:38:26.6:DICT_4X4_50:legacy") is None
+
+
+@pytest.mark.parametrize("legacy", [False, True])
+def test_a_board_that_opencv_drew_is_found(legacy):
+    board = aruco.CharucoBoard((8, 6), 30, 21, opencv_s("DICT_5X5_100"))
+    board.setLegacyPattern(legacy)
+    drawn = cv2.copyMakeBorder(board.generateImage((800, 600)), 60, 60, 60, 60, cv2.BORDER_CONSTANT, value=255)
+    corners = np.array([[60, 60], [860, 60], [860, 660], [60, 660]], np.float32)
+    seen = np.array([[150, 120], [980, 60], [1050, 760], [90, 690]], np.float32)
+    map_ = cv2.getPerspectiveTransform(corners, seen)
+    image = cv2.GaussianBlur(cv2.warpPerspective(drawn, map_, (1200, 850), borderValue=120), (0, 0), 0.8)
+    word = "charuco:8x6:30:21:DICT_5X5_100" + (":legacy" if legacy else "")
+    found = cb.detect(image, word)
+    assert found is not None and len(found.target) == 35
+    at = {name: xyz for name, xyz in cb.board(word)}
+    # Edges of squares of 100 px lie between pixels.
+    plane = np.array([[60 + 100 + at[name][0] / 30 * 100 - 0.5, 60 + 100 - at[name][1] / 30 * 100 - 0.5] for name in found.target])
+    expected = cv2.perspectiveTransform(plane[None].astype(np.float64), map_)[0]
+    assert np.abs(found.xy - expected).max() < 1.5
+    assert cb.detect(image, "charuco:8x6:30:21:DICT_5X5_100" + ("" if legacy else ":legacy")) is None
+
+
+def test_the_aprilgrid_of_a_photograph():
+    file = DATA / "aprilgrid-rs_EuRoC.png"
+    if not file.is_file():
+        pytest.skip(f"no {file}")
+    image = cv2.imread(str(file), cv2.IMREAD_GRAYSCALE)
+    found = cb.detect(image, "aprilgrid:6x6:0.088:0.3")
+    parameters = aruco.DetectorParameters()
+    parameters.markerBorderBits = 2
+    corners, ids, _ = aruco.ArucoDetector(opencv_s("DICT_APRILTAG_36h11"), parameters).detectMarkers(image)
+    ours = dict(zip(found.target, found.xy))
+    tags = {name.split("c")[0] for name in ours}
+    assert len(tags) >= len(ids), "no fewer than OpenCV"
+    for theirs, marker in zip(corners, ids.ravel()):
+        mine = np.array([ours[f"t{marker}c{k}"] for k in (1, 0, 3, 2)])
+        assert np.abs(theirs.reshape(4, 2) - mine).max() < 4.0, marker  # whole pixels, unrefined

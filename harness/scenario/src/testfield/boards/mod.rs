@@ -1,0 +1,141 @@
+//! Boards with markers, circles or ring codes, and free-standing markers.
+
+use calibench_diagnostics::Problem;
+use calibench_model::boards::{AprilGrid, Board, Charuco, Circles, Dictionary, Rings};
+use calibench_synth::testfield::{BoardSheet, Tag, Tags};
+use nalgebra::{Point3, Vector3};
+use toml::Spanned;
+
+use super::common::{BACKGROUND, bend, levels};
+use super::generator::Generator;
+use super::spans::Spans;
+use crate::section::Section;
+
+pub mod wire;
+
+use wire::{AprilGridWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
+
+/// The kinds that are one sheet.
+pub const SHEETS: [&str; 4] = ["charuco", "aprilgrid", "circles", "rings"];
+/// The keys that all of them have.
+const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background"];
+
+/// Reads a board of one of [`SHEETS`]; mistakes are added to `problems`.
+pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -> Option<Generator> {
+    let sheet: Option<SheetWire> = section.take_keys(&COMMON).read(&[], problems);
+    let (board, usual_margin) = match kind {
+        "charuco" => charuco(&section.read(&COMMON, problems)?, problems)?,
+        "aprilgrid" => aprilgrid(&section.read(&COMMON, problems)?, problems)?,
+        "circles" => circles(&section.read(&COMMON, problems)?),
+        _ => rings(&section.read(&COMMON, problems)?),
+    };
+    let sheet = sheet?;
+    Some(Generator::Board(BoardSheet {
+        board,
+        margin: sheet.margin.map_or(usual_margin, |margin| margin.0),
+        bend: bend(sheet.bend, sheet.bend_across),
+        print_noise: sheet.print_noise.map_or(0.0, |noise| noise.0),
+        levels: levels(sheet.paper, sheet.ink),
+        background: sheet.background.map_or(BACKGROUND, |level| level.0),
+    }))
+}
+
+fn dictionary(name: &Spanned<String>, problems: &mut Vec<Problem>) -> Option<&'static Dictionary> {
+    let found = Dictionary::named(name.as_ref());
+    if found.is_none() {
+        let known: Vec<&str> = Dictionary::names().collect();
+        let message = format!("`{}` is no dictionary of markers; expected one of {}", name.as_ref(), known.join(", "));
+        problems.push(Problem::new(name.span(), message).nearest(name.as_ref(), known));
+    }
+    found
+}
+
+fn charuco(wire: &CharucoWire, problems: &mut Vec<Problem>) -> Option<(Board, f64)> {
+    let board = Charuco {
+        columns: wire.columns.0,
+        rows: wire.rows.0,
+        square: wire.square.0,
+        marker: wire.marker.0,
+        dictionary: dictionary(&wire.dictionary, problems)?,
+        first: wire.first.map_or(0, |first| first.0 as u32),
+        legacy: wire.legacy.unwrap_or(false),
+    };
+    Some((Board::Charuco(board), wire.square.0))
+}
+
+fn aprilgrid(wire: &AprilGridWire, problems: &mut Vec<Problem>) -> Option<(Board, f64)> {
+    let dictionary = match &wire.dictionary {
+        Some(name) => dictionary(name, problems)?,
+        None => Dictionary::named("DICT_APRILTAG_36h11")?,
+    };
+    let board = AprilGrid {
+        columns: wire.columns.0,
+        rows: wire.rows.0,
+        tag: wire.tag.0,
+        spacing: wire.spacing.map_or(0.3, |spacing| spacing.0),
+        dictionary,
+        first: wire.first.map_or(0, |first| first.0 as u32),
+        border: wire.border.map_or(2, |cells| cells.0),
+        squares: wire.squares.unwrap_or(true).then(|| wire.chamfer.map_or(0.0, |cut| cut.0)),
+    };
+    Some((Board::AprilGrid(board), wire.tag.0))
+}
+
+fn circles(wire: &CirclesWire) -> (Board, f64) {
+    let spacing = wire.spacing.0;
+    let board = Circles {
+        columns: wire.columns.0,
+        rows: wire.rows.0,
+        spacing,
+        diameter: wire.diameter.map_or(0.5 * spacing, |diameter| diameter.0),
+        hole: wire.hole.map(|hole| hole.0),
+        asymmetric: wire.asymmetric.unwrap_or(false),
+    };
+    (Board::Circles(board), spacing)
+}
+
+fn rings(wire: &RingsWire) -> (Board, f64) {
+    let board = Rings {
+        bits: wire.bits.map_or(12, |bits| bits.0),
+        columns: wire.columns.0,
+        rows: wire.rows.0,
+        spacing: wire.spacing.0,
+        diameter: wire.diameter.0,
+        ring: wire.ring.map_or([2.0, 3.0], |ring| ring.0),
+        even: wire.even.unwrap_or(false),
+        first: wire.first.map_or(1, |first| first.0),
+    };
+    (Board::Rings(board), wire.spacing.0)
+}
+
+/// Reads free-standing markers; mistakes are added to `problems`, places to `spans`.
+pub fn read_tags(mut section: Section<'_>, spans: &mut Spans, problems: &mut Vec<Problem>) -> Option<Generator> {
+    let before = problems.len();
+    let tags = section.take_tables("tag", "[[testfield.tag]]", problems).unwrap_or_default();
+    *spans = Spans::of(&section);
+    tags.iter().for_each(|inner| spans.add(inner));
+    let wire: Option<TagsWire> = section.read(&["tag", "kind", "unit"], problems);
+    let tags: Vec<Tag> = tags.into_iter().filter_map(|section| section.read(&[], problems)).map(|wire| tag(&wire)).collect();
+    let wire = wire?;
+    let dictionary = dictionary(&wire.dictionary, problems)?;
+    (problems.len() == before).then(|| {
+        Generator::Tags(Tags {
+            dictionary,
+            border: wire.border.map_or(1, |cells| cells.0),
+            rim: wire.rim.map_or(0.25, |rim| rim.0),
+            tags,
+            levels: levels(wire.paper, wire.ink),
+            background: wire.background.map_or(BACKGROUND, |level| level.0),
+        })
+    })
+}
+
+fn tag(wire: &TagWire) -> Tag {
+    Tag {
+        id: wire.id.0 as u32,
+        middle: Point3::from(wire.middle.0),
+        right: Vector3::from(wire.right.0),
+        up: Vector3::from(wire.up.0),
+        side: wire.side.0,
+    }
+}

@@ -1,0 +1,149 @@
+//! The tables of boards as they are written.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::super::wire::{Count, CountOrNone, Degrees, Distance, Fraction, Height, Length, Tuple};
+use crate::wire::Grey;
+
+/// What all boards have.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SheetWire {
+    /// The width of blank paper around what is printed, object units. Default: a square, a tag, or a spacing.
+    pub margin: Option<Distance>,
+    /// The height of the sheet's bend in its middle, object units. Default 0: flat.
+    pub bend: Option<Height>,
+    /// The direction across the crest of the bend, from x towards y, degrees. Default 0.
+    pub bend_across: Option<Degrees>,
+    /// Standard deviation per axis of each printed point, object units; at most a fiftieth of the smallest target. Default 0.
+    pub print_noise: Option<Distance>,
+    /// Reflectance of the paper. Default 0.85.
+    pub paper: Option<Grey>,
+    /// Reflectance of the ink; lighter than the paper for a board that is light on dark. Default 0.05.
+    pub ink: Option<Grey>,
+    /// Radiance behind the board, fraction of full scale. Default 0.2.
+    pub background: Option<Grey>,
+}
+
+/// A chessboard whose light squares hold markers, counted in squares; its first inner corner, r1c1, is the origin; x to the right, y upwards.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CharucoWire {
+    /// Squares in a row.
+    pub columns: Count,
+    /// Rows of squares.
+    pub rows: Count,
+    /// The side of a square, object units.
+    pub square: Length,
+    /// The side of a marker, object units.
+    pub marker: Length,
+    /// The dictionary by its name in OpenCV, as in "DICT_4X4_50".
+    #[schemars(with = "String")]
+    pub dictionary: Spanned<String>,
+    /// The id of the first marker. Default 0.
+    pub first: Option<CountOrNone>,
+    /// As OpenCV made it before 4.6: with an even number of rows the square at the upper left is light. Default false.
+    pub legacy: Option<bool>,
+}
+
+/// Kalibr's rows of AprilTags, the first at the lower left; the lower left corner of tag 0, t0c0, is the origin; x to the right, y upwards.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AprilGridWire {
+    /// Tags in a row.
+    pub columns: Count,
+    /// Rows of tags.
+    pub rows: Count,
+    /// The side of a tag, object units.
+    pub tag: Length,
+    /// The gap between two tags, as a fraction of a tag's side. Default 0.3.
+    pub spacing: Option<Length>,
+    /// The dictionary by its name in OpenCV. Default "DICT_APRILTAG_36h11".
+    #[schemars(with = "Option<String>")]
+    pub dictionary: Option<Spanned<String>>,
+    /// The id of the first tag. Default 0.
+    pub first: Option<CountOrNone>,
+    /// Cells of a tag's dark frame: 2, as Kalibr prints it, or 1. Default 2.
+    pub border: Option<Count>,
+    /// Whether small squares touch the tags' corners. Default true.
+    pub squares: Option<bool>,
+    /// How much is cut off the small squares' corners, as a fraction of their side, at most 0.4. Default 0.
+    pub chamfer: Option<Fraction>,
+}
+
+/// Rows of discs or rings; the middle of the first at the upper left, r1c1, is the origin; x to the right, y upwards.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CirclesWire {
+    /// Circles in a row.
+    pub columns: Count,
+    /// Rows of circles.
+    pub rows: Count,
+    /// The distance of rows, and of circles in a row (of an asymmetric grid half of it), object units.
+    pub spacing: Length,
+    /// The diameter, object units. Default: half of the spacing.
+    pub diameter: Option<Length>,
+    /// The diameter of what is left out in the middle of each, object units. Default: nothing.
+    pub hole: Option<Length>,
+    /// Whether every other row is moved by the spacing to the right. Default false.
+    pub asymmetric: Option<bool>,
+}
+
+/// Rows of ring codes; the middle of the first at the upper left is the origin; x to the right, y upwards.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RingsWire {
+    /// Sectors of a ring: 12, 14, 16 or 20. Default 12.
+    pub bits: Option<Count>,
+    /// Codes in a row.
+    pub columns: Count,
+    /// Rows of codes.
+    pub rows: Count,
+    /// Distance of the middles of neighbouring codes, object units.
+    pub spacing: Length,
+    /// The diameter of the disc in the middle, object units.
+    pub diameter: Length,
+    /// Inner and outer diameter of the ring, in diameters of the disc. Default 2 and 3.
+    pub ring: Option<Tuple<2>>,
+    /// Whether the number of dark sectors is even. Default false.
+    pub even: Option<bool>,
+    /// The first id that is used. Default 1.
+    pub first: Option<Count>,
+}
+
+/// Free-standing markers; their corners are t0c0, t0c1, ... clockwise from the upper left.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TagsWire {
+    /// The dictionary by its name in OpenCV, as in "DICT_APRILTAG_36h11".
+    #[schemars(with = "String")]
+    pub dictionary: Spanned<String>,
+    /// Cells of a marker's dark frame. Default 1.
+    pub border: Option<Count>,
+    /// The width of the light rim around a marker, as a fraction of its side. Default 0.25.
+    pub rim: Option<Distance>,
+    /// Reflectance of the paper. Default 0.85.
+    pub paper: Option<Grey>,
+    /// Reflectance of the ink. Default 0.05.
+    pub ink: Option<Grey>,
+    /// Radiance behind all, fraction of full scale. Default 0.2.
+    pub background: Option<Grey>,
+}
+
+/// A marker.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TagWire {
+    /// Its id in the dictionary.
+    pub id: CountOrNone,
+    /// Its middle [x, y, z], object units.
+    pub middle: Tuple<3>,
+    /// The direction of its upper edge [x, y, z], to the right for who reads it; any length.
+    pub right: Tuple<3>,
+    /// The direction of its left edge [x, y, z], upwards, at a right angle to `right`; any length.
+    pub up: Tuple<3>,
+    /// Its side, object units.
+    pub side: Length,
+}

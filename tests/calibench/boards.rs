@@ -1,0 +1,176 @@
+//! `--board`: boards with markers, circles or ring codes, from images to a camera.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::project::{root, run, stderr, stdout};
+
+/// Scenarios of `targets/` and their boards in a word; how far an approximate point may be off, px, and what measures it, with its largest error.
+const BOARDS: [(&str, &str, &str, f64); 4] = [
+    ("charuco", "charuco:10x7:38:26.6:DICT_4X4_50", "parametric_corner:window=15", 0.1),
+    ("aprilgrid", "aprilgrid:6x4:48:0.3", "parametric_corner:window=11", 0.2),
+    ("circles", "circles:10x7:38:20", "ellipse_edges", 0.1),
+    ("rings", "rings:12:10x7:38:10", "ellipse_edges", 0.1),
+];
+const SHOTS: [&str; 8] = ["s01-r1", "s01-r2", "s02-r1", "s02-r2", "s03-r1", "s03-r2", "s04-r1", "s04-r2"];
+
+fn rendered(kind: &str) -> (tempfile::TempDir, String, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let project = root().display().to_string();
+    let output = run(folder.path(), &["--root", &project, "render", &format!("targets/{kind}"), "-o", "c", "-q"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    (folder, project, SHOTS.map(|shot| format!("c/{shot}.png")).to_vec())
+}
+
+fn with<'a>(first: &[&'a str], photos: &'a [String], more: &[&'a str]) -> Vec<&'a str> {
+    first.iter().copied().chain(photos.iter().map(String::as_str)).chain(more.iter().copied()).collect()
+}
+
+/// Positions by image and target.
+fn positions(path: &Path) -> BTreeMap<(String, String), [f64; 2]> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let headers = reader.headers().unwrap().clone();
+    let [image, target, x, y] =
+        ["image", "target", "x", "y"].map(|name| headers.iter().position(|header| header == name).unwrap_or_else(|| panic!("{name}")));
+    let number = |text: &str| text.parse().unwrap_or(f64::NAN);
+    let row = |record: csv::StringRecord| ((record[image].to_owned(), record[target].to_owned()), [number(&record[x]), number(&record[y])]);
+    reader.records().map(|record| row(record.unwrap())).collect()
+}
+
+fn truth(folder: &Path) -> BTreeMap<(String, String), [f64; 2]> {
+    SHOTS.iter().flat_map(|shot| positions(&folder.join(format!("c/{shot}.csv")))).collect()
+}
+
+fn farthest(found: &BTreeMap<(String, String), [f64; 2]>, truth: &BTreeMap<(String, String), [f64; 2]>) -> f64 {
+    found.iter().map(|(key, at)| (at[0] - truth[key][0]).hypot(at[1] - truth[key][1])).fold(0.0, f64::max)
+}
+
+/// What every kind of board must hold: found whole and by name, measured, its control that of the scenario, the camera found again.
+#[test]
+fn every_board_is_found_measured_and_calibrated_from() {
+    for (kind, board, method, error) in BOARDS {
+        let (folder, project, photos) = rendered(kind);
+        let at = |name: &str| folder.path().join(name);
+        let good = |arguments: &[&str]| {
+            let output = run(folder.path(), arguments);
+            assert!(output.status.success(), "{kind}: {arguments:?}\n{}", stderr(&output));
+            output
+        };
+        good(&with(&["detect"], &photos, &["--board", board, "-o", "approx.csv", "-q"]));
+        let (truth, mut found) = (truth(folder.path()), positions(&at("approx.csv")));
+        assert_eq!(found.len(), truth.len(), "{kind}: all points of all images");
+        if kind == "circles" {
+            turned(&mut found, &truth);
+        }
+        assert!(farthest(&found, &truth) < 1.0, "{kind}: {}", farthest(&found, &truth));
+        good(&with(&["measure"], &photos, &["--points", "approx.csv", "-m", method, "-o", "measured.csv", "-q"]));
+        let mut measured = positions(&at("measured.csv"));
+        measured.retain(|_, at| at[0].is_finite());
+        assert!(measured.len() * 50 > truth.len() * 49, "{kind}: {} of {}", measured.len(), truth.len());
+        if kind == "circles" {
+            turned(&mut measured, &truth);
+        }
+        if kind != "rings" && kind != "circles" {
+            assert!(farthest(&measured, &truth) < error, "{kind}: {}", farthest(&measured, &truth));
+        }
+        good(&["control", board, "-o", "control.csv"]);
+        let same = |name: &str| std::fs::read_to_string(at(name)).unwrap().lines().skip(1).map(numbers).collect::<BTreeMap<_, _>>();
+        assert_eq!(same("control.csv"), same("c/control.csv"), "{kind}");
+        let output = run(folder.path(), &with(&["calibrate"], &photos, &["--board", board, "-m", method, "-o", "camera.json", "-q"]));
+        assert!(matches!(output.status.code(), Some(0 | 3)), "{kind}: {}", stderr(&output));
+        let apart = good(&["--root", &project, "diff", "camera.json", "c/camera.toml", "--radius", "350"]);
+        let apart = stdout(&apart);
+        let rms = apart.split_whitespace().nth(1).and_then(|number| number.parse::<f64>().ok());
+        assert!(rms.is_some_and(|rms| rms < 0.02), "{kind}: {apart}");
+    }
+}
+
+/// A grid of circles looks the same upside down: of each image the numbering that agrees with the truth.
+fn turned(found: &mut BTreeMap<(String, String), [f64; 2]>, truth: &BTreeMap<(String, String), [f64; 2]>) {
+    for shot in SHOTS {
+        let key = |row: usize, column: usize| (format!("{shot}.png"), format!("r{row}c{column}"));
+        let first = found[&key(1, 1)];
+        let true_first = truth[&key(1, 1)];
+        if (first[0] - true_first[0]).hypot(first[1] - true_first[1]) < 2.0 {
+            continue;
+        }
+        let places = (1..=7).flat_map(|row| (1..=10).map(move |column| (row, column)));
+        let other: Vec<_> = places.filter_map(|(row, column)| Some((key(row, column), *found.get(&key(8 - row, 11 - column))?))).collect();
+        found.extend(other);
+    }
+}
+
+/// A line of a control file: name and coordinates, those that are zero without a sign.
+fn numbers(line: &str) -> (String, Vec<String>) {
+    let mut cells = line.split(',');
+    let name = cells.next().unwrap().to_owned();
+    (name, cells.take(3).map(|cell| format!("{:.9}", cell.parse::<f64>().unwrap() + 0.0)).collect())
+}
+
+#[test]
+fn what_is_no_such_board_is_refused_by_name() {
+    let (folder, _, photos) = rendered("charuco");
+    for (board, said) in [
+        ("charuco:10x7:38:26.6:DICT_5X5_50", "DICT_4X4"),
+        ("charuco:7x10:38:26.6:DICT_4X4_50", "another board"),
+        ("charuco:10x7:38:20:DICT_4X4_50", "another board"),
+        ("charuco:10x7:38:26.6:DICT_4X4_100:50", "markers"),
+        ("aprilgrid:6x4:48:0.3", "35 markers of DICT_4X4_50 are seen"),
+        ("rings:12:10x7:38:10", "round areas"),
+    ] {
+        let output = run(folder.path(), &with(&["detect"], &photos[..2], &["--board", board, "-o", "no.csv", "-q"]));
+        assert_eq!(output.status.code(), Some(2), "{board}: {}", stderr(&output));
+        let text = stderr(&output);
+        assert!(text.contains(&format!("{}: ", photos[0])) && text.contains(said), "{board}: {text}");
+        assert!(!folder.path().join("no.csv").exists(), "{board}");
+    }
+    for (word, said) in [
+        ("charuco:10x7", "no side of a square; expected charuco:COLUMNSxROWS"),
+        ("chaurco:10x7:38:26.6:DICT_4X4_50", "is no kind of board"),
+        ("missing.yaml", "missing.yaml"),
+    ] {
+        let output = run(folder.path(), &["control", word]);
+        assert!(output.status.code() == Some(2) && stderr(&output).contains(said), "{word}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn kalibrs_target_file_is_a_board() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 4\ntagSize: 48\ntagSpacing: 0.3\n";
+    std::fs::write(folder.path().join("target.yaml"), text).unwrap();
+    let [file, word] = ["target.yaml", "aprilgrid:6x4:48:0.3"].map(|board| stdout(&run(folder.path(), &["control", board])));
+    assert!(file == word && file.lines().count() == 97, "{file}");
+    std::fs::write(folder.path().join("target.yaml"), text.replace("tagSize: 48", "tagSize: -1")).unwrap();
+    let output = run(folder.path(), &["control", "target.yaml"]);
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("`tag` is -1"), "{}", stderr(&output));
+}
+
+#[test]
+fn boards_are_judged() {
+    let (folder, _, photos) = rendered("aprilgrid");
+    let arguments = with(
+        &["judge"],
+        &photos,
+        &[
+            "--board",
+            "aprilgrid:6x4:48:0.3",
+            "-m",
+            "parametric_corner",
+            "-m",
+            "pixel",
+            "--model",
+            "opencv4",
+            "--splits",
+            "2",
+            "--report",
+            "page",
+            "-q",
+        ],
+    );
+    let output = run(folder.path(), &arguments);
+    assert!(matches!(output.status.code(), Some(0 | 3)), "{}", stderr(&output));
+    assert!(stdout(&output).contains("parametric_corner"), "{}", stdout(&output));
+    let page = std::fs::read_to_string(folder.path().join("page/README.md")).unwrap();
+    assert!(page.contains("`aprilgrid:6x4:48:0.3`"), "{page}");
+}
