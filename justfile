@@ -97,6 +97,11 @@ perf-python: python
 # Boards found, how well and how fast, beside OpenCV on the same images
 perf-boards: python
     RAYON_NUM_THREADS=1 target/python/bin/python harness/python/benches/boards.py
+    RAYON_NUM_THREADS=1 target/python/bin/python harness/python/benches/chessboards.py
+
+# Seconds of whole commands beside Python with OpenCV that does the same, and how they grow
+perf-commands: python
+    target/python/bin/python harness/python/benches/commands.py
 
 # Seconds and memory of measure, intersect and calibrate by the number of rows, up to ten million
 rows:

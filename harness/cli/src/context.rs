@@ -72,9 +72,8 @@ impl Context<'_> {
     }
 
     /// What finds a board in photographs.
-    pub fn finder(&self, board: Board) -> Result<Finder<'_>, Failure> {
-        let finder = Finder::new(board, self.toolbox.detector.as_deref()).map_err(|error| Failure::input(error.to_string()))?;
-        finder.missing().map_or(Ok(finder), |why| Err(Failure::input(why)))
+    pub fn finder(&self, board: Board) -> Result<Finder, Failure> {
+        Finder::new(board).map_err(|error| Failure::input(error.to_string()))
     }
 
     pub fn methods(&self, texts: &[String], pictured: Pictured) -> Result<Vec<Configured>, Failure> {

@@ -24,7 +24,7 @@ pub struct Control {
 impl Control {
     pub fn run(&self) -> Result<(), Failure> {
         let output = output::table("-o", self.output.as_deref(), &Inputs::default())?;
-        let finder = Finder::new(self.board, None).map_err(|error| Failure::input(error.to_string()))?;
+        let finder = Finder::new(self.board).map_err(|error| Failure::input(error.to_string()))?;
         deliver(output.as_ref(), |file| write_control(file, &finder.control()))
     }
 }

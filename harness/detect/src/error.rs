@@ -9,9 +9,14 @@ pub enum NotFound {
     /// A board that cannot be.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// A board that is found by another detector.
-    #[error("chessboards are found by a detector of their own")]
-    Elsewhere,
+    /// No chessboard of these counts that is seen whole.
+    #[error("no board of {columns} x {rows} inner corners found")]
+    NoChessboard {
+        /// Inner corners in a row.
+        columns: usize,
+        /// Rows of them.
+        rows: usize,
+    },
     /// An image of no use for its size.
     #[error("the image has {width} x {height} px: expected at least {least} px a side")]
     TooSmall {
@@ -130,7 +135,7 @@ impl NotFound {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Board(_) => "board",
-            Self::Elsewhere => "elsewhere",
+            Self::NoChessboard { .. } => "no_chessboard",
             Self::TooSmall { .. } => "too_small",
             Self::NoMarker { .. } => "no_marker",
             Self::OtherDictionary { .. } => "other_dictionary",

@@ -3,11 +3,12 @@
 //! [`detect`] takes an image and a [`Board`], and says which points it sees or, by name, why it sees no such board. It never numbers what contradicts the
 //! board. No pose, no camera, no truth. One thread, the same bytes every time.
 //!
-//! Markers are looked for as dark quadrangles whose sides are adjusted to the edges of the image, discs as round dark areas. What is decoded has to stand as the board
+//! Markers are looked for as dark quadrangles whose sides are adjusted to the edges of the image, discs as round dark areas, the corners of chessboards as saddles. What is decoded has to stand as the board
 //! has it, each mark to its neighbours; so lens distortion does no harm.
 
 mod arrange;
 mod cells;
+mod chessboard;
 mod circles;
 mod codes;
 mod corners;
@@ -30,13 +31,17 @@ use calibench_model::boards::Board;
 pub use error::NotFound;
 pub use found::{Doubt, Found, FoundPoint};
 
+/// The version of what finds boards, in records.
+pub const VERSION: &str = "1";
+
 /// The least side of an image, px.
 const LEAST_SIDE: usize = 16;
 
 /// The points of `board` that are seen in `image`, to about a pixel.
 ///
-/// Of boards with markers and of ring codes a part is enough. Grids of circles have to be seen whole, dark on light or light on dark; where a half turn leaves a
-/// grid as it was (every symmetric one; an asymmetric one with an even number of rows) `r1c1` is the corner nearest to the upper left of the image, and so is it
+/// Of boards with markers and of ring codes a part is enough. Chessboards and grids of circles have to be seen whole. Of a chessboard's corners, the ends of the
+/// board with a dark square at its corner are where `r1c1` can be, where there are such; circles may be dark on light or light on dark. Where a half turn leaves a
+/// board as it was (every symmetric one; an asymmetric one with an even number of rows) `r1c1` is the corner nearest to the upper left of the image, and so is it
 /// among the four quarter turns of a symmetric grid with as many rows as columns.
 ///
 /// # Errors
@@ -51,6 +56,6 @@ pub fn detect(image: &Image, board: &Board) -> Result<Found, NotFound> {
         Board::Charuco(_) | Board::AprilGrid(_) => markers::detect(image, board, &layout),
         Board::Circles(circles) => circles::detect(image, circles, &layout),
         Board::Rings(rings) => codes::detect(image, rings, &layout),
-        Board::Chessboard(_) => Err(NotFound::Elsewhere),
+        Board::Chessboard(board) => chessboard::detect(image, board, &layout),
     }
 }

@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn a_chessboard_is_seen_from_its_front() {
         let board: Chessboard = "3x4:2.5".parse().unwrap();
-        let control = crate::Finder::new(board.into(), None).unwrap().control();
+        let control = crate::Finder::new(board.into()).unwrap().control();
         assert_eq!(control.len(), 12);
         assert_eq!((control[4].target.as_str(), control[4].position), ("r2c2", [2.5, -2.5, 0.0]));
         for wrong in ["9x6", "9x6:", "9x6:0", "9x6:-1", "9x6:NaN", "9:25", "2x2:1"] {

@@ -4,20 +4,17 @@ use std::path::PathBuf;
 
 use calibench_detect::{FoundPoint, detect};
 use calibench_exchange::{ControlDisc, ControlRow, PointRow, read_photo};
-use calibench_measure::BoardDetector;
-use calibench_model::boards::{Board, BoardError, BoardPoint, Chessboard, Layout};
+use calibench_model::boards::{Board, BoardError, BoardPoint, Layout};
 use calibench_model::{Image, Start, TargetKind};
 use rayon::prelude::*;
 
 use crate::PhotographsError;
-use crate::corners::corners_of;
 use crate::names::{names, once};
 
 /// A board and what finds it.
-pub struct Finder<'a> {
+pub struct Finder {
     board: Board,
     layout: Layout,
-    detector: Option<&'a dyn BoardDetector>,
 }
 
 /// What was found of a board in a photograph.
@@ -31,19 +28,18 @@ pub struct Sighting {
     pub doubts: Vec<String>,
 }
 
-impl<'a> Finder<'a> {
-    /// What finds `board`: a chessboard by `detector`.
+impl Finder {
+    /// What finds `board`.
     ///
     /// # Errors
     /// A board that cannot be.
-    pub fn new(board: Board, detector: Option<&'a dyn BoardDetector>) -> Result<Self, BoardError> {
-        Ok(Self { board, layout: board.layout()?, detector })
+    pub fn new(board: Board) -> Result<Self, BoardError> {
+        Ok(Self { board, layout: board.layout()? })
     }
 
-    /// Why this build finds no such board, if so.
-    pub fn missing(&self) -> Option<&'static str> {
-        let lacks = matches!(self.board, Board::Chessboard(_)) && self.detector.is_none();
-        lacks.then_some("this build has no chessboard detector (it is built without OpenCV)")
+    /// What finds it, in records: name and version.
+    pub const fn detector() -> (&'static str, &'static str) {
+        ("detect", calibench_detect::VERSION)
     }
 
     /// Whether methods are told how large and how turned a point is pictured: of a chessboard they find out.
@@ -93,13 +89,6 @@ impl<'a> Finder<'a> {
 
     /// The board in the photograph `name`.
     pub fn find(&self, image: &Image, name: &str) -> Sighting {
-        match (self.board, self.detector) {
-            (Board::Chessboard(board), Some(detector)) => chessboard(detector, image, name, board),
-            _ => self.marked(image, name),
-        }
-    }
-
-    fn marked(&self, image: &Image, name: &str) -> Sighting {
         let found = match detect(image, &self.board) {
             Ok(found) => found,
             Err(why) => return Sighting { why: Some(why.to_string()), ..Sighting::default() },
@@ -112,11 +101,4 @@ impl<'a> Finder<'a> {
         let doubts = found.doubts.iter().map(ToString::to_string).collect();
         Sighting { rows: found.points.iter().map(row).collect(), why: None, doubts }
     }
-}
-
-fn chessboard(detector: &dyn BoardDetector, image: &Image, name: &str, board: Chessboard) -> Sighting {
-    let Chessboard { columns, rows, .. } = board;
-    let found = corners_of(detector, image, name, calibench_measure::Board { columns, rows });
-    let why = found.is_empty().then(|| format!("no board of {columns} x {rows} inner corners found"));
-    Sighting { rows: found, why, doubts: Vec::new() }
 }

@@ -2,7 +2,6 @@
 
 pub mod chessboard;
 pub mod coded;
-mod corners;
 mod error;
 mod finder;
 pub mod measured;

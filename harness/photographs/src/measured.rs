@@ -43,7 +43,7 @@ impl FromIterator<Corners> for Corners {
     }
 }
 
-impl Finder<'_> {
+impl Finder {
     /// The board's points in photographs: approximately where it is found, then by the operator called `method`. Those that it rejects, and photographs without
     /// the board, are listed among the lost. One list a photograph; `step` is called after each, on any thread.
     ///

@@ -30,7 +30,7 @@ pub struct MeasuredBoards {
 /// A photograph that cannot be read, or that is given twice; photographs of several sizes.
 pub fn measured_boards(
     photos: &[PathBuf],
-    finder: &Finder<'_>,
+    finder: &Finder,
     methods: &[Configured],
     step: &(dyn Fn() + Sync),
 ) -> Result<MeasuredBoards, PhotographsError> {
@@ -62,7 +62,7 @@ pub fn method_info(method: &Configured) -> MethodInfo {
 }
 
 /// A board's points in an image called `view`, in the hands of every available method, from the same whole pixels; and what is in doubt.
-pub fn measured_board(image: &Image, view: &str, finder: &Finder<'_>, methods: &[Configured]) -> (Trial, Vec<String>) {
+pub fn measured_board(image: &Image, view: &str, finder: &Finder, methods: &[Configured]) -> (Trial, Vec<String>) {
     let found = finder.find(image, view);
     let doubts = found.doubts.iter().map(|doubt| format!("{view}: {doubt}")).collect();
     let (mut trial, view): (Trial, Arc<str>) = (Trial::default(), view.into());

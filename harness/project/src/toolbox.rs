@@ -9,7 +9,7 @@ use calibench_run::Tools;
 pub struct Toolbox {
     /// Its methods.
     pub registry: Registry,
-    /// Its chessboard detector, if it has one.
+    /// OpenCV's detector of chessboards, if it has it.
     pub detector: Option<Box<dyn BoardDetector>>,
     /// OpenCV's calibration from a board, if it has it.
     pub solver: Option<Box<dyn BoardSolver>>,

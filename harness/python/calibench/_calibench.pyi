@@ -364,7 +364,7 @@ def measure(
 def detect(
     image: NDArray[Any], board: Optional[str] = None, *, testfield: Optional[str] = None, classifier: str = "modern", root: Optional[_Path] = None
 ) -> Optional[Targets]:
-    """Find a board (`9x6`, where cv2 is installed; `charuco:8x5:30:21:DICT_4X4_50`, ...) or the coded field of a scenario; None where it is not seen."""
+    """Find a board (`9x6`; `charuco:8x5:30:21:DICT_4X4_50`, ...) or the coded field of a scenario; None where it is not seen."""
 
 def board(text: str) -> List[Tuple[str, List[float]]]:
     """Names and object coordinates of a board's points, as of 9x6:25: X to the right, Y upwards, Z towards the viewer."""

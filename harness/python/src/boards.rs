@@ -13,7 +13,7 @@ use crate::error::input;
 /// The object coordinates of a board's points by their names: X to the right, Y upwards, Z towards the viewer, from the first point.
 #[pyfunction]
 pub fn board(text: &str) -> PyResult<Vec<(String, [f64; 3])>> {
-    let finder = Finder::new(board_of(text).map_err(input)?, None).map_err(input)?;
+    let finder = Finder::new(board_of(text).map_err(input)?).map_err(input)?;
     Ok(finder.control().into_iter().map(|row| (row.target, row.position)).collect())
 }
 
@@ -35,7 +35,7 @@ impl Board {
     pub fn of(board: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(text) = board.extract::<String>() {
             let pictured = board_of(&text).map_err(input)?;
-            let control = Finder::new(pictured, None).map_err(input)?.control();
+            let control = Finder::new(pictured).map_err(input)?.control();
             return Ok(Self { control, field: field_of(&pictured).map_err(input)?, pictured: Some(pictured) });
         }
         let control: Vec<ControlRow> = if let Ok(named) = board.cast::<PyDict>() {

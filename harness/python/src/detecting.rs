@@ -8,7 +8,7 @@ use calibench_recognise::{Classifier, Recogniser};
 use calibench_scenario::Subject;
 use pyo3::prelude::*;
 
-use crate::error::{doubt, input, no_detector, project};
+use crate::error::{doubt, input, project};
 use crate::grey::Grey;
 use crate::pool::released;
 use crate::rendering::{Targets, starts};
@@ -31,8 +31,7 @@ pub fn detect(
         (Some(board), None) => {
             // A chessboard with or without the side of a square.
             let with_side = if board.contains(':') || board.contains('.') { board.to_owned() } else { format!("{board}:1") };
-            let finder = Finder::new(board_of(&with_side).map_err(input)?, here.toolbox.detector.as_deref()).map_err(input)?;
-            finder.missing().map_or(Ok(()), |_| Err(no_detector()))?;
+            let finder = Finder::new(board_of(&with_side).map_err(input)?).map_err(input)?;
             let found = released(py, || finder.find(&image, "image"))?;
             found.doubts.iter().try_for_each(|what| doubt(py, what))?;
             let targets = starts(py, found.rows.iter().map(|row| (row.target.as_str(), row.start)))?;

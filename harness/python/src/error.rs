@@ -91,8 +91,3 @@ fn warn<W: PyTypeInfo>(py: Python<'_>, text: &str) -> PyResult<()> {
     let text = CString::new(in_python(text).replace('\0', " ")).unwrap_or_default();
     PyErr::warn(py, &py.get_type::<W>(), &text, 1)
 }
-
-/// That no chessboard is found here.
-pub fn no_detector() -> PyErr {
-    UnavailableError::new_err("there is no chessboard detector: install `cv2` (opencv-python-headless)")
-}

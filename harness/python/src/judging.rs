@@ -17,7 +17,7 @@ use pyo3::types::PyDict;
 use crate::boards::Board;
 use crate::calibrating::positive;
 use crate::camera::{Camera, size_of};
-use crate::error::{doubt, input, no_detector, project};
+use crate::error::{doubt, input, project};
 use crate::measuring::Measured;
 use crate::points::{image_names, points};
 use crate::pool::released;
@@ -202,8 +202,7 @@ fn lost(arrays: &[Bound<'_, PyAny>], images: &[String], board: &Board) -> LostRo
 fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Option<Vec<String>>, in_use: bool) -> PyResult<Material> {
     let pictured = board.pictured.ok_or_else(|| input("board: photographs are of a board; expected it in a word, as 9x6:25"))?;
     with_project(py, None, |here| {
-        let finder = Finder::new(pictured, here.toolbox.detector.as_deref()).map_err(input)?;
-        finder.missing().map_or(Ok(()), |_| Err(no_detector()))?;
+        let finder = Finder::new(pictured).map_err(input)?;
         let texts = methods.unwrap_or_else(|| usual_methods(finder.kind(), in_use));
         let methods = here.methods_of_boards(&texts, finder.kind()).map_err(project)?;
         let measured = released(py, || measured_boards(photos, &finder, &methods, &|| ()))?;

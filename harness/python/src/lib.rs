@@ -7,7 +7,6 @@ mod boards;
 mod calibrating;
 mod camera;
 mod columns;
-mod cv2;
 mod detecting;
 mod difference;
 mod error;

@@ -5,12 +5,11 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use calibench_measure::registry::Build;
-use calibench_measure::{BoardDetector, Method, Registry, opencv_chessboard_sb, opencv_subpix};
+use calibench_measure::{Method, Registry, opencv_chessboard_sb, opencv_subpix};
 use calibench_plugins::is_name;
 use calibench_project::{Project, Toolbox};
 use pyo3::prelude::*;
 
-use crate::cv2::Cv2Detector;
 use crate::error::input;
 
 /// Why OpenCV's own methods are none of this build's.
@@ -37,12 +36,11 @@ pub fn add(method: Method) -> PyResult<()> {
 }
 
 /// What this package can do.
-fn toolbox(py: Python<'_>) -> Toolbox {
+fn toolbox() -> Toolbox {
     let absent = [opencv_subpix::method, opencv_chessboard_sb::method].map(|method| method(Build::Unavailable(WHY), "none".into()));
     let registry = absent.into_iter().fold(Registry::builtin(), Registry::with);
     let added = ADDED.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    let detector = Cv2Detector::installed(py).map(|detector| Box::new(detector) as Box<dyn BoardDetector>);
-    Toolbox { registry: added.into_iter().fold(registry, Registry::with), detector, ..Toolbox::default() }
+    Toolbox { registry: added.into_iter().fold(registry, Registry::with), ..Toolbox::default() }
 }
 
 /// The module that restricts its process and then becomes a plug-in.
@@ -53,7 +51,7 @@ const CONFINED: &str = "calibench.confined";
 /// # Errors
 /// What `work` refuses.
 pub fn with_project<T>(py: Python<'_>, root: Option<PathBuf>, work: impl FnOnce(&Project<'_>) -> PyResult<T>) -> PyResult<T> {
-    let toolbox = toolbox(py);
+    let toolbox = toolbox();
     let python: Option<OsString> = py.import("sys")?.getattr("executable")?.extract().ok();
     let confiner = python.filter(|python| !python.is_empty()).map(|python| vec![python, "-m".into(), CONFINED.into()]);
     work(&Project { root, confiner, ..Project::new(&toolbox) })

@@ -37,9 +37,8 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
     if let Some(folder) = plan.images {
         folder.write(&kept_image_name(file), |file| encode_png(file, &image, false))?;
     }
-    let Some(detector) = plan.tools.detector else { return Ok(Trial::default()) };
     // The side of its squares is for the judgement alone.
     let board = Chessboard { board: subject.board, side: 1.0 };
-    let finder = Finder::new(board.into(), Some(detector)).map_err(|error| RunError::Asked(error.to_string()))?;
+    let finder = Finder::new(board.into()).map_err(|error| RunError::Asked(error.to_string()))?;
     Ok(measured_board(&image, &view, &finder, plan.methods).0)
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use calibench_exchange::NewFolder;
 use calibench_measure::{Configured, ImageId, Known, Recorded, RunId};
 use calibench_model::{Image, Unknowns};
-use calibench_photographs::method_info;
+use calibench_photographs::{Finder, method_info};
 use calibench_records::parts::Span;
 use calibench_records::results::MethodInfo;
 use calibench_scenario::transfer::{Calibrates, Solver};
@@ -111,7 +111,8 @@ impl<'a> Plan<'a> {
     /// Name and version of the detector that gives the approximate positions, if one does.
     pub fn detector_used(&self) -> Option<(String, String)> {
         let used = matches!(self.scenario.subject, Subject::Photographs(_)) && self.missing().is_none();
-        self.tools.detector.filter(|_| used).map(|detector| (detector.name().to_owned(), detector.version()))
+        let (name, version) = Finder::detector();
+        used.then(|| (name.to_owned(), version.to_owned()))
     }
 
     /// Why nothing at all can be measured, if so.
@@ -196,9 +197,6 @@ impl<'a> Plan<'a> {
 
 /// Why the photographs cannot be measured, if so.
 fn missing(plan: &Plan<'_>, subject: &PhotographsSubject) -> Option<String> {
-    if plan.tools.detector.is_none() {
-        return Some("this build has no chessboard detector (it is built without OpenCV)".into());
-    }
     let folder = plan.folder_of(subject);
     let absent: Vec<&str> = subject.files.iter().map(String::as_str).filter(|file| !folder.join(file).is_file()).collect();
     let first = absent.first()?;

@@ -7,7 +7,7 @@ use calibench_scenario::Transfer;
 /// What a build has beside its methods; none of it by default.
 #[derive(Clone, Copy, Default)]
 pub struct Tools<'a> {
-    /// Finds chessboards.
+    /// OpenCV's detector of chessboards.
     pub detector: Option<&'a dyn BoardDetector>,
     /// OpenCV's calibration from a board.
     pub solver: Option<&'a dyn BoardSolver>,

@@ -13,7 +13,7 @@ use super::super::progress::Progress;
 use crate::failure::Failure;
 
 /// The points of a board in photographs, by the method of that name, or by the usual one for their kind.
-pub fn corners(context: &Context<'_>, finder: &Finder<'_>, photos: &[PathBuf], method: Option<&str>) -> Result<Corners, Failure> {
+pub fn corners(context: &Context<'_>, finder: &Finder, photos: &[PathBuf], method: Option<&str>) -> Result<Corners, Failure> {
     let method = context.method_of_boards(method.unwrap_or(finder.usual_method()), finder.kind())?;
     let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
     let progress = Progress::start("calibrate", photos.len() as u64, context.quiet);

@@ -1,5 +1,6 @@
 //! Boards in pictures that are drawn from their layouts, and in photographs.
 
+mod chessboard;
 mod conformance;
 mod photographs;
 mod picture;

@@ -168,7 +168,7 @@ impl Transfer {
             return Some(NO_SOLVER.into());
         }
         if method.measured_by.as_ref().is_some_and(|measuring| measuring.detected) && !detector {
-            return Some("this build has no chessboard detector".into());
+            return Some("this build has no detector of OpenCV's for chessboards".into());
         }
         let mut measuring = self.measured_by.iter().chain(&method.measured_by);
         measuring.find_map(|measuring| Some(format!("{}: {}", measuring.operator.label, measuring.operator.operator.as_ref().err()?)))

@@ -96,5 +96,5 @@ fn rendered_images_are_measured_and_calibrated() {
     assert_eq!(without[SOLVER].unavailable.as_deref(), Some("this build is without OpenCV"));
     assert!(without[BOARD].unavailable.is_none());
     let undetected = Plan::new(&scenario, Tools { detector: None, ..tools }, "".into()).method_infos();
-    assert_eq!(undetected[SOLVER].unavailable.as_deref(), Some("this build has no chessboard detector"));
+    assert_eq!(undetected[SOLVER].unavailable.as_deref(), Some("this build has no detector of OpenCV's for chessboards"));
 }

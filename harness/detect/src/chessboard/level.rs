@@ -1,0 +1,120 @@
+//! An image at one of several scales, and how much of a saddle each of its pixels is.
+
+use calibench_model::{CornerPoint, Image, PixelPoint};
+
+use crate::plane::Point;
+
+/// Pixels of the level that is looked at first, and of the finest, at most.
+const FIRST: usize = 800_000;
+const FINEST: usize = 4_000_000;
+/// Pixels of an image that is also looked at enlarged, at most.
+const ENLARGED: usize = 160_000;
+/// The least side of a level, px.
+const LEAST_SIDE: usize = 24;
+
+/// An image, and means of squares of two, four and so on of its pixels.
+pub(super) struct Pyramid<'a>(Vec<Image<'a>>);
+
+/// An image at one scale.
+pub(super) struct Level {
+    /// px of the image to one of the level.
+    pub factor: f64,
+    /// Its grey values, smoothed by a standard deviation of one px.
+    pub smooth: Image<'static>,
+    /// Minus the determinant of their second derivatives, row by row: positive at saddles. Zero along the border.
+    pub saddle: Vec<f32>,
+}
+
+/// A point of an image in one whose pixels are `factor` times smaller.
+pub(super) fn scaled([x, y]: Point, factor: f64) -> Point {
+    let corner = PixelPoint::new(x, y).to_corner();
+    let at = CornerPoint { x: factor * corner.x, y: factor * corner.y }.to_pixel();
+    [at.x, at.y]
+}
+
+impl Level {
+    fn new(image: &Image, factor: f64) -> Self {
+        let smooth = smoothed(image);
+        let saddle = saddles(&smooth);
+        Self { factor, smooth, saddle }
+    }
+}
+
+impl<'a> Pyramid<'a> {
+    pub(super) fn new(image: &'a Image<'a>) -> Self {
+        let mut all = vec![image.lent()];
+        while let Some(next) = all.last().map(|last| last.reduced(2)).filter(|next| next.width().min(next.height()) >= LEAST_SIDE) {
+            all.push(next);
+        }
+        Self(all)
+    }
+
+    /// The image as it is.
+    pub(super) fn image(&self) -> &Image<'a> {
+        &self.0[0]
+    }
+
+    /// The images whose pixels are at most `most` of the image's, and how many px of the image theirs are; the finest first.
+    pub(super) fn up_to(&self, most: f64) -> impl Iterator<Item = (&Image<'a>, f64)> {
+        self.0.iter().enumerate().map(|(index, image)| (image, (1_u64 << index) as f64)).take_while(move |(_, factor)| *factor <= most)
+    }
+
+    /// Levels in the order in which they are looked at: a small one, smaller ones, larger ones, an enlarged one.
+    pub(super) fn levels(&self) -> impl Iterator<Item = Level> {
+        let pixels: Vec<usize> = self.0.iter().map(|level| level.width() * level.height()).collect();
+        let below = |most: usize| pixels.iter().position(|pixels| *pixels <= most).unwrap_or(pixels.len() - 1);
+        let (first, finest) = (below(FIRST), below(FINEST));
+        let order = (first..pixels.len()).chain((finest..first).rev());
+        let ordinary = order.map(|index| Level::new(&self.0[index], (1_u64 << index) as f64));
+        let enlarged = (pixels[0] <= ENLARGED).then(|| self.image());
+        ordinary.chain(enlarged.into_iter().map(|image| Level::new(&doubled(image), 0.5)))
+    }
+}
+
+/// The image with the binomial weights 1 4 6 4 1 in both directions.
+fn smoothed(image: &Image) -> Image<'static> {
+    let (width, height) = (image.width(), image.height());
+    let mut grey = Vec::with_capacity(width * height);
+    let mut line = vec![0.0_f32; width + 4];
+    let weigh = |a: f32, b: f32, c: f32, d: f32, e: f32| (a + e) + 4.0 * (b + d) + 6.0 * c;
+    for y in 0..height {
+        let row = |off: usize| &image.row((y + off).saturating_sub(2).min(height - 1))[..width];
+        let (a, b, c, d, e) = (row(0), row(1), row(2), row(3), row(4));
+        let middle = &mut line[2..width + 2];
+        for x in 0..width {
+            middle[x] = weigh(a[x], b[x], c[x], d[x], e[x]);
+        }
+        let (first, last) = (line[2], line[width + 1]);
+        line[..2].fill(first);
+        line[width + 2..].fill(last);
+        grey.extend(line.windows(5).map(|w| weigh(w[0], w[1], w[2], w[3], w[4]) / 256.0));
+    }
+    Image::new(width, height, grey)
+}
+
+fn saddles(image: &Image) -> Vec<f32> {
+    let (width, height) = (image.width(), image.height());
+    let mut all = vec![0.0_f32; width * height];
+    for y in 1..height.saturating_sub(1) {
+        let (a, b, c) = (&image.row(y - 1)[..width], &image.row(y)[..width], &image.row(y + 1)[..width]);
+        let out = &mut all[y * width + 1..(y + 1) * width - 1];
+        for (x, out) in out.iter_mut().enumerate() {
+            let xx = b[x] - 2.0 * b[x + 1] + b[x + 2];
+            let yy = a[x + 1] - 2.0 * b[x + 1] + c[x + 1];
+            let xy = 0.25 * (a[x] - a[x + 2] - c[x] + c[x + 2]);
+            *out = xy * xy - xx * yy;
+        }
+    }
+    all
+}
+
+/// The image twice as large, by bilinear interpolation.
+fn doubled(image: &Image) -> Image<'static> {
+    let (width, height) = (image.width(), image.height());
+    // An enlarged pixel lies a quarter of a pixel beside the one it is of.
+    let other = |at: usize, size: usize| if at.is_multiple_of(2) { (at / 2).saturating_sub(1) } else { (at / 2 + 1).min(size - 1) };
+    Image::from_fn(2 * width, 2 * height, |x, y| {
+        let along = |y: usize| 0.75 * image.at(x / 2, y) + 0.25 * image.at(other(x, width), y);
+        0.75 * along(y / 2) + 0.25 * along(other(y, height))
+    })
+}

@@ -1,0 +1,137 @@
+//! Corners to a fraction of a pixel.
+
+use calibench_model::Image;
+
+use super::board::Board;
+use super::level::{Pyramid, scaled};
+use crate::plane::{Point, distance, minus, plus};
+
+/// The radius of what is looked at, as a share of the shorter step to a neighbour; px at least and at most.
+const RADIUS: f64 = 0.4;
+const LEAST: f64 = 2.0;
+const GREATEST: f64 = 9.0;
+/// How far beyond this radius gradients are kept, px.
+const SPARE: f64 = 2.0;
+/// Steps at most, and the length of the last, px.
+const STEPS: usize = 10;
+const LAST: f64 = 0.01;
+/// Where edges are sharp the misfit of their gradients gives a corner this standard deviation at most, px.
+const SHARP: f64 = 0.4;
+/// The smoothing before gradients are taken.
+const BINOMIAL: [f64; 5] = [0.0625, 0.25, 0.375, 0.25, 0.0625];
+
+/// Moves each corner to where the edges around it meet: in the image, or in a coarser one in which they are sharp. It stays where nothing meets near it.
+/// `factor`: px of the image to one of the level the board was found in.
+pub(super) fn refine(pyramid: &Pyramid, board: &mut Board, factor: f64) {
+    let steps: Vec<f64> = (0..board.corners.len()).map(|index| board.step(index)).collect();
+    let mut best = (f64::INFINITY, board.corners.clone());
+    for (image, of) in pyramid.up_to((2.0 * factor).max(1.0)) {
+        let met = |(at, step): (&Point, &f64)| {
+            let found = meeting(image, scaled(*at, 1.0 / of), step / of, factor / of);
+            found.map_or((*at, f64::INFINITY), |(at, variance)| (scaled(at, of), variance))
+        };
+        let (corners, mut variances): (Vec<Point>, Vec<f64>) = board.corners.iter().zip(&steps).map(met).unzip();
+        variances.sort_by(f64::total_cmp);
+        let middle = variances[variances.len() / 2].sqrt();
+        if middle < best.0 {
+            best = (middle, corners);
+        }
+        if middle < SHARP {
+            break;
+        }
+    }
+    board.corners = best.1;
+}
+
+/// Where edges meet near `from`, and its variance, px^2; `scale`: px of this image to one in which `from` is known to a fraction.
+fn meeting(image: &Image, from: Point, step: f64, scale: f64) -> Option<(Point, f64)> {
+    let radius = (RADIUS * step).clamp(LEAST, GREATEST);
+    let mut patch = Patch::around(image, from, radius + SPARE);
+    let (mut at, mut known) = (from, f64::INFINITY);
+    for _ in 0..STEPS {
+        if distance(at, patch.middle) > SPARE {
+            patch = Patch::around(image, at, radius + SPARE);
+        }
+        let (next, variance) = patch.met(at, radius)?;
+        if distance(next, from) > (0.2 * step).max(scale) {
+            return None;
+        }
+        let moved = distance(next, at);
+        (at, known) = (next, variance);
+        if moved < LAST {
+            break;
+        }
+    }
+    Some((at, known))
+}
+
+/// Gradients around a point; none beyond the image.
+struct Patch {
+    middle: Point,
+    first: [i64; 2],
+    side: usize,
+    gradients: Vec<Point>,
+}
+
+impl Patch {
+    fn around(image: &Image, middle: Point, reach: f64) -> Self {
+        let reach = reach.ceil() as i64;
+        let first = middle.map(|at| at.round() as i64 - reach);
+        let side = 2 * reach as usize + 1;
+        // Three px more on each side: two for the smoothing and one for the difference.
+        let wide = side + 6;
+        let inside = |at: i64, size: usize| at.clamp(0, size as i64 - 1) as usize;
+        let grey = |x: usize, y: usize| {
+            let (column, row) = (first[0] + x as i64 - 3, first[1] + y as i64 - 3);
+            f64::from(image.at(inside(column, image.width()), inside(row, image.height())))
+        };
+        let raw: Vec<f64> = (0..wide).flat_map(|y| (0..wide).map(move |x| (x, y))).map(|(x, y)| grey(x, y)).collect();
+        let smooth = smoothed(&raw, wide);
+        let at = |x: usize, y: usize| smooth[y * wide + x];
+        let gradient = |x: usize, y: usize| {
+            let (column, row) = (first[0] + x as i64, first[1] + y as i64);
+            let (x, y) = (x + 3, y + 3);
+            let difference = [at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1)];
+            if image.holds(column, row, 0) { difference } else { [0.0; 2] }
+        };
+        let gradients = (0..side).flat_map(|y| (0..side).map(move |x| (x, y))).map(|(x, y)| gradient(x, y)).collect();
+        Self { middle, first, side, gradients }
+    }
+
+    /// The point to which the gradients in a disc are closest to being at right angles, and its variance, px^2; `None` where all have one direction.
+    fn met(&self, middle: Point, radius: f64) -> Option<(Point, f64)> {
+        let (mut xx, mut xy, mut yy, mut x, mut y) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut misfit, mut weights) = (0.0, 0.0);
+        for (index, [gx, gy]) in self.gradients.iter().enumerate() {
+            let pixel = [self.first[0] + (index % self.side) as i64, self.first[1] + (index / self.side) as i64];
+            let off = minus(pixel.map(|at| at as f64), middle);
+            let weight = 1.0 - (off[0] * off[0] + off[1] * off[1]) / (radius * radius);
+            if weight <= 0.0 {
+                continue;
+            }
+            let along = gx * off[0] + gy * off[1];
+            xx += weight * gx * gx;
+            xy += weight * gx * gy;
+            yy += weight * gy * gy;
+            x += weight * gx * along;
+            y += weight * gy * along;
+            misfit += weight * along * along;
+            weights += weight;
+        }
+        let (det, trace) = (xx * yy - xy * xy, xx + yy);
+        let variance = misfit / weights * trace / det;
+        (det > 1e-3 * trace * trace && det > 0.0).then(|| (plus(middle, [(yy * x - xy * y) / det, (xx * y - xy * x) / det]), variance))
+    }
+}
+
+/// A square of grey values, smoothed where all of five are inside.
+fn smoothed(raw: &[f64], side: usize) -> Vec<f64> {
+    let pass = |from: &[f64], apart: usize| -> Vec<f64> {
+        let mut to = from.to_vec();
+        for index in 2 * apart..from.len() - 2 * apart {
+            to[index] = BINOMIAL.iter().enumerate().map(|(k, weight)| weight * from[index + k * apart - 2 * apart]).sum();
+        }
+        to
+    };
+    pass(&pass(raw, 1), side)
+}

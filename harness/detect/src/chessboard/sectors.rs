@@ -1,0 +1,59 @@
+//! The four sectors around a corner, as large as its squares.
+
+use calibench_model::Image;
+
+use crate::ground::grey;
+use crate::plane::{Linear, Point, minus, plus, times};
+
+/// How far along both steps the middle of a sector lies, and how far around it samples are taken.
+const MIDDLE: f64 = 0.22;
+const AROUND: [f64; 3] = [-0.08, 0.0, 0.08];
+/// The darker of two light sectors is lighter than the lighter of two dark ones by this share of the difference of their means.
+const SHARE: f64 = 0.08;
+
+/// The steps from a corner to its neighbours on both axes, px.
+pub(super) struct Steps(pub [Point; 2]);
+
+impl Steps {
+    /// By the corners before and behind, or by those beside it; `place` tells where a neighbour is.
+    pub(super) fn at(own: Point, place: impl Fn([i32; 2]) -> Option<Point>) -> Option<Self> {
+        let by = |axis: usize, sign: i32, across: i32| if axis == 0 { [sign, across] } else { [across, sign] };
+        let step = |axis: usize| {
+            let straight = match (place(by(axis, -1, 0)), place(by(axis, 1, 0))) {
+                (Some(before), Some(behind)) => Some(times(minus(behind, before), 0.5)),
+                (Some(before), None) => Some(minus(own, before)),
+                (None, behind) => behind.map(|behind| minus(behind, own)),
+            };
+            let beside = |across: i32| Some(minus(place(by(axis, 1, across))?, place(by(axis, 0, across))?));
+            straight.or_else(|| beside(1)).or_else(|| beside(-1))
+        };
+        Some(Self([step(0)?, step(1)?]))
+    }
+
+    /// From the plane of the board, u right and v up, whose squares have this side, to px.
+    pub(super) fn linear(&self, square: f64) -> Linear {
+        let Self([u, v]) = self;
+        Linear([0, 1].map(|axis| [u[axis] / square, -v[axis] / square]))
+    }
+}
+
+/// How two opposite sectors around a corner are lighter than the others.
+pub(super) struct Contrast {
+    /// Difference of the means: positive if the light ones are those where both steps have the same sign, negative if the others.
+    pub mean: f64,
+    /// The darker of the light ones less the lighter of the dark ones; positive.
+    pub least: f64,
+}
+
+/// The contrast of the sectors around a corner; `None` if no two are lighter than the others.
+pub(super) fn contrast(image: &Image, at: Point, Steps([u, v]): &Steps) -> Option<Contrast> {
+    let sector = |a: f64, b: f64| {
+        let samples = AROUND.iter().flat_map(|i| AROUND.iter().map(move |k| [a * MIDDLE + i, b * MIDDLE + k]));
+        samples.map(|[i, k]| grey(image, plus(at, plus(times(*u, i), times(*v, k))))).sum::<f64>() / 9.0
+    };
+    let (same, other) = ([sector(1.0, 1.0), sector(-1.0, -1.0)], [sector(1.0, -1.0), sector(-1.0, 1.0)]);
+    let mean = 0.5 * (same[0] + same[1] - other[0] - other[1]);
+    let (light, dark) = if mean > 0.0 { (same, other) } else { (other, same) };
+    let least = light[0].min(light[1]) - dark[0].max(dark[1]);
+    (least > SHARE * mean.abs() && least > 0.0).then_some(Contrast { mean, least })
+}

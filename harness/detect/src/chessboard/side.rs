@@ -1,0 +1,47 @@
+//! Sides of squares: edges between two corners.
+
+use calibench_model::Image;
+
+use super::candidates::{Saddle, direction};
+use crate::ground::grey;
+use crate::plane::{Point, cross, dot, plus, times};
+
+/// Where along a side it is looked at, as shares of its length.
+const ALONG: [f64; 5] = [0.2, 0.35, 0.5, 0.65, 0.8];
+/// How far beside it, as a share of its length; px of the level at least.
+const BESIDE: f64 = 0.1;
+const LEAST_BESIDE: f64 = 1.0;
+/// The least difference along a side is this share of the greatest.
+const EVEN: f64 = 0.05;
+/// Sine of the angle between a side and the middles of the sectors beside it, at least.
+const SLANT: f64 = 0.12;
+/// Cosine of the angle between the light of neighbours, which are a quarter turn apart, at most.
+const TURN: f64 = 0.55;
+
+/// Which way the light lies beside the way from a saddle: 1 clockwise, -1 counterclockwise in the image; `None` along the middle of a sector.
+fn light_beside(saddle: &Saddle, way: Point) -> Option<f64> {
+    let ahead = dot(saddle.light, way);
+    let beside = cross(way, saddle.light) * ahead.signum();
+    (ahead.abs() > SLANT && beside.abs() > SLANT).then(|| beside.signum())
+}
+
+/// Whether the side of a square runs from one saddle to another: the same side of it is light all along, as it is at both ends.
+pub(super) fn is_side(image: &Image, a: &Saddle, b: &Saddle) -> bool {
+    let Some((way, far)) = direction(a.at, b.at) else { return false };
+    if dot(a.light, b.light).abs() > TURN {
+        return false;
+    }
+    let (Some(from_a), Some(from_b)) = (light_beside(a, way), light_beside(b, times(way, -1.0))) else { return false };
+    if from_a != -from_b {
+        return false;
+    }
+    let beside = times([-way[1], way[0]], from_a * (BESIDE * far).max(LEAST_BESIDE));
+    let difference = |share: f64| {
+        let at = plus(a.at, times(way, share * far));
+        grey(image, plus(at, beside)) - grey(image, plus(at, times(beside, -1.0)))
+    };
+    let differences = ALONG.map(difference);
+    let least = differences.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = differences.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    least > EVEN * greatest && least > 0.0
+}
