@@ -13,7 +13,7 @@ use calibench_run::views::{Prepared, is_pointed_at};
 use calibench_run::{trial_picture, trial_truth};
 use calibench_scenario::camera::LocalPlan;
 use calibench_scenario::printed::{Column, Printed};
-use calibench_scenario::{Phase, Pixels, Scenario, SceneSubject, Starts, Subject, Transfer, ViewsSubject};
+use calibench_scenario::{Detector, Phase, Pixels, Scenario, SceneSubject, Starts, Subject, Transfer, ViewsSubject};
 use calibench_synth::stations::sees;
 use clap::Args;
 
@@ -190,7 +190,11 @@ fn views(text: &mut String, subject: &ViewsSubject) {
         }
     }
     if let Some(detector) = &subject.detector {
-        let _ = writeln!(text, "\n[pointing]\ndetector = \"harris\"\nwithin = {}", detector.within);
+        let (name, within) = match detector {
+            Detector::Harris(harris) => ("harris", harris.within),
+            Detector::Board(board) => ("board", board.within),
+        };
+        let _ = writeln!(text, "\n[pointing]\ndetector = \"{name}\"\nwithin = {within}");
         return;
     }
     let _ = writeln!(text, "\n[pointing]\nsigma = {}\nwhole_pixels = {}", subject.hand.sigma, subject.hand.whole_pixels);

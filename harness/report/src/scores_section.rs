@@ -32,13 +32,14 @@ pub fn section(loaded: &Loaded) -> String {
     };
     let kinds = if loaded.head.methods.iter().any(|info| is_limited(&info.label)) { KINDS } else { "" };
     format!(
-        "{}\n{kinds}{trials}, seed {}, errors in px, bounds of a {window} x {window} px window. [What the columns mean]({LEGEND_ANCHOR}).\n\n\
+        "{}\n{kinds}{trials}, seed {}, errors in px, bounds of a {window} x {window} px window{discs}. [What the columns mean]({LEGEND_ANCHOR}).\n\n\
          <details><summary>Bias, scatter, common points, targets</summary>\n\n{}\n{}\n</details>\n",
         main.render(),
         loaded.head.run.seed,
         more.render(),
         by_target(loaded),
-        window = loaded.scenario.bound_window
+        window = loaded.scenario.bound_window,
+        discs = loaded.scenario.bound_window_discs.map_or_else(String::new, |window| format!(", of discs {window} x {window} px")),
     )
 }
 
@@ -298,6 +299,7 @@ mod tests {
             seed: 1,
             trials,
             bound_window: 11,
+            bound_window_discs: None,
             methods: Vec::new(),
             defaults: [].into(),
             subject: Subject::Scene,

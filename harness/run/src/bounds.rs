@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use calibench_model::{PixelPoint, Unknowns};
+use calibench_model::{PixelPoint, TargetKind, Unknowns};
 use calibench_scenario::Imaging;
 use calibench_synth::bound::Bounds;
 use calibench_synth::optics::OpticsError;
@@ -11,6 +11,8 @@ use calibench_synth::raster::Picture;
 /// Computes bounds for the images of one lens and sensor.
 pub struct TargetBounds {
     bounds: Bounds,
+    /// Those of discs, where their window is another.
+    of_discs: Option<Bounds>,
     chain: Chain,
     /// The distinct sets of unknowns among the methods.
     sets: Vec<Unknowns>,
@@ -28,7 +30,7 @@ enum Chain {
 pub type BySet = BTreeMap<Unknowns, Option<f64>>;
 
 impl TargetBounds {
-    /// For windows of `window` x `window` px in pictures of `width` x `height` px; `plain` is the variance of the grey values (fractions of full
+    /// For windows of `window` x `window` px, of discs `discs` x `discs`, in pictures of `width` x `height` px; `plain` is the variance of the grey values (fractions of full
     /// scale, squared) where no sensor is described. `None` if there is nothing that bounds: no noise, or a chain of neighbours that are not
     /// independent.
     ///
@@ -38,7 +40,7 @@ impl TargetBounds {
         imaging: &Imaging,
         plain: f64,
         [width, height]: [usize; 2],
-        window: usize,
+        [window, discs]: [usize; 2],
         unknowns: impl Iterator<Item = Unknowns>,
     ) -> Result<Option<Self>, OpticsError> {
         let chain = match &imaging.sensor {
@@ -52,12 +54,15 @@ impl TargetBounds {
         let mut sets: Vec<Unknowns> = unknowns.collect();
         sets.sort_unstable();
         sets.dedup();
-        Ok(Some(Self { bounds: Bounds::new(&imaging.optics, width, height, window)?, chain, sets }))
+        let of = |window: usize| Bounds::new(&imaging.optics, width, height, window);
+        let of_discs = if discs == window { None } else { Some(of(discs)?) };
+        Ok(Some(Self { bounds: of(window)?, of_discs, chain, sets }))
     }
 
-    /// The bounds of the target at `at`, px.
-    pub fn of(&self, picture: &Picture, at: PixelPoint) -> BySet {
-        let covariances = match self.bounds.window(picture, at) {
+    /// The bounds of the target of this `kind` at `at`, px.
+    pub fn of(&self, picture: &Picture, kind: TargetKind, at: PixelPoint) -> BySet {
+        let bounds = self.of_discs.as_ref().filter(|_| kind == TargetKind::Disc).unwrap_or(&self.bounds);
+        let covariances = match bounds.window(picture, at) {
             Some(window) => window.bounds(&self.sets, |light| self.chain.mean(light), |grey| self.chain.variance(grey)),
             None => vec![None; self.sets.len()],
         };

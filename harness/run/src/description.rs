@@ -32,6 +32,7 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         seed: scenario.seed,
         trials: scenario.trials,
         bound_window: scenario.bound_window,
+        bound_window_discs: Some(scenario.bound_window_discs).filter(|window| *window != scenario.bound_window),
         methods: labels(scenario),
         defaults: scenario.methods.iter().chain(methods).map(default).collect(),
         subject,

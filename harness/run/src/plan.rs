@@ -134,6 +134,12 @@ impl<'a> Plan<'a> {
         self.methods[index].operator.as_ref().map_or_else(|_| Unknowns::default(), |operator| operator.unknowns())
     }
 
+    /// Sides of the windows of bounds, and of those of discs, px.
+    pub(crate) fn bound_windows(&self) -> [usize; 2] {
+        [self.scenario.bound_window, self.scenario.bound_window_discs]
+    }
+
+    /// What each method estimates.
     pub(crate) fn all_unknowns(&self) -> impl Iterator<Item = Unknowns> {
         (0..self.methods.len()).map(|index| self.unknowns(index))
     }

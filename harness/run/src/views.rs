@@ -5,7 +5,7 @@ use std::sync::Arc;
 use calibench_exchange::encode_png;
 use calibench_measure::ImageId;
 use calibench_model::camera::CameraModel;
-use calibench_model::{Image, Measurement, PixelPoint, Start, TargetKind};
+use calibench_model::{Image, Measurement, ObjectTarget, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::names::kept_image_name;
 use calibench_records::results::{PointResult, Trial};
@@ -83,11 +83,14 @@ impl<'a> Prepared<'a> {
             let failed = |source| RunError::View { station: station.name.clone(), source };
             let seen = view.seen(margin).map_err(failed)?;
             let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
-            let bound = |truth: &TargetTruth| match (bounds, truth.at) {
-                (Some(bounds), Some(at)) if is_pointed_at(subject, truth) => bounds.of(&picture, at),
+            let bound = |(target, truth): (&ObjectTarget, &TargetTruth)| match (bounds, truth.at) {
+                // About the reference point turning a disc would be moving it.
+                (Some(bounds), Some(at)) if is_pointed_at(subject, truth) => {
+                    bounds.of(&picture, target.kind, truth.ellipse.map_or(at, |ellipse| ellipse.centre))
+                }
                 _ => BySet::new(),
             };
-            let bounds = truth.par_iter().map(bound).collect();
+            let bounds = subject.field.targets.par_iter().zip(&truth).map(bound).collect();
             Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into() })
         };
         // The first station's error is the one that is said, whichever comes first.
@@ -119,7 +122,7 @@ impl<'a> Prepared<'a> {
 pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<TargetBounds>, RunError> {
     let size = subject.camera.size();
     let size = [size.width as usize, size.height as usize];
-    Ok(TargetBounds::new(&subject.imaging, 0.0, size, plan.scenario.bound_window, plan.all_unknowns())?)
+    Ok(TargetBounds::new(&subject.imaging, 0.0, size, plan.bound_windows(), plan.all_unknowns())?)
 }
 
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option<&TargetBounds>, number: u64) -> Result<Trial, RunError> {
@@ -272,7 +275,7 @@ pub fn starts<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>, image: &I
 
 fn started(prepared: &Prepared<'_>, image: &Image, seen: &[Pointed]) -> Vec<Option<Start>> {
     match &prepared.subject.detector {
-        Some(detector) => detector.starts(image, seen.iter().map(|point| point.truth)),
+        Some(detector) => detector.starts(image, seen.iter().map(|point| (&*prepared.targets[point.target], point.truth))),
         None => seen.iter().map(|point| Some(point.start)).collect(),
     }
 }

@@ -11,7 +11,7 @@ use toml::de::DeTable;
 
 use super::blocks;
 use super::calibration::{self, Seen};
-use super::methods::{check_kinds, methods};
+use super::methods::{check_busy, check_kinds, check_measured, methods};
 use super::recognition;
 use super::section::Section;
 use super::site::Surroundings;
@@ -95,17 +95,23 @@ impl File<'_> {
         match sweep::read::take(&mut root, self.text, self.path, problems) {
             Some(sweep) => self.cells(&root, sweep, cell, problems),
             None if swept => None,
-            None => read(self, root, false, problems),
+            None => Some(read(self, root, false, problems)?.0),
         }
     }
 
     /// Checks every cell, or one. The scenario is that of the first, with the sweep beside it.
     fn cells(self, root: &DeTable<'_>, sweep: Sweep, cell: Option<usize>, problems: &mut Vec<Problem>) -> Option<Scenario> {
-        let mut first = None;
+        let mut first: Option<(Scenario, Vec<Range<usize>>)> = None;
+        let mut kinds = Vec::new();
         for index in cell.map_or(0..sweep.cells(), |index| index..index + 1) {
             let mut found = Vec::new();
             let table = sweep.replaced(root, index, self.registry, &mut found);
             let scenario = if found.is_empty() { read(self, table, true, &mut found) } else { None };
+            for kind in scenario.iter().flat_map(|(scenario, _)| scenario.subject.kinds()) {
+                if !kinds.contains(&kind) {
+                    kinds.push(kind);
+                }
+            }
             let plain = index == 0;
             for problem in found {
                 if !problems.iter().any(|known| known.span == problem.span && known.message == problem.message) {
@@ -120,15 +126,19 @@ impl File<'_> {
                 break;
             }
         }
+        let (scenario, listed_at) = first?;
         let sweep = Some(sweep).filter(|_| cell.is_none());
-        first.map(|scenario| Scenario { sweep, ..scenario })
+        if sweep.is_some() && problems.is_empty() && scenario.methods.len() == listed_at.len() {
+            check_busy(&scenario.methods, &listed_at, &kinds, problems);
+        }
+        Some(Scenario { sweep, ..scenario })
     }
 }
 
 /// Cells are not checked further once there are this many problems.
 const MOST_PROBLEMS: usize = 10;
 
-fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Problem>) -> Option<Scenario> {
+fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Problem>) -> Option<(Scenario, Vec<Range<usize>>)> {
     let File { name, text, registry, .. } = file;
     let folder = Path::new(file.path).parent().unwrap_or(Path::new(""));
     let mut root = Section { name: "the scenario", span: 0..text.lines().next().map_or(0, str::len), table: root };
@@ -200,7 +210,12 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     };
     let (head, subject) = (head?, subject?);
     if methods.len() == listed_at.len() {
-        check_kinds(&methods, &listed_at, &subject, problems);
+        // A method may have something to measure in other cells alone.
+        if in_sweep {
+            check_measured(&methods, &listed_at, &subject, problems);
+        } else {
+            check_kinds(&methods, &listed_at, &subject, problems);
+        }
     }
     let trials_span = head.trials.as_ref().map(Spanned::span);
     let mut trials = head.trials.map_or(1, |trials| trials.into_inner().0);
@@ -216,6 +231,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         trials,
         methods,
         bound_window,
+        bound_window_discs: head.bound_window_discs.map_or(bound_window, |window| window.0),
         subject,
         sweep: None,
         text: text.to_owned(),
@@ -228,7 +244,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         let problem = Problem::new(trials_span.unwrap_or(0..0), format!("{trials} trials of a scenario in which nothing is random"));
         problems.push(problem.help("expected 1, or `grey_noise`, `phase = \"uniform\"` or [scene.pointing]"));
     }
-    Some(Scenario { trials, ..scenario })
+    Some((Scenario { trials, ..scenario }, listed_at))
 }
 
 fn nothing(start: Range<usize>) -> Problem {

@@ -102,6 +102,7 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
         problems.push(problem.help("measuring starts where somebody points: add `sigma` (px) and `whole_pixels`, or `detector`"));
     }
     let pointing = pointing.and_then(|section| Pointing::read(section, problems))?;
+    let starts = Starts::of_drawing(pointing, problems)?;
     let wire: FigureWire = section.read(&TABLES, problems)?;
     let figure = named(&wire.name, problems)?;
     let plain = Zhu::default();
@@ -142,7 +143,7 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
     let imaging = imaging.read(&surroundings(&scene), problems)?;
     Some(SceneSubject {
         scene,
-        starts: Starts::from(pointing),
+        starts,
         pixels,
         bits: wire.bits.map(|bits| bits.0),
         grey_noise: wire.grey_noise.map_or(0.0, |noise| noise.get_ref().0),

@@ -36,7 +36,7 @@ pub use check::{parse, parse_cell};
 pub use imaging::Imaging;
 pub use judgement::JudgementPlan;
 pub use plan::Scenario;
-pub use pointing::{Detector, Pointing};
+pub use pointing::{Detector, HarrisPointing, Pointing};
 pub use printed::Printed;
 pub use recognition::Recognition;
 pub use stations::StationPlan;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use calibench_diagnostics::Problem;
-use calibench_measure::kinds::{cover, distinct};
+use calibench_measure::kinds::{all_busy, cover, distinct, unmeasured};
 use calibench_measure::registry::KINDS;
 use calibench_measure::{Configured, Kinds, KindsError, KindsGap, MethodError, Registry};
 use calibench_model::TargetKind;
@@ -32,10 +32,25 @@ pub fn methods(sections: Vec<Section<'_>>, registry: &Registry, problems: &mut V
 
 /// Whether `methods`, whose tables stand at `spans`, and the `subject` go together; what does not is added to `problems`.
 pub fn check_kinds(methods: &[Configured], spans: &[Range<usize>], subject: &Subject, problems: &mut Vec<Problem>) {
-    if let Err(gap) = cover(methods, subject.kinds().iter().copied()) {
-        let index = if let KindsGap::Idle { index, .. } = gap { index } else { 0 };
-        problems.push(Problem::new(spans.get(index).cloned().unwrap_or(0..0), gap.to_string()));
+    problems.extend(cover(methods, subject.kinds().iter().copied()).err().map(|gap| at(&gap, spans)));
+}
+
+/// Whether one of `methods` measures each target of `subject`.
+pub fn check_measured(methods: &[Configured], spans: &[Range<usize>], subject: &Subject, problems: &mut Vec<Problem>) {
+    let left = unmeasured(methods, subject.kinds().iter().copied());
+    if !left.is_empty() {
+        problems.push(at(&KindsGap::Unmeasured(left), spans));
     }
+}
+
+/// Whether each of `methods` has targets among those of these `kinds`.
+pub fn check_busy(methods: &[Configured], spans: &[Range<usize>], kinds: &[TargetKind], problems: &mut Vec<Problem>) {
+    problems.extend(all_busy(methods, kinds.iter().copied()).err().map(|gap| at(&gap, spans)));
+}
+
+fn at(gap: &KindsGap, spans: &[Range<usize>]) -> Problem {
+    let index = if let KindsGap::Idle { index, .. } = gap { *index } else { 0 };
+    Problem::new(spans.get(index).cloned().unwrap_or(0..0), gap.to_string())
 }
 
 fn method(mut section: Section<'_>, registry: &Registry, problems: &mut Vec<Problem>) -> Option<Configured> {

@@ -22,6 +22,8 @@ pub struct Scenario {
     pub methods: Vec<Configured>,
     /// Side of the window to which the Cramér-Rao bound belongs, px.
     pub bound_window: usize,
+    /// The same of discs.
+    pub bound_window_discs: usize,
     /// What is measured.
     pub subject: Subject,
     /// Its sweep, if it has one; all else is then that of the first cell.

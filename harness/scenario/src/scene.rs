@@ -63,7 +63,10 @@ pub fn read(mut section: Section<'_>, imaging: ImagingTables<'_>, problems: &mut
         problems
             .push(Problem::new(span, "`phase = \"uniform\"` moves the targets: their starts must move too").help("add [scene.pointing]"));
     }
-    let starts = pointing.map_or(Starts::Given(given), Starts::from);
+    let starts = match pointing {
+        Some(pointing) => Starts::of_drawing(pointing, problems)?,
+        None => Starts::Given(given),
+    };
     let pixels = wire.pixels.unwrap_or_default();
     check_imaging(&imaging, pixels, &wire, problems);
     let imaging = imaging.read(&surroundings(&scene), problems)?;

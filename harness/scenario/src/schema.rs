@@ -13,13 +13,13 @@ use super::camera::{CameraWire, LocalWire};
 use super::figure::FigureWire;
 use super::judgement::JudgementWire;
 use super::optics::OpticsWire;
-use super::pointing::DetectorWire;
+use super::pointing::{BoardPointingWire, HarrisWire};
 use super::printed::wire as printed_wire;
 use super::recognition::{ImagesWire, RecognitionWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::sweep::wire::SweepWire;
-use super::testfield::boards::wire::{AprilGridWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
+use super::testfield::boards::wire::{AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};
@@ -70,9 +70,9 @@ pub fn schema(registry: &Registry) -> Value {
     root
 }
 
-/// A hand, or a detector.
+/// A hand, or one of the detectors.
 fn pointing() -> Value {
-    json!({ "oneOf": [table::<PointingWire>(), table::<DetectorWire>()] })
+    json!({ "oneOf": [table::<PointingWire>(), table::<HarrisWire>(), table::<BoardPointingWire>()] })
 }
 
 fn transfer() -> Value {
@@ -115,6 +115,7 @@ fn testfield() -> Value {
         ("wall", wall),
         ("coded", table::<CodedWire>()),
         ("house", table::<HouseWire>()),
+        ("board", with(table::<BoardFieldWire>(), &table::<SheetWire>())),
         ("charuco", with(table::<CharucoWire>(), &table::<SheetWire>())),
         ("aprilgrid", with(table::<AprilGridWire>(), &table::<SheetWire>())),
         ("circles", with(table::<CirclesWire>(), &table::<SheetWire>())),

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::path::PathBuf;
 
+use calibench_diagnostics::Problem;
 use calibench_measure::Board;
 use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Scene, TargetKind, Testfield};
@@ -16,7 +17,7 @@ use calibench_synth::stations::{Station, StationError};
 use crate::camera::LocalPlan;
 use crate::recognition::RECOGNITION;
 use crate::{
-    Blocks, Calibration, Detector, Imaging, JudgementPlan, Phase, Pixels, Pointing, Printed, Recognition, StationPlan, Transfer, Unit,
+    Blocks, Calibration, Detector, HarrisPointing, Imaging, JudgementPlan, Phase, Pixels, Pointing, Printed, Recognition, StationPlan, Transfer, Unit,
 };
 
 /// What a scenario measures.
@@ -169,7 +170,7 @@ pub enum Starts {
     /// Pointed at anew in each trial.
     Pointed(Hand),
     /// Found in each image.
-    Detected(Detector),
+    Detected(HarrisPointing),
 }
 
 impl Starts {
@@ -183,11 +184,16 @@ impl Starts {
     }
 }
 
-impl From<Pointing> for Starts {
-    fn from(pointing: Pointing) -> Self {
+impl Starts {
+    /// Those of a drawing, in which no board is looked for.
+    pub(crate) fn of_drawing(pointing: Pointing, problems: &mut Vec<Problem>) -> Option<Self> {
         match pointing {
-            Pointing::Hand { hand, .. } => Self::Pointed(hand),
-            Pointing::Detector(detector) => Self::Detected(detector),
+            Pointing::Hand { hand, .. } => Some(Self::Pointed(hand)),
+            Pointing::Harris(detector) => Some(Self::Detected(detector)),
+            Pointing::Board { span, .. } => {
+                problems.push(Problem::new(span, "`detector = \"board\"` in a drawing: expected it with a [testfield] that is a board"));
+                None
+            }
         }
     }
 }

@@ -13,7 +13,11 @@ use calibench_synth::pointing::{Hand, MapError};
 use super::camera::CameraPlan;
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
-use super::{Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};
+use super::pointing::BoardPointing;
+use super::{Detector, Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};
+
+/// Where a detector points.
+const NO_HAND: Hand = Hand { sigma: 0.0, whole_pixels: true, map: MapError { turn: 0.0, stretch: 0.0 } };
 
 /// Lens and sensor as they stand in the file, not read yet: a sensor's contrast depends on what it sees.
 pub struct ImagingTables<'i> {
@@ -116,7 +120,15 @@ impl<'i> ViewTables<'i> {
         let redraw = Some(plan_of_stations).filter(|plan| plan.each_trial);
         let (hand, clipped, detector) = match pointing {
             Pointing::Hand { hand, clipped } => (hand, clipped, None),
-            Pointing::Detector(detector) => (Hand { sigma: 0.0, whole_pixels: true, map: MapError::default() }, false, Some(detector)),
+            Pointing::Harris(harris) => (NO_HAND, false, Some(Detector::Harris(harris))),
+            Pointing::Board { span, within } => {
+                let Some(board) = plan.board() else {
+                    let problem = Problem::new(span, "`detector = \"board\"` finds boards, and the [testfield] is none");
+                    problems.push(problem.help(format!("expected one of kind {}", testfield::BOARDS.join(", "))));
+                    return None;
+                };
+                (NO_HAND, false, Some(Detector::Board(BoardPointing { board, within })))
+            }
         };
         let (unit, survey_sigma) = (plan.unit, plan.survey_sigma());
         let imaging = imaging?;

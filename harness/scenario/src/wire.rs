@@ -153,6 +153,8 @@ pub struct Head {
     pub seed: Seed,
     /// Side of the window to which the Cramér-Rao bound of each target belongs, px, odd: no operator that sees no more can be better. Default 15.
     pub bound_window: Option<OddWindow>,
+    /// The same of discs, which have to lie in their window as a whole. Default: `bound_window`.
+    pub bound_window_discs: Option<OddWindow>,
     /// Number of trials; each has its own phase, noise and pointing. Default 1.
     #[schemars(with = "Option<Trials>")]
     pub trials: Option<Spanned<Trials>>,

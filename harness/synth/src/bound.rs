@@ -121,7 +121,9 @@ impl Window<'_> {
         let Some((groups, normal)) = normal() else { return vec![None; sets.len()] };
         let part = |set| {
             let (chosen, shared) = chosen(groups, set);
-            position(&normal.select_rows(&chosen).select_columns(&chosen), &shared)
+            let covariance = position(&normal.select_rows(&chosen).select_columns(&chosen), &shared)?;
+            // A window that holds no edge tells of the position that it is somewhere about.
+            (covariance.sxx + covariance.syy < (self.side * self.side) as f64).then_some(covariance)
         };
         sets.iter().map(|&set| part(set)).collect()
     }

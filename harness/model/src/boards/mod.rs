@@ -54,6 +54,14 @@ impl Board {
         }
     }
 
+    /// Whether its marks say which they are: a part of it is enough to number its points.
+    pub const fn is_coded(&self) -> bool {
+        match self {
+            Self::Charuco(_) | Self::AprilGrid(_) | Self::Rings(_) => true,
+            Self::Chessboard(_) | Self::Circles(_) => false,
+        }
+    }
+
     /// The dictionary of its markers and the width of their frames, cells, if it has markers.
     pub const fn dictionary(&self) -> Option<(&'static Dictionary, usize)> {
         match self {

@@ -29,6 +29,9 @@ pub struct Description {
     pub trials: u64,
     /// Side of the window to which the Cramér-Rao bound belongs, px.
     pub bound_window: usize,
+    /// The same of discs, where it is another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound_window_discs: Option<usize>,
     /// The labels of the methods of its file, in their order.
     pub methods: Vec<String>,
     /// The label of each operator with all parameters at their defaults, by the operator's name.
@@ -133,6 +136,7 @@ mod tests {
             seed: i64::MAX as u64,
             trials: 3,
             bound_window: 15,
+            bound_window_discs: None,
             methods: vec!["forstner:window=15".into()],
             defaults: [("forstner".into(), "forstner:window=11".into())].into(),
             subject: Subject::Views(Box::new(views)),
@@ -166,6 +170,7 @@ mod tests {
             seed: 1,
             trials: 1,
             bound_window: 11,
+            bound_window_discs: None,
             methods: Vec::new(),
             defaults: BTreeMap::new(),
             subject,

@@ -126,6 +126,7 @@ mod tests {
             seed: 1,
             trials: 2,
             bound_window: 11,
+            bound_window_discs: None,
             methods: Vec::new(),
             defaults: BTreeMap::new(),
             subject: Subject::Scene,

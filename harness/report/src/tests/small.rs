@@ -82,6 +82,7 @@ fn description() -> Description {
         seed: 5,
         trials: 2,
         bound_window: 15,
+        bound_window_discs: None,
         methods: vec!["pixel".into(), "centroid:window=15".into()],
         defaults: [("pixel".into(), "pixel".into()), ("centroid".into(), "centroid:window=15".into())].into(),
         subject: Subject::Scene,

@@ -1,7 +1,9 @@
 //! The first step: interior and exterior orientations of all images together.
 
 use calibench_adjust::approximate::Control;
-use calibench_adjust::{Covariances, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Solution, Variance, adjust};
+use calibench_adjust::{
+    Covariances, Distance, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Solution, Variance, adjust, frame_uncertainty,
+};
 use calibench_calibrate::pose_of;
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel};
@@ -9,7 +11,7 @@ use calibench_model::convert::{DifferenceOptions, difference};
 use calibench_records::results::{Figure, Group};
 use nalgebra::Point3;
 
-use super::{Job, Observed, angles};
+use super::{Job, Observed, angles, discs};
 
 /// An adjusted camera with its figures.
 #[derive(Clone, Debug)]
@@ -47,7 +49,10 @@ pub fn adjusted(
 ) -> Result<Adjusted, String> {
     let camera: Camera = job.calibration.start.into();
     let interior = Interior::fixed("the camera", camera).free(parameters).map_err(|error| error.to_string())?;
-    let network = network(job, observed, method, interior, starts);
+    let mut network = network(job, observed, method, interior, starts);
+    if job.calibration.eccentricity {
+        discs::centred(job, &mut network)?;
+    }
     let solution = adjust(&network, &Options::default()).map_err(|error| error.to_string())?;
     let covariances = solution.covariances(Variance::Estimated).map_err(|error| error.to_string())?;
     let mut figures = interior_figures(job, &solution, &covariances);
@@ -142,13 +147,23 @@ fn rest(job: &Job<'_>, solution: &Solution<'_>, covariances: &Covariances) -> Ve
     }
     let options = DifferenceOptions { columns: FRAME_COLUMNS, ..DifferenceOptions::default() };
     if let Ok(found) = difference(job.camera, &solution.cameras()[0], &options) {
-        figures.push(Figure::plain(Group::Frame, "rms", found.spread.rms_px, "px"));
+        let sigma = predicted(&solution.cameras()[0], covariances);
+        figures.push(Figure { group: Group::Frame, name: "rms".into(), value: found.spread.rms_px, sigma, error: None, unit: "px" });
     }
     figures
 }
 
 /// Columns of the grid over which cameras are compared.
 const FRAME_COLUMNS: usize = 16;
+
+/// What the covariance of the camera predicts of its distance from the true one over the frame, px: root mean square, after the best rotation.
+fn predicted(camera: &Camera, covariances: &Covariances) -> Option<f64> {
+    let (names, matrix) = covariances.of_camera(0);
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    let map = frame_uncertainty(camera, (&names, &matrix), (FRAME_COLUMNS, FRAME_COLUMNS * 3 / 4), Distance::Far).ok()?;
+    let sum: f64 = map.iter().map(|place| place.covariance.sxx + place.covariance.syy).sum();
+    (!map.is_empty()).then(|| (sum / map.len() as f64).sqrt())
+}
 
 fn residuals(job: &Job<'_>, solution: &Solution<'_>, wanted: Wanted) -> Vec<Figure> {
     let network = solution.network();

@@ -42,6 +42,8 @@ pub struct Calibration {
     pub control_sigma: f64,
     /// Where coordinates are drawn: of each method, in the scenario's order, the standard deviation per axis, px; `None` for the hand.
     pub drawn: Option<Vec<(String, Option<f64>)>>,
+    /// Whether the eccentricity of discs is taken out.
+    pub eccentricity: bool,
     /// Whether the image points of every trial are kept.
     pub keep_points: bool,
     /// The second step.
@@ -108,6 +110,7 @@ pub fn read(mut section: Section<'_>, views: &Seen<'_>, methods: &[Configured], 
         survey_sigma,
         control_sigma: wire.control_sigma.map_or(survey_sigma, |sigma| sigma.0),
         drawn,
+        eccentricity: wire.eccentricity.unwrap_or(false),
         keep_points: wire.keep_points.unwrap_or(false),
         check: check.flatten(),
     })

@@ -38,6 +38,8 @@ pub struct CalibrationWire {
     /// Standard deviation per axis of each method's image coordinates, px, by its label, `pixel` apart: coordinates are then drawn and no image is rendered.
     #[schemars(with = "Option<BTreeMap<String, Error>>")]
     pub drawn: Option<Spanned<BTreeMap<String, Error>>>,
+    /// Whether what the centres of discs' pictures are off the pictures of their centres is taken out, by their known size and plane. Default false.
+    pub eccentricity: Option<bool>,
     /// Whether the records keep the image points of every trial. Default: those of the first.
     pub keep_points: Option<bool>,
 }

@@ -2,6 +2,7 @@
 
 use calibench_diagnostics::Problem;
 use calibench_model::Testfield;
+use calibench_model::boards::{Board, Chessboard as PlainBoard};
 use calibench_random::Key;
 use calibench_synth::testfield::{Chessboard, Coded, FieldError, House, Wall};
 use toml::de::DeValue;
@@ -21,7 +22,10 @@ pub(super) use spans::Spans;
 use wire::{ChessboardWire, CodedWire, Height, HouseWire};
 
 /// The kinds of testfield.
-pub const KINDS: [&str; 9] = ["chessboard", "wall", "coded", "house", "charuco", "aprilgrid", "circles", "rings", "tags"];
+pub const KINDS: [&str; 10] = ["chessboard", "wall", "coded", "house", "board", "charuco", "aprilgrid", "circles", "rings", "tags"];
+
+/// Those that are boards.
+pub const BOARDS: [&str; 6] = ["chessboard", "board", "charuco", "aprilgrid", "circles", "rings"];
 
 /// The unit of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -78,6 +82,17 @@ impl FieldPlan {
             Generator::House(house) => house.generate(key),
             Generator::Board(sheet) => sheet.generate(key),
             Generator::Tags(tags) => tags.generate(),
+        }
+    }
+
+    /// The board that it is, if it is one.
+    pub const fn board(&self) -> Option<Board> {
+        match &self.generator {
+            Generator::Chessboard(board) => {
+                Some(Board::Chessboard(PlainBoard { columns: board.columns, rows: board.rows, square: board.square }))
+            }
+            Generator::Board(sheet) => Some(sheet.board),
+            Generator::Wall(..) | Generator::Coded(_) | Generator::House(_) | Generator::Tags(_) => None,
         }
     }
 

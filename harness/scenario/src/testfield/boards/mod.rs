@@ -13,10 +13,10 @@ use crate::section::Section;
 
 pub mod wire;
 
-use wire::{AprilGridWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
+use wire::{AprilGridWire, BoardWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
 
 /// The kinds that are one sheet.
-pub const SHEETS: [&str; 4] = ["charuco", "aprilgrid", "circles", "rings"];
+pub const SHEETS: [&str; 5] = ["board", "charuco", "aprilgrid", "circles", "rings"];
 /// The keys that all of them have.
 const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background"];
 
@@ -24,6 +24,7 @@ const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "pape
 pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -> Option<Generator> {
     let sheet: Option<SheetWire> = section.take_keys(&COMMON).read(&[], problems);
     let (board, usual_margin) = match kind {
+        "board" => in_a_word(&section.read(&COMMON, problems)?, problems)?,
         "charuco" => charuco(&section.read(&COMMON, problems)?, problems)?,
         "aprilgrid" => aprilgrid(&section.read(&COMMON, problems)?, problems)?,
         "circles" => circles(&section.read(&COMMON, problems)?),
@@ -38,6 +39,19 @@ pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -
         levels: levels(sheet.paper, sheet.ink),
         background: sheet.background.map_or(BACKGROUND, |level| level.0),
     }))
+}
+
+/// A board in the words of `--board`.
+fn in_a_word(wire: &BoardWire, problems: &mut Vec<Problem>) -> Option<(Board, f64)> {
+    let board = wire.board.get_ref().parse::<Board>().map_err(|error| problems.push(Problem::new(wire.board.span(), error.to_string()))).ok()?;
+    let usual_margin = match &board {
+        Board::Chessboard(board) => board.square,
+        Board::Charuco(board) => board.square,
+        Board::AprilGrid(board) => board.tag,
+        Board::Circles(board) => board.spacing,
+        Board::Rings(board) => board.spacing,
+    };
+    Some((board, usual_margin))
 }
 
 fn dictionary(name: &Spanned<String>, problems: &mut Vec<Problem>) -> Option<&'static Dictionary> {

@@ -27,6 +27,15 @@ pub struct SheetWire {
     pub background: Option<Grey>,
 }
 
+/// Any board, in the words of `--board`.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoardWire {
+    /// As in "charuco:8x5:30:21:DICT_4X4_50"; lengths in object units.
+    #[schemars(with = "String")]
+    pub board: Spanned<String>,
+}
+
 /// A chessboard whose light squares hold markers, counted in squares; its first inner corner, r1c1, is the origin; x to the right, y upwards.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

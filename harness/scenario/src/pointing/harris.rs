@@ -1,14 +1,12 @@
-//! Where measuring starts: somebody points, or a detector finds.
+//! A Harris detector in place of a hand.
 
-use calibench_diagnostics::Problem;
 use calibench_measure::harris::{Detection, Harris, HarrisDetector, smooth};
 use calibench_model::{Image, PixelPoint, Start};
-use calibench_synth::pointing::{Hand, MapError};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::section::Section;
-use super::wire::{PointingWire, bounded};
+use super::DetectorReach;
+use crate::wire::bounded;
 
 bounded! {
     /// The standard deviation of a detector's Gaussian, px.
@@ -21,17 +19,15 @@ bounded! {
     DetectorStrongest(usize), i64 "i64", 1, 1_000_000;
     /// A distance in whole pixels.
     DetectorSeparation(usize), i64 "i64", 1, 100;
-    /// A distance, px.
-    DetectorReach(f64), f64 "f64", 0.1, 100.0;
 }
 
 /// A detector in the place of a hand: operators start at its detections.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(inline)]
-pub struct DetectorWire {
+pub struct HarrisWire {
     /// `harris`: the pixels of largest Harris strength in the whole image, as Zhu, Wu & Wan start.
-    pub detector: DetectorKind,
+    pub detector: HarrisKind,
     /// A target takes the detection nearest to it within this distance, px; without one it is missed. Default 3.
     pub within: Option<DetectorReach>,
     /// Standard deviation of the integration Gaussian, px. Default 1.
@@ -48,61 +44,27 @@ pub struct DetectorWire {
     pub separation: Option<DetectorSeparation>,
 }
 
-/// How far an approximate orientation of the camera turns a target, degrees, and by what part it changes its axes' lengths, where nothing else is said.
-const MAP_TURN: f64 = 5.0;
-const MAP_STRETCH: f64 = 0.1;
-
 /// Which detector.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(inline)]
-pub enum DetectorKind {
+pub enum HarrisKind {
     /// The Harris detector.
     Harris,
 }
 
-/// Who gives the approximate positions.
-#[derive(Clone, Debug)]
-pub enum Pointing {
-    /// A hand, near the truth.
-    Hand {
-        /// How well it points.
-        hand: Hand,
-        /// Whether at targets too of which only a part is in view.
-        clipped: bool,
-    },
-    /// A detector, which sees the image and nothing else.
-    Detector(Detector),
-}
-
 /// A Harris detector and how its detections are told apart.
 #[derive(Clone, Debug)]
-pub struct Detector {
+pub struct HarrisPointing {
     harris: HarrisDetector,
     derivation: Option<f64>,
     /// A target takes the nearest detection within this distance, px.
     pub within: f64,
 }
 
-impl Pointing {
-    /// Reads a pointing table: that of a detector if it names one, otherwise that of a hand.
-    pub fn read(section: Section<'_>, problems: &mut Vec<Problem>) -> Option<Self> {
-        if section.table.contains_key("detector") {
-            return section.read::<DetectorWire>(&[], problems).map(|wire| Self::Detector(wire.into()));
-        }
-        let wire: PointingWire = section.read(&["detector"], problems)?;
-        let shakes = wire.sigma.0 > 0.0;
-        let usual = |value: f64| if shakes { value } else { 0.0 };
-        let turn = wire.map_turn.map_or(usual(MAP_TURN), |turn| turn.0).to_radians();
-        let stretch = wire.map_stretch.map_or(usual(MAP_STRETCH), |stretch| stretch.0);
-        let hand = Hand { sigma: wire.sigma.0, whole_pixels: wire.whole_pixels, map: MapError { turn, stretch } };
-        Some(Self::Hand { hand, clipped: wire.clipped.unwrap_or(false) })
-    }
-}
-
-impl From<DetectorWire> for Detector {
-    fn from(wire: DetectorWire) -> Self {
-        let DetectorKind::Harris = wire.detector;
+impl From<HarrisWire> for HarrisPointing {
+    fn from(wire: HarrisWire) -> Self {
+        let HarrisKind::Harris = wire.detector;
         let (alpha, sigma) = (wire.alpha.map_or(0.04, |alpha| alpha.0), wire.sigma.map_or(1.0, |sigma| sigma.0));
         let derivation = wire.derivation.map(|derivation| derivation.0);
         let harris = derivation.map_or_else(|| Harris::new(alpha, sigma), |derivation| Harris::scale_adapted(alpha, derivation, sigma));
@@ -116,7 +78,7 @@ impl From<DetectorWire> for Detector {
     }
 }
 
-impl Detector {
+impl HarrisPointing {
     /// The detections in an image, strongest first.
     pub fn detect(&self, image: &Image) -> Vec<Detection> {
         match self.derivation {
@@ -138,9 +100,9 @@ impl Detector {
 mod tests {
     use super::*;
 
-    fn detector(within: f64) -> Detector {
+    fn detector(within: f64) -> HarrisPointing {
         let harris = HarrisDetector { harris: Harris::new(0.04, 1.0), radius: 3, threshold: 0.01, strongest: 10 };
-        Detector { harris, derivation: None, within }
+        HarrisPointing { harris, derivation: None, within }
     }
 
     /// A light square on dark, its corners at the borders of pixels.
@@ -163,7 +125,7 @@ mod tests {
 
     #[test]
     fn smoothing_before_the_derivative_is_part_of_it() {
-        let smoothed = Detector {
+        let smoothed = HarrisPointing {
             derivation: Some(1.0),
             harris: HarrisDetector { harris: Harris::scale_adapted(0.04, 1.0, 1.0), ..detector(3.0).harris },
             within: 3.0,
