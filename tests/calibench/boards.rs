@@ -174,3 +174,49 @@ fn boards_are_judged() {
     let page = std::fs::read_to_string(folder.path().join("page/README.md")).unwrap();
     assert!(page.contains("`aprilgrid:6x4:48:0.3`"), "{page}");
 }
+
+/// A small sweep over two boards, from its records to the page: what is found, how well, and what the camera is worth.
+#[test]
+fn boards_are_compared_on_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(root().join("scenarios/targets/by-noise.toml")).unwrap();
+    let mut small =
+        text.replace("    \"charuco:10x7:38:26.6:DICT_4X4_50\",\n    \"aprilgrid:6x4:48:0.3\",\n    \"circles:10x7:38:20\",\n", "");
+    for (from, to) in [
+        ("[0.003, 0.01, 0.03, 0.1]", "[0.003, 0.03]"),
+        ("trials = 4", "trials = 2"),
+        ("size = [1280, 960]\npitch = 5.0", "size = [640, 480]\npitch = 10.0"),
+        ("count = 12", "count = 5"),
+        ("bound_window_discs = 81", "bound_window_discs = 41"),
+    ] {
+        assert!(small.contains(from), "{from}");
+        small = small.replace(from, to);
+    }
+    std::fs::create_dir_all(folder.path().join("scenarios/targets")).unwrap();
+    std::fs::create_dir_all(folder.path().join("reference")).unwrap();
+    std::fs::write(folder.path().join("scenarios/targets/by-noise.toml"), small).unwrap();
+    let project = folder.path().display().to_string();
+    for command in [["run", "targets/by-noise"], ["report", "targets"]] {
+        let output = run(folder.path(), &[&["--root", &project][..], &command[..], &["-q"][..]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let page = std::fs::read_to_string(folder.path().join("reports/targets/which-target.md")).unwrap();
+    let row = |noise: &str, board: &str| -> Vec<String> {
+        let cells = |line: &str| line.split('|').map(|cell| cell.trim().trim_matches('`').to_owned()).collect::<Vec<_>>();
+        page.lines()
+            .map(cells)
+            .find(|cells| cells.len() == 13 && cells[1] == noise && cells[2] == board)
+            .unwrap_or_else(|| panic!("{page}"))
+    };
+    for board in ["chessboard", "rings"] {
+        let camera = |noise: &str| row(noise, board)[8].split(' ').next().unwrap().parse::<f64>().unwrap();
+        assert!(camera("0.03") > 2.0 * camera("0.003"), "{page}");
+        let predicted = |noise: &str| row(noise, board)[9].parse::<f64>().unwrap();
+        assert!((predicted("0.03") / predicted("0.003") - 10.0).abs() < 5.0, "{page}");
+    }
+    let found = row("0.003", "chessboard");
+    assert_eq!((found[3].as_str(), found[4].as_str(), found[5].as_str()), ("parametric_corner:window=15", "100.0", "0"));
+    assert!((0.8..1.3).contains(&found[7].parse::<f64>().unwrap()), "{page}");
+    let index = std::fs::read_to_string(folder.path().join("reports/targets/README.md")).unwrap();
+    assert!(index.contains("(which-target.md)") && folder.path().join("reports/targets/by-noise.png").is_file());
+}

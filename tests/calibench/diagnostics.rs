@@ -210,3 +210,37 @@ mod any_text {
         }
     }
 }
+
+/// What a sweep over boards and a detector of boards ask of a scenario.
+#[test]
+fn detectors_of_boards_want_a_board_and_methods_a_cell_with_their_targets() {
+    let text = std::fs::read_to_string(crate::project::root().join("scenarios/targets/by-noise.toml")).unwrap();
+    let said = |changes: &[(&str, &str)]| {
+        let mut text = text.clone();
+        for (from, to) in changes {
+            assert!(text.contains(from), "{from}");
+            text = text.replace(from, to);
+        }
+        match parse("targets/test", "test.toml", &text, &Registry::builtin()) {
+            Ok(_) => String::new(),
+            Err(problems) => problems.to_string(),
+        }
+    };
+    assert_eq!(said(&[]), "");
+    let wall = said(&[
+        (
+            "\"testfield.board\" = [\n    \"chessboard:9x6:38\",\n    \"charuco:10x7:38:26.6:DICT_4X4_50\",\n    \"aprilgrid:6x4:48:0.3\",\n    \"circles:10x7:38:20\",\n    \"rings:12:10x7:38:10\",\n]\n",
+            "",
+        ),
+        ("kind = \"board\"\nunit = \"mm\"\nboard = \"chessboard:9x6:38\"\nmargin = 8", "kind = \"coded\""),
+    ]);
+    assert!(wall.contains("`detector = \"board\"` finds boards, and the [testfield] is none") && wall.contains("aprilgrid"), "{wall}");
+    let unknown = said(&[("detector = \"board\"", "detector = \"board\"\nsigma = 1")]);
+    assert!(unknown.contains("unknown key `sigma`"), "{unknown}");
+    let idle = said(&[("    \"circles:10x7:38:20\",\n    \"rings:12:10x7:38:10\",\n", "")]);
+    assert!(idle.contains("`ellipse_edges:kinds=disc` has nothing to measure"), "{idle}");
+    let unmeasured = said(&[("[[method]]\nname = \"ellipse_edges\"\nkinds = [\"disc\"]\n", "")]);
+    assert!(unmeasured.contains("disc"), "{unmeasured}");
+    let drawn = diagnostics("background = 0.8", "background = 0.8\n[scene.pointing]\ndetector = \"board\"");
+    assert!(drawn.contains("`detector = \"board\"` in a drawing"), "{drawn}");
+}

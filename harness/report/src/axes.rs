@@ -77,6 +77,17 @@ impl Axes {
         write(area, title, (left + width / 2, top + height + 38), HPos::Center);
     }
 
+    /// Names below, at 0, 1, ... of the scale, and the title of the scale.
+    pub(crate) fn named(&self, area: &Area<'_>, title: &str, names: &[&str]) {
+        let [left, top, width, height] = self.at;
+        for (value, name) in names.iter().enumerate() {
+            let (x, _) = self.place(value as f64, self.y[0]);
+            area.draw(&PathElement::new([(x, top + height), (x, top + height + 5)], BLACK)).ok();
+            write(area, name, (x, top + height + 16), HPos::Center);
+        }
+        write(area, title, (left + width / 2, top + height + 38), HPos::Center);
+    }
+
     /// A horizontal line at a value.
     pub(crate) fn level(&self, area: &Area<'_>, value: f64, colour: RGBColor) {
         let (_, y) = self.place(self.x[0], value);

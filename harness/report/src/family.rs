@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::page::Page;
 use crate::places::PAGE;
-use crate::{LoadError, Loaded, Places, ReportError, Written, atlas, load, published, sweep, zhu};
+use crate::{LoadError, Loaded, Places, ReportError, Written, atlas, load, published, sweep, targets, zhu};
 
 /// Writes the report of `family` from the records of `scenarios`, in place of the older one. One that could not be measured here at all does
 /// not replace one that was measured elsewhere.
@@ -53,11 +53,20 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
         page.text.push_str(&text);
         page.pictures.extend(pictures);
     }
+    let mut compared = Vec::new();
     for one in &all {
         match one {
             Either::Plain(loaded) => page.scenario(loaded),
+            Either::Sweep(loaded) if targets::is_of_boards(loaded) => {
+                compared.extend(targets::Comparison::load(&places.records, &loaded.name)?)
+            }
             Either::Sweep(loaded) => page.sweep(loaded, &printed_factors(&tables))?,
         }
+    }
+    if let Some((text, pictures)) = targets::page(&compared) {
+        page.answers.say(format!("[Which target, when]({}).", targets::FILE));
+        page.pictures.extend(pictures);
+        page.beside.push((targets::FILE, text));
     }
     OutputFolder::open(&places.reports.join(family))?.replace(|folder| page.write(folder))?;
     Ok(Written::New(page_path))

@@ -34,6 +34,7 @@ mod scores_section;
 mod sides;
 pub mod speeds;
 pub mod sweep;
+mod targets;
 pub(crate) mod ticks;
 mod transfer;
 pub mod verdicts;

@@ -24,6 +24,8 @@ pub struct Page {
     /// Whether there are tables of scores.
     scored: bool,
     pub pictures: Vec<(String, Canvas)>,
+    /// Pages of their own, by file name.
+    pub beside: Vec<(&'static str, String)>,
 }
 
 impl Page {
@@ -35,6 +37,7 @@ impl Page {
             text: String::new(),
             scored: false,
             pictures: Vec::new(),
+            beside: Vec::new(),
         }
     }
 
@@ -145,6 +148,9 @@ impl Page {
     /// What the folder refuses.
     pub fn write(&self, folder: &NewFolder) -> io::Result<()> {
         write_pictures(folder, &self.pictures)?;
+        for (name, text) in &self.beside {
+            folder.write(name, |file| file.write_all(text.as_bytes()))?;
+        }
         let legend = if self.scored { scores_section::legend() } else { String::new() };
         let body = format!("{}\n\n{legend}", self.text.trim_end());
         let family = &self.family;

@@ -37,9 +37,7 @@ impl<'a> Prepared<'a> {
         let size = [scene.width, scene.height];
         // Drawn pixels are not what a lens makes: the bound is of another image.
         let bounds = match subject.pixels {
-            Pixels::Area if plan.bounds => {
-                TargetBounds::new(&subject.imaging, variance, size, plan.bound_windows(), plan.all_unknowns())?
-            }
+            Pixels::Area if plan.bounds => TargetBounds::new(&subject.imaging, variance, size, plan.bound_windows(), plan.all_unknowns())?,
             _ => None,
         };
         Ok(Self { subject, renderer: subject.renderer()?, bounds })
@@ -59,7 +57,8 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     let view: Arc<str> = VIEW.into();
     let targets: Vec<Arc<str>> = truth.targets.iter().map(|target| target.id.as_str().into()).collect();
     let picture = Picture::from(&truth);
-    let by_target: Vec<BySet> = truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.kind, target.at))).collect();
+    let by_target: Vec<BySet> =
+        truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.kind, target.at))).collect();
     let mut points = Vec::new();
     let asked = truth.targets.iter().zip(starts).map(|(target, start)| Asked { name: &target.id, kind: target.kind, start });
     let which = ImageId { trial: number, view: VIEW };

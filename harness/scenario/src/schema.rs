@@ -19,7 +19,9 @@ use super::recognition::{ImagesWire, RecognitionWire};
 use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::sweep::wire::SweepWire;
-use super::testfield::boards::wire::{AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
+use super::testfield::boards::wire::{
+    AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire,
+};
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
 use super::wire::{Head, PhotographsWire, PointingWire, PolygonWire, SceneWire, TargetWire};

@@ -17,7 +17,8 @@ use calibench_synth::stations::{Station, StationError};
 use crate::camera::LocalPlan;
 use crate::recognition::RECOGNITION;
 use crate::{
-    Blocks, Calibration, Detector, HarrisPointing, Imaging, JudgementPlan, Phase, Pixels, Pointing, Printed, Recognition, StationPlan, Transfer, Unit,
+    Blocks, Calibration, Detector, HarrisPointing, Imaging, JudgementPlan, Phase, Pixels, Pointing, Printed, Recognition, StationPlan,
+    Transfer, Unit,
 };
 
 /// What a scenario measures.

@@ -11,9 +11,9 @@ use calibench_synth::optics::Optics;
 use calibench_synth::pointing::{Hand, MapError};
 
 use super::camera::CameraPlan;
+use super::pointing::BoardPointing;
 use super::section::Section;
 use super::sensor::{Surroundings, read_sensor};
-use super::pointing::BoardPointing;
 use super::{Detector, Imaging, Pointing, ViewsSubject, camera, optics, stations, testfield};
 
 /// Where a detector points.

@@ -19,7 +19,9 @@ pub fn titled(axis: &Axis) -> String {
         "tilt" | "tilts" => "tilt, degrees".into(),
         "roll" | "rolls" => "rotation, degrees".into(),
         "angle" | "angles" => "corner angle, degrees".into(),
-        name @ ("distance" | "distances" | "size" | "square") if !axis.path.starts_with("camera") => format!("{name}, object units"),
+        name @ ("distance" | "distances" | "size" | "square" | "aside" | "bend" | "print_noise") if !axis.path.starts_with("camera") => {
+            format!("{name}, object units")
+        }
         name @ ("x0" | "y0" | "c") => format!("{name}, mm"),
         name @ ("blur" | "corner_blur" | "defocus" | "motion" | "window" | "sigma" | "gauss") => format!("{name}, px"),
         _ => axis.path.clone(),

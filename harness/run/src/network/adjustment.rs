@@ -2,7 +2,8 @@
 
 use calibench_adjust::approximate::Control;
 use calibench_adjust::{
-    Covariances, Distance, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Solution, Variance, adjust, frame_uncertainty,
+    Covariances, Distance, Exterior, ImageObservation, Interior, Network, ObjectPoint, Options, Solution, Variance, adjust,
+    frame_uncertainty,
 };
 use calibench_calibrate::pose_of;
 use calibench_model::Pose;

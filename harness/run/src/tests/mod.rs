@@ -1,6 +1,7 @@
 //! Runs of a small wall whose figures have closed forms.
 
 mod blocks;
+mod boards;
 mod kinds;
 mod network;
 mod recordings;

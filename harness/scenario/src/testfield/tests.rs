@@ -96,13 +96,13 @@ fn mistakes_are_told_with_their_places() {
     let board = "[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\n";
     refused(
         "[testfield]\nrows = 3",
-        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, charuco, aprilgrid, circles, rings, tags)",
+        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, tags)",
     );
     refused("[testfield]\nkind = \"chesboard\"", "2:8: `kind` of [testfield] is one of");
     refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
     refused(
         "[testfield]\nkind = 3",
-        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, charuco, aprilgrid, circles, rings, tags; found a value of type integer",
+        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, tags; found a value of type integer",
     );
     refused("[testfield]\nkind = \"house\"\nunit = \"cm\"\nwidth = 3", "3:8: `unit` is \"mm\" or \"m\"; found `cm`");
     refused(board, "[testfield] has no `square`");
@@ -189,4 +189,22 @@ fn markers_stand_by_themselves() {
     refused(&format!("{charuco}marker = 20\ndictionary = \"DICT_4X4\""), "did you mean `DICT_4X4_50`?");
     refused(&format!("{charuco}marker = 20\ndictionary = \"DICT_4X4_50\"\nfirst = 40"), "8:9: `first` is 40: expected at most 50");
     refused(&format!("{charuco}marker = 20\ndictionary = \"DICT_4X4_50\"\nmargn = 4"), "8:1: unknown key `margn` in [testfield]");
+}
+
+#[test]
+fn any_board_is_read_in_a_word() {
+    let word = |word: &str| format!("[testfield]\nkind = \"board\"\nboard = \"{word}\"");
+    for (_, _, example) in calibench_model::boards::KINDS {
+        let read = plan(&word(example)).unwrap();
+        assert_eq!(read.board(), Some(example.parse().unwrap()));
+        assert!(BOARDS.contains(&"board") && !read.generate(KEY).unwrap().targets.is_empty());
+    }
+    let Generator::Board(sheet) = plan(&(word("circles:7x5:20") + "\nmargin = 3\nbend = 1")).unwrap().generator else { panic!() };
+    assert_eq!((sheet.margin, sheet.bend.unwrap().peak), (3.0, 1.0));
+    let chessboard = plan("[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\nsquare = 30").unwrap();
+    assert_eq!(chessboard.board(), Some("chessboard:9x6:30".parse().unwrap()));
+    assert_eq!(plan("[testfield]\nkind = \"coded\"").unwrap().board(), None);
+    refused(&word("charuco:8x5:30:40:DICT_4X4_50"), "`marker` is 40");
+    refused(&word("dots:8x5:30"), "3:9: `dots` is no kind of board");
+    refused("[testfield]\nkind = \"board\"", "board");
 }

@@ -174,6 +174,25 @@ fn what_is_far_left_of_the_window_takes_nothing() {
     assert!((barred.syy / alone.syy - 1.0).abs() > 1e-3, "{barred:?} {alone:?}");
 }
 
+/// In a window within a disc there is no edge, but for what the blur leaves of it.
+#[test]
+fn what_leaves_a_position_anywhere_in_the_window_is_no_bound() {
+    let disc = |radius: f64| {
+        let vertex = |i: i32| {
+            let (s, c) = (f64::from(i) * std::f64::consts::TAU / 512.0).sin_cos();
+            (20.2 + radius * c, 19.9 + radius * s)
+        };
+        scene(&[&(0..512).map(vertex).collect::<Vec<_>>()])
+    };
+    let unknowns = Unknowns { shape: true, levels: Levels::Two, blur: true, ..Unknowns::default() };
+    let trace = |radius: f64| bound(&disc(radius), 0.7, 15, unknowns).map(|c| (c.sxx + c.syy).sqrt());
+    assert!(trace(6.0).unwrap() < 0.05);
+    for radius in [10.5, 11.5, 12.5, 13.5, 16.0] {
+        assert!(trace(radius).is_none_or(|bound| bound < 15.0), "{radius}: {:?}", trace(radius));
+    }
+    assert_eq!(trace(14.0), None);
+}
+
 #[test]
 fn an_edge_or_nothing_has_no_bound() {
     let edge = scene(&[&[(-9.0, -9.0), (20.2, -9.0), (20.2, 60.0), (-9.0, 60.0)]]);

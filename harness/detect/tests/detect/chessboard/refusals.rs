@@ -2,8 +2,8 @@
 
 use calibench_model::Image;
 
-use super::drawn::layout;
 use super::chessboard;
+use super::drawn::layout;
 use crate::picture::{View, noisy};
 
 #[test]

@@ -43,7 +43,8 @@ pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -
 
 /// A board in the words of `--board`.
 fn in_a_word(wire: &BoardWire, problems: &mut Vec<Problem>) -> Option<(Board, f64)> {
-    let board = wire.board.get_ref().parse::<Board>().map_err(|error| problems.push(Problem::new(wire.board.span(), error.to_string()))).ok()?;
+    let board =
+        wire.board.get_ref().parse::<Board>().map_err(|error| problems.push(Problem::new(wire.board.span(), error.to_string()))).ok()?;
     let usual_margin = match &board {
         Board::Chessboard(board) => board.square,
         Board::Charuco(board) => board.square,

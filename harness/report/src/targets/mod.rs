@@ -1,0 +1,8 @@
+//! Which target, when: boards of one size before one camera, by what makes images bad.
+
+mod load;
+mod page;
+mod picture;
+
+pub use load::{Comparison, is_of_boards};
+pub use page::{FILE, page};
