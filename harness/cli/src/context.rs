@@ -37,6 +37,11 @@ impl<'a> Context<'a> {
     }
 }
 
+/// What finds a board in photographs.
+pub fn finder(board: Board) -> Result<Finder, Failure> {
+    Finder::new(board).map_err(|error| Failure::input(error.to_string()))
+}
+
 /// As the project's own.
 impl Context<'_> {
     pub fn root(&self) -> Result<PathBuf, Failure> {
@@ -69,11 +74,6 @@ impl Context<'_> {
 
     pub fn methods_of_boards(&self, texts: &[String], kind: TargetKind) -> Result<Vec<Configured>, Failure> {
         self.project.methods_of_boards(texts, kind).map_err(project_failure)
-    }
-
-    /// What finds a board in photographs.
-    pub fn finder(&self, board: Board) -> Result<Finder, Failure> {
-        Finder::new(board).map_err(|error| Failure::input(error.to_string()))
     }
 
     pub fn methods(&self, texts: &[String], pictured: Pictured) -> Result<Vec<Configured>, Failure> {

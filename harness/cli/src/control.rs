@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use calibench_exchange::{Inputs, write_control};
 use calibench_model::boards::Board;
-use calibench_photographs::{Finder, board_of};
+use calibench_photographs::board_of;
 use clap::Args;
 
+use super::context::finder;
 use super::output;
 use crate::deliver::deliver;
 use crate::failure::Failure;
@@ -24,7 +25,7 @@ pub struct Control {
 impl Control {
     pub fn run(&self) -> Result<(), Failure> {
         let output = output::table("-o", self.output.as_deref(), &Inputs::default())?;
-        let finder = Finder::new(self.board).map_err(|error| Failure::input(error.to_string()))?;
+        let finder = finder(self.board)?;
         deliver(output.as_ref(), |file| write_control(file, &finder.control()))
     }
 }

@@ -13,7 +13,7 @@ use calibench_scenario::catalogue::is_toml;
 use calibench_scenario::{Scenario, Subject, ViewsSubject};
 use clap::{Args, ValueEnum};
 
-use super::context::Context;
+use super::context::{Context, finder};
 use super::output;
 use super::photos::say_turns;
 use super::progress::Progress;
@@ -64,7 +64,7 @@ impl Detect {
 
     fn board(&self, context: &Context<'_>, board: Board) -> Result<(), Failure> {
         let output = output::table("-o", self.output.as_deref(), &Inputs::new(&self.photos))?;
-        let finder = context.finder(board)?;
+        let finder = finder(board)?;
         let progress = Progress::start("detect", self.photos.len() as u64, context.quiet);
         once(&self.photos)?;
         say_turns(&self.photos)?;

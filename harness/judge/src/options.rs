@@ -40,7 +40,7 @@ pub const MODELS: [&str; 13] = [
 /// What is compared on discs.
 pub const OF_DISCS: [&str; 4] = ["centroid", "parametric_circle", "ellipse_edges", "lsm:window=15"];
 
-/// The names of [`METHODS`], of discs of [`OF_DISCS`]; or what measures best alone when a calibration in use is checked.
+/// The names of [`METHODS`], of discs those that measure discs; or what measures best alone when a calibration in use is checked.
 pub fn usual_methods(kind: TargetKind, of_camera: bool) -> Vec<String> {
     if kind == TargetKind::Disc {
         return if of_camera { vec!["ellipse_edges".to_owned()] } else { OF_DISCS.map(str::to_owned).to_vec() };

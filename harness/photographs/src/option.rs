@@ -12,7 +12,7 @@ use crate::Chessboard;
 /// # Errors
 /// A text that describes no board, with the kinds that there are; a file that cannot be read.
 pub fn board_of(text: &str) -> Result<Board, String> {
-    let ending = Path::new(text).extension().map(|ending| ending.to_ascii_lowercase());
+    let ending = Path::new(text).extension().map(std::ffi::OsStr::to_ascii_lowercase);
     if ending.is_some_and(|ending| ending == "yaml" || ending == "yml") {
         return read_kalibr_target(Path::new(text)).map_err(|error| format!("{text}: {error}"));
     }

@@ -58,7 +58,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
         match one {
             Either::Plain(loaded) => page.scenario(loaded),
             Either::Sweep(loaded) if targets::is_of_boards(loaded) => {
-                compared.extend(targets::Comparison::load(&places.records, &loaded.name)?)
+                compared.extend(targets::Comparison::load(&places.records, &loaded.name)?);
             }
             Either::Sweep(loaded) => page.sweep(loaded, &printed_factors(&tables))?,
         }

@@ -11,7 +11,7 @@ use toml::de::DeTable;
 
 use super::blocks;
 use super::calibration::{self, Seen};
-use super::methods::{check_busy, check_kinds, check_measured, methods};
+use super::methods::{check_busy, check_kinds, methods};
 use super::recognition;
 use super::section::Section;
 use super::site::Surroundings;
@@ -210,12 +210,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     };
     let (head, subject) = (head?, subject?);
     if methods.len() == listed_at.len() {
-        // A method may have something to measure in other cells alone.
-        if in_sweep {
-            check_measured(&methods, &listed_at, &subject, problems);
-        } else {
-            check_kinds(&methods, &listed_at, &subject, problems);
-        }
+        check_kinds(&methods, &listed_at, &subject, in_sweep, problems);
     }
     let trials_span = head.trials.as_ref().map(Spanned::span);
     let mut trials = head.trials.map_or(1, |trials| trials.into_inner().0);

@@ -30,17 +30,17 @@ pub fn methods(sections: Vec<Section<'_>>, registry: &Registry, problems: &mut V
     found
 }
 
-/// Whether `methods`, whose tables stand at `spans`, and the `subject` go together; what does not is added to `problems`.
-pub fn check_kinds(methods: &[Configured], spans: &[Range<usize>], subject: &Subject, problems: &mut Vec<Problem>) {
-    problems.extend(cover(methods, subject.kinds().iter().copied()).err().map(|gap| at(&gap, spans)));
-}
-
-/// Whether one of `methods` measures each target of `subject`.
-pub fn check_measured(methods: &[Configured], spans: &[Range<usize>], subject: &Subject, problems: &mut Vec<Problem>) {
-    let left = unmeasured(methods, subject.kinds().iter().copied());
-    if !left.is_empty() {
-        problems.push(at(&KindsGap::Unmeasured(left), spans));
-    }
+/// Whether `methods`, whose tables stand at `spans`, and the `subject` go together; what does not is added to `problems`. In a cell of a sweep a method may be
+/// idle: it may have something to measure in others.
+pub fn check_kinds(methods: &[Configured], spans: &[Range<usize>], subject: &Subject, in_sweep: bool, problems: &mut Vec<Problem>) {
+    let kinds = subject.kinds();
+    let kinds = kinds.iter().copied();
+    let gap = if in_sweep {
+        Some(unmeasured(methods, kinds)).filter(|left| !left.is_empty()).map(KindsGap::Unmeasured)
+    } else {
+        cover(methods, kinds).err()
+    };
+    problems.extend(gap.map(|gap| at(&gap, spans)));
 }
 
 /// Whether each of `methods` has targets among those of these `kinds`.

@@ -9,7 +9,7 @@ use calibench_photographs::{Chessboard, Corners, Photo, board_of};
 use calibench_report::calibration::{summary, write_report};
 use clap::Args;
 
-use super::context::Context;
+use super::context::{Context, finder};
 use super::convert::positive;
 use super::{inputs, output};
 use crate::deliver::print;
@@ -120,7 +120,7 @@ impl Calibrate {
                 Ok(Input { points, lost, photos: Vec::new(), control: read_control(control)?, doubts: false })
             }
             (_, _, Some(board)) => {
-                let finder = context.finder(board)?;
+                let finder = finder(board)?;
                 let Corners { points, lost, photos, doubts } =
                     photographs::corners(context, &finder, &self.photos, self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());

@@ -6,7 +6,7 @@ use calibench_model::TargetKind;
 use calibench_model::boards::Board;
 use calibench_photographs::{MeasuredBoards, measured_boards, method_info};
 
-use super::super::context::Context;
+use super::super::context::{Context, finder};
 use super::super::notes::say_notes;
 use super::super::photos::{of_one_camera, say_turns};
 use super::super::progress::Progress;
@@ -16,7 +16,7 @@ use crate::failure::Failure;
 impl Judge {
     /// All points of all photographs in the hands of all methods.
     pub fn measured(&self, context: &Context<'_>, board: Board) -> Result<Material, Failure> {
-        let finder = context.finder(board)?;
+        let finder = finder(board)?;
         let texts = if self.methods.is_empty() { usual_methods(finder.kind(), self.camera.is_some()) } else { self.methods.clone() };
         let methods = context.methods_of_boards(&texts, finder.kind())?;
         let needed = 2 * HALF;
