@@ -1,7 +1,7 @@
 """What whole commands cost beside Python scripts with OpenCV that do the same, and how they grow: tables in Markdown.
 
 `just perf-commands` runs it. Each line is a process from its start to its end, files read and written; ours and the peer's take turns, and the medians
-of ROUNDS rounds are printed, in seconds of the processor unless it says otherwise.
+of ROUNDS rounds are printed, in seconds of the processor unless it says otherwise; `--no-growth` leaves the second table out.
 """
 
 import csv
@@ -24,8 +24,8 @@ PEER = "import cv2, numpy as np, sys, glob; cv2.setNumThreads(int(sys.argv[1]))\
 #: cornerSubPix as `measure` is asked: the same file, the same starts, a file of results.
 MEASURE = PEER + """
 image = cv2.imread(sys.argv[2], cv2.IMREAD_GRAYSCALE)
-starts = np.loadtxt(sys.argv[3], delimiter=",", skiprows=1, usecols=(2, 3)).astype(np.float32)
-found = cv2.cornerSubPix(image, starts[:, None], (7, 7), (-1, -1), (3, 40, 1e-3))
+starts = np.loadtxt(sys.argv[3], delimiter=",", skiprows=1, usecols=(2, 3)).astype(np.float32).reshape(-1, 1, 2).copy()
+found = cv2.cornerSubPix(image, starts, (7, 7), (-1, -1), (3, 40, 1e-3))
 np.savetxt(sys.argv[4], found.reshape(-1, 2), fmt="%.6f", delimiter=",")
 """
 
@@ -108,6 +108,7 @@ adc_bits = 8
 
 [pointing]
 sigma = 0.5
+whole_pixels = false
 
 {methods}"""
 
@@ -201,7 +202,7 @@ def commands(folder):
                 lambda n, pattern=pattern, detector=detector: theirs(CALIBRATE, pattern, "peer.xml", 9, 6, detector, threads=n),
             )
     for words in (["list", "scenarios"], ["show", "testfields/chessboard"], ["--help"]):
-        side_by_side(f"`{' '.join(words)}`", ROOT, lambda n, words=words: [PROGRAM, *words])
+        side_by_side(f"`{' '.join(words)}`", folder, lambda n, words=words: [PROGRAM, "--root", ROOT, *words])
 
 
 def growth(folder):
@@ -234,6 +235,7 @@ def growth(folder):
 
     def run(trials):
         (folder / "project/scenarios/grow").mkdir(parents=True, exist_ok=True)
+        (folder / "project/reference").mkdir(exist_ok=True)
         (folder / "project/scenarios/grow/trials.toml").write_text(scenario((200, 150), (6, 5)))
         return ours("--root", folder / "project", "run", "grow/trials", "--trials", trials)
 
@@ -243,4 +245,5 @@ def growth(folder):
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as there:
         commands(Path(there))
-        growth(Path(there))
+        if "--no-growth" not in sys.argv:
+            growth(Path(there))
