@@ -221,7 +221,9 @@ impl<T: Kept> Cells<T> {
         let mut findings = Vec::new();
         for (label, values) in now.labels.iter().zip(&now.values) {
             let blessed = self.labels.iter().position(|other| other == label).map(|place| &self.values[place]);
-            for method in values.keys().filter(|method| !blessed.is_some_and(|cell| cell.contains_key(*method))) {
+            // A method that is idle in a cell has no row there.
+            let written = values.iter().filter(|(_, kept)| !kept.rows().is_empty()).map(|(method, _)| method);
+            for method in written.filter(|method| !blessed.is_some_and(|cell| cell.contains_key(*method))) {
                 findings.push(Finding::new(Verdict::Unblessed, &self.name(label), method, "cell", "not blessed yet"));
             }
         }
