@@ -12,7 +12,8 @@ pub fn root() -> PathBuf {
 const NETWORKS: &str = "galo-2011/network";
 
 /// Scenarios whose run takes long, by what their names begin with: only tests of their own copy them.
-const LONG: [&str; 8] = ["atlas/", "canon-t3/", NETWORKS, "operators/", "sweeps/", "targets/b", "testfields/", "vosselman-1988/"];
+const LONG: [&str; 9] =
+    ["atlas/", "canon-t3/", NETWORKS, "operators/", "sweeps/", "targets/budget", "targets/by-", "testfields/", "vosselman-1988/"];
 
 /// A temporary project with the real scenarios and references, but for the long ones, and no records or reports.
 pub fn copy() -> tempfile::TempDir {

@@ -17,6 +17,7 @@ mod found;
 mod ground;
 mod lattice;
 mod markers;
+mod meeting;
 mod patches;
 mod plane;
 mod quads;

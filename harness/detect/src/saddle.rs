@@ -3,6 +3,7 @@
 use calibench_model::Image;
 
 use crate::ground::grey;
+use crate::meeting::Meeting;
 use crate::plane::{Linear, Point, distance, plus};
 
 /// What is expected at a corner of squares.
@@ -73,26 +74,14 @@ fn meeting(image: &Image, from: Point, radius: f64) -> Option<Point> {
     if !image.holds(column, row, reach + 1) {
         return None;
     }
-    let (mut xx, mut xy, mut yy, mut x, mut y) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let mut meeting = Meeting::default();
     for (dx, dy) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy))) {
         let (px, py) = ((column + dx) as usize, (row + dy) as usize);
-        let off = [px as f64 - from[0], py as f64 - from[1]];
-        let weight = 1.0 - (off[0] * off[0] + off[1] * off[1]) / (radius * radius);
-        if weight <= 0.0 {
-            continue;
-        }
         let gx = f64::from(image.at(px + 1, py) - image.at(px - 1, py));
         let gy = f64::from(image.at(px, py + 1) - image.at(px, py - 1));
-        let along = gx * off[0] + gy * off[1];
-        xx += weight * gx * gx;
-        xy += weight * gx * gy;
-        yy += weight * gy * gy;
-        x += weight * gx * along;
-        y += weight * gy * along;
+        meeting.add([px as f64 - from[0], py as f64 - from[1]], [gx, gy], radius);
     }
-    let det = xx * yy - xy * xy;
-    let trace = xx + yy;
-    (det > 1e-3 * trace * trace && det > 0.0).then(|| [from[0] + (yy * x - xy * y) / det, from[1] + (xx * y - xy * x) / det])
+    meeting.place().map(|place| plus(from, place))
 }
 
 #[cfg(test)]

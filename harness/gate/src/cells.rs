@@ -221,9 +221,9 @@ impl<T: Kept> Cells<T> {
         let mut findings = Vec::new();
         for (label, values) in now.labels.iter().zip(&now.values) {
             let blessed = self.labels.iter().position(|other| other == label).map(|place| &self.values[place]);
-            // A method that is idle in a cell has no row there.
-            let written = values.iter().filter(|(_, kept)| !kept.rows().is_empty()).map(|(method, _)| method);
-            for method in written.filter(|method| !blessed.is_some_and(|cell| cell.contains_key(*method))) {
+            // A method that is idle in a cell has nothing there, and no row in the file.
+            let busy = values.iter().filter(|(_, kept)| kept.count() > 0).map(|(method, _)| method);
+            for method in busy.filter(|method| !blessed.is_some_and(|cell| cell.contains_key(*method))) {
                 findings.push(Finding::new(Verdict::Unblessed, &self.name(label), method, "cell", "not blessed yet"));
             }
         }

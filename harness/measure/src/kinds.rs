@@ -112,13 +112,13 @@ pub fn all_busy(methods: &[Configured], targets: impl IntoIterator<Item = Target
     }
 }
 
-/// Whether every method has targets of its kinds among `targets`, and every target a method.
+/// Whether every one of the targets `here` has a method, and every method targets of its kinds among those `anywhere`: in all cells of a sweep.
 ///
 /// # Errors
 /// [`KindsGap::Idle`], [`KindsGap::Unmeasured`].
-pub fn cover(methods: &[Configured], targets: impl IntoIterator<Item = TargetKind> + Clone) -> Result<(), KindsGap> {
-    all_busy(methods, targets.clone())?;
-    let left = unmeasured(methods, targets);
+pub fn cover(methods: &[Configured], here: &[TargetKind], anywhere: &[TargetKind]) -> Result<(), KindsGap> {
+    all_busy(methods, anywhere.iter().copied())?;
+    let left = unmeasured(methods, here.iter().copied());
     if left.is_empty() { Ok(()) } else { Err(KindsGap::Unmeasured(left)) }
 }
 
@@ -168,15 +168,16 @@ mod tests {
     fn targets_without_a_method_and_methods_without_a_target_are_found() {
         let methods = configured(&["disc=parametric_circle", "chess_corner=parametric_corner"]);
         assert_eq!(unmeasured(&methods, [Square, Disc, Corner, Square]), [Corner, Square]);
-        assert_eq!(cover(&methods, [Disc, ChessCorner]), Ok(()));
-        assert_eq!(cover(&methods, [Disc, ChessCorner, Cross]), Err(KindsGap::Unmeasured(vec![Cross])));
-        let idle = cover(&methods, [Disc, Disc]).unwrap_err();
+        assert_eq!(cover(&methods, &[Disc, ChessCorner], &[Disc, ChessCorner]), Ok(()));
+        assert_eq!(cover(&methods, &[Disc], &[Disc, ChessCorner]), Ok(()), "idle here, not everywhere");
+        assert_eq!(cover(&methods, &[Disc, ChessCorner, Cross], &[Disc, ChessCorner, Cross]), Err(KindsGap::Unmeasured(vec![Cross])));
+        let idle = cover(&methods, &[Disc, Disc], &[Disc, Disc]).unwrap_err();
         assert_eq!(
             idle.to_string(),
             "`parametric_corner:window=15,kinds=chess_corner` has nothing to measure: there are only targets of the kind `disc`"
         );
-        assert_eq!(cover(&configured(&["forstner"]), [Cross]), Ok(()));
-        assert_eq!(cover(&configured(&["forstner"]), []), Ok(()));
+        assert_eq!(cover(&configured(&["forstner"]), &[Cross], &[Cross]), Ok(()));
+        assert_eq!(cover(&configured(&["forstner"]), &[], &[]), Ok(()));
     }
 
     #[test]

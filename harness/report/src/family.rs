@@ -17,6 +17,9 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
         return atlas::write(places, scenarios);
     }
     let of = |name: &String| {
+        if let Some(comparison) = targets::Comparison::load(&places.records, name)? {
+            return Ok(Either::Boards(Box::new(comparison)));
+        }
         Ok::<_, LoadError>(match sweep::load(&places.records, name)? {
             Some(sweep) => Either::Sweep(Box::new(sweep)),
             None => Either::Plain(Box::new(load(&places.records, name)?)),
@@ -57,9 +60,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
     for one in &all {
         match one {
             Either::Plain(loaded) => page.scenario(loaded),
-            Either::Sweep(loaded) if targets::is_of_boards(loaded) => {
-                compared.extend(targets::Comparison::load(&places.records, &loaded.name)?);
-            }
+            Either::Boards(comparison) => compared.push(&**comparison),
             Either::Sweep(loaded) => page.sweep(loaded, &printed_factors(&tables))?,
         }
     }
@@ -76,13 +77,14 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
 enum Either {
     Plain(Box<Loaded>),
     Sweep(Box<sweep::LoadedSweep>),
+    Boards(Box<targets::Comparison>),
 }
 
 impl Either {
     fn plain(&self) -> Option<&Loaded> {
         match self {
             Self::Plain(loaded) => Some(loaded),
-            Self::Sweep(_) => None,
+            Self::Sweep(_) | Self::Boards(_) => None,
         }
     }
 
@@ -90,13 +92,14 @@ impl Either {
         match self {
             Self::Plain(_) => None,
             Self::Sweep(sweep) => Some(sweep),
+            Self::Boards(comparison) => Some(&comparison.sweep),
         }
     }
 
     fn is_unavailable(&self) -> bool {
         match self {
             Self::Plain(loaded) => loaded.unavailable().is_some(),
-            Self::Sweep(loaded) => loaded.is_unavailable(),
+            Self::Sweep(_) | Self::Boards(_) => self.sweep().is_some_and(sweep::LoadedSweep::is_unavailable),
         }
     }
 }

@@ -27,10 +27,7 @@ impl Plan<'_> {
     /// # Errors
     /// Targets of a kind that no method measures, a method without targets of its kinds; a recorded one with names of others; photographs that cannot be read; what `sink` returns.
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
-        // The scenario's own methods were checked with it: in a cell of a sweep one may be idle.
-        if !std::ptr::eq(self.methods, self.scenario.methods.as_slice()) {
-            cover(self.methods, self.scenario.subject.kinds().iter().copied())?;
-        }
+        cover(self.methods, &self.scenario.subject.kinds(), &self.scenario.kinds)?;
         if self.span().count() == 0 {
             return Ok(());
         }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use calibench_diagnostics::{Problem, Problems};
 use calibench_measure::{Configured, Registry};
+use calibench_model::TargetKind;
 use calibench_random::Key;
 use toml::Spanned;
 use toml::de::DeTable;
@@ -58,7 +59,8 @@ pub fn parse(name: &str, file: &str, text: &str, registry: &Registry) -> Result<
 /// # Errors
 /// None for a scenario that [`parse`] returned, unless files that it names have changed since.
 pub fn parse_cell(scenario: &Scenario, sweep: &Sweep, index: usize, registry: &Registry) -> Result<Scenario, Problems> {
-    File { name: &scenario.name, path: &sweep.file, text: &scenario.text, registry }.parse(Some(index))
+    let file = File { name: &scenario.name, path: &sweep.file, text: &scenario.text, registry };
+    Ok(Scenario { kinds: scenario.kinds.clone(), ..file.parse(Some(index))? })
 }
 
 /// A file to be read.
@@ -107,11 +109,7 @@ impl File<'_> {
             let mut found = Vec::new();
             let table = sweep.replaced(root, index, self.registry, &mut found);
             let scenario = if found.is_empty() { read(self, table, true, &mut found) } else { None };
-            for kind in scenario.iter().flat_map(|(scenario, _)| scenario.subject.kinds()) {
-                if !kinds.contains(&kind) {
-                    kinds.push(kind);
-                }
-            }
+            kinds.extend(scenario.iter().flat_map(|(scenario, _)| scenario.kinds.clone()));
             let plain = index == 0;
             for problem in found {
                 if !problems.iter().any(|known| known.span == problem.span && known.message == problem.message) {
@@ -127,12 +125,17 @@ impl File<'_> {
             }
         }
         let (scenario, listed_at) = first?;
-        let sweep = Some(sweep).filter(|_| cell.is_none());
+        let (sweep, kinds) = (Some(sweep).filter(|_| cell.is_none()), once(&kinds));
         if sweep.is_some() && problems.is_empty() && scenario.methods.len() == listed_at.len() {
             check_busy(&scenario.methods, &listed_at, &kinds, problems);
         }
-        Some(Scenario { sweep, ..scenario })
+        Some(Scenario { sweep, kinds, ..scenario })
     }
+}
+
+/// Each kind once.
+fn once(kinds: &[TargetKind]) -> Vec<TargetKind> {
+    TargetKind::ALL.into_iter().filter(|kind| kinds.contains(kind)).collect()
 }
 
 /// Cells are not checked further once there are this many problems.
@@ -209,8 +212,9 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         }
     };
     let (head, subject) = (head?, subject?);
+    let kinds = once(&subject.kinds());
     if methods.len() == listed_at.len() {
-        check_kinds(&methods, &listed_at, &subject, in_sweep, problems);
+        check_kinds(&methods, &listed_at, &kinds, in_sweep, problems);
     }
     let trials_span = head.trials.as_ref().map(Spanned::span);
     let mut trials = head.trials.map_or(1, |trials| trials.into_inner().0);
@@ -228,6 +232,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         bound_window,
         bound_window_discs: head.bound_window_discs.map_or(bound_window, |window| window.0),
         subject,
+        kinds,
         sweep: None,
         text: text.to_owned(),
     };

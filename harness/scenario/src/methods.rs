@@ -10,7 +10,6 @@ use calibench_model::TargetKind;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::Subject;
 use super::section::Section;
 
 /// All methods of a scenario; mistakes are added to `problems`.
@@ -30,15 +29,13 @@ pub fn methods(sections: Vec<Section<'_>>, registry: &Registry, problems: &mut V
     found
 }
 
-/// Whether `methods`, whose tables stand at `spans`, and the `subject` go together; what does not is added to `problems`. In a cell of a sweep a method may be
-/// idle: it may have something to measure in others.
-pub fn check_kinds(methods: &[Configured], spans: &[Range<usize>], subject: &Subject, in_sweep: bool, problems: &mut Vec<Problem>) {
-    let kinds = subject.kinds();
-    let kinds = kinds.iter().copied();
+/// Whether `methods`, whose tables stand at `spans`, and targets of these `kinds` go together; what does not is added to `problems`. In a cell of a sweep a
+/// method may be idle: it may have something to measure in others.
+pub fn check_kinds(methods: &[Configured], spans: &[Range<usize>], kinds: &[TargetKind], in_sweep: bool, problems: &mut Vec<Problem>) {
     let gap = if in_sweep {
-        Some(unmeasured(methods, kinds)).filter(|left| !left.is_empty()).map(KindsGap::Unmeasured)
+        Some(unmeasured(methods, kinds.iter().copied())).filter(|left| !left.is_empty()).map(KindsGap::Unmeasured)
     } else {
-        cover(methods, kinds).err()
+        cover(methods, kinds, kinds).err()
     };
     problems.extend(gap.map(|gap| at(&gap, spans)));
 }

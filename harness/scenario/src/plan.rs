@@ -1,6 +1,7 @@
 //! A checked scenario.
 
 use calibench_measure::Configured;
+use calibench_model::TargetKind;
 
 use crate::{Phase, Subject, Sweep};
 
@@ -26,6 +27,8 @@ pub struct Scenario {
     pub bound_window_discs: usize,
     /// What is measured.
     pub subject: Subject,
+    /// The kinds of its targets, each once; of a sweep and of its cells those of all cells.
+    pub kinds: Vec<TargetKind>,
     /// Its sweep, if it has one; all else is then that of the first cell.
     pub sweep: Option<Sweep>,
     /// The text of its file.

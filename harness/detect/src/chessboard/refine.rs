@@ -4,6 +4,7 @@ use calibench_model::Image;
 
 use super::board::Board;
 use super::level::{Pyramid, scaled};
+use crate::meeting::Meeting;
 use crate::plane::{Point, distance, minus, plus};
 
 /// The radius of what is looked at, as a share of the shorter step to a neighbour; px at least and at most.
@@ -100,27 +101,12 @@ impl Patch {
 
     /// The point to which the gradients in a disc are closest to being at right angles, and its variance, px^2; `None` where all have one direction.
     fn met(&self, middle: Point, radius: f64) -> Option<(Point, f64)> {
-        let (mut xx, mut xy, mut yy, mut x, mut y) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        let (mut misfit, mut weights) = (0.0, 0.0);
-        for (index, [gx, gy]) in self.gradients.iter().enumerate() {
+        let mut meeting = Meeting::default();
+        for (index, gradient) in self.gradients.iter().enumerate() {
             let pixel = [self.first[0] + (index % self.side) as i64, self.first[1] + (index / self.side) as i64];
-            let off = minus(pixel.map(|at| at as f64), middle);
-            let weight = 1.0 - (off[0] * off[0] + off[1] * off[1]) / (radius * radius);
-            if weight <= 0.0 {
-                continue;
-            }
-            let along = gx * off[0] + gy * off[1];
-            xx += weight * gx * gx;
-            xy += weight * gx * gy;
-            yy += weight * gy * gy;
-            x += weight * gx * along;
-            y += weight * gy * along;
-            misfit += weight * along * along;
-            weights += weight;
+            meeting.add(minus(pixel.map(|at| at as f64), middle), *gradient, radius);
         }
-        let (det, trace) = (xx * yy - xy * xy, xx + yy);
-        let variance = misfit / weights * trace / det;
-        (det > 1e-3 * trace * trace && det > 0.0).then(|| (plus(middle, [(yy * x - xy * y) / det, (xx * y - xy * x) / det]), variance))
+        meeting.place().map(|place| (plus(middle, place), meeting.variance()))
     }
 }
 

@@ -202,6 +202,25 @@ fn figures_have_their_sets_from_one_and_their_digits() {
     assert_eq!(more[0].message, "not blessed yet: 1 figures of adjustments");
 }
 
+/// A method without targets in a cell, or whose adjustments all fail, has nothing there that could be blessed; once it has, that is new.
+#[test]
+fn what_is_idle_in_a_cell_is_nothing_to_bless() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.csv");
+    let cells = |second: MethodTable| {
+        let mut cells: Cells<FigureSums> = Cells::new("f/s", "text", 7, Coordinates::Errors);
+        cells.add("a", &crate::tests::holding(Coordinates::Errors, two(10.0, -0.125)));
+        cells.add("b", &crate::tests::holding(Coordinates::Errors, second));
+        cells
+    };
+    let idle = cells(MethodTable::new("1".into()));
+    idle.write(&path).unwrap();
+    let (blessed, _) = Cells::read(&path, "f/s").unwrap().unwrap();
+    assert_eq!(blessed.compare(&idle), []);
+    let found = blessed.compare(&cells(two(10.0, -0.125)));
+    assert!(found.len() == 1 && found[0].verdict == Verdict::Unblessed && found[0].scenario == "f/s@b", "{found:?}");
+}
+
 #[test]
 fn figures_are_read_as_they_were_written() {
     let folder = tempfile::tempdir().unwrap();

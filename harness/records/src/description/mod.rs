@@ -60,6 +60,11 @@ pub enum Subject {
 }
 
 impl Description {
+    /// Side of the window to which the bound of a disc belongs, px.
+    pub fn window_of_discs(&self) -> usize {
+        self.bound_window_discs.unwrap_or(self.bound_window)
+    }
+
     /// The views of an adjusted scenario and what its adjustment is told.
     pub fn adjusted(&self) -> Option<(&Views, &Adjustment)> {
         let Subject::Views(views) = &self.subject else { return None };

@@ -136,6 +136,12 @@ impl Summaries {
         self.figures.get(&(method.to_owned(), set.to_owned(), group, name.to_owned()))
     }
 
+    /// Images that were left out of the first set's adjustments of a method, a trial: fewer points than a pose takes were measured in them.
+    pub fn left_out(&self, method: &str) -> f64 {
+        let all = self.get(method, Group::Network, "images left out").map_or(0.0, |left| left.value.mean * left.value.count as f64);
+        all / self.trials.max(1) as f64
+    }
+
     /// How many adjustments of a method failed, in one set or in all.
     pub fn failures(&self, method: &str, set: Option<&str>) -> u64 {
         let meant = |(m, s, _): &(String, String, Group)| m == method && set.is_none_or(|set| s == set);

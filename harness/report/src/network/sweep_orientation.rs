@@ -27,9 +27,19 @@ pub fn table(axis: &str, cells: &[(String, &Summaries)]) -> String {
         row.push(found.failures(method, None).to_string());
         rows.row(row);
     }
+    let without = |(value, found): &(String, &Summaries)| {
+        let images = found.left_out(method);
+        (images > 0.0).then(|| format!("{} at {value}", fixed(images, 1)))
+    };
+    let without: Vec<String> = cells.iter().filter_map(without).collect();
+    let without = if without.is_empty() {
+        String::new()
+    } else {
+        format!("\nImages left out, with fewer points than a pose takes, a trial: {}.\n", without.join(", "))
+    };
     format!(
         "Interior orientation with `{method}`, set `{}`: mean reported standard deviation, and root mean square true error ± half its 95 % interval over {} trials; c, x0 and y0 in um, others in their unit times 10^6. *Over the frame*: distance \
-         of the estimated camera from the true one after the best rotation. RMSE of check points against the truth, object units.\n\n{}\n",
+         of the estimated camera from the true one after the best rotation. RMSE of check points against the truth, object units.\n\n{}{without}\n",
         first.sets.first().map_or("", String::as_str),
         first.trials,
         rows.render()

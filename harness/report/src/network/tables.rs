@@ -45,14 +45,23 @@ pub fn methods(found: &Summaries) -> String {
             format!("- `{method}`, {}: {count} of {trials} failed, the first because {why}.\n", group.name())
         })
         .collect();
+    let left_out: String = found.methods.iter().filter_map(|method| left_out(found, method)).collect();
     let kinds = if found.methods.iter().any(|label| is_limited(label)) { KINDS } else { "" };
     format!(
         "{kinds}Means of {trials} trials ± half their 95 % interval, set `{}`. *Over the frame*: distance of the estimated camera from the true one after the best rotation. *Error / sigma*: root mean square error over the mean \
-         reported standard deviation, 1 if it is honest. *RF*: against `{}`, mean over the parameters. RMSE of check points against the truth, object units; their RF is the ratio of root mean squares.\n\n{}\n{failures}\n",
+         reported standard deviation, 1 if it is honest. *RF*: against `{}`, mean over the parameters. RMSE of check points against the truth, object units; their RF is the ratio of root mean squares.\n\n{}\n{failures}{left_out}\n",
         found.sets.first().map_or("", String::as_str),
         found.methods.first().map_or("", String::as_str),
         rows.render()
     )
+}
+
+/// What is said of a method in whose images too few points were measured.
+fn left_out(found: &Summaries, method: &str) -> Option<String> {
+    let images = found.left_out(method);
+    (images > 0.0).then(|| {
+        format!("- `{method}`: {} images a trial were left out, in which it measured fewer points than a pose takes.\n", fixed(images, 1))
+    })
 }
 
 /// Root mean square error over mean reported sigma.

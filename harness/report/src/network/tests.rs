@@ -127,3 +127,28 @@ fn a_cell_of_a_sweep_has_sigmas_true_errors_and_check_points() {
     assert_eq!(cells, ["", "7", "25.0", &format!("1.5 ± {half:.1}"), "", "0.0035 ± 0.0016", "", "0", ""]);
     assert!(text.contains("set `c`") && text.contains("| `depth` | sigma of c | true error of c |"), "{text}");
 }
+
+/// Three images left out in the first of two trials, none in the second.
+#[test]
+fn images_that_were_left_out_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let info = |label: &str| MethodInfo { label: label.into(), version: "1".into(), unavailable: None };
+    let run = RunInfo { scenario: "s".into(), seed: 1, revision: "r".into(), detector: None };
+    let file = new_table(folder.path(), Table::Adjustments);
+    let mut writer = CalibrationWriter::new(file, run, vec![info("all"), info("some")], vec!["c".into()]).unwrap();
+    for number in 0..2 {
+        let mut some = calibrated(1, [16.5, 0.01, 0.001], 0.002, false);
+        if number == 0 {
+            some.outcome.as_mut().unwrap().push(Figure::plain(Group::Network, "images left out", 3.0, ""));
+        }
+        writer.trial(number, &[calibrated(0, [16.5, 0.01, 0.001], 0.002, false), some]).unwrap();
+    }
+    writer.finish().unwrap().finish().unwrap();
+    let found = load(folder.path()).unwrap().unwrap();
+    assert_eq!((found.left_out("all"), found.left_out("some")), (0.0, 1.5));
+    let page = tables::methods(&found);
+    assert!(page.contains("- `some`: 1.5 images a trial were left out") && !page.contains("- `all`"), "{page}");
+    assert!(!tables::methods(&summaries()).contains("left out"));
+    let swept = super::sweep_orientation::table("tilt", &[("10".into(), &summaries()), ("75".into(), &found)]);
+    assert!(!swept.contains("left out"), "of the first method alone: {swept}");
+}

@@ -4,16 +4,18 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
+use calibench_records::description::Sweep;
 use calibench_records::names::cell_folder;
 use calibench_records::results::{Group, Outcome, Trial};
 use calibench_records::statistics::running::Running;
 
 use crate::LoadError;
 use crate::load::adjustments::{self, Summaries};
+use crate::load::description;
 use crate::sweep::{LoadedSweep, load_with};
 
 /// The swept key that makes a sweep one over boards.
-pub const BOARD: &str = "testfield.board";
+const BOARD: &str = "testfield.board";
 
 /// A sweep over boards and at least one more key.
 pub struct Comparison {
@@ -110,10 +112,9 @@ impl Comparison {
                 }
             }
         };
-        let Some((sweep, cells)) = load_with(records, name, watch)? else { return Ok(None) };
-        if !is_of_boards(&sweep) {
-            return Ok(None);
-        }
+        let of_boards =
+            description(&records.join(name), name)?.and_then(|scenario| scenario.sweep).is_some_and(|sweep| is_of_boards(&sweep));
+        let Some((sweep, cells)) = (if of_boards { load_with(records, name, watch)? } else { None }) else { return Ok(None) };
         let cameras = (0..sweep.cells.len()).map(|cell| adjustments::load(&cell_folder(&sweep.folder, cell)));
         let cameras = cameras.collect::<Result<_, _>>()?;
         Ok(Some(Self { sweep, cells, cameras }))
@@ -166,13 +167,10 @@ impl Comparison {
     pub fn camera(&self, board: usize, value: usize, method: &str) -> Option<Camera> {
         let summaries = self.cameras[self.cell(board, value)].as_ref()?;
         let frame = summaries.get(method, Group::Frame, "rms")?;
-        let left_out =
-            summaries.get(method, Group::Network, "images left out").map_or(0.0, |left| left.value.mean * left.value.count as f64);
-        let trials = summaries.trials.max(1) as f64;
         Some(Camera {
             error: (frame.value.mean()?, frame.value.half()),
             predicted: frame.sigma.mean(),
-            left_out: left_out / trials,
+            left_out: summaries.left_out(method),
             failed: summaries.failures(method, None),
         })
     }
@@ -184,9 +182,8 @@ impl Comparison {
 }
 
 /// Whether a sweep is one over boards and at least one more key.
-pub fn is_of_boards(sweep: &LoadedSweep) -> bool {
-    let axes = &sweep.sweep.axes;
-    axes.len() > 1 && axes[0].path == BOARD
+fn is_of_boards(sweep: &Sweep) -> bool {
+    sweep.axes.len() > 1 && sweep.axes[0].path == BOARD
 }
 
 /// The kind of a board by its word.

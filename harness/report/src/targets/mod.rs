@@ -4,5 +4,5 @@ mod load;
 mod page;
 mod picture;
 
-pub use load::{Comparison, is_of_boards};
+pub use load::Comparison;
 pub use page::{FILE, page};

@@ -14,7 +14,7 @@ pub const FILE: &str = "which-target.md";
 const ENOUGH: f64 = 0.9;
 
 /// The page, and its pictures; `None` without a sweep over boards.
-pub fn page(sweeps: &[Comparison]) -> Option<(String, Vec<(String, Canvas)>)> {
+pub fn page(sweeps: &[&Comparison]) -> Option<(String, Vec<(String, Canvas)>)> {
     let first = sweeps.first()?;
     let mut pictures = Vec::new();
     let mut body = String::new();
@@ -22,7 +22,7 @@ pub fn page(sweeps: &[Comparison]) -> Option<(String, Vec<(String, Canvas)>)> {
     for sweep in sweeps.iter().filter(|sweep| !sweep.is_budget()).chain(sweeps.iter().filter(|sweep| sweep.is_budget())) {
         body.push_str(&section(sweep, &mut pictures));
     }
-    body.push_str(&rules());
+    body.push_str(&rules(first.sweep.scenario.window_of_discs()));
     body.push_str("\n## Evidence\n\n");
     for sweep in sweeps {
         let (name, trials) = (&sweep.sweep.name, sweep.sweep.cells.iter().map(|cell| cell.trials).max().unwrap_or(0));
@@ -54,7 +54,7 @@ fn heading(sweep: &Comparison) -> String {
 }
 
 /// What to take at each value of each key.
-fn answers(sweeps: &[Comparison]) -> String {
+fn answers(sweeps: &[&Comparison]) -> String {
     let mut table = MarkdownTable::new(&["what changes", "value", "take", "as good", "the worst"]);
     for sweep in sweeps.iter().filter(|sweep| sweep.is_calibrated() && !sweep.is_budget()) {
         for (value, text) in sweep.values().into_iter().enumerate() {
@@ -184,15 +184,16 @@ fn camera(camera: Camera) -> Vec<String> {
     ]
 }
 
-fn rules() -> String {
+/// `window`: of the bounds of discs, px.
+fn rules(window: usize) -> String {
     format!(
         "\n## How to read it\n\n\
          - **Found**: points in view that the board's detector found and the operator measured within 1 px, of all that are in view; *lost* are further off.\n\
-         - **RMSE** of a coordinate, against the picture of the point; of discs it holds the eccentricity. **Scatter / bound**: what trials differ by at one point, over the Cramér-Rao bound of the operator's unknowns; in the bound of discs all counts that lies in its window of 81 px, rings and neighbours, which the operator does not use.\n\
+         - **RMSE** of a coordinate, against the picture of the point; of discs it holds the eccentricity. **Scatter / bound**: what trials differ by at one point, over the Cramér-Rao bound of the operator's unknowns; in the bound of discs all counts that lies in its window of {window} px, rings and neighbours, which the operator does not use.\n\
          - **Camera**: its distance from the true one over the frame after the best rotation, root mean square, mean of the trials ± half of its 95 % interval; **predicted**: what its own covariance says of that. Stations are the same in all trials, so what they leave undetermined is the same, too.\n\
          - **Operator**: of those that measured 98 % of the most points, the one with the least RMSE. Cameras are those of the same operator.\n\
-         - **Taken** is the board with the nearest camera, by the larger of the two figures (a few trials may be lucky; a covariance knows of no systematic error), of those that found {:.0} % of the points or nearly as many as any other; *as good* are those whose figure differs by less than both intervals together.\n",
-        100.0 * ENOUGH
+         - **Taken** is the board with the nearest camera, by the larger of the two figures (a few trials may be lucky; a covariance knows of no systematic error), of those that found {enough:.0} % of the points or nearly as many as any other; *as good* are those whose figure differs by less than both intervals together.\n",
+        enough = 100.0 * ENOUGH
     )
 }
 

@@ -7,7 +7,7 @@ use calibench_scenario::{Scenario, parse};
 use super::trials;
 
 /// A board before eight stations; `BOARD` and what stands behind it are replaced.
-const BOARD: &str = r#"
+pub(super) const BOARD: &str = r#"
 why = "A board."
 source = "ours"
 seed = 5

@@ -63,3 +63,40 @@ fn a_run_that_leaves_targets_to_nobody_is_refused() {
     assert!(matches!(refused(&["pixel", "cross=forstner"]), Some(KindsGap::Idle { index: 1, .. })));
     assert_eq!(refused(&["disc=ellipse_edges", "corner=forstner"]), None);
 }
+
+/// Chessboards in one cell, discs in the other: a method may be idle in one of them, its own or one in its place, and in none of all.
+#[test]
+fn in_a_cell_of_a_sweep_a_method_may_be_idle() {
+    let (registry, text) = (Registry::builtin(), super::boards::BOARD);
+    let text = text.replace("[camera]", "[sweep]\n\"testfield.board\" = [\"chessboard:7x6:30\", \"circles:6x5:30\"]\n\n[camera]");
+    let own = "name = \"parametric_corner\"\nkinds = [\"chess_corner\"]\n\n[[method]]\nname = \"ellipse_edges\"\nkinds = [\"disc\"]";
+    let swept = calibench_scenario::parse(
+        "small/boards",
+        "b.toml",
+        &text.replace("WORD", "chessboard:7x6:30").replace("name = \"METHOD\"", own),
+        &registry,
+    );
+    let swept = swept.unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(swept.kinds, [TargetKind::ChessCorner, TargetKind::Disc].to_vec());
+    let sweep = swept.sweep.as_ref().unwrap();
+    for (index, busy) in [(0, 0), (1, 1)] {
+        let cell = calibench_scenario::parse_cell(&swept, sweep, index, &registry).unwrap();
+        let run = |methods: &[calibench_measure::Configured]| {
+            let plan = Plan { methods, ..Plan::new(&cell, crate::Tools::default(), std::path::PathBuf::new()) };
+            let mut all = Vec::new();
+            plan.run(&|| (), &mut |trial| {
+                all.extend(trial.points.iter().map(|point| point.method));
+                Ok(())
+            })
+            .map(|()| all)
+        };
+        let of = |texts: &[&str]| texts.iter().map(|text| registry.parse(text).unwrap()).collect::<Vec<_>>();
+        let own = run(&cell.methods).unwrap();
+        assert!(own.len() > 100 && own.iter().all(|method| *method == busy), "{index}");
+        let others = run(&of(&["chess_corner=forstner", "disc=centroid"])).unwrap();
+        assert!(others.len() == own.len() && others.iter().all(|method| *method == busy), "{index}");
+        assert!(matches!(run(&of(&["pixel", "cross=forstner"])), Err(RunError::Kinds(KindsGap::Idle { index: 1, .. }))));
+        let (here, wrong) = [(TargetKind::ChessCorner, "disc=centroid"), (TargetKind::Disc, "chess_corner=forstner")][index];
+        assert!(matches!(run(&of(&[wrong])), Err(RunError::Kinds(KindsGap::Unmeasured(left))) if left == [here]));
+    }
+}
