@@ -129,7 +129,7 @@ impl File<'_> {
         if sweep.is_some() && problems.is_empty() && scenario.methods.len() == listed_at.len() {
             check_busy(&scenario.methods, &listed_at, &kinds, problems);
         }
-        Some(Scenario { sweep, kinds, ..scenario })
+        Some(Scenario { kinds, sweep, ..scenario })
     }
 }
 
@@ -216,8 +216,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     if methods.len() == listed_at.len() {
         check_kinds(&methods, &listed_at, &kinds, in_sweep, problems);
     }
-    let trials_span = head.trials.as_ref().map(Spanned::span);
-    let mut trials = head.trials.map_or(1, |trials| trials.into_inner().0);
+    let (trials, trials_span) = head.trials.map_or((1, 0..0), |trials| (trials.get_ref().0, trials.span()));
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));
     let notes = head.notes.unwrap_or_default();
     let bound_window = head.bound_window.map_or(BOUND_WINDOW, |window| window.0);
@@ -236,15 +235,20 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         sweep: None,
         text: text.to_owned(),
     };
-    if in_sweep && scenario.is_deterministic() {
-        // Noise may be swept from nothing: one trial says all of such a cell.
-        trials = 1;
+    Some((sensible_trials(scenario, &trials_span, in_sweep, problems), listed_at))
+}
+
+/// The scenario, with one trial where a sweep leaves nothing random: noise may be swept from nothing, and one trial says all of such a cell.
+fn sensible_trials(scenario: Scenario, span: &Range<usize>, in_sweep: bool, problems: &mut Vec<Problem>) -> Scenario {
+    let trials = scenario.trials;
+    if trials <= 1 || !scenario.is_deterministic() {
+        return scenario;
     }
-    if trials > 1 && scenario.is_deterministic() {
-        let problem = Problem::new(trials_span.unwrap_or(0..0), format!("{trials} trials of a scenario in which nothing is random"));
+    if !in_sweep {
+        let problem = Problem::new(span.clone(), format!("{trials} trials of a scenario in which nothing is random"));
         problems.push(problem.help("expected 1, or `grey_noise`, `phase = \"uniform\"` or [scene.pointing]"));
     }
-    Some((Scenario { trials, ..scenario }, listed_at))
+    Scenario { trials: 1, ..scenario }
 }
 
 fn nothing(start: Range<usize>) -> Problem {
