@@ -146,6 +146,42 @@ fn kalibrs_target_file_is_a_board() {
     assert!(output.status.code() == Some(2) && stderr(&output).contains("`tag` is -1"), "{}", stderr(&output));
 }
 
+/// What is printed goes to Kalibr with its own description, in metres, which is also read here: the same points, a thousandth.
+#[test]
+fn a_printed_board_comes_with_its_target_file() {
+    for (kind, named) in [("chessboard", true), ("aprilgrid", true), ("circles", true), ("charuco", false), ("rings", false)] {
+        let folder = tempfile::tempdir().unwrap();
+        let project = root().display().to_string();
+        let print = || run(folder.path(), &["--root", &project, "print", &format!("targets/{kind}"), "-o", "sheet"]);
+        let output = print();
+        assert!(output.status.success(), "{kind}: {}", stderr(&output));
+        assert!(print().status.success(), "{kind}: a folder of ours is replaced");
+        let written = folder.path().join("sheet/target.yaml");
+        assert_eq!(written.exists(), named, "{kind}");
+        assert_eq!(stderr(&output).contains("no target.yaml for Kalibr"), !named, "{kind}: {}", stderr(&output));
+        if !named {
+            continue;
+        }
+        let of = |board: &str| {
+            let output = run(folder.path(), &["control", board]);
+            assert!(output.status.success(), "{kind}: {}", stderr(&output));
+            stdout(&output).lines().skip(1).map(numbers).collect::<Vec<_>>()
+        };
+        let (read, known) = (of("sheet/target.yaml"), of(in_a_word(kind)));
+        assert_eq!(read.len(), known.len(), "{kind}");
+        for ((name, at), (other, there)) in read.iter().zip(&known) {
+            assert_eq!(name, other, "{kind}");
+            let number = |text: &String| text.parse::<f64>().unwrap();
+            let same = |(metres, mm)| (1e3 * number(metres) - number(mm)).abs() < 1e-6;
+            assert!(at.iter().zip(there).all(same), "{kind} {name}: {at:?} m, {there:?} mm");
+        }
+    }
+}
+
+fn in_a_word(kind: &str) -> &'static str {
+    BOARDS.iter().find(|(name, ..)| *name == kind).map_or("chessboard:9x6:38", |(_, word, ..)| word)
+}
+
 #[test]
 fn boards_are_judged() {
     let (folder, _, photos) = rendered("aprilgrid");

@@ -89,7 +89,7 @@ enum Command {
     Records(records::Records),
     /// Write a scenario's images with the truth about every target, the camera and the poses
     Render(render::Render),
-    /// Write a scenario's testfield at true scale, as SVG and PDF
+    /// Write a scenario's testfield at true scale, as SVG and PDF, and a board's target.yaml for Kalibr
     Print(print::Print),
     /// Write reports from records alone; runs nothing
     Report(report::Report),

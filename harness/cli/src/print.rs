@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use calibench_exchange::print::{Paper, PrintOptions, write_sheets};
+use calibench_exchange::camera::kalibr_target;
+use calibench_exchange::print::{Paper, PrintError, PrintOptions, write_sheets};
 use calibench_scenario::Subject;
 use clap::{Args, ValueEnum};
 
@@ -10,7 +11,10 @@ use super::context::Context;
 use super::output;
 use crate::failure::Failure;
 
-/// Writes a scenario's testfield at true scale, as SVG and PDF.
+/// The file that describes a board for Kalibr.
+const KALIBR_TARGET: &str = "target.yaml";
+
+/// Writes a scenario's testfield at true scale, as SVG and PDF, and of a board that Kalibr knows its target.yaml.
 #[derive(Args)]
 pub struct Print {
     /// Name of a scenario, or a TOML file
@@ -48,7 +52,17 @@ impl Print {
         let stem = scenario.name.replace('/', "-");
         let options = PrintOptions { name: stem, mm_per_unit: subject.unit.mm(), paper };
         let output = output::folder("-o", &self.output, &context.inputs(&self.scenario, &scenario))?;
-        output.replace(|folder| write_sheets(folder, &subject.field, &options))?;
+        let target = subject.sheet.map(|board| kalibr_target(&board, 1e-3 * subject.unit.mm()));
+        output.replace(|folder| {
+            write_sheets(folder, &subject.field, &options)?;
+            if let Some(Ok(text)) = &target {
+                folder.write(KALIBR_TARGET, |file| file.write_all(text.as_bytes()))?;
+            }
+            Ok::<_, PrintError>(())
+        })?;
+        if let (Some(Err(why)), false) = (target, context.quiet) {
+            say!("no {KALIBR_TARGET} for Kalibr: {why}");
+        }
         crate::deliver::print(&format!("{}\n", self.output.display()))
     }
 }

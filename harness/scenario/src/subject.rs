@@ -93,6 +93,8 @@ impl SceneSubject {
 pub struct ViewsSubject {
     /// What is seen.
     pub field: Testfield,
+    /// The board that it is meant to be, if it is one: without bend and errors of printing.
+    pub sheet: Option<calibench_model::boards::Board>,
     /// Standard deviation of its surveyed coordinates, object units, if it was surveyed with any error.
     pub survey_sigma: Option<f64>,
     /// The object unit.

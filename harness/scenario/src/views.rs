@@ -134,6 +134,7 @@ impl<'i> ViewTables<'i> {
         let imaging = imaging?;
         Some(ViewsSubject {
             field,
+            sheet: plan.board(),
             survey_sigma,
             unit,
             camera,

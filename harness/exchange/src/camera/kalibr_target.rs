@@ -9,6 +9,12 @@ use super::formats::yaml;
 use super::source::{self, Source};
 use super::tree::Entry;
 
+/// The dictionary of Kalibr's tags.
+const KALIBRS_TAGS: &str = "DICT_APRILTAG_36h11";
+
+/// The width of their frames, cells.
+const KALIBRS_BORDER: usize = 2;
+
 /// Reads a board from a target file of Kalibr's. Lengths are in m.
 ///
 /// # Errors
@@ -50,11 +56,20 @@ fn aprilgrid(root: &Entry) -> Result<Board, CameraFileError> {
         rows: count(root, "tagRows")?,
         tag: root.number_of("tagSize")?,
         spacing: root.number_of("tagSpacing")?,
-        dictionary: Dictionary::named("DICT_APRILTAG_36h11").expect("a dictionary of ours"),
-        first: root.number_or_zero("lowId")? as u32,
-        border: 2,
+        dictionary: Dictionary::named(KALIBRS_TAGS).expect("a dictionary of ours"),
+        first: low_id(root)?,
+        border: KALIBRS_BORDER,
         squares: Some(0.0),
     }))
+}
+
+/// The id of the first tag: a key that forks of Kalibr have.
+fn low_id(root: &Entry) -> Result<u32, CameraFileError> {
+    let value = root.number_or_zero("lowId")?;
+    if value.fract() == 0.0 && (0.0..=f64::from(u16::MAX)).contains(&value) {
+        return Ok(value as u32);
+    }
+    Err(root.required("lowId")?.wrong("expected a whole number from 0 on").of("lowId"))
 }
 
 fn checkerboard(root: &Entry) -> Result<Board, CameraFileError> {
@@ -93,26 +108,50 @@ fn refuse_unknown(root: &Entry, known: &[&str]) -> Result<(), CameraFileError> {
     }
 }
 
-/// An AprilGrid as a target file of Kalibr's; lengths are `metres` of an object unit. `None` for a board that Kalibr cannot say.
-pub fn kalibr_target(board: &Board, metres: f64) -> Option<String> {
+/// A board as a target file of Kalibr's; an object unit is `metres` long.
+///
+/// # Errors
+/// Why Kalibr has no word for the board.
+pub fn kalibr_target(board: &Board, metres: f64) -> Result<String, &'static str> {
     // Twelve places: 30 mm are 0.03 m.
-    let number = |value: f64| (value * metres * 1e12).round() / 1e12;
+    let length = |value: f64| (value * metres * 1e12).round() / 1e12;
     match board {
-        Board::AprilGrid(AprilGrid { columns, rows, tag, spacing, first: 0, border: 2, squares: Some(_), dictionary })
-            if dictionary.name == "DICT_APRILTAG_36h11" =>
-        {
-            Some(format!(
-                "target_type: 'aprilgrid'\ntagCols: {columns}\ntagRows: {rows}\ntagSize: {}\ntagSpacing: {spacing}\n",
-                number(*tag)
-            ))
-        }
         Board::Chessboard(Chessboard { columns, rows, square }) => {
-            let side = number(*square);
-            Some(format!(
+            let side = length(*square);
+            Ok(format!(
                 "target_type: 'checkerboard'\ntargetCols: {columns}\ntargetRows: {rows}\nrowSpacingMeters: {side}\ncolSpacingMeters: {side}\n"
             ))
         }
-        _ => None,
+        Board::AprilGrid(grid) => {
+            grid_that_kalibr_has(grid)?;
+            let AprilGrid { columns, rows, tag, spacing, .. } = grid;
+            let side = length(*tag);
+            Ok(format!("target_type: 'aprilgrid'\ntagCols: {columns}\ntagRows: {rows}\ntagSize: {side}\ntagSpacing: {spacing}\n"))
+        }
+        Board::Circles(Circles { hole: Some(_), .. }) => Err("its circles are discs, not rings"),
+        Board::Circles(Circles { columns, rows, spacing, asymmetric, .. }) => {
+            let (spacing, asymmetric) = (length(*spacing), if *asymmetric { "True" } else { "False" });
+            Ok(format!(
+                "target_type: 'circlegrid'\ntargetCols: {columns}\ntargetRows: {rows}\nspacingMeters: {spacing}\nasymmetricGrid: {asymmetric}\n"
+            ))
+        }
+        Board::Charuco(_) => Err("it knows no ChArUco"),
+        Board::Rings(_) => Err("it knows no ring codes"),
+    }
+}
+
+/// Whether Kalibr's detector, whose tags are not in its file, looks for these.
+fn grid_that_kalibr_has(grid: &AprilGrid) -> Result<(), &'static str> {
+    if grid.dictionary.name != KALIBRS_TAGS {
+        Err("its tags are DICT_APRILTAG_36h11")
+    } else if grid.border != KALIBRS_BORDER {
+        Err("its tags have frames two cells wide")
+    } else if grid.first != 0 {
+        Err("its first tag is tag 0")
+    } else if grid.squares.is_none() {
+        Err("it looks for the small squares between the tags")
+    } else {
+        Ok(())
     }
 }
 
@@ -130,8 +169,31 @@ mod tests {
         let written = kalibr_target(&board, 1.0).unwrap();
         assert_eq!(parse(&written).unwrap(), board, "{written}");
         let in_mm: Board = "aprilgrid:6x6:88:0.3".parse().unwrap();
-        assert_eq!(kalibr_target(&in_mm, 1e-3), Some(written));
-        assert_eq!(kalibr_target(&"aprilgrid:6x6:88:0.3:border1".parse().unwrap(), 1e-3), None);
+        assert_eq!(kalibr_target(&in_mm, 1e-3), Ok(written));
+    }
+
+    /// What is written is read as the board that it was, and what Kalibr would see as another board is refused.
+    #[test]
+    fn every_kind_of_board_is_written_or_refused_with_a_reason() {
+        for (kind, _, example) in calibench_model::boards::KINDS {
+            let board: Board = example.parse().unwrap();
+            match kalibr_target(&board, 1.0) {
+                Ok(written) => assert_eq!(parse(&written), Ok(board), "{kind}: {written}"),
+                Err(why) => assert!(["charuco", "rings"].contains(&kind), "{kind}: {why}"),
+            }
+        }
+        let refused = |word: &str, why: &str| {
+            let error = kalibr_target(&word.parse().unwrap(), 1.0).unwrap_err();
+            assert!(error.contains(why), "{word}: {error}, expected {why}");
+        };
+        refused("aprilgrid:6x6:88:0.3:border1", "two cells");
+        refused("aprilgrid:6x6:88:0.3:7", "tag 0");
+        refused("aprilgrid:6x6:88:0.3:plain", "small squares");
+        refused("charuco:8x5:30:21:DICT_4X4_50", "ChArUco");
+        refused("rings:12:6x5:50:8", "ring codes");
+        let Board::Circles(discs) = "acircles:4x11:20".parse().unwrap() else { panic!() };
+        assert_eq!(parse(&kalibr_target(&Board::Circles(discs), 1.0).unwrap()), Ok(Board::Circles(discs)));
+        assert!(kalibr_target(&Board::Circles(Circles { hole: Some(4.0), ..discs }), 1.0).is_err());
     }
 
     #[test]
@@ -150,6 +212,8 @@ mod tests {
             ("tagCols: 6", "tagCols: 6.5", "expected a whole number"),
             ("tagSize: 0.088", "tagSize: wide", "tagSize"),
             ("tagSpacing: 0.3", "tagSpcing: 0.3", "tagSpcing"),
+            ("tagRows: 6", "tagRows: 6\nlowId: 1.5", "lowId"),
+            ("tagRows: 6", "tagRows: 6\nlowId: -1", "expected a whole number from 0 on"),
             ("tagSpacing: 0.3", "tagSpacing: -1", "`spacing` is -1"),
             ("target_type: 'aprilgrid'", "cam0: 3", "target_type"),
         ] {
