@@ -41,11 +41,15 @@ fn parse(text: &str) -> Result<Board, CameraFileError> {
 }
 
 fn count(root: &Entry, name: &str) -> Result<usize, CameraFileError> {
-    let value = root.number_of(name)?;
-    if value.fract() == 0.0 && (1.0..=1000.0).contains(&value) {
+    whole(root, name, root.number_of(name)?, 1)
+}
+
+/// `value`, which stands under `name`, as a whole number from `least` on.
+fn whole(root: &Entry, name: &str, value: f64, least: usize) -> Result<usize, CameraFileError> {
+    if value.fract() == 0.0 && (least as f64..=1000.0).contains(&value) {
         return Ok(value as usize);
     }
-    Err(root.required(name)?.wrong("expected a whole number from 1 to 1000").of(name))
+    Err(root.required(name)?.wrong(&format!("expected a whole number from {least} to 1000")).of(name))
 }
 
 fn aprilgrid(root: &Entry) -> Result<Board, CameraFileError> {
@@ -57,19 +61,11 @@ fn aprilgrid(root: &Entry) -> Result<Board, CameraFileError> {
         tag: root.number_of("tagSize")?,
         spacing: root.number_of("tagSpacing")?,
         dictionary: Dictionary::named(KALIBRS_TAGS).expect("a dictionary of ours"),
-        first: low_id(root)?,
+        // A key that forks of Kalibr have.
+        first: whole(root, "lowId", root.number_or_zero("lowId")?, 0)? as u32,
         border: KALIBRS_BORDER,
         squares: Some(0.0),
     }))
-}
-
-/// The id of the first tag: a key that forks of Kalibr have.
-fn low_id(root: &Entry) -> Result<u32, CameraFileError> {
-    let value = root.number_or_zero("lowId")?;
-    if value.fract() == 0.0 && (0.0..=f64::from(u16::MAX)).contains(&value) {
-        return Ok(value as u32);
-    }
-    Err(root.required("lowId")?.wrong("expected a whole number from 0 on").of("lowId"))
 }
 
 fn checkerboard(root: &Entry) -> Result<Board, CameraFileError> {
@@ -213,7 +209,8 @@ mod tests {
             ("tagSize: 0.088", "tagSize: wide", "tagSize"),
             ("tagSpacing: 0.3", "tagSpcing: 0.3", "tagSpcing"),
             ("tagRows: 6", "tagRows: 6\nlowId: 1.5", "lowId"),
-            ("tagRows: 6", "tagRows: 6\nlowId: -1", "expected a whole number from 0 on"),
+            ("tagRows: 6", "tagRows: 6\nlowId: 552", "`first` is 552: expected at most 587"),
+            ("tagRows: 6", "tagRows: 6\nlowId: -1", "expected a whole number from 0 to 1000"),
             ("tagSpacing: 0.3", "tagSpacing: -1", "`spacing` is -1"),
             ("target_type: 'aprilgrid'", "cam0: 3", "target_type"),
         ] {
