@@ -111,7 +111,14 @@ rows:
 fuzz seconds="60" seed="15":
     CALIBENCH_FUZZ_SECONDS={{seconds}} CALIBENCH_FUZZ_SEED={{seed}} cargo test {{everything}} --test calibench fuzz::no_reader -- --nocapture
 
-# Write the JSON Schema of scenario files
+# Write the JSON Schemas of scenario files, and of what commands answer with --json in their present version
 schema: build
+    #!/usr/bin/env bash
+    set -euo pipefail
     {{calibench}} schema scenarios > scenarios/scenario.schema.json.new
     mv scenarios/scenario.schema.json.new scenarios/scenario.schema.json
+    for command in calibrate judge convert camera diff measure; do
+        {{calibench}} schema $command > docs/schemas/new
+        version=$(python3 -c 'import json; print(json.load(open("docs/schemas/new"))["properties"]["schema"]["const"])')
+        mv docs/schemas/new docs/schemas/$command-$version.schema.json
+    done

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::project::{root, run, stderr, stdout};
 
 /// The rendered chessboard, and the names of its images.
-fn board(folder: &Path) -> Vec<String> {
+pub fn board(folder: &Path) -> Vec<String> {
     let root = root();
     let output = run(folder, &["--root", root.to_str().unwrap(), "render", "testfields/chessboard", "-o", "board", "-q"]);
     assert!(output.status.success(), "{}", stderr(&output));
@@ -19,7 +19,7 @@ fn board(folder: &Path) -> Vec<String> {
     images
 }
 
-fn judge(folder: &Path, images: &[String], more: &[&str]) -> std::process::Output {
+pub fn judge(folder: &Path, images: &[String], more: &[&str]) -> std::process::Output {
     let mut arguments = vec!["judge", "-q", "--chessboard", "9x6:25"];
     arguments.extend(images.iter().map(String::as_str));
     arguments.extend(more);

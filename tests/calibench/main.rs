@@ -1,5 +1,6 @@
 //! Tests that cross crates.
 
+mod answers;
 mod architecture;
 mod atlas;
 mod boards;
@@ -23,6 +24,7 @@ mod judge_field;
 mod judge_points;
 mod killed;
 mod lists;
+mod manual;
 mod measure;
 mod messages;
 mod models;

@@ -6,10 +6,11 @@ use calibench_exchange::camera::NamedCamera;
 use calibench_model::camera::CameraModel;
 use calibench_model::escape;
 use calibench_report::camera_card;
+use calibench_report::json::CameraFileAnswer;
 use clap::Args;
 
 use super::reading::Reading;
-use crate::deliver::print;
+use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
 #[derive(Args)]
@@ -18,13 +19,18 @@ pub struct CameraCommand {
     file: PathBuf,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    answered: As,
 }
 
 impl CameraCommand {
     pub fn run(&self) -> Result<(), Failure> {
-        let (file, count) = self.reading.file(&self.file, MOST_LISTED)?;
+        let (file, count) = self.reading.file(&self.file, if self.answered.json { usize::MAX } else { MOST_LISTED })?;
         let format = file.format;
         let camera = self.reading.one(&self.file)?;
+        if self.answered.json {
+            return answer(&CameraFileAnswer::new(&self.file.display().to_string(), &file, &camera));
+        }
         let verified = format.verified.map_or("unverified".to_owned(), |proof| format!("verified: {proof}"));
         let cameras = if count == 1 { "1 camera".to_owned() } else { format!("{count} cameras") };
         let mut text = format!(

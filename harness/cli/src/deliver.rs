@@ -4,8 +4,23 @@ use std::io::{self, BufWriter, ErrorKind, Write, stdout};
 
 use calibench_exchange::OutputFile;
 use calibench_model::escape;
+use calibench_report::json::{Answer, write_answer};
+use clap::Args;
 
 use crate::failure::Failure;
+
+/// How a command answers.
+#[derive(Args, Clone, Copy)]
+pub struct As {
+    /// Answer on standard output as one JSON document, of which `calibench schema COMMAND` prints the schema; exit codes stay
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Writes an answer to standard output as JSON.
+pub fn answer(answer: &impl Answer) -> Result<(), Failure> {
+    stream(|output| write_answer(output, answer))
+}
 
 /// Prints words to standard output; what would command the terminal is escaped. A reader that went away is no error.
 pub fn print(text: &str) -> Result<(), Failure> {

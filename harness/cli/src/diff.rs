@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 use calibench_exchange::Inputs;
 use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
-use calibench_model::convert::{DifferenceOptions, Vector, difference, difference_at};
+use calibench_model::convert::{Difference, DifferenceOptions, Vector, difference, difference_at};
+use calibench_report::json::{DifferenceAnswer, Part};
 use calibench_report::{Hull, plain};
 use clap::Args;
 
 use super::convert::{advise, field, positive, region, size_of};
 use super::output;
 use super::reading::{Reading, shown};
-use crate::deliver::print;
+use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 use crate::inputs::read_measured;
 
@@ -39,6 +40,8 @@ pub struct Diff {
     distance: Option<f64>,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    answered: As,
 }
 
 impl Diff {
@@ -67,17 +70,33 @@ impl Diff {
             None => difference(&first, &second, &options),
         };
         let found = found.map_err(|error| advise(&error))?;
+        let measured = Hull::of(&places.unwrap_or_default());
+        let parts = self.points.is_some().then(|| {
+            let part = |is_inside| part(&found.vectors, a, |at| measured.holds(at) == is_inside);
+            [part(true), part(false)]
+        });
+        if self.answered.json {
+            let files = [&self.first, &self.second].map(|path| path.display().to_string());
+            answer(&DifferenceAnswer::new(files, a, &found, !self.no_rotation, parts, self.distance))?;
+        } else {
+            print(&self.words(&found, parts))?;
+        }
+        let Some(plot) = &plot else { return Ok(()) };
+        let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
+        Ok(field(&title, &first, &found.vectors, measured).write(plot)?)
+    }
+
+    fn words(&self, found: &Difference, parts: Option<[Option<Part>; 2]>) -> String {
         let after = if self.no_rotation {
             "without a rotation".to_owned()
         } else {
-            let by = if places.is_some() { ", the best at the points" } else { "" };
+            let by = if self.points.is_some() { ", the best at the points" } else { "" };
             format!("after a rotation of {:.6}\u{b0}{by}", found.rotation.angle().to_degrees())
         };
         let mut text = format!("difference  {}, {after}\n", size_of(&found.spread));
-        let measured = Hull::of(&places.unwrap_or_default());
-        if self.points.is_some() {
-            text.push_str(&format!("inside      {}, where points were measured\n", part(&found.vectors, a, |at| measured.holds(at))));
-            text.push_str(&format!("outside     {}\n", part(&found.vectors, a, |at| !measured.holds(at))));
+        if let Some([inside, outside]) = parts {
+            text.push_str(&format!("inside      {}, where points were measured\n", in_words(inside)));
+            text.push_str(&format!("outside     {}\n", in_words(outside)));
         }
         if let Some(compensated) = &found.compensated {
             let [dx, dy] = compensated.shift;
@@ -101,10 +120,7 @@ impl Diff {
                 on(found.spread.max_px)
             ));
         }
-        print(&text)?;
-        let Some(plot) = &plot else { return Ok(()) };
-        let title = format!("From {} to {}", stem(&self.first), stem(&self.second));
-        Ok(field(&title, &first, &found.vectors, measured).write(plot)?)
+        text
     }
 }
 
@@ -113,17 +129,21 @@ fn places(path: &Path) -> Result<Vec<PixelPoint>, Failure> {
     Ok(read_measured(path)?.rows().map(|row| row.start.position).collect())
 }
 
-/// The size of the vectors in a part of the frame: the RMS is the mean over its area, of which a node at the frame's border has half.
-fn part(vectors: &[Vector], size: ImageSize, is_part: impl Fn(PixelPoint) -> bool) -> String {
+/// The size of the vectors in a part of the frame: the RMS is the mean over its area, of which a node at the frame's border has half. `None` where nothing was
+/// compared.
+fn part(vectors: &[Vector], size: ImageSize, is_part: impl Fn(PixelPoint) -> bool) -> Option<Part> {
     let half = |place: f64, side: u32| if place <= 0.0 || place >= f64::from(side) - 1.0 { 0.5 } else { 1.0 };
     let weighted = |vector: &Vector| (half(vector.at.x, size.width) * half(vector.at.y, size.height), vector.length());
     let lengths: Vec<(f64, f64)> = vectors.iter().filter(|vector| is_part(vector.at)).map(weighted).collect();
     if lengths.is_empty() {
-        return "nothing was compared".to_owned();
+        return None;
     }
     let (sum, area) = lengths.iter().fold((0.0, 0.0), |(sum, area), (weight, length)| (sum + weight * length * length, area + weight));
-    let most = lengths.iter().map(|(_, length)| *length).fold(0.0, f64::max);
-    format!("{} px RMS, {} px at most", plain((sum / area).sqrt()), plain(most))
+    Some(Part { rms_px: (sum / area).sqrt(), max_px: lengths.iter().map(|(_, length)| *length).fold(0.0, f64::max) })
+}
+
+fn in_words(part: Option<Part>) -> String {
+    part.map_or("nothing was compared".into(), |Part { rms_px, max_px }| format!("{} px RMS, {} px at most", plain(rms_px), plain(max_px)))
 }
 
 fn stem(path: &Path) -> String {
@@ -141,8 +161,8 @@ mod tests {
         let all = (0..9).map(|i| Vector { at: PixelPoint::new(place(i % 3), place(i / 3)), dx: if i == 4 { 0.0 } else { 2.0 }, dy: 0.0 });
         let all: Vec<Vector> = all.collect();
         let size = ImageSize { width: 101, height: 101 };
-        assert_eq!(part(&all, size, |_| true), format!("{} px RMS, 2.00 px at most", plain(3.0_f64.sqrt())));
-        assert_eq!(part(&all, size, |at| at.x == 0.0 && at.y == 0.0), "2.00 px RMS, 2.00 px at most");
-        assert_eq!(part(&all, size, |at| at.x > 500.0), "nothing was compared");
+        assert_eq!(in_words(part(&all, size, |_| true)), format!("{} px RMS, 2.00 px at most", plain(3.0_f64.sqrt())));
+        assert_eq!(in_words(part(&all, size, |at| at.x == 0.0 && at.y == 0.0)), "2.00 px RMS, 2.00 px at most");
+        assert_eq!(in_words(part(&all, size, |at| at.x > 500.0)), "nothing was compared");
     }
 }

@@ -14,6 +14,7 @@ mod convert;
 mod deliver;
 mod detect;
 mod diff;
+mod examples;
 mod failure;
 mod gated;
 mod init;
@@ -22,6 +23,7 @@ mod intersect;
 mod judge;
 mod lanes;
 mod list;
+mod manual;
 mod measure;
 mod notes;
 mod orient;
@@ -48,7 +50,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 pub use calibench_project::Toolbox;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use failure::Failure;
 use plugin::CONFINED;
 
@@ -135,17 +137,27 @@ enum Command {
     /// Restrict this process, then become another program: how plug-ins are started
     #[command(name = CONFINED, hide = true)]
     Confined(plugin::Confined),
-    /// Print the JSON Schema of scenario files or of published tables, for editors
+    /// Print the JSON Schema of scenario files or of published tables, for editors, or of what a command answers with --json
     Schema {
-        /// Of which files
+        /// Of what
         #[arg(default_value = "scenarios")]
         of: schema::Schema,
     },
+    /// Print the completions of the command line for a shell
+    Completions(manual::Completions),
+    /// Write the manual pages of all commands
+    Man(manual::Man),
+}
+
+/// The command line with all that its help says.
+fn command_line() -> clap::Command {
+    examples::with_examples(Arguments::command())
 }
 
 /// Runs the command line of this process.
 pub fn main(toolbox: &Toolbox) -> ExitCode {
-    let arguments = Arguments::parse();
+    let matches = command_line().get_matches();
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     // Before any thread: what restricts itself has one.
     if let Command::Confined(confined) = &arguments.command {
         return confined.execute();
@@ -201,6 +213,38 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Stmap(map) => map.run(),
         Command::Plugin(plugin) => plugin.run(&context),
         Command::Confined(confined) => Err(confined.failure()),
+        Command::Completions(completions) => completions.run(&command_line()),
+        Command::Man(man) => man.run(command_line()),
         Command::Schema { of } => deliver::print(&of.text(context.registry()?)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::command_line;
+    use super::examples::EXAMPLES;
+
+    #[test]
+    fn every_command_shows_examples_that_it_takes() {
+        let line = command_line();
+        let named: Vec<&str> = line.get_subcommands().filter(|one| !one.is_hide_set()).map(|one| one.get_name()).collect();
+        assert_eq!(EXAMPLES.iter().map(|(name, _)| *name).collect::<Vec<_>>(), named);
+        for (name, examples) in EXAMPLES {
+            assert!(!examples.is_empty(), "{name}");
+            for (example, what) in *examples {
+                let words: Vec<&str> = example.split_whitespace().collect();
+                assert_eq!(words[..2], ["calibench", *name], "{example}");
+                assert!(!what.is_empty() && example.len() <= 96, "{example} is to be copied in one line");
+                let taken = command_line().try_get_matches_from(words);
+                assert!(taken.is_ok(), "{example}: {}", taken.unwrap_err());
+            }
+            let help = command_line().find_subcommand_mut(name).unwrap().render_long_help().to_string();
+            assert!(help.contains("Examples:\n  calibench ") && help.contains(examples[0].0), "{help}");
+        }
+    }
+
+    #[test]
+    fn the_command_line_is_whole() {
+        command_line().debug_assert();
     }
 }

@@ -86,10 +86,14 @@ impl Reading {
 
     /// Says what of a format's convention is not confirmed by numbers of its tool.
     pub fn warn_of_format(&self, format: &CameraFormat) {
-        if let Some(Verification::Unverified(open)) = format.convention.map(|convention| convention.verification) {
-            let flag = if format.origin_is_open && self.origin.is_none() { "; --origin corner or --origin centre decides" } else { "" };
-            say!("unverified: {}: {open}{flag}", format.name);
-        }
+        self.open_point(format).iter().for_each(|open| say!("unverified: {}: {open}", format.name));
+    }
+
+    /// What of a format's convention is not confirmed by numbers of its tool, and which flag decides it.
+    pub fn open_point(&self, format: &CameraFormat) -> Option<String> {
+        let Verification::Unverified(open) = format.convention?.verification else { return None };
+        let flag = if format.origin_is_open && self.origin.is_none() { "; --origin corner or --origin centre decides" } else { "" };
+        Some(format!("{open}{flag}"))
     }
 
     /// What of a camera's convention is not confirmed by numbers of its tool, and which flag decides it.

@@ -78,8 +78,9 @@ fn begins_formula(text: &str) -> bool {
     text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n'])
 }
 
-/// Control characters, those that turn the direction of writing, and those that end a line or have no width.
-fn is_command(c: char) -> bool {
+/// Whether a terminal may take a character for more than itself: control characters, those that turn the direction of writing, and those that end a line
+/// or have no width.
+pub fn is_command(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}')
 }

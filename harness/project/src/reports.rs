@@ -22,9 +22,11 @@ impl Project<'_> {
         for name in names {
             families.entry(name.split('/').next().unwrap_or(&name).to_owned()).or_default().push(name);
         }
-        if self.folder()?.is_some() {
+        // A project of one's own has no published cameras.
+        if self.folder()?.is_some() && places.cameras.is_dir() {
             families.insert(conventions::FAMILY.to_owned(), Vec::new());
-        } else if families.is_empty() {
+        }
+        if families.is_empty() {
             return Err(ProjectError::Asked(format!("{}: no records; `calibench run FILE.toml` makes them", places.records.display())));
         }
         for paper in papers {

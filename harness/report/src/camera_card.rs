@@ -36,8 +36,8 @@ pub fn camera_card(named: &NamedCamera) -> String {
         let sigma = sigma.map_or(String::new(), |sigma| format!(", sigma {} {}", plain(sigma), parameter.unit).trim_end().to_owned());
         line(parameter.name, value + &sigma);
     }
-    line("view", view(camera));
-    line("distortion", distortion(camera));
+    line("view", view_in_words(camera));
+    line("distortion", distortion_in_words(camera));
     line("one to one", one_to_one(camera));
     if let Some(pose) = &named.pose {
         let [x, y, z] = pose.position;
@@ -58,7 +58,7 @@ pub fn camera_card(named: &NamedCamera) -> String {
 }
 
 /// Standard deviation of a parameter, in its unit; `None` for one that was held fixed.
-fn sigma(covariance: &ParameterCovariance, name: &str) -> Option<f64> {
+pub(crate) fn sigma(covariance: &ParameterCovariance, name: &str) -> Option<f64> {
     let place = covariance.parameters.iter().position(|own| own == name)?;
     Some(covariance.values[place * (covariance.parameters.len() + 1)].sqrt())
 }
@@ -67,22 +67,20 @@ fn middles(size: ImageSize) -> (f64, f64) {
     (f64::from(size.width - 1) / 2.0, f64::from(size.height - 1) / 2.0)
 }
 
-/// Angles from side to side and from corner to corner, by way of the middle of the frame: they may be above 180 degrees.
-fn view(camera: &Camera) -> String {
+/// Angles of view, degrees: from side to side, from top to bottom and from corner to corner, by way of the middle of the frame, so that they may be above 180;
+/// `None` where there is no ray.
+pub(crate) fn view(camera: &Camera) -> [Option<f64>; 3] {
     let size = camera.size();
     let ((mx, my), (right, down)) = (middles(size), (f64::from(size.width - 1), f64::from(size.height - 1)));
     let ray = |(x, y): (f64, f64)| camera.unproject(PixelPoint::new(x, y)).ok();
     let middle = ray((mx, my));
-    let angle = |a: (f64, f64), b: (f64, f64)| {
-        let rays = ray(a).zip(middle).zip(ray(b));
-        rays.map_or("no ray".to_owned(), |((a, middle), b)| format!("{:.2}\u{b0}", by_way_of(middle, a, b).to_degrees()))
-    };
-    format!(
-        "{} wide, {} high, {} from corner to corner",
-        angle((0.0, my), (right, my)),
-        angle((mx, 0.0), (mx, down)),
-        angle((0.0, 0.0), (right, down))
-    )
+    let angle = |a: (f64, f64), b: (f64, f64)| ray(a).zip(middle).zip(ray(b)).map(|((a, middle), b)| by_way_of(middle, a, b).to_degrees());
+    [angle((0.0, my), (right, my)), angle((mx, 0.0), (mx, down)), angle((0.0, 0.0), (right, down))]
+}
+
+fn view_in_words(camera: &Camera) -> String {
+    let [wide, high, across] = view(camera).map(|angle| angle.map_or("no ray".to_owned(), |angle| format!("{angle:.2}\u{b0}")));
+    format!("{wide} wide, {high} high, {across} from corner to corner")
 }
 
 /// The angle between two rays on the side where `middle` lies, radians: below 2 pi.
@@ -92,36 +90,50 @@ fn by_way_of(middle: Ray, a: Ray, b: Ray) -> f64 {
     if a.angle_to(middle) + middle.angle_to(b) > PI { TAU - shorter } else { shorter }
 }
 
-/// How far the corners are from where the same camera without distortion pictures their rays.
-fn distortion(camera: &Camera) -> String {
+/// The distortion of a corner of the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Corner {
+    /// The camera has no ray there.
+    NoRay,
+    /// The ray is there: it is the plane that ends at 90 degrees.
+    NotInPlane,
+    /// So far from where the same camera without distortion pictures the ray, px.
+    Moved(f64),
+}
+
+/// The corners of the frame, clockwise from top left; `None` where no camera without distortion agrees with this one on its axis.
+pub(crate) fn corners(camera: &Camera) -> Option<[Corner; 4]> {
     let size = camera.size();
-    let Some(ideal) = without_distortion(camera) else {
-        return "not known: no camera without distortion agrees with it on its axis".into();
-    };
+    let ideal = without_distortion(camera)?;
     let (right, down) = (f64::from(size.width - 1), f64::from(size.height - 1));
-    let corner = |x: f64, y: f64| {
+    let corner = |(x, y): (f64, f64)| {
         let at = PixelPoint::new(x, y);
         match camera.unproject(at).map(|ray| ideal.project(ray)) {
-            Err(_) => "no ray".to_owned(),
-            // The ray is there: it is the plane that ends at 90 degrees.
-            Ok(Err(_)) => "not in a plane".to_owned(),
-            Ok(Ok(ideal)) => format!("{} px", plain(ideal.distance(at))),
+            Err(_) => Corner::NoRay,
+            Ok(Err(_)) => Corner::NotInPlane,
+            Ok(Ok(ideal)) => Corner::Moved(ideal.distance(at)),
         }
     };
-    format!(
-        "{}, {}, {}, {} in the corners (clockwise from top left)",
-        corner(0.0, 0.0),
-        corner(right, 0.0),
-        corner(right, down),
-        corner(0.0, down)
-    )
+    Some([(0.0, 0.0), (right, 0.0), (right, down), (0.0, down)].map(corner))
+}
+
+fn distortion_in_words(camera: &Camera) -> String {
+    let Some(corners) = corners(camera) else {
+        return "not known: no camera without distortion agrees with it on its axis".into();
+    };
+    let words = corners.map(|corner| match corner {
+        Corner::NoRay => "no ray".to_owned(),
+        Corner::NotInPlane => "not in a plane".to_owned(),
+        Corner::Moved(px) => format!("{} px", plain(px)),
+    });
+    format!("{} in the corners (clockwise from top left)", words.join(", "))
 }
 
 /// Columns and rows of the pixels that are looked at for rays.
 const GRID: (u32, u32) = (120, 80);
 
 /// Share of the frame whose pixels have no ray, 0 to 1.
-fn without_ray(camera: &Camera) -> f64 {
+pub(crate) fn without_ray(camera: &Camera) -> f64 {
     let (size, (columns, rows)) = (camera.size(), GRID);
     let place = |index: u32, count: u32, length: u32| f64::from(length - 1) * f64::from(index) / f64::from(count - 1);
     let pixels =

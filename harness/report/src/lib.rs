@@ -15,6 +15,7 @@ mod figures;
 mod frame;
 mod hull;
 mod index;
+pub mod json;
 pub mod judgement;
 mod levels;
 pub mod load;

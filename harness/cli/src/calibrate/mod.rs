@@ -7,12 +7,13 @@ use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder,
 use calibench_model::boards::Board;
 use calibench_photographs::{Chessboard, Corners, Photo, board_of};
 use calibench_report::calibration::{summary, write_report};
+use calibench_report::json::CalibrationAnswer;
 use clap::Args;
 
 use super::context::{Context, finder};
 use super::convert::positive;
 use super::{inputs, output};
-use crate::deliver::print;
+use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
 mod camera_file;
@@ -79,6 +80,8 @@ pub struct Calibrate {
     /// Folder for a report with pictures and tables; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    answered: As,
 }
 
 /// What is calibrated from.
@@ -89,8 +92,8 @@ struct Input {
     /// Where the points were measured here.
     photos: Vec<Photo>,
     control: Vec<ControlRow>,
-    /// Whether it is in doubt where a board was found.
-    doubts: bool,
+    /// What is in doubt of where a board was found.
+    doubts: Vec<String>,
 }
 
 impl Calibrate {
@@ -108,8 +111,12 @@ impl Calibrate {
         drop(control);
         calibrate(&prepared, &sets(&self.compare)?, |calibration| {
             self.deliver(calibration, output.as_ref(), report.as_ref())?;
-            print(&summary(calibration))?;
-            if calibration.doubts().is_empty() && !doubts { Ok(()) } else { Err(Failure::Doubt) }
+            if self.answered.json {
+                answer(&CalibrationAnswer::new(calibration, &doubts).map_err(Failure::Input)?)?;
+            } else {
+                print(&summary(calibration))?;
+            }
+            if calibration.doubts().is_empty() && doubts.is_empty() { Ok(()) } else { Err(Failure::Doubt) }
         })?
     }
 
@@ -117,14 +124,14 @@ impl Calibrate {
         match (&self.points, &self.control, self.board.or(self.chessboard.map(Board::from))) {
             (Some(points), Some(control), _) => {
                 let PointFile { points, lost } = inputs::measured(points)?;
-                Ok(Input { points, lost, photos: Vec::new(), control: read_control(control)?, doubts: false })
+                Ok(Input { points, lost, photos: Vec::new(), control: read_control(control)?, doubts: Vec::new() })
             }
             (_, _, Some(board)) => {
                 let finder = finder(board)?;
                 let Corners { points, lost, photos, doubts } =
                     photographs::corners(context, &finder, &self.photos, self.method.as_deref())?;
                 let (points, lost) = (points.iter().collect(), lost.into_iter().collect());
-                Ok(Input { points, lost, photos, control: finder.control(), doubts: !doubts.is_empty() })
+                Ok(Input { points, lost, photos, control: finder.control(), doubts })
             }
             _ => Err(Failure::input("expected --points, --control and --size, or photographs and --board")),
         }

@@ -17,6 +17,7 @@ use calibench_model::convert::{
     Conversion, ConvertError, ConvertOptions, DifferenceOptions, Method, Region, Spread, Tangential, Vector, Verdict, difference, naive,
 };
 use calibench_model::escape;
+use calibench_report::json::{CameraAnswer, ConversionAnswer, ConvertedCamera};
 use calibench_report::{Field, Hull, plain};
 use clap::Args;
 use rayon::prelude::*;
@@ -24,7 +25,7 @@ use rayon::prelude::*;
 use super::context::Context;
 use super::output;
 use super::reading::Reading;
-use crate::deliver::stream;
+use crate::deliver::{As, answer, stream};
 use crate::failure::Failure;
 use said::Said;
 
@@ -68,6 +69,8 @@ pub struct Convert {
     plot: Option<PathBuf>,
     #[command(flatten)]
     reading: Reading,
+    #[command(flatten)]
+    answered: As,
 }
 
 pub fn positive(text: &str) -> Result<f64, String> {
@@ -83,7 +86,8 @@ impl Convert {
         let inputs = Inputs::new([&self.file]);
         let cameras_file = self.cameras_file(&inputs)?;
         let plot = self.plot.as_deref().map(|path| output::picture("--plot", path, &inputs)).transpose()?;
-        if self.in_pieces(&cameras_file, context.quiet)? {
+        // An answer tells every camera apart, and so has them all in memory.
+        if !self.answered.json && self.in_pieces(&cameras_file, context.quiet)? {
             return Ok(());
         }
         let sources = if self.all { self.reading.all(&self.file)? } else { vec![self.reading.one(&self.file)?] };
@@ -102,13 +106,25 @@ impl Convert {
         results.iter().flat_map(|answer| &answer.said).for_each(|(label, text)| said.add(label.as_deref(), text));
         said.say();
         let Some(&Answer { format, .. }) = results.first() else { return Err(Failure::input("the file holds no camera")) };
-        let mut cameras: Vec<NamedCamera> = results.into_iter().map(|answer| answer.camera).collect();
+        let (mut cameras, found): (Vec<NamedCamera>, Vec<Found>) = results.into_iter().map(|answer| (answer.camera, answer.found)).unzip();
         self.reading.open_points().written(format, &mut cameras);
         self.reading.warn_of_format(format);
         let mut words = Said::default();
         cameras.iter().flat_map(|camera| lost(format, camera)).for_each(|text| words.add(None, &text));
         words.say();
-        cameras_file.write(format, &cameras)
+        if !self.answered.json {
+            return cameras_file.write(format, &cameras);
+        }
+        if self.output.is_some() {
+            cameras_file.write(format, &cameras)?;
+        }
+        answer(&ConversionAnswer {
+            file: self.file.display().to_string(),
+            to: format.name.to_owned(),
+            unverified: self.reading.open_point(format),
+            output: self.output.as_ref().map(|path| path.display().to_string()),
+            cameras: cameras.iter().zip(found).map(|(camera, found)| found.answer(camera, losses(format, camera))).collect(),
+        })
     }
 
     /// Where the cameras go: a name with the ending of a camera file is a file, any other one the folder of `--all`.
@@ -133,8 +149,9 @@ impl Convert {
         let goal = goal(&self.to, &given).map_err(no_target)?;
         if self.naive {
             let pitch_um = self.pitch.or(source.pitch_um);
-            let camera = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), self.naive(source, pitch_um, plot, quiet)?) };
-            return Ok(Answer { camera, format: goal.format, said: Vec::new() });
+            let (camera, found) = self.naive(source, pitch_um, plot, quiet)?;
+            let camera = NamedCamera { pitch_um, ..NamedCamera::new(source.name.clone(), camera) };
+            return Ok(Answer { camera, format: goal.format, said: Vec::new(), found });
         }
         let options =
             ConvertOptions { region: region(self.radius), rotation: self.rotation, accept: self.accept, ..ConvertOptions::default() };
@@ -156,7 +173,9 @@ impl Convert {
         if goal.format.convention.is_none() && conversion.camera.convention() != source.camera.convention() {
             said.extend(self.reading.doubt(&conversion.camera).map(|doubt| (None, doubt)));
         }
-        Ok(Answer { camera, format: goal.format, said })
+        let model = model.map(str::to_owned);
+        let found = Found::Converted(Box::new(Conversion { residuals: Vec::new(), ..conversion }), model);
+        Ok(Answer { camera, format: goal.format, said, found })
     }
 
     /// Why a camera is not converted, with its name where there are several.
@@ -172,7 +191,13 @@ impl Convert {
         }
     }
 
-    fn naive(&self, source: &NamedCamera, pitch_um: Option<f64>, plot: Option<&OutputFile>, quiet: bool) -> Result<Camera, Failure> {
+    fn naive(
+        &self,
+        source: &NamedCamera,
+        pitch_um: Option<f64>,
+        plot: Option<&OutputFile>,
+        quiet: bool,
+    ) -> Result<(Camera, Found), Failure> {
         if self.to != "photogrammetric" {
             return Err(Failure::input("--naive converts to photogrammetric only"));
         }
@@ -185,7 +210,7 @@ impl Convert {
         if let Some(plot) = plot {
             field("Naive conversion: from the source to the result", &source.camera, &cost.vectors, Hull::default()).write(plot)?;
         }
-        Ok(camera)
+        Ok((camera, Found::Naive(cost.spread, cost.rotation.angle().to_degrees())))
     }
 }
 
@@ -201,6 +226,25 @@ struct Answer {
     format: &'static CameraFormat,
     /// What the user is told, of this camera by its label or of all.
     said: Vec<(Option<String>, String)>,
+    found: Found,
+}
+
+/// How a camera was converted.
+enum Found {
+    /// Into a model, which has a name where there are several; without the vectors of its residuals.
+    Converted(Box<Conversion>, Option<String>),
+    /// By formulas that are wrong beyond first order: the difference after the best rotation, and the angle of that, degrees.
+    Naive(Spread, f64),
+}
+
+impl Found {
+    fn answer(self, camera: &NamedCamera, lost: Vec<String>) -> ConvertedCamera {
+        let (fold, shown) = (fold(&camera.camera), CameraAnswer::new(camera));
+        match self {
+            Self::Converted(conversion, model) => ConvertedCamera::new(&conversion, model, fold, lost, shown),
+            Self::Naive(cost, rotation_deg) => ConvertedCamera::naive(&cost, rotation_deg, fold, lost, shown),
+        }
+    }
 }
 
 /// What of a camera a format has no place for, as a warning.

@@ -9,13 +9,14 @@ use calibench_model::boards::Board;
 use calibench_model::camera::ImageSize;
 use calibench_photographs::{Chessboard, board_of};
 use calibench_records::judgement::{InUse, StillHolds, Summary, Trusted};
+use calibench_report::json::JudgementAnswer;
 use calibench_report::judgement::{in_use as in_words, section, verdict};
 use clap::Args;
 
 use super::context::Context;
 use super::convert::positive;
 use super::{output, reading};
-use crate::deliver::print;
+use crate::deliver::{As, answer, print};
 use crate::failure::Failure;
 
 mod files;
@@ -73,6 +74,8 @@ pub struct Judge {
     /// Folder for the page with its pictures and its numbers as CSV; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    answered: As,
 }
 
 impl Judge {
@@ -81,7 +84,7 @@ impl Judge {
         let files = self.points.iter().map(|file| &file.path);
         let inputs = Inputs::new(self.photos.iter().chain(files).chain(&self.published).chain(&self.camera).chain(&self.control));
         let folder = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
-        let material = self.material(context)?;
+        let (material, doubts) = self.material(context)?;
         let size = material.size;
         let published = self.camera.as_deref().or(self.published.as_deref());
         let published =
@@ -98,16 +101,23 @@ impl Judge {
         let rows = judge(&material, &options)?;
         let summary = Summary::new(&rows, self.seed);
         if let Some(folder) = folder {
-            folder.replace(|folder| self.write(folder, &material, &rows, &summary))?;
+            folder.replace(|folder| self.write(folder, (&material, &doubts), &rows, &summary))?;
         }
         let Some(trusted) = summary.trusted() else { return Err(Failure::input(section(&summary).0)) };
         let in_use = self.in_use(&trusted);
-        in_use.iter().try_for_each(|found| print(&format!("- {}\n", in_words(found))))?;
-        print(&verdict(&summary, &trusted))?;
+        if self.answered.json {
+            answer(&JudgementAnswer::new(&summary, &trusted, in_use.as_ref(), &doubts))?;
+        } else {
+            in_use.iter().try_for_each(|found| print(&format!("- {}\n", in_words(found))))?;
+            print(&verdict(&summary, &trusted))?;
+        }
+        let is_in_doubt = trusted.doubt().is_some() || !doubts.is_empty();
         match in_use.map(|found| found.verdict) {
             Some(StillHolds::Moved) => Err(Failure::Gate),
             Some(StillHolds::CannotTell) => Err(Failure::Doubt),
-            None if trusted.doubt().is_some() => Err(Failure::Doubt),
+            None if is_in_doubt => Err(Failure::Doubt),
+            // Of a camera in use the verdict allows for what is in doubt of the calibration, and not for a board that was found in the wrong place.
+            Some(StillHolds::Holds) if !doubts.is_empty() => Err(Failure::Doubt),
             Some(StillHolds::Holds) | None => Ok(()),
         }
     }
@@ -135,11 +145,12 @@ impl Judge {
         self.board.or(self.chessboard.map(Board::from))
     }
 
-    /// The corners to judge by: measured here, or read.
-    fn material(&self, context: &Context<'_>) -> Result<Material, Failure> {
+    /// The corners to judge by, measured here or read, and what is in doubt of where a board was found.
+    fn material(&self, context: &Context<'_>) -> Result<(Material, Vec<String>), Failure> {
+        let read = |field, size| Ok((files::material(&self.points, field, size)?, Vec::new()));
         match (self.size, &self.control, self.pictured()) {
-            (Some(size), Some(control), _) => files::material(&self.points, Field::Points(read_control(control)?), size),
-            (Some(size), None, Some(board)) => files::material(&self.points, field_of(board)?, size),
+            (Some(size), Some(control), _) => read(Field::Points(read_control(control)?), size),
+            (Some(size), None, Some(board)) => read(field_of(board)?, size),
             (_, _, Some(board)) => self.measured(context, board),
             // The arguments' own rules leave nothing else.
             _ => Err(Failure::input("expected --board, or --control with --points and --size")),

@@ -3,7 +3,7 @@
 use calibench_exchange::NewFolder;
 use calibench_judge::{CornerFile, Material};
 use calibench_model::boards::{Board, Chessboard};
-use calibench_model::escape::code;
+use calibench_model::escape::{self, code};
 use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
 use calibench_records::points::RunInfo;
 use calibench_report::judgement::{in_use as in_words, section};
@@ -11,17 +11,24 @@ use calibench_report::judgement::{in_use as in_words, section};
 use super::Judge;
 
 impl Judge {
-    pub fn write(&self, folder: &NewFolder, material: &Material, rows: &[Row], summary: &Summary) -> std::io::Result<()> {
+    pub fn write(
+        &self,
+        folder: &NewFolder,
+        (material, doubts): (&Material, &[String]),
+        rows: &[Row],
+        summary: &Summary,
+    ) -> std::io::Result<()> {
         let info = RunInfo { scenario: "judge".into(), seed: self.seed, revision: env!("CARGO_PKG_VERSION").into(), detector: None };
         folder.write(JUDGEMENT, |file| write_rows(file, &info, rows))?;
         let (text, pictures) = section(summary);
         let in_use = summary.trusted().and_then(|trusted| self.in_use(&trusted));
         let in_use = in_use.map_or_else(String::new, |found| format!("{}\n\n", in_words(&found)));
+        let in_doubt: String = doubts.iter().map(|doubt| format!("**In doubt**: {}.\n\n", escape::markdown(doubt))).collect();
         for (name, picture) in &pictures {
             folder.write(name, |file| picture.encode(file))?;
         }
         let text = format!(
-            "{} Everything here is in `{JUDGEMENT}`, a row for each figure.\n\n{in_use}{}\n",
+            "{} Everything here is in `{JUDGEMENT}`, a row for each figure.\n\n{in_doubt}{in_use}{}\n",
             if self.points.is_empty() { self.of_photographs() } else { self.of_files(material) },
             text.trim_end()
         );

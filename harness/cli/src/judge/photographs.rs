@@ -14,8 +14,8 @@ use super::{Judge, field_of};
 use crate::failure::Failure;
 
 impl Judge {
-    /// All points of all photographs in the hands of all methods.
-    pub fn measured(&self, context: &Context<'_>, board: Board) -> Result<Material, Failure> {
+    /// All points of all photographs in the hands of all methods, and what is in doubt of where the board was found.
+    pub fn measured(&self, context: &Context<'_>, board: Board) -> Result<(Material, Vec<String>), Failure> {
         let finder = finder(board)?;
         let texts = if self.methods.is_empty() { usual_methods(finder.kind(), self.camera.is_some()) } else { self.methods.clone() };
         let methods = context.methods_of_boards(&texts, finder.kind())?;
@@ -38,6 +38,6 @@ impl Judge {
         }
         say_notes(&methods);
         let infos: Vec<_> = methods.iter().map(method_info).collect();
-        Ok(Material::new(&trial, &infos, field_of(board)?, size))
+        Ok((Material::new(&trial, &infos, field_of(board)?, size), doubts))
     }
 }

@@ -8,10 +8,11 @@ use calibench_measure::Configured;
 use calibench_measure::kinds::{all_busy, unmeasured};
 use calibench_model::TargetKind;
 use calibench_photographs::points::{Measured, measure_points, photos_of};
+use calibench_report::json::{MeasurementAnswer, MeasurementCounts};
 use clap::Args;
 
 use crate::context::{Context, Pictured};
-use crate::deliver::deliver;
+use crate::deliver::{As, answer, deliver};
 use crate::failure::Failure;
 use crate::inputs::read_measured;
 use crate::notes::say_notes;
@@ -39,6 +40,8 @@ pub struct Measure {
     /// Where the result goes [default: standard output]
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    answered: As,
 }
 
 impl Measure {
@@ -60,8 +63,13 @@ impl Measure {
         say_turns(&self.photos)?;
         let progress = Progress::start("measure", self.photos.len() as u64, context.quiet);
         let found = measure_points(&points, &self.photos, &methods, &|| progress.step())?;
-        let rows = rows(&points, &methods, &found, &offsets).chain(rows_of_nobody(&points, &nobodys));
-        deliver(output.as_ref(), |file| write_measured(file, rows))?;
+        let rows = || rows(&points, &methods, &found, &offsets).chain(rows_of_nobody(&points, &nobodys));
+        if output.is_some() || !self.answered.json {
+            deliver(output.as_ref(), |file| write_measured(file, rows()))?;
+        }
+        if self.answered.json {
+            answer(&MeasurementAnswer::new(counts(rows()), rows()))?;
+        }
         progress.finish(&summary(&found, &points));
         say_notes(&methods);
         let unknown = offsets.iter().filter(|offset| matches!(offset, Offset::Unknown(_))).count();
@@ -104,6 +112,18 @@ fn rows_of_nobody<'p>(points: &'p Points, kinds: &'p [TargetKind]) -> impl Itera
         let kind = given.start.kind.filter(|kind| kinds.contains(kind))?;
         Some(MeasuredRow { given, method: "", outcome: Outcome::Unavailable(format!("no method measures the kind {kind}")) })
     })
+}
+
+fn counts<'p>(rows: impl Iterator<Item = MeasuredRow<'p>>) -> MeasurementCounts {
+    let mut counts = MeasurementCounts::default();
+    for row in rows {
+        *match row.outcome {
+            Outcome::Measured(_) => &mut counts.measured,
+            Outcome::Rejected(_) => &mut counts.rejected,
+            Outcome::Unavailable(_) => &mut counts.unavailable,
+        } += 1;
+    }
+    counts
 }
 
 /// Whether the points say what a method must know.

@@ -1,7 +1,7 @@
 //! What is worth a word on the page.
 
 /// Correlations beyond this are flagged.
-pub(super) const CORRELATED: f64 = 0.9;
+pub(crate) const CORRELATED: f64 = 0.9;
 /// A parameter that chance would make as large in more than this share of all cases is doubtful.
 pub(super) const DOUBTFUL: f64 = 0.05;
 /// Parameters of which a test against zero means nothing.

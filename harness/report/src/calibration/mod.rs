@@ -16,10 +16,17 @@ mod warnings;
 
 use calibench_calibrate::Calibration;
 
+pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
+pub(crate) use warnings::warnings;
+
+/// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.
+pub(crate) fn board_bend(calibration: &Calibration<'_>) -> Option<([f64; 3], [f64; 3])> {
+    board::adjusted(calibration).map(|(_, values, sigmas)| (values, sigmas))
+}
 
 /// How many observations of the network are in each image.
-fn points_by_image(calibration: &Calibration<'_>) -> Vec<usize> {
+pub(crate) fn points_by_image(calibration: &Calibration<'_>) -> Vec<usize> {
     let network = &calibration.prepared.network;
     let mut counts = vec![0; network.images.len()];
     network.observations.iter().for_each(|o| counts[o.image] += 1);

@@ -12,7 +12,7 @@ use crate::plain;
 const OPTIMISTIC: f64 = 1.5;
 
 /// What a user must know.
-pub(super) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
+pub(crate) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
     let names: Vec<String> = calibration.covariances.parameters.iter().map(|parameter| calibration.parameter_name(parameter)).collect();
     let correlated = calibration.covariances.correlated(CORRELATED);
     let mut warnings: Vec<String> = correlated

@@ -1,0 +1,111 @@
+//! Examples below the help of every command. Each of them is parsed by a test.
+
+use clap::Command;
+
+/// Lines as a user types them, and what each is for, by command.
+pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
+    ("list", &[("calibench list methods", "every method with its parameters, their defaults and ranges")]),
+    ("show", &[("calibench show corners/noise", "the scenario as it is resolved, and a preview PNG")]),
+    (
+        "run",
+        &[
+            ("calibench run --all", "every scenario of the project"),
+            ("calibench run corners/noise -m forstner -m lsm:window=13 --trials 100", "two methods on the same 100 images"),
+            ("calibench run corners/noise --trials 1000 --part 3/8 -o parts", "the third of eight parts, on a machine of its own"),
+        ],
+    ),
+    ("merge", &[("calibench merge parts", "the parts in that folder, into the project's records")]),
+    (
+        "records",
+        &[
+            ("calibench records corners/noise", "columns side by side"),
+            ("calibench records atlas/corners --at blur=0.5 --csv", "some cells of a sweep as CSV"),
+        ],
+    ),
+    ("render", &[("calibench render corners/noise --trials 20 -o pictures", "twenty images, with the truth beside them")]),
+    ("print", &[("calibench print targets/aprilgrid -o board", "SVG and PDF at true scale, and target.yaml for Kalibr")]),
+    ("report", &[("calibench report", "all pages, from the records that are there")]),
+    ("plot", &[("calibench plot atlas/corners --x blur --y rmse --by method", "a curve for each method, with the numbers as CSV")]),
+    (
+        "check",
+        &[
+            ("calibench check", "fails on what is worse"),
+            ("calibench check --strict --locked --junit gate.xml", "in CI: also on what changed or is not blessed"),
+        ],
+    ),
+    ("init", &[("calibench init gate", "a folder with one scenario, its baseline and the schema for editors")]),
+    ("bless", &[("calibench bless corners/noise", "lists what gets worse, asks, and writes the baseline")]),
+    ("gate-power", &[("calibench gate-power --divisions 200", "the page of docs/gate-power.md, in short")]),
+    ("speed", &[("calibench speed -m forstner:window=15 -m lsm -o speeds.csv", "points a second of two methods")]),
+    (
+        "measure",
+        &[
+            ("calibench measure a.jpg b.jpg --points approx.csv -m lsm:window=13 -o measured.csv", "by one method"),
+            (
+                "calibench measure a.jpg --points approx.csv -m disc=parametric_circle -m square=lsm --json",
+                "each kind of target by its own, for a program",
+            ),
+        ],
+    ),
+    (
+        "detect",
+        &[
+            ("calibench detect a.jpg b.jpg --chessboard 9x6 -o approx.csv", "a chessboard's corners"),
+            ("calibench detect a.jpg --testfield testfields/coded -o approx.csv", "a coded field"),
+        ],
+    ),
+    ("control", &[("calibench control 9x6:25 -o control.csv", "corners r1c1, r1c2, ... with squares of 25")]),
+    (
+        "calibrate",
+        &[
+            ("calibench calibrate a.jpg b.jpg c.jpg --chessboard 9x6:25 -o camera.yaml --report page", "from photographs"),
+            ("calibench calibrate --points points.csv --control control.csv --size 4272x2848 -o camera.yaml", "from points"),
+            ("calibench calibrate a.jpg b.jpg --board aprilgrid:6x6:0.088:0.3 --json", "the answer for a program"),
+        ],
+    ),
+    (
+        "judge",
+        &[
+            ("calibench judge a.jpg b.jpg c.jpg --chessboard 9x6:25 --report page", "which operator and which model"),
+            ("calibench judge --camera camera.yaml --chessboard 9x6:25 a.jpg b.jpg c.jpg", "whether a camera still holds"),
+            ("calibench judge --points a.csv --points mine=b.csv --chessboard 9x6:25 --size 640x480", "whose corners are better"),
+        ],
+    ),
+    ("resect", &[("calibench resect --camera cam.yaml --points points.csv --control control.csv -o stations.csv", "poses")]),
+    ("intersect", &[("calibench intersect --camera cam.yaml --points points.csv --stations stations.csv -o xyz.csv", "object points")]),
+    ("orient", &[("calibench orient --points points.csv --left A --right B --camera camera.toml -o model.csv", "a pair and its model")]),
+    (
+        "convert",
+        &[
+            ("calibench convert camera.xml --to opencv -o camera.yaml", "the format of what is read is found by content"),
+            ("calibench convert camchain.yaml --all --to colmap -o cameras.txt", "every camera of a rig"),
+            ("calibench convert camera.cam --to photogrammetric --json", "what it costs, for a program"),
+        ],
+    ),
+    (
+        "camera",
+        &[("calibench camera camera.yaml", "view, distortion, fold-over"), ("calibench camera camera.yaml --json", "for a program")],
+    ),
+    (
+        "diff",
+        &[
+            ("calibench diff a.xml b.yaml --plot diff.png", "px over the frame, after the best rotation"),
+            ("calibench diff a.xml b.yaml --points points.csv --distance 5", "where points were measured, and on an object"),
+        ],
+    ),
+    ("stmap", &[("calibench stmap camera.xml --redistort --overscan auto -o map.exr", "for Nuke or Blender")]),
+    ("plugin", &[("calibench plugin test methods/mine.toml", "does it do what every plug-in must")]),
+    ("schema", &[("calibench schema scenarios", "for editors"), ("calibench schema calibrate", "what `calibrate --json` answers")]),
+    ("completions", &[("calibench completions bash", "write it to ~/.local/share/bash-completion/completions/calibench")]),
+    ("man", &[("calibench man -o man1", "calibench.1 and a page for each command")]),
+];
+
+/// `command` with the examples of each of its commands.
+pub fn with_examples(command: Command) -> Command {
+    EXAMPLES.iter().fold(command, |command, (name, examples)| command.mut_subcommand(name, |one| one.after_help(text(examples))))
+}
+
+fn text(examples: &[(&str, &str)]) -> String {
+    let lines = examples.iter().map(|(line, what)| format!("  {line}\n      {what}"));
+    format!("Examples:\n{}", lines.collect::<Vec<_>>().join("\n"))
+}
