@@ -13,6 +13,9 @@ export CALIBENCH_PEERS := if path_exists(justfile_directory() / "target/peers") 
 # The Python package, where `./bootstrap python` put it; without it its tests are skipped, by name.
 export CALIBENCH_PYTHON := if path_exists(justfile_directory() / "target/python/wheels") == "true" { justfile_directory() / "target/python" } else { "" }
 
+# Chromium's environment, where `./bootstrap browser` put it; without it the tests that open pages are skipped, by name.
+export CALIBENCH_BROWSER := if path_exists(justfile_directory() / "target/browser") == "true" { justfile_directory() / "target/browser" } else { "" }
+
 # List the recipes
 default:
     @just --list --unsorted
@@ -83,6 +86,11 @@ deny:
 # Points per second of every operator, of cameras, milliseconds of the recognition, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
     cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns
+
+# What the tests open pages in (`./bootstrap browser` installs it)
+browser:
+    @chromium --version
+    @chromedriver --version
 
 # The Python package: its wheel in target/wheels, installed in target/python (`./bootstrap python` makes that)
 python: build

@@ -1,5 +1,5 @@
 //! Says what of the things that some tests need is there: photographs and camera files as `cfg(photographs)`, `cfg(camera_files)`, `cfg(webcam)`, packages of other
-//! tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`.
+//! tools as `cfg(peer_...)`, Python as `cfg(python)`, our own package for it as `cfg(python_package)`, Chromium with what drives it as `cfg(browser)`.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -27,6 +27,7 @@ fn main() {
         println!("cargo::rustc-cfg=python");
     }
     python_package();
+    browser();
     println!("cargo::rerun-if-env-changed=CALIBENCH_PEERS");
     let folder = env::var_os("CALIBENCH_PEERS").map(PathBuf::from).filter(|folder| folder.is_dir());
     let own = folder.as_deref().and_then(packages);
@@ -53,6 +54,19 @@ fn python_package() {
     if packages(&folder).is_some_and(|packages| packages.join("calibench").is_dir()) {
         println!("cargo::rustc-cfg=python_package");
         println!("cargo::rustc-env=CALIBENCH_PYTHON={}", folder.display());
+    }
+}
+
+/// Chromium, its driver, and the environment of Python that `./bootstrap browser` made.
+fn browser() {
+    println!("cargo::rustc-check-cfg=cfg(browser)");
+    println!("cargo::rerun-if-env-changed=CALIBENCH_BROWSER");
+    let Some(folder) = env::var_os("CALIBENCH_BROWSER").map(PathBuf::from).filter(|folder| folder.is_dir()) else { return };
+    println!("cargo::rerun-if-changed={}", folder.join("pyvenv.cfg").display());
+    let there = |program: &str| Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    if packages(&folder).is_some_and(|packages| packages.join("selenium").is_dir()) && there("chromium") && there("chromedriver") {
+        println!("cargo::rustc-cfg=browser");
+        println!("cargo::rustc-env=CALIBENCH_BROWSER={}", folder.display());
     }
 }
 

@@ -5,6 +5,7 @@ mod architecture;
 mod atlas;
 mod boards;
 mod bootstrap;
+mod browser;
 mod calibrate;
 mod cameras;
 mod cameras_of_tools;

@@ -13,6 +13,7 @@ pub(crate) mod field;
 mod field_panels;
 mod figures;
 mod frame;
+mod html;
 mod hull;
 mod index;
 pub mod json;

@@ -6,7 +6,7 @@ use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Discs, Settings,
 use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
 use calibench_model::boards::Board;
 use calibench_photographs::{Chessboard, Corners, Photo, board_of};
-use calibench_report::calibration::{summary, write_report};
+use calibench_report::calibration::{Pictured, summary, write_report};
 use calibench_report::json::CalibrationAnswer;
 use clap::Args;
 
@@ -110,7 +110,7 @@ impl Calibrate {
         prepared.unmeasured = lost;
         drop(control);
         calibrate(&prepared, &sets(&self.compare)?, |calibration| {
-            self.deliver(calibration, output.as_ref(), report.as_ref())?;
+            self.deliver(calibration, &photos, output.as_ref(), report.as_ref())?;
             if self.answered.json {
                 answer(&CalibrationAnswer::new(calibration, &doubts).map_err(Failure::Input)?)?;
             } else {
@@ -151,11 +151,18 @@ impl Calibrate {
         })
     }
 
-    fn deliver(&self, calibration: &Calibration<'_>, output: Option<&OutputFile>, report: Option<&OutputFolder>) -> Result<(), Failure> {
+    fn deliver(
+        &self,
+        calibration: &Calibration<'_>,
+        photos: &[Photo],
+        output: Option<&OutputFile>,
+        report: Option<&OutputFolder>,
+    ) -> Result<(), Failure> {
+        let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path())).collect();
         if let Some(output) = output {
             camera_file::write(output, calibration, self.to.as_deref())?;
         }
-        Ok(report.map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, folder)))?)
+        Ok(report.map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, folder)))?)
     }
 }
 

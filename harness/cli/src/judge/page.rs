@@ -6,7 +6,7 @@ use calibench_model::boards::{Board, Chessboard};
 use calibench_model::escape::{self, code};
 use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
 use calibench_records::points::RunInfo;
-use calibench_report::judgement::{in_use as in_words, section};
+use calibench_report::judgement::{in_use as in_words, page, section};
 
 use super::Judge;
 
@@ -21,8 +21,8 @@ impl Judge {
         let info = RunInfo { scenario: "judge".into(), seed: self.seed, revision: env!("CARGO_PKG_VERSION").into(), detector: None };
         folder.write(JUDGEMENT, |file| write_rows(file, &info, rows))?;
         let (text, pictures) = section(summary);
-        let in_use = summary.trusted().and_then(|trusted| self.in_use(&trusted));
-        let in_use = in_use.map_or_else(String::new, |found| format!("{}\n\n", in_words(&found)));
+        let found = summary.trusted().and_then(|trusted| self.in_use(&trusted));
+        let in_use = found.as_ref().map_or_else(String::new, |found| format!("{}\n\n", in_words(found)));
         let in_doubt: String = doubts.iter().map(|doubt| format!("**In doubt**: {}.\n\n", escape::markdown(doubt))).collect();
         for (name, picture) in &pictures {
             folder.write(name, |file| picture.encode(file))?;
@@ -32,7 +32,10 @@ impl Judge {
             if self.points.is_empty() { self.of_photographs() } else { self.of_files(material) },
             text.trim_end()
         );
-        folder.write("README.md", |file| file.write_all(text.as_bytes()))
+        folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
+        let title = if self.points.is_empty() { "Photographs judged" } else { "Corners judged" };
+        let page = page(title, &text, summary, found.as_ref(), doubts);
+        folder.write("report.html", |file| file.write_all(page.as_bytes()))
     }
 
     fn of_photographs(&self) -> String {

@@ -5,6 +5,7 @@ mod checks;
 mod csv;
 mod digits;
 mod discs;
+mod html;
 mod limits;
 mod page;
 mod pictures;
@@ -16,6 +17,7 @@ mod warnings;
 
 use calibench_calibrate::Calibration;
 
+pub use html::Pictured;
 pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub(crate) use warnings::warnings;

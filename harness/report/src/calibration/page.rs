@@ -10,6 +10,8 @@ use calibench_model::camera::CameraModel;
 use calibench_model::escape;
 
 use super::digits::rounded;
+use super::html::{self, Pictured};
+use super::pictures::Picture;
 use super::warnings::warnings;
 use super::{board, checks, discs, of, pictures, sets_page, tables};
 use crate::markdown::MarkdownTable;
@@ -18,25 +20,40 @@ use crate::plain;
 /// Images and rejected points that a page names one by one.
 const MOST: usize = 200;
 
-/// Writes the page, its pictures and its tables into `folder`.
+/// Writes the page, its pictures, its tables and the page as one file into `folder`. Of `photos` the parts where residuals are longest are enlarged there.
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
+pub fn write_report(calibration: &Calibration<'_>, photos: &[Pictured<'_>], folder: &NewFolder) -> io::Result<()> {
     tables::write(calibration, folder)?;
     let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("**{}**\n\n", escape::markdown(&headline)));
-    let mut text = format!("# Calibration\n\n{headline}{}\n", facts(calibration));
+    let warnings: String = warnings(calibration).iter().map(|warning| format!("\n**{}**\n", escape::markdown(warning))).collect();
+    let pictures = pictures::draw(calibration, folder)?;
+    let text = format!("# Calibration\n\n{headline}{}{warnings}{}", facts_and_parameters(calibration), rest(calibration, &pictures));
+    folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
+    // Doubts and warnings are at its head.
+    let text = format!("{}{}", facts_and_parameters(calibration), rest(calibration, &pictures));
+    let page = html::page(calibration, &text, photos);
+    folder.write("report.html", |file| file.write_all(page.as_bytes()))
+}
+
+fn facts_and_parameters(calibration: &Calibration<'_>) -> String {
+    let mut text = format!("{}\n", facts(calibration));
     for camera in 0..calibration.cameras() {
         let _ = write!(text, "{}## Interior orientation{}\n\n", if camera > 0 { "\n" } else { "" }, of(calibration, camera));
         text.push_str(&parameters(calibration, camera).render());
     }
-    text.push_str(&format!("\nStandard deviations {}; {}.\n", scaled(calibration), by_images(calibration)));
-    text.push_str(&warnings(calibration).iter().map(|warning| format!("\n**{}**\n", escape::markdown(warning))).collect::<String>());
-    text.push_str(&checks::section(calibration));
+    text + &format!("\nStandard deviations {}; {}.\n", scaled(calibration), by_images(calibration))
+}
+
+/// What comes below the warnings.
+fn rest(calibration: &Calibration<'_>, pictures: &[Picture]) -> String {
+    let mut text = checks::section(calibration);
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
     }
-    for picture in pictures::draw(calibration, folder)? {
+    text.push_str("\n## Residuals, correlations, uncertainty\n");
+    for picture in pictures {
         let _ = write!(text, "\n![{0}]({1})\n\n{0}\n", picture.caption, picture.file);
     }
     text.push_str(&images(calibration));
@@ -46,7 +63,7 @@ pub fn write_report(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Re
          targets that a method rejected included), `parameters.csv`, `correlations.csv`, `stations.csv` (poses), `points.csv` (object points), of a \
          board `board.csv` (its bend); `uncertainty.csv` (the maps' numbers, px).\n",
     );
-    folder.write("README.md", |file| file.write_all(text.as_bytes()))
+    text
 }
 
 /// What a user reads first: the parameters with their standard deviations and what is wrong with them.

@@ -1,5 +1,6 @@
 //! What photographs say about operators and camera models: one page, made from the records of a judgement.
 
+mod html;
 mod map;
 mod matrix;
 mod principal;
@@ -11,6 +12,7 @@ use calibench_records::judgement::Summary;
 
 use super::canvas::Canvas;
 
+pub use html::page;
 pub use verdict::{in_use, verdict};
 
 /// The operator and the model to trust, and how far, in a sentence or two; `None` where nothing could be judged.

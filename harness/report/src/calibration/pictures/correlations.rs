@@ -50,7 +50,7 @@ pub(super) fn picture(calibration: &Calibration<'_>, camera: usize) -> Option<Ca
 }
 
 /// White for none; full colours stay light enough for black digits.
-fn tint(value: f64) -> RGBColor {
+pub(in super::super) fn tint(value: f64) -> RGBColor {
     let full = if value < 0.0 { (86.0, 180.0, 233.0) } else { (230.0, 159.0, 0.0) };
     let part = value.abs().min(1.0);
     let mix = |channel: f64| (255.0 + (channel - 255.0) * part).round() as u8;

@@ -13,6 +13,11 @@ use calibench_exchange::NewFolder;
 
 use crate::Canvas;
 
+pub(super) use correlations::tint;
+pub(super) use distribution::counts;
+pub(super) use residuals::PANELS;
+pub(super) use uncertainty::plain_level;
+
 /// A picture and what it shows.
 pub(super) struct Picture {
     /// Its file name.

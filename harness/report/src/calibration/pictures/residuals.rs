@@ -15,7 +15,7 @@ const KEPT: RGBColor = RGBColor(0, 114, 178);
 const DOUBTED: RGBColor = RGBColor(213, 94, 0);
 /// Panels in a row and in a picture, and their width and height above the map.
 const COLUMNS: usize = 4;
-const PANELS: usize = 24;
+pub(in super::super) const PANELS: usize = 24;
 const PANEL: u32 = 300;
 const GAP: u32 = 12;
 const NAME: u32 = 24;

@@ -87,7 +87,7 @@ fn contours(area: &Area<'_>, map: &Map, values: &[f64], grid: (usize, usize), sc
 }
 
 /// A round level without useless digits.
-fn plain_level(level: f64) -> String {
+pub(in super::super) fn plain_level(level: f64) -> String {
     if (1e-4..1e5).contains(&level) { level.to_string() } else { format!("{level:e}") }
 }
 

@@ -1,0 +1,67 @@
+// Files that the reader takes along.
+
+const download = (name, type, text) => {
+  const url = URL.createObjectURL(text instanceof Blob ? text : new Blob([text], { type }));
+  const link = make("a", { href: url, download: name.replace(/[^\w.-]+/g, "_") });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  // Some browsers read the file only after the click has ended.
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+};
+
+/** One cell by RFC 4180; what a spreadsheet would run as a formula is made text by an apostrophe. */
+const csvCell = (text) => {
+  const risky = /^[=+\-@\t\r]/.test(text) && !Number.isFinite(Number(text));
+  const safe = risky ? `'${text}` : text;
+  return /[",\r\n]/.test(safe) ? `"${safe.replace(/"/g, '""')}"` : safe;
+};
+
+const csv = (rows) => rows.map((row) => `${row.map(csvCell).join(",")}\r\n`).join("");
+
+const SVG = "http://www.w3.org/2000/svg";
+
+// Those that children take over from their parent, and those that they do not, with what they are unless set.
+const INHERITED = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "fill-opacity", "stroke-opacity",
+  "font-family", "font-size", "font-weight", "font-style", "text-anchor"];
+const OWN = [["opacity", "1"], ["vector-effect", "none"], ["dominant-baseline", "auto"]];
+
+/** Writes onto `copy` how `node` looks, and drops what does not show. */
+const inlineStyle = (node, copy, above) => {
+  const style = getComputedStyle(node);
+  if (style.display === "none") {
+    copy.remove();
+    return;
+  }
+  const children = [...copy.children];
+  for (const name of INHERITED) {
+    const value = style.getPropertyValue(name);
+    if (!above || value !== above.getPropertyValue(name)) copy.setAttribute(name, value);
+    else copy.removeAttribute(name);
+  }
+  for (const [name, unless] of OWN) {
+    const value = style.getPropertyValue(name);
+    if (value !== unless) copy.setAttribute(name, value);
+  }
+  for (const { name } of [...copy.attributes]) if (/^(data-|aria-|class$|style$|tabindex$|role$)/.test(name)) copy.removeAttribute(name);
+  [...node.children].forEach((child, index) => inlineStyle(child, children[index], style));
+};
+
+/** What an SVG element shows, as a file of its own in the light colours. */
+const standalone = (svg) => {
+  const root = document.documentElement;
+  const theme = root.getAttribute("data-theme");
+  root.setAttribute("data-theme", "light");
+  const copy = svg.cloneNode(true);
+  inlineStyle(svg, copy, null);
+  if (theme === null) root.removeAttribute("data-theme");
+  else root.setAttribute("data-theme", theme);
+  const [left, top, width, height] = numbers(svg.getAttribute("viewBox"), 4) || [0, 0, svg.clientWidth, svg.clientHeight];
+  const paper = document.createElementNS(SVG, "rect");
+  for (const [name, value] of Object.entries({ x: left, y: top, width, height, fill: "#ffffff", stroke: "none" })) paper.setAttribute(name, value);
+  copy.prepend(paper);
+  copy.setAttribute("xmlns", SVG);
+  copy.setAttribute("width", width);
+  copy.setAttribute("height", height);
+  return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(copy)}\n`;
+};

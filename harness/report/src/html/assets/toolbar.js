@@ -1,0 +1,86 @@
+// The bar at the top: series, what is chosen, theme, reset, keys.
+
+const KEYS = [
+  ["click", "choose an image or a mark everywhere; once more, or Escape: undo"],
+  ["wheel", "zoom a drawing that was clicked, or with Ctrl"],
+  ["drag", "move a zoomed plot, turn the scene (Shift or right button: move it)"],
+  ["+ − 0", "zoom in, out, reset (also double click)"],
+  ["arrows", "move a zoomed plot, turn the scene (Shift: move it); rows of a table"],
+  ["[ ] or , .", "step through marks and points; Enter chooses"],
+  ["{ } or < >", "step through stations"],
+  ["filter", "a text, or column>0.1; a semicolon between several"],
+];
+
+/** The look of a series, by the first mark or line of it. */
+const swatch = (name) => {
+  const owner = series.elements.find((element) => element.matches(".series") && element.dataset.series === name);
+  if (!owner) return "";
+  const icon = document.createElementNS(SVG, "svg");
+  icon.setAttribute("viewBox", "-9 -9 18 18");
+  icon.setAttribute("class", `swatch ${[...owner.classList].filter((own) => /^s\d$/.test(own)).join(" ")}`);
+  icon.setAttribute("aria-hidden", "true");
+  const first = owner.querySelector("path.mark");
+  const shape = document.createElementNS(SVG, "path");
+  shape.setAttribute("class", first ? first.getAttribute("class").replace(/\b(now|picked|chosen)\b/g, "") : "line");
+  shape.setAttribute("d", first ? first.getAttribute("d") : "M-8 0H8");
+  icon.append(shape);
+  return icon;
+};
+
+const seriesSwitches = () => {
+  const box = make("span", { class: "switches", role: "group", "aria-label": "series" });
+  const buttons = series.names.map((name) => {
+    const one = button("", `show or hide ${name}`, () => switchSeries(name));
+    one.append(swatch(name), make("span", {}, name));
+    box.append(one);
+    return [name, one];
+  });
+  const tell = () => buttons.forEach(([name, one]) => one.setAttribute("aria-pressed", String(!isOff(name))));
+  series.told.push(tell);
+  tell();
+  return box;
+};
+
+const choiceLabel = () => {
+  const label = button("", "undo the choice (Escape)", () => choose("", ""));
+  label.classList.add("choice");
+  const tell = () => {
+    label.hidden = chosen.g === "";
+    label.textContent = chosen.g === "" ? "" : `× ${nameOfGroup(chosen.g)}`;
+  };
+  chosen.told.push(tell);
+  tell();
+  return label;
+};
+
+const themeSelect = () => {
+  const select = make("select", { "aria-label": "colours", change: () => apply(select.value) });
+  for (const name of ["auto", "light", "dark"]) select.append(make("option", { value: name === "auto" ? "" : name }, name));
+  const apply = (theme) => {
+    select.value = theme === "light" || theme === "dark" ? theme : "";
+    if (select.value) document.documentElement.setAttribute("data-theme", select.value);
+    else document.documentElement.removeAttribute("data-theme");
+    document.dispatchEvent(new Event("theme"));
+    changed();
+  };
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => document.dispatchEvent(new Event("theme")));
+  keep("theme", () => select.value, apply);
+  return make("label", {}, make("span", {}, "colours "), select);
+};
+
+const keysHelp = () => {
+  const list = make("dl", {}, ...KEYS.flatMap(([key, meaning]) => [make("dt", {}, key), make("dd", {}, meaning)]));
+  const help = make("details", { class: "keys" }, make("summary", {}, "keys"), list);
+  document.addEventListener("click", (event) => help.contains(event.target) || help.removeAttribute("open"));
+  help.addEventListener("keydown", (event) => event.key === "Escape" && help.removeAttribute("open"));
+  return help;
+};
+
+const setUpToolbar = () => {
+  const bar = make("div", { class: "toolbar", role: "group", "aria-label": "view of this page" });
+  if (series.names.length) bar.append(seriesSwitches());
+  bar.append(choiceLabel(), make("span", { class: "gap" }), button("reset", "everything as at first", resetAll), themeSelect(), keysHelp());
+  const main = document.querySelector("main");
+  if (main) main.before(bar);
+  else document.body.prepend(bar);
+};
