@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn every_command_shows_examples_that_it_takes() {
         let line = command_line();
-        let named: Vec<&str> = line.get_subcommands().filter(|one| !one.is_hide_set()).map(|one| one.get_name()).collect();
+        let named: Vec<&str> = line.get_subcommands().filter(|one| !one.is_hide_set()).map(clap::Command::get_name).collect();
         assert_eq!(EXAMPLES.iter().map(|(name, _)| *name).collect::<Vec<_>>(), named);
         for (name, examples) in EXAMPLES {
             assert!(!examples.is_empty(), "{name}");

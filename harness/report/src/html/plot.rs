@@ -77,6 +77,8 @@ const WIDTH: f64 = 760.0;
 const BOTTOM: f64 = 52.0;
 /// Width of a letter of a name, px of the drawing, about.
 const LETTER: f64 = 7.0;
+/// Steps of a scale of colours.
+const STEPS: usize = 64;
 /// Cells without lines between them: more than so many are a picture.
 const CELLS: usize = 250;
 /// Room for a scale of colours.
@@ -220,7 +222,6 @@ impl Plot {
         let [left, top, width, height] = self.at;
         let x = left + width + 18.0;
         let mut text = format!("<g class=\"shades\"><text x=\"{}\" y=\"{}\">{}</text>", px(x), px(top - 12.0), escaped(title));
-        const STEPS: usize = 64;
         for step in 0..STEPS {
             let part = (step as f64 + 0.5) / STEPS as f64;
             let colour = shade(part);
@@ -335,13 +336,14 @@ impl Plot {
         let _ = if is_x {
             write!(
                 text,
-                "</g><text class=\"title x\" x=\"{}\" y=\"{}\">{title}</text>\n",
+                "</g><text class=\"title x\" x=\"{}\" y=\"{}\">{title}</text>",
                 px(left + width / 2.0),
                 px(top + height + 42.0 + self.below())
             )
         } else {
-            write!(text, "</g><text class=\"title y\" x=\"{}\" y=\"{}\">{title}</text>\n", px(left - 60.0), px(top - 12.0))
+            write!(text, "</g><text class=\"title y\" x=\"{}\" y=\"{}\">{title}</text>", px(left - 60.0), px(top - 12.0))
         };
+        text.push('\n');
         text
     }
 }

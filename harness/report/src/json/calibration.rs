@@ -266,7 +266,7 @@ fn counts(calibration: &Calibration<'_>) -> Counts {
         observations: counts.observations() - counts.constraints,
         constraints: counts.constraints,
         unknowns: counts.unknowns,
-        redundancy: counts.redundancy() as i64,
+        redundancy: counts.redundancy(),
     }
 }
 

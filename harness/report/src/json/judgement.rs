@@ -1,5 +1,7 @@
 //! A judgement as JSON.
 
+#![expect(clippy::struct_field_names, reason = "they are the keys of the document, each with its unit")]
+
 use calibench_records::judgement::{Beside, Cell, Estimate, InUse, Standing, StillHolds, Summary, Trusted};
 use schemars::JsonSchema;
 use serde::Serialize;
