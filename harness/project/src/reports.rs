@@ -22,8 +22,8 @@ impl Project<'_> {
         for name in names {
             families.entry(name.split('/').next().unwrap_or(&name).to_owned()).or_default().push(name);
         }
-        // A project of one's own has no published cameras.
-        if self.folder()?.is_some() && places.cameras.is_dir() {
+        // A project of one's own has no published cameras: only who asks for them by name is told.
+        if self.folder()?.is_some() && (places.cameras.is_dir() || papers.iter().any(|paper| paper == conventions::FAMILY)) {
             families.insert(conventions::FAMILY.to_owned(), Vec::new());
         }
         if families.is_empty() {
