@@ -15,7 +15,7 @@ pub fn pages() -> Vec<Page> {
     for entry in std::fs::read_dir(root().join("docs")).unwrap() {
         names.push(format!("docs/{}", entry.unwrap().file_name().to_string_lossy()));
     }
-    names.retain(|name| name.ends_with(".md"));
+    names.retain(|name| std::path::Path::new(name).extension().is_some_and(|ending| ending == "md"));
     names.sort();
     names.iter().map(|name| Page::read(name)).collect()
 }
