@@ -6,7 +6,7 @@ use calibench_exchange::read_control;
 use nalgebra::{Rotation3, Vector3};
 
 use crate::calibrate::{number, table, write};
-use crate::project::{run, stderr, stdout};
+use crate::project::{root, run, stderr, stdout};
 
 /// mm towards the camera: along the rows, along the columns, twist.
 const BEND: [f64; 3] = [1.0, -0.4, 0.2];
@@ -181,4 +181,53 @@ fn figures_in_another_unit_are_said() {
     write(folder.path(), "start.yaml", &start);
     let said = calibrated(&["--start", "start.yaml"]);
     assert!(said.contains("warning: the principal distance of the camera started at 140 px and ended at "), "{said}");
+}
+
+/// A sheet with a tag cut out of the first photograph and laid beside it.
+#[test]
+fn a_tag_that_is_seen_twice_is_said_in_the_answer_the_pages_and_the_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    let rendered = run(here, &["--root", root().to_str().unwrap(), "render", "targets/aprilgrid", "-o", "tags", "-q"]);
+    assert!(rendered.status.success(), "{}", stderr(&rendered));
+    let photo = here.join("tags/s01-r1.png");
+    let mut image = image::open(&photo).unwrap();
+    let tag = image.crop_imm(302, 605, 106, 106);
+    image::imageops::replace(&mut image, &tag, 10, 10);
+    image.save(&photo).unwrap();
+    let photos: Vec<String> = (1..=4).flat_map(|s| [1, 2].map(|r| format!("tags/s0{s}-r{r}.png"))).collect();
+    let photos: Vec<&str> = photos.iter().map(String::as_str).collect();
+    let board = std::fs::read_to_string(root().join("scenarios/targets/aprilgrid.toml")).unwrap();
+    let number = |key: &str| {
+        let line = board.lines().find(|line| line.starts_with(&format!("{key} = "))).unwrap();
+        line.split_once(" = ").unwrap().1.trim().to_owned()
+    };
+    let board = format!("aprilgrid:{}x{}:{}:{}", number("columns"), number("rows"), number("tag"), number("spacing"));
+    let asked = |command: &str, more: &[&str]| {
+        let output = run(here, &[&[command, "--board", &board, "--json", "-q", "--report", command], &photos[..], more].concat());
+        assert_eq!(output.status.code(), Some(3), "{command}: {}{}", stdout(&output), stderr(&output));
+        let answer: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        let doubt = answer["doubts"][0].as_str().unwrap().to_owned();
+        assert!(doubt.contains("s01-r1.png"), "{answer}");
+        assert!(stderr(&output).contains(&format!("in doubt: {doubt}")), "{}", stderr(&output));
+        let read = |file: &str| std::fs::read_to_string(here.join(command).join(file)).unwrap();
+        assert!(read("README.md").contains("**In doubt**: s01-r1.png"), "{}", read("README.md"));
+        let head = read("report.html").split("<nav>").next().unwrap().to_owned();
+        assert!(head.contains("class=\"verdict doubt\"") && head.contains(&format!("<li>{doubt}</li>")), "{}", &head[head.len() - 900..]);
+    };
+    asked("calibrate", &[]);
+    asked("judge", &["-m", "parametric_corner", "--model", "opencv4", "--splits", "2"]);
+}
+
+/// A check that could not be made leaves no page green.
+#[test]
+fn what_was_not_tested_is_not_green() {
+    let folder = board([0.0; 3]);
+    for (more, class) in [(&["out.yaml"][..], "open"), (&["out.yaml", "--sigma", "0.1"], "good")] {
+        let output = run(folder.path(), &[&CALIBRATE[..], more].concat());
+        assert!(output.status.success(), "{}{}", stdout(&output), stderr(&output));
+        let html = std::fs::read_to_string(folder.path().join("report/report.html")).unwrap();
+        assert!(html.contains(&format!("class=\"verdict {class}\"")), "{class}: {}", stdout(&output));
+        assert_eq!(html.contains("<li>not tested: the precision of image points: "), class == "open");
+    }
 }

@@ -77,6 +77,7 @@ fn cameras_that_share_fixed_control_alone_are_those_of_separate_calibrations() {
     // Control that the survey knows to 0.2 mm is held fixed: that does not fit, and is said.
     assert_eq!(output.status.code(), Some(3), "{}", stdout(&output));
     assert!(stdout(&output).starts_with("doubtful: "), "{}", stdout(&output));
+    figures_have_names_of_their_own(&folder.path().join("report/report.html"));
     assert!(
         stdout(&output).contains("camera model of right") && stdout(&output).contains("interior orientation of left"),
         "{}",
@@ -180,5 +181,21 @@ fn an_image_without_a_camera_and_a_camera_without_an_image_are_named() {
         let output = run(folder.path(), &[&WALL[..], &cameras].concat());
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains(expected), "{}", stderr(&output));
+    }
+}
+
+/// What a page keeps in its address it keeps by these names.
+fn figures_have_names_of_their_own(page: &Path) {
+    let html = std::fs::read_to_string(page).unwrap();
+    let mut names: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    for name in ["left-residuals", "right-residuals", "left-distortion", "right-distortion"] {
+        assert!(names.contains(&name), "{names:?}");
+    }
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count, "each name once");
+    for camera in ["left", "right"] {
+        assert!(html.contains(&format!("<figcaption>{camera}: Residuals (adjusted less observed)")), "{camera}");
     }
 }

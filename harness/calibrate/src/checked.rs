@@ -44,6 +44,14 @@ impl Finding {
 }
 
 impl Checked {
+    /// What was not looked for, and why; `None` where it was.
+    pub fn untested(&self) -> Option<String> {
+        match &self.verdict {
+            Verdict::Untested(why) => Some(format!("{}: {why}", self.what)),
+            _ => None,
+        }
+    }
+
     /// The most likely cause of a doubt.
     pub fn doubt(&self) -> Option<&str> {
         match &self.verdict {

@@ -110,7 +110,7 @@ impl Calibrate {
         prepared.unmeasured = lost;
         drop(control);
         calibrate(&prepared, &sets(&self.compare)?, |calibration| {
-            self.deliver(calibration, &photos, output.as_ref(), report.as_ref())?;
+            self.deliver(calibration, (&photos, &doubts), output.as_ref(), report.as_ref())?;
             if self.answered.json {
                 answer(&CalibrationAnswer::new(calibration, &doubts).map_err(Failure::Input)?)?;
             } else {
@@ -154,7 +154,7 @@ impl Calibrate {
     fn deliver(
         &self,
         calibration: &Calibration<'_>,
-        photos: &[Photo],
+        (photos, doubts): (&[Photo], &[String]),
         output: Option<&OutputFile>,
         report: Option<&OutputFolder>,
     ) -> Result<(), Failure> {
@@ -162,7 +162,7 @@ impl Calibrate {
         if let Some(output) = output {
             camera_file::write(output, calibration, self.to.as_deref())?;
         }
-        Ok(report.map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, folder)))?)
+        Ok(report.map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, doubts, folder)))?)
     }
 }
 

@@ -21,7 +21,8 @@ impl Judge {
         let info = RunInfo { scenario: "judge".into(), seed: self.seed, revision: env!("CARGO_PKG_VERSION").into(), detector: None };
         folder.write(JUDGEMENT, |file| write_rows(file, &info, rows))?;
         let (text, pictures) = section(summary);
-        let found = summary.trusted().and_then(|trusted| self.in_use(&trusted));
+        let trusted = summary.trusted();
+        let found = trusted.as_ref().and_then(|trusted| self.in_use(trusted));
         let in_use = found.as_ref().map_or_else(String::new, |found| format!("{}\n\n", in_words(found)));
         let in_doubt: String = doubts.iter().map(|doubt| format!("**In doubt**: {}.\n\n", escape::markdown(doubt))).collect();
         for (name, picture) in &pictures {
@@ -34,7 +35,7 @@ impl Judge {
         );
         folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
         let title = if self.points.is_empty() { "Photographs judged" } else { "Corners judged" };
-        let page = page(title, &text, summary, found.as_ref(), doubts);
+        let page = page(title, &text, (summary, trusted.as_ref()), found.as_ref(), doubts);
         folder.write("report.html", |file| file.write_all(page.as_bytes()))
     }
 

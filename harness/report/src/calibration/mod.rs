@@ -35,6 +35,11 @@ pub(crate) fn points_by_image(calibration: &Calibration<'_>) -> Vec<usize> {
     counts
 }
 
+/// The images of a camera.
+pub(crate) fn images_of(calibration: &Calibration<'_>, camera: usize) -> impl Iterator<Item = usize> {
+    (0..calibration.solution.poses().len()).filter(move |&image| calibration.owner(image) == camera)
+}
+
 /// Whose something is, where there are several cameras.
 fn of(calibration: &Calibration<'_>, camera: usize) -> String {
     if calibration.cameras() > 1 { format!(" of {}", calibration.name_of(camera)) } else { String::new() }

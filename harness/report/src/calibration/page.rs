@@ -12,28 +12,32 @@ use calibench_model::escape;
 use super::digits::rounded;
 use super::html::{self, Pictured};
 use super::pictures::Picture;
+use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
-use super::{board, checks, discs, of, pictures, sets_page, tables};
+use super::{board, checks, discs, images_of, of, pictures, sets_page, tables};
 use crate::markdown::MarkdownTable;
 use crate::plain;
 
 /// Images and rejected points that a page names one by one.
 const MOST: usize = 200;
 
-/// Writes the page, its pictures, its tables and the page as one file into `folder`. Of `photos` the parts where residuals are longest are enlarged there.
+/// Writes the page, its pictures, its tables and the page as one file into `folder`. Of `photos` the parts where residuals are longest are enlarged there;
+/// `doubts` are what is in doubt of where a board was found in them.
 ///
 /// # Errors
 /// What the file system refuses.
-pub fn write_report(calibration: &Calibration<'_>, photos: &[Pictured<'_>], folder: &NewFolder) -> io::Result<()> {
-    tables::write(calibration, folder)?;
+pub fn write_report(calibration: &Calibration<'_>, photos: &[Pictured<'_>], doubts: &[String], folder: &NewFolder) -> io::Result<()> {
+    let maps: Vec<Vec<UncertaintyMap>> = (0..calibration.cameras()).map(|camera| uncertainty::maps(calibration, camera)).collect();
+    tables::write(calibration, &maps, folder)?;
     let headline = checks::headline(calibration).map_or_else(String::new, |headline| format!("**{}**\n\n", escape::markdown(&headline)));
+    let before: String = doubts.iter().map(|doubt| format!("**In doubt**: {}.\n\n", escape::markdown(doubt))).collect();
     let warnings: String = warnings(calibration).iter().map(|warning| format!("\n**{}**\n", escape::markdown(warning))).collect();
-    let pictures = pictures::draw(calibration, folder)?;
-    let text = format!("# Calibration\n\n{headline}{}{warnings}{}", facts_and_parameters(calibration), rest(calibration, &pictures));
+    let pictures = pictures::draw(calibration, &maps, folder)?;
+    let (head, rest) = (facts_and_parameters(calibration), rest(calibration, &pictures));
+    let text = format!("# Calibration\n\n{before}{headline}{head}{warnings}{rest}");
     folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
     // Doubts and warnings are at its head.
-    let text = format!("{}{}", facts_and_parameters(calibration), rest(calibration, &pictures));
-    let page = html::page(calibration, &text, photos);
+    let page = html::page(calibration, &format!("{head}{rest}"), &maps, (photos, doubts));
     folder.write("report.html", |file| file.write_all(page.as_bytes()))
 }
 
@@ -109,10 +113,9 @@ fn facts(calibration: &Calibration<'_>) -> String {
     let settings = &prepared.settings;
     let counts = solution.counts();
     let control = prepared.survey.control_points();
-    let owned = |camera: usize| (0..solution.poses().len()).filter(|&image| calibration.owner(image) == camera).count();
     let models = (0..calibration.cameras()).map(|camera| {
         let (name, model) = (of(calibration, camera), calibration.camera(camera).convention().name);
-        let images = if name.is_empty() { String::new() } else { format!(", {} images", owned(camera)) };
+        let images = if name.is_empty() { String::new() } else { format!(", {} images", images_of(calibration, camera).count()) };
         format!("camera model{name}: {model}{images}")
     });
     let mut lines: Vec<String> = models.collect();

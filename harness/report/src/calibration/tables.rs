@@ -9,9 +9,10 @@ use calibench_exchange::{ControlRow, NewFolder, POSE_COLUMNS, POSE_SIGMA_COLUMNS
 use calibench_model::camera::CameraModel;
 
 use super::csv::table;
+use super::uncertainty::UncertaintyMap;
 
-/// Writes all tables into `folder`.
-pub(super) fn write(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
+/// Writes all tables into `folder`; `maps` are the uncertainty's, camera by camera.
+pub(super) fn write(calibration: &Calibration<'_>, maps: &[Vec<UncertaintyMap>], folder: &NewFolder) -> io::Result<()> {
     residuals(calibration, folder)?;
     if let Some(compared) = &calibration.compared {
         super::sets_page::write(compared, folder)?;
@@ -20,7 +21,7 @@ pub(super) fn write(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Re
     correlations(calibration, folder)?;
     stations(calibration, folder)?;
     super::board::table(calibration, folder)?;
-    super::uncertainty::write(calibration, folder)?;
+    super::uncertainty::write(calibration, maps, folder)?;
     let rows = object_points(calibration);
     folder.write("points.csv", |file| write_control(file, &rows))
 }

@@ -97,7 +97,10 @@ fn written(test: impl FnOnce(&Calibration<'_>, &Path)) {
     let tables_at = folder.path().join("report");
     let prepared = wall();
     let calibration = prepared.adjust().unwrap();
-    OutputFolder::open(&tables_at).unwrap().replace(|folder| tables::write(&calibration, folder)).unwrap();
+    OutputFolder::open(&tables_at)
+        .unwrap()
+        .replace(|folder| tables::write(&calibration, &[super::uncertainty::maps(&calibration, 0)], folder))
+        .unwrap();
     test(&calibration, &tables_at);
 }
 

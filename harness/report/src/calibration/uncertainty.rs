@@ -88,11 +88,11 @@ fn working_distance(calibration: &Calibration<'_>, camera: usize) -> f64 {
 }
 
 /// Writes `uncertainty.csv`: a row for each place that has a ray, px and px^2.
-pub(super) fn write(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<()> {
+pub(super) fn write(calibration: &Calibration<'_>, maps: &[Vec<UncertaintyMap>], folder: &NewFolder) -> io::Result<()> {
     let columns = ["camera", "distance", "x", "y", "sxx", "sxy", "syy", "sigma", "measured"];
-    let rows = (0..calibration.cameras()).flat_map(|camera| {
-        let name = calibration.name_of(camera).to_owned();
-        maps(calibration, camera).into_iter().flat_map(move |map| rows(&name, &map))
+    let rows = maps.iter().enumerate().flat_map(|(camera, maps)| {
+        let name = calibration.name_of(camera);
+        maps.iter().flat_map(move |map| rows(name, map))
     });
     table(folder, "uncertainty.csv", &columns, rows)
 }

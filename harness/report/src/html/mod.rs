@@ -40,8 +40,10 @@ const POLICY: &str =
 /// The verdict at the head of a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Level {
-    /// No doubt was found.
+    /// All was tested, and no doubt was found.
     Good,
+    /// No doubt was found, but not all was tested: that is never green.
+    Open,
     /// Something is in doubt.
     Doubt,
     /// A gate failed.
@@ -52,6 +54,7 @@ impl Level {
     const fn class(self) -> &'static str {
         match self {
             Self::Good => "good",
+            Self::Open => "open",
             Self::Doubt => "doubt",
             Self::Bad => "bad",
         }

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Answer, CameraAnswer};
-use crate::calibration::{CORRELATED, board_bend, points_by_image, warnings};
+use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, warnings};
 
 /// A calibration and its quality.
 #[derive(Serialize, JsonSchema)]
@@ -227,7 +227,7 @@ impl CalibrationAnswer {
         let tests = solution.significance().unwrap_or_default();
         Ok(Self {
             doubts,
-            untested: calibration.checked.iter().filter_map(untested).collect(),
+            untested: calibration.checked.iter().filter_map(Checked::untested).collect(),
             warnings: warnings(calibration),
             datum: prepared.settings.datum.words(),
             counts: counts(calibration),
@@ -245,11 +245,6 @@ impl CalibrationAnswer {
             sets: calibration.compared.iter().flat_map(|compared| &compared.sets).map(set).collect(),
         })
     }
-}
-
-fn untested(checked: &Checked) -> Option<String> {
-    let Verdict::Untested(why) = &checked.verdict else { return None };
-    Some(format!("{}: {why}", checked.what))
 }
 
 fn counts(calibration: &Calibration<'_>) -> Counts {
@@ -289,7 +284,7 @@ fn camera(calibration: &Calibration<'_>, index: usize, tests: &[Significance]) -
     Ok(CalibratedCamera {
         name: calibration.name_of(index).to_owned(),
         start: prepared.origins.get(index).cloned().unwrap_or_default(),
-        images: (0..calibration.solution.poses().len()).filter(|&image| calibration.owner(image) == index).count(),
+        images: images_of(calibration, index).count(),
         camera: CameraAnswer::new(&calibration.named_camera(index)?),
         solved: names.iter().enumerate().map(solved).collect(),
     })

@@ -1,20 +1,25 @@
 //! A judgement as one file that answers questions: the text of the page, with figures in the place of its pictures.
 
-use calibench_records::judgement::{Cell, OUTLIER_ALPHA, Principal, StillHolds, Summary, Trusted};
+use calibench_records::judgement::{Cell, InUse, OUTLIER_ALPHA, Principal, StillHolds, Summary, Trusted};
 
+use super::map::grid;
+use super::matrix::scale;
+use super::principal::{NINETY_FIVE, extent};
 use super::{in_use, verdict};
 use crate::field::shade;
 use crate::html::{Axis, Figures, Groups, Level, Page, Plot, Said, Shape};
 use crate::plain;
 
-/// Half axes of the ellipse that holds 95 % of a normal distribution in the plane, in standard deviations.
-const NINETY_FIVE: f64 = 2.4477;
-
 /// The page: `text` is the Markdown page. `found` is what was found of a camera in use, if one was asked about; doubts were had before, of the photographs.
-pub fn page(title: &str, text: &str, summary: &Summary, found: Option<&calibench_records::judgement::InUse>, doubts: &[String]) -> String {
+pub fn page(
+    title: &str,
+    text: &str,
+    (summary, trusted): (&Summary, Option<&Trusted<'_>>),
+    found: Option<&InUse>,
+    doubts: &[String],
+) -> String {
     let mut page = Page::new(title);
-    let trusted = summary.trusted();
-    match &trusted {
+    match trusted {
         None => page.verdict(Level::Doubt, "Nothing could be judged", doubts.iter().cloned()),
         Some(trusted) => {
             let reasons = doubts.iter().cloned().chain(trusted.doubt().map(|why| format!("{why}: its limits do not hold")));
@@ -26,12 +31,12 @@ pub fn page(title: &str, text: &str, summary: &Summary, found: Option<&calibench
     let groups: Groups = summary.views.iter().enumerate().map(|(place, name)| (name.to_string(), place)).collect();
     // The parts of a judgement are sections of a page of their own here.
     let text = if text.contains("\n## ") { text.to_owned() } else { text.replace("\n### ", "\n## ") };
-    let mut figures = trusted.as_ref().map_or_else(Figures::new, |trusted| figures(summary, trusted));
+    let mut figures = trusted.map_or_else(Figures::new, |trusted| figures(summary, trusted));
     page.markdown(&text, &mut figures, &groups);
     page.render()
 }
 
-fn head(summary: &Summary, trusted: &Trusted<'_>, found: Option<&calibench_records::judgement::InUse>, doubted: bool) -> (Level, String) {
+fn head(summary: &Summary, trusted: &Trusted<'_>, found: Option<&InUse>, doubted: bool) -> (Level, String) {
     let bare = |text: &str| text.trim_start_matches("- ").replace(['*', '`'], "");
     if let Some(found) = found {
         let level = match found.verdict {
@@ -42,7 +47,13 @@ fn head(summary: &Summary, trusted: &Trusted<'_>, found: Option<&calibench_recor
         return (level, bare(&in_use(found)));
     }
     let first = verdict(summary, trusted);
-    (if doubted { Level::Doubt } else { Level::Good }, bare(first.lines().next().unwrap_or_default()))
+    let level = match trusted.cell.split {
+        _ if doubted => Level::Doubt,
+        Some(_) => Level::Good,
+        // Its sigmas were not tested.
+        None => Level::Open,
+    };
+    (level, bare(first.lines().next().unwrap_or_default()))
 }
 
 fn figures(summary: &Summary, trusted: &Trusted<'_>) -> Figures {
@@ -60,9 +71,7 @@ fn holdout(summary: &Summary, trusted: &Trusted<'_>) -> String {
     let methods: Vec<String> =
         summary.methods.iter().filter(|one| one.unavailable.is_none()).map(|one| one.method.to_string()).rev().collect();
     let models: Vec<String> = summary.models.iter().map(ToString::to_string).collect();
-    let values: Vec<f64> = summary.cells.iter().filter_map(|cell| Some(cell.holdout?.value)).filter(|value| *value > 0.0).collect();
-    let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
-    let part = |value: f64| if high > low { (value / low).ln() / (high / low).ln() } else { 0.0 };
+    let part = scale(summary);
     let height = (46.0 * models.len() as f64).clamp(120.0, 900.0);
     let models_up: Vec<String> = models.iter().rev().cloned().collect();
     // Models are many and their names long: they stand at the left.
@@ -146,13 +155,7 @@ fn views(summary: &Summary, model: &str) -> String {
 /// How far halves differ over the frame, as a share of what their covariances predict.
 fn halves(cell: &Cell) -> Option<String> {
     let split = cell.split?;
-    let ticks = |of: fn(&(f64, f64, f64, f64)) -> f64| {
-        let mut ticks: Vec<f64> = cell.map.iter().map(of).collect();
-        ticks.sort_by(f64::total_cmp);
-        ticks.dedup();
-        ticks
-    };
-    let (xs, ys) = (ticks(|place| place.0), ticks(|place| place.1));
+    let [xs, ys] = grid(&cell.map);
     let most = cell.map.iter().map(|place| place.2).fold(f64::MIN_POSITIVE, f64::max);
     let size = calibench_model::camera::ImageSize { width: *xs.last()? as u32 + 1, height: *ys.last()? as u32 + 1 };
     let mut plot = Plot::frame("halves", "RMS difference of two halves over the frame", size);
@@ -181,12 +184,7 @@ fn principal(principal: &Principal) -> String {
     let all = principal.all;
     let (cx, cy) = (all[0].0, all[1].0);
     let halves: Vec<_> = principal.halves.iter().flatten().collect();
-    let mean = |axis: usize| (halves.iter().map(|half| half[axis].1.powi(2)).sum::<f64>() / halves.len().max(1) as f64).sqrt();
-    let half = [mean(0), mean(1)];
-    let points = halves.iter().copied().chain(&principal.without);
-    let off = points.map(|point| (point[0].0 - cx).abs().max((point[1].0 - cy).abs())).fold(0.0, f64::max);
-    let most = [half[0], half[1], all[0].1, all[1].1].into_iter().fold(0.0, f64::max);
-    let reach = 1.08 * off.max(NINETY_FIVE * most).max(1e-9);
+    let (half, reach) = extent(principal);
     let x = Axis::linear("x, px", [cx - 1.5 * reach, cx + 1.5 * reach]);
     let y = Axis::linear("y, px", [cy + reach, cy - reach]);
     let mut plot = Plot::new("principal-point", "The principal point from parts of the photographs", x, y, 760.0 / 1.5);
@@ -197,7 +195,7 @@ fn principal(principal: &Principal) -> String {
     let said = |point: &calibench_records::judgement::Point| Said::of([point[0].0, point[1].0].map(|value| format!("{value:.2}")));
     plot.series(1, None, &["x, px", "y, px"]);
     plot.legend(1, Shape::Circle, "from a half of the photographs", false);
-    plot.line(&ellipse(half), &Said::default());
+    plot.line(&ellipse([half.0, half.1]), &Said::default());
     halves.iter().for_each(|point| plot.symbol(Shape::Circle, (point[0].0, point[1].0), &said(point)));
     plot.series(0, None, &["x, px", "y, px"]);
     plot.legend(0, Shape::Cross, "from all but those of a fold", false);
@@ -208,8 +206,8 @@ fn principal(principal: &Principal) -> String {
     plot.symbol(Shape::Plus, (cx, cy), &said(&all));
     plot.figure(&format!(
         "The principal point from halves of the photographs, from all but those of a fold, and from all. Ellipses hold 95 % as predicted: standard deviations {} px, {} px of halves, {} px, {} px of all.",
-        plain(half[0]),
-        plain(half[1]),
+        plain(half.0),
+        plain(half.1),
         plain(all[0].1),
         plain(all[1].1)
     ))

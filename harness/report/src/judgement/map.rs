@@ -17,16 +17,20 @@ const GAP: u32 = 60;
 const RIGHT: u32 = 130;
 const BOTTOM: u32 = 80;
 
-/// Two maps with one scale. `None` without halves.
-pub fn picture(cell: &Cell) -> Option<Canvas> {
-    let places = &cell.map;
-    let ticks = |of: fn(&Place) -> f64| {
+/// Columns and rows of the places, px.
+pub fn grid(places: &[Place]) -> [Vec<f64>; 2] {
+    [|place: &Place| place.0, |place: &Place| place.1].map(|of: fn(&Place) -> f64| {
         let mut ticks: Vec<f64> = places.iter().map(of).collect();
         ticks.sort_by(f64::total_cmp);
         ticks.dedup();
         ticks
-    };
-    let (xs, ys) = (ticks(|place| place.0), ticks(|place| place.1));
+    })
+}
+
+/// Two maps with one scale. `None` without halves.
+pub fn picture(cell: &Cell) -> Option<Canvas> {
+    let places = &cell.map;
+    let [xs, ys] = grid(places);
     let (width, height) = (xs.last()? + 1.0, ys.last()? + 1.0);
     let map = (MAP, (f64::from(MAP) * height / width).round() as u32);
     let most = places.iter().map(|place| place.2.max(place.3)).fold(f64::MIN_POSITIVE, f64::max);

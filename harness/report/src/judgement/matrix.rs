@@ -14,6 +14,13 @@ const GAP: i32 = 20;
 /// Width of a letter, px of the picture, about.
 const LETTER: i32 = 9;
 
+/// Where a hold-out RMS stands among all of them, 0 to 1, on a logarithmic scale.
+pub fn scale(summary: &Summary) -> impl Fn(f64) -> f64 + use<> {
+    let values = summary.cells.iter().filter_map(|cell| Some(cell.holdout?.value)).filter(|value| *value > 0.0);
+    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    move |value| if high > low { (value / low).ln() / (high / low).ln() } else { 0.0 }
+}
+
 /// The matrix; the darker the larger, on a logarithmic scale.
 pub fn picture(summary: &Summary, trusted: &Trusted<'_>) -> Canvas {
     let methods: Vec<&str> = summary.methods.iter().filter(|method| method.unavailable.is_none()).map(|method| &*method.method).collect();
@@ -21,9 +28,7 @@ pub fn picture(summary: &Summary, trusted: &Trusted<'_>) -> Canvas {
     let left = GAP + longest * LETTER + 10;
     let (columns, rows) = (summary.models.len() as i32, methods.len() as i32);
     let mut canvas = Canvas::new((left + columns * CELL.0 + GAP) as u32, (TOP + rows * CELL.1 + GAP) as u32);
-    let values: Vec<f64> = summary.cells.iter().filter_map(|cell| Some(cell.holdout?.value)).filter(|value| *value > 0.0).collect();
-    let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(*value), high.max(*value)));
-    let part = |value: f64| if high > low { (value / low).ln() / (high / low).ln() } else { 0.0 };
+    let part = scale(summary);
     canvas.text("Hold-out RMS, px, and its 95 % interval over views", 20, (GAP as u32, 20));
     canvas.paint(|area| {
         for (column, model) in (0..).zip(&summary.models) {

@@ -13,21 +13,25 @@ const LEFT: i32 = 80;
 const TOP: i32 = 40;
 const BELOW: i32 = 180;
 /// Half axes of the ellipse that holds 95 % of a normal distribution in the plane, in standard deviations.
-const NINETY_FIVE: f64 = 2.4477;
+pub const NINETY_FIVE: f64 = 2.4477;
+
+/// The standard deviations of a half's point as predicted, x and y, px, and how far around the middle what is shown reaches, px.
+pub fn extent(principal: &Principal) -> ((f64, f64), f64) {
+    let all = principal.all;
+    let halves = || principal.halves.iter().flatten();
+    let mean = |axis: usize| (halves().map(|half| half[axis].1.powi(2)).sum::<f64>() / halves().count().max(1) as f64).sqrt();
+    let half = (mean(0), mean(1));
+    let points = halves().chain(&principal.without);
+    let off = points.map(|point| (point[0].0 - all[0].0).abs().max((point[1].0 - all[1].0).abs())).fold(0.0, f64::max);
+    (half, 1.08 * off.max(NINETY_FIVE * half.0.max(half.1)).max(NINETY_FIVE * all[0].1.max(all[1].1)).max(1e-9))
+}
 
 /// A scatter with predicted ellipses. Their axes are those of the frame: x and y hardly depend on each other.
 pub fn picture(principal: &Principal) -> Canvas {
     let all = principal.all;
     let middle = (all[0].0, all[1].0);
     let halves: Vec<_> = principal.halves.iter().flatten().collect();
-    let mean = |axis: usize| {
-        let sum: f64 = halves.iter().map(|half| half[axis].1.powi(2)).sum();
-        (sum / halves.len().max(1) as f64).sqrt()
-    };
-    let half = (mean(0), mean(1));
-    let points = halves.iter().copied().chain(&principal.without);
-    let off = points.map(|point| (point[0].0 - middle.0).abs().max((point[1].0 - middle.1).abs())).fold(0.0, f64::max);
-    let reach = 1.08 * off.max(NINETY_FIVE * half.0.max(half.1)).max(NINETY_FIVE * all[0].1.max(all[1].1)).max(1e-9);
+    let (half, reach) = extent(principal);
     let at = |x: f64, y: f64| {
         let part = |value: f64| f64::from(SIDE) * (0.5 + 0.5 * value / reach);
         (f64::from(LEFT) + part(x - middle.0), f64::from(TOP) + part(y - middle.1))

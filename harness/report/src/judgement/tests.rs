@@ -321,3 +321,21 @@ fn a_section_says_why_nothing_could_be_judged() {
     let files: Vec<&str> = pictures.iter().map(|(file, _)| file.as_str()).collect();
     assert!(files.iter().all(|file| text.contains(&format!("]({file})"))) && files.contains(&"holdout.png"), "{files:?}");
 }
+
+#[test]
+fn a_page_is_green_only_where_halves_say_nothing_against_it() {
+    let mut summary = judged();
+    cell(&mut summary, "m", "b").predicted = Some(Predicted { formal: 0.5, by_views: None, modes: 1.0 });
+    let level = |summary: &Summary, doubts: &[String]| {
+        let trusted = summary.trusted().unwrap();
+        let html = super::page("T", "# T\n\nText.\n", (summary, Some(&trusted)), None, doubts);
+        html.split("class=\"verdict ").nth(1).unwrap().split('"').next().unwrap().to_owned()
+    };
+    cell(&mut summary, "m", "b").split = None;
+    assert_eq!(level(&summary, &[]), "open");
+    cell(&mut summary, "m", "b").split = Some(Split { difference: 0.3, predicted: 0.2, modes: 1.5, p: 0.5, count: 9 });
+    assert_eq!(level(&summary, &[]), "good");
+    assert_eq!(level(&summary, &["a tag is seen twice".to_owned()]), "doubt");
+    cell(&mut summary, "m", "b").split = Some(Split { difference: 0.3, predicted: 0.2, modes: 1.5, p: 0.001, count: 9 });
+    assert_eq!(level(&summary, &[]), "doubt");
+}

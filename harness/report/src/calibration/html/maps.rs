@@ -7,8 +7,9 @@ use calibench_model::camera::{CameraModel, ImageSize};
 use calibench_model::convert::without_distortion;
 
 use super::super::board::adjusted;
-use super::super::pictures::{counts, plain_level, tint};
-use super::super::uncertainty::maps;
+use super::super::pictures::{counts, own, plain_level, tint};
+use super::super::uncertainty::UncertaintyMap;
+use super::OfCamera;
 use crate::field::shade;
 use crate::html::{Axis, Plot, Said};
 use crate::hull::Hull;
@@ -30,10 +31,11 @@ fn cell(size: ImageSize, (column, row): (usize, usize), (columns, rows): (usize,
 }
 
 /// How many image points are in each cell of the frame.
-pub(super) fn distribution(calibration: &Calibration<'_>, camera: usize) -> String {
+pub(super) fn distribution(of: &OfCamera<'_, '_>) -> String {
+    let OfCamera { calibration, camera, .. } = *of;
     let (size, (grid, counts)) = (calibration.camera(camera).size(), counts(calibration, camera));
     let most = counts.iter().copied().max().unwrap_or(0).max(1);
-    let mut plot = Plot::frame("distribution", "Number of image points in each part of the frame", size);
+    let mut plot = Plot::frame(&of.id("distribution"), "Number of image points in each part of the frame", size);
     plot.series(1, None, &["image points"]);
     for (index, &count) in counts.iter().enumerate() {
         let corners = cell(size, (index % grid[0], index / grid[0]), (grid[0], grid[1]));
@@ -42,23 +44,29 @@ pub(super) fn distribution(calibration: &Calibration<'_>, camera: usize) -> Stri
         plot.note(((corners[0].0 + corners[1].0) / 2.0, (corners[0].1 + corners[1].1) / 2.0), &count.to_string(), count > 0);
     }
     let empty = counts.iter().filter(|count| **count == 0).count();
-    plot.figure(&format!(
+    plot.figure(&of.caption(&format!(
         "Where the image points lie in the frame: their number in each cell. Empty cells ({empty} of {}) are extrapolation.",
         counts.len()
-    ))
+    )))
 }
 
 /// A cell for each pair of a camera's parameters.
-pub(super) fn correlations(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+pub(super) fn correlations(of: &OfCamera<'_, '_>) -> Option<String> {
+    let OfCamera { calibration, camera, .. } = *of;
     let all = calibration.covariances.correlations();
-    let own = calibration.covariances.parameters.iter().enumerate().filter(|(_, (owner, _))| *owner == camera);
-    let (places, names): (Vec<usize>, Vec<String>) = own.map(|(place, (_, name))| (place, (*name).to_owned())).unzip();
+    let (places, names) = own(calibration, camera);
+    let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
     if names.len() < 2 {
         return None;
     }
     let down: Vec<String> = names.iter().rev().cloned().collect();
-    let mut plot =
-        Plot::new("correlations", "Correlations of the interior orientation", Axis::named("", names.clone()), Axis::named("", down), 520.0);
+    let mut plot = Plot::new(
+        &of.id("correlations"),
+        "Correlations of the interior orientation",
+        Axis::named("", names.clone()),
+        Axis::named("", down),
+        520.0,
+    );
     plot.series(1, None, &["parameters", "correlation"]);
     for (i, j) in (0..names.len()).flat_map(|i| (0..names.len()).map(move |j| (i, j))) {
         let rho = all[(places[i], places[j])];
@@ -68,20 +76,17 @@ pub(super) fn correlations(calibration: &Calibration<'_>, camera: usize) -> Opti
         plot.cell([(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)], Some([colour.0, colour.1, colour.2]), &said);
         plot.note((x, y), &format!("{rho:.2}"), true);
     }
-    Some(plot.figure("Correlations of the interior orientation: blue negative, orange positive."))
+    Some(plot.figure(&of.caption("Correlations of the interior orientation: blue negative, orange positive.")))
 }
 
 /// The uncertainty of projected points, by the name of the picture.
-pub(super) fn uncertainty(calibration: &Calibration<'_>, camera: usize) -> Vec<(&'static str, String)> {
-    let size = calibration.camera(camera).size();
-    let figure = |map: super::super::uncertainty::UncertaintyMap| {
-        let (file, id) = match map.distance {
-            Distance::Far => ("uncertainty-far.png", "uncertainty-far"),
-            Distance::Near(_) => ("uncertainty-near.png", "uncertainty-near"),
-        };
+pub(super) fn uncertainty(of: &OfCamera<'_, '_>) -> Vec<(&'static str, String)> {
+    let size = of.calibration.camera(of.camera).size();
+    let figure = |map: &UncertaintyMap| {
+        let name = if map.distance == Distance::Far { "uncertainty-far" } else { "uncertainty-near" };
         let values = map.sigmas();
         let scale = Scale::of(&values)?;
-        let mut plot = Plot::frame(id, &format!("Standard deviation of a projected point, {}", map.whose()), size);
+        let mut plot = Plot::frame(&of.id(name), &format!("Standard deviation of a projected point, {}", map.whose()), size);
         plot.series(1, None, &["x, px", "y, px", "standard deviation, px"]);
         for (index, (place, value)) in map.places.iter().zip(&values).enumerate() {
             let Some(place) = place else { continue };
@@ -96,9 +101,9 @@ pub(super) fn uncertainty(calibration: &Calibration<'_>, camera: usize) -> Vec<(
             "Standard deviation (2D) of the image of a point {}. The line surrounds the image points: outside nothing was measured, and the model's word is all there is.",
             map.whose()
         );
-        Some((file, plot.figure(&caption)))
+        Some((name, plot.figure(&of.caption(&caption))))
     };
-    maps(calibration, camera).into_iter().filter_map(figure).collect()
+    of.maps.iter().filter_map(figure).collect()
 }
 
 /// A line around what was measured.
@@ -112,8 +117,8 @@ fn around(plot: &mut Plot, hull: &Hull) {
 }
 
 /// How far distortion moves points of the frame, from where the same camera without it pictures their rays.
-pub(super) fn distortion(calibration: &Calibration<'_>, index: usize) -> Option<String> {
-    let camera = calibration.camera(index);
+pub(super) fn distortion(of: &OfCamera<'_, '_>) -> Option<String> {
+    let camera = of.calibration.camera(of.camera);
     let (size, ideal) = (camera.size(), without_distortion(camera)?);
     let rows = (COLUMNS as f64 * f64::from(size.height) / f64::from(size.width)).round().max(3.0) as usize;
     let moved = |k: usize| {
@@ -125,7 +130,7 @@ pub(super) fn distortion(calibration: &Calibration<'_>, index: usize) -> Option<
     let all: Vec<Option<(PixelPoint, PixelPoint, f64)>> = (0..COLUMNS * rows).map(moved).collect();
     let most = all.iter().flatten().map(|(.., length)| *length).fold(0.0, f64::max);
     let top = if most > 1e-12 { most } else { 1.0 };
-    let mut plot = Plot::frame("distortion", "Distortion over the frame", size);
+    let mut plot = Plot::frame(&of.id("distortion"), "Distortion over the frame", size);
     plot.series(1, None, &["x, px", "y, px", "distortion, px", "dx, px", "dy, px"]);
     for (k, (at, from, length)) in all.iter().enumerate().filter_map(|(k, found)| Some((k, (*found)?))) {
         let said = [at.x, at.y].map(|value| format!("{value:.0}")).into_iter().chain([length, at.x - from.x, at.y - from.y].map(plain));
@@ -139,10 +144,10 @@ pub(super) fn distortion(calibration: &Calibration<'_>, index: usize) -> Option<
         plot.arrow(from, ((at.x - from.x) * times, (at.y - from.y) * times), &Said::default());
     }
     plot.shades("px", &[0.0, 0.25, 0.5, 0.75, 1.0].map(|part| (part, plain(part * top))));
-    Some(plot.figure(&format!(
+    Some(plot.figure(&of.caption(&format!(
         "How far distortion moves points, from where the same camera without it pictures their rays to where they are; at most {} px. Arrows {times} times their length. White: no such place.",
         plain(most)
-    )))
+    ))))
 }
 
 /// The height of a bent board over its lowest place.

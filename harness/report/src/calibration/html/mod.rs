@@ -5,25 +5,63 @@ mod network;
 mod patches;
 mod residuals;
 
-use calibench_calibrate::{Calibration, Verdict};
+use calibench_calibrate::{Calibration, Checked};
 
+use super::images_of;
+use super::pictures::{PANELS, named};
+use super::uncertainty::UncertaintyMap;
 use super::warnings::warnings;
 use crate::html::{Figures, Groups, Level, Page};
 
 pub use patches::Pictured;
+use residuals::Worst;
 
-/// The page: `text` is what the Markdown page says below its headline.
-pub(super) fn page(calibration: &Calibration<'_>, text: &str, photos: &[Pictured<'_>]) -> String {
+/// Whose figures are made.
+struct OfCamera<'c, 'n> {
+    calibration: &'c Calibration<'n>,
+    camera: usize,
+    /// Of its uncertainty.
+    maps: &'c [UncertaintyMap],
+    /// What stands before the names and before the captions of its figures.
+    prefix: String,
+    whose: String,
+}
+
+impl<'c, 'n> OfCamera<'c, 'n> {
+    fn new(calibration: &'c Calibration<'n>, camera: usize, maps: &'c [UncertaintyMap]) -> Self {
+        let (prefix, whose) = named(calibration, camera);
+        Self { calibration, camera, maps, prefix, whose }
+    }
+
+    /// The name of a figure in the page: no two have the same.
+    fn id(&self, name: &str) -> String {
+        format!("{}{name}", self.prefix)
+    }
+
+    fn caption(&self, text: &str) -> String {
+        format!("{}{text}", self.whose)
+    }
+}
+
+/// The page: `text` is what the Markdown page says below its headline; `maps` are the uncertainty's, camera by camera, `before` what is in doubt of where a board was found.
+pub(super) fn page(
+    calibration: &Calibration<'_>,
+    text: &str,
+    maps: &[Vec<UncertaintyMap>],
+    (photos, before): (&[Pictured<'_>], &[String]),
+) -> String {
     let mut page = Page::new("Calibration");
-    let (level, sentence) = verdict(calibration);
-    page.verdict(level, &sentence, reasons(calibration));
+    let doubts: Vec<String> = before.iter().cloned().chain(calibration.doubts().into_iter().map(str::to_owned)).collect();
+    let (level, sentence) = verdict(calibration, doubts.len());
+    page.verdict(level, &sentence, reasons(calibration, doubts));
     let names = calibration.prepared.survey.images.iter();
     let groups: Groups = names.enumerate().map(|(image, name)| (name.clone(), image)).collect();
     let worst = residuals::worst(calibration);
-    page.markdown(text, &mut figures(calibration, &worst), &groups);
-    for camera in 0..calibration.cameras() {
-        if let Some(figure) = maps::distortion(calibration, camera) {
-            page.section(&format!("Distortion{}", super::of(calibration, camera)), figure);
+    let cameras: Vec<OfCamera<'_, '_>> = maps.iter().enumerate().map(|(camera, maps)| OfCamera::new(calibration, camera, maps)).collect();
+    page.markdown(text, &mut figures(&cameras, &worst), &groups);
+    for of in &cameras {
+        if let Some(figure) = maps::distortion(of) {
+            page.section(&format!("Distortion{}", super::of(calibration, of.camera)), figure);
         }
     }
     page.section("The network in space", network::figure(calibration));
@@ -33,43 +71,37 @@ pub(super) fn page(calibration: &Calibration<'_>, text: &str, photos: &[Pictured
     page.render()
 }
 
-fn verdict(calibration: &Calibration<'_>) -> (Level, String) {
-    let doubts = calibration.doubts().len();
-    let of = |is: fn(&Verdict) -> bool| calibration.checked.iter().filter(|checked| is(&checked.verdict)).count();
-    let untested = of(|verdict| matches!(verdict, Verdict::Untested(_)));
+fn verdict(calibration: &Calibration<'_>, doubts: usize) -> (Level, String) {
+    let untested = calibration.checked.iter().filter_map(Checked::untested).count();
     let made = calibration.checked.len() - untested;
-    match doubts {
-        0 => (Level::Good, format!("No doubt was found: {made} checks of the residuals, {untested} could not be made")),
-        1 => (Level::Doubt, "Doubtful, for one reason".into()),
+    match (doubts, untested) {
+        (0, 0) if made > 0 => (Level::Good, format!("No doubt was found by {made} checks of the residuals")),
+        (0, _) => (Level::Open, format!("No doubt was found: {made} checks of the residuals were made, {untested} could not be made")),
+        (1, _) => (Level::Doubt, "Doubtful, for one reason".into()),
         _ => (Level::Doubt, format!("Doubtful, for {doubts} reasons")),
     }
 }
 
 /// Doubts, what was not tested, and what is to be known besides.
-fn reasons(calibration: &Calibration<'_>) -> Vec<String> {
-    let untested = calibration.checked.iter().filter_map(|checked| match &checked.verdict {
-        Verdict::Untested(why) => Some(format!("not tested: {}: {why}", checked.what)),
-        _ => None,
-    });
-    let doubts = calibration.doubts().into_iter().map(str::to_owned);
-    doubts.chain(untested).chain(warnings(calibration)).collect()
+fn reasons(calibration: &Calibration<'_>, doubts: Vec<String>) -> Vec<String> {
+    let untested = calibration.checked.iter().filter_map(Checked::untested).map(|what| format!("not tested: {what}"));
+    doubts.into_iter().chain(untested).chain(warnings(calibration)).collect()
 }
 
 /// Figures by the names of the pictures whose place they take.
-fn figures(calibration: &Calibration<'_>, worst: &[usize]) -> Figures {
+fn figures(cameras: &[OfCamera<'_, '_>], worst: &Worst) -> Figures {
     let mut figures = Figures::new();
-    figures.extend(maps::board(calibration).map(|figure| ("board.png".to_owned(), figure)));
-    for camera in 0..calibration.cameras() {
-        let prefix = if calibration.cameras() > 1 { format!("{}-", calibration.name_of(camera)) } else { String::new() };
-        let mut put = |file: &str, figure: String| drop(figures.insert(format!("{prefix}{file}"), figure));
-        put("residuals.png", residuals::together(calibration, camera, worst));
-        put("distribution.png", maps::distribution(calibration, camera));
-        maps::correlations(calibration, camera).into_iter().for_each(|figure| put("correlations.png", figure));
-        maps::uncertainty(calibration, camera).into_iter().for_each(|(file, figure)| put(file, figure));
-        put("residuals-by-image-1.png", residuals::by_image(calibration, camera));
+    figures.extend(cameras.first().and_then(|of| maps::board(of.calibration)).map(|figure| ("board.png".to_owned(), figure)));
+    for of in cameras {
+        let mut put = |name: &str, figure: String| drop(figures.insert(format!("{}.png", of.id(name)), figure));
+        put("residuals", residuals::together(of, worst));
+        put("distribution", maps::distribution(of));
+        maps::correlations(of).into_iter().for_each(|figure| put("correlations", figure));
+        maps::uncertainty(of).into_iter().for_each(|(name, figure)| put(name, figure));
+        put("residuals-by-image-1", residuals::by_image(of));
         // What follows is in the first.
-        let images = (0..calibration.prepared.survey.images.len()).filter(|&image| calibration.owner(image) == camera).count();
-        (2..=images / super::pictures::PANELS + 1).for_each(|number| put(&format!("residuals-by-image-{number}.png"), String::new()));
+        let images = images_of(of.calibration, of.camera).count();
+        (2..=images / PANELS + 1).for_each(|number| put(&format!("residuals-by-image-{number}"), String::new()));
     }
     figures
 }

@@ -13,6 +13,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use rayon::prelude::*;
 
+use super::residuals::Worst;
 use crate::html::escaped;
 use crate::plain;
 
@@ -31,11 +32,11 @@ struct Wanted {
 }
 
 /// The enlarged parts by their keys. A photograph that cannot be read any more has none.
-pub(super) fn patches(calibration: &Calibration<'_>, worst: &[usize], photos: &[Pictured<'_>]) -> Vec<(usize, String)> {
+pub(super) fn patches(calibration: &Calibration<'_>, worst: &Worst, photos: &[Pictured<'_>]) -> Vec<(usize, String)> {
     let observations = &calibration.prepared.network.observations;
     let mut by_image: BTreeMap<usize, Vec<Wanted>> = BTreeMap::new();
     for residual in calibration.solution.each_residual() {
-        let Some(key) = worst.iter().position(|observation| *observation == residual.observation) else { continue };
+        let Some(&key) = worst.get(&residual.observation) else { continue };
         let wanted = Wanted { key, observation: residual.observation, v: residual.v, is_used: residual.used != Use::LeftOut };
         by_image.entry(observations[residual.observation].image).or_default().push(wanted);
     }

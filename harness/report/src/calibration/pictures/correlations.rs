@@ -13,11 +13,16 @@ const CELL: u32 = 56;
 const NAMES: u32 = 60;
 const TITLE: u32 = 50;
 
+/// Rows of the interior orientation's covariance that are a camera's, and the names of its parameters.
+pub(in super::super) fn own(calibration: &Calibration<'_>, camera: usize) -> (Vec<usize>, Vec<&'static str>) {
+    let own = calibration.covariances.parameters.iter().enumerate().filter(|(_, (owner, _))| *owner == camera);
+    own.map(|(place, (_, name))| (place, *name)).unzip()
+}
+
 /// A cell for each pair of a camera's parameters: blue for negative, orange for positive correlation. `None` for less than a pair.
 pub(super) fn picture(calibration: &Calibration<'_>, camera: usize) -> Option<Canvas> {
     let all = calibration.covariances.correlations();
-    let own = calibration.covariances.parameters.iter().enumerate().filter(|(_, (owner, _))| *owner == camera);
-    let (places, names): (Vec<usize>, Vec<&str>) = own.map(|(place, (_, name))| (place, *name)).unzip();
+    let (places, names) = own(calibration, camera);
     if names.len() < 2 {
         return None;
     }

@@ -10,12 +10,14 @@ use std::io;
 
 use calibench_calibrate::Calibration;
 use calibench_exchange::NewFolder;
+use calibench_model::camera::CameraModel;
 
+use super::uncertainty::UncertaintyMap;
 use crate::Canvas;
 
-pub(super) use correlations::tint;
+pub(super) use correlations::{own, tint};
 pub(super) use distribution::counts;
-pub(super) use residuals::PANELS;
+pub(super) use residuals::{PANELS, length, shown, times};
 pub(super) use uncertainty::plain_level;
 
 /// A picture and what it shows.
@@ -26,19 +28,16 @@ pub(super) struct Picture {
     pub(super) caption: String,
 }
 
-/// Draws all pictures into `folder`, camera by camera.
-pub(super) fn draw(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Result<Vec<Picture>> {
+/// Draws all pictures into `folder`, camera by camera; `maps` are the uncertainty's of each.
+pub(super) fn draw(calibration: &Calibration<'_>, maps: &[Vec<UncertaintyMap>], folder: &NewFolder) -> io::Result<Vec<Picture>> {
     let mut drawn = Vec::new();
     if let Some(canvas) = board::picture(calibration) {
         folder.write("board.png", |output| canvas.encode(output))?;
         drawn.push(Picture { file: "board.png".into(), caption: board::CAPTION.into() });
     }
-    for camera in 0..calibration.cameras() {
-        let (prefix, whose) = match calibration.cameras() {
-            1 => (String::new(), String::new()),
-            _ => (format!("{}-", calibration.name_of(camera)), format!("{}: ", calibration.name_of(camera))),
-        };
-        for (file, caption, canvas) in of_camera(calibration, camera) {
+    for (camera, maps) in maps.iter().enumerate() {
+        let (prefix, whose) = named(calibration, camera);
+        for (file, caption, canvas) in of_camera(calibration, camera, maps) {
             let file = format!("{prefix}{file}");
             folder.write(&file, |output| canvas.encode(output))?;
             drawn.push(Picture { file, caption: format!("{whose}{caption}") });
@@ -47,7 +46,15 @@ pub(super) fn draw(calibration: &Calibration<'_>, folder: &NewFolder) -> io::Res
     Ok(drawn)
 }
 
-fn of_camera(calibration: &Calibration<'_>, camera: usize) -> Vec<(String, String, Canvas)> {
+/// What stands before the file names and before the captions of a camera's pictures, where there are several.
+pub(super) fn named(calibration: &Calibration<'_>, camera: usize) -> (String, String) {
+    match calibration.cameras() {
+        1 => (String::new(), String::new()),
+        _ => (format!("{}-", calibration.name_of(camera)), format!("{}: ", calibration.name_of(camera))),
+    }
+}
+
+fn of_camera(calibration: &Calibration<'_>, camera: usize, maps: &[UncertaintyMap]) -> Vec<(String, String, Canvas)> {
     let residuals = residuals::together(calibration, camera);
     let mut drawn = vec![("residuals.png".into(), "Residuals (adjusted less observed) of all images together.".into(), residuals)];
     for (index, (names, canvas)) in residuals::by_image(calibration, camera).into_iter().enumerate() {
@@ -59,6 +66,10 @@ fn of_camera(calibration: &Calibration<'_>, camera: usize) -> Vec<(String, Strin
         let caption = "Correlations of the interior orientation, framed where |rho| exceeds 0.9.";
         drawn.push(("correlations.png".into(), caption.into(), canvas));
     }
-    drawn.extend(uncertainty::pictures(calibration, camera).into_iter().map(|(file, caption, canvas)| (file.to_owned(), caption, canvas)));
+    drawn.extend(
+        uncertainty::pictures(calibration.camera(camera).size(), maps)
+            .into_iter()
+            .map(|(file, caption, canvas)| (file.to_owned(), caption, canvas)),
+    );
     drawn
 }

@@ -6,6 +6,7 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize};
 use plotters::prelude::*;
 
+use super::super::images_of;
 use crate::field::{Area, BOTTOM, LEFT, MAP, TOP, arrow, stretch};
 use crate::frame::Map;
 use crate::{Canvas, plain};
@@ -67,7 +68,7 @@ pub(super) fn together(calibration: &Calibration<'_>, camera: usize) -> Canvas {
 /// A panel for each image of a camera, some panels in each picture, with the names of its first and last image.
 pub(super) fn by_image(calibration: &Calibration<'_>, camera: usize) -> Vec<(String, Canvas)> {
     let residuals = Residuals::of_camera(calibration, camera);
-    let images: Vec<usize> = (0..calibration.prepared.survey.images.len()).filter(|&image| calibration.owner(image) == camera).collect();
+    let images: Vec<usize> = images_of(calibration, camera).collect();
     let times = times(&residuals.drawn, calibration.camera(camera).size(), PANEL);
     images.chunks(PANELS).map(|images| panels(calibration, &residuals, images, times)).collect()
 }
@@ -95,12 +96,13 @@ fn panels(calibration: &Calibration<'_>, residuals: &Residuals, images: &[usize]
     (if images.len() > 1 { format!("{} to {}", ends[0], ends[1]) } else { ends[0].to_owned() }, canvas)
 }
 
-fn length(residual: &Residual) -> Option<f64> {
+/// The length of a residual, px.
+pub(in super::super) fn length(residual: &Residual) -> Option<f64> {
     residual.v.map(|[x, y]| x.hypot(y))
 }
 
 /// How many times too long the vectors are drawn in a map `width` px wide, of an image of some size.
-fn times(residuals: &[Residual], size: ImageSize, width: u32) -> f64 {
+pub(in super::super) fn times(residuals: &[Residual], size: ImageSize, width: u32) -> f64 {
     let mut lengths: Vec<f64> = residuals.iter().filter(|r| r.used != Use::LeftOut).filter_map(length).collect();
     lengths.sort_by(f64::total_cmp);
     let most = lengths.get(lengths.len() * 95 / 100).copied().unwrap_or(0.0);
@@ -114,12 +116,16 @@ fn vector(area: &Area<'_>, map: &Map, calibration: &Calibration<'_>, residual: &
     let from = map.place(at);
     let colour = if residual.used == Use::Full { KEPT } else { DOUBTED };
     area.draw(&Circle::new(from, 2, colour.filled())).ok();
-    let Some([x, y]) = residual.v else { return };
-    // A blunder that is left out may be as long as the frame: its direction is enough.
-    let limit =
-        0.15 * f64::from(calibration.camera(calibration.owner(residual.image)).size().width) / (times * x.hypot(y)).max(f64::MIN_POSITIVE);
+    let Some(v) = residual.v else { return };
+    let [x, y] = shown(v, calibration.camera(calibration.owner(residual.image)).size(), times);
+    arrow(area, from, map.place(PixelPoint::new(at.x + x, at.y + y)));
+}
+
+/// A residual as it is drawn, so many times too long, px. A blunder that is left out may be as long as the frame: its direction is enough.
+pub(in super::super) fn shown([x, y]: [f64; 2], size: ImageSize, times: f64) -> [f64; 2] {
+    let limit = 0.15 * f64::from(size.width) / (times * x.hypot(y)).max(f64::MIN_POSITIVE);
     let times = times * limit.min(1.0);
-    arrow(area, from, map.place(PixelPoint::new(at.x + x * times, at.y + y * times)));
+    [x * times, y * times]
 }
 
 fn legend(residuals: &Residuals, times: f64) -> String {

@@ -1,12 +1,11 @@
 //! What the uncertainty of the interior orientation means in the image, over the frame.
 
 use calibench_adjust::Distance;
-use calibench_calibrate::Calibration;
-use calibench_model::camera::{CameraModel, ImageSize};
+use calibench_model::camera::ImageSize;
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::super::uncertainty::{UncertaintyMap, maps};
+use super::super::uncertainty::UncertaintyMap;
 use crate::field::{Area, BOTTOM, LEFT, TOP, dashed, shade, shades_beside, write};
 use crate::frame::Map;
 use crate::levels::{Scale, contour};
@@ -15,18 +14,18 @@ use crate::{Canvas, plain};
 /// Room that a line's value needs on all sides, px of the picture.
 const LABEL: f64 = 24.0;
 
-/// Maps for points far away and near: file, caption, picture. None if the interior orientation is fixed.
-pub(super) fn pictures(calibration: &Calibration<'_>, camera: usize) -> Vec<(&'static str, String, Canvas)> {
-    let picture = |map: UncertaintyMap| {
+/// Maps over a frame of a size: file, caption, picture.
+pub(super) fn pictures(size: ImageSize, maps: &[UncertaintyMap]) -> Vec<(&'static str, String, Canvas)> {
+    let picture = |map: &UncertaintyMap| {
         let file = if map.distance == Distance::Far { "uncertainty-far.png" } else { "uncertainty-near.png" };
         let caption = format!(
             "Standard deviation (2D) of the image of a point {}, from the covariance of camera and poses together, the poses held by what was measured. \
              The dashed line surrounds the image points: outside nothing was measured, and the model's word is all there is.",
             map.whose()
         );
-        Some((file, caption, draw(&map, calibration.camera(camera).size())?))
+        Some((file, caption, draw(map, size)?))
     };
-    maps(calibration, camera).into_iter().filter_map(picture).collect()
+    maps.iter().filter_map(picture).collect()
 }
 
 fn draw(found: &UncertaintyMap, size: ImageSize) -> Option<Canvas> {
