@@ -230,6 +230,17 @@ fn a_judgement_is_told_as_its_table_tells_it() {
     let lines: Vec<String> = list(&found["words"]).iter().map(|line| format!("- {}\n", line.as_str().unwrap())).collect();
     assert_eq!(lines.concat(), stdout(&words));
     assert!(list(&found["doubts"]).is_empty() && found["in_use"].is_null() && found["published"].is_null(), "{found}");
+    let px = |key: &str| calibench_report::plain(found[key].as_f64().unwrap());
+    let (centre, corner, limit) = (px("sigma_centre_px"), px("sigma_corner_px"), px("limit_px"));
+    for figure in [format!("{centre} px in the centre of the frame and {corner} px in its worst corner"), format!("within {limit} px RMS")]
+    {
+        assert!(stdout(&words).contains(&figure), "{figure}: {}", stdout(&words));
+    }
+    let halves = ["ratio", "ratio_of_modes"].map(|key| format!("{:.2}", found["halves"][key].as_f64().unwrap()));
+    assert!(
+        stdout(&words)
+            .contains(&format!("differ by {} times what the sigmas say over the frame, {} times mode by mode", halves[0], halves[1]))
+    );
     let rows = quoted_table(&folder.path().join("page/judgement.csv"));
     let of_view = |measure: &str, name: &Value| {
         let mut own = rows.iter().filter(|row| {

@@ -46,4 +46,6 @@ fn of(calibration: &Calibration<'_>, camera: usize) -> String {
 }
 
 #[cfg(test)]
+mod page_tests;
+#[cfg(test)]
 mod tests;

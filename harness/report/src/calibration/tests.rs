@@ -26,10 +26,10 @@ const STATIONS: [[f64; 6]; 6] = [
     [0.9, 1.0, 3.6, -15.0, 13.0, -135.0],
 ];
 
-type Matrix = [[f64; 3]; 3];
+pub(super) type Matrix = [[f64; 3]; 3];
 
 /// `M = M_kappa M_phi M_omega`, multiplied out as Mikhail et al. print it.
-fn rotation([omega, phi, kappa]: [f64; 3]) -> Matrix {
+pub(super) fn rotation([omega, phi, kappa]: [f64; 3]) -> Matrix {
     let [(so, co), (sp, cp), (sk, ck)] = [omega, phi, kappa].map(|degrees| (degrees * PI / 180.0).sin_cos());
     [
         [cp * ck, co * sk + so * sp * ck, so * sk - co * sp * ck],
@@ -81,18 +81,18 @@ fn wall() -> Prepared {
     prepare(points.iter().collect(), &control.collect::<Vec<_>>(), &settings).unwrap()
 }
 
-type Row = HashMap<String, String>;
+pub(super) type Row = HashMap<String, String>;
 
-fn rows(path: &Path) -> Vec<Row> {
+pub(super) fn rows(path: &Path) -> Vec<Row> {
     let mut reader = csv::Reader::from_path(path).unwrap();
     reader.deserialize().map(Result::unwrap).collect()
 }
 
-fn number(row: &Row, column: &str) -> f64 {
+pub(super) fn number(row: &Row, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column}: {}", row[column]))
 }
 
-fn written(test: impl FnOnce(&Calibration<'_>, &Path)) {
+pub(super) fn written(test: impl FnOnce(&Calibration<'_>, &Path)) {
     let folder = tempfile::tempdir().unwrap();
     let tables_at = folder.path().join("report");
     let prepared = wall();
