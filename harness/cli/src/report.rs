@@ -1,7 +1,6 @@
 //! `calibench report`.
 
-use calibench_project::write_family;
-use calibench_report::Written;
+use calibench_report::{FamilyPages, ONE_FILE, Written, family_pages, one_file, write as write_family};
 use clap::Args;
 
 use super::context::Context;
@@ -13,11 +12,24 @@ pub struct Report {
     /// Papers or other families of scenarios, as in galo-2011 [default: all]
     #[arg(value_name = "PAPER")]
     papers: Vec<String>,
+    /// Write all of it into one file, reports/report.html, and leave the Markdown and its pictures as they are
+    #[arg(long)]
+    html: bool,
 }
 
 impl Report {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let (places, families) = (context.places()?, context.families(&self.papers)?);
+        if self.html {
+            let pages = |(family, scenarios): &(&String, &Vec<String>)| family_pages(&places, family, scenarios);
+            let pages: Vec<FamilyPages> = side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), pages)?;
+            std::fs::create_dir_all(&places.reports)?;
+            calibench_exchange::folder::write_beside(&places.reports, ONE_FILE, one_file(&pages).as_bytes())?;
+            if !context.quiet {
+                say!("{}", places.reports.join(ONE_FILE).display());
+            }
+            return Ok(());
+        }
         let write = |(family, scenarios): &(&String, &Vec<String>)| {
             let written = write_family(&places, family, scenarios)?;
             match written {

@@ -11,6 +11,5 @@ mod toolbox;
 pub use error::ProjectError;
 pub use methods::Pictured;
 pub use project::Project;
-pub use reports::write_family;
 pub use scenarios::origin;
 pub use toolbox::Toolbox;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use calibench_diagnostics::nearest;
-use calibench_report::{Places, ReportError, Written, conventions};
+use calibench_report::conventions;
 
 use crate::{Project, ProjectError};
 
@@ -40,17 +40,5 @@ impl Project<'_> {
             families.retain(|family, _| papers.contains(family));
         }
         Ok(families)
-    }
-}
-
-/// Writes the report of a family of [`Project::families`].
-///
-/// # Errors
-/// Records, tables or files that cannot be read or written.
-pub fn write_family(places: &Places, family: &str, scenarios: &[String]) -> Result<Written, ReportError> {
-    if family == conventions::FAMILY {
-        Ok(Written::New(conventions::write(places)?))
-    } else {
-        calibench_report::write(places, family, scenarios)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibench_project::write_family;
+use calibench_report::write as write_family;
 use calibench_report::{Written, write_index};
 use pyo3::prelude::*;
 use rayon::prelude::*;

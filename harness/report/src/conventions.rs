@@ -4,7 +4,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calibench_diagnostics::{Problem, Problems};
-use calibench_exchange::OutputFolder;
 use calibench_model::camera::{Camera, Fold, ImageSize, Photogrammetric, fold};
 use calibench_model::convert::{
     ConvertError, ConvertOptions, Difference, DifferenceOptions, Mistake, Region, Tangential, Target, Vector, convert, difference,
@@ -13,11 +12,11 @@ use calibench_model::convert::{
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::canvas::{Canvas, write_pictures};
+use super::canvas::Canvas;
 use super::field::{Field, plain};
 use super::markdown::{MarkdownTable, contents};
 use super::{Places, ReportError};
-use crate::places::PAGE;
+use crate::composed::Composed;
 
 /// The family of this report.
 pub const FAMILY: &str = "conventions";
@@ -51,21 +50,17 @@ struct Printed {
     p: [f64; 2],
 }
 
-/// Writes the report and returns its page's path.
+/// The report.
 ///
 /// # Errors
 /// A file of cameras that cannot be read, a camera that cannot be converted.
-pub fn write(places: &Places) -> Result<PathBuf, ReportError> {
+pub(crate) fn compose(places: &Places) -> Result<Composed, ReportError> {
     let (mut body, mut pictures, mut prices) = (String::new(), Vec::new(), Vec::new());
     for path in files(&places.cameras)? {
         section(&read(&path)?, &mut body, &mut pictures, &mut prices)?;
     }
     let text = format!("# {FAMILY}\n\n{}{INTRODUCTION}{}{body}", overview(&prices), contents(&body));
-    OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| -> Result<(), ReportError> {
-        write_pictures(folder, &pictures)?;
-        Ok(folder.write(PAGE, |file| writeln!(file, "{}", text.trim_end()))?)
-    })?;
-    Ok(places.reports.join(FAMILY).join(PAGE))
+    Ok(Composed::page(format!("{}\n", text.trim_end()), pictures))
 }
 
 /// What each mistake costs on each camera, in a sentence and a table: RMS px over the frame as it is.

@@ -1,21 +1,17 @@
 //! The report of a family of scenarios.
 
-use calibench_exchange::OutputFolder;
 use rayon::prelude::*;
 
+use crate::composed::Composed;
 use crate::page::Page;
 use crate::places::PAGE;
-use crate::{LoadError, Loaded, Places, ReportError, Written, atlas, load, published, sweep, targets, zhu};
+use crate::{LoadError, Loaded, Places, ReportError, load, published, sweep, targets, zhu};
 
-/// Writes the report of `family` from the records of `scenarios`, in place of the older one. One that could not be measured here at all does
-/// not replace one that was measured elsewhere.
+/// The report of `family` from the records of `scenarios`; `None` where nothing of it could be measured here and one that was measured elsewhere is there.
 ///
 /// # Errors
-/// Records or tables that cannot be read; the older report is then as it was.
-pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Written, ReportError> {
-    if family == atlas::FAMILY {
-        return atlas::write(places, scenarios);
-    }
+/// Records or tables that cannot be read.
+pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Result<Option<Composed>, ReportError> {
     let of = |name: &String| {
         if let Some(comparison) = targets::Comparison::load(&places.records, name)? {
             return Ok(Either::Boards(Box::new(comparison)));
@@ -28,9 +24,8 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
     let all: Vec<_> = scenarios.par_iter().map(of).collect();
     let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
     let loaded: Vec<&Loaded> = all.iter().filter_map(Either::plain).collect();
-    let page_path = places.reports.join(family).join(PAGE);
-    if page_path.is_file() && all.iter().all(Either::is_unavailable) {
-        return Ok(Written::Kept(page_path));
+    if places.reports.join(family).join(PAGE).is_file() && all.iter().all(Either::is_unavailable) {
+        return Ok(None);
     }
     let tables = published::tables(&places.published, family)?;
     let mut page = Page::new(family);
@@ -69,8 +64,7 @@ pub fn write(places: &Places, family: &str, scenarios: &[String]) -> Result<Writ
         page.pictures.extend(pictures);
         page.beside.push((targets::FILE, text));
     }
-    OutputFolder::open(&places.reports.join(family))?.replace(|folder| page.write(folder))?;
-    Ok(Written::New(page_path))
+    Ok(Some(page.composed()))
 }
 
 /// What the records of a scenario are.

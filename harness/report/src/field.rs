@@ -131,7 +131,7 @@ impl Field {
 }
 
 /// Where is drawn.
-pub(crate) type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+pub(crate) use crate::canvas::Area;
 
 /// A round number of times by which arrows are lengthened so that the longest is about `room` px of the image.
 pub(crate) fn stretch(room: f64, longest: f64) -> f64 {

@@ -1,14 +1,10 @@
 //! The page of a report.
 
-use std::io;
-
-use calibench_exchange::NewFolder;
 use calibench_records::description::{Description, Subject};
 
 use crate::answer::{Answers, heading};
-use crate::canvas::write_pictures;
+use crate::composed::Composed;
 use crate::markdown::contents;
-use crate::places::PAGE;
 use crate::{
     Canvas, LoadError, Loaded, blocks, network, photographs, poses, printed, recognition, scene_figures, scores_section, sweep, transfer,
 };
@@ -142,15 +138,8 @@ impl Page {
         }
     }
 
-    /// Writes the page and its pictures.
-    ///
-    /// # Errors
-    /// What the folder refuses.
-    pub fn write(&self, folder: &NewFolder) -> io::Result<()> {
-        write_pictures(folder, &self.pictures)?;
-        for (name, text) in &self.beside {
-            folder.write(name, |file| file.write_all(text.as_bytes()))?;
-        }
+    /// The page with all that is beside it.
+    pub fn composed(self) -> Composed {
         let legend = if self.scored { scores_section::legend() } else { String::new() };
         let body = format!("{}\n\n{legend}", self.text.trim_end());
         let family = &self.family;
@@ -161,7 +150,9 @@ impl Page {
         let (answer, tables) = (self.answers.paragraph(), self.answers.tables());
         let answer = if answer.is_empty() { answer } else { format!("{answer}\n\n") };
         let text = format!("# {family}\n\n{answer}{tables}{}{made}\n\n{}\n", contents(&body), body.trim_end());
-        folder.write(PAGE, |file| file.write_all(text.as_bytes()))
+        let mut composed = Composed::page(text, self.pictures);
+        composed.pages.extend(self.beside.into_iter().map(|(name, text)| (name.to_owned(), text)));
+        composed
     }
 }
 

@@ -1,6 +1,7 @@
 //! The atlas of operators: every operator over every condition, what to take when, and accuracy against speed.
 
 mod choose;
+mod explorer;
 mod frontier;
 mod labels;
 mod load;
@@ -11,17 +12,13 @@ mod rows;
 mod settings;
 
 use std::collections::BTreeMap;
-use std::io;
-
-use calibench_exchange::OutputFolder;
 
 use self::frontier::Spot;
 use self::page::Group;
 use super::markdown::{MarkdownTable, contents};
 use super::sweep::{Metric, deviations};
-use super::{Canvas, LoadError, Places, ReportError, Written};
-use crate::canvas::write_pictures;
-use crate::places::PAGE;
+use super::{Canvas, LoadError, Places, ReportError};
+use crate::composed::Composed;
 use crate::speeds::Speeds;
 pub use load::Part;
 pub use settings::{Found, best, unmeasured};
@@ -44,11 +41,11 @@ const SEARCHED: [(&str, &str, &str); 3] = [
 
 type Parts = BTreeMap<String, Part>;
 
-/// Writes the report from the records of `names` and the measured speeds, in place of the older one.
+/// The report from the records of `names` and the measured speeds.
 ///
 /// # Errors
-/// Records or speeds that cannot be read; the older report is then as it was.
-pub fn write(places: &Places, names: &[String]) -> Result<Written, ReportError> {
+/// Records or speeds that cannot be read.
+pub(crate) fn compose(places: &Places, names: &[String]) -> Result<Composed, ReportError> {
     let speeds = Speeds::read(&places.published.with_file_name("speeds.csv"))?;
     let mut parts = Parts::new();
     for name in names {
@@ -63,30 +60,18 @@ pub fn write(places: &Places, names: &[String]) -> Result<Written, ReportError> 
     for part in parts.values() {
         section(part, &usual(&parts, &part.sweep.name), &mut text, &mut files);
     }
-    let which = page::which(&groups(&parts, &speeds), &speeds.machine, &evidence(&parts));
+    let groups = groups(&parts, &speeds);
+    let which = page::which(&groups, &speeds.machine, &evidence(&parts));
     let neighbours = neighbours::page(&parts);
-    OutputFolder::open(&places.reports.join(FAMILY))?.replace(|folder| {
-        write_pictures(folder, &files)?;
-        folder.write(NUMBERS, |file| Ok::<_, io::Error>(numbers(&parts, file)?))?;
-        folder.write(WHICH, |file| file.write_all(which.text.as_bytes()))?;
-        if let Some(page) = &neighbours {
-            folder.write(NEIGHBOURS, |file| file.write_all(page.as_bytes()))?;
-        }
-        let page = format!(
-            "# Atlas of operators
-
-{}
-
-{}{}{}
-",
-            which.answer,
-            contents(&text),
-            introduction(),
-            text.trim_end()
-        );
-        folder.write(PAGE, |file| file.write_all(page.as_bytes()))
-    })?;
-    Ok(Written::New(places.reports.join(FAMILY).join(PAGE)))
+    let page = format!("# Atlas of operators\n\n{}\n\n{}{}{}\n", which.answer, contents(&text), introduction(), text.trim_end());
+    let mut composed = Composed::page(page, files);
+    composed.explorer = Some(explorer::data(&groups, &which.verdicts, &parts, &speeds));
+    composed.pages.push((WHICH.to_owned(), which.text));
+    composed.pages.extend(neighbours.map(|text| (NEIGHBOURS.to_owned(), text)));
+    let mut table = Vec::new();
+    numbers(&parts, &mut table).map_err(std::io::Error::from)?;
+    composed.tables.push((NUMBERS.to_owned(), table));
+    Ok(composed)
 }
 
 fn introduction() -> String {
@@ -178,7 +163,7 @@ fn groups(parts: &Parts, speeds: &Speeds) -> Vec<Group> {
     let mut add = |name: &str, title: &'static str, about: &str, rows: &dyn Fn(&Part) -> Vec<rows::Row>| {
         if let Some(part) = parts.get(name) {
             let trials = part.sweep.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
-            groups.push(Group { title, about: format!("{about} `{name}`, {trials} trials a cell."), rows: rows(part) });
+            groups.push(Group { title, about: format!("{about} `{name}`, {trials} trials a cell."), scenario: name.to_owned(), rows: rows(part) });
         }
     };
     add("atlas/corners", "Chess corners, by image", "Tilt to 50 degrees, any rotation and phase.", &|part| rows::images(part, speeds));
@@ -252,7 +237,7 @@ fn evidence(parts: &Parts) -> String {
 }
 
 /// Every figure of every cell and method.
-fn numbers(parts: &Parts, output: &mut dyn io::Write) -> Result<(), csv::Error> {
+fn numbers(parts: &Parts, output: &mut dyn std::io::Write) -> Result<(), csv::Error> {
     const METRICS: [Metric; 7] =
         [Metric::Rmse, Metric::Bias, Metric::Scatter, Metric::Ratio, Metric::Predicted, Metric::Lost, Metric::Rejected];
     let mut csv = csv::Writer::from_writer(output);

@@ -12,6 +12,8 @@ pub struct Group {
     pub title: &'static str,
     /// What the rows of this table share.
     pub about: String,
+    /// The scenario whose records these are.
+    pub scenario: String,
     /// Its rows.
     pub rows: Vec<Row>,
 }
@@ -25,6 +27,8 @@ pub struct Page {
     pub answer: String,
     /// Markdown of the whole page.
     pub text: String,
+    /// Of each row of each group, in their order.
+    pub verdicts: Vec<Verdict>,
 }
 
 /// The page, from its groups: a short table first, then one for each group, then how it was decided.
@@ -49,7 +53,7 @@ pub fn which(groups: &[Group], machine: &str, evidence: &str) -> Page {
         contents(&body),
         body.trim_end()
     );
-    Page { answer: short.sentences.join(" "), text }
+    Page { answer: short.sentences.join(" "), text, verdicts }
 }
 
 /// The answer: in each group, who is best or as good as the best in most rows, and who is best in the others.
@@ -169,8 +173,8 @@ mod tests {
     fn the_page_names_the_best_says_what_others_cost_and_where_none_is_sound() {
         let first = vec![candidate("a:window=9", 0.01, 0), candidate("opencv_subpix:window=11", 0.03, 0), candidate("lossy", 0.001, 90)];
         let second = vec![candidate("lossy", 0.001, 90)];
-        let rows = vec![Row { title: "sharp".into(), candidates: first }, Row { title: "dark".into(), candidates: second }];
-        let page = which(&[Group { title: "Corners", about: "About.".into(), rows }], "a machine", "Evidence.\n");
+        let rows = vec![Row { title: "sharp".into(), candidates: first, cells: Vec::new(), asks_for_speed: false }, Row { title: "dark".into(), candidates: second, cells: Vec::new(), asks_for_speed: false }];
+        let page = which(&[Group { title: "Corners", about: "About.".into(), scenario: "a/b".into(), rows }], "a machine", "Evidence.\n");
         let text = &page.text;
         let short: Vec<&str> = text.lines().filter(|line| line.starts_with("| [Corners](#corners) ")).collect();
         assert!(short.len() == 2 && short[0].contains("| sharp ") && short[0].contains("| `a:window=9` "), "{text}");
@@ -183,9 +187,9 @@ mod tests {
 
     #[test]
     fn what_most_rows_agree_on_is_the_answer() {
-        let row = |title: &str| Row { title: title.into(), candidates: vec![candidate("a:window=9", 0.01, 0), candidate("b", 0.03, 0)] };
+        let row = |title: &str| Row { title: title.into(), candidates: vec![candidate("a:window=9", 0.01, 0), candidate("b", 0.03, 0)], cells: Vec::new(), asks_for_speed: false };
         let rows = vec![row("sharp"), row("soft")];
-        let page = which(&[Group { title: "Corners", about: "About.".into(), rows }], "a machine", "");
+        let page = which(&[Group { title: "Corners", about: "About.".into(), scenario: "a/b".into(), rows }], "a machine", "");
         assert_eq!(page.answer, "Corners: `a:window=9` in 2 of 2 rows.");
     }
 }

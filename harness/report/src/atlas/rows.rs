@@ -10,6 +10,10 @@ pub struct Row {
     pub title: String,
     /// Its candidates.
     pub candidates: Vec<Candidate>,
+    /// The cells of the sweep that it stands for; none where rows share cells.
+    pub cells: Vec<usize>,
+    /// Its condition is a speed.
+    pub asks_for_speed: bool,
 }
 
 type Test<'a> = &'a dyn Fn(f64) -> bool;
@@ -44,7 +48,7 @@ pub fn rooms(part: &Part, axis: &str, rooms: &[(&str, f64)]) -> Vec<Row> {
             let named = move |candidate: Candidate| Candidate { name: with_window(&candidate.name, window), ..candidate };
             candidates(part, &Speeds::default(), &cells).into_iter().map(named)
         });
-        Row { title: title.to_owned(), candidates: candidates.collect() }
+        Row { title: title.to_owned(), candidates: candidates.collect(), cells: Vec::new(), asks_for_speed: false }
     };
     rooms.iter().map(of).collect()
 }
@@ -55,6 +59,8 @@ pub fn needs(part: &Part, speeds: &Speeds, least: &[f64]) -> Vec<Row> {
     let of = |&least: &f64| Row {
         title: format!("at least {} points/s", super::frontier::short(least)),
         candidates: all.iter().filter(|candidate| candidate.speed.is_some_and(|speed| speed >= least)).cloned().collect(),
+        cells: Vec::new(),
+        asks_for_speed: true,
     };
     least.iter().map(of).collect()
 }
@@ -75,7 +81,7 @@ fn with_window(name: &str, window: f64) -> String {
 }
 
 fn row(part: &Part, speeds: &Speeds, title: String, cells: &[usize]) -> Row {
-    Row { title, candidates: candidates(part, speeds, cells) }
+    Row { title, candidates: candidates(part, speeds, cells), cells: cells.to_vec(), asks_for_speed: false }
 }
 
 /// The scenario whose image stands for those of `scenario`: `atlas/corners` for `atlas/corners-pose`.

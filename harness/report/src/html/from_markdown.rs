@@ -13,29 +13,49 @@ pub(crate) type Figures = HashMap<String, String>;
 /// Groups that are chosen together, by the text of the first cell of a table's row.
 pub(crate) type Groups = HashMap<String, usize>;
 
+/// The figure of a picture, by its file and its caption.
+type FigureOf<'a> = &'a mut dyn FnMut(&str, &str) -> Option<String>;
+/// Where a link goes: an address, an anchor, or nowhere.
+type LinkTo<'a> = &'a dyn Fn(&str) -> Option<String>;
+
 /// The sections of a text: one for each heading of level 2, and before them one without a heading of its own if there is anything. The title is left out.
 pub(super) fn sections(text: &str, figures: &mut Figures, groups: &Groups) -> Vec<Section> {
-    let mut writer = Writer {
-        figures,
-        groups,
-        sections: Vec::new(),
-        out: String::new(),
-        anchors: HashMap::new(),
-        paragraph: None,
-        caption: String::new(),
-        tables: 0,
-    };
-    let mut events = Parser::new_ext(text, Options::ENABLE_TABLES);
-    while let Some(event) = events.next() {
-        writer.event(event, &mut events);
-    }
+    let mut figure = |file: &str, _: &str| figures.remove(file);
+    let link = |target: &str| Some(target.to_owned());
+    let mut writer = Writer::new(&mut figure, groups, &link, None);
+    writer.all(text);
     writer.close();
     writer.sections
 }
 
+/// A page as a part of another one.
+pub(crate) struct Converted {
+    /// Its title, as HTML.
+    pub(crate) title: String,
+    /// Its first paragraph, as HTML.
+    pub(crate) lead: String,
+    /// What is below the title; headings are of one level less.
+    pub(crate) body: String,
+}
+
+/// A page of an anchor within another one: its own anchors begin with that one. `link` says to which anchor of the whole a link goes.
+pub(crate) fn in_place(text: &str, id: &str, figure: FigureOf<'_>, link: LinkTo<'_>) -> Converted {
+    let groups = Groups::new();
+    let anchors = |target: &str| link(target).map(|anchor| format!("#{anchor}"));
+    let mut writer = Writer::new(figure, &groups, &anchors, Some(id));
+    writer.all(text);
+    Converted { title: writer.title, lead: writer.lead.unwrap_or_default(), body: writer.out }
+}
+
 struct Writer<'a> {
-    figures: &'a mut Figures,
+    figure: FigureOf<'a>,
     groups: &'a Groups,
+    link: LinkTo<'a>,
+    /// Of a page within another one.
+    id: Option<&'a str>,
+    title: String,
+    /// The first paragraph.
+    lead: Option<String>,
     sections: Vec<Section>,
     /// What is being written: the body of the last section.
     out: String,
@@ -45,6 +65,32 @@ struct Writer<'a> {
     /// The caption of the last picture, as HTML: a paragraph below that says the same is said by its figure.
     caption: String,
     tables: usize,
+}
+
+impl<'a> Writer<'a> {
+    fn new(figure: FigureOf<'a>, groups: &'a Groups, link: LinkTo<'a>, id: Option<&'a str>) -> Self {
+        Self {
+            figure,
+            groups,
+            link,
+            id,
+            title: String::new(),
+            lead: None,
+            sections: Vec::new(),
+            out: String::new(),
+            anchors: HashMap::new(),
+            paragraph: None,
+            caption: String::new(),
+            tables: 0,
+        }
+    }
+
+    fn all(&mut self, text: &str) {
+        let mut events = Parser::new_ext(text, Options::ENABLE_TABLES);
+        while let Some(event) = events.next() {
+            self.event(event, &mut events);
+        }
+    }
 }
 
 impl Writer<'_> {
@@ -68,7 +114,10 @@ impl Writer<'_> {
             Event::Start(Tag::Emphasis) => self.out.push_str("<em>"),
             Event::Start(Tag::BlockQuote(_)) => self.out.push_str("<blockquote>"),
             Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(_) | CodeBlockKind::Indented)) => self.out.push_str("<pre><code>"),
-            Event::Start(Tag::Link { dest_url, .. }) => self.out.push_str(&format!("<a href=\"{}\">", escaped(&dest_url))),
+            Event::Start(Tag::Link { dest_url, .. }) => {
+                let target = (self.link)(&dest_url).map_or(String::new(), |target| format!(" href=\"{}\"", escaped(&target)));
+                self.out.push_str(&format!("<a{target}>"));
+            }
             Event::End(end) => self.out.push_str(closing(end)),
             Event::Code(code) => self.out.push_str(&format!("<code>{}</code>", escaped(&code))),
             // What is HTML in the text was not written by us: it is shown and not obeyed.
@@ -101,8 +150,13 @@ impl Writer<'_> {
     fn heading<'e>(&mut self, level: HeadingLevel, rest: &mut impl Iterator<Item = Event<'e>>) {
         let (html, plain) = self.aside(TagEnd::Heading(level), rest);
         let anchor = self.unique(anchor(&plain));
+        let (anchor, level) = match (self.id, level) {
+            (_, HeadingLevel::H1) => return self.title = html,
+            (Some(id), HeadingLevel::H2) => (format!("{id}--{anchor}"), HeadingLevel::H3),
+            (Some(id), _) => (format!("{id}--{anchor}"), HeadingLevel::H4),
+            (None, level) => (anchor, level),
+        };
         match level {
-            HeadingLevel::H1 => {}
             HeadingLevel::H2 => {
                 self.close();
                 self.sections.push(Section { anchor, heading: html, body: String::new() });
@@ -136,13 +190,16 @@ impl Writer<'_> {
         if !is_figure && body == std::mem::take(&mut self.caption) {
             return;
         }
+        if !is_figure && self.lead.is_none() {
+            self.lead = Some(body.clone());
+        }
         self.out.push_str(&if is_figure { body } else { format!("<p>{body}</p>\n") });
     }
 
     fn picture<'e>(&mut self, file: &str, rest: &mut impl Iterator<Item = Event<'e>>) {
         let (html, caption) = self.aside(TagEnd::Image, rest);
         self.caption = html;
-        match self.figures.remove(file) {
+        match (self.figure)(file, &caption) {
             Some(figure) => self.out.push_str(&figure),
             None => self.out.push_str(&format!("<figure><figcaption>{} ({})</figcaption></figure>", escaped(&caption), escaped(file))),
         }
@@ -150,7 +207,8 @@ impl Writer<'_> {
 
     fn table<'e>(&mut self, alignments: &[Alignment], rest: &mut impl Iterator<Item = Event<'e>>) {
         self.tables += 1;
-        self.out.push_str(&format!("<div class=\"table\"><table class=\"data\" id=\"t-{}\"><thead><tr>", self.tables));
+        let id = self.id.map_or(String::new(), |id| format!("{id}-"));
+        self.out.push_str(&format!("<div class=\"table\"><table class=\"data\" id=\"t-{id}{}\"><thead><tr>", self.tables));
         let (mut column, mut is_head) = (0, true);
         while let Some(event) = rest.next() {
             match event {

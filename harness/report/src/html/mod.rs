@@ -1,5 +1,8 @@
 //! Reports as one file: a page that is readable without JavaScript, and answers with it. It asks for nothing and is a function of what it is made of.
 
+pub(crate) mod drawing;
+mod embedded;
+pub(crate) mod explorer;
 mod from_markdown;
 mod marks;
 mod markup;
@@ -8,14 +11,14 @@ mod scene;
 
 use std::fmt::Write;
 
-pub(crate) use from_markdown::{Figures, Groups};
+pub(crate) use from_markdown::{Converted, Figures, Groups, in_place};
 pub(crate) use marks::{Said, Shape};
 pub(crate) use markup::escaped;
 pub(crate) use plot::{Axis, Plot};
 pub(crate) use scene::{Scene, ScenePoint, Station};
 
 /// The script, in the order in which its parts build on each other.
-const SCRIPT: [&str; 14] = [
+const SCRIPT: [&str; 15] = [
     include_str!("assets/state.js"),
     include_str!("assets/files.js"),
     include_str!("assets/tip.js"),
@@ -28,9 +31,13 @@ const SCRIPT: [&str; 14] = [
     include_str!("assets/space.js"),
     include_str!("assets/draw.js"),
     include_str!("assets/scene.js"),
+    include_str!("assets/verdicts.js"),
     include_str!("assets/toolbar.js"),
     include_str!("assets/start.js"),
 ];
+/// What comes before its last part on a page with an explorer.
+const EXPLORER: [&str; 3] =
+    [include_str!("assets/interpolate.js"), include_str!("assets/frontier.js"), include_str!("assets/explorer.js")];
 const STYLE: &str = include_str!("assets/page.css");
 
 /// A browser that obeys this sends no request, whatever the page says.
@@ -71,6 +78,7 @@ pub(crate) struct Page {
 }
 
 /// A section: its anchor, its heading and what is below it, as HTML.
+#[derive(Clone, Debug)]
 pub(crate) struct Section {
     pub(crate) anchor: String,
     pub(crate) heading: String,
@@ -94,6 +102,11 @@ impl Page {
         self.sections.push(Section { anchor: crate::markdown::anchor(heading), heading: escaped(heading), body });
     }
 
+    /// Adds a section.
+    pub(crate) fn add(&mut self, section: Section) {
+        self.sections.push(section);
+    }
+
     /// Adds the sections of a Markdown text; pictures become figures, rows of tables belong to groups.
     pub(crate) fn markdown(&mut self, text: &str, figures: &mut Figures, groups: &Groups) {
         self.sections.extend(from_markdown::sections(text, figures, groups));
@@ -103,6 +116,12 @@ impl Page {
     pub(crate) fn patch(&mut self, key: usize, figure: &str) {
         // Writing to a String cannot fail.
         let _ = write!(self.patches, "<figure class=\"patch\" data-k=\"{key}\">{figure}</figure>");
+    }
+
+    fn script(&self) -> String {
+        let explorer = if self.sections.iter().any(|one| one.body.contains(explorer::MARK)) { EXPLORER.concat() } else { String::new() };
+        let (last, rest) = SCRIPT.split_last().unwrap_or((&"", &[]));
+        format!("{}{explorer}{last}", rest.concat())
     }
 
     /// The page.
@@ -124,7 +143,7 @@ impl Page {
              <header><h1>{title}</h1>{verdict}{reasons}</header>\n<nav>\n{links}</nav>\n<main>\n{sections}</main>\n\
              <footer>Made by calibench {}.</footer>\n{patches}\n<script>(() => {{\n\"use strict\";\n{}}})();</script>\n</body>\n</html>\n",
             env!("CARGO_PKG_VERSION"),
-            SCRIPT.concat()
+            self.script()
         )
     }
 }

@@ -16,4 +16,4 @@ pub use map::map;
 pub use metric::{Estimate, Metric};
 pub use numbers::write_numbers;
 pub use section::{deviations, section};
-pub use units::titled;
+pub use units::{shown as axis_number, titled};

@@ -7,7 +7,8 @@ const start = () => {
   setUpToolbar();
   setUpTables();
   setUpPlots();
-  // Left out of pages without a scene.
+  // Left out of pages without an explorer or a scene.
+  if (typeof setUpExplorer === "function") setUpExplorer();
   if (typeof setUpScenes === "function") setUpScenes();
   document.body.append(tip);
   followLinks();

@@ -79,7 +79,7 @@ const keysHelp = () => {
 const setUpToolbar = () => {
   const bar = make("div", { class: "toolbar", role: "group", "aria-label": "view of this page" });
   if (series.names.length) bar.append(seriesSwitches());
-  bar.append(choiceLabel(), make("span", { class: "gap" }), button("reset", "everything as at first", resetAll), themeSelect(), keysHelp());
+  bar.append(choiceLabel(), differsSwitch(), make("span", { class: "gap" }), button("reset", "everything as at first", resetAll), themeSelect(), keysHelp());
   const main = document.querySelector("main");
   if (main) main.before(bar);
   else document.body.prepend(bar);

@@ -1,5 +1,8 @@
 //! Pictures: enlarged images with marks on them.
 
+mod raster;
+mod recorder;
+
 use std::io::{self, Write};
 use std::sync::Once;
 
@@ -12,6 +15,8 @@ use plotters::prelude::*;
 use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayon::prelude::*;
+
+pub(crate) use recorder::{Area, Recorder, Stroke, Written};
 
 /// Pictures with their file names.
 pub type Pictures = Vec<(String, Canvas)>;
@@ -58,11 +63,11 @@ pub const METHOD_MARKS: [Mark; 4] = [Mark::Cross, Mark::Circle, Mark::Triangle, 
 /// Half the size of a mark, px of the picture.
 const MARK: i32 = 6;
 
-/// A picture under way: RGB, 8 bits, white.
+/// A picture under way, white: what is drawn is kept, and becomes pixels or a drawing of lines when it is asked for.
 pub struct Canvas {
     width: u32,
     height: u32,
-    pixels: Vec<u8>,
+    strokes: Vec<Stroke>,
 }
 
 impl Canvas {
@@ -73,27 +78,16 @@ impl Canvas {
             // The font is compiled in; it is whole.
             let _ = register_font("sans-serif", FontStyle::Normal, ttf_noto_sans::REGULAR);
         });
-        Self { width, height, pixels: vec![255; width as usize * height as usize * 3] }
+        Self { width, height, strokes: Vec::new() }
     }
 
-    /// Puts the part of `image` of `side` px from pixel (`left`, `top`) at (`x`, `y`), each pixel `zoom` px wide. Outside the image: hatched white.
-    pub fn enlarge(&mut self, image: &Image, (left, top): (i64, i64), (columns, rows): (u32, u32), zoom: u32, (x, y): (u32, u32)) {
-        for row in 0..rows * zoom {
-            for column in 0..columns * zoom {
-                let (from_x, from_y) = (left + i64::from(column / zoom), top + i64::from(row / zoom));
-                let level = if image.holds(from_x, from_y, 0) {
-                    (image.at(from_x as usize, from_y as usize).clamp(0.0, 1.0) * 255.0).round() as u8
-                } else if (column + row) % 8 == 0 {
-                    200
-                } else {
-                    255
-                };
-                if x + column < self.width && y + row < self.height {
-                    let at = ((y + row) as usize * self.width as usize + (x + column) as usize) * 3;
-                    self.pixels[at..at + 3].fill(level);
-                }
-            }
-        }
+    /// Puts the part of `image` of `columns` x `rows` px from pixel (`left`, `top`) at (`x`, `y`), each pixel `zoom` px wide. Outside the image: hatched white.
+    pub fn enlarge(&mut self, image: &Image, (left, top): (i64, i64), (columns, rows): (u32, u32), zoom: u32, at: (u32, u32)) {
+        let place = |k: u32| (left + i64::from(k % columns), top + i64::from(k / columns));
+        let level =
+            |(x, y): (i64, i64)| image.holds(x, y, 0).then(|| (image.at(x as usize, y as usize).clamp(0.0, 1.0) * 255.0).round() as u8);
+        let levels = (0..columns * rows).map(|k| level(place(k))).collect();
+        self.strokes.push(Stroke::Pixels { at, columns, zoom, levels });
     }
 
     /// Marks, each on a white rim so that it shows on any grey. All rims are drawn before the first mark: none hides another.
@@ -150,11 +144,13 @@ impl Canvas {
 
     /// Black text with a white rim, readable on any grey.
     pub fn label(&mut self, text: &str, size: u32, (x, y): (u32, u32)) {
-        let (x, y) = (x as i32, y as i32);
-        for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
-            self.write_text(text, size, WHITE, (x + dx, y + dy));
+        let from = self.strokes.len();
+        self.write_text(text, size, BLACK, (x as i32, y as i32));
+        for stroke in &mut self.strokes[from..] {
+            if let Stroke::Text(written) = stroke {
+                written.has_rim = true;
+            }
         }
-        self.write_text(text, size, BLACK, (x, y));
     }
 
     fn write_text(&mut self, text: &str, size: u32, colour: RGBColor, at: (i32, i32)) {
@@ -169,10 +165,19 @@ impl Canvas {
         self.width
     }
 
-    // Drawing into memory can only fail outside the picture, where nothing is to be seen.
+    /// Its height, px.
+    pub(crate) fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// What was drawn, in this order.
+    pub(crate) fn strokes(&self) -> &[Stroke] {
+        &self.strokes
+    }
+
     /// Draws into the picture.
-    pub fn paint(&mut self, draw: impl FnOnce(&DrawingArea<BitMapBackend<'_>, plotters::coord::Shift>)) {
-        let area = BitMapBackend::with_buffer(&mut self.pixels, (self.width, self.height)).into_drawing_area();
+    pub(crate) fn paint(&mut self, draw: impl FnOnce(&Area<'_>)) {
+        let area = Recorder::new(&mut self.strokes, (self.width, self.height)).into_drawing_area();
         draw(&area);
         area.present().ok();
     }
@@ -182,8 +187,9 @@ impl Canvas {
     /// # Errors
     /// What the output refuses.
     pub fn encode(&self, output: &mut dyn Write) -> io::Result<()> {
+        let pixels = raster::pixels(&self.strokes, (self.width, self.height));
         let encoder = PngEncoder::new_with_quality(output, CompressionType::Default, FilterType::Adaptive);
-        encoder.write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8).map_err(io::Error::other)
+        encoder.write_image(&pixels, self.width, self.height, ExtendedColorType::Rgb8).map_err(io::Error::other)
     }
 
     /// Writes the picture as a PNG file of its own, marked as drawn by this program: it is replaced when it is drawn again, a photograph never is.

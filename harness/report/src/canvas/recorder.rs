@@ -1,0 +1,130 @@
+//! What is drawn, kept as it is drawn.
+
+use std::convert::Infallible;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters_backend::text_anchor::Pos;
+use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
+
+/// Where is drawn.
+pub(crate) type Area<'a> = DrawingArea<Recorder<'a>, Shift>;
+
+/// Colour and width of a line, px.
+#[derive(Clone, Copy)]
+pub(crate) struct Pen {
+    pub(crate) colour: BackendColor,
+    pub(crate) width: u32,
+}
+
+impl Pen {
+    fn of(style: &impl BackendStyle) -> Self {
+        Self { colour: style.color(), width: style.stroke_width() }
+    }
+}
+
+impl BackendStyle for Pen {
+    fn color(&self) -> BackendColor {
+        self.colour
+    }
+
+    fn stroke_width(&self) -> u32 {
+        self.width
+    }
+}
+
+/// A text.
+#[derive(Clone)]
+pub(crate) struct Written {
+    pub(crate) text: String,
+    pub(crate) at: BackendCoord,
+    pub(crate) size: f64,
+    pub(crate) colour: BackendColor,
+    pub(crate) anchor: Pos,
+    pub(crate) transform: FontTransform,
+    /// On a white rim.
+    pub(crate) has_rim: bool,
+}
+
+/// Something that was drawn; places are px of the picture.
+#[derive(Clone)]
+pub(crate) enum Stroke {
+    Pixel(BackendCoord, BackendColor),
+    Line([BackendCoord; 2], Pen),
+    Rectangle([BackendCoord; 2], Pen, bool),
+    Path(Vec<BackendCoord>, Pen),
+    Circle(BackendCoord, u32, Pen, bool),
+    Polygon(Vec<BackendCoord>, BackendColor),
+    Text(Written),
+    /// A part of an image, each pixel `zoom` px wide; `None` is outside of the image.
+    Pixels {
+        at: (u32, u32),
+        columns: u32,
+        zoom: u32,
+        levels: Vec<Option<u8>>,
+    },
+}
+
+/// Keeps what is drawn.
+pub(crate) struct Recorder<'a> {
+    strokes: &'a mut Vec<Stroke>,
+    size: (u32, u32),
+}
+
+impl<'a> Recorder<'a> {
+    pub(super) fn new(strokes: &'a mut Vec<Stroke>, size: (u32, u32)) -> Self {
+        Self { strokes, size }
+    }
+
+    fn keep(&mut self, stroke: Stroke) -> Kept {
+        self.strokes.push(stroke);
+        Ok(())
+    }
+}
+
+type Kept = Result<(), DrawingErrorKind<Infallible>>;
+
+impl DrawingBackend for Recorder<'_> {
+    type ErrorType = Infallible;
+
+    fn get_size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    fn ensure_prepared(&mut self) -> Kept {
+        Ok(())
+    }
+
+    fn present(&mut self) -> Kept {
+        Ok(())
+    }
+
+    fn draw_pixel(&mut self, point: BackendCoord, color: BackendColor) -> Kept {
+        self.keep(Stroke::Pixel(point, color))
+    }
+
+    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Kept {
+        self.keep(Stroke::Line([from, to], Pen::of(style)))
+    }
+
+    fn draw_rect<S: BackendStyle>(&mut self, upper_left: BackendCoord, bottom_right: BackendCoord, style: &S, fill: bool) -> Kept {
+        self.keep(Stroke::Rectangle([upper_left, bottom_right], Pen::of(style), fill))
+    }
+
+    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Kept {
+        self.keep(Stroke::Path(path.into_iter().collect(), Pen::of(style)))
+    }
+
+    fn draw_circle<S: BackendStyle>(&mut self, center: BackendCoord, radius: u32, style: &S, fill: bool) -> Kept {
+        self.keep(Stroke::Circle(center, radius, Pen::of(style), fill))
+    }
+
+    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, vert: I, style: &S) -> Kept {
+        self.keep(Stroke::Polygon(vert.into_iter().collect(), style.color()))
+    }
+
+    fn draw_text<T: BackendTextStyle>(&mut self, text: &str, style: &T, pos: BackendCoord) -> Kept {
+        let (size, colour, anchor, transform) = (style.size(), style.color(), style.anchor(), style.transform());
+        self.keep(Stroke::Text(Written { text: text.to_owned(), at: pos, size, colour, anchor, transform, has_rim: false }))
+    }
+}

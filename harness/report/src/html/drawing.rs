@@ -1,0 +1,278 @@
+//! A picture as a drawing of lines: what was drawn, once more.
+
+use std::fmt::Write;
+
+use plotters::style::FontTransform;
+use plotters_backend::{BackendColor, BackendCoord};
+use plotters_backend::text_anchor::{HPos, VPos};
+
+use super::embedded::{self, Embedded};
+use super::markup::escaped;
+use crate::Canvas;
+use crate::canvas::{Stroke, Written};
+
+/// Rows of a scale of colours that are drawn as one.
+const STEP: usize = 6;
+/// The size of a drawing's text, px, as the page's style has it.
+const USUAL_SIZE: f64 = 11.0;
+
+/// The figure of a picture, with a caption.
+pub(crate) fn figure(id: &str, caption: &str, canvas: &Canvas) -> String {
+    let (width, height) = (canvas.width(), canvas.height());
+    let caption = escaped(caption);
+    format!(
+        "<figure class=\"plot\" id=\"{}\"><svg class=\"still\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{caption}\" data-box=\"0 0 {width} {height}\">\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/><g class=\"marks\" fill=\"none\">{}</g></svg><figcaption>{caption}</figcaption></figure>\n",
+        escaped(id),
+        strokes(canvas.strokes())
+    )
+}
+
+fn strokes(strokes: &[Stroke]) -> String {
+    let mut pen = Pencil::default();
+    let mut rest = strokes;
+    while let [stroke, ..] = rest {
+        let (rows, dots) = (scale(rest), rest.iter().take_while(|one| matches!(one, Stroke::Pixel(..))).count());
+        if rows > 1 {
+            rest[..rows].chunks(STEP).for_each(|part| pen.band(part));
+        } else if dots > 0 {
+            pen.dots(&rest[..dots]);
+        } else {
+            pen.draw(stroke);
+        }
+        rest = &rest[rows.max(dots)..];
+    }
+    pen.close();
+    pen.out
+}
+
+/// A line along a row: left, right, row and colour.
+fn row(stroke: &Stroke) -> Option<(i32, i32, i32, BackendColor)> {
+    let (from, to, pen) = match stroke {
+        Stroke::Line([from, to], pen) => (*from, *to, pen),
+        Stroke::Path(path, pen) if path.len() == 2 => (path[0], path[1], pen),
+        _ => return None,
+    };
+    (from.1 == to.1 && pen.width == 1).then_some((from.0.min(to.0), from.0.max(to.0), from.1, pen.colour))
+}
+
+/// How many strokes from the first on are the rows of a scale of colours, one below the other; 1 if it is none.
+fn scale(strokes: &[Stroke]) -> usize {
+    let Some((left, right, first, _)) = row(&strokes[0]) else { return 1 };
+    let follows = |(place, stroke): (i32, &Stroke)| row(stroke).is_some_and(|(l, r, y, _)| (l, r, y) == (left, right, first + place));
+    let rows = (0..).zip(strokes).take_while(|one| follows(*one)).count();
+    if rows > STEP { rows } else { 1 }
+}
+
+/// SVG under way: what follows in one style is one path.
+#[derive(Default)]
+struct Pencil {
+    out: String,
+    style: String,
+    path: String,
+    /// Where the path ends.
+    at: BackendCoord,
+}
+
+/// A part of a path: where it begins, how it goes on from there, and where the next one is measured from.
+struct Piece {
+    start: BackendCoord,
+    rest: String,
+    end: BackendCoord,
+}
+
+impl Piece {
+    /// One that ends where it began.
+    fn closed(start: BackendCoord, rest: String) -> Self {
+        Self { start, rest, end: start }
+    }
+
+    fn rectangle((left, top): BackendCoord, width: i32, height: i32) -> Self {
+        Self::closed((left, top), format!("h{width}v{height}h{}z", -width))
+    }
+
+    /// Lines through places, each relative to the one before: shorter.
+    fn lines(path: &[BackendCoord]) -> Self {
+        let start = path.first().copied().unwrap_or_default();
+        let (mut rest, mut last) = (String::new(), start);
+        for (place, &(x, y)) in path.iter().skip(1).enumerate() {
+            let (dx, dy) = (x - last.0, y - last.1);
+            let _ = write!(rest, "{}{dx}{}{dy}", if place == 0 { "l" } else if dx < 0 { "" } else { " " }, if dy < 0 { "" } else { " " });
+            last = (x, y);
+        }
+        Self { start, rest, end: last }
+    }
+}
+
+impl Pencil {
+    fn close(&mut self) {
+        if !self.path.is_empty() {
+            // Writing to a String cannot fail.
+            let _ = write!(self.out, "<path {} d=\"{}\"/>", self.style, self.path);
+            self.path.clear();
+        }
+    }
+
+    fn trace(&mut self, style: String, piece: &Piece) {
+        if style != self.style {
+            self.close();
+            self.style = style;
+        }
+        let (x, y) = piece.start;
+        let _ = if self.path.is_empty() {
+            write!(self.path, "M{x} {y}{}", piece.rest)
+        } else {
+            write!(self.path, "m{} {}{}", x - self.at.0, y - self.at.1, piece.rest)
+        };
+        self.at = piece.end;
+    }
+
+    fn fill(&mut self, colour: BackendColor, piece: &Piece) {
+        self.trace(paint("fill", colour), piece);
+    }
+
+    fn line(&mut self, colour: BackendColor, width: u32, piece: &Piece) {
+        let width = if width == 1 { String::new() } else { format!(" stroke-width=\"{width}\"") };
+        self.trace(format!("{}{width}", paint("stroke", colour)), piece);
+    }
+
+    /// Rows of a scale of colours, in the colour of the middle one.
+    fn band(&mut self, rows: &[Stroke]) {
+        let middle = row(&rows[rows.len() / 2]);
+        if let (Some((left, right, top, _)), Some((.., colour))) = (row(&rows[0]), middle) {
+            self.fill(colour, &Piece::rectangle((left, top), right - left, rows.len() as i32));
+        }
+    }
+
+    fn draw(&mut self, stroke: &Stroke) {
+        match stroke {
+            Stroke::Pixel(..) => self.dots(std::slice::from_ref(stroke)),
+            Stroke::Line([from, to], pen) => self.line(pen.colour, pen.width, &Piece::lines(&[*from, *to])),
+            Stroke::Path(path, pen) => self.line(pen.colour, pen.width, &Piece::lines(path)),
+            Stroke::Polygon(corners, colour) => {
+                let lines = Piece::lines(corners);
+                self.fill(*colour, &Piece::closed(lines.start, format!("{}z", lines.rest)));
+            }
+            Stroke::Rectangle([(ax, ay), (bx, by)], pen, fill) => {
+                let piece = Piece::rectangle((*ax, *ay), bx - ax, by - ay);
+                if *fill { self.fill(pen.colour, &piece) } else { self.line(pen.colour, pen.width, &piece) }
+            }
+            Stroke::Circle((x, y), radius, pen, fill) => {
+                let (r, wide) = (*radius as i32, 2 * radius);
+                let piece = Piece::closed((x - r, *y), format!("a{r} {r} 0 1 0 {wide} 0a{r} {r} 0 1 0-{wide} 0"));
+                if *fill { self.fill(pen.colour, &piece) } else { self.line(pen.colour, pen.width, &piece) }
+            }
+            Stroke::Text(text) => self.write(text),
+            Stroke::Pixels { at, columns, zoom, levels } => self.image(*at, (*columns, *zoom), levels),
+        }
+    }
+
+    fn write(&mut self, text: &Written) {
+        self.close();
+        let (x, y) = text.at;
+        let anchor = match text.anchor.h_pos {
+            HPos::Left => "",
+            HPos::Center => " text-anchor=\"middle\"",
+            HPos::Right => " text-anchor=\"end\"",
+        };
+        let baseline = match text.anchor.v_pos {
+            VPos::Top => " dominant-baseline=\"text-before-edge\"",
+            VPos::Center => " dominant-baseline=\"central\"",
+            VPos::Bottom => "",
+        };
+        let turn = match text.transform {
+            FontTransform::None => String::new(),
+            FontTransform::Rotate90 => format!(" transform=\"rotate(90 {x} {y})\""),
+            FontTransform::Rotate180 => format!(" transform=\"rotate(180 {x} {y})\""),
+            FontTransform::Rotate270 => format!(" transform=\"rotate(270 {x} {y})\""),
+        };
+        let rim = if text.has_rim { " stroke=\"#fff\" stroke-width=\"2\" paint-order=\"stroke\"" } else { "" };
+        let _ = write!(
+            self.out,
+            "<text x=\"{x}\" y=\"{y}\"{}{anchor}{baseline}{turn}{rim}>{}</text>",
+            text_style(text),
+            escaped(&text.text)
+        );
+    }
+
+    /// Single pixels, one after the other: an image.
+    fn dots(&mut self, strokes: &[Stroke]) {
+        self.close();
+        let image = embedded::dots(strokes.iter().filter_map(|one| if let Stroke::Pixel(at, colour) = one { Some((*at, *colour)) } else { None }));
+        self.put(&image);
+    }
+
+    fn image(&mut self, at: (u32, u32), (columns, zoom): (u32, u32), levels: &[Option<u8>]) {
+        self.close();
+        self.put(&embedded::part(at, (columns, zoom), levels));
+    }
+
+    fn put(&mut self, image: &Embedded) {
+        let Embedded { at: (x, y), size: (width, height), url } = image;
+        let _ = write!(
+            self.out,
+            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{url}\"/>"
+        );
+    }
+}
+
+fn hex(BackendColor { rgb: (r, g, b), .. }: BackendColor) -> String {
+    if [r, g, b].iter().all(|part| part % 17 == 0) { format!("#{:x}{:x}{:x}", r / 17, g / 17, b / 17) } else { format!("#{r:02x}{g:02x}{b:02x}") }
+}
+
+fn paint(what: &str, colour: BackendColor) -> String {
+    let alpha = if colour.alpha < 1.0 { format!(" {what}-opacity=\"{:.2}\"", colour.alpha) } else { String::new() };
+    format!("{what}=\"{}\"{alpha}", hex(colour))
+}
+
+/// What differs from the usual text of a drawing, which the page's style says.
+fn text_style(text: &Written) -> String {
+    // A letter of the pictures' font is as many px high as eleven twelfths of one of a browser's.
+    let size = (text.size * 11.0 / 12.0).round();
+    let mut parts = Vec::new();
+    if size != USUAL_SIZE {
+        parts.push(format!("font-size:{size}px"));
+    }
+    if text.colour.rgb != (0, 0, 0) {
+        parts.push(format!("fill:{}", hex(text.colour)));
+    }
+    if text.colour.alpha < 1.0 {
+        parts.push(format!("fill-opacity:{:.2}", text.colour.alpha));
+    }
+    if parts.is_empty() { String::new() } else { format!(" style=\"{}\"", parts.join(";")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use plotters::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_path_is_where_it_was_drawn() {
+        let mut pencil = Pencil::default();
+        let black = BackendColor { alpha: 1.0, rgb: (0, 0, 0) };
+        pencil.line(black, 1, &Piece::lines(&[(10, 20), (7, 24), (9, 24)]));
+        pencil.line(black, 1, &Piece::rectangle((3, 4), 5, 6));
+        pencil.line(black, 1, &Piece::lines(&[(3, 14), (3, 10)]));
+        pencil.fill(BackendColor { alpha: 0.5, rgb: (1, 34, 255) }, &Piece::lines(&[(1, 1), (2, 3)]));
+        pencil.close();
+        let one = "<path stroke=\"#000\" d=\"M10 20l-3 4 2 0m-6-20h5v6h-5zm0 10l0-4\"/>";
+        assert_eq!(pencil.out, format!("{one}<path fill=\"#0122ff\" fill-opacity=\"0.50\" d=\"M1 1l1 2\"/>").replace("-6-20", "-6 -20"));
+    }
+
+    /// What is drawn on a canvas is in the drawing once: lines, texts with their markup as text, and the caption.
+    #[test]
+    fn a_drawing_holds_what_was_drawn() {
+        let mut canvas = Canvas::new(200, 100);
+        canvas.text("a < b", 12, (20, 30));
+        canvas.frame((10, 10), (50, 40));
+        canvas.paint(|area| {
+            area.draw(&PathElement::new([(1, 2), (3, 4)], RED)).ok();
+        });
+        let html = figure("f--a", "it's <b>", &canvas);
+        for part in ["id=\"f--a\"", "viewBox=\"0 0 200 100\"", "a &lt; b</text>", "it&#39;s &lt;b&gt;</figcaption>", "M10 10h50v40h-50z", "stroke=\"#f00\" d=\"M1 2l2 2\""] {
+            assert_eq!(html.matches(part).count(), 1, "{part}: {html}");
+        }
+    }
+}

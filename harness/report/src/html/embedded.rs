@@ -1,0 +1,118 @@
+//! Images within a page.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use plotters_backend::{BackendColor, BackendCoord};
+
+/// From this width on, px, what is shown is a photograph as a whole, not its pixels.
+const WHOLE: u32 = 200;
+/// A photograph as a whole has at most as many columns.
+const COLUMNS: u32 = 640;
+/// Its quality as JPEG, percent.
+const QUALITY: u8 = 70;
+/// What is outside of an image.
+const OUTSIDE: u8 = 245;
+
+/// An image as a part of a drawing.
+pub(super) struct Embedded {
+    /// Its upper left corner, px of the drawing.
+    pub(super) at: BackendCoord,
+    /// Its width and height, px of the drawing.
+    pub(super) size: (u32, u32),
+    /// The image itself.
+    pub(super) url: String,
+}
+
+/// A part of an image of `columns` pixels a row, each `zoom` px wide: as it is, or, of a photograph as a whole, a reduced copy.
+pub(super) fn part(at: (u32, u32), (columns, zoom): (u32, u32), levels: &[Option<u8>]) -> Embedded {
+    let rows = levels.len() as u32 / columns.max(1);
+    let pixels: Vec<u8> = levels.iter().map(|level| level.unwrap_or(OUTSIDE)).collect();
+    let url = if columns < WHOLE {
+        png(&pixels, (columns, rows), ExtendedColorType::L8)
+    } else {
+        let (pixels, size) = reduced(&pixels, (columns, rows), columns.div_ceil(COLUMNS));
+        let mut file = Vec::new();
+        // Writing to memory cannot fail; the size is that of the pixels.
+        let _ = JpegEncoder::new_with_quality(&mut file, QUALITY).write_image(&pixels, size.0, size.1, ExtendedColorType::L8);
+        format!("data:image/jpeg;base64,{}", STANDARD.encode(file))
+    };
+    Embedded { at: (at.0 as i32, at.1 as i32), size: (columns * zoom, rows * zoom), url }
+}
+
+/// Single pixels, transparent between them.
+pub(super) fn dots(dots: impl Iterator<Item = (BackendCoord, BackendColor)> + Clone) -> Embedded {
+    let ends = |of: fn(&BackendCoord) -> i32| {
+        let along = dots.clone().map(move |(at, _)| of(&at));
+        (along.clone().min().unwrap_or(0), along.max().unwrap_or(0))
+    };
+    let ((left, right), (top, bottom)) = (ends(|at| at.0), ends(|at| at.1));
+    let (width, height) = ((right - left + 1) as usize, (bottom - top + 1) as usize);
+    let mut pixels = vec![0; 4 * width * height];
+    for ((x, y), BackendColor { alpha, rgb: (r, g, b) }) in dots {
+        let place = 4 * ((y - top) as usize * width + (x - left) as usize);
+        pixels[place..place + 4].copy_from_slice(&[r, g, b, (255.0 * alpha).round() as u8]);
+    }
+    let size = (width as u32, height as u32);
+    Embedded { at: (left, top), size, url: png(&pixels, size, ExtendedColorType::Rgba8) }
+}
+
+fn png(pixels: &[u8], (width, height): (u32, u32), colours: ExtendedColorType) -> String {
+    let mut file = Vec::new();
+    // Writing to memory cannot fail; the size is that of the pixels.
+    let _ = PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive).write_image(pixels, width, height, colours);
+    format!("data:image/png;base64,{}", STANDARD.encode(file))
+}
+
+/// Means of squares of `by` pixels; what is left over at the right and below is of smaller ones.
+fn reduced(pixels: &[u8], (columns, rows): (u32, u32), by: u32) -> (Vec<u8>, (u32, u32)) {
+    let size = (columns.div_ceil(by), rows.div_ceil(by));
+    let mean = |place: u32| {
+        let (left, top) = (place % size.0 * by, place / size.0 * by);
+        let (right, bottom) = ((left + by).min(columns), (top + by).min(rows));
+        let row = |y: u32| pixels[(y * columns + left) as usize..(y * columns + right) as usize].iter().map(|level| u32::from(*level)).sum::<u32>();
+        let count = (right - left) * (bottom - top);
+        (((top..bottom).map(row).sum::<u32>() + count / 2) / count) as u8
+    };
+    ((0..size.0 * size.1).map(mean).collect(), size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decoded(url: &str) -> image::DynamicImage {
+        let bytes = STANDARD.decode(url.split_once(',').map(|(_, data)| data).unwrap()).unwrap();
+        image::load_from_memory(&bytes).unwrap()
+    }
+
+    #[test]
+    fn a_window_keeps_each_pixel_and_a_photograph_its_means() {
+        let levels: Vec<Option<u8>> = (0..6).map(|k| (k != 4).then_some(40 * k)).collect();
+        let window = part((7, 8), (3, 5), &levels);
+        assert_eq!((window.at, window.size), ((7, 8), (15, 10)));
+        assert_eq!(decoded(&window.url).to_luma8().into_raw(), [0, 40, 80, 120, OUTSIDE, 200]);
+
+        // Columns of 1300 px: halves are dark and bright, with stripes that the means take away.
+        let level = |k: u32| Some(if k % 1300 < 600 { 40 } else { 160 } + if k % 2 == 0 { 20 } else { 0 });
+        let whole = part((0, 0), (1300, 1), &(0..1300 * 31).map(level).collect::<Vec<_>>());
+        assert_eq!(whole.size, (1300, 31));
+        let small = decoded(&whole.url).to_luma8();
+        assert_eq!(small.dimensions(), (434, 11));
+        let near = |x: u32, level: u8| assert!(small.get_pixel(x, 5).0[0].abs_diff(level) <= 4, "{x}: {:?}", small.get_pixel(x, 5));
+        near(20, 50);
+        near(400, 170);
+    }
+
+    #[test]
+    fn single_pixels_stand_where_they_were_drawn() {
+        let red = BackendColor { alpha: 1.0, rgb: (255, 0, 0) };
+        let found = dots([((10, 20), red), ((12, 21), red)].into_iter());
+        assert_eq!((found.at, found.size), ((10, 20), (3, 2)));
+        let image = decoded(&found.url).to_rgba8();
+        let drawn: Vec<(u32, u32)> = image.enumerate_pixels().filter(|(.., pixel)| pixel.0 == [255, 0, 0, 255]).map(|(x, y, _)| (x, y)).collect();
+        assert_eq!(drawn, [(0, 0), (2, 1)]);
+    }
+}
