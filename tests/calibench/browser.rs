@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::calibrate::{WALL, wall};
-use crate::project::{run, stderr, stdout};
+use crate::project::{copy_with, run, stderr, stdout};
 
 /// A photograph's and a target's name that would do something on a page that does not escape them.
 const PHOTO: &str = "<img src=x onerror=alert(1)>.png";
@@ -99,4 +99,40 @@ fn of_html(text: &str) -> Vec<String> {
         found.push(bare(&plain));
     }
     found
+}
+
+/// All reports as one file: the numbers of each page of the Markdown, no more than 5 MB, the same bytes again; and the explorer in Chromium.
+#[test]
+fn all_reports_are_one_file_with_the_numbers_of_the_markdown() {
+    let project = copy_with(&["atlas"]);
+    let here = project.path();
+    let mut names: Vec<String> = std::fs::read_dir(here.join("scenarios/atlas"))
+        .unwrap()
+        .map(|entry| format!("atlas/{}", entry.unwrap().path().file_stem().unwrap().to_str().unwrap()))
+        .collect();
+    names.sort();
+    let ran: Vec<&str> = ["run", "-q", "--trials", "2"].into_iter().chain(names.iter().map(String::as_str)).collect();
+    for command in [&ran[..], &["report", "-q", "atlas"], &["report", "-q", "--html", "atlas"]] {
+        let done = run(here, command);
+        assert!(done.status.success(), "{command:?}: {}", stderr(&done));
+    }
+    let (folder, page) = (here.join("reports/html"), here.join("reports/html/report.html"));
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(html.len() < 5_000_000 && html.contains("<svg"), "{}", html.len());
+    let shown = of_html(&html);
+    for file in ["README.md", "which-operator.md", "neighbours.md"] {
+        let cells = of_markdown(&std::fs::read_to_string(here.join("reports/atlas").join(file)).unwrap());
+        assert!(cells.len() > 30 && shown.windows(cells.len()).any(|part| part == cells), "{file}");
+    }
+    assert!(run(here, &["report", "-q", "--html", "atlas", "--threads", "1"]).status.success());
+    assert!(std::fs::read_to_string(&page).unwrap() == html, "other bytes from the same records");
+
+    let Some(environment) = option_env!("CALIBENCH_BROWSER").filter(|_| cfg!(browser)) else { return };
+    let done = Command::new(Path::new(environment).join("bin/python"))
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", concat!(env!("CARGO_MANIFEST_DIR"), "/browser/test_explorer.py")])
+        .env("CALIBENCH_PAGES", folder)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .unwrap();
+    assert!(done.status.success(), "{}{}", stdout(&done), stderr(&done));
 }

@@ -24,7 +24,10 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
     ),
     ("render", &[("calibench render corners/noise --trials 20 -o pictures", "twenty images, with the truth beside them")]),
     ("print", &[("calibench print targets/aprilgrid -o board", "SVG and PDF at true scale, and target.yaml for Kalibr")]),
-    ("report", &[("calibench report", "all pages, from the records that are there")]),
+    (
+        "report",
+        &[("calibench report", "all pages, from the records that are there"), ("calibench report --html", "all of them in one file")],
+    ),
     ("plot", &[("calibench plot atlas/corners --x blur --y rmse --by method", "a curve for each method, with the numbers as CSV")]),
     (
         "check",

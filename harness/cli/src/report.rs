@@ -12,7 +12,7 @@ pub struct Report {
     /// Papers or other families of scenarios, as in galo-2011 [default: all]
     #[arg(value_name = "PAPER")]
     papers: Vec<String>,
-    /// Write all of it into one file, reports/report.html, and leave the Markdown and its pictures as they are
+    /// Write all of it into one file, reports/html/report.html, and leave the Markdown and its pictures as they are
     #[arg(long)]
     html: bool,
 }
@@ -23,10 +23,11 @@ impl Report {
         if self.html {
             let pages = |(family, scenarios): &(&String, &Vec<String>)| family_pages(&places, family, scenarios);
             let pages: Vec<FamilyPages> = side_by_side(&families.iter().collect::<Vec<_>>(), lanes(), pages)?;
-            std::fs::create_dir_all(&places.reports)?;
-            calibench_exchange::folder::write_beside(&places.reports, ONE_FILE, one_file(&pages).as_bytes())?;
+            let folder = places.reports.join("html");
+            std::fs::create_dir_all(&folder)?;
+            calibench_exchange::folder::write_beside(&folder, ONE_FILE, one_file(&pages).as_bytes())?;
             if !context.quiet {
-                say!("{}", places.reports.join(ONE_FILE).display());
+                say!("{}", folder.join(ONE_FILE).display());
             }
             return Ok(());
         }

@@ -10,7 +10,7 @@ use crate::html::{Converted, Page, Section, drawing, escaped, explorer, in_place
 use crate::places::PAGE;
 use crate::{Composed, Places, ReportError, compose, composed};
 
-/// The name of the file, beside the list of reports.
+/// The name of the file.
 pub const ONE_FILE: &str = "report.html";
 
 /// The pages of a family as sections of the one file, with their anchors.
@@ -99,7 +99,7 @@ fn anchor_of(family: &str, page: &str, target: &str) -> Option<String> {
     let path = if file.is_empty() { Path::new(family).join(page) } else { resolved(&Path::new(family).join(file))? };
     let mut parts = path.iter().map(|part| part.to_string_lossy());
     let (family, file) = (parts.next()?.into_owned(), parts.next()?.into_owned());
-    if parts.next().is_some() || !file.ends_with(".md") {
+    if parts.next().is_some() || Path::new(&file).extension().is_none_or(|ending| ending != "md") {
         return None;
     }
     let id = page_id(&family, &file);

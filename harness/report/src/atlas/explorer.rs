@@ -37,7 +37,8 @@ fn question(group: &Group, verdicts: &[&Verdict], part: &Part, speeds: &Speeds) 
 /// A sweep's axes in the words and units of its plots.
 fn axes(part: &Part) -> Vec<Value> {
     let of = |axis: &Axis| {
-        let values: Vec<Option<f64>> = axis.values.iter().map(|value| value.number.map(|number| rounded(axis_number(axis, number)))).collect();
+        let values: Vec<Option<f64>> =
+            axis.values.iter().map(|value| value.number.map(|number| rounded(axis_number(axis, number)))).collect();
         json!({ "title": titled(axis), "values": values })
     };
     part.sweep.sweep.axes.iter().map(of).collect()

@@ -163,7 +163,12 @@ fn groups(parts: &Parts, speeds: &Speeds) -> Vec<Group> {
     let mut add = |name: &str, title: &'static str, about: &str, rows: &dyn Fn(&Part) -> Vec<rows::Row>| {
         if let Some(part) = parts.get(name) {
             let trials = part.sweep.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
-            groups.push(Group { title, about: format!("{about} `{name}`, {trials} trials a cell."), scenario: name.to_owned(), rows: rows(part) });
+            groups.push(Group {
+                title,
+                about: format!("{about} `{name}`, {trials} trials a cell."),
+                scenario: name.to_owned(),
+                rows: rows(part),
+            });
         }
     };
     add("atlas/corners", "Chess corners, by image", "Tilt to 50 degrees, any rotation and phase.", &|part| rows::images(part, speeds));

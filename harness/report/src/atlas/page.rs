@@ -173,7 +173,10 @@ mod tests {
     fn the_page_names_the_best_says_what_others_cost_and_where_none_is_sound() {
         let first = vec![candidate("a:window=9", 0.01, 0), candidate("opencv_subpix:window=11", 0.03, 0), candidate("lossy", 0.001, 90)];
         let second = vec![candidate("lossy", 0.001, 90)];
-        let rows = vec![Row { title: "sharp".into(), candidates: first, cells: Vec::new(), asks_for_speed: false }, Row { title: "dark".into(), candidates: second, cells: Vec::new(), asks_for_speed: false }];
+        let rows = vec![
+            Row { title: "sharp".into(), candidates: first, cells: Vec::new(), asks_for_speed: false },
+            Row { title: "dark".into(), candidates: second, cells: Vec::new(), asks_for_speed: false },
+        ];
         let page = which(&[Group { title: "Corners", about: "About.".into(), scenario: "a/b".into(), rows }], "a machine", "Evidence.\n");
         let text = &page.text;
         let short: Vec<&str> = text.lines().filter(|line| line.starts_with("| [Corners](#corners) ")).collect();
@@ -187,7 +190,12 @@ mod tests {
 
     #[test]
     fn what_most_rows_agree_on_is_the_answer() {
-        let row = |title: &str| Row { title: title.into(), candidates: vec![candidate("a:window=9", 0.01, 0), candidate("b", 0.03, 0)], cells: Vec::new(), asks_for_speed: false };
+        let row = |title: &str| Row {
+            title: title.into(),
+            candidates: vec![candidate("a:window=9", 0.01, 0), candidate("b", 0.03, 0)],
+            cells: Vec::new(),
+            asks_for_speed: false,
+        };
         let rows = vec![row("sharp"), row("soft")];
         let page = which(&[Group { title: "Corners", about: "About.".into(), scenario: "a/b".into(), rows }], "a machine", "");
         assert_eq!(page.answer, "Corners: `a:window=9` in 2 of 2 rows.");

@@ -76,9 +76,8 @@ impl<'a> Recorder<'a> {
         Self { strokes, size }
     }
 
-    fn keep(&mut self, stroke: Stroke) -> Kept {
+    fn keep(&mut self, stroke: Stroke) {
         self.strokes.push(stroke);
-        Ok(())
     }
 }
 
@@ -100,31 +99,38 @@ impl DrawingBackend for Recorder<'_> {
     }
 
     fn draw_pixel(&mut self, point: BackendCoord, color: BackendColor) -> Kept {
-        self.keep(Stroke::Pixel(point, color))
+        self.keep(Stroke::Pixel(point, color));
+        Ok(())
     }
 
     fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Kept {
-        self.keep(Stroke::Line([from, to], Pen::of(style)))
+        self.keep(Stroke::Line([from, to], Pen::of(style)));
+        Ok(())
     }
 
     fn draw_rect<S: BackendStyle>(&mut self, upper_left: BackendCoord, bottom_right: BackendCoord, style: &S, fill: bool) -> Kept {
-        self.keep(Stroke::Rectangle([upper_left, bottom_right], Pen::of(style), fill))
+        self.keep(Stroke::Rectangle([upper_left, bottom_right], Pen::of(style), fill));
+        Ok(())
     }
 
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, path: I, style: &S) -> Kept {
-        self.keep(Stroke::Path(path.into_iter().collect(), Pen::of(style)))
+        self.keep(Stroke::Path(path.into_iter().collect(), Pen::of(style)));
+        Ok(())
     }
 
     fn draw_circle<S: BackendStyle>(&mut self, center: BackendCoord, radius: u32, style: &S, fill: bool) -> Kept {
-        self.keep(Stroke::Circle(center, radius, Pen::of(style), fill))
+        self.keep(Stroke::Circle(center, radius, Pen::of(style), fill));
+        Ok(())
     }
 
     fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(&mut self, vert: I, style: &S) -> Kept {
-        self.keep(Stroke::Polygon(vert.into_iter().collect(), style.color()))
+        self.keep(Stroke::Polygon(vert.into_iter().collect(), style.color()));
+        Ok(())
     }
 
     fn draw_text<T: BackendTextStyle>(&mut self, text: &str, style: &T, pos: BackendCoord) -> Kept {
         let (size, colour, anchor, transform) = (style.size(), style.color(), style.anchor(), style.transform());
-        self.keep(Stroke::Text(Written { text: text.to_owned(), at: pos, size, colour, anchor, transform, has_rim: false }))
+        self.keep(Stroke::Text(Written { text: text.to_owned(), at: pos, size, colour, anchor, transform, has_rim: false }));
+        Ok(())
     }
 }

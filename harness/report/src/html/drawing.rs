@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use plotters::style::FontTransform;
-use plotters_backend::{BackendColor, BackendCoord};
 use plotters_backend::text_anchor::{HPos, VPos};
+use plotters_backend::{BackendColor, BackendCoord};
 
 use super::embedded::{self, Embedded};
 use super::markup::escaped;
@@ -64,6 +64,19 @@ fn scale(strokes: &[Stroke]) -> usize {
     if rows > STEP { rows } else { 1 }
 }
 
+/// The centre and the radius of a mark that is drawn as a circle of short lines.
+fn ring(path: &[BackendCoord]) -> Option<(BackendCoord, u32)> {
+    const LEAST: usize = 20;
+    if path.len() < LEAST || path.first() != path.last() {
+        return None;
+    }
+    let ends = |of: fn(&BackendCoord) -> i32| Some((path.iter().map(of).min()?, path.iter().map(of).max()?));
+    let ((left, right), (top, bottom)) = (ends(|at| at.0)?, ends(|at| at.1)?);
+    let (x, y, radius) = ((left + right) / 2, (top + bottom) / 2, (right - left) / 2);
+    let near = |(px, py): &BackendCoord| (f64::from(px - x).hypot(f64::from(py - y)) - f64::from(radius)).abs() < 0.75;
+    (right - left == bottom - top && path.iter().all(near)).then_some(((x, y), radius as u32))
+}
+
 /// SVG under way: what follows in one style is one path.
 #[derive(Default)]
 struct Pencil {
@@ -91,13 +104,29 @@ impl Piece {
         Self::closed((left, top), format!("h{width}v{height}h{}z", -width))
     }
 
+    fn circle((x, y): BackendCoord, radius: u32) -> Self {
+        let (r, wide) = (radius as i32, 2 * radius);
+        Self::closed((x - r, y), format!("a{r} {r} 0 1 0 {wide} 0a{r} {r} 0 1 0-{wide} 0"))
+    }
+
     /// Lines through places, each relative to the one before: shorter.
     fn lines(path: &[BackendCoord]) -> Self {
         let start = path.first().copied().unwrap_or_default();
         let (mut rest, mut last) = (String::new(), start);
         for (place, &(x, y)) in path.iter().skip(1).enumerate() {
             let (dx, dy) = (x - last.0, y - last.1);
-            let _ = write!(rest, "{}{dx}{}{dy}", if place == 0 { "l" } else if dx < 0 { "" } else { " " }, if dy < 0 { "" } else { " " });
+            let _ = write!(
+                rest,
+                "{}{dx}{}{dy}",
+                if place == 0 {
+                    "l"
+                } else if dx < 0 {
+                    ""
+                } else {
+                    " "
+                },
+                if dy < 0 { "" } else { " " }
+            );
             last = (x, y);
         }
         Self { start, rest, end: last }
@@ -148,7 +177,10 @@ impl Pencil {
         match stroke {
             Stroke::Pixel(..) => self.dots(std::slice::from_ref(stroke)),
             Stroke::Line([from, to], pen) => self.line(pen.colour, pen.width, &Piece::lines(&[*from, *to])),
-            Stroke::Path(path, pen) => self.line(pen.colour, pen.width, &Piece::lines(path)),
+            Stroke::Path(path, pen) => {
+                let piece = ring(path).map_or_else(|| Piece::lines(path), |(centre, radius)| Piece::circle(centre, radius));
+                self.line(pen.colour, pen.width, &piece);
+            }
             Stroke::Polygon(corners, colour) => {
                 let lines = Piece::lines(corners);
                 self.fill(*colour, &Piece::closed(lines.start, format!("{}z", lines.rest)));
@@ -158,8 +190,7 @@ impl Pencil {
                 if *fill { self.fill(pen.colour, &piece) } else { self.line(pen.colour, pen.width, &piece) }
             }
             Stroke::Circle((x, y), radius, pen, fill) => {
-                let (r, wide) = (*radius as i32, 2 * radius);
-                let piece = Piece::closed((x - r, *y), format!("a{r} {r} 0 1 0 {wide} 0a{r} {r} 0 1 0-{wide} 0"));
+                let piece = Piece::circle((*x, *y), *radius);
                 if *fill { self.fill(pen.colour, &piece) } else { self.line(pen.colour, pen.width, &piece) }
             }
             Stroke::Text(text) => self.write(text),
@@ -187,18 +218,15 @@ impl Pencil {
             FontTransform::Rotate270 => format!(" transform=\"rotate(270 {x} {y})\""),
         };
         let rim = if text.has_rim { " stroke=\"#fff\" stroke-width=\"2\" paint-order=\"stroke\"" } else { "" };
-        let _ = write!(
-            self.out,
-            "<text x=\"{x}\" y=\"{y}\"{}{anchor}{baseline}{turn}{rim}>{}</text>",
-            text_style(text),
-            escaped(&text.text)
-        );
+        let _ =
+            write!(self.out, "<text x=\"{x}\" y=\"{y}\"{}{anchor}{baseline}{turn}{rim}>{}</text>", text_style(text), escaped(&text.text));
     }
 
     /// Single pixels, one after the other: an image.
     fn dots(&mut self, strokes: &[Stroke]) {
         self.close();
-        let image = embedded::dots(strokes.iter().filter_map(|one| if let Stroke::Pixel(at, colour) = one { Some((*at, *colour)) } else { None }));
+        let image =
+            embedded::dots(strokes.iter().filter_map(|one| if let Stroke::Pixel(at, colour) = one { Some((*at, *colour)) } else { None }));
         self.put(&image);
     }
 
@@ -217,7 +245,11 @@ impl Pencil {
 }
 
 fn hex(BackendColor { rgb: (r, g, b), .. }: BackendColor) -> String {
-    if [r, g, b].iter().all(|part| part % 17 == 0) { format!("#{:x}{:x}{:x}", r / 17, g / 17, b / 17) } else { format!("#{r:02x}{g:02x}{b:02x}") }
+    if [r, g, b].iter().all(|part| part % 17 == 0) {
+        format!("#{:x}{:x}{:x}", r / 17, g / 17, b / 17)
+    } else {
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
 }
 
 fn paint(what: &str, colour: BackendColor) -> String {
@@ -261,6 +293,18 @@ mod tests {
         assert_eq!(pencil.out, format!("{one}<path fill=\"#0122ff\" fill-opacity=\"0.50\" d=\"M1 1l1 2\"/>").replace("-6-20", "-6 -20"));
     }
 
+    #[test]
+    fn a_circle_of_short_lines_is_a_circle_and_no_other_shape_is() {
+        let round = |r: f64, squeeze: f64| -> Vec<BackendCoord> {
+            let at = |k: i32| f64::from(k) * std::f64::consts::TAU / 24.0;
+            (0..=24).map(|k| (50 + (r * at(k).cos()).round() as i32, 60 + (squeeze * r * at(k).sin()).round() as i32)).collect()
+        };
+        assert_eq!(ring(&round(6.0, 1.0)), Some(((50, 60), 6)));
+        assert_eq!(ring(&round(20.0, 0.8)), None);
+        assert_eq!(ring(&round(6.0, 1.0)[..24]), None);
+        assert_eq!(ring(&[(0, 0), (4, 0), (4, 4), (0, 4), (0, 0)]), None);
+    }
+
     /// What is drawn on a canvas is in the drawing once: lines, texts with their markup as text, and the caption.
     #[test]
     fn a_drawing_holds_what_was_drawn() {
@@ -271,7 +315,14 @@ mod tests {
             area.draw(&PathElement::new([(1, 2), (3, 4)], RED)).ok();
         });
         let html = figure("f--a", "it's <b>", &canvas);
-        for part in ["id=\"f--a\"", "viewBox=\"0 0 200 100\"", "a &lt; b</text>", "it&#39;s &lt;b&gt;</figcaption>", "M10 10h50v40h-50z", "stroke=\"#f00\" d=\"M1 2l2 2\""] {
+        for part in [
+            "id=\"f--a\"",
+            "viewBox=\"0 0 200 100\"",
+            "a &lt; b</text>",
+            "it&#39;s &lt;b&gt;</figcaption>",
+            "M10 10h50v40h-50z",
+            "stroke=\"#f00\" d=\"M1 2l2 2\"",
+        ] {
             assert_eq!(html.matches(part).count(), 1, "{part}: {html}");
         }
     }

@@ -62,7 +62,8 @@ pub(super) fn dots(dots: impl Iterator<Item = (BackendCoord, BackendColor)> + Cl
 fn png(pixels: &[u8], (width, height): (u32, u32), colours: ExtendedColorType) -> String {
     let mut file = Vec::new();
     // Writing to memory cannot fail; the size is that of the pixels.
-    let _ = PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive).write_image(pixels, width, height, colours);
+    let _ =
+        PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Adaptive).write_image(pixels, width, height, colours);
     format!("data:image/png;base64,{}", STANDARD.encode(file))
 }
 
@@ -72,7 +73,9 @@ fn reduced(pixels: &[u8], (columns, rows): (u32, u32), by: u32) -> (Vec<u8>, (u3
     let mean = |place: u32| {
         let (left, top) = (place % size.0 * by, place / size.0 * by);
         let (right, bottom) = ((left + by).min(columns), (top + by).min(rows));
-        let row = |y: u32| pixels[(y * columns + left) as usize..(y * columns + right) as usize].iter().map(|level| u32::from(*level)).sum::<u32>();
+        let row = |y: u32| {
+            pixels[(y * columns + left) as usize..(y * columns + right) as usize].iter().map(|level| u32::from(*level)).sum::<u32>()
+        };
         let count = (right - left) * (bottom - top);
         (((top..bottom).map(row).sum::<u32>() + count / 2) / count) as u8
     };
@@ -96,7 +99,7 @@ mod tests {
         assert_eq!(decoded(&window.url).to_luma8().into_raw(), [0, 40, 80, 120, OUTSIDE, 200]);
 
         // Columns of 1300 px: halves are dark and bright, with stripes that the means take away.
-        let level = |k: u32| Some(if k % 1300 < 600 { 40 } else { 160 } + if k % 2 == 0 { 20 } else { 0 });
+        let level = |k: u32| Some(if k % 1300 < 600 { 40 } else { 160 } + if (k % 1300).is_multiple_of(3) { 30 } else { 0 });
         let whole = part((0, 0), (1300, 1), &(0..1300 * 31).map(level).collect::<Vec<_>>());
         assert_eq!(whole.size, (1300, 31));
         let small = decoded(&whole.url).to_luma8();
@@ -112,7 +115,8 @@ mod tests {
         let found = dots([((10, 20), red), ((12, 21), red)].into_iter());
         assert_eq!((found.at, found.size), ((10, 20), (3, 2)));
         let image = decoded(&found.url).to_rgba8();
-        let drawn: Vec<(u32, u32)> = image.enumerate_pixels().filter(|(.., pixel)| pixel.0 == [255, 0, 0, 255]).map(|(x, y, _)| (x, y)).collect();
+        let drawn: Vec<(u32, u32)> =
+            image.enumerate_pixels().filter(|(.., pixel)| pixel.0 == [255, 0, 0, 255]).map(|(x, y, _)| (x, y)).collect();
         assert_eq!(drawn, [(0, 0), (2, 1)]);
     }
 }

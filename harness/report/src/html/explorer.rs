@@ -9,7 +9,7 @@ pub(super) const MARK: &str = "<div class=\"explorer\">";
 pub(crate) fn body(data: &serde_json::Value) -> String {
     format!(
         "{MARK}<p class=\"still\">With JavaScript this section asks for blur, noise, tilt, size or room and the speed that is needed. \
-         Without it <a href=\"#atlas-which-operator\">the tables</a> say the same.</p><script type=\"application/json\">{}</script></div>\n",
+         Without it <a href=\"#atlas-which-operator\">the tables</a> say the same.</p><script type=\"application/json\" class=\"explorer-data\">{}</script></div>\n",
         json(data)
     )
 }

@@ -36,8 +36,7 @@ const SCRIPT: [&str; 15] = [
     include_str!("assets/start.js"),
 ];
 /// What comes before its last part on a page with an explorer.
-const EXPLORER: [&str; 3] =
-    [include_str!("assets/interpolate.js"), include_str!("assets/frontier.js"), include_str!("assets/explorer.js")];
+const EXPLORER: [&str; 3] = [include_str!("assets/interpolate.js"), include_str!("assets/frontier.js"), include_str!("assets/explorer.js")];
 const STYLE: &str = include_str!("assets/page.css");
 
 /// A browser that obeys this sends no request, whatever the page says.

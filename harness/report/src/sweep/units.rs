@@ -36,14 +36,9 @@ pub fn label(axis: &Axis, value: &Value) -> String {
     }
 }
 
-/// The noise in % of the contrast.
-fn share(db: f64) -> f64 {
-    100.0 * 10_f64.powf(-db / 20.0)
-}
-
-/// The same with two digits.
+/// The noise in % of the contrast, two digits.
 fn percent(db: f64) -> String {
-    let share = share(db);
+    let share = 100.0 * 10_f64.powf(-db / 20.0);
     let digits = (1 - share.log10().floor() as i32).max(0) as usize;
     let text = format!("{share:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
@@ -51,7 +46,7 @@ fn percent(db: f64) -> String {
 
 /// A number as its axis shows it, in the unit of [`titled`].
 pub fn shown(axis: &Axis, number: f64) -> f64 {
-    if key(axis) == SNR { share(number) } else { number }
+    if key(axis) == SNR { percent(number).parse().unwrap_or(number) } else { number }
 }
 
 /// Where a value lies along its axis: more noise lies further on, though its dB are fewer.

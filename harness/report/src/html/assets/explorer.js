@@ -21,7 +21,7 @@ class Explorer {
     this.points = data.questions.map((question) => question.axes.map((axis) => this.startOf(axis)));
     this.form = make("div", { class: "asked" });
     this.out = make("div", { class: "told", "aria-live": "polite" });
-    box.replaceChildren(this.form, this.out);
+    box.replaceChildren(this.form, this.out, box.querySelector("script"));
     this.home = this.state();
     keep("ask", () => (this.state() === this.home ? "" : this.state()), (text) => this.restore(text || this.home));
     this.build();
