@@ -79,7 +79,16 @@ fn bare(text: &str) -> String {
 
 fn of_markdown(text: &str) -> Vec<String> {
     let rows = text.lines().filter(|line| line.starts_with('|') && !line.starts_with("| --") && !line.starts_with("| :-"));
-    rows.flat_map(|row| row.trim_matches('|').split(" | ").map(bare).collect::<Vec<_>>()).collect()
+    rows.flat_map(|row| row.trim_matches('|').split(" | ").map(|cell| bare(&without_links(cell))).collect::<Vec<_>>()).collect()
+}
+
+fn without_links(text: &str) -> String {
+    let (mut out, mut rest) = (String::new(), text);
+    while let Some((before, after)) = rest.split_once("](") {
+        out.push_str(&before.replacen('[', "", 1));
+        rest = after.split_once(')').map_or("", |(_, rest)| rest);
+    }
+    out + rest
 }
 
 fn of_html(text: &str) -> Vec<String> {
