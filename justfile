@@ -119,6 +119,14 @@ rows:
 fuzz seconds="60" seed="15":
     CALIBENCH_FUZZ_SECONDS={{seconds}} CALIBENCH_FUZZ_SEED={{seed}} cargo test {{everything}} --test calibench fuzz::no_reader -- --nocapture
 
+# The pages of docs/ as a book, target/book/index.html: their commands run, their figures are made (`./bootstrap docs` installs mdBook in target/tools)
+docs: build
+    python3 docs/book/build.py {{calibench}} target/tools/bin/mdbook
+
+# What the book is built with (`./bootstrap book` installs it)
+book:
+    @target/tools/bin/mdbook --version
+
 # Write the JSON Schemas of scenario files, and of what commands answer with --json in their present version
 schema: build
     #!/usr/bin/env bash

@@ -9,11 +9,16 @@ pub struct Page {
     pub text: String,
 }
 
-/// README, CONTRIBUTING, the changelog, all of docs/, and the list of reports.
+/// README, CONTRIBUTING, the changelog, all of docs/ and the folders in it, and the list of reports.
 pub fn pages() -> Vec<Page> {
     let mut names: Vec<String> = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "reports/README.md"].map(String::from).to_vec();
-    for entry in std::fs::read_dir(root().join("docs")).unwrap() {
-        names.push(format!("docs/{}", entry.unwrap().file_name().to_string_lossy()));
+    let mut folders = vec!["docs".to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root().join(&folder)).unwrap() {
+            let entry = entry.unwrap();
+            let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
+            if entry.file_type().unwrap().is_dir() { folders.push(name) } else { names.push(name) }
+        }
     }
     names.retain(|name| std::path::Path::new(name).extension().is_some_and(|ending| ending == "md"));
     names.sort();
