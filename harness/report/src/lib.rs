@@ -46,6 +46,7 @@ pub use camera_card::camera_card;
 pub use canvas::Canvas;
 pub use family::write;
 pub use field::{Field, plain};
+pub use html::{STYLE, escaped, in_script};
 pub use hull::Hull;
 pub use index::write_index;
 pub use load::{LoadError, Loaded, load, recorded};

@@ -10,7 +10,7 @@ use std::fmt::Write;
 
 pub(crate) use from_markdown::{Figures, Groups};
 pub(crate) use marks::{Said, Shape};
-pub(crate) use markup::escaped;
+pub use markup::{escaped, json as in_script};
 pub(crate) use plot::{Axis, Plot};
 pub(crate) use scene::{Scene, ScenePoint, Station};
 
@@ -31,7 +31,8 @@ const SCRIPT: [&str; 14] = [
     include_str!("assets/toolbar.js"),
     include_str!("assets/start.js"),
 ];
-const STYLE: &str = include_str!("assets/page.css");
+/// The style of all pages: its colours are variables, which a dark theme changes.
+pub const STYLE: &str = include_str!("assets/page.css");
 
 /// A browser that obeys this sends no request, whatever the page says.
 const POLICY: &str =
