@@ -56,7 +56,7 @@ pub fn predict(
     };
     let inside = |p: &PixelPoint| (-0.5..f64::from(size.width) - 0.5).contains(&p.x) && (-0.5..f64::from(size.height) - 0.5).contains(&p.y);
     let targets = others.into_iter().filter_map(|(name, place)| Some((name.to_owned(), map(&place).filter(inside)?))).collect();
-    Ok(Predicted { targets, how: format!("predicted from {} points by {how}", seen.len()) })
+    Ok(Predicted { targets, how: format!("Predicted from {} points by {how}", seen.len()) })
 }
 
 type Map = Box<dyn Fn(&Point3<f64>) -> Option<PixelPoint>>;

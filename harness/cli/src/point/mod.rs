@@ -20,8 +20,10 @@ use crate::progress::Progress;
 
 mod serve;
 
+/// Minutes after which a server ends.
+const IDLE: f64 = 30.0;
 /// A page that is larger takes long to open, MB.
-const LARGE: u64 = 150;
+const LARGE: f64 = 150.0;
 
 #[derive(Args)]
 pub struct Point {
@@ -43,15 +45,15 @@ pub struct Point {
     /// Instead of a file, serve the page to browsers on this machine alone, at an address that is printed, and measure what is pointed at; ends by Ctrl-C, or when nobody uses the page
     #[arg(long)]
     serve: bool,
-    /// With --serve: the method, as in forstner:window=15
-    #[arg(short, long, value_name = "METHOD", default_value = "forstner", requires = "serve")]
-    method: String,
+    /// With --serve: the method, as in forstner:window=15 [default: forstner]
+    #[arg(short, long, value_name = "METHOD")]
+    method: Option<String>,
     /// With --serve: a camera for the predictions, a file of any known format; of several cameras IMAGES=FILE, as in left*=left.yaml
-    #[arg(long = "camera", value_name = "[IMAGES=]FILE", requires = "serve")]
+    #[arg(long = "camera", value_name = "[IMAGES=]FILE")]
     cameras: Vec<ImagesFile>,
-    /// With --serve: end after so many minutes in which nobody used the page
-    #[arg(long, value_name = "MINUTES", default_value_t = 30.0, value_parser = minutes, allow_negative_numbers = true, requires = "serve")]
-    idle: f64,
+    /// With --serve: end after so many minutes in which nobody used the page [default: 30]
+    #[arg(long, value_name = "MINUTES", value_parser = minutes, allow_negative_numbers = true)]
+    idle: Option<f64>,
 }
 
 fn minutes(text: &str) -> Result<f64, String> {
@@ -60,6 +62,11 @@ fn minutes(text: &str) -> Result<f64, String> {
 
 impl Point {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
+        // clap does not say that an option needs another one where both exclude a third.
+        let given = [("-m", self.method.is_some()), ("--camera", !self.cameras.is_empty()), ("--idle", self.idle.is_some())];
+        if let Some((option, _)) = given.iter().find(|(_, given)| *given && !self.serve) {
+            return Err(Failure::input(format!("{option}: is of the server; give --serve in place of -o")));
+        }
         let cameras = self.cameras.iter().map(ImagesFile::path);
         let inputs = Inputs::new(self.photos.iter().chain(&self.control).chain(&self.measured).chain(cameras));
         let output = self.output.as_deref().map(|path| output::page("-o", path, &inputs)).transpose()?;
@@ -121,10 +128,11 @@ fn is_named(names: &[String], image: &str) -> bool {
 fn write(output: &OutputFile, content: &Content, photos: &[(String, &Path)], quiet: bool) -> Result<(), Failure> {
     let progress = Progress::start("point", photos.len() as u64, quiet);
     output.write(|file| write_page(file, content, photos, &|| progress.step()))?;
-    let size = fs::metadata(output.path()).map_or(0, |about| about.len()) / 1_000_000;
-    progress.finish(&format!("{}: {} photographs, {size} MB; open it in a browser", output.path().display(), photos.len()));
+    let size = fs::metadata(output.path()).map_or(0.0, |about| about.len() as f64 / 1e6);
+    let noun = if photos.len() == 1 { "photograph" } else { "photographs" };
+    progress.finish(&format!("{}: {} {noun}, {size:.1} MB; open it in a browser", output.path().display(), photos.len()));
     if size > LARGE {
-        say!("{}: {size} MB take long to open; --serve sends what is looked at alone", output.path().display());
+        say!("{}: {size:.0} MB take long to open; --serve sends what is looked at alone", output.path().display());
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use calibench_exchange::ControlRow;
 use calibench_model::camera::CameraModel;
 use calibench_point::{Content, Served, Server};
 
-use super::Point;
+use super::{IDLE, Point};
 use crate::camera_files::CameraFiles;
 use crate::context::{Context, Pictured};
 use crate::deliver::print;
@@ -21,7 +21,8 @@ impl Point {
         photos: Vec<(String, &Path)>,
         control: &[ControlRow],
     ) -> Result<(), Failure> {
-        let method = context.methods(std::slice::from_ref(&self.method), Pictured::Photographs)?.remove(0);
+        let (asked, idle) = (self.method.as_deref().unwrap_or("forstner"), self.idle.unwrap_or(IDLE));
+        let method = context.methods(&[asked.to_owned()], Pictured::Photographs)?.remove(0);
         let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
         if operator.needs_kind() && self.kind.is_none() {
             return Err(Failure::input(format!("-m {}: must know what is pictured; give --kind", method.label)));
@@ -46,13 +47,12 @@ impl Point {
         print(&format!("{}\n", server.url()))?;
         if !context.quiet {
             say!(
-                "open this address in a browser on this machine; whoever knows it sees the photographs. Ctrl-C ends it, or {} minutes without use",
-                self.idle
+                "open this address in a browser on this machine; whoever knows it sees the photographs. Ctrl-C ends it, or {idle} minutes without use"
             );
         }
-        server.run(&served, Duration::from_secs_f64(self.idle * 60.0))?;
+        server.run(&served, Duration::from_secs_f64(idle * 60.0))?;
         if !context.quiet {
-            say!("ended: nobody used the page for {} minutes", self.idle);
+            say!("ended: nobody used the page for {idle} minutes");
         }
         Ok(())
     }

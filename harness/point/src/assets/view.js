@@ -78,7 +78,8 @@ const stroke = (context, path, colour, width = 1.6) => {
   context.stroke(path);
 };
 
-const label = (context, text, x, y, colour) => {
+const label = (context, name, x, y, colour) => {
+  const text = name.length > 24 ? `${name.slice(0, 23)}…` : name;
   context.font = "600 12px system-ui, sans-serif";
   context.lineJoin = "round";
   context.lineWidth = 3.5;

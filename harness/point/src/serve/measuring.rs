@@ -158,7 +158,7 @@ impl<'a> Served<'a> {
                 let targets: Vec<_> = found.targets.iter().map(|(name, place)| json!([name, place.x, place.y])).collect();
                 json!({ "targets": targets, "how": found.how })
             }
-            Err(why) => json!({ "targets": [], "how": format!("nothing is predicted: {why}") }),
+            Err(why) => json!({ "targets": [], "how": format!("Nothing is predicted: {why}") }),
         }))
     }
 }
