@@ -39,6 +39,7 @@ mod parts;
 mod peers;
 mod photographs;
 mod plugins;
+mod point;
 mod priors;
 mod project;
 mod python;

@@ -57,6 +57,14 @@ pub const EXAMPLES: &[(&str, &[(&str, &str)])] = &[
             ("calibench detect a.jpg --testfield testfields/coded -o approx.csv", "a coded field"),
         ],
     ),
+    (
+        "point",
+        &[
+            ("calibench point a.jpg b.jpg --control control.csv -o points.html", "a page to point at targets, as one file"),
+            ("calibench point a.jpg --measured measured.csv -o points.html", "shows what was measured, and what was not"),
+            ("calibench point a.jpg b.jpg --control control.csv --serve -m parametric_corner", "measures at each click"),
+        ],
+    ),
     ("control", &[("calibench control 9x6:25 -o control.csv", "corners r1c1, r1c2, ... with squares of 25")]),
     (
         "calibrate",

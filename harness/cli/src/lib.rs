@@ -32,6 +32,7 @@ mod part;
 mod photos;
 mod plot;
 mod plugin;
+mod point;
 mod power;
 mod print;
 mod progress;
@@ -111,6 +112,8 @@ enum Command {
     Measure(measure::Measure),
     /// Find a chessboard's corners, or the targets of a coded field, in photographs: approximate positions for `measure`
     Detect(detect::Detect),
+    /// Write a page to point at targets in photographs, or serve it and measure at each click
+    Point(Box<point::Point>),
     /// Write the control file of a chessboard, for `calibrate` and `resect`
     Control(control::Control),
     /// Calibrate a camera from measured points and control, or from photographs of a chessboard
@@ -201,6 +204,7 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Speed(speed) => speed.run(&context),
         Command::Measure(measure) => measure.run(&context),
         Command::Detect(detect) => detect.run(&context),
+        Command::Point(point) => point.run(&context),
         Command::Control(control) => control.run(),
         Command::Calibrate(calibrate) => calibrate.run(&context),
         Command::Judge(judge) => judge.run(&context),

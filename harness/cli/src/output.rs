@@ -32,6 +32,11 @@ pub fn picture(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile,
     file(option, path, ("a picture", &["png"]), inputs)
 }
 
+/// A page.
+pub fn page(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    file(option, path, ("a page", &["html", "htm"]), inputs)
+}
+
 /// An ST-map.
 pub fn map(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
     file(option, path, ("an ST-map", &MapFile::ENDINGS), inputs)

@@ -48,6 +48,7 @@ pub use camera_card::camera_card;
 pub use canvas::Canvas;
 pub use composed::{Composed, compose, write};
 pub use field::{Field, plain};
+pub use html::{STYLE, escaped, in_script};
 pub use hull::Hull;
 pub use index::write_index;
 pub use load::{LoadError, Loaded, load, recorded};

@@ -121,6 +121,18 @@ fn turn_in(input: impl BufRead + Seek) -> Result<Option<Turn>, ImageError> {
     Ok(Turn::of(reader.into_decoder()?.orientation()?))
 }
 
+/// Whether a photograph has more than 8 bits a channel, from its head alone.
+///
+/// # Errors
+/// A file that is missing or no image.
+pub fn is_deep(path: &Path) -> Result<bool, PhotoError> {
+    let content = |source| PhotoError::Content { path: path.to_owned(), source };
+    let mut reader = ImageReader::new(BufReader::new(open(path)?)).with_guessed_format().map_err(|error| content(error.into()))?;
+    reader.limits(budget::limits(MOST_BYTES));
+    let colour = reader.into_decoder().map_err(content)?.color_type();
+    Ok(colour.bytes_per_pixel() > colour.channel_count())
+}
+
 /// As [`read_photo`], from bytes; `path` is the name in errors.
 ///
 /// # Errors

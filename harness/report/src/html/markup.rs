@@ -6,7 +6,7 @@ use std::fmt::Write;
 use calibench_model::escape;
 
 /// A text within HTML or a quoted attribute: markup and what a terminal would take for a command are shown as they are written.
-pub(crate) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let text: Cow<'_, str> = escape::message(text);
     let mut out = String::with_capacity(text.len() + 8);
     for c in text.chars() {
@@ -28,7 +28,7 @@ pub(crate) fn between_bars(text: &str) -> String {
 }
 
 /// JSON within a script element: no `<` ends it, and nothing in it turns the direction of writing.
-pub(crate) fn json(value: &serde_json::Value) -> String {
+pub fn json(value: &serde_json::Value) -> String {
     let mut out = String::new();
     for c in value.to_string().chars() {
         if c == '<' || escape::is_command(c) {

@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 pub(crate) use from_markdown::{Converted, Figures, Groups, in_place};
 pub(crate) use marks::{Said, Shape};
-pub(crate) use markup::escaped;
+pub use markup::{escaped, json as in_script};
 pub(crate) use plot::{Axis, Plot};
 pub(crate) use scene::{Scene, ScenePoint, Station};
 
@@ -37,7 +37,8 @@ const SCRIPT: [&str; 15] = [
 ];
 /// What comes before its last part on a page with an explorer.
 const EXPLORER: [&str; 3] = [include_str!("assets/interpolate.js"), include_str!("assets/frontier.js"), include_str!("assets/explorer.js")];
-const STYLE: &str = include_str!("assets/page.css");
+/// The style of all pages: its colours are variables, which a dark theme changes.
+pub const STYLE: &str = include_str!("assets/page.css");
 
 /// A browser that obeys this sends no request, whatever the page says.
 const POLICY: &str =

@@ -1,0 +1,59 @@
+//! `calibench point --serve`.
+
+use std::path::Path;
+use std::time::Duration;
+
+use calibench_exchange::ControlRow;
+use calibench_model::camera::CameraModel;
+use calibench_point::{Content, Served, Server};
+
+use super::{IDLE, Point};
+use crate::camera_files::CameraFiles;
+use crate::context::{Context, Pictured};
+use crate::deliver::print;
+use crate::failure::Failure;
+
+impl Point {
+    pub(super) fn serve(
+        &self,
+        context: &Context<'_>,
+        content: &Content,
+        photos: Vec<(String, &Path)>,
+        control: &[ControlRow],
+    ) -> Result<(), Failure> {
+        let (asked, idle) = (self.method.as_deref().unwrap_or("forstner"), self.idle.unwrap_or(IDLE));
+        let method = context.methods(&[asked.to_owned()], Pictured::Photographs)?.remove(0);
+        let operator = method.operator.as_ref().map_err(|why| Failure::input(format!("-m {}: unavailable: {why}", method.label)))?;
+        if operator.needs_kind() && self.kind.is_none() {
+            return Err(Failure::input(format!("-m {}: must know what is pictured; give --kind", method.label)));
+        }
+        if !method.measures(self.kind) {
+            return Err(Failure::input(format!("-m {}: measures other kinds of targets; give --kind", method.label)));
+        }
+        let names: Vec<String> = photos.iter().map(|(name, _)| name.clone()).collect();
+        let mut served = Served::new(content, photos, (&method, operator.as_ref()), self.kind, control)?;
+        if !self.cameras.is_empty() {
+            let cameras = CameraFiles::new(self.cameras.clone(), served.sizes().first().copied()).of(&names)?;
+            for ((camera, size), name) in cameras.iter().zip(served.sizes()).zip(&names) {
+                let of = camera.size();
+                if of != *size {
+                    let [a, b] = [of, *size].map(|size| format!("{} x {} px", size.width, size.height));
+                    return Err(Failure::input(format!("--camera: the camera is of images of {a}, but {name} has {b}")));
+                }
+            }
+            served = served.with_cameras(cameras);
+        }
+        let server = Server::open().map_err(|error| Failure::input(format!("--serve: {error}")))?;
+        print(&format!("{}\n", server.url()))?;
+        if !context.quiet {
+            say!(
+                "open this address in a browser on this machine; whoever knows it sees the photographs. Ctrl-C ends it, or {idle} minutes without use"
+            );
+        }
+        server.run(&served, Duration::from_secs_f64(idle * 60.0))?;
+        if !context.quiet {
+            say!("ended: nobody used the page for {idle} minutes");
+        }
+        Ok(())
+    }
+}

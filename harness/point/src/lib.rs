@@ -1,0 +1,11 @@
+//! Pointing at targets in photographs: a page, as one file or from a server on this machine that measures what is pointed at.
+
+mod page;
+mod predict;
+mod serve;
+mod shown;
+
+pub use page::{Content, Loaded, write_page};
+pub use predict::{Predicted, predict};
+pub use serve::{Served, Server};
+pub use shown::{Shown, Stretch};

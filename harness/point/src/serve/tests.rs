@@ -1,0 +1,114 @@
+use calibench_exchange::{ControlRow, write_png};
+use calibench_measure::Registry;
+use calibench_model::Image;
+
+use super::*;
+use crate::page::Content;
+
+/// What a server answers to `request`, in which `HOST` and `TOKEN` stand for its own.
+fn ask(server: &Server, request: &str) -> (u16, String) {
+    let text = request.replace("HOST", &server.address.to_string()).replace("TOKEN", server.guard.token());
+    let mut stream = TcpStream::connect(server.address).unwrap();
+    stream.write_all(text.as_bytes()).unwrap();
+    stream.shutdown(Shutdown::Write).unwrap();
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).unwrap();
+    let answer = String::from_utf8_lossy(&answer).into_owned();
+    (answer.split(' ').nth(1).unwrap().parse().unwrap(), answer)
+}
+
+fn post(path: &str, body: &str) -> String {
+    let length = body.len();
+    format!("POST /TOKEN/{path} HTTP/1.1\r\nHost: HOST\r\nContent-Type: application/json\r\nContent-Length: {length}\r\n\r\n{body}")
+}
+
+/// A server of one photograph, a chess corner at (40.25, 30), that ends after `idle`.
+fn with_server(idle: Duration, work: impl FnOnce(&Server)) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let edge = |d: f64| (0.5 + 0.5 * (d / 1.2).tanh()) as f32;
+    let image = Image::from_fn(96, 64, |x, y| {
+        let (a, b) = (edge(x as f64 - 40.25), edge(y as f64 - 30.0));
+        0.1 + 0.8 * (a * b + (1.0 - a) * (1.0 - b))
+    });
+    write_png(&path, &image, true).unwrap();
+    let method = Registry::builtin().parse("parametric_corner").unwrap();
+    let operator = method.operator.as_ref().unwrap().as_ref();
+    let control: Vec<ControlRow> = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.5]]
+        .iter()
+        .enumerate()
+        .map(|(i, [x, y])| ControlRow::new(format!("t{i}"), [*x, *y, 0.0]))
+        .collect();
+    let photos = vec![("a.png".to_owned(), path.as_path())];
+    let served = Served::new(&Content::default(), photos, (&method, operator), None, &control).unwrap();
+    let server = Server::open().unwrap();
+    thread::scope(|scope| {
+        let running = scope.spawn(|| server.run(&served, idle));
+        work(&server);
+        running.join().unwrap().unwrap();
+    });
+}
+
+#[test]
+fn who_has_the_token_is_answered_and_nobody_else() {
+    with_server(Duration::from_secs(2), |server| {
+        assert!(server.url().starts_with("http://127.0.0.1:") && server.guard.token().len() == 32);
+        let (status, page) = ask(server, "GET /TOKEN/ HTTP/1.1\r\nHost: HOST\r\n\r\n");
+        assert!(status == 200 && page.contains("connect-src 'self'") && page.contains("no-store"));
+        assert!(!page.contains(server.guard.token()), "the token stands in the address alone");
+        assert_eq!(ask(server, "GET /TOKEN/tile/0/0/0/0 HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Site: same-origin\r\n\r\n").0, 200);
+        for (request, expected) in [
+            ("GET / HTTP/1.1\r\nHost: HOST\r\n\r\n", 403),
+            ("GET /TOKEN HTTP/1.1\r\nHost: HOST\r\n\r\n", 403),
+            ("GET /00000000000000000000000000000000/ HTTP/1.1\r\nHost: HOST\r\n\r\n", 403),
+            ("GET /TOKEN/ HTTP/1.1\r\nHost: evil.example\r\n\r\n", 403),
+            ("GET /TOKEN/ HTTP/1.1\r\nHost: localhost\r\n\r\n", 403),
+            ("GET /TOKEN/ HTTP/1.1\r\n\r\n", 403),
+            ("GET /TOKEN/ HTTP/1.1\r\nHost: HOST\r\nHost: HOST\r\n\r\n", 403),
+            ("GET /TOKEN/ HTTP/1.1\r\nHost: HOST\r\nOrigin: http://evil.example\r\n\r\n", 403),
+            ("GET /TOKEN/ HTTP/1.1\r\nHost: HOST\r\nOrigin: null\r\n\r\n", 403),
+            ("GET /TOKEN/ HTTP/1.1\r\nHost: HOST\r\nSec-Fetch-Site: cross-site\r\n\r\n", 403),
+            ("GET /TOKEN/../a.png HTTP/1.1\r\nHost: HOST\r\n\r\n", 404),
+            ("GET /TOKEN/tile/0/0/9/0 HTTP/1.1\r\nHost: HOST\r\n\r\n", 404),
+            ("GET /TOKEN/tile/1/0/0/0 HTTP/1.1\r\nHost: HOST\r\n\r\n", 404),
+            ("GET /TOKEN/tile/-1/0/0 HTTP/1.1\r\nHost: HOST\r\n\r\n", 404),
+            ("GET /TOKEN/measure HTTP/1.1\r\nHost: HOST\r\n\r\n", 405),
+            ("POST /TOKEN/measure HTTP/1.1\r\nHost: HOST\r\nContent-Length: 2\r\n\r\n{}", 400),
+            ("POST /TOKEN/measure HTTP/1.1\r\nHost: HOST\r\nContent-Length: 99999999\r\n\r\n", 413),
+            ("POST /TOKEN/measure HTTP/1.1\r\nHost: HOST\r\nTransfer-Encoding: chunked\r\n\r\n", 400),
+            ("nonsense\r\n\r\n", 400),
+        ] {
+            assert_eq!(ask(server, request).0, expected, "{request}");
+        }
+        let long = format!("GET /TOKEN/ HTTP/1.1\r\nHost: HOST\r\nX: {}", "x".repeat(20_000));
+        assert_eq!(ask(server, &long).0, 431);
+    });
+}
+
+#[test]
+fn what_is_pointed_at_is_measured_and_the_rest_predicted() {
+    with_server(Duration::from_secs(1), |server| {
+        let (status, answer) = ask(server, &post("measure", r#"{"photo":0,"x":41,"y":31}"#));
+        let value: serde_json::Value = serde_json::from_str(answer.split("\r\n\r\n").nth(1).unwrap()).unwrap();
+        let off = |key: &str, truth: f64| (value[key].as_f64().unwrap() - truth).abs();
+        assert!(status == 200 && off("x", 40.25) < 0.02 && off("y", 30.0) < 0.02, "{value}");
+        assert!(value["covariance"].is_array() && value["method"].as_str().unwrap().starts_with("parametric_corner"), "{value}");
+        let (_, answer) = ask(server, &post("measure", r#"{"photo":0,"x":80,"y":10}"#));
+        assert!(answer.contains("\"rejected\"") && answer.contains("\"meaning\""), "{answer}");
+        assert_eq!(ask(server, &post("measure", r#"{"photo":1,"x":80,"y":10}"#)).0, 404);
+        assert_eq!(ask(server, &post("measure", r#"{"photo":0}"#)).0, 400);
+        let (_, answer) = ask(server, &post("predict", r#"{"photo":0,"points":[["t0",10,10],["t1",50,10],["t2",50,50],["t3",10,50]]}"#));
+        let value: serde_json::Value = serde_json::from_str(answer.split("\r\n\r\n").nth(1).unwrap()).unwrap();
+        assert_eq!(value["targets"][0][0], "t4");
+        assert!((value["targets"][0][1].as_f64().unwrap() - 30.0).abs() < 1e-6, "{value}");
+        let (_, answer) = ask(server, &post("predict", r#"{"photo":0,"points":[["t0",10,10]]}"#));
+        assert!(answer.contains("1 of 4 points"), "{answer}");
+    });
+}
+
+#[test]
+fn a_server_that_nobody_asks_ends() {
+    let begun = Instant::now();
+    with_server(Duration::from_millis(300), |server| assert_eq!(ask(server, "GET / HTTP/1.1\r\nHost: HOST\r\n\r\n").0, 403));
+    assert!(begun.elapsed() < Duration::from_secs(20));
+}
