@@ -9,6 +9,7 @@ mod camera_card;
 mod canvas;
 mod composed;
 pub mod conventions;
+mod families;
 mod family;
 pub(crate) mod field;
 mod field_panels;
@@ -46,7 +47,8 @@ mod zhu;
 
 pub use camera_card::camera_card;
 pub use canvas::Canvas;
-pub use composed::{Composed, compose, write};
+pub use composed::Composed;
+pub use families::{compose, write};
 pub use field::{Field, plain};
 pub use html::{STYLE, escaped, in_script};
 pub use hull::Hull;
