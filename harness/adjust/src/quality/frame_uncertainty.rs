@@ -24,6 +24,8 @@ pub struct Uncertainty {
     pub covariance: Covariance,
 }
 
+const NEEDS: &str = "a map needs 3 x 3 places at least, and the covariance of parameters that the camera has";
+
 /// The uncertainty of projected points over the frame, on a grid of `columns` x `rows` places from the first pixel's centre to the last's, row by
 /// row.
 ///
@@ -41,10 +43,38 @@ pub fn frame_uncertainty(
     (columns, rows): (usize, usize),
     distance: Distance,
 ) -> Result<Vec<Uncertainty>, AdjustError> {
+    let (seen, left) = effects(camera, names, (columns, rows), distance)?;
+    if covariance.shape() != (names.len(), names.len()) {
+        return Err(AdjustError::NotAvailable(NEEDS));
+    }
+    let of = |(k, (at, _)): (usize, &(PixelPoint, Ray))| {
+        let e = left.rows(2 * k, 2);
+        let q = e * covariance * e.transpose();
+        Uncertainty { at: *at, covariance: Covariance { sxx: q[(0, 0)], sxy: q[(0, 1)], syy: q[(1, 1)] } }
+    };
+    Ok(seen.iter().enumerate().map(of).collect())
+}
+
+/// The matrix `A` that makes of a covariance `C` of the parameters `names` the mean square of [`frame_uncertainty`] over the frame, px^2: `trace(A C)`.
+///
+/// # Errors
+/// As [`frame_uncertainty`].
+pub fn frame_weight(camera: &Camera, names: &[&str], grid: (usize, usize), distance: Distance) -> Result<DMatrix<f64>, AdjustError> {
+    let (seen, left) = effects(camera, names, grid, distance)?;
+    Ok(left.tr_mul(&left) / seen.len() as f64)
+}
+
+/// Places of the grid with their rays, and what the parameters do there that no motion of the camera does: two rows a place, a column a parameter.
+fn effects(
+    camera: &Camera,
+    names: &[&str],
+    (columns, rows): (usize, usize),
+    distance: Distance,
+) -> Result<(Vec<(PixelPoint, Ray)>, DMatrix<f64>), AdjustError> {
     let parameters = camera.parameters();
     let places: Vec<usize> = names.iter().filter_map(|name| parameters.iter().position(|parameter| parameter.name == *name)).collect();
-    if columns < 3 || rows < 3 || places.len() != names.len() || covariance.shape() != (names.len(), names.len()) {
-        return Err(AdjustError::NotAvailable("a map needs 3 x 3 places at least, and the covariance of parameters that the camera has"));
+    if columns < 3 || rows < 3 || places.len() != names.len() {
+        return Err(AdjustError::NotAvailable(NEEDS));
     }
     let shift = match distance {
         Distance::Far => None,
@@ -60,12 +90,7 @@ pub fn frame_uncertainty(
     let svd = exterior.svd(true, false);
     let Some(u) = svd.u else { return Err(AdjustError::NotAvailable("the frame has too few rays")) };
     let left = &interior - &u * u.tr_mul(&interior);
-    let of = |(k, (at, _)): (usize, &(PixelPoint, Ray))| {
-        let e = left.rows(2 * k, 2);
-        let q = e * covariance * e.transpose();
-        Uncertainty { at: *at, covariance: Covariance { sxx: q[(0, 0)], sxy: q[(0, 1)], syy: q[(1, 1)] } }
-    };
-    Ok(seen.iter().enumerate().map(of).collect())
+    Ok((seen, left))
 }
 
 /// Derivatives of all places by the parameters, and by a rotation and, at a distance, a shift of the camera.
@@ -133,6 +158,18 @@ mod tests {
         // A rotation does most of what x0 does, not all.
         let x0 = largest("x0", 0.01, Distance::Far);
         assert!(x0 > 0.05 && x0 < 0.7 * 1.25, "{x0}");
+    }
+
+    #[test]
+    fn the_weight_makes_the_mean_square_of_the_map() {
+        let names = ["c", "x0", "k1"];
+        let covariance = DMatrix::from_row_slice(3, 3, &[4e-4, 1e-4, -2e-8, 1e-4, 9e-4, 1e-8, -2e-8, 1e-8, 1e-11]);
+        for distance in [Distance::Far, Distance::Near(3.0)] {
+            let map = frame_uncertainty(&camera(), (&names, &covariance), (15, 11), distance).unwrap();
+            let mean = map.iter().map(|found| found.covariance.sxx + found.covariance.syy).sum::<f64>() / 165.0;
+            let weighed = (frame_weight(&camera(), &names, (15, 11), distance).unwrap() * &covariance).trace();
+            assert!((weighed - mean).abs() < 1e-9 * mean, "{weighed} {mean}");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod covariance;
 mod frame_uncertainty;
+mod image_information;
 mod projection_uncertainty;
 mod reliability;
 mod residuals;
@@ -10,7 +11,8 @@ mod significance;
 mod snooping;
 
 pub use covariance::{Correlation, Covariances, Variance};
-pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty};
+pub use frame_uncertainty::{Distance, Uncertainty, frame_uncertainty, frame_weight};
+pub use image_information::image_information;
 pub use projection_uncertainty::Held;
 pub use reliability::{ObservedReliability, PointReliability, Reliability, Test};
 pub use residuals::{Residual, Use};

@@ -64,7 +64,7 @@ fn fixed(network: &Network) -> impl Iterator<Item = (usize, Point3<f64>)> + '_ {
 ///
 /// # Errors
 /// Why there is none, in words.
-pub(super) fn board(network: &Network) -> Result<Board, &'static str> {
+pub(crate) fn board(network: &Network) -> Result<Board, &'static str> {
     if network.points.iter().any(|point| point.coordinates.iter().any(|status| matches!(status, Status::Observed { .. }))) {
         return Err("the control is weighted: its standard deviations say how far it may move");
     }

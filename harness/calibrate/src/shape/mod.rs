@@ -1,6 +1,6 @@
 //! Whether the board on which control lies is flat, and how it is bent.
 
-mod board;
+pub(crate) mod board;
 mod test;
 
 use calibench_adjust::{AdjustError, Network, Status, Surface};

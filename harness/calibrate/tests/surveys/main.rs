@@ -2,6 +2,7 @@
 
 mod doubts;
 mod network;
+mod next;
 mod pairs;
 mod points;
 mod resampled;
