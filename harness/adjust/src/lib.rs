@@ -34,3 +34,8 @@ pub use quality::{
     Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, scale_of, snoop,
 };
 pub use solution::{Options, Solution, adjust};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
