@@ -119,6 +119,12 @@ rows:
 fuzz seconds="60" seed="15":
     CALIBENCH_FUZZ_SECONDS={{seconds}} CALIBENCH_FUZZ_SEED={{seed}} cargo test {{everything}} --test calibench fuzz::no_reader -- --nocapture
 
+# Every crate's package in target/package, each built from what is in it alone (`--allow-dirty` for changes that are not committed)
+package *OPTIONS:
+    # Of a version that cargo has once unpacked and built it takes no new one: without this, packages would be built on those of last time.
+    rm -rf "${CARGO_HOME:-$HOME/.cargo}"/registry/src/-*/calibench-* target/debug/.fingerprint/calibench-*
+    CARGO_PROFILE_DEV_DEBUG=0 cargo package --workspace --exclude calibench-tests --exclude calibench-python {{OPTIONS}}
+
 # The pages of docs/ as a book, target/book/index.html: their commands run, their figures are made (`./bootstrap docs` installs mdBook in target/tools)
 docs: build
     python3 docs/book/build.py {{calibench}} target/tools/bin/mdbook

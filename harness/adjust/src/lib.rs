@@ -35,3 +35,8 @@ pub use quality::{
     snoop,
 };
 pub use solution::{Options, Solution, adjust};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

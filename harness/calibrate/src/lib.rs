@@ -61,3 +61,8 @@ pub use shape::{Bend, Board, Shape};
 pub use start::{control_of, pose_of, robust_pose_of};
 pub use survey::{Known, LeftOut, Sight, Survey};
 pub use whole::calibrate;
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

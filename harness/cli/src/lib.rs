@@ -47,6 +47,7 @@ mod show;
 mod speed;
 mod stmap;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -159,7 +160,13 @@ fn command_line() -> clap::Command {
 
 /// Runs the command line of this process.
 pub fn main(toolbox: &Toolbox) -> ExitCode {
-    let matches = command_line().get_matches();
+    ExitCode::from(exit_code(toolbox, std::env::args_os()))
+}
+
+/// Runs the command line `words`, of which the first is the program's name, and returns the exit code. Once a process: it sets the number of threads. Ends the process
+/// where the words are no command line, or ask for help.
+pub fn exit_code(toolbox: &Toolbox, words: impl IntoIterator<Item: Into<OsString> + Clone>) -> u8 {
+    let matches = command_line().get_matches_from(words);
     let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     // Before any thread: what restricts itself has one.
     if let Command::Confined(confined) = &arguments.command {
@@ -171,16 +178,16 @@ pub fn main(toolbox: &Toolbox) -> ExitCode {
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     match pool.map_err(Failure::from).and_then(|()| dispatch(arguments, toolbox)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Gate) => ExitCode::from(1),
-        Err(Failure::Doubt) => ExitCode::from(3),
+        Ok(()) => 0,
+        Err(Failure::Gate) => 1,
+        Err(Failure::Doubt) => 3,
         Err(Failure::Picture(picture)) => {
             eprintln!("error: {picture}");
-            ExitCode::from(2)
+            2
         }
         Err(Failure::Input(message)) => {
             say!("error: {message}");
-            ExitCode::from(2)
+            2
         }
     }
 }
@@ -222,6 +229,11 @@ fn dispatch(arguments: Arguments, toolbox: &Toolbox) -> Result<(), Failure> {
         Command::Schema { of } => deliver::print(&of.text(context.registry()?)),
     }
 }
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 #[cfg(test)]
 mod tests {

@@ -2,7 +2,6 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use calibench_measure::Registry;
 use calibench_plugins::{Confinement, Declaration, Declared, Finding, Launcher, Recording, check, confine_and_execute, method, parse};
@@ -106,12 +105,12 @@ pub struct Confined {
 
 impl Confined {
     /// Returns only where it cannot.
-    pub fn execute(&self) -> ExitCode {
+    pub fn execute(&self) -> u8 {
         let Self { scratch, closed, open, memory, command } = self;
         let confinement = Confinement { scratch: scratch.clone(), closed: closed.clone(), open: open.clone(), memory: *memory };
         let error = confine_and_execute(&confinement, command);
         say!("{}: {error}", command[0].display());
-        ExitCode::from(2)
+        2
     }
 
     /// It is executed before anything else.

@@ -60,3 +60,8 @@ pub fn detect(image: &Image, board: &Board) -> Result<Found, NotFound> {
         Board::Chessboard(board) => chessboard::detect(image, board, &layout),
     }
 }
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -127,6 +127,11 @@ impl Diagnostic for Picture<'_> {
     }
 }
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests {
     use super::*;

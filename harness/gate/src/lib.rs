@@ -35,6 +35,11 @@ mod sums_judged;
 mod table;
 mod verdicts;
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;
 

@@ -18,6 +18,11 @@ mod options;
 mod point_files;
 mod published;
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;
 

@@ -30,6 +30,11 @@ pub mod recorded;
 pub mod registry;
 mod residuals;
 pub mod strength_noise;
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;
 

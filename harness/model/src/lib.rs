@@ -22,3 +22,8 @@ pub use pose::Pose;
 pub use scene::{Polygon, Scene, SceneTarget};
 pub use target::{Affine, TargetKind, UnknownKind};
 pub use testfield::{Area, Bend, Curve, ObjectTarget, Outline, Plate, Testfield};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

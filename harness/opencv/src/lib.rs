@@ -39,6 +39,11 @@ pub fn main() -> std::process::ExitCode {
     })
 }
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests {
     use super::*;

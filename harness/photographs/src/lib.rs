@@ -18,3 +18,8 @@ pub use measured::{Corners, Photo};
 pub use measured_board::{MeasuredBoards, measured_board, measured_boards, method_info};
 pub use option::board_of;
 pub use turns::turns;
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -27,5 +27,10 @@ pub use program::{Launcher, method};
 pub use recorded::{Images, Origin, Positions, Recording};
 pub use told::Told;
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;

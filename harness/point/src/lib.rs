@@ -9,3 +9,8 @@ pub use page::{Content, Loaded, write_page};
 pub use predict::{Predicted, predict};
 pub use serve::{Served, Server};
 pub use shown::{Shown, Stretch};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

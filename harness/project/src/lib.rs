@@ -13,3 +13,8 @@ pub use methods::Pictured;
 pub use project::Project;
 pub use scenarios::origin;
 pub use toolbox::Toolbox;
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -37,3 +37,8 @@ pub use found::{Blob, GridFound, LineFound, Reason, Recognised, Recognition, Rej
 pub use recogniser::{Classifier, Recogniser, recognise_each};
 pub use steps::Steps;
 pub use table::{ContourTable, TableError};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

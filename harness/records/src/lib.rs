@@ -16,5 +16,10 @@ pub mod theory;
 
 pub use cells::RecordError;
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;

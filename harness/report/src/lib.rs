@@ -58,5 +58,10 @@ pub use one_file::{FamilyPages, ONE_FILE, family_pages, one_file};
 pub use places::{Places, ReportError, Written};
 pub use scene_figures::preview;
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;

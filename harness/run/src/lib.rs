@@ -32,5 +32,10 @@ pub use planned::{Place, Planned, Ran};
 pub use scene::{VIEW, starts, trial_picture, trial_truth};
 pub use tools::Tools;
 
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;

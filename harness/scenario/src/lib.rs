@@ -45,3 +45,8 @@ pub use sweep::Sweep;
 pub use testfield::Unit;
 pub use transfer::Transfer;
 pub use wire::{Phase, Pixels};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -19,3 +19,8 @@ pub mod testfield;
 pub mod view;
 
 pub use render::{draw, render};
+
+/// The example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

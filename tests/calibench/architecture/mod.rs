@@ -1,6 +1,7 @@
 //! The drawing of modules: no circle between folders, files that are read at one go.
 
 mod modules;
+mod packages;
 
 use std::collections::BTreeMap;
 use std::fs;

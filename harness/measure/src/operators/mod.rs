@@ -16,9 +16,8 @@ pub mod parametric_junction;
 pub mod pixel;
 pub mod saddle;
 
-/// The worked example of CONTRIBUTING.
+/// The worked example of CONTRIBUTING, linked from `examples/`.
 #[cfg(test)]
-#[path = "../../../../examples/operator.rs"]
 mod example;
 
 impl Registry {

@@ -30,9 +30,8 @@ mod reality_scan_csv;
 mod ros;
 mod theia;
 
-/// The worked example of CONTRIBUTING.
+/// The worked example of CONTRIBUTING, linked from `examples/`.
 #[cfg(test)]
-#[path = "../../../../../examples/camera_format.rs"]
 mod example;
 
 pub(super) use opencv_yaml::tree as yaml;
