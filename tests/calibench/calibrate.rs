@@ -67,7 +67,7 @@ pub const WALL: [&str; 11] =
 #[test]
 fn a_rendered_wall_gives_its_camera_back_within_its_own_standard_deviations() {
     let folder = wall();
-    let output = run(folder.path(), &[&WALL[..], &["-o", "found.toml", "--report", "report"]].concat());
+    let output = run(folder.path(), &[&WALL[..], &["-o", "found.toml", "--report", "report", "--scene", "wall.ply"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     assert!(stdout(&output).contains("direct linear transformation"), "{}", stdout(&output));
     let (truth, found) = (one(&folder.path().join("wall/camera.toml")), one(&folder.path().join("found.toml")));
@@ -88,11 +88,29 @@ fn a_rendered_wall_gives_its_camera_back_within_its_own_standard_deviations() {
         }
     }
     the_report_is_whole(&report);
+    the_scene_is_whole(&std::fs::read_to_string(folder.path().join("wall.ply")).unwrap(), &table(&report.join("stations.csv")));
+    let output = run(folder.path(), &[&WALL[..], &["--scene", "wall.obj"]].concat());
+    assert!(output.status.code() == Some(2) && stderr(&output).contains("a scene ends in .ply"), "{}", stderr(&output));
+}
+
+/// As many vertices and faces as the head says, and a vertex at each projection centre.
+fn the_scene_is_whole(scene: &str, stations: &[HashMap<String, String>]) {
+    let said = |what: &str| -> usize { scene.split(what).nth(1).unwrap().lines().next().unwrap().trim().parse().unwrap() };
+    let (vertices, faces) = (said("element vertex"), said("element face"));
+    let body: Vec<&str> = scene.lines().skip_while(|line| *line != "end_header").skip(1).collect();
+    assert_eq!(body.len(), vertices + faces);
+    let places: Vec<Vec<f64>> = body[..vertices].iter().map(|line| line.split(' ').map(|word| word.parse().unwrap()).collect()).collect();
+    for station in stations {
+        let is_there = |place: &Vec<f64>| (0..3).all(|i| (place[i] - number(station, ["X0", "Y0", "Z0"][i])).abs() < 1e-6);
+        assert!(places.iter().any(is_there), "{}", station["image"]);
+    }
+    assert!(body[vertices..].iter().flat_map(|line| line.split(' ').skip(1)).all(|corner| corner.parse::<usize>().unwrap() < vertices));
+    assert!(scene.contains("ellipsoids of one standard deviation"));
 }
 
 fn the_report_is_whole(report: &Path) {
     let page = std::fs::read_to_string(report.join("README.md")).unwrap();
-    let pictures = ["residuals", "residuals-by-image-1", "distribution", "correlations", "uncertainty-far", "uncertainty-near"];
+    let pictures = ["residuals", "residuals-by-image-1", "distribution", "correlations", "uncertainty-far", "uncertainty-near", "next"];
     for picture in pictures {
         assert!(page.contains(&format!("({picture}.png)")), "{picture}");
         let image = image::open(report.join(format!("{picture}.png"))).unwrap().to_rgb8();

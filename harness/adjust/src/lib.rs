@@ -31,8 +31,8 @@ pub use network::{
 };
 pub use quality::{
     Comparison, Correlation, Covariances, Distance, Found, Held, ObservedReliability, PointReliability, Reliability, Residual,
-    Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, frame_weight, image_information, scale_of,
-    snoop,
+    Significance, Snooping, Test, Uncertainty, Use, Variance, adjust_robustly, compare, frame_uncertainty, frame_weight, image_information,
+    scale_of, snoop,
 };
 pub use solution::{Options, Solution, adjust};
 

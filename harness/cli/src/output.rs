@@ -37,6 +37,11 @@ pub fn page(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Fa
     file(option, path, ("a page", &["html", "htm"]), inputs)
 }
 
+/// A network in space.
+pub fn scene(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
+    file(option, path, ("a scene", &["ply"]), inputs)
+}
+
 /// An ST-map.
 pub fn map(option: &str, path: &Path, inputs: &Inputs) -> Result<OutputFile, Failure> {
     file(option, path, ("an ST-map", &MapFile::ENDINGS), inputs)

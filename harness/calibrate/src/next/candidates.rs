@@ -63,7 +63,8 @@ struct Attitude {
 }
 
 fn attitudes(most: f64) -> Vec<Attitude> {
-    let tilts = [0.5, 1.0].into_iter().flat_map(|share| (0..8).map(move |k| (share * most, Some(f64::from(k) * FRAC_PI_4 - 3.0 * FRAC_PI_4))));
+    let tilts =
+        [0.5, 1.0].into_iter().flat_map(|share| (0..8).map(move |k| (share * most, Some(f64::from(k) * FRAC_PI_4 - 3.0 * FRAC_PI_4))));
     let tilts: Vec<(f64, Option<f64>)> = std::iter::once((0.0, None)).chain(tilts).collect();
     let about_axis = [0.0, FRAC_PI_2];
     let of = |(&(tilt, nearer), about): (&(f64, Option<f64>), f64)| {

@@ -47,7 +47,9 @@ impl Field {
         };
         let mut depths: Vec<f64> = poses.iter().map(|(pose, _)| -pose.ray(&middle).z).filter(|depth| *depth > 0.0).collect();
         depths.sort_by(f64::total_cmp);
-        let [Some(&near), Some(&far)] = [depths.first(), depths.last()] else { return Err("no photograph has the control before it".into()) };
+        let [Some(&near), Some(&far)] = [depths.first(), depths.last()] else {
+            return Err("no photograph has the control before it".into());
+        };
         let tilts = poses.iter().map(|(pose, _)| (pose.rotation * axes[2]).z.clamp(-1.0, 1.0).acos());
         let mut shares: Vec<usize> = poses.iter().map(|(_, seen)| seen.len()).collect();
         shares.sort_unstable();

@@ -85,7 +85,8 @@ impl Calibration<'_> {
         let mut photographs: Vec<Photograph> = Vec::new();
         for _ in 0..PROPOSED {
             let values: Vec<f64> = all.par_iter().map(|(_, own)| uncertain.with(&(&sum + own))).collect();
-            let best = (0..all.len()).min_by(|&a, &b| values[a].total_cmp(&values[b])).ok_or("no photograph has enough control points in view")?;
+            let best =
+                (0..all.len()).min_by(|&a, &b| values[a].total_cmp(&values[b])).ok_or("no photograph has enough control points in view")?;
             sum += &all[best].1;
             photographs.push(all[best].0.photograph(&field, values[best]));
         }

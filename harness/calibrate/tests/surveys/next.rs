@@ -110,7 +110,8 @@ fn photographs_together_tell_what_the_covariance_says() {
         let network = &prepared.network;
         let sum: nalgebra::DMatrix<f64> = (0..scene.poses.len())
             .map(|image| {
-                let seen = network.observations.iter().filter(|o| o.image == image).map(|o| network.points[o.point].position).collect::<Vec<_>>();
+                let seen =
+                    network.observations.iter().filter(|o| o.image == image).map(|o| network.points[o.point].position).collect::<Vec<_>>();
                 image_information(found.camera(0), &names, &found.solution.poses()[image], &seen, sigma).unwrap()
             })
             .sum();

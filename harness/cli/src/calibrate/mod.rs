@@ -6,7 +6,7 @@ use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Discs, Settings,
 use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
 use calibench_model::boards::Board;
 use calibench_photographs::{Chessboard, Corners, Photo, board_of};
-use calibench_report::calibration::{Pictured, summary, write_report};
+use calibench_report::calibration::{Pictured, scene_ply, summary, write_report};
 use calibench_report::json::CalibrationAnswer;
 use clap::Args;
 
@@ -80,8 +80,18 @@ pub struct Calibrate {
     /// Folder for a report with pictures and tables; of one that is there, only what calibench wrote is replaced, and if it holds anything else it is refused
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    /// The network as a mesh (PLY) for other viewers: stations, object points and their error ellipsoids
+    #[arg(long, value_name = "PLY")]
+    scene: Option<PathBuf>,
     #[command(flatten)]
     answered: As,
+}
+
+/// Where results go.
+struct Outputs {
+    camera: Option<OutputFile>,
+    scene: Option<OutputFile>,
+    report: Option<OutputFolder>,
 }
 
 /// What is calibrated from.
@@ -101,7 +111,9 @@ impl Calibrate {
         let given = [&self.points, &self.control, &self.poses].into_iter().flatten().cloned();
         let inputs = Inputs::new(self.photos.iter().cloned().chain(given).chain(self.cameras.starts()));
         let report = self.report.as_deref().map(|path| output::folder("--report", path, &inputs)).transpose()?;
-        let output = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
+        let camera = self.output.as_deref().map(|path| output::camera("-o", path, self.to.is_some(), &inputs)).transpose()?;
+        let scene = self.scene.as_deref().map(|path| output::scene("--scene", path, &inputs)).transpose()?;
+        let outputs = Outputs { camera, scene, report };
         let Input { points, lost, photos, control, doubts } = self.input(context)?;
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
         let of_discs = !photos.is_empty() && control.iter().any(|row| row.disc.is_some());
@@ -110,7 +122,7 @@ impl Calibrate {
         prepared.unmeasured = lost;
         drop(control);
         calibrate(&prepared, &sets(&self.compare)?, |calibration| {
-            self.deliver(calibration, (&photos, &doubts), output.as_ref(), report.as_ref())?;
+            self.deliver(calibration, (&photos, &doubts), &outputs)?;
             if self.answered.json {
                 answer(&CalibrationAnswer::new(calibration, &doubts).map_err(Failure::Input)?)?;
             } else {
@@ -151,18 +163,15 @@ impl Calibrate {
         })
     }
 
-    fn deliver(
-        &self,
-        calibration: &Calibration<'_>,
-        (photos, doubts): (&[Photo], &[String]),
-        output: Option<&OutputFile>,
-        report: Option<&OutputFolder>,
-    ) -> Result<(), Failure> {
+    fn deliver(&self, calibration: &Calibration<'_>, (photos, doubts): (&[Photo], &[String]), outputs: &Outputs) -> Result<(), Failure> {
         let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path())).collect();
-        if let Some(output) = output {
+        if let Some(output) = &outputs.camera {
             camera_file::write(output, calibration, self.to.as_deref())?;
         }
-        Ok(report.map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, doubts, folder)))?)
+        if let Some(output) = &outputs.scene {
+            output.write(|file| file.write_all(scene_ply(calibration).as_bytes()))?;
+        }
+        Ok(outputs.report.as_ref().map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, doubts, folder)))?)
     }
 }
 

@@ -7,8 +7,10 @@ mod digits;
 mod discs;
 mod html;
 mod limits;
+mod next;
 mod page;
 mod pictures;
+mod ply;
 mod scale;
 mod sets_page;
 mod tables;
@@ -20,6 +22,7 @@ use calibench_calibrate::Calibration;
 pub use html::Pictured;
 pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
+pub use ply::scene_ply;
 pub(crate) use warnings::warnings;
 
 /// The bend of the board that was adjusted and its standard deviations, object units: along u, along v, twist.

@@ -11,6 +11,7 @@ use calibench_model::escape;
 
 use super::digits::rounded;
 use super::html::{self, Pictured};
+use super::next::NextSection;
 use super::pictures::Picture;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
@@ -33,11 +34,13 @@ pub fn write_report(calibration: &Calibration<'_>, photos: &[Pictured<'_>], doub
     let before: String = doubts.iter().map(|doubt| format!("**In doubt**: {}.\n\n", escape::markdown(doubt))).collect();
     let warnings: String = warnings(calibration).iter().map(|warning| format!("\n**{}**\n", escape::markdown(warning))).collect();
     let pictures = pictures::draw(calibration, &maps, folder)?;
-    let (head, rest) = (facts_and_parameters(calibration), rest(calibration, &pictures));
+    let next = NextSection::of(calibration);
+    next.write(folder)?;
+    let (head, rest) = (facts_and_parameters(calibration), rest(calibration, &pictures, &next.text));
     let text = format!("# Calibration\n\n{before}{headline}{head}{warnings}{rest}");
     folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
     // Doubts and warnings are at its head.
-    let page = html::page(calibration, &format!("{head}{rest}"), &maps, (photos, doubts));
+    let page = html::page(calibration, &format!("{head}{rest}"), (&maps, next.figures), (photos, doubts));
     folder.write("report.html", |file| file.write_all(page.as_bytes()))
 }
 
@@ -51,7 +54,7 @@ fn facts_and_parameters(calibration: &Calibration<'_>) -> String {
 }
 
 /// What comes below the warnings.
-fn rest(calibration: &Calibration<'_>, pictures: &[Picture]) -> String {
+fn rest(calibration: &Calibration<'_>, pictures: &[Picture], next: &str) -> String {
     let mut text = checks::section(calibration);
     if let Some(compared) = &calibration.compared {
         let _ = write!(text, "\n## Sets of parameters\n\n{}", sets_page::section(compared));
@@ -60,6 +63,7 @@ fn rest(calibration: &Calibration<'_>, pictures: &[Picture]) -> String {
     for picture in pictures {
         let _ = write!(text, "\n![{0}]({1})\n\n{0}\n", picture.caption, picture.file);
     }
+    text.push_str(next);
     text.push_str(&images(calibration));
     text.push_str(&rejected(calibration));
     text.push_str(

@@ -14,7 +14,7 @@ use super::{Pictured, html, uncertainty};
 /// The page with some figures.
 fn page(calibration: &Calibration<'_>, photos: &[Pictured<'_>]) -> String {
     let text = ["residuals", "distribution", "correlations", "uncertainty-far"].map(|name| format!("![{name}]({name}.png)\n\n")).concat();
-    html::page(calibration, &text, &[uncertainty::maps(calibration, 0)], (photos, &[]))
+    html::page(calibration, &text, (&[uncertainty::maps(calibration, 0)], HashMap::new()), (photos, &[]))
 }
 
 /// What stands between two texts.

@@ -72,7 +72,7 @@ fn grid(size: ImageSize) -> (usize, usize) {
 }
 
 /// Image points of a camera that take part.
-fn measured(calibration: &Calibration<'_>, camera: usize) -> Vec<PixelPoint> {
+pub(super) fn measured(calibration: &Calibration<'_>, camera: usize) -> Vec<PixelPoint> {
     let observations = calibration.prepared.network.observations.iter();
     observations.filter(|o| calibration.owner(o.image) == camera).map(|o| o.position).collect()
 }

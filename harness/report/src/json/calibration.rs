@@ -7,6 +7,7 @@ use calibench_exchange::station_numbers;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::next::NextAnswer;
 use super::{Answer, CameraAnswer};
 use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, warnings};
 
@@ -92,6 +93,8 @@ struct CalibratedCamera {
     camera: CameraAnswer,
     /// The parameters that were solved for.
     solved: Vec<Solved>,
+    /// What to photograph next; null where nothing is proposed.
+    next: Option<NextAnswer>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -287,6 +290,7 @@ fn camera(calibration: &Calibration<'_>, index: usize, tests: &[Significance]) -
         images: images_of(calibration, index).count(),
         camera: CameraAnswer::new(&calibration.named_camera(index)?),
         solved: names.iter().enumerate().map(solved).collect(),
+        next: calibration.next(index).ok().map(|next| NextAnswer::new(&next)),
     })
 }
 

@@ -6,6 +6,7 @@ mod conversion;
 mod difference;
 mod judgement;
 mod measurement;
+mod next;
 mod schema;
 mod text;
 

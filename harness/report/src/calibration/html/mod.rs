@@ -1,7 +1,7 @@
 //! A calibration as one file that answers questions: the text of the page, with figures in the place of its pictures, the distortion and the network.
 
 mod maps;
-mod network;
+pub(super) mod network;
 mod patches;
 mod residuals;
 
@@ -43,11 +43,11 @@ impl<'c, 'n> OfCamera<'c, 'n> {
     }
 }
 
-/// The page: `text` is what the Markdown page says below its headline; `maps` are the uncertainty's, camera by camera, `before` what is in doubt of where a board was found.
+/// The page: `text` is what the Markdown page says below its headline; `maps` are the uncertainty's, camera by camera, `next` the figures of what to photograph next, `before` what is in doubt of where a board was found.
 pub(super) fn page(
     calibration: &Calibration<'_>,
     text: &str,
-    maps: &[Vec<UncertaintyMap>],
+    (maps, next): (&[Vec<UncertaintyMap>], Figures),
     (photos, before): (&[Pictured<'_>], &[String]),
 ) -> String {
     let mut page = Page::new("Calibration");
@@ -58,7 +58,9 @@ pub(super) fn page(
     let groups: Groups = names.enumerate().map(|(image, name)| (name.clone(), image)).collect();
     let worst = residuals::worst(calibration);
     let cameras: Vec<OfCamera<'_, '_>> = maps.iter().enumerate().map(|(camera, maps)| OfCamera::new(calibration, camera, maps)).collect();
-    page.markdown(text, &mut figures(&cameras, &worst), &groups);
+    let mut figures = figures(&cameras, &worst);
+    figures.extend(next);
+    page.markdown(text, &mut figures, &groups);
     for of in &cameras {
         if let Some(figure) = maps::distortion(of) {
             page.section(&format!("Distortion{}", super::of(calibration, of.camera)), figure);

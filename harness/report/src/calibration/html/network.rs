@@ -21,7 +21,7 @@ pub(super) fn figure(calibration: &Calibration<'_>) -> String {
     scene.figure(&format!("Stations and object points.{ellipsoids}{shown}"))
 }
 
-fn stations(calibration: &Calibration<'_>) -> Vec<Station> {
+pub(in super::super) fn stations(calibration: &Calibration<'_>) -> Vec<Station> {
     let station = |(image, pose): (usize, &calibench_model::Pose)| {
         let [wide, high, _] = view(calibration.camera(calibration.owner(image)));
         Station {
@@ -40,7 +40,7 @@ fn tangent(angle: Option<f64>) -> f64 {
     (angle.unwrap_or(90.0) / 2.0).min(70.0).to_radians().tan()
 }
 
-fn points(calibration: &Calibration<'_>) -> Vec<ScenePoint> {
+pub(in super::super) fn points(calibration: &Calibration<'_>) -> Vec<ScenePoint> {
     let known = &calibration.prepared.network.points;
     let point = |(index, place): (usize, &nalgebra::Point3<f64>)| {
         let c = &calibration.covariances.points[index];
@@ -62,7 +62,7 @@ fn rays(calibration: &Calibration<'_>) -> Vec<[usize; 2]> {
 }
 
 /// A round number of times by which the median ellipsoid is about a hundredth of the network.
-fn factor(stations: &[Station], points: &[ScenePoint]) -> f64 {
+pub(in super::super) fn factor(stations: &[Station], points: &[ScenePoint]) -> f64 {
     let all = || stations.iter().map(|s| s.centre).chain(points.iter().map(|p| p.place));
     let side = |axis: usize| {
         let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));

@@ -1,0 +1,203 @@
+//! What to photograph next: in words, drawn, and as a figure.
+
+use std::f64::consts::FRAC_PI_4;
+use std::fmt::Write;
+use std::io;
+
+use calibench_calibrate::{Calibration, Next, Photograph};
+use calibench_exchange::NewFolder;
+use calibench_model::PixelPoint;
+use calibench_model::camera::{CameraModel, ImageSize};
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::of;
+use super::pictures::named;
+use super::uncertainty::measured;
+use crate::canvas::COLOURS;
+use crate::field::{BOTTOM, LEFT, TOP, arrow, dashed, write};
+use crate::frame::Map;
+use crate::html::{Figures, Plot, Said};
+use crate::hull::Hull;
+use crate::markdown::MarkdownTable;
+use crate::{Canvas, plain};
+
+/// An arrow's length as a share of the frame's width.
+const ARROW: f64 = 0.06;
+
+/// The section of a page, for all cameras: text, pictures, and figures in their place.
+pub(super) struct NextSection {
+    pub(super) text: String,
+    pictures: Vec<(String, Canvas)>,
+    pub(super) figures: Figures,
+}
+
+impl NextSection {
+    pub(super) fn of(calibration: &Calibration<'_>) -> Self {
+        let mut section = Self { text: String::new(), pictures: Vec::new(), figures: Figures::new() };
+        for camera in 0..calibration.cameras() {
+            let _ = write!(section.text, "\n## What to photograph next{}\n\n", of(calibration, camera));
+            match calibration.next(camera) {
+                Ok(next) => section.camera(calibration, camera, &next),
+                Err(why) => {
+                    let _ = writeln!(section.text, "Nothing is proposed: {why}.");
+                }
+            }
+        }
+        section
+    }
+
+    fn camera(&mut self, calibration: &Calibration<'_>, camera: usize, next: &Next) {
+        let (prefix, whose) = named(calibration, camera);
+        let (size, taken) = (calibration.camera(camera).size(), Hull::of(&measured(calibration, camera)));
+        let file = format!("{prefix}next.png");
+        let caption = format!(
+            "{whose}Where these photographs would have the control in the frame: its outline, and an arrow to the side that is nearer. The dashed line surrounds \
+             what was measured so far."
+        );
+        let doubts = calibration.doubts().len();
+        let first = if doubts > 0 {
+            "**The calibration is in doubt: what is in doubt comes first, further photographs do not mend it.** "
+        } else {
+            ""
+        };
+        let _ = write!(
+            self.text,
+            "{first}Over the frame the camera pictures what is far away with a standard deviation of {} px (RMS, after the best rotation). One more photograph like those \
+             so far makes that {} px; of several thousand others these lower it most, each taken after those above it:\n\n{}\n{}\n\n![{caption}]({file})\n\n{caption}\n",
+            plain(next.before),
+            plain(next.usual),
+            table(next, size).render(),
+            limits(next)
+        );
+        self.figures.insert(file.clone(), figure(next, size, &taken, &format!("{prefix}next")).figure(&caption));
+        self.pictures.push((file, picture(next, size, &taken)));
+    }
+
+    /// Writes its pictures.
+    pub(super) fn write(&self, folder: &NewFolder) -> io::Result<()> {
+        self.pictures.iter().try_for_each(|(file, canvas)| folder.write(file, |output| canvas.encode(output)))
+    }
+}
+
+fn table(next: &Next, size: ImageSize) -> MarkdownTable {
+    let columns = [
+        "photograph",
+        "middle of the control in the frame",
+        "x px",
+        "y px",
+        "tilt",
+        "nearer",
+        "u axis to the",
+        "distance",
+        "points",
+        "then px",
+    ];
+    let mut table = MarkdownTable::new(&columns);
+    for (index, one) in next.photographs.iter().enumerate() {
+        table.row([
+            (index + 1).to_string(),
+            place(one.middle, size).to_owned(),
+            format!("{:.0}", one.middle.x),
+            format!("{:.0}", one.middle.y),
+            format!("{:.0}\u{b0}", one.tilt.to_degrees()),
+            one.nearer.map_or("none", direction).to_owned(),
+            direction(one.along).to_owned(),
+            plain(one.depth),
+            one.points.len().to_string(),
+            plain(one.uncertainty),
+        ]);
+    }
+    table
+}
+
+fn limits(next: &Next) -> String {
+    let whole = if next.whole { "; all control is in view, as in the photographs so far" } else { "" };
+    format!(
+        "`tilt` is that of the control against the image, `nearer` the side of it that is, `distance` that of its middle along the camera's axis, in object units. \
+         It is supposed that the model is right, that points are measured as precisely as so far, and that the distance is one of those so far{whole}."
+    )
+}
+
+/// A direction, radians from the image's right to its top, in words.
+fn direction(angle: f64) -> &'static str {
+    const NAMES: [&str; 8] = ["right", "upper right", "top", "upper left", "left", "lower left", "bottom", "lower right"];
+    NAMES[(angle / FRAC_PI_4).round().rem_euclid(8.0) as usize % 8]
+}
+
+/// A place of the frame in words, by thirds of it.
+fn place(at: PixelPoint, size: ImageSize) -> &'static str {
+    const NAMES: [[&str; 3]; 3] =
+        [["upper left", "top", "upper right"], ["left", "middle", "right"], ["lower left", "bottom", "lower right"]];
+    let third = |value: f64, length: u32| ((3.0 * (value + 0.5) / f64::from(length)) as usize).min(2);
+    NAMES[third(at.y, size.height)][third(at.x, size.width)]
+}
+
+/// Where the arrow of a photograph ends, px.
+fn end(one: &Photograph, size: ImageSize) -> Option<(f64, f64)> {
+    let length = ARROW * f64::from(size.width);
+    one.nearer.map(|towards| (length * towards.cos(), -length * towards.sin()))
+}
+
+fn picture(next: &Next, size: ImageSize, taken: &Hull) -> Canvas {
+    let (map, mut canvas) = Map::alone(size, "What to photograph next");
+    canvas.paint(|area| {
+        taken.sides().for_each(|side| dashed(area, side.map(|end| map.place(end))));
+        for (index, one) in next.photographs.iter().enumerate() {
+            let colour = COLOURS[index % COLOURS.len()];
+            for side in Hull::of(&one.points).sides() {
+                area.draw(&PathElement::new(side.map(|end| map.place(end)), colour.stroke_width(3))).ok();
+            }
+            let at = map.place(one.middle);
+            if let Some((dx, dy)) = end(one, size) {
+                arrow(area, at, map.place(PixelPoint::new(one.middle.x + dx, one.middle.y + dy)));
+            }
+            area.draw(&Circle::new(at, 11, WHITE.filled())).ok();
+            area.draw(&Circle::new(at, 11, colour.stroke_width(2))).ok();
+            write(area, &(index + 1).to_string(), at, HPos::Center);
+        }
+        map.axes(area);
+    });
+    let then: Vec<String> =
+        next.photographs.iter().enumerate().map(|(index, one)| format!("with {}: {}", index + 1, plain(one.uncertainty))).collect();
+    let text = format!("standard deviation over the frame, px: now {}; {}", plain(next.before), then.join(", "));
+    canvas.text(&text, 16, (LEFT, TOP + map.extent.1 + BOTTOM - 20));
+    canvas
+}
+
+fn figure(next: &Next, size: ImageSize, taken: &Hull, id: &str) -> Plot {
+    let mut plot = Plot::frame(id, "What to photograph next", size);
+    let around = |hull: &Hull| -> Vec<(f64, f64)> {
+        let ends: Vec<(f64, f64)> = hull.sides().map(|[a, _]| (a.x, a.y)).collect();
+        ends.iter().chain(ends.first()).copied().collect()
+    };
+    let so_far = around(taken);
+    if !so_far.is_empty() {
+        plot.series(7, None, &["measured so far"]);
+        plot.line(&so_far, &Said::default());
+    }
+    for (index, one) in next.photographs.iter().enumerate() {
+        plot.series(index + 1, None, &["photograph", "tilt, degrees", "distance", "standard deviation then, px"]);
+        let said = Said::of([(index + 1).to_string(), format!("{:.0}", one.tilt.to_degrees()), plain(one.depth), plain(one.uncertainty)]);
+        plot.line(&around(&Hull::of(&one.points)), &said);
+        if let Some(end) = end(one, size) {
+            plot.arrow(one.middle, end, &said);
+        }
+        plot.note((one.middle.x, one.middle.y), &(index + 1).to_string(), false);
+    }
+    plot
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_and_places_have_names() {
+        let named: Vec<&str> = (-4..=4).map(|i| direction(f64::from(i) * FRAC_PI_4)).collect();
+        assert_eq!(named, ["left", "lower left", "bottom", "lower right", "right", "upper right", "top", "upper left", "left"]);
+        let size = ImageSize { width: 300, height: 200 };
+        let at = |x, y| place(PixelPoint::new(x, y), size);
+        assert_eq!([at(10.0, 10.0), at(150.0, 10.0), at(299.0, 199.0), at(150.0, 100.0)], ["upper left", "top", "lower right", "middle"]);
+    }
+}
