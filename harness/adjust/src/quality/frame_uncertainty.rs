@@ -64,13 +64,16 @@ pub fn frame_weight(camera: &Camera, names: &[&str], grid: (usize, usize), dista
     Ok(left.tr_mul(&left) / seen.len() as f64)
 }
 
+/// A place with its ray.
+type Seen = (PixelPoint, Ray);
+
 /// Places of the grid with their rays, and what the parameters do there that no motion of the camera does: two rows a place, a column a parameter.
 fn effects(
     camera: &Camera,
     names: &[&str],
     (columns, rows): (usize, usize),
     distance: Distance,
-) -> Result<(Vec<(PixelPoint, Ray)>, DMatrix<f64>), AdjustError> {
+) -> Result<(Vec<Seen>, DMatrix<f64>), AdjustError> {
     let parameters = camera.parameters();
     let places: Vec<usize> = names.iter().filter_map(|name| parameters.iter().position(|parameter| parameter.name == *name)).collect();
     if columns < 3 || rows < 3 || places.len() != names.len() {
@@ -84,7 +87,7 @@ fn effects(
     let size = camera.size();
     let along = |i: usize, n: usize, length: u32| f64::from(length - 1) * i as f64 / (n - 1) as f64;
     let grid = (0..columns * rows).map(|k| PixelPoint::new(along(k % columns, columns, size.width), along(k / columns, rows, size.height)));
-    let seen: Vec<(PixelPoint, Ray)> = grid.filter_map(|at| Some((at, camera.unproject(at).ok()?))).collect();
+    let seen: Vec<Seen> = grid.filter_map(|at| Some((at, camera.unproject(at).ok()?))).collect();
     let (interior, exterior) = slopes(camera, &seen, &places, shift);
     // What is left of the parameters' effects: (1 - R R^+) J.
     let svd = exterior.svd(true, false);
@@ -94,7 +97,7 @@ fn effects(
 }
 
 /// Derivatives of all places by the parameters, and by a rotation and, at a distance, a shift of the camera.
-fn slopes(camera: &Camera, seen: &[(PixelPoint, Ray)], places: &[usize], shift: Option<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+fn slopes(camera: &Camera, seen: &[Seen], places: &[usize], shift: Option<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut interior = DMatrix::zeros(2 * seen.len(), places.len());
     let mut exterior = DMatrix::zeros(2 * seen.len(), if shift.is_some() { 6 } else { 3 });
     let mut buffer = DerivativeBuffer::default();
