@@ -181,7 +181,7 @@ fn figure(next: &Next, size: ImageSize, taken: &Hull, id: &str) -> Plot {
         let said = Said::of([(index + 1).to_string(), format!("{:.0}", one.tilt.to_degrees()), plain(one.depth), plain(one.uncertainty)]);
         plot.line(&around(&Hull::of(&one.points)), &said);
         if let Some(end) = end(one, size) {
-            plot.arrow(one.middle, end, &said);
+            plot.arrow(one.middle, end, &Said::default());
         }
         plot.note((one.middle.x, one.middle.y), &(index + 1).to_string(), false);
     }
