@@ -17,7 +17,7 @@ use super::uncertainty::measured;
 use crate::canvas::COLOURS;
 use crate::field::{BOTTOM, LEFT, TOP, arrow, dashed, write};
 use crate::frame::Map;
-use crate::html::{Figures, Plot, Said};
+use crate::html::{Figures, Plot, Said, Shape};
 use crate::hull::Hull;
 use crate::markdown::MarkdownTable;
 use crate::{Canvas, plain};
@@ -179,11 +179,12 @@ fn figure(next: &Next, size: ImageSize, taken: &Hull, id: &str) -> Plot {
     for (index, one) in next.photographs.iter().enumerate() {
         plot.series(index + 1, None, &["photograph", "tilt, degrees", "distance", "standard deviation then, px"]);
         let said = Said::of([(index + 1).to_string(), format!("{:.0}", one.tilt.to_degrees()), plain(one.depth), plain(one.uncertainty)]);
-        plot.line(&around(&Hull::of(&one.points)), &said);
+        plot.line(&around(&Hull::of(&one.points)), &Said::default());
+        plot.symbol(Shape::ALL[index % Shape::ALL.len()], (one.middle.x, one.middle.y), &said);
         if let Some(end) = end(one, size) {
             plot.arrow(one.middle, end, &Said::default());
         }
-        plot.note((one.middle.x, one.middle.y), &(index + 1).to_string(), false);
+        plot.note((one.middle.x - 0.03 * f64::from(size.width), one.middle.y), &(index + 1).to_string(), false);
     }
     plot
 }
