@@ -36,6 +36,22 @@ HTMLAnchorElement.prototype.click = function () {
 """
 
 
+# Those that a selector finds and that are hardly lighter or darker than what is behind them (WCAG 2.1, 1.4.3: a ratio below 4.5).
+FAINT = """
+const light = (text) => {
+  const [r, g, b] = text.match(/[\\d.]+/g).map(Number).map((v) => v / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+const ground = (node) => { for (let at = node; at; at = at.parentElement) {
+  const colour = getComputedStyle(at).backgroundColor;
+  if (!/, 0(\\.\\d+)?\\)$/.test(colour)) return colour; } return 'rgb(255, 255, 255)'; };
+return all(arguments[0]).filter((node) => shows(node))
+  .map((node) => { const style = getComputedStyle(node); const [a, b] = [light(style.color), light(ground(node))];
+    return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), node.tagName + ' ' + node.className + ' ' + node.textContent.slice(0, 30)]; })
+  .filter(([ratio]) => ratio < 4.5);
+"""
+
+
 def browser():
     """Chromium, without a window, that tells what pages ask for and complain of."""
     options = webdriver.ChromeOptions()

@@ -93,6 +93,41 @@ fn a_rendered_wall_gives_its_camera_back_within_its_own_standard_deviations() {
     assert!(output.status.code() == Some(2) && stderr(&output).contains("a scene ends in .ply"), "{}", stderr(&output));
 }
 
+/// The page's table of what to photograph next says what the answer for programs says.
+#[test]
+fn what_to_photograph_next_is_the_same_on_the_page_and_for_programs() {
+    let folder = wall();
+    let output = run(folder.path(), &[&WALL[..], &["--json", "--report", "report"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let next = &answer["cameras"][0]["next"];
+    let value = |of: &serde_json::Value| of.as_f64().unwrap();
+    let page = std::fs::read_to_string(folder.path().join("report/README.md")).unwrap();
+    let section = page.split("## What to photograph next").nth(1).unwrap().split("\n## ").next().unwrap();
+    let rows: Vec<Vec<&str>> =
+        section.lines().filter(|line| line.starts_with("| ")).map(|line| line.split('|').map(str::trim).collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|cell| *cell == name).unwrap();
+    let photographs = next["photographs"].as_array().unwrap();
+    assert_eq!((photographs.len(), rows.len()), (3, 5));
+    let plain = calibench_report::plain;
+    for (one, row) in photographs.iter().zip(&rows[2..]) {
+        assert_eq!(row[column("x px")], format!("{:.0}", value(&one["middle_px"][0])));
+        assert_eq!(row[column("y px")], format!("{:.0}", value(&one["middle_px"][1])));
+        assert_eq!(row[column("tilt")], format!("{:.0}\u{b0}", value(&one["tilt_deg"])));
+        assert_eq!(row[column("distance")], plain(value(&one["distance"])));
+        assert_eq!(row[column("points")], one["points"].to_string());
+        assert_eq!(row[column("then px")], plain(value(&one["then_px"])));
+        assert_eq!(row[column("nearer")] == "none", one["nearer_deg"].is_null());
+    }
+    let [now, usual] = ["now_px", "usual_px"].map(|key| value(&next[key]));
+    assert!(
+        section.contains(&format!("standard deviation of {} px", plain(now)))
+            && section.contains(&format!("makes that {} px", plain(usual)))
+    );
+    let then: Vec<f64> = photographs.iter().map(|one| value(&one["then_px"])).collect();
+    assert!(now > usual && usual > then[0] && then[0] > then[1] && then[1] > then[2], "{next}");
+}
+
 /// As many vertices and faces as the head says, and a vertex at each projection centre.
 fn the_scene_is_whole(scene: &str, stations: &[HashMap<String, String>]) {
     let said = |what: &str| -> usize { scene.split(what).nth(1).unwrap().lines().next().unwrap().trim().parse().unwrap() };

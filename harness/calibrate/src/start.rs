@@ -1,12 +1,12 @@
 //! Start values without truth.
 
 use calibench_adjust::approximate::{
-    Assumed, Control, Search, Sight as Ray, Tolerance, direct_linear, interior_from_planes, interior_from_size, intersect, planar_poses,
-    resect,
+    Assumed, Control, Search, Shape, Sight as Ray, Tolerance, direct_linear, interior_from_planes, interior_from_size, intersect,
+    planar_poses, resect,
 };
 use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv, OpenCvFisheye};
-use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+use nalgebra::Point3;
 use rayon::prelude::*;
 
 use super::{CalibrationError, Optics, Settings, Survey, model, prior};
@@ -108,7 +108,7 @@ pub(super) fn spread_control_of(survey: &Survey, known: &[Option<Point3<f64>>], 
 
 /// `most` places of `count`, one in each of as many parts, at a different place within each: the points of a grid, whose order has a period, are not
 /// taken from one of its lines.
-fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
+pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     (0..most).map(move |part| {
         let (first, next) = (part * count / most, (part + 1) * count / most);
@@ -117,11 +117,7 @@ fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
 }
 
 fn is_flat(known: &[Option<Point3<f64>>]) -> bool {
-    let points: Vec<Vector3<f64>> = known.iter().flatten().map(|point| point.coords).collect();
-    let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
-    let spread: Matrix3<f64> = points.iter().map(|point| (point - middle) * (point - middle).transpose()).sum();
-    let values = SymmetricEigen::new(spread).eigenvalues;
-    values.min().max(0.0) <= FLAT * FLAT * values.max()
+    Shape::of(known.iter().flatten().copied()).relative()[0] <= FLAT
 }
 
 pub(super) fn pinhole(size: ImageSize, focal: f64, [cx, cy]: [f64; 2]) -> Camera {

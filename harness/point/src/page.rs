@@ -7,7 +7,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use calibench_exchange::PhotoError;
 use calibench_model::camera::ImageSize;
-use calibench_report::{STYLE, escaped, in_script};
+use calibench_report::{HELPERS, POLICY, STYLE, escaped, in_script};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -15,7 +15,8 @@ use serde_json::json;
 use crate::shown::{Shown, TILE};
 
 /// The script, in the order in which its parts build on each other.
-const SCRIPT: [&str; 11] = [
+const SCRIPT: [&str; 12] = [
+    HELPERS,
     include_str!("assets/base.js"),
     include_str!("assets/csv.js"),
     include_str!("assets/store.js"),
@@ -30,11 +31,8 @@ const SCRIPT: [&str; 11] = [
 ];
 const OWN_STYLE: &str = include_str!("assets/point.css");
 
-/// A browser that obeys this sends no request, whatever the page says.
-const OF_FILE: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
-/// As [`OF_FILE`], but for requests to the server that sent the page.
-const OF_SERVER: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; connect-src 'self'; base-uri 'none'; form-action 'none'";
+/// What the policy of a page that a server sends allows beside [`POLICY`]: requests to that server.
+const TO_SERVER: &str = "; connect-src 'self'";
 
 /// What a page holds beside its photographs.
 #[derive(Clone, Debug, Default)]
@@ -84,7 +82,7 @@ impl Pictured {
 /// # Errors
 /// A photograph that cannot be read; what the output refuses.
 pub fn write_page(output: &mut dyn Write, content: &Content, photos: &[(String, &Path)], step: &dyn Fn()) -> Result<(), PhotoError> {
-    output.write_all(head(OF_FILE, photos.len()).as_bytes())?;
+    output.write_all(head(POLICY, photos.len()).as_bytes())?;
     let mut pictured = Vec::new();
     let mut key = blake3::Hasher::new();
     for (index, (name, path)) in photos.iter().enumerate() {
@@ -108,7 +106,7 @@ pub fn write_page(output: &mut dyn Write, content: &Content, photos: &[(String, 
 /// The page that a server sends: photographs come from it, tile by tile. `method` is what measures.
 pub(crate) fn served_page(content: &Content, pictured: &[Pictured], method: &str) -> String {
     let mut key = blake3::Hasher::new();
-    head(OF_SERVER, pictured.len()) + &foot(content, pictured, &mut key, Some(method))
+    head(&format!("{POLICY}{TO_SERVER}"), pictured.len()) + &foot(content, pictured, &mut key, Some(method))
 }
 
 fn head(policy: &str, count: usize) -> String {

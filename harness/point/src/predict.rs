@@ -1,10 +1,10 @@
 //! Where the other targets of an image must be, once some are known.
 
-use calibench_adjust::approximate::{Control, Search, Tolerance, homography, resect};
+use calibench_adjust::approximate::{Control, Search, Shape, Tolerance, homography, resect};
 use calibench_exchange::ControlRow;
 use calibench_model::camera::{Camera, CameraModel, ImageSize, OpenCv};
 use calibench_model::{PixelPoint, Pose};
-use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+use nalgebra::Point3;
 
 /// Height over their plane, as a share of their extent, up to which points are taken for those of a plane.
 const FLAT: f64 = 0.02;
@@ -49,10 +49,14 @@ pub fn predict(
         .collect();
     let (map, how) = match camera {
         Some(camera) => by_resection(*camera, &seen).ok_or("no pose fits these points: is one of them another target?")?,
-        None => match Plane::through(&seen) {
-            Some(plane) => by_plane(plane, &seen)?,
-            None => by_best_focal_length(size, &seen).ok_or("no pose fits these points: is one of them another target?")?,
-        },
+        None => {
+            let shape = Shape::of(seen.iter().map(|point| point.object));
+            if shape.relative()[0] <= FLAT {
+                by_plane(shape, &seen)?
+            } else {
+                by_best_focal_length(size, &seen).ok_or("no pose fits these points: is one of them another target?")?
+            }
+        }
     };
     let inside = |p: &PixelPoint| (-0.5..f64::from(size.width) - 0.5).contains(&p.x) && (-0.5..f64::from(size.height) - 0.5).contains(&p.y);
     let targets = others.into_iter().filter_map(|(name, place)| Some((name.to_owned(), map(&place).filter(inside)?))).collect();
@@ -67,41 +71,15 @@ fn rms(map: &Map, seen: &[Control]) -> Option<f64> {
     Some((sum / seen.len() as f64).sqrt())
 }
 
-/// The plane of some points: a point of it and three axes, the last of them across.
-struct Plane {
-    middle: Point3<f64>,
-    axes: [Vector3<f64>; 3],
-    extent: f64,
-}
-
-impl Plane {
-    fn through(seen: &[Control]) -> Option<Self> {
-        let middle = Point3::from(seen.iter().map(|point| point.object.coords).sum::<Vector3<f64>>() / seen.len() as f64);
-        let spread: Matrix3<f64> = seen.iter().map(|point| (point.object - middle) * (point.object - middle).transpose()).sum();
-        let eigen = SymmetricEigen::new(spread);
-        let mut order = [0, 1, 2];
-        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-        let [long, _, across] = order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt());
-        let axes = order.map(|i| eigen.eigenvectors.column(i).into_owned());
-        (across <= FLAT * long).then_some(Self { middle, axes, extent: long })
-    }
-
-    /// Coordinates in the plane, and the height over it.
-    fn of(&self, point: &Point3<f64>) -> ([f64; 2], f64) {
-        let [a, b, c] = self.axes.map(|axis| axis.dot(&(point - self.middle)));
-        ([a, b], c)
-    }
-}
-
-fn by_plane(plane: Plane, seen: &[Control]) -> Result<(Map, String), String> {
-    let pairs: Vec<_> = seen.iter().map(|point| (plane.of(&point.object).0, [point.image.x, point.image.y])).collect();
+fn by_plane(plane: Shape, seen: &[Control]) -> Result<(Map, String), String> {
+    let pairs: Vec<_> = seen.iter().map(|point| (plane.in_plane(&point.object), [point.image.x, point.image.y])).collect();
     let found = homography(&pairs).map_err(|error| error.to_string())?;
     let map: Map = Box::new(move |point| {
-        let (place, height) = plane.of(point);
-        if height.abs() > FLAT * plane.extent {
+        // From one end to the other it is twice as far as a root mean square tells of four corners.
+        if plane.height(point).abs() > FLAT * 2.0 * plane.extents[0] {
             return None;
         }
-        found.map(place).map(|[x, y]| PixelPoint::new(x, y))
+        found.map(plane.in_plane(point)).map(|[x, y]| PixelPoint::new(x, y))
     });
     let fit = rms(&map, seen).unwrap_or(0.0);
     let fits = if seen.len() == NEEDED {
@@ -139,6 +117,7 @@ fn pinhole(size: ImageSize, focal: f64) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
 
     const SIZE: ImageSize = ImageSize { width: 1600, height: 1200 };
 

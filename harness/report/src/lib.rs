@@ -50,7 +50,7 @@ pub use canvas::Canvas;
 pub use composed::Composed;
 pub use families::{compose, write};
 pub use field::{Field, plain};
-pub use html::{STYLE, escaped, in_script};
+pub use html::{HELPERS, POLICY, STYLE, escaped, in_script};
 pub use hull::Hull;
 pub use index::write_index;
 pub use load::{LoadError, Loaded, load, recorded};

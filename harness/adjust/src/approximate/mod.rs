@@ -11,6 +11,7 @@
 //! | two pictures of the same points | [`RelativeOrientation`] | [`orient_relatively`] |
 //! | a pair so oriented | [`ModelPoint`] | [`RelativeOrientation::model_point`] |
 //! | two sets of object points | [`Similarity`] | [`similarity`] |
+//! | object points | a plane, a line or neither: [`Shape`] | [`Shape::of`] |
 //!
 //! Residuals are computed minus measured, px. A cofactor matrix is the covariance for a standard deviation of 1 px of each image coordinate.
 
@@ -51,5 +52,6 @@ pub use planar::{planar_poses, planar_starts};
 pub use pose_fit::{Control, FittedPose, fit_pose};
 pub use relative::{RelativeOrientation, orient_relatively};
 pub use resection::{Resection, resect};
+pub use shape::Shape;
 pub use similarity::{Similarity, similarity};
 pub use zhang::{Assumed, PlaneInterior, interior_from_planes};

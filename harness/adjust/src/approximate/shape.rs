@@ -9,17 +9,18 @@ const MOST_SWEEPS: usize = 30;
 
 /// Where points lie: their centroid and how far they spread along three axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shape {
-    pub(super) centroid: Point3<f64>,
+pub struct Shape {
+    /// The mean of the points, object units.
+    pub centroid: Point3<f64>,
     /// Columns: the directions, longest first, right-handed.
-    pub(super) axes: Matrix3<f64>,
-    /// Root mean squares along the axes.
-    pub(super) extents: [f64; 3],
+    pub axes: Matrix3<f64>,
+    /// Root mean squares along the axes, object units.
+    pub extents: [f64; 3],
 }
 
 impl Shape {
     /// The shape of at least one point.
-    pub(super) fn of(points: impl Iterator<Item = Point3<f64>> + Clone) -> Self {
+    pub fn of(points: impl Iterator<Item = Point3<f64>> + Clone) -> Self {
         let count = points.clone().count().max(1) as f64;
         let centroid = Point3::from(points.clone().map(|p| p.coords).sum::<Vector3<f64>>() / count);
         let mut moments = Matrix3::zeros();
@@ -42,9 +43,19 @@ impl Shape {
     }
 
     /// A point in the plane of the two longest axes, from the centroid.
-    pub(super) fn in_plane(&self, point: &Point3<f64>) -> [f64; 2] {
+    pub fn in_plane(&self, point: &Point3<f64>) -> [f64; 2] {
         let d = point - self.centroid;
         [self.axes.column(0).dot(&d), self.axes.column(1).dot(&d)]
+    }
+
+    /// How far a point is above that plane, on the side of the third axis.
+    pub fn height(&self, point: &Point3<f64>) -> f64 {
+        self.axes.column(2).dot(&(point - self.centroid))
+    }
+
+    /// The smallest extent and the middle one, relative to the largest: 0 of points that coincide.
+    pub fn relative(&self) -> [f64; 2] {
+        [2, 1].map(|i| self.extents[i] / self.extents[0].max(f64::MIN_POSITIVE))
     }
 }
 

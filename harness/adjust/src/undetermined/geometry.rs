@@ -1,7 +1,8 @@
 //! Properties of a network that make it weak.
 
-use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+use nalgebra::Vector3;
 
+use crate::approximate::Shape;
 use crate::defect::Reason;
 use crate::network::{Layout, Sight};
 use crate::state::State;
@@ -18,27 +19,18 @@ pub(super) fn reasons(layout: &Layout, state: &State) -> Vec<Reason> {
     let mut measured: Vec<usize> = layout.sights.iter().map(Sight::point).collect();
     measured.sort_unstable();
     measured.dedup();
-    let points: Vec<&Point3<f64>> = measured.into_iter().map(|i| &state.points[i]).collect();
+    let points = measured.iter().map(|&i| state.points[i]);
     let axes: Vec<Vector3<f64>> = images.iter().map(|&i| state.poses[i].rotation.row(2).transpose()).collect();
     let converges = axes.iter().any(|axis| axis.angle(&axes[0]) > CONVERGENCE);
     let mut reasons = Vec::new();
     let mut add = |holds: bool, reason: Reason| holds.then(|| reasons.push(reason));
-    let [thin, middle] = extents(&points);
+    let [thin, middle] = Shape::of(points).relative();
     add(images.len() == 1, Reason::OneImage);
     add(middle < FLAT, Reason::OnALine);
     add(thin < FLAT && middle >= FLAT, Reason::NoDepth);
     add(images.len() > 1 && !converges, Reason::NoConvergence);
     add(images.len() > 1 && !rolls(state, &images), Reason::NoRoll);
     reasons
-}
-
-/// The smallest and the middle extent of points, relative to the largest.
-fn extents(points: &[&Point3<f64>]) -> [f64; 2] {
-    let middle = points.iter().map(|point| point.coords).sum::<Vector3<f64>>() / points.len().max(1) as f64;
-    let spread = points.iter().map(|point| point.coords - middle).map(|d| d * d.transpose()).sum::<Matrix3<f64>>();
-    let mut squares: [f64; 3] = SymmetricEigen::new(spread).eigenvalues.into();
-    squares.sort_by(f64::total_cmp);
-    [0, 1].map(|i| (squares[i].max(0.0) / squares[2].max(f64::MIN_POSITIVE)).sqrt())
 }
 
 /// Whether an image is rolled about its axis against the first.

@@ -2,10 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use calibench_model::camera::{Camera, CameraModel};
+use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, Rotation3, Vector3};
-use rayon::prelude::*;
 
 use super::Photograph;
 use super::field::Field;
@@ -19,12 +18,9 @@ const LEAST: usize = 8;
 /// A plane that is seen flatter is not measured: cosine of the angle to its normal.
 const FLATTEST: f64 = 0.2;
 
-/// A photograph that could be taken, with what it would show.
+/// A photograph that could be taken.
 pub(super) struct Candidate {
     pub(super) pose: Pose,
-    /// Points of the control in view, object units.
-    pub(super) seen: Vec<Point3<f64>>,
-    points: Vec<PixelPoint>,
     middle: PixelPoint,
     depth: f64,
     tilt: f64,
@@ -32,10 +28,30 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    pub(super) fn photograph(&self, field: &Field, uncertainty: f64) -> Photograph {
+    pub(super) fn photograph(&self, field: &Field, points: Vec<PixelPoint>, uncertainty: f64) -> Photograph {
         let along = self.pose.rotation * field.axes[0];
-        let Self { pose, middle, depth, tilt, nearer, .. } = *self;
-        Photograph { pose, middle, depth, tilt, nearer, along: along.y.atan2(along.x), points: self.points.clone(), uncertainty }
+        let Self { pose, middle, depth, tilt, nearer } = *self;
+        Photograph { pose, middle, depth, tilt, nearer, along: along.y.atan2(along.x), points, uncertainty }
+    }
+
+    /// Those of some points that it shows, and where; `None` if they are too few, or one is missing of what must be in view as a whole.
+    pub(super) fn shown(&self, camera: &Camera, field: &Field, points: &[Point3<f64>]) -> Option<(Vec<Point3<f64>>, Vec<PixelPoint>)> {
+        let normal = self.pose.rotation * field.axes[2];
+        let size = camera.size();
+        let inside = |at: f64, side: u32| (MARGIN..1.0 - MARGIN).contains(&((at + 0.5) / f64::from(side)));
+        let image = |point: &Point3<f64>| {
+            let there = self.pose.camera_from_world(point);
+            let is_flat = field.is_plane && normal.dot(&-there) < FLATTEST * there.norm();
+            let image = camera.project(self.pose.ray(point)).ok().filter(|_| there.z < 0.0 && !is_flat)?;
+            (inside(image.x, size.width) && inside(image.y, size.height)).then_some(image)
+        };
+        let both = |point: &Point3<f64>| Some((*point, image(point)?));
+        if field.whole {
+            // The first that is missing ends it.
+            return Some(points.iter().map(both).collect::<Option<Vec<_>>>()?.into_iter().unzip());
+        }
+        let found: Vec<_> = points.iter().filter_map(both).collect();
+        (found.len() >= LEAST.min(points.len())).then(|| found.into_iter().unzip())
     }
 }
 
@@ -47,11 +63,14 @@ pub(super) fn candidates(camera: &Camera, field: &Field) -> Vec<Candidate> {
     let mut depths = field.depths.to_vec();
     depths.dedup();
     let attitudes = attitudes(field.tilt);
-    let all: Vec<_> = places.flat_map(|middle| depths.iter().map(move |&depth| (middle, depth))).collect();
-    let of_place = |&(middle, depth): &(PixelPoint, f64)| {
-        attitudes.iter().filter_map(|attitude| candidate(camera, field, (middle, depth), attitude)).collect::<Vec<_>>()
-    };
-    all.par_iter().flat_map_iter(of_place).collect()
+    let seen = places.filter_map(|middle| Some((middle, camera.unproject(middle).ok().filter(|ray| ray.z < 0.0)?)));
+    let at = seen.flat_map(|(middle, ray)| depths.iter().map(move |&depth| (middle, at_depth(ray, depth))));
+    at.flat_map(|at| attitudes.iter().map(move |attitude| candidate(field, at, attitude))).collect()
+}
+
+/// The point of a ray at a distance along the camera's axis.
+fn at_depth(ray: Ray, depth: f64) -> Vector3<f64> {
+    Vector3::new(ray.x, ray.y, ray.z) * (depth / -ray.z)
 }
 
 /// How the control is turned.
@@ -77,29 +96,9 @@ fn attitudes(most: f64) -> Vec<Attitude> {
     tilts.iter().flat_map(|tilt| about_axis.map(|about| (tilt, about))).map(of).collect()
 }
 
-fn candidate(camera: &Camera, field: &Field, (middle, depth): (PixelPoint, f64), attitude: &Attitude) -> Option<Candidate> {
-    let ray = camera.unproject(middle).ok().filter(|ray| ray.z < 0.0)?;
+/// The photograph with the middle of the control at a place of the frame and of the camera's axes.
+fn candidate(field: &Field, (middle, at): (PixelPoint, Vector3<f64>), attitude: &Attitude) -> Candidate {
     let rotation = attitude.turn * Matrix3::from_rows(&field.axes.map(|axis| axis.transpose()));
-    let at = Vector3::new(ray.x, ray.y, ray.z) * (depth / -ray.z);
     let pose = Pose { rotation, centre: field.middle - rotation.transpose() * at };
-    let normal = rotation * field.axes[2];
-    let size = camera.size();
-    let [right, below] = [size.width, size.height].map(|side| f64::from(side) * (1.0 - MARGIN) - 0.5);
-    let margin = [size.width, size.height].map(|side| f64::from(side) * MARGIN - 0.5);
-    let (mut seen, mut points) = (Vec::new(), Vec::new());
-    for point in &field.points {
-        let there = pose.camera_from_world(point);
-        let is_flat = field.is_plane && normal.dot(&-there) < FLATTEST * there.norm();
-        let image = camera.project(pose.ray(point)).ok().filter(|_| there.z < 0.0 && !is_flat);
-        match image.filter(|p| (margin[0]..right).contains(&p.x) && (margin[1]..below).contains(&p.y)) {
-            Some(image) => {
-                seen.push(*point);
-                points.push(image);
-            }
-            None if field.whole => return None,
-            None => {}
-        }
-    }
-    let Attitude { tilt, nearer, .. } = *attitude;
-    (seen.len() >= LEAST.min(field.points.len())).then_some(Candidate { pose, seen, points, middle, depth, tilt, nearer })
+    Candidate { pose, middle, depth: -at.z, tilt: attitude.tilt, nearer: attitude.nearer }
 }

@@ -3,8 +3,9 @@
 use calibench_adjust::{ObjectPoint, Status};
 use nalgebra::{Point3, Vector3};
 
-use crate::Calibration;
 use crate::shape::board::board;
+use crate::start::spread;
+use crate::{Board, Calibration};
 
 /// Tilt up to which photographs are proposed whatever was taken, radians: 45 degrees.
 const TILT: f64 = std::f64::consts::FRAC_PI_4;
@@ -13,12 +14,17 @@ const LEAST: usize = 6;
 /// Share of the control that photographs have in view where it must be in view as a whole, as a detector of boards may ask for.
 const WHOLE: f64 = 0.95;
 
+/// Points that are looked at of each photograph that could be taken; of what is chosen all are.
+const MOST: usize = 120;
+
 /// The control, and the limits within which it is photographed.
 pub(super) struct Field {
     /// Object units.
     pub(super) points: Vec<Point3<f64>>,
+    /// Some of them, from everywhere.
+    pub(super) sparse: Vec<Point3<f64>>,
     pub(super) middle: Point3<f64>,
-    /// Unit vectors: two along it, and the one to the side from which it is seen.
+    /// Unit vectors: two along it, and the one to the side from which it is seen; right-handed.
     pub(super) axes: [Vector3<f64>; 3],
     pub(super) is_plane: bool,
     /// Distances of the middle along the camera's axis so far: the least, the median, the largest.
@@ -30,6 +36,11 @@ pub(super) struct Field {
 }
 
 impl Field {
+    /// How many points each of the sparse ones stands for.
+    pub(super) fn share(&self) -> f64 {
+        self.points.len() as f64 / self.sparse.len() as f64
+    }
+
     pub(super) fn of(calibration: &Calibration<'_>, camera: usize) -> Result<Self, String> {
         let network = &calibration.prepared.network;
         let known: Vec<usize> = (0..network.points.len()).filter(|&i| is_known(&network.points[i])).collect();
@@ -42,7 +53,8 @@ impl Field {
         let middle = board.as_ref().map_or_else(|| mean(&points), |board| board.middle);
         let facing = || poses.iter().map(|(pose, _)| (pose.centre - middle).normalize()).sum::<Vector3<f64>>();
         let axes = match &board {
-            Some(board) => board.axes,
+            // A board has its axes as the object has them, whatever the side from which it is seen.
+            Some(Board { axes: [u, _, facing], .. }) => [*u, facing.cross(u), *facing],
             None => upright(facing().try_normalize(1e-9).ok_or("the photographs surround the control")?),
         };
         let mut depths: Vec<f64> = poses.iter().map(|(pose, _)| -pose.ray(&middle).z).filter(|depth| *depth > 0.0).collect();
@@ -55,7 +67,8 @@ impl Field {
         shares.sort_unstable();
         let whole = shares.get(shares.len() / 10).is_some_and(|&seen| seen as f64 >= WHOLE * points.len() as f64);
         let depths = [near, depths[depths.len() / 2], far];
-        Ok(Self { points, middle, axes, is_plane: board.is_some(), depths, tilt: tilts.fold(TILT, f64::max).min(1.2), whole })
+        let sparse = if points.len() <= MOST { points.clone() } else { spread(points.len(), MOST).map(|place| points[place]).collect() };
+        Ok(Self { points, sparse, middle, axes, is_plane: board.is_some(), depths, tilt: tilts.fold(TILT, f64::max).min(1.2), whole })
     }
 }
 

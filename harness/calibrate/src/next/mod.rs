@@ -77,18 +77,23 @@ impl Calibration<'_> {
         let all: Vec<(Candidate, DMatrix<f64>)> = candidates(self.camera(camera), &field)
             .into_par_iter()
             .filter_map(|candidate| {
-                let found = information(&candidate.pose, &candidate.seen)?;
+                let (seen, _) = candidate.shown(self.camera(camera), &field, &field.sparse)?;
+                let found = information(&candidate.pose, &seen)? * field.share();
                 Some((candidate, found))
             })
             .collect();
         let mut sum = DMatrix::zeros(names.len(), names.len());
         let mut photographs: Vec<Photograph> = Vec::new();
         for _ in 0..PROPOSED {
-            let values: Vec<f64> = all.par_iter().map(|(_, own)| uncertain.with(&(&sum + own))).collect();
-            let best =
-                (0..all.len()).min_by(|&a, &b| values[a].total_cmp(&values[b])).ok_or("no photograph has enough control points in view")?;
-            sum += &all[best].1;
-            photographs.push(all[best].0.photograph(&field, values[best]));
+            let mut ranked: Vec<(f64, &Candidate)> = all.par_iter().map(|(one, own)| (uncertain.with(&(&sum + own)), one)).collect();
+            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let whole = |&(_, one): &(f64, &'_ Candidate)| {
+                let (seen, points) = one.shown(self.camera(camera), &field, &field.points)?;
+                Some((information(&one.pose, &seen)?, one.photograph(&field, points, f64::NAN)))
+            };
+            let (own, best) = ranked.iter().find_map(whole).ok_or("no photograph has enough control points in view")?;
+            sum += own;
+            photographs.push(Photograph { uncertainty: uncertain.with(&sum), ..best });
         }
         Ok(Next { before: uncertain.with(&DMatrix::zeros(names.len(), names.len())), usual, photographs, whole: field.whole })
     }

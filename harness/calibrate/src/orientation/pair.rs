@@ -2,12 +2,11 @@
 
 use std::collections::HashMap;
 
-use calibench_adjust::approximate::{ApproximateError, ModelPoint, RelativeOrientation, Search, Tolerance, orient_relatively};
+use calibench_adjust::approximate::{ApproximateError, ModelPoint, RelativeOrientation, Search, Shape, Tolerance, orient_relatively};
 use calibench_diagnostics::nearest;
 use calibench_exchange::Points;
 use calibench_model::camera::Camera;
 use calibench_model::{PixelPoint, Pose};
-use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use thiserror::Error;
 
 /// One of two images.
@@ -165,11 +164,8 @@ impl Pair {
 
     /// The smallest extent of the model relative to the largest: 0 of a plane. `None` without points.
     pub fn thickness(&self) -> Option<f64> {
-        let points: Vec<Vector3<f64>> = self.points().map(|point| point.position.coords).collect();
-        let middle = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
-        let spread: Matrix3<f64> = points.iter().map(|point| point - middle).map(|from| from * from.transpose()).sum();
-        let squares = SymmetricEigen::new(spread).eigenvalues;
-        (squares.max() > 0.0).then(|| (squares.min().max(0.0) / squares.max()).sqrt())
+        let shape = Shape::of(self.points().map(|point| point.position).collect::<Vec<_>>().into_iter());
+        (shape.extents[0] > 0.0).then(|| shape.relative()[0])
     }
 
     /// The median angle at which rays meet, rad.

@@ -1,10 +1,10 @@
 //! What to photograph next.
 
 use calibench_adjust::{Distance, frame_weight, image_information};
-use calibench_calibrate::Calibration;
-use calibench_model::PixelPoint;
+use calibench_calibrate::{Calibration, Next};
 use calibench_model::camera::CameraModel;
-use nalgebra::{Point3, Vector3};
+use calibench_model::{PixelPoint, Pose};
+use nalgebra::{Matrix3, Point3, Vector3};
 
 use crate::network::{SIZE, Scene, board, lens, settings, wall};
 
@@ -38,6 +38,63 @@ fn a_proposed_photograph_does_what_was_promised() {
         let reached = uncertainty(&taken) / scale;
         assert!((reached - photograph.uncertainty).abs() < 0.02 * reached, "{reached} {}", photograph.uncertainty);
     }
+}
+
+/// Object axes that point away from the camera, as many tools have them.
+#[test]
+fn a_board_that_is_seen_from_behind_its_axes_is_no_mirror_image() {
+    let front = board(lens());
+    let about = |pose: &Pose| {
+        // A half turn of everything about the board's rows.
+        let half = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+        Pose { rotation: pose.rotation * half, centre: Point3::from(half * pose.centre.coords) }
+    };
+    let targets = front.targets.iter().map(|p| Point3::new(p.x, -p.y, -p.z)).collect();
+    let scene = noisy(Scene { poses: front.poses.iter().map(about).collect(), targets, ..board(lens()) });
+    assert!(scene.poses.iter().all(|pose| pose.centre.z < 0.0));
+    let prepared = scene.prepared(&settings("opencv5")).unwrap();
+    let next = prepared.adjust().unwrap().next(0).unwrap();
+    for photograph in &next.photographs {
+        assert!((photograph.pose.rotation.determinant() - 1.0).abs() < 1e-9, "{}", photograph.pose.rotation);
+        assert!(photograph.pose.centre.z < 0.0);
+    }
+    // What is proposed does not depend on how the axes are called.
+    let other = noisy(board(lens()));
+    let prepared = other.prepared(&settings("opencv5")).unwrap();
+    let known = prepared.adjust().unwrap().next(0).unwrap();
+    let values = |next: &Next| next.photographs.iter().map(|one| one.uncertainty).collect::<Vec<_>>();
+    for (a, b) in values(&next).iter().zip(values(&known)) {
+        assert!((a - b).abs() < 1e-6 * b, "{a} {b}");
+    }
+}
+
+/// Of many points some are looked at in the search, and all of what is chosen.
+#[test]
+fn many_points_are_searched_by_some_and_counted_by_all() {
+    let fine = |n: i32| {
+        let targets = (0..9 * n * 7 * n).map(|i| {
+            let (column, row) = (i % (9 * n), i / (9 * n));
+            Point3::new(240.0 * f64::from(column) / f64::from(9 * n - 1), 180.0 * f64::from(row) / f64::from(7 * n - 1), 0.0)
+        });
+        let targets: Vec<_> = targets.collect();
+        Scene { sigma: 1e-3, control: targets.len(), targets, ..board(lens()) }
+    };
+    let mut scene = fine(6);
+    let prepared = scene.prepared(&settings("opencv5")).unwrap();
+    let found = prepared.adjust().unwrap();
+    let next = found.next(0).unwrap();
+    assert_eq!(next.photographs[0].points.len(), 2268);
+    scene.poses.push(next.photographs[0].pose);
+    let prepared = scene.prepared(&settings("opencv5")).unwrap();
+    let taken = prepared.adjust().unwrap();
+    let reached = uncertainty(&taken) * found.solution.sigma0().unwrap() / taken.solution.sigma0().unwrap();
+    assert!((reached - next.photographs[0].uncertainty).abs() < 0.02 * reached, "{reached} {}", next.photographs[0].uncertainty);
+    // As good a choice, in shares of what it is now, as from all points of a board of few.
+    let few = fine(1);
+    let prepared = few.prepared(&settings("opencv5")).unwrap();
+    let all = prepared.adjust().unwrap().next(0).unwrap();
+    let [some, all] = [&next, &all].map(|next| next.photographs[0].uncertainty / next.before);
+    assert!(some < 1.1 * all, "{some} {all}");
 }
 
 #[test]

@@ -1,34 +1,4 @@
-// Small helpers, and what the page was made of.
-
-const all = (selector, root = document) => [...root.querySelectorAll(selector)];
-
-/** A new element; children that are strings become text, never markup. */
-const make = (tag, attributes = {}, ...children) => {
-  const node = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (typeof value === "function") node.addEventListener(name, value);
-    else if (value !== undefined) node.setAttribute(name, value);
-  }
-  node.append(...children);
-  return node;
-};
-
-const button = (text, title, click) => make("button", { type: "button", title, click }, text);
-
-const within = (value, low, high) => Math.min(Math.max(value, low), high);
-
-/** Calls `work` once in the next frame, however often it is asked for. */
-const oncePerFrame = (work) => {
-  let asked = false;
-  return () => {
-    if (asked) return;
-    asked = true;
-    requestAnimationFrame(() => {
-      asked = false;
-      work();
-    });
-  };
-};
+// What the page was made of, and what its parts have in common.
 
 /** Calls `work` when it was not asked for during `pause` ms; `now` calls it at once if it is still to come. */
 const whenQuiet = (pause, work) => {

@@ -1,12 +1,6 @@
 // Tables in and out. 0, 0 is the centre of the first pixel, x to the right, y down.
 
-/** One cell by RFC 4180; `'` stands before what a spreadsheet would run as a formula, and before what has it there already. */
-const csvCell = (text) => {
-  const safe = /^'*[=+\-@\t\r\n]/.test(text) && !Number.isFinite(Number(text)) ? `'${text}` : text;
-  return /[",\r\n]/.test(safe) ? `"${safe.replace(/"/g, '""')}"` : safe;
-};
-
-/** The text of a cell that was written so. */
+/** The text of a cell as `csvCell` writes it. */
 const fromCell = (cell) => (/^''*[=+\-@\t\r\n]/.test(cell) ? cell.slice(1) : cell);
 
 const csv = (rows) => rows.map((row) => `${row.map((cell) => csvCell(String(cell))).join(",")}\n`).join("");
@@ -52,14 +46,4 @@ const csvTable = (text, needed) => {
       return Object.fromEntries(names.map((name, place) => [name, fromCell(row[place].trim())]));
     }),
   };
-};
-
-const download = (name, text) => {
-  const url = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
-  const link = make("a", { href: url, download: name });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  // Some browsers read the file only after the click has ended.
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
 };

@@ -128,7 +128,7 @@ const fileTools = () => {
     read([...chooser.files]);
     chooser.value = "";
   } });
-  const save = button("save points", "image,target,x,y as CSV, for calibench measure --points", () => download("points.csv", pointsFile()));
+  const save = button("save points", "image,target,x,y as CSV, for calibench measure --points", () => download("points.csv", "text/csv", pointsFile()));
   save.classList.add("main");
   const factor = make("select", { "aria-label": "ellipses", change: () => {
     state.factor = Number(factor.value);
@@ -141,7 +141,7 @@ const fileTools = () => {
   if (served.on) {
     const take = button("take predicted", "point at all predicted targets of this photograph", takePredicted);
     shown.push(() => (take.disabled = ![...served.predicted[state.photo].targets.keys()].some((name) => !here().has(name))));
-    bar.append(button("save measured", "as calibench measure writes them", () => download("measured.csv", measuredFile())), take);
+    bar.append(button("save measured", "as calibench measure writes them", () => download("measured.csv", "text/csv", measuredFile())), take);
   }
   return bar;
 };

@@ -192,6 +192,31 @@ fn figure(next: &Next, size: ImageSize, taken: &Hull, id: &str) -> Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use calibench_model::Pose;
+    use nalgebra::{Matrix3, Point3};
+
+    #[test]
+    fn an_arrow_points_to_the_side_that_is_named() {
+        let size = ImageSize { width: 300, height: 200 };
+        let one = |towards: f64| Photograph {
+            pose: Pose { rotation: Matrix3::identity(), centre: Point3::origin() },
+            middle: PixelPoint::new(150.0, 100.0),
+            depth: 1.0,
+            tilt: 0.5,
+            nearer: Some(towards),
+            along: 0.0,
+            points: Vec::new(),
+            uncertainty: 1.0,
+        };
+        for eighth in -3..=4 {
+            let towards = f64::from(eighth) * FRAC_PI_4;
+            let (dx, dy) = end(&one(towards), size).unwrap();
+            // The frame so small that the arrow leaves its middle third.
+            let small = ImageSize { width: 30, height: 30 };
+            assert_eq!(place(PixelPoint::new(14.5 + dx, 14.5 + dy), small), direction(towards), "{eighth}");
+        }
+        assert_eq!(end(&Photograph { nearer: None, ..one(0.0) }, size), None);
+    }
 
     #[test]
     fn directions_and_places_have_names() {

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use calibench_calibrate::Calibration;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use super::html::network::{factor, points, stations};
+use super::html::network::{extent, factor, points, stations};
 use crate::html::{ScenePoint, Station};
 
 /// Orange, blue and green of Okabe & Ito 2008: control, other points, stations.
@@ -32,15 +32,6 @@ pub fn scene_ply(calibration: &Calibration<'_>) -> String {
     }
     let are_fixed = points.iter().all(|point| point.covariance.is_none());
     mesh.file(&if are_fixed { "points are fixed".into() } else { format!("ellipsoids of one standard deviation {factor} times enlarged") })
-}
-
-fn extent(stations: &[Station], points: &[ScenePoint]) -> f64 {
-    let all = || stations.iter().map(|s| s.centre).chain(points.iter().map(|p| p.place));
-    let side = |axis: usize| {
-        let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
-        high - low
-    };
-    [0, 1, 2].map(side).into_iter().fold(f64::MIN_POSITIVE, f64::max)
 }
 
 #[derive(Default)]

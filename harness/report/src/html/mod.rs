@@ -17,8 +17,12 @@ pub use markup::{escaped, json as in_script};
 pub(crate) use plot::{Axis, Plot};
 pub(crate) use scene::{Scene, ScenePoint, Station};
 
+/// The part of the script that every page begins with, ours and others': elements, files that are handed out, cells of CSV.
+pub const HELPERS: &str = include_str!("assets/helpers.js");
+
 /// The script, in the order in which its parts build on each other.
-const SCRIPT: [&str; 15] = [
+const SCRIPT: [&str; 16] = [
+    HELPERS,
     include_str!("assets/state.js"),
     include_str!("assets/files.js"),
     include_str!("assets/tip.js"),
@@ -41,7 +45,7 @@ const EXPLORER: [&str; 3] = [include_str!("assets/interpolate.js"), include_str!
 pub const STYLE: &str = include_str!("assets/page.css");
 
 /// A browser that obeys this sends no request, whatever the page says.
-const POLICY: &str =
+pub const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
 /// The verdict at the head of a page.

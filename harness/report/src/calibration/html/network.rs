@@ -61,18 +61,22 @@ fn rays(calibration: &Calibration<'_>) -> Vec<[usize; 2]> {
     observations.iter().step_by(every).map(|observation| [observation.image, observation.point]).collect()
 }
 
-/// A round number of times by which the median ellipsoid is about a hundredth of the network.
-pub(in super::super) fn factor(stations: &[Station], points: &[ScenePoint]) -> f64 {
+/// The longest side of the box around everything, object units; positive.
+pub(in super::super) fn extent(stations: &[Station], points: &[ScenePoint]) -> f64 {
     let all = || stations.iter().map(|s| s.centre).chain(points.iter().map(|p| p.place));
     let side = |axis: usize| {
         let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
         high - low
     };
-    let size = [0, 1, 2].map(side).into_iter().fold(0.0, f64::max);
+    [0, 1, 2].map(side).into_iter().fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// A round number of times by which the median ellipsoid is about a hundredth of the network.
+pub(in super::super) fn factor(stations: &[Station], points: &[ScenePoint]) -> f64 {
     let mut sigmas: Vec<f64> = points.iter().filter_map(|p| p.covariance).map(|c| c[0].max(c[3]).max(c[5]).sqrt()).collect();
     sigmas.sort_by(f64::total_cmp);
     match sigmas.get(sigmas.len() / 2) {
-        Some(middle) if *middle > 0.0 => crate::field::stretch(0.01 * size, *middle),
+        Some(middle) if *middle > 0.0 => crate::field::stretch(0.01 * extent(stations, points), *middle),
         _ => 1.0,
     }
 }

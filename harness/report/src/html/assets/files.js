@@ -1,22 +1,5 @@
 // Files that the reader takes along.
 
-const download = (name, type, text) => {
-  const url = URL.createObjectURL(text instanceof Blob ? text : new Blob([text], { type }));
-  const link = make("a", { href: url, download: name.replace(/[^\w.-]+/g, "_") });
-  document.body.append(link);
-  link.click();
-  link.remove();
-  // Some browsers read the file only after the click has ended.
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
-};
-
-/** One cell by RFC 4180; what a spreadsheet would run as a formula is made text by an apostrophe. */
-const csvCell = (text) => {
-  const risky = /^[=+\-@\t\r]/.test(text) && !Number.isFinite(Number(text));
-  const safe = risky ? `'${text}` : text;
-  return /[",\r\n]/.test(safe) ? `"${safe.replace(/"/g, '""')}"` : safe;
-};
-
 const csv = (rows) => rows.map((row) => `${row.map(csvCell).join(",")}\r\n`).join("");
 
 const SVG = "http://www.w3.org/2000/svg";
