@@ -149,6 +149,19 @@ mod tests {
         assert!(predict(&control, &line, SIZE, None).is_err());
     }
 
+    /// A plane's picture says nothing of what is before or behind it.
+    #[test]
+    fn what_is_off_the_plane_is_not_predicted_by_it() {
+        let (mut control, truth, _) = scene(0.0);
+        control.extend(
+            [("before", 0.5), ("behind", -0.5), ("all but on it", 0.01)].map(|(name, z)| ControlRow::new(name.to_owned(), [0.5, 0.0, z])),
+        );
+        let four = [0, 3, 8, 11].map(|i| truth[i].clone());
+        let found = predict(&control, &four, SIZE, None).unwrap();
+        assert_eq!(found.targets.len(), 9);
+        assert!(found.targets.iter().all(|(name, _)| !["before", "behind"].contains(&name.as_str())), "{found:?}");
+    }
+
     #[test]
     fn points_in_space_give_the_others() {
         let (control, truth, camera) = scene(0.3);
