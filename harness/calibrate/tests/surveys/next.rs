@@ -89,12 +89,16 @@ fn many_points_are_searched_by_some_and_counted_by_all() {
     let taken = prepared.adjust().unwrap();
     let reached = uncertainty(&taken) * found.solution.sigma0().unwrap() / taken.solution.sigma0().unwrap();
     assert!((reached - next.photographs[0].uncertainty).abs() < 0.02 * reached, "{reached} {}", next.photographs[0].uncertainty);
-    // As good a choice, in shares of what it is now, as from all points of a board of few.
+    // As good a choice as that from all points of a board of few: which photograph is best does not depend on how dense the points are.
     let few = fine(1);
     let prepared = few.prepared(&settings("opencv5")).unwrap();
-    let all = prepared.adjust().unwrap().next(0).unwrap();
-    let [some, all] = [&next, &all].map(|next| next.photographs[0].uncertainty / next.before);
-    assert!(some < 1.1 * all, "{some} {all}");
+    let coarse = prepared.adjust().unwrap().next(0).unwrap();
+    let (names, covariance) = found.covariances.of_camera(0);
+    let sigma = found.solution.sigma0().unwrap() * found.prepared.settings.sigma();
+    let more = image_information(found.camera(0), &names, &coarse.photographs[0].pose, &scene.targets, sigma).unwrap();
+    let weight = frame_weight(found.camera(0), &names, (15, 11), Distance::Far).unwrap();
+    let other = (weight * (covariance.try_inverse().unwrap() + more).try_inverse().unwrap()).trace().sqrt();
+    assert!(next.photographs[0].uncertainty < 1.02 * other, "{} {other}", next.photographs[0].uncertainty);
 }
 
 #[test]
