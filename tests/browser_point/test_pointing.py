@@ -211,6 +211,9 @@ def test_measured_points_are_shown_with_their_ellipses_and_reasons(file):
     rows = page.table()
     assert set(rows) == {*TRUTH, "flat"}
     assert rows["flat"].startswith("✕ rejected: ") and "±" in rows["A"]
+    # In words, and said once: what a style puts before it is none of its text.
+    assert len(rows["flat"].split(", ")[1]) > 10, rows["flat"]
+    assert page.run("return all('.points .found').every((cell) => getComputedStyle(cell, '::before').content === 'none')")
     [row] = [row for row in csv.DictReader((Path(ABOUT["folder"]) / "measured.csv").read_text().splitlines()) if row["target"] == "A"]
     x, y = page.at(*TRUTH["A"])
     for _ in range(3):

@@ -1,11 +1,13 @@
 //! The page: one file with the photographs in it, or one that asks the server for them.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use calibench_exchange::PhotoError;
+use calibench_model::Rejection;
 use calibench_model::camera::ImageSize;
 use calibench_report::{HELPERS, POLICY, STYLE, escaped, in_script};
 use rayon::prelude::*;
@@ -132,6 +134,7 @@ fn foot(content: &Content, pictured: &[Pictured], key: &mut blake3::Hasher, meth
         "targets": content.targets,
         "measured": content.measured,
         "kind": content.kind,
+        "reasons": Rejection::ALL.iter().map(|why| (why.name(), why.meaning())).collect::<BTreeMap<_, _>>(),
         "method": method,
     });
     format!(

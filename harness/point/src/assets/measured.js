@@ -13,6 +13,12 @@ const photoCalled = (name) => {
   return near.length === 1 ? near[0] : -1;
 };
 
+/** What the reasons of our operators mean. */
+const meanings = new Map(Object.entries(content.reasons));
+
+/** Why there is no position, in words; what a method of somebody else's calls its reason stands as it is. */
+const whyLost = (status, code, meaning = meanings.get(code)) => [status, [code, meaning].filter(Boolean).join(", ")].filter(Boolean).join(": ") || "no position";
+
 const number = (text) => (text === undefined || text === "" ? null : Number(text));
 
 const readRow = (row, file) => {
@@ -25,7 +31,7 @@ const readRow = (row, file) => {
     x: there ? x : null,
     y: there ? y : null,
     covariance: covariance.every((value) => value !== null && Number.isFinite(value)) ? covariance : null,
-    reason: there ? "" : [row.status, row.reason].filter(Boolean).join(": ") || "no position",
+    reason: there ? "" : whyLost(row.status, row.reason),
     method: row.method || "",
     file,
   };

@@ -98,7 +98,7 @@ const tableRow = ([name, { pointed, measured: results }]) => {
     if (at) lookAt(at);
   });
   const cells = [make("td", { class: "n" }, pointed ? shortened(pointed.x) : ""), make("td", { class: "n" }, pointed ? shortened(pointed.y) : "")];
-  const said = make("td", { class: results.some((row) => row.x === null) ? "found bad" : "found" });
+  const said = make("td", { class: results.some((row) => row.x === null) ? "found lost" : "found" });
   results.forEach((row) => said.append(make("div", { title: [row.method, row.file].filter(Boolean).join(", ") }, outcome(row, pointed))));
   const gone = pointed ? button("×", "delete", () => remove(name)) : "";
   if (gone) gone.setAttribute("aria-label", `delete ${name}`);

@@ -44,7 +44,7 @@ const measure = async (photo, name) => {
     covariance: answer.covariance || null,
     status: answer.status,
     code: answer.reason || "",
-    reason: there ? "" : `${answer.status}: ${answer.reason}${answer.meaning ? `, ${answer.meaning}` : ""}`,
+    reason: there ? "" : whyLost(answer.status, answer.reason, answer.meaning),
     method: answer.method || content.method,
     file: "",
   };

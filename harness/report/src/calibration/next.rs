@@ -52,8 +52,8 @@ impl NextSection {
         let (size, taken) = (calibration.camera(camera).size(), Hull::of(&measured(calibration, camera)));
         let file = format!("{prefix}next.png");
         let caption = format!(
-            "{whose}Where these photographs would have the control in the frame: its outline, and an arrow to the side that is nearer. The dashed line surrounds \
-             what was measured so far."
+            "{whose}Where these photographs would have the control in the frame: its outline, and an arrow to the side that is nearer. The outline without a \
+             number surrounds what was measured so far."
         );
         let doubts = calibration.doubts().len();
         let first = if doubts > 0 {
@@ -81,18 +81,7 @@ impl NextSection {
 }
 
 fn table(next: &Next, size: ImageSize) -> MarkdownTable {
-    let columns = [
-        "photograph",
-        "middle of the control in the frame",
-        "x px",
-        "y px",
-        "tilt",
-        "nearer",
-        "u axis to the",
-        "distance",
-        "points",
-        "then px",
-    ];
+    let columns = ["photograph", "middle", "x px", "y px", "tilt", "nearer", "u axis to the", "distance", "points", "then px"];
     let mut table = MarkdownTable::new(&columns);
     for (index, one) in next.photographs.iter().enumerate() {
         table.row([
@@ -114,7 +103,8 @@ fn table(next: &Next, size: ImageSize) -> MarkdownTable {
 fn limits(next: &Next) -> String {
     let whole = if next.whole { "; all control is in view, as in the photographs so far" } else { "" };
     format!(
-        "`tilt` is that of the control against the image, `nearer` the side of it that is, `distance` that of its middle along the camera's axis, in object units. \
+        "`middle` is that of the control in the frame, `tilt` that of the control against the image, `nearer` the side of it that is, `distance` that of its middle along \
+         the camera's axis, in object units, `then` the standard deviation with the photograph. \
          It is supposed that the model is right, that points are measured as precisely as so far, and that the distance is one of those so far{whole}."
     )
 }
