@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use calibench_exchange::Inputs;
 use calibench_measure::kinds::all_busy;
-use calibench_measure::{Configured, Operator};
+use calibench_measure::{Configured, Operator, Sought};
 use calibench_model::{Image, Start};
 use calibench_report::speeds::{SPEEDS, Speed, Speeds};
 use calibench_run::views::first_image;
@@ -60,11 +60,12 @@ impl SpeedCommand {
                 return Err(Failure::input(message));
             }
             let (image, starts) = first_image(&scenario.name, scenario.seed, subject)?;
+            let board = subject.sheet.and_then(|board| Sought::new(board).ok());
             let methods = if methods.is_empty() { &scenario.methods } else { &methods };
             all_busy(methods, starts.iter().filter_map(|start| start.kind))
                 .map_err(|gap| Failure::input(format!("`{}`: {gap}", scenario.name)))?;
             let progress = Progress::start(&scenario.name, u64::from(self.rounds), context.quiet);
-            speeds.rows.extend(one.install(|| self.time(scenario, methods, &image, &starts, &|| progress.step())));
+            speeds.rows.extend(one.install(|| self.time(scenario, methods, (&image, board.as_ref()), &starts, &|| progress.step())));
             progress.finish(&format!("{} methods on {} points", methods.len(), starts.len()));
         }
         deliver(output.as_ref(), |file| speeds.write(file))?;
@@ -72,16 +73,23 @@ impl SpeedCommand {
     }
 
     /// Every method in every round; what the machine does beside it hits all of them.
-    fn time(&self, scenario: &Scenario, methods: &[Configured], image: &Image, starts: &[Start], step: &dyn Fn()) -> Vec<Speed> {
+    fn time(
+        &self,
+        scenario: &Scenario,
+        methods: &[Configured],
+        (image, board): (&Image, Option<&Sought>),
+        starts: &[Start],
+        step: &dyn Fn(),
+    ) -> Vec<Speed> {
         let of = |method: &Configured| starts.iter().copied().filter(|start| method.measures(start.kind)).collect::<Vec<_>>();
         // What was recorded takes no time.
-        let measures = |method: &&Configured| method.recorded().is_none();
+        let measures = |method: &&Configured| method.recorded().is_none() && finds_here(method, board);
         let operators: Vec<(&Configured, &dyn Operator, Vec<Start>)> =
             methods.iter().filter(measures).filter_map(|method| Some((method, method.operator.as_deref().ok()?, of(method)))).collect();
         let mut found: Vec<Vec<f64>> = vec![Vec::new(); operators.len()];
         for _ in 0..self.rounds {
             for ((_, operator, starts), rates) in operators.iter().zip(&mut found) {
-                rates.push(rate(*operator, image, starts));
+                rates.push(rate(*operator, (image, board), starts));
             }
             step();
         }
@@ -104,11 +112,19 @@ impl SpeedCommand {
     }
 }
 
+/// Whether a method that finds boards knows the one that is pictured.
+fn finds_here(method: &Configured, board: Option<&Sought>) -> bool {
+    method.board_finder().is_none_or(|finder| board.is_some_and(|board| finder.unfit(&board.board).is_none()))
+}
+
 /// Points per second over at least [`SLICE`] seconds.
-fn rate(operator: &dyn Operator, image: &Image, starts: &[Start]) -> f64 {
+fn rate(operator: &dyn Operator, (image, board): (&Image, Option<&Sought>), starts: &[Start]) -> f64 {
     let (started, mut points) = (Instant::now(), 0_usize);
     loop {
-        black_box(operator.measure_all(black_box(image), black_box(starts)));
+        match operator.board_finder().zip(board) {
+            Some((finder, board)) => drop(black_box(finder.find(black_box(image), board))),
+            None => drop(black_box(operator.measure_all(black_box(image), black_box(starts)))),
+        }
         points += starts.len();
         let seconds = started.elapsed().as_secs_f64();
         if seconds >= SLICE {

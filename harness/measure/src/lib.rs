@@ -12,6 +12,7 @@ pub mod conformance;
 mod disc_fit;
 pub mod ellipse;
 mod error;
+pub mod finder;
 mod following;
 mod gradient;
 mod grey_window;
@@ -40,6 +41,7 @@ mod tests;
 
 pub use board::{Board, BoardDetector};
 pub use error::MethodError;
+pub use finder::{BoardFinder, BoardPointFound, Finds, Sought};
 pub use kinds::{Kinds, KindsError, KindsGap};
 pub use operator::Operator;
 pub use operators::*;

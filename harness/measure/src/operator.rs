@@ -2,6 +2,7 @@
 
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
 
+use crate::finder::BoardFinder;
 use crate::recorded::Recorded;
 
 /// A way of measuring points in an image, with its parameters set.
@@ -40,6 +41,11 @@ pub trait Operator: Send + Sync {
 
     /// What it was recorded as, if it does not measure but was recorded: it is asked by name then, and [`Self::measure`] finds nothing.
     fn recorded(&self) -> Option<&dyn Recorded> {
+        None
+    }
+
+    /// What it finds boards by, if it is no operator but finds a board in the whole image: it is asked for the board then, and [`Self::measure`] finds nothing.
+    fn board_finder(&self) -> Option<&dyn BoardFinder> {
         None
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use calibench_model::TargetKind;
 
 use crate::error::MethodError;
+use crate::finder::BoardFinder;
 use crate::kinds::Kinds;
 use crate::operator::Operator;
 use crate::parameter::{ON_PHOTOGRAPHS, Parameter, SIGNIFICANCE, Settings};
@@ -83,6 +84,11 @@ impl Configured {
     /// What it was recorded as, if it was.
     pub fn recorded(&self) -> Option<&dyn Recorded> {
         self.operator.as_ref().ok()?.recorded()
+    }
+
+    /// What it finds boards by, if it does that.
+    pub fn board_finder(&self) -> Option<&dyn BoardFinder> {
+        self.operator.as_ref().ok()?.board_finder()
     }
 
     /// Whether it measures targets of this kind. One that is limited measures none of which the kind is not known.

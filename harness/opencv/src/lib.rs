@@ -1,5 +1,6 @@
 //! OpenCV's methods: the operators of `calibench-measure` with OpenCV's beside them, and a chessboard detector.
 
+pub mod boards;
 pub mod calibrate_camera;
 pub mod chessboard;
 pub mod chessboard_sb;
@@ -9,7 +10,8 @@ use calibench_measure::{BoardDetector, Registry};
 
 /// Every method of this build: ours and OpenCV's.
 pub fn registry() -> Registry {
-    Registry::builtin().with(subpix::method()).with(chessboard_sb::method())
+    let own = [subpix::method(), chessboard_sb::method()];
+    own.into_iter().chain(boards::methods()).fold(Registry::builtin(), Registry::with)
 }
 
 /// The detector of chessboards.

@@ -43,6 +43,9 @@ impl Project<'_> {
             Pictured::Photographs if method.recorded().is_some() => Err(ProjectError::Asked(format!(
                 "-m {text}: a file of positions measures nothing; it is for `run` with the scenario of its images (`judge` and `calibrate` take positions of photographs by --points)"
             ))),
+            Pictured::Photographs if method.board_finder().is_some() => Err(ProjectError::Asked(format!(
+                "-m {text}: it finds boards in whole images and measures no point from a start; it is for `run`, where the truth is known (`calibench detect` finds boards in photographs, which any other method then measures)"
+            ))),
             _ => Ok(method),
         }
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use calibench_measure::registry::Build;
-use calibench_measure::{Method, Registry, opencv_chessboard_sb, opencv_subpix};
+use calibench_measure::{Method, Registry, opencv_boards, opencv_chessboard_sb, opencv_subpix};
 use calibench_plugins::is_name;
 use calibench_project::{Project, Toolbox};
 use pyo3::prelude::*;
@@ -37,7 +37,8 @@ pub fn add(method: Method) -> PyResult<()> {
 
 /// What this package can do.
 fn toolbox() -> Toolbox {
-    let absent = [opencv_subpix::method, opencv_chessboard_sb::method].map(|method| method(Build::Unavailable(WHY), "none".into()));
+    let others = [opencv_subpix::method, opencv_chessboard_sb::method].into_iter().chain(opencv_boards::ALL);
+    let absent = others.map(|method| method(Build::Unavailable(WHY), "none".into()));
     let registry = absent.into_iter().fold(Registry::builtin(), Registry::with);
     let added = ADDED.lock().unwrap_or_else(PoisonError::into_inner).clone();
     Toolbox { registry: added.into_iter().fold(registry, Registry::with), ..Toolbox::default() }

@@ -3,6 +3,7 @@
 pub mod blocks;
 mod bounds;
 pub mod description;
+mod detection;
 mod error;
 pub mod judgement;
 mod measured;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use calibench_exchange::NewFolder;
-use calibench_measure::{Configured, ImageId, Known, Recorded, RunId};
-use calibench_model::{Image, Unknowns};
+use calibench_measure::{Configured, Known, Recorded, RunId};
+use calibench_model::Unknowns;
 use calibench_photographs::{Finder, method_info};
 use calibench_records::parts::Span;
 use calibench_records::results::MethodInfo;
@@ -13,7 +13,8 @@ use calibench_scenario::transfer::{Calibrates, Solver};
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 
 use crate::RunError;
-use crate::measured::{Asked, Measured, of_its_kinds};
+use crate::detection::DETECTION;
+use crate::measured::{Answers, Asked, Pictured, of_its_kinds};
 use crate::printed::PRINT;
 use crate::tools::Tools;
 
@@ -194,9 +195,26 @@ impl<'a> Plan<'a> {
         (0..subject.board.corners()).map(|index| subject.board.target(index)).collect()
     }
 
-    /// Every available method on one image, at the targets of its kinds: (method, results in the order of `targets`, `None` where it is not to measure).
-    pub(crate) fn measure(&self, (which, image): (ImageId<'_>, &Image), targets: &[Asked<'_>]) -> Vec<(usize, Vec<Option<Measured>>)> {
-        let of = |index| Some((index, of_its_kinds(&self.methods[index], (Some(which), image), targets)?));
+    /// The sets of figures that its records have, if they have any: those of its subject, or counts of what finders of boards find.
+    pub fn sets(&self) -> Vec<String> {
+        let mut sets = self.scenario.subject.sets();
+        sets.extend(self.counts_detections().then(|| DETECTION.to_owned()));
+        sets
+    }
+
+    /// Whether what finders of boards find is counted: where they are among the methods, and nothing else is made of their points.
+    pub(crate) fn counts_detections(&self) -> bool {
+        let Subject::Views(views) = &self.scenario.subject else { return false };
+        let plain = views.calibration.is_none() && views.blocks.is_none() && views.recognition.is_none() && views.transfer.is_none();
+        let finds = |method: &Configured| {
+            views.sheet.is_some_and(|board| method.board_finder().is_some_and(|finder| finder.unfit(&board).is_none()))
+        };
+        plain && self.methods.iter().any(finds)
+    }
+
+    /// Every available method on one image, at the targets of its kinds, with its place.
+    pub(crate) fn measure<'p>(&self, shown: Pictured<'p>, targets: &[Asked<'p>]) -> Vec<(usize, Answers<'p>)> {
+        let of = |index| Some((index, of_its_kinds(&self.methods[index], shown, targets)?));
         self.available().into_iter().filter_map(of).collect()
     }
 }

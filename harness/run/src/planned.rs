@@ -1,7 +1,7 @@
 //! How an order is run, and where it goes.
 
 use calibench_measure::Configured;
-use calibench_scenario::Subject;
+use calibench_scenario::{Subject, no_board};
 
 use crate::parts::{self, Done, Wanted};
 use crate::store::{self, RecordsFolder, SweepPlan};
@@ -52,7 +52,23 @@ impl<'a> Order<'a> {
         Ok(Planned::Sweep(SweepPlan { order: self, sweep }))
     }
 
+    /// Whether every method that finds boards knows the board of the scenario, if it is not swept: of what is swept each needs to know some.
+    ///
+    /// # Errors
+    /// [`RunError::Asked`]: the first that does not, and why.
+    fn known_boards(&self) -> Result<(), RunError> {
+        let name = &self.scenario.name;
+        let methods = if self.methods.is_empty() { &self.scenario.methods[..] } else { self.methods };
+        for (method, finder) in methods.iter().filter_map(|method| Some((method, method.board_finder()?))) {
+            if let Some(why) = no_board(&self.scenario.subject, finder) {
+                return Err(RunError::Asked(format!("`{}` finds boards, and in `{name}` {why}", method.label)));
+            }
+        }
+        Ok(())
+    }
+
     fn plan(&self) -> Result<Plan<'a>, RunError> {
+        self.known_boards()?;
         match self.trials {
             Some(trials) if trials > 1 && self.scenario.is_deterministic() => Err(RunError::Asked(format!(
                 "--trials {trials}: nothing is random in `{}`, every trial would be the same; expected 1",

@@ -17,7 +17,7 @@ use rand::RngExt;
 
 use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
-use crate::measured::Asked;
+use crate::measured::{Asked, Pictured};
 
 /// The name of the only view.
 pub const VIEW: &str = "image";
@@ -61,10 +61,11 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
         truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.kind, target.at))).collect();
     let mut points = Vec::new();
     let asked = truth.targets.iter().zip(starts).map(|(target, start)| Asked { name: &target.id, kind: target.kind, start });
-    let which = ImageId { trial: number, view: VIEW };
-    for (method, results) in plan.measure((which, &image), &asked.collect::<Vec<_>>()) {
+    let which = Some(ImageId { trial: number, view: VIEW });
+    let shown = Pictured { which, image: &image, board: None };
+    for (method, answers) in plan.measure(shown, &asked.collect::<Vec<_>>()) {
         let unknowns = plan.unknowns(method);
-        for (((target, truth), by_set), result) in targets.iter().zip(&truth.targets).zip(&by_target).zip(results) {
+        for (((target, truth), by_set), result) in targets.iter().zip(&truth.targets).zip(&by_target).zip(answers.results) {
             let Some(result) = result else { continue };
             let bound = by_set.get(&unknowns).copied().flatten();
             points.push(PointResult { bound, ..PointResult::scored(view.clone(), target.clone(), method, truth.at, result) });

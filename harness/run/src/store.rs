@@ -164,7 +164,7 @@ type Adjustments = CalibrationWriter<Compressor<NewFile>>;
 
 /// What writes the adjustments of `plan`, if it makes any.
 fn calibrations(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str) -> Result<Option<Adjustments>, RunError> {
-    let sets = plan.scenario.subject.sets();
+    let sets = plan.sets();
     if sets.is_empty() {
         return Ok(None);
     }

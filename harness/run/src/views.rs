@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use calibench_exchange::encode_png;
-use calibench_measure::ImageId;
+use calibench_measure::{ImageId, Sought};
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, ObjectTarget, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
@@ -17,9 +17,10 @@ use calibench_synth::view::{TargetTruth, View, Visibility};
 use rayon::prelude::*;
 
 use super::bounds::{BySet, TargetBounds};
+use super::detection::{Tally, TruePlaces};
 use super::recognition::{Counted, keep_steps, recognise, shown};
 use super::{Plan, RunError};
-use crate::measured::Asked;
+use crate::measured::{Asked, Pictured};
 use crate::network::Job;
 use crate::{blocks, network};
 
@@ -31,6 +32,8 @@ pub struct Prepared<'a> {
     pub views: Vec<PreparedView<'a>>,
     renderer: Renderer,
     targets: Vec<Arc<str>>,
+    /// The board that is seen, if it is one.
+    sought: Option<Sought>,
 }
 
 /// A station's outlines and truth.
@@ -96,7 +99,8 @@ impl<'a> Prepared<'a> {
         // The first station's error is the one that is said, whichever comes first.
         let views = stations.par_iter().map(view).collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, RunError>>()?;
         let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
-        Ok(Self { subject, views, renderer, targets })
+        let sought = subject.sheet.and_then(|board| Sought::new(board).ok());
+        Ok(Self { subject, views, renderer, targets, sought })
     }
 
     /// The image of a view.
@@ -210,8 +214,8 @@ fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Optio
 fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
     let number = key.trial;
     let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
-    let subject = prepared.subject;
-    let mut counted = Counted::default();
+    let (subject, counts) = (prepared.subject, plan.counts_detections());
+    let (mut counted, mut tally) = (Counted::default(), Tally::default());
     for (place, view) in prepared.views.iter().enumerate() {
         let image = prepared.image(view, key)?.image;
         let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
@@ -228,10 +232,14 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
         };
         let name = |point: &Pointed| &*prepared.targets[point.target];
         let asked = seen.iter().zip(starts).map(|(point, start)| Asked { name: name(point), kind: kind_of(prepared, point), start });
-        let which = ImageId { trial: number, view: &view.station.name };
-        for (method, results) in plan.measure((which, &image), &asked.collect::<Vec<_>>()) {
+        let which = Some(ImageId { trial: number, view: &view.station.name });
+        let picture = Pictured { which, image: &image, board: prepared.sought.as_ref() };
+        for (method, answers) in plan.measure(picture, &asked.collect::<Vec<_>>()) {
+            if let (Some(found), true) = (&answers.found, counts) {
+                tally.image(method, found, &true_places(prepared, view, &seen));
+            }
             let unknowns = plan.unknowns(method);
-            let points = seen.iter().zip(results).filter_map(|(point, result)| Some((point, result?))).map(|(point, result)| {
+            let points = seen.iter().zip(answers.results).filter_map(|(point, result)| Some((point, result?))).map(|(point, result)| {
                 let bound = view.bounds[point.target].get(&unknowns).copied().flatten();
                 let target = prepared.targets[point.target].clone();
                 PointResult { bound, ..PointResult::scored(view.name.clone(), target, method, point.truth, result) }
@@ -247,7 +255,15 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
     if let Some(recognition) = &subject.recognition {
         trial.calibrations.push(counted.calibrated(recognition, subject.sets().len() - 1));
     }
+    trial.calibrations.extend(tally.calibrated(0));
     Ok(trial)
+}
+
+/// Where the targets are in an image in which `seen` are expected.
+fn true_places<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>, seen: &[Pointed]) -> TruePlaces<'p> {
+    let name = |target: usize| &*prepared.targets[target];
+    let all = view.truth.iter().enumerate().filter_map(|(target, truth)| Some((name(target), truth.at?)));
+    TruePlaces { expected: seen.iter().map(|point| (name(point.target), point.truth)).collect(), all: all.collect() }
 }
 
 /// Whether the first point of all, which decides the image that pages show, lies in `view`. Noisy images do not compress: only this one is kept.

@@ -12,7 +12,7 @@ use toml::de::DeTable;
 
 use super::blocks;
 use super::calibration::{self, Seen};
-use super::methods::{check_busy, check_kinds, methods};
+use super::methods::{check_boards, check_busy, check_kinds, methods, without_board};
 use super::recognition;
 use super::section::Section;
 use super::site::Surroundings;
@@ -104,7 +104,7 @@ impl File<'_> {
     /// Checks every cell, or one. The scenario is that of the first, with the sweep beside it.
     fn cells(self, root: &DeTable<'_>, sweep: Sweep, cell: Option<usize>, problems: &mut Vec<Problem>) -> Option<Scenario> {
         let mut first: Option<(Scenario, Vec<Range<usize>>)> = None;
-        let mut kinds = Vec::new();
+        let (mut kinds, mut lacking) = (Vec::new(), Vec::new());
         for index in cell.map_or(0..sweep.cells(), |index| index..index + 1) {
             let mut found = Vec::new();
             let table = sweep.replaced(root, index, self.registry, &mut found);
@@ -118,6 +118,7 @@ impl File<'_> {
                     problems.push(Problem { help, ..problem });
                 }
             }
+            lacking.extend(scenario.iter().map(|(scenario, _)| without_board(&scenario.methods, &scenario.subject)));
             first = first.or(scenario);
             // What is wrong everywhere is said once; what is wrong here and there is not said a thousand times.
             if problems.len() >= MOST_PROBLEMS {
@@ -128,6 +129,7 @@ impl File<'_> {
         let (sweep, kinds) = (Some(sweep).filter(|_| cell.is_none()), once(&kinds));
         if sweep.is_some() && problems.is_empty() && scenario.methods.len() == listed_at.len() {
             check_busy(&scenario.methods, &listed_at, &kinds, problems);
+            check_boards(&scenario.methods, &listed_at, &lacking, problems);
         }
         Some(Scenario { kinds, sweep, ..scenario })
     }
@@ -215,6 +217,9 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     let kinds = once(&subject.kinds());
     if methods.len() == listed_at.len() {
         check_kinds(&methods, &listed_at, &kinds, in_sweep, problems);
+        if !in_sweep {
+            check_boards(&methods, &listed_at, &[without_board(&methods, &subject)], problems);
+        }
     }
     let (trials, trials_span) = head.trials.map_or((1, 0..0), |trials| (trials.get_ref().0, trials.span()));
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));

@@ -35,6 +35,7 @@ pub use calibration::Calibration;
 pub use check::{parse, parse_cell};
 pub use imaging::Imaging;
 pub use judgement::JudgementPlan;
+pub use methods::no_board;
 pub use plan::Scenario;
 pub use pointing::{Detector, HarrisPointing, Pointing};
 pub use printed::Printed;

@@ -5,12 +5,13 @@ use std::ops::Range;
 use calibench_diagnostics::Problem;
 use calibench_measure::kinds::{all_busy, cover, distinct, unmeasured};
 use calibench_measure::registry::KINDS;
-use calibench_measure::{Configured, Kinds, KindsError, KindsGap, MethodError, Registry};
+use calibench_measure::{BoardFinder, Configured, Kinds, KindsError, KindsGap, MethodError, Registry};
 use calibench_model::TargetKind;
 use toml::Spanned;
 use toml::de::DeValue;
 
 use super::section::Section;
+use super::subject::Subject;
 
 /// All methods of a scenario; mistakes are added to `problems`.
 pub fn methods(sections: Vec<Section<'_>>, registry: &Registry, problems: &mut Vec<Problem>) -> Vec<Configured> {
@@ -38,6 +39,35 @@ pub fn check_kinds(methods: &[Configured], spans: &[Range<usize>], kinds: &[Targ
         cover(methods, kinds, kinds).err()
     };
     problems.extend(gap.map(|gap| at(&gap, spans)));
+}
+
+/// Why methods have no board to find: of each one that finds boards and has none, the reason.
+pub type Lacking = Vec<Option<String>>;
+
+/// Of which of `methods` the images of `subject` hold no board that they find.
+pub fn without_board(methods: &[Configured], subject: &Subject) -> Lacking {
+    methods.iter().map(|method| no_board(subject, method.board_finder()?)).collect()
+}
+
+/// Whether each of `methods`, whose tables stand at `spans`, has a board to find in one of the cells, if it finds boards.
+pub fn check_boards(methods: &[Configured], spans: &[Range<usize>], cells: &[Lacking], problems: &mut Vec<Problem>) {
+    let unfit = |(index, (method, span)): (usize, (&Configured, &Range<usize>))| {
+        let why = cells.iter().map(|lacking| lacking.get(index)?.as_ref()).collect::<Option<Vec<_>>>()?;
+        Some(Problem::new(span.clone(), format!("`{}` finds boards, and {}", method.label, why.first()?)))
+    };
+    problems.extend(methods.iter().zip(spans).enumerate().filter_map(unfit));
+}
+
+/// Why `finder` has nothing to find in the images of `subject`, if so.
+pub fn no_board(subject: &Subject, finder: &dyn BoardFinder) -> Option<String> {
+    match subject {
+        Subject::Views(views) => match &views.sheet {
+            Some(board) => finder.unfit(board),
+            None => Some("the testfield is none".to_owned()),
+        },
+        Subject::Photographs(_) => Some("it is scored where the truth is known: in rendered views of a board".to_owned()),
+        Subject::Scene(_) | Subject::Printed(_) => Some("there is no testfield that is one".to_owned()),
+    }
 }
 
 /// Whether each of `methods` has targets among those of these `kinds`.

@@ -2,12 +2,15 @@
 
 use crate::registry::Registry;
 
+pub mod calib_targets;
 pub mod centroid;
 pub mod chess_corners;
+pub mod detect;
 pub mod ellipse_edges;
 pub mod forstner;
 pub mod harris_paraboloid;
 pub mod lsm;
+pub mod opencv_boards;
 pub mod opencv_chessboard_sb;
 pub mod opencv_subpix;
 pub mod parametric_circle;
@@ -37,6 +40,8 @@ impl Registry {
             parametric_circle::method(),
             ellipse_edges::method(),
             chess_corners::method(),
+            detect::method(),
+            calib_targets::method(),
         ];
         methods.into_iter().fold(Self::default(), Self::with)
     }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::Campaign;
 use super::drawn::{Seen, bent_plate};
 use crate::RunError;
-use crate::measured::{Asked, of_its_kinds};
+use crate::measured::{Asked, Pictured, of_its_kinds};
 use crate::views::{Pointed, Prepared, pointed};
 
 /// Of each target that is pointed at its place, and its image coordinates if it was measured, px.
@@ -124,7 +124,8 @@ fn measured(
         points.iter().map(|(_, start)| *start).collect()
     };
     let asked: Vec<Asked<'_>> = points.iter().zip(starts).map(|(point, start)| Asked { name: "", kind: kind(point), start }).collect();
-    let results = of_its_kinds(&way.operator, (None, image), &asked).unwrap_or_else(|| vec![None; points.len()]);
+    let shown = Pictured { which: None, image, board: None };
+    let results = of_its_kinds(&way.operator, shown, &asked).map_or_else(|| vec![None; points.len()], |answers| answers.results);
     points
         .iter()
         .zip(results)

@@ -30,6 +30,11 @@ pub fn read(text: &Spanned<String>, detected: bool, registry: &Registry, problem
             problems.push(Problem::new(text.span(), message).help("expected a method that measures"));
             None
         }
+        Ok(operator) if operator.board_finder().is_some() => {
+            let message = format!("`{}` finds boards in whole images, and here points are measured", operator.label);
+            problems.push(Problem::new(text.span(), message).help("expected a method that measures a point from a start"));
+            None
+        }
         Ok(operator) => Some(Measuring { operator: Arc::new(operator), detected }),
         Err(error) => {
             problems.push(Problem::new(text.span(), error.to_string()));

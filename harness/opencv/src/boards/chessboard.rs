@@ -1,0 +1,50 @@
+//! `opencv_find_chessboard`: findChessboardCorners and findChessboardCornersSB.
+
+use calibench_measure::{BoardFinder, BoardPointFound, Settings, Sought};
+use calibench_model::boards::Board;
+use calibench_model::{Image, Rejection};
+use opencv::calib3d::{find_chessboard_corners_def, find_chessboard_corners_sb_def};
+use opencv::core::{Point2f, Size, Vector};
+
+use super::in_order;
+use crate::chessboard::to_8_bit;
+
+/// OpenCV's chessboards, with its own default flags: the whole board is found or none of it. Time has no bound: in an image of noise of 12 megapixels it takes minutes.
+///
+/// Source: OpenCV, findChessboardCorners (V. Vezhnevets), findChessboardCornersSB (Duda & Frese 2018).
+pub struct Chessboards {
+    sb: bool,
+}
+
+impl Chessboards {
+    pub fn new(settings: &Settings) -> Self {
+        Self { sb: settings.get("sb") > 0.0 }
+    }
+
+    fn corners(&self, image: &Image, size: Size) -> opencv::Result<Option<Vector<Point2f>>> {
+        let (grey, mut corners) = (to_8_bit(image)?, Vector::<Point2f>::new());
+        let found = if self.sb {
+            find_chessboard_corners_sb_def(&grey, size, &mut corners)?
+        } else {
+            find_chessboard_corners_def(&grey, size, &mut corners)?
+        };
+        Ok((found && corners.len() as i32 == size.area()).then_some(corners))
+    }
+}
+
+impl BoardFinder for Chessboards {
+    fn unfit(&self, board: &Board) -> Option<String> {
+        match board {
+            Board::Chessboard(board) if board.columns.min(board.rows) > 2 => None,
+            Board::Chessboard(_) => Some("OpenCV finds chessboards from 3 x 3 inner corners on".into()),
+            _ => Some("it finds chessboards alone".into()),
+        }
+    }
+
+    fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {
+        let Board::Chessboard(board) = sought.board else { return Err(Rejection::NotDetected) };
+        let size = Size::new(board.columns as i32, board.rows as i32);
+        // What OpenCV objects to, an image of a few pixels for one, shows no board.
+        self.corners(image, size).ok().flatten().map(|corners| in_order(&corners)).ok_or(Rejection::NotDetected)
+    }
+}

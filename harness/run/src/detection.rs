@@ -1,0 +1,120 @@
+//! What finders of boards make of the images of a trial, counted against the truth.
+//!
+//! A point of the board is right within [`LOST`] px of its true place. Beyond that it was taken for another one, if the true place of one is as near, or it lies somewhere.
+
+use std::collections::BTreeMap;
+
+use calibench_measure::finder::Named;
+use calibench_model::{PixelPoint, Rejection};
+use calibench_records::results::{Calibrated, Figure, Group, LOST};
+
+/// The name under which counts of detections stand in the records.
+pub const DETECTION: &str = "detection";
+
+/// How many of what.
+type Counts = BTreeMap<&'static str, u64>;
+
+/// Counts by method.
+#[derive(Clone, Debug, Default)]
+pub struct Tally(BTreeMap<usize, Counts>);
+
+/// Where the points of a board truly are in an image.
+pub struct TruePlaces<'a> {
+    /// Those that are in view, by name, px: each of them is expected.
+    pub expected: Vec<(&'a str, PixelPoint)>,
+    /// All that have a place in the image plane: whatever lies at the border may be found or not.
+    pub all: Vec<(&'a str, PixelPoint)>,
+}
+
+impl TruePlaces<'_> {
+    fn of(&self, name: &str) -> Option<PixelPoint> {
+        self.all.iter().find(|(other, _)| *other == name).map(|(_, at)| *at)
+    }
+
+    fn is_expected(&self, name: &str) -> bool {
+        self.expected.iter().any(|(other, _)| *other == name)
+    }
+
+    /// What a found point is called in the records.
+    fn judged(&self, name: &str, at: PixelPoint) -> &'static str {
+        let near = |place: &PixelPoint| place.distance(at) <= LOST;
+        match self.of(name).filter(near) {
+            Some(_) if self.is_expected(name) => "labelled",
+            Some(_) => "not expected",
+            None if self.all.iter().any(|(_, place)| near(place)) => "wrong labels",
+            None => "off",
+        }
+    }
+}
+
+impl Tally {
+    /// Adds what `method` found in an image.
+    pub fn image(&mut self, method: usize, found: &Result<Named<'_>, Rejection>, truth: &TruePlaces<'_>) {
+        let counts = self.0.entry(method).or_default();
+        let mut add = |what: &'static str, count: usize| *counts.entry(what).or_default() += count as u64;
+        add("images", 1);
+        add("targets", truth.expected.len());
+        ["grids", "labels", "labelled", "not expected", "wrong labels", "off"].into_iter().for_each(|what| add(what, 0));
+        let Some(found) = found.as_ref().ok().filter(|found| !found.is_empty()) else { return };
+        add("grids", 1);
+        add("labels", found.len());
+        found.iter().for_each(|(name, at)| add(truth.judged(name, *at), 1));
+    }
+
+    /// The figures of a trial, by method, under the set of place `set`.
+    pub fn calibrated(self, set: usize) -> Vec<Calibrated> {
+        let figure = |(what, count): (&str, u64)| Figure::plain(Group::Network, format!("board/{what}/all"), count as f64, "");
+        let of = |(method, counts): (usize, Counts)| Calibrated {
+            method,
+            set,
+            outcome: Ok(counts.into_iter().map(figure).collect()),
+            check_failed: None,
+        };
+        self.0.into_iter().map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn at(x: f64) -> PixelPoint {
+        PixelPoint { x, y: 20.0 }
+    }
+
+    fn counted(found: &Result<Named<'_>, Rejection>) -> impl Fn(&str) -> Option<f64> + use<> {
+        let all = vec![("a", at(10.0)), ("b", at(30.0)), ("c", at(50.0)), ("rim", at(70.0))];
+        let truth = TruePlaces { expected: all[..3].to_vec(), all };
+        let mut tally = Tally::default();
+        tally.image(2, found, &truth);
+        let mut all = tally.calibrated(4);
+        let one = all.pop().unwrap();
+        assert_eq!((all.len(), one.method, one.set), (0, 2, 4));
+        let figures = one.outcome.unwrap();
+        move |what| figures.iter().find(|figure| *figure.name == format!("board/{what}/all")).map(|figure| figure.value)
+    }
+
+    #[test]
+    fn every_point_is_right_taken_for_another_or_somewhere() {
+        let found = counted(&Ok(vec![("a", at(10.6)), ("b", at(50.2)), ("c", at(41.0)), ("rim", at(70.0))]));
+        for (what, count) in
+            [("images", 1.0), ("grids", 1.0), ("targets", 3.0), ("labels", 4.0), ("labelled", 1.0), ("not expected", 1.0), ("wrong labels", 1.0), ("off", 1.0)]
+        {
+            assert_eq!(found(what), Some(count), "{what}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_the_board_does_not_have_in_view_is_no_right_one() {
+        let found = counted(&Ok(vec![("z", at(10.0)), ("y", at(90.0))]));
+        assert_eq!([found("wrong labels"), found("off"), found("labelled")], [Some(1.0), Some(1.0), Some(0.0)]);
+    }
+
+    #[test]
+    fn nothing_found_is_everything_missed() {
+        for nothing in [Err(Rejection::NotDetected), Ok(Vec::new())] {
+            let found = counted(&nothing);
+            assert_eq!([found("images"), found("grids"), found("targets"), found("labelled")], [Some(1.0), Some(0.0), Some(3.0), Some(0.0)]);
+        }
+    }
+}
