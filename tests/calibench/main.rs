@@ -16,6 +16,7 @@ mod determinism;
 mod diagnostics;
 mod doubts;
 mod eccentricity;
+mod finders;
 mod fuzz;
 mod galo;
 mod gate;

@@ -3,9 +3,12 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use calibench_measure::Registry;
-use calibench_plugins::{Confinement, Declaration, Declared, Finding, Launcher, Recording, check, confine_and_execute, method, parse};
+use calibench_measure::{Configured, Registry};
+use calibench_plugins::{
+    Confinement, Declaration, Declared, Finding, Launcher, Recording, Starts, check, confine_and_execute, method, parse,
+};
 use calibench_project::ProjectError;
+use calibench_run::origin::check_origin;
 use clap::{Args, Subcommand};
 
 use super::context::Context;
@@ -48,12 +51,13 @@ fn test(context: &Context<'_>, file: &Path) -> Result<(), Failure> {
 
 /// Tries a program and says what it does; whether anything fails.
 fn program_fails(declaration: Declaration, folder: &Path, launcher: &Launcher) -> Result<bool, Failure> {
-    let (name, mode) = (declaration.name.clone(), declaration.mode.clone());
+    let (name, mode, starts) = (declaration.name.clone(), declaration.mode.clone(), declaration.starts.clone());
     let registry = Registry::default().with(method(declaration, folder, launcher));
     let configured = registry.configure(&name, &[])?;
     print(&format!("{} {}\n", configured.label, configured.version))?;
     let mut failed = false;
-    for Finding { what, wrong } in check(&configured, &mode) {
+    let findings = if let Starts::Board(_) = starts { of_boards(&configured) } else { check(&configured, &mode) };
+    for Finding { what, wrong } in findings {
         failed |= wrong.is_some();
         say_finding(what, wrong.as_deref())?;
     }
@@ -61,6 +65,24 @@ fn program_fails(declaration: Declaration, folder: &Path, launcher: &Launcher) -
         operator.notes().iter().try_for_each(|note| print(&format!("  note    {note}\n")))?;
     }
     Ok(failed)
+}
+
+/// What one that finds boards does.
+fn of_boards(configured: &Configured) -> Vec<Finding> {
+    let there = configured.operator.as_ref().err().cloned();
+    let mut findings = vec![Finding { what: "it starts and says its version", wrong: there }];
+    if let Some(finder) = configured.board_finder() {
+        let wrong = check_origin(finder).err().map(|wrong| with_notes(configured, wrong));
+        findings
+            .push(Finding { what: "boards at 16 phases are found, their points in the median where its origin of the pixel says", wrong });
+    }
+    findings
+}
+
+/// What was told says more.
+fn with_notes(configured: &Configured, wrong: String) -> String {
+    let notes = configured.operator.as_ref().map_or_else(|_| Vec::new(), |operator| operator.notes());
+    std::iter::once(wrong).chain(notes).collect::<Vec<_>>().join("; ")
 }
 
 /// Reads a file of positions; whether anything is wrong with it.

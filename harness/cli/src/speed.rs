@@ -21,13 +21,22 @@ use crate::deliver::{deliver, print};
 use crate::failure::Failure;
 
 /// The scenarios whose methods and images are taken if none is named.
-const USUAL: [&str; 3] = ["atlas/corners", "atlas/discs", "atlas/wedges"];
+const USUAL: [&str; 8] = [
+    "atlas/corners",
+    "atlas/discs",
+    "atlas/wedges",
+    "targets/chessboard",
+    "targets/charuco",
+    "targets/aprilgrid",
+    "targets/circles",
+    "targets/rings",
+];
 /// How long a method is timed in each round, seconds.
 const SLICE: f64 = 0.02;
 
 #[derive(Args)]
 pub struct SpeedCommand {
-    /// Scenarios whose first image is measured [default: atlas/corners, atlas/discs, atlas/wedges]
+    /// Scenarios whose first image is measured [default: those of atlas/ that the atlas shows, and the boards of targets/]
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
     /// Methods in place of the scenarios' own, as in forstner:window=15; may be repeated

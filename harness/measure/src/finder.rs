@@ -151,10 +151,7 @@ mod tests {
         let named = |name: &str, x| (name.to_owned(), x);
         assert_eq!(names("3x3:20", &turned), [named("r1c1", 10.2), named("r1c2", 30.1), named("r1c3", 49.0)]);
         // Marks say which is which: what is wrong stays wrong.
-        assert_eq!(
-            names("charuco:5x5:20:12:DICT_4X4_50", &turned),
-            [named("r1c3", 10.2), named("r1c2", 30.1), named("r1c1", 49.0)]
-        );
+        assert_eq!(names("charuco:5x5:20:12:DICT_4X4_50", &turned), [named("r1c3", 10.2), named("r1c2", 30.1), named("r1c1", 49.0)]);
     }
 
     #[test]

@@ -64,6 +64,8 @@ struct Wire {
     #[serde(default)]
     reasons: Option<Vec<Option<String>>>,
     #[serde(default)]
+    names: Option<Vec<String>>,
+    #[serde(default)]
     error: Option<String>,
 }
 
@@ -72,6 +74,8 @@ struct Wire {
 pub struct Answer {
     pub points: Vec<Result<Measurement, Rejection>>,
     pub told: Vec<String>,
+    /// Which points of a board these are; none where it was asked for none.
+    pub names: Vec<String>,
 }
 
 /// The answer to the greeting.
@@ -99,13 +103,18 @@ pub fn read(line: &str, number: u64, asked: Option<usize>, most: usize) -> Resul
         None if count > most => return Err(malformed(format!("{count} positions in one image; expected {most} at most"))),
         _ => {}
     }
-    for (name, length) in [("cov", wire.cov.as_ref().map(Vec::len)), ("reasons", wire.reasons.as_ref().map(Vec::len))] {
+    let lengths = [
+        ("cov", wire.cov.as_ref().map(Vec::len)),
+        ("reasons", wire.reasons.as_ref().map(Vec::len)),
+        ("names", wire.names.as_ref().map(Vec::len)),
+    ];
+    for (name, length) in lengths {
         if let Some(length) = length.filter(|length| *length != count) {
             return Err(malformed(format!("`{name}` has {length} entries, `xy` has {count}")));
         }
     }
     let (covariances, reasons) = (wire.cov.unwrap_or_default(), wire.reasons.unwrap_or_default());
-    let mut answer = Answer::default();
+    let mut answer = Answer { names: wire.names.unwrap_or_default(), ..Answer::default() };
     for (index, position) in positions.into_iter().enumerate() {
         let covariance = covariances.get(index).and_then(Option::as_ref);
         answer.points.push(point(position, covariance).map_err(|fault| {

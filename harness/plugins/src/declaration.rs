@@ -9,6 +9,8 @@ use calibench_measure::parameter::Domain;
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::starts;
+
 /// A declared plug-in.
 #[derive(Clone, Debug)]
 pub struct Declaration {
@@ -72,7 +74,7 @@ impl Grey {
 }
 
 /// What a plug-in is told of where to look.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Starts {
     /// Approximate positions: it answers each of them.
     Given,
@@ -81,6 +83,17 @@ pub enum Starts {
         /// The radius, px.
         radius: f64,
     },
+    /// The board: it finds it in the whole image, its points by name.
+    Board(Boards),
+}
+
+/// What a plug-in that finds boards says of itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Boards {
+    /// The kinds of board that it finds, as options write them; none: all.
+    pub kinds: Vec<String>,
+    /// Whether (0, 0) is the outer corner of the first pixel in its answers.
+    pub from_corner: bool,
 }
 
 #[derive(Deserialize)]
@@ -98,6 +111,8 @@ pub(crate) struct Wire {
     image: Grey,
     starts: Option<Spanned<String>>,
     radius: Option<Spanned<f64>>,
+    boards: Option<Spanned<Vec<String>>>,
+    origin: Option<Spanned<String>>,
     seconds: Option<Spanned<f64>>,
     memory: Option<Spanned<String>>,
 }
@@ -117,15 +132,13 @@ struct ParameterWire {
 const SECONDS: f64 = 30.0;
 /// How much memory it may have unless its file says otherwise.
 const MEMORY: &str = "2 GB";
-/// How near a detection must be to a target unless the file says otherwise, px.
-const RADIUS: f64 = 5.0;
 
 /// The checked declaration of `file`; mistakes are added to `problems`.
 pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Option<Declaration> {
     let before = problems.len();
     problems.extend(no_name(&wire.name));
     let mut wrong = |span: Range<usize>, message: String| problems.push(Problem::new(span, message));
-    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, seconds, memory } = wire;
+    let Wire { name, about, source, command, mode, version, parameters, image, starts, radius, boards, origin, seconds, memory } = wire;
     if command.as_ref().first().is_none_or(String::is_empty) {
         wrong(command.span(), "expected the program and its arguments, as in [\"python3\", \"mine.py\"]".into());
     }
@@ -133,26 +146,7 @@ pub(crate) fn checked(wire: Wire, file: &str, problems: &mut Vec<Problem>) -> Op
         wrong(span, message);
         Mode::Stream
     });
-    let mut near = RADIUS;
-    if let Some(radius) = &radius {
-        near = *radius.as_ref();
-        if !(near > 0.0 && near <= 100.0) {
-            wrong(radius.span(), format!("expected a radius from more than 0 to 100 px, found {near}"));
-        }
-    }
-    let starts = match starts.as_ref().map(|word| (word.as_ref().as_str(), word.span())) {
-        None | Some(("given", _)) => {
-            if let Some(radius) = radius {
-                wrong(radius.span(), "`radius` is for starts = \"none\"".into());
-            }
-            Starts::Given
-        }
-        Some(("none", _)) => Starts::None { radius: near },
-        Some((other, span)) => {
-            wrong(span, format!("`{other}` is not known: expected \"given\" or \"none\""));
-            Starts::Given
-        }
-    };
+    let starts = starts::checked(starts.as_ref(), radius.as_ref(), boards.as_ref(), origin.as_ref(), &mut wrong);
     let limit = seconds.as_ref().map_or(SECONDS, |seconds| *seconds.as_ref());
     if let Some(seconds) = seconds.filter(|_| !(limit > 0.0 && limit <= 86_400.0)) {
         wrong(seconds.span(), format!("expected seconds from more than 0 to 86400, found {limit}"));

@@ -15,6 +15,7 @@ use tempfile::TempDir;
 use crate::answer::{Answer, Fault};
 use crate::declaration::Grey;
 use crate::program::Program;
+use crate::request::Wanted;
 
 /// Where its image is.
 const IMAGES: &str = "images";
@@ -23,19 +24,19 @@ const POINTS: &str = "points.csv";
 /// What it writes.
 const MEASURED: &str = "measured.csv";
 
-/// Starts the program for one image and reads what it wrote about `starts`, or about any number of points up to `most` where it has none.
+/// Starts the program for one image and reads what it wrote about what is `wanted`: of any number of points up to `most` where it has no starts.
 pub fn ask(
     program: &Program,
     settings: &Settings,
     image: &Image,
-    starts: Option<&[Start]>,
+    wanted: Wanted<'_>,
     (most, bytes): (usize, u64),
 ) -> Result<Answer, Fault> {
     let folder = TempDir::new().map_err(|error| ended(&error))?;
-    let name = put(folder.path(), image, program.declaration.grey, starts).map_err(|error| ended(&error))?;
-    program.run_in(folder.path(), settings)?;
+    let name = put(folder.path(), image, program.declaration.grey, wanted.starts()).map_err(|error| ended(&error))?;
+    program.run_in(folder.path(), settings, wanted.board())?;
     let text = taken(&folder.path().join(MEASURED), bytes)?;
-    read(&text, name, starts.map(<[Start]>::len), most)
+    read(&text, name, wanted.count(), most)
 }
 
 fn ended(error: &io::Error) -> Fault {
@@ -96,6 +97,7 @@ pub fn read(text: &[u8], name: &str, asked: Option<usize>, most: usize) -> Resul
         if points.len() > most {
             return Err(malformed(format!("{MEASURED} has {} rows; expected {most} at most", points.len())));
         }
+        answer.names = points.rows().map(|row| row.target.to_owned()).collect();
         answer.points = points.rows().map(measured).map(Ok).collect();
         return Ok(answer);
     };

@@ -5,6 +5,7 @@
 //! the reason, and other methods' rows do not change.
 
 mod answer;
+mod boards;
 mod confine;
 mod conformance;
 mod declaration;
@@ -16,11 +17,12 @@ mod process;
 mod program;
 mod recorded;
 mod request;
+mod starts;
 mod told;
 
 pub use confine::{Confinement, confine_and_execute};
 pub use conformance::{Finding, check};
-pub use declaration::{Declaration, Grey, Mode, Starts, is_name};
+pub use declaration::{Boards, Declaration, Grey, Mode, Starts, is_name};
 pub use error::PluginError;
 pub use file::{Declared, load, parse};
 pub use program::{Launcher, method};

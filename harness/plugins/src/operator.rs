@@ -2,16 +2,18 @@
 
 use std::sync::Arc;
 
-use calibench_measure::{Operator, Settings};
+use calibench_measure::{BoardFinder, BoardPointFound, Operator, Settings, Sought};
+use calibench_model::boards::Board;
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use calibench_random::{Key, Purpose, stream};
 use rand::seq::SliceRandom;
 
 use crate::answer::{Answer, Fault, read};
-use crate::declaration::{Mode, Starts};
+use crate::boards::points_of;
+use crate::declaration::{Boards, Mode, Starts};
 use crate::folder;
 use crate::program::Program;
-use crate::request::{body, head, rounds};
+use crate::request::{Wanted, body, head, rounds};
 
 /// Bytes of an answer for each position.
 const BYTES_A_POSITION: usize = 400;
@@ -19,8 +21,8 @@ const BYTES_A_POSITION: usize = 400;
 const MOST_DETECTED: usize = 100_000;
 
 /// The longest answer.
-fn bytes(starts: Option<&[Start]>) -> usize {
-    starts.map_or(MOST_DETECTED, <[Start]>::len) * BYTES_A_POSITION + 4096
+fn bytes(wanted: Wanted<'_>) -> usize {
+    wanted.count().unwrap_or(MOST_DETECTED) * BYTES_A_POSITION + 4096
 }
 
 /// A plug-in with its parameters set.
@@ -37,7 +39,7 @@ impl Asked {
     }
 
     /// Asks once and tells what the answer tells; a process that failed is ended, and the next image gets a new one.
-    fn ask(&self, image: &Image, starts: Option<&[Start]>) -> Result<Vec<Measured>, Fault> {
+    fn ask(&self, image: &Image, wanted: Wanted<'_>) -> Result<Answer, Fault> {
         if self.program.is_given_up() {
             return Err(Fault::new(Rejection::TooSlow, "it took too long too often and was asked no more"));
         }
@@ -46,25 +48,25 @@ impl Asked {
             self.program.told.tell(&format!("grey values were rounded or clipped for it: its images are `{}`", grey.name()));
         }
         let answer = match self.program.declaration.mode {
-            Mode::Stream => self.by_stream(image, starts),
-            Mode::Folder { .. } => folder::ask(&self.program, &self.settings, image, starts, (MOST_DETECTED, bytes(starts) as u64)),
+            Mode::Stream => self.by_stream(image, wanted),
+            Mode::Folder { .. } => folder::ask(&self.program, &self.settings, image, wanted, (MOST_DETECTED, bytes(wanted) as u64)),
         };
         if answer.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow) {
             self.program.was_slow();
         }
-        let Answer { points, told } = answer?;
-        told.iter().for_each(|what| self.program.told.tell(what));
-        Ok(points)
+        let answer = answer?;
+        answer.told.iter().for_each(|what| self.program.told.tell(what));
+        Ok(answer)
     }
 
-    fn by_stream(&self, image: &Image, starts: Option<&[Start]>) -> Result<Answer, Fault> {
+    fn by_stream(&self, image: &Image, wanted: Wanted<'_>) -> Result<Answer, Fault> {
         let grey = self.program.declaration.grey;
         let body = body(image, grey);
         let mut started = self.program.process(&self.settings)?;
         started.asked += 1;
-        let head = head(started.asked, image, grey, starts);
-        let line = started.process.ask(&[&head, &body], self.program.limit(), bytes(starts));
-        let answer = read(&line?, started.asked, starts.map(<[Start]>::len), MOST_DETECTED)?;
+        let head = head(started.asked, image, grey, wanted);
+        let line = started.process.ask(&[&head, &body], self.program.limit(), bytes(wanted));
+        let answer = read(&line?, started.asked, wanted.count(), MOST_DETECTED)?;
         self.program.keep(&self.settings, started);
         Ok(answer)
     }
@@ -77,18 +79,23 @@ impl Asked {
         let asked = match self.program.declaration.starts {
             Starts::Given => self.each(image, starts),
             Starts::None { radius } => self.nearest(image, starts, radius),
+            // Of which board they are is not known here.
+            Starts::Board(_) => Ok(vec![Err(Rejection::NotDetected); starts.len()]),
         };
-        asked.unwrap_or_else(|fault| {
-            self.program.told.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
-            vec![Err(fault.rejection); starts.len()]
-        })
+        asked.unwrap_or_else(|fault| vec![Err(self.failed(&fault)); starts.len()])
+    }
+
+    /// Tells what failed.
+    fn failed(&self, fault: &Fault) -> Rejection {
+        self.program.told.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
+        fault.rejection
     }
 
     /// Answers to `starts`, which are shown in an order that says nothing.
     fn each(&self, image: &Image, starts: &[Start]) -> Result<Vec<Measured>, Fault> {
         let order = shuffled(starts.len());
         let shown: Vec<Start> = order.iter().map(|&place| starts[place]).collect();
-        let points = self.ask(image, Some(&shown))?;
+        let points = self.ask(image, Wanted::Each(&shown))?.points;
         let mut results = vec![Err(Rejection::Malformed); starts.len()];
         for (place, point) in order.into_iter().zip(points) {
             results[place] = point;
@@ -98,13 +105,35 @@ impl Asked {
 
     /// What it finds in the whole image, and of that the nearest to each start.
     fn nearest(&self, image: &Image, starts: &[Start], radius: f64) -> Result<Vec<Measured>, Fault> {
-        let found: Vec<Measurement> = self.ask(image, None)?.into_iter().filter_map(Result::ok).collect();
+        let found: Vec<Measurement> = self.ask(image, Wanted::Anything)?.points.into_iter().filter_map(Result::ok).collect();
         let distance = |at: PixelPoint, one: &Measurement| one.position.distance(at);
         let near = |start: &Start| {
             let nearest = found.iter().min_by(|a, b| distance(start.position, a).total_cmp(&distance(start.position, b)));
             nearest.filter(|one| distance(start.position, one) <= radius).copied().ok_or(Rejection::NotDetected)
         };
         Ok(starts.iter().map(near).collect())
+    }
+}
+
+impl Asked {
+    /// What it says of boards, if it finds them.
+    fn boards(&self) -> Option<&Boards> {
+        if let Starts::Board(boards) = &self.program.declaration.starts { Some(boards) } else { None }
+    }
+}
+
+impl BoardFinder for Asked {
+    fn unfit(&self, board: &Board) -> Option<String> {
+        let (word, kinds) = (board.to_string(), &self.boards()?.kinds);
+        let kind = word.split(':').next().unwrap_or(&word);
+        (!kinds.is_empty() && !kinds.iter().any(|known| known == kind)).then(|| format!("it finds these alone: {}", kinds.join(", ")))
+    }
+
+    fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {
+        let from_corner = self.boards().is_some_and(|boards| boards.from_corner);
+        let found = self.ask(image, Wanted::Board(sought)).and_then(|answer| points_of(&answer, sought, from_corner));
+        let found = found.map_err(|fault| self.failed(&fault))?;
+        if found.is_empty() { Err(Rejection::NotDetected) } else { Ok(found) }
     }
 }
 
@@ -133,6 +162,10 @@ impl Operator for Asked {
     fn is_local(&self) -> bool {
         // An image goes over once.
         false
+    }
+
+    fn board_finder(&self) -> Option<&dyn BoardFinder> {
+        self.boards().map(|_| self as &dyn BoardFinder)
     }
 
     fn notes(&self) -> Vec<String> {

@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use calibench_measure::{Build, Method, Operator, Outside, Settings};
+use calibench_measure::{Build, Method, Operator, Outside, Settings, Sought};
 use calibench_model::Rejection;
 use serde::Deserialize;
 use tempfile::TempDir;
@@ -134,11 +134,14 @@ impl Program {
         Ok(process)
     }
 
-    /// Starts it in `folder`, with its parameters in the environment, and waits for its end.
-    pub fn run_in(&self, folder: &Path, settings: &Settings) -> Result<(), Fault> {
+    /// Starts it in `folder`, with its parameters and the `board` that it is asked for in the environment, and waits for its end.
+    pub fn run_in(&self, folder: &Path, settings: &Settings, board: Option<&Sought>) -> Result<(), Fault> {
         let (mut command, started) = (self.started_in(folder), Instant::now());
         for (name, value) in settings.iter() {
             command.env(format!("CALIBENCH_{}", name.to_uppercase()), value.to_string());
+        }
+        if let Some(sought) = board {
+            command.env("CALIBENCH_BOARD", sought.board.to_string());
         }
         self.launch(&mut command)?.finish(started, self.limit())
     }

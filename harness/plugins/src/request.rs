@@ -1,5 +1,6 @@
 //! What a plug-in is asked: a line of JSON and the grey values.
 
+use calibench_measure::Sought;
 use calibench_model::image::level;
 use calibench_model::{Image, Start};
 use serde_json::{Value, json};
@@ -8,6 +9,37 @@ use crate::declaration::Grey;
 
 /// The version of the protocol.
 pub const PROTOCOL: u32 = 1;
+
+/// What a plug-in is asked for in an image.
+#[derive(Clone, Copy)]
+pub enum Wanted<'a> {
+    /// An answer to each of these.
+    Each(&'a [Start]),
+    /// What there is.
+    Anything,
+    /// The points of a board, by name.
+    Board(&'a Sought),
+}
+
+impl<'a> Wanted<'a> {
+    /// The starts, if there are any.
+    pub const fn starts(self) -> Option<&'a [Start]> {
+        match self {
+            Self::Each(starts) => Some(starts),
+            Self::Anything | Self::Board(_) => None,
+        }
+    }
+
+    /// How many positions the answer has, if that is known.
+    pub fn count(self) -> Option<usize> {
+        self.starts().map(<[Start]>::len)
+    }
+
+    /// The board.
+    pub const fn board(self) -> Option<&'a Sought> {
+        if let Self::Board(sought) = self { Some(sought) } else { None }
+    }
+}
 
 /// The first line: which protocol, and the parameters.
 pub fn greeting<'p>(parameters: impl Iterator<Item = (&'p str, f64)>) -> Vec<u8> {
@@ -20,11 +52,15 @@ fn plain(value: f64) -> Value {
     if value.fract() == 0.0 && value.abs() < 1e15 { json!(value as i64) } else { json!(value) }
 }
 
-/// The line before the grey values of an image, which is counted so that no answer is taken for that to another. Without `starts` there is none to be found near.
-pub fn head(number: u64, image: &Image, grey: Grey, starts: Option<&[Start]>) -> Vec<u8> {
+/// The line before the grey values of an image, which is counted so that no answer is taken for that to another.
+pub fn head(number: u64, image: &Image, grey: Grey, wanted: Wanted<'_>) -> Vec<u8> {
     let bytes = image.grey().len() * bytes_of(grey);
     let mut request = json!({ "image": number, "width": image.width(), "height": image.height(), "format": grey.name(), "bytes": bytes });
-    if let Some(starts) = starts {
+    if let Some(Sought { board, layout }) = wanted.board() {
+        request["board"] = json!(board.to_string());
+        request["names"] = layout.points.iter().map(|point| json!(point.id)).collect();
+    }
+    if let Some(starts) = wanted.starts() {
         request["starts"] = starts.iter().map(|start| json!([start.position.x, start.position.y])).collect();
         if starts.iter().any(|start| start.kind.is_some()) {
             request["kinds"] = starts.iter().map(|start| json!(start.kind.map(calibench_model::TargetKind::name))).collect();

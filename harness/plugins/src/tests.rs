@@ -5,7 +5,7 @@ use calibench_model::{Image, PixelPoint, Rejection, Start, TargetKind};
 use crate::answer::{Answer, read};
 use crate::declaration::{Declaration, Grey, Starts};
 use crate::file::{Declared, parse};
-use crate::request::{body, greeting, head, rounds};
+use crate::request::{Wanted, body, greeting, head, rounds};
 
 const GOOD: &str = r#"
 [[plugin]]
@@ -41,8 +41,11 @@ fn every_mistake_in_a_declaration_has_its_place() {
         ("min = 3", "min = -3", "5:", "not negative"),
         ("1.5 GB", "1.5", "6:10", "`1.5` is no memory"),
         ("memory", "memry", "6:1", "unknown field `memry`"),
-        ("memory = \"1.5 GB\"", "starts = \"some\"", "6:10", "expected \"given\" or \"none\""),
+        ("memory = \"1.5 GB\"", "starts = \"some\"", "6:10", "expected \"given\", \"none\" or \"board\""),
         ("memory = \"1.5 GB\"", "radius = 3.0", "6:10", "`radius` is for starts"),
+        ("memory = \"1.5 GB\"", "origin = \"corner\"", "6:10", "`origin` is for starts = \"board\""),
+        ("memory = \"1.5 GB\"", "starts = \"board\"\norigin = \"edge\"", "7:10", "expected \"centre\""),
+        ("memory = \"1.5 GB\"", "starts = \"board\"\nboards = [\"charucco\"]", "7:10", "`charucco` is no kind of board"),
         ("memory = \"1.5 GB\"", "seconds = 0.0", "6:11", "expected seconds"),
         ("memory = \"1.5 GB\"", "mode = \"files\"", "6:8", "mode `files` is not known"),
         ("memory = \"1.5 GB\"", "version = \"1\"", "6:11", "`version` is for mode"),
@@ -61,10 +64,10 @@ fn requests_are_a_line_and_the_grey_values() {
     assert_eq!(greeting(parameters.into_iter()), b"{\"calibench\":1,\"parameters\":{\"reach\":0.5,\"window\":11}}\n");
     let image = Image::new(2, 1, vec![0.0, 128.0 / 255.0]);
     let start = Start { kind: Some(TargetKind::ChessCorner), ..Start::at(PixelPoint::new(0.25, 0.0)) };
-    let line = String::from_utf8(head(1, &image, Grey::Gray16le, Some(&[start]))).unwrap();
+    let line = String::from_utf8(head(1, &image, Grey::Gray16le, Wanted::Each(&[start]))).unwrap();
     let expected = r#"{"bytes":4,"format":"gray16le","height":1,"image":1,"kinds":["chess_corner"],"starts":[[0.25,0.0]],"width":2}"#;
     assert_eq!(line, format!("{expected}\n"));
-    assert!(!String::from_utf8(head(1, &image, Grey::Gray8, None)).unwrap().contains("starts"));
+    assert!(!String::from_utf8(head(1, &image, Grey::Gray8, Wanted::Anything)).unwrap().contains("starts"));
     assert_eq!(body(&image, Grey::Gray8), [0, 128]);
     assert_eq!(body(&image, Grey::Gray16le), [0, 0, 0x80, 0x80]);
     assert_eq!(body(&Image::new(1, 1, vec![0.25]), Grey::Gray16le), [0x00, 0x40], "the lower byte first");
@@ -79,7 +82,7 @@ fn answers_are_read_point_by_point() {
     let line = r#"{"image": 3, "xy": [[1.5, 2], null, [NaN, 3], [Infinity, 0], [1], [4, 5], [6, 7]],
         "cov": [[1e-4, 0, 2e-4], null, null, null, null, [1, 2, 1], [null, null, null]],
         "reasons": [null, "NaN \"here\"", null, null, null, null, null]}"#;
-    let Answer { points, told } = read(line, 3, Some(7), 100).unwrap();
+    let Answer { points, told, .. } = read(line, 3, Some(7), 100).unwrap();
     let first = points[0].unwrap();
     assert_eq!((first.position.x, first.position.y, first.covariance.unwrap().syy), (1.5, 2.0, 2e-4));
     let reasons: Vec<_> = points[1..6].iter().map(|point| point.unwrap_err()).collect();
@@ -143,7 +146,7 @@ fn by_file(header: &str, rows: &str, asked: Option<usize>) -> Result<Answer, cra
 fn files_are_read_by_the_numbers_of_their_points() {
     let rows = "0001.png,3,5,6,,,,measured,\n0001.png,1,1.5,2.5,1e-4,0,2e-4,measured,\n0001.png,2,,,,,,rejected,no corner\n";
     let header = "image,target,x,y,sxx,sxy,syy,status,reason";
-    let Answer { points, told } = by_file(header, rows, Some(4)).unwrap();
+    let Answer { points, told, .. } = by_file(header, rows, Some(4)).unwrap();
     let at = |place: usize| points[place].map(|found| (found.position.x, found.position.y));
     let declined = Err(Rejection::Declined);
     assert_eq!([0, 1, 2, 3].map(at), [Ok((1.5, 2.5)), declined, Ok((5.0, 6.0)), declined], "in the order in which they were asked");

@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use crate::composed::Composed;
 use crate::page::Page;
 use crate::places::PAGE;
-use crate::{LoadError, Loaded, Places, ReportError, load, published, sweep, targets, zhu};
+use crate::speeds::Speeds;
+use crate::{LoadError, Loaded, Places, ReportError, detectors, load, published, sweep, targets, zhu};
 
 /// The report of `family` from the records of `scenarios`; `None` where nothing of it could be measured here and one that was measured elsewhere is there.
 ///
@@ -13,6 +14,9 @@ use crate::{LoadError, Loaded, Places, ReportError, load, published, sweep, targ
 /// Records or tables that cannot be read.
 pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Result<Option<Composed>, ReportError> {
     let of = |name: &String| {
+        if let Some(found) = detectors::Detectors::load(&places.records, name)? {
+            return Ok(Either::Detectors(Box::new(found)));
+        }
         if let Some(comparison) = targets::Comparison::load(&places.records, name)? {
             return Ok(Either::Boards(Box::new(comparison)));
         }
@@ -51,11 +55,12 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
         page.text.push_str(&text);
         page.pictures.extend(pictures);
     }
-    let mut compared = Vec::new();
+    let (mut compared, mut detecting) = (Vec::new(), Vec::new());
     for one in &all {
         match one {
             Either::Plain(loaded) => page.scenario(loaded),
             Either::Boards(comparison) => compared.push(&**comparison),
+            Either::Detectors(found) => detecting.push(&**found),
             Either::Sweep(loaded) => page.sweep(loaded, &printed_factors(&tables))?,
         }
     }
@@ -63,6 +68,11 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
         page.answers.say(format!("[Which target, when]({}).", targets::FILE));
         page.pictures.extend(pictures);
         page.beside.push((targets::FILE, text));
+    }
+    let speeds = if detecting.is_empty() { Speeds::default() } else { Speeds::read(&places.published.with_file_name("speeds.csv"))? };
+    if let Some(text) = detectors::page(&detecting, &speeds) {
+        page.answers.say(format!("[Detectors of boards]({}).", detectors::FILE));
+        page.beside.push((detectors::FILE, text));
     }
     Ok(Some(page.composed()))
 }
@@ -72,13 +82,14 @@ enum Either {
     Plain(Box<Loaded>),
     Sweep(Box<sweep::LoadedSweep>),
     Boards(Box<targets::Comparison>),
+    Detectors(Box<detectors::Detectors>),
 }
 
 impl Either {
     fn plain(&self) -> Option<&Loaded> {
         match self {
             Self::Plain(loaded) => Some(loaded),
-            Self::Sweep(_) | Self::Boards(_) => None,
+            Self::Sweep(_) | Self::Boards(_) | Self::Detectors(_) => None,
         }
     }
 
@@ -87,13 +98,14 @@ impl Either {
             Self::Plain(_) => None,
             Self::Sweep(sweep) => Some(sweep),
             Self::Boards(comparison) => Some(&comparison.sweep),
+            Self::Detectors(found) => Some(&found.sweep),
         }
     }
 
     fn is_unavailable(&self) -> bool {
         match self {
             Self::Plain(loaded) => loaded.unavailable().is_some(),
-            Self::Sweep(_) | Self::Boards(_) => self.sweep().is_some_and(sweep::LoadedSweep::is_unavailable),
+            Self::Sweep(_) | Self::Boards(_) | Self::Detectors(_) => self.sweep().is_some_and(sweep::LoadedSweep::is_unavailable),
         }
     }
 }

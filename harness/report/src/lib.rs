@@ -9,6 +9,7 @@ mod camera_card;
 mod canvas;
 mod composed;
 pub mod conventions;
+mod detectors;
 mod families;
 mod family;
 pub(crate) mod field;

@@ -97,9 +97,16 @@ mod tests {
     #[test]
     fn every_point_is_right_taken_for_another_or_somewhere() {
         let found = counted(&Ok(vec![("a", at(10.6)), ("b", at(50.2)), ("c", at(41.0)), ("rim", at(70.0))]));
-        for (what, count) in
-            [("images", 1.0), ("grids", 1.0), ("targets", 3.0), ("labels", 4.0), ("labelled", 1.0), ("not expected", 1.0), ("wrong labels", 1.0), ("off", 1.0)]
-        {
+        for (what, count) in [
+            ("images", 1.0),
+            ("grids", 1.0),
+            ("targets", 3.0),
+            ("labels", 4.0),
+            ("labelled", 1.0),
+            ("not expected", 1.0),
+            ("wrong labels", 1.0),
+            ("off", 1.0),
+        ] {
             assert_eq!(found(what), Some(count), "{what}");
         }
     }
@@ -114,7 +121,10 @@ mod tests {
     fn nothing_found_is_everything_missed() {
         for nothing in [Err(Rejection::NotDetected), Ok(Vec::new())] {
             let found = counted(&nothing);
-            assert_eq!([found("images"), found("grids"), found("targets"), found("labelled")], [Some(1.0), Some(0.0), Some(3.0), Some(0.0)]);
+            assert_eq!(
+                [found("images"), found("grids"), found("targets"), found("labelled")],
+                [Some(1.0), Some(0.0), Some(3.0), Some(0.0)]
+            );
         }
     }
 }

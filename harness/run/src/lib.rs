@@ -9,6 +9,7 @@ pub mod judgement;
 mod measured;
 pub mod network;
 mod order;
+pub mod origin;
 pub mod parts;
 mod photographs;
 mod plan;

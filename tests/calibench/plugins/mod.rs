@@ -1,5 +1,6 @@
 //! Methods that are programs of their own: the examples, what they are kept from, and programs that do not do as they should.
 
+mod boards;
 mod confined;
 mod folder;
 mod hostile;

@@ -104,8 +104,7 @@ impl CharucoCorners {
         if ids.is_empty() {
             return Ok(Vec::new());
         }
-        let theirs =
-            CharucoBoard::create(board.columns as i32, board.rows as i32, board.square as f32, board.marker as f32, &dictionary)?;
+        let theirs = CharucoBoard::create(board.columns as i32, board.rows as i32, board.square as f32, board.marker as f32, &dictionary)?;
         let (mut found, mut places) = (Vector::<Point2f>::new(), Vector::<i32>::new());
         interpolate_corners_charuco_def(&corners, &ids, &grey, &theirs, &mut found, &mut places)?;
         let point = |(place, at): (i32, Point2f)| (place as usize, moved(pixel(at), self.shift()));
@@ -133,7 +132,11 @@ impl BoardFinder for CharucoCorners {
 
     fn notes(&self) -> Vec<String> {
         let version = crate::version();
-        let note = || format!("OpenCV {version} has ChArUco corners half a pixel to the right and below (opencv/opencv_contrib#3024); `corrected = 1` takes that out");
+        let note = || {
+            format!(
+                "OpenCV {version} has ChArUco corners half a pixel to the right and below (opencv/opencv_contrib#3024); `corrected = 1` takes that out"
+            )
+        };
         (!self.corrected).then(note).into_iter().collect()
     }
 }

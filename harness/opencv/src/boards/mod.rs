@@ -36,7 +36,8 @@ fn aprilgrid() -> Build {
 
 /// Why boards with markers are not found by this build's OpenCV.
 #[cfg(not(aruco_contrib))]
-const ELSEWHERE: &str = "this build knows the module `aruco` of OpenCV 4.5 and 4.6 with contrib; for others there is a plug-in (examples/plugins/boards.toml)";
+const ELSEWHERE: &str =
+    "this build knows the module `aruco` of OpenCV 4.5 and 4.6 with contrib; for others there is a plug-in (examples/plugins/boards.toml)";
 
 #[cfg(not(aruco_contrib))]
 fn charuco() -> Build {

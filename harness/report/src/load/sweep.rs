@@ -1,6 +1,7 @@
 //! The records of a sweep, read cell by cell.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use calibench_records::description::{Description, Sweep, looks};
 use calibench_records::names::cell_folder;
@@ -37,6 +38,8 @@ pub struct LoadedSweep {
 pub struct LoadedMethod {
     /// Its label without what is swept.
     pub name: String,
+    /// Its version.
+    pub version: Arc<str>,
     /// Why it measured nothing, if so.
     pub unavailable: Option<String>,
 }
@@ -120,7 +123,7 @@ impl LoadedSweep {
         for (info, score) in head.methods.into_iter().zip(scores.methods) {
             let name = self.sweep.method(&info.label);
             let place = self.methods.iter().position(|method| method.name == name).unwrap_or_else(|| {
-                self.methods.push(LoadedMethod { name, unavailable: info.unavailable });
+                self.methods.push(LoadedMethod { name, version: info.version, unavailable: info.unavailable });
                 cell.scores.push(Score::default());
                 self.methods.len() - 1
             });

@@ -134,7 +134,7 @@ mod tests {
         };
         let other = score(&[(9.0, 9.0)], 0);
         let found = [score(&[(1.0, 2.0), (3.0, 4.0)], 6), score(&[(0.5, 0.0)], 0), score(&[(0.0, -0.25)], 1), Score::default()];
-        let method = |name: &str| LoadedMethod { name: name.into(), unavailable: None };
+        let method = |name: &str| LoadedMethod { name: name.into(), version: "1".into(), unavailable: None };
         LoadedSweep {
             name: "s".into(),
             scenario,

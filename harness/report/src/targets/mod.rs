@@ -5,4 +5,4 @@ mod page;
 mod picture;
 
 pub use load::Comparison;
-pub use page::{FILE, page};
+pub use page::{FILE, page, without_kinds};

@@ -161,7 +161,7 @@ fn table(sweep: &Comparison) -> MarkdownTable {
 }
 
 /// A label without the kinds that it is limited to: the board says them.
-fn without_kinds(label: &str) -> &str {
+pub fn without_kinds(label: &str) -> &str {
     label.split("kinds=").next().unwrap_or(label).trim_end_matches([',', ':'])
 }
 

@@ -1,0 +1,68 @@
+//! What a declaration says of where its program looks.
+
+use std::ops::Range;
+
+use calibench_model::boards::KINDS;
+use toml::Spanned;
+
+use crate::declaration::{Boards, Starts};
+
+/// How near a detection must be to a target unless the file says otherwise, px.
+const RADIUS: f64 = 5.0;
+
+/// What `starts` says, with the keys that belong to one of its values alone; mistakes are handed to `wrong`.
+pub fn checked(
+    starts: Option<&Spanned<String>>,
+    radius: Option<&Spanned<f64>>,
+    boards: Option<&Spanned<Vec<String>>>,
+    origin: Option<&Spanned<String>>,
+    wrong: &mut impl FnMut(Range<usize>, String),
+) -> Starts {
+    let word = starts.map_or("given", |word| word.as_ref().as_str());
+    if let Some(radius) = radius.filter(|_| word != "none") {
+        wrong(radius.span(), "`radius` is for starts = \"none\"".into());
+    }
+    let for_boards = [boards.map(|boards| ("boards", boards.span())), origin.map(|origin| ("origin", origin.span()))];
+    for (key, span) in for_boards.into_iter().flatten().filter(|_| word != "board") {
+        wrong(span, format!("`{key}` is for starts = \"board\""));
+    }
+    match word {
+        "given" => Starts::Given,
+        "none" => Starts::None { radius: near(radius, wrong) },
+        "board" => Starts::Board(Boards { kinds: kinds(boards, wrong), from_corner: from_corner(origin, wrong) }),
+        other => {
+            let span = starts.map_or(0..0, Spanned::span);
+            wrong(span, format!("`{other}` is not known: expected \"given\", \"none\" or \"board\""));
+            Starts::Given
+        }
+    }
+}
+
+fn near(radius: Option<&Spanned<f64>>, wrong: &mut impl FnMut(Range<usize>, String)) -> f64 {
+    let Some(radius) = radius else { return RADIUS };
+    let near = *radius.as_ref();
+    if !(near > 0.0 && near <= 100.0) {
+        wrong(radius.span(), format!("expected a radius from more than 0 to 100 px, found {near}"));
+    }
+    near
+}
+
+fn kinds(boards: Option<&Spanned<Vec<String>>>, wrong: &mut impl FnMut(Range<usize>, String)) -> Vec<String> {
+    let Some(boards) = boards else { return Vec::new() };
+    let known = KINDS.map(|(name, ..)| name);
+    for kind in boards.as_ref().iter().filter(|kind| !known.contains(&kind.as_str())) {
+        wrong(boards.span(), format!("`{kind}` is no kind of board: expected some of {}", known.join(", ")));
+    }
+    boards.as_ref().clone()
+}
+
+fn from_corner(origin: Option<&Spanned<String>>, wrong: &mut impl FnMut(Range<usize>, String)) -> bool {
+    match origin.map(|origin| (origin.as_ref().as_str(), origin.span())) {
+        None | Some(("centre", _)) => false,
+        Some(("corner", _)) => true,
+        Some((other, span)) => {
+            wrong(span, format!("`{other}` is not known: expected \"centre\" of the first pixel or its outer \"corner\""));
+            false
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Methods that find boards: one conformance test for all, OpenCV's too, and scenarios that ask them for what they do not know.
+
+use calibench_opencv::registry;
+use calibench_run::origin::{check_origin, origin_of};
+
+use crate::project::{copy, run, stderr, table};
+
+/// All of them, with the settings that change where points lie.
+const ALL: [&str; 11] = [
+    "detect",
+    "calib_targets",
+    "opencv_find_chessboard",
+    "opencv_find_chessboard:sb=1",
+    "opencv_find_charuco",
+    "opencv_find_charuco:corrected=1",
+    "opencv_find_aprilgrid",
+    "opencv_find_aprilgrid:refinement=1",
+    "opencv_find_aprilgrid:refinement=3",
+    "opencv_find_aprilgrid:refinement=3,corrected=1",
+    "opencv_find_circles",
+];
+
+#[test]
+fn every_finder_has_its_origin_of_the_pixel_where_it_states_it() {
+    let registry = registry();
+    for text in ALL {
+        let method = registry.parse(text).unwrap();
+        let Some(finder) = method.board_finder() else {
+            // A build with an OpenCV whose markers are elsewhere says so.
+            assert!(method.operator.as_ref().is_err_and(|why| why.contains("aruco")), "{text}");
+            continue;
+        };
+        check_origin(finder).unwrap_or_else(|wrong| panic!("{text}: {wrong}"));
+    }
+    let finders = registry.methods().iter().filter(|method| {
+        registry
+            .configure(method.name, &[])
+            .is_ok_and(|method| method.board_finder().is_some() || method.name().starts_with("opencv_find_"))
+    });
+    let untested: Vec<&str> = finders.map(|method| method.name).filter(|name| !ALL.contains(name)).collect();
+    assert!(untested.is_empty(), "not in the list: {untested:?}");
+}
+
+/// The half pixel of OpenCV's ChArUco boards: stated, measured, and taken out if asked.
+#[test]
+fn the_half_pixel_of_opencv_is_known_and_taken_out() {
+    let board = "charuco:8x5:30:15:DICT_4X4_50".parse().unwrap();
+    let registry = registry();
+    for (text, expected) in [("opencv_find_charuco", 0.5), ("opencv_find_charuco:corrected=1", 0.0), ("detect", 0.0)] {
+        let method = registry.parse(text).unwrap();
+        let Some(finder) = method.board_finder() else { continue };
+        let found = origin_of(finder, board).unwrap();
+        assert!(found.median.iter().all(|median| (median - expected).abs() < 0.02), "{text}: {found:?}");
+        assert_eq!(finder.origin(&board), [expected; 2], "{text}");
+    }
+}
+
+const BOARD: &str = "[camera]\nsize = [640, 480]\npitch = 5.0\nc = 3.0\n[testfield]\nkind = \"board\"\nunit = \"mm\"\nboard = \"BOARD\"\nmargin = 8\n\
+    [stations]\nkind = \"board\"\ntilts = [[10, 5]]\ndistances = [640]\nrolls = [0]\n[optics]\nblur = 0.6\n[sensor]\nadc_bits = 8\n\
+    [pointing]\nsigma = 0.5\nwhole_pixels = true\n";
+
+fn scenario(board: &str, method: &str) -> tempfile::TempDir {
+    let project = copy();
+    std::fs::create_dir_all(project.path().join("scenarios/mine")).unwrap();
+    let head = "why = \"a test\"\nsource = \"ours\"\nseed = 1\n";
+    let text = format!("{head}{}[[method]]\nname = \"{method}\"\n", BOARD.replace("BOARD", board));
+    std::fs::write(project.path().join("scenarios/mine/board.toml"), text).unwrap();
+    project
+}
+
+#[test]
+fn a_board_that_a_finder_does_not_know_is_a_mistake_of_the_scenario() {
+    let project = scenario("rings:12:10x7:38:10", "opencv_find_circles");
+    let output = run(project.path(), &["run", "mine/board"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said.contains("`opencv_find_circles` finds boards, and it finds grids of circles alone") && said.contains("board.toml"),
+        "{said}"
+    );
+    let output = run(project.path(), &["run", "corners/noise", "-m", "detect"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("`detect` finds boards, and in `corners/noise` there is no testfield that is one"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn photographs_are_not_measured_by_a_finder() {
+    let project = copy();
+    let output = run(project.path(), &["measure", "x.png", "--points", "y.csv", "-m", "detect"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("it finds boards in whole images"), "{}", stderr(&output));
+}
+
+/// Every point of the board has a row, and the counts say the same.
+#[test]
+fn rows_and_counts_of_a_finder_agree() {
+    let project = scenario("charuco:10x7:38:26.6:DICT_4X4_50", "detect");
+    let output = run(project.path(), &["run", "mine/board"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let records = project.path().join("records/mine/board");
+    let rows = table(&records.join("records.csv.gz"));
+    let measured = rows.lines().filter(|line| line.contains(",measured,")).count();
+    assert_eq!((rows.lines().skip(1).count(), measured), (54, 54));
+    let counts = table(&records.join("calibrations.csv.gz"));
+    let count = |what: &str| {
+        let line = counts.lines().find(|line| line.contains(&format!("board/{what}/all"))).unwrap();
+        line.split(',').nth(6).unwrap().parse::<f64>().unwrap()
+    };
+    assert_eq!([count("targets"), count("labels"), count("labelled"), count("wrong labels"), count("off")], [54.0, 54.0, 54.0, 0.0, 0.0]);
+}
