@@ -5,6 +5,7 @@ use calibench_measure::{BoardFinder, Registry, Sought};
 use calibench_model::boards::{Board, KINDS};
 use calibench_random::Key;
 use calibench_scenario::{Subject, ViewsSubject, parse};
+use calibench_synth::view::TargetTruth;
 
 use crate::RunError;
 use crate::views::{Prepared, is_pointed_at};
@@ -43,7 +44,9 @@ pub fn origin_of(finder: &dyn BoardFinder, board: Board) -> Result<Origin, RunEr
         for view in &prepared.views {
             let image = prepared.image(view, key)?.image;
             let seen = subject.field.targets.iter().zip(&view.truth).filter(|(_, truth)| is_pointed_at(&subject, truth));
-            let expected: Vec<_> = seen.filter_map(|(target, truth)| Some((target.id.as_str(), truth.at?))).collect();
+            // The centre of a disc's picture is not the picture of its centre.
+            let place = |truth: &TargetTruth| Some(truth.ellipse.map_or(truth.at?, |ellipse| ellipse.centre));
+            let expected: Vec<_> = seen.filter_map(|(target, truth)| Some((target.id.as_str(), place(truth)?))).collect();
             points += expected.len();
             let Ok(found) = find_named(finder, (&image, &sought), &expected) else { continue };
             for (name, at) in found {
@@ -59,7 +62,7 @@ pub fn origin_of(finder: &dyn BoardFinder, board: Board) -> Result<Origin, RunEr
 /// The median and its standard error; nothing of nothing.
 fn middle(mut errors: Vec<f64>) -> (f64, f64) {
     let count = errors.len();
-    let mut median = |values: &mut Vec<f64>| {
+    let median = |values: &mut Vec<f64>| {
         values.sort_by(f64::total_cmp);
         values.get(count / 2).copied().unwrap_or(f64::NAN)
     };

@@ -89,7 +89,7 @@ fn answers_that_do_not_fit_reject_the_image_and_are_told() {
         (4, "not_detected", ""),
     ] {
         let method = format!("board_py:way={way}");
-        let output = run(project.path(), &["run", "targets/charuco", "--trials", "1", "-m", &method]);
+        let output = run(project.path(), &["run", "targets/charuco", "--trials", "1", "-m", "detect", "-m", &method]);
         assert!(output.status.success() && stderr(&output).contains(told), "{way}: {}", stderr(&output));
         let rows = rows(&project, "board_py");
         assert!(rows.len() == 54 && rows.iter().all(|row| row.ends_with(reason)), "{way}: {}", rows[0]);
