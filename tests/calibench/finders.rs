@@ -1,7 +1,7 @@
 //! Methods that find boards: one conformance test for all, OpenCV's too, and scenarios that ask them for what they do not know.
 
 use calibench_opencv::registry;
-use calibench_run::origin::{check_origin, origin_of};
+use calibench_run::origin::{check_origins, origin_of, origins};
 
 use crate::project::{copy, run, stderr, table};
 
@@ -30,7 +30,7 @@ fn every_finder_has_its_origin_of_the_pixel_where_it_states_it() {
             assert!(method.operator.as_ref().is_err_and(|why| why.contains("aruco")), "{text}");
             continue;
         };
-        check_origin(finder).unwrap_or_else(|wrong| panic!("{text}: {wrong}"));
+        check_origins(finder, &origins(finder).unwrap()).unwrap_or_else(|wrong| panic!("{text}: {wrong}"));
     }
     let finders = registry.methods().iter().filter(|method| {
         registry

@@ -8,7 +8,7 @@ use calibench_plugins::{
     Confinement, Declaration, Declared, Finding, Launcher, Recording, Starts, check, confine_and_execute, method, parse,
 };
 use calibench_project::ProjectError;
-use calibench_run::origin::check_origin;
+use calibench_run::origin::{Origin, check_origins, origins};
 use clap::{Args, Subcommand};
 
 use super::context::Context;
@@ -56,7 +56,7 @@ fn program_fails(declaration: Declaration, folder: &Path, launcher: &Launcher) -
     let configured = registry.configure(&name, &[])?;
     print(&format!("{} {}\n", configured.label, configured.version))?;
     let mut failed = false;
-    let findings = if let Starts::Board(_) = starts { of_boards(&configured) } else { check(&configured, &mode) };
+    let findings = if let Starts::Board(_) = starts { of_boards(&configured)? } else { check(&configured, &mode) };
     for Finding { what, wrong } in findings {
         failed |= wrong.is_some();
         say_finding(what, wrong.as_deref())?;
@@ -68,15 +68,20 @@ fn program_fails(declaration: Declaration, folder: &Path, launcher: &Launcher) -
 }
 
 /// What one that finds boards does.
-fn of_boards(configured: &Configured) -> Vec<Finding> {
+fn of_boards(configured: &Configured) -> Result<Vec<Finding>, Failure> {
     let there = configured.operator.as_ref().err().cloned();
     let mut findings = vec![Finding { what: "it starts and says its version", wrong: there }];
     if let Some(finder) = configured.board_finder() {
-        let wrong = check_origin(finder).err().map(|wrong| with_notes(configured, wrong));
+        let origins = origins(finder).map_err(|error| Failure::input(error.to_string()))?;
+        for (board, Origin { median, error, points: [all, found] }) in &origins {
+            let [x, y] = [0, 1].map(|axis| format!("{:+.3} ± {:.3}", median[axis], error[axis]));
+            print(&format!("  note    {board}: {found} of {all} points, {x}, {y} px off in the median\n"))?;
+        }
+        let wrong = check_origins(finder, &origins).err().map(|wrong| with_notes(configured, wrong));
         findings
             .push(Finding { what: "boards at 16 phases are found, their points in the median where its origin of the pixel says", wrong });
     }
-    findings
+    Ok(findings)
 }
 
 /// What was told says more.

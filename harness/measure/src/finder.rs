@@ -149,7 +149,7 @@ mod tests {
     fn a_board_that_looks_the_same_upside_down_is_numbered_as_it_is_expected() {
         let turned = found(&[(2, 10.2, 10.0), (1, 30.1, 10.0), (0, 49.0, 10.0)]);
         let named = |name: &str, x| (name.to_owned(), x);
-        assert_eq!(names("3x3:20", &turned), [named("r1c1", 10.2), named("r1c2", 30.1), named("r1c3", 49.0)]);
+        assert_eq!(names("chessboard:3x3:20", &turned), [named("r1c1", 10.2), named("r1c2", 30.1), named("r1c3", 49.0)]);
         // Marks say which is which: what is wrong stays wrong.
         assert_eq!(names("charuco:5x5:20:12:DICT_4X4_50", &turned), [named("r1c3", 10.2), named("r1c2", 30.1), named("r1c1", 49.0)]);
     }
@@ -158,7 +158,7 @@ mod tests {
     fn points_are_not_made_fewer_by_being_near_to_the_same() {
         let crowded = found(&[(0, 29.0, 10.0), (1, 31.0, 10.0)]);
         let named = |name: &str, x| (name.to_owned(), x);
-        assert_eq!(names("3x3:20", &crowded), [named("r1c1", 29.0), named("r1c2", 31.0)]);
+        assert_eq!(names("chessboard:3x3:20", &crowded), [named("r1c1", 29.0), named("r1c2", 31.0)]);
     }
 
     #[test]

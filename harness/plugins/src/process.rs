@@ -70,15 +70,20 @@ impl Process {
     pub fn ask(&mut self, request: &[&[u8]], limit: Duration, most: usize) -> Result<String, Fault> {
         let deadline = Instant::now() + limit;
         // An answer that nobody asked for must not be taken for that to the next image.
-        if self.read() {
-            return Err(self.ended());
-        }
+        let mut over = self.read();
         if !self.pending.is_empty() && !request.is_empty() {
             return Err(Fault::new(Rejection::Malformed, "it said more than one line"));
         }
         let mut left: Vec<&[u8]> = request.iter().rev().copied().filter(|part| !part.is_empty()).collect();
         let mut closed = false;
         loop {
+            // What it had said before it ended counts, and what it said before anybody looked.
+            if let Some(line) = self.line(left.is_empty(), most)? {
+                return Ok(line);
+            }
+            if over {
+                return Err(self.ended());
+            }
             let wait = deadline.checked_duration_since(Instant::now());
             let Some(wait) = wait else {
                 let said = self.said();
@@ -93,22 +98,23 @@ impl Process {
                 closed = !self.write(&mut left);
             }
             if readable {
-                if self.read() {
-                    return Err(self.ended());
-                }
-                if let Some(end) = self.pending.iter().position(|&byte| byte == b'\n') {
-                    let line: Vec<u8> = self.pending.drain(..=end).collect();
-                    if !left.is_empty() {
-                        return Err(Fault::new(Rejection::Malformed, "it answered before it had read the image"));
-                    }
-                    let line = String::from_utf8(line).map_err(|_| Fault::new(Rejection::Malformed, "its answer is no UTF-8"))?;
-                    return Ok(line.trim().to_owned());
-                }
-                if self.pending.len() > most {
-                    return Err(Fault::new(Rejection::Malformed, format!("its answer is longer than {most} bytes")));
-                }
+                over = self.read();
             }
         }
+    }
+
+    /// The line that it said, if it has said one; `asked`: whether it was told all before.
+    fn line(&mut self, asked: bool, most: usize) -> Result<Option<String>, Fault> {
+        let Some(end) = self.pending.iter().position(|&byte| byte == b'\n') else {
+            let long = self.pending.len() > most;
+            return if long { Err(Fault::new(Rejection::Malformed, format!("its answer is longer than {most} bytes"))) } else { Ok(None) };
+        };
+        let line: Vec<u8> = self.pending.drain(..=end).collect();
+        if !asked {
+            return Err(Fault::new(Rejection::Malformed, "it answered before it had read the image"));
+        }
+        let line = String::from_utf8(line).map_err(|_| Fault::new(Rejection::Malformed, "its answer is no UTF-8"))?;
+        Ok(Some(line.trim().to_owned()))
     }
 
     /// Tells it nothing more and waits until it has ended by itself; what it says is read over.
@@ -249,5 +255,24 @@ impl Drop for Process {
         }
         self.child.kill().ok();
         self.child.wait().ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A program that has spoken and ended before anybody looked.
+    #[test]
+    fn what_was_said_before_the_end_counts() {
+        for (script, left) in [("echo hello", ""), ("echo hello; exec sleep 5", ""), ("printf 'hello\nmore'", "more")] {
+            let mut process = Process::start(Command::new("sh").args(["-c", script])).unwrap();
+            std::thread::sleep(Duration::from_millis(60));
+            assert_eq!(process.ask(&[], Duration::from_secs(3), 100).as_deref(), Ok("hello"), "{script}");
+            assert_eq!(process.pending, left.as_bytes());
+        }
+        let mut process = Process::start(Command::new("sh").args(["-c", "exit 3"])).unwrap();
+        let fault = process.ask(&[], Duration::from_secs(3), 100).unwrap_err();
+        assert!(fault.rejection == Rejection::Ended && fault.message.contains("exit status: 3"), "{fault:?}");
     }
 }

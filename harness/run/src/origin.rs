@@ -71,25 +71,28 @@ fn middle(mut errors: Vec<f64>) -> (f64, f64) {
     (middle, NORMAL[0] * NORMAL[1] * deviation / (count as f64).sqrt())
 }
 
-/// Whether `finder` has its origin where it states it, on the first of its boards among those that are tried.
+/// Where `finder` has the points of one board of each kind that it finds.
 ///
 /// # Errors
-/// In words what is wrong: no board that it finds, most of it not found, another origin.
-pub fn check_origin(finder: &dyn BoardFinder) -> Result<(), String> {
+/// As [`origin_of`].
+pub fn origins(finder: &dyn BoardFinder) -> Result<Vec<(Board, Origin)>, RunError> {
     let boards = KINDS.iter().filter_map(|(.., example)| example.parse::<Board>().ok());
-    let fit: Vec<Board> = boards.filter(|board| finder.unfit(board).is_none()).collect();
-    if fit.is_empty() {
-        return Err("it finds none of the kinds of boards".into());
-    }
-    fit.into_iter().try_for_each(|board| check_origin_on(finder, board))
+    boards.filter(|board| finder.unfit(board).is_none()).map(|board| Ok((board, origin_of(finder, board)?))).collect()
 }
 
-/// As [`check_origin`], on a board.
+/// Whether `finder` has its origin where it states it, on each of the `boards` on which it was found out.
 ///
 /// # Errors
-/// As [`check_origin`].
-pub fn check_origin_on(finder: &dyn BoardFinder, board: Board) -> Result<(), String> {
-    let Origin { median, error, points: [all, found] } = origin_of(finder, board).map_err(|error| error.to_string())?;
+/// In words what is wrong: no board that it finds, hardly a point found, another origin.
+pub fn check_origins(finder: &dyn BoardFinder, boards: &[(Board, Origin)]) -> Result<(), String> {
+    if boards.is_empty() {
+        return Err("it finds none of the kinds of boards".into());
+    }
+    boards.iter().try_for_each(|(board, origin)| check_origin(finder, *board, origin))
+}
+
+fn check_origin(finder: &dyn BoardFinder, board: Board, origin: &Origin) -> Result<(), String> {
+    let Origin { median, error, points: [all, found] } = *origin;
     if found < FEWEST {
         return Err(format!("`{board}`: {found} of {all} points are found; expected at least {FEWEST}"));
     }
@@ -165,18 +168,20 @@ mod tests {
     fn our_own_finder_and_the_crates_have_the_origin_that_they_state() {
         for name in ["detect", "calib_targets"] {
             let method = Registry::builtin().parse(name).unwrap();
-            check_origin(method.board_finder().unwrap()).unwrap();
+            let finder = method.board_finder().unwrap();
+            check_origins(finder, &origins(finder).unwrap()).unwrap();
         }
     }
 
     #[test]
     fn half_a_pixel_is_found_unless_it_is_stated() {
         let half = [0.5, 0.5];
-        assert!(check_origin(&Moved { by: half, stated: half }).is_ok());
+        let check = |moved: &Moved| check_origins(moved, &origins(moved).unwrap());
+        assert!(check(&Moved { by: half, stated: half }).is_ok());
         for (by, stated, axis) in
             [(half, [0.0; 2], "in x"), ([0.0, 0.1], [0.0; 2], "in y"), ([0.0; 2], half, "in x"), ([-0.07, 0.0], [0.0; 2], "in x")]
         {
-            let wrong = check_origin(&Moved { by, stated }).unwrap_err();
+            let wrong = check(&Moved { by, stated }).unwrap_err();
             assert!(wrong.contains(axis), "{by:?} {stated:?}: {wrong}");
         }
     }
