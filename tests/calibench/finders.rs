@@ -95,6 +95,23 @@ fn photographs_are_not_measured_by_a_finder() {
     assert!(stderr(&output).contains("it finds boards in whole images"), "{}", stderr(&output));
 }
 
+/// At the rim of a frame the lens puts a marker elsewhere than a homography of the others.
+#[test]
+fn a_sound_board_at_the_rim_of_a_distorted_frame_is_in_no_doubt() {
+    let project = scenario("charuco:10x7:25:17.5:DICT_4X4_50", "detect");
+    let file = project.path().join("scenarios/mine/board.toml");
+    let stations = "kind = \"random\"\ncount = 2\ndistance = [320, 500]\ntilt = 40\nroll = 180\naside = [90, 70]\nsees = 0.7\n";
+    let text = std::fs::read_to_string(&file).unwrap();
+    let text = text
+        .replace("seed = 1\n", "seed = 13\n")
+        .replace("size = [640, 480]\npitch = 5.0\nc = 3.0", "size = [1280, 960]\npitch = 5.0\nc = 6.0\nk1 = -0.01");
+    let text = text.replace("kind = \"board\"\ntilts = [[10, 5]]\ndistances = [640]\nrolls = [0]\n", stations);
+    std::fs::write(&file, text).unwrap();
+    assert!(run(project.path(), &["render", "mine/board", "-o", "rendered"]).status.success());
+    let output = run(project.path(), &["detect", "rendered/s01.png", "--board", "charuco:10x7:25:17.5:DICT_4X4_50", "-o", "found.csv"]);
+    assert!(output.status.success() && !stderr(&output).contains("doubt"), "{}", stderr(&output));
+}
+
 /// Every point of the board has a row, and the counts say the same.
 #[test]
 fn rows_and_counts_of_a_finder_agree() {

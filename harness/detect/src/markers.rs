@@ -8,7 +8,7 @@ use crate::cells::{Form, Sight, read};
 use crate::corners;
 use crate::ground::Ground;
 use crate::patches::Patches;
-use crate::plane::{Homography, Point, distance, mean};
+use crate::plane::{Homography, Point, distance, mean, minus, plus, times};
 use crate::quads::{adjusted, quad};
 use crate::reasons;
 use crate::{Doubt, Found, NotFound};
@@ -18,9 +18,9 @@ const LEVELS: [f32; 2] = [0.3, 0.5];
 /// The least side of a dark quadrangle, by its pixels' centres, px.
 const LEAST_SIDE: f64 = 8.0;
 
-/// So many others say where a marker's corners are, to so many px and so large a fraction of its side.
+/// So many others say what a marker looks like, to so many px and so large a fraction of its side at each corner.
 const WITNESSES: usize = 6;
-const BENT: [f64; 2] = [1.5, 0.08];
+const BENT: [f64; 2] = [1.0, 0.05];
 
 /// A marker of the board that was read.
 #[derive(Clone, Copy, Debug)]
@@ -151,7 +151,8 @@ pub(crate) fn detect(image: &Image, board: &Board, layout: &Layout) -> Result<Fo
     Ok(Found { points, markers: kept.len(), doubts })
 }
 
-/// Whether a marker's corners are where the nearest others have them: something beside a marker may have been taken for a part of it.
+/// Whether a marker looks as the nearest others have it, wherever it is: something beside a marker may have been taken for a part of it. That it is where it can be
+/// its neighbours have said; at the rim of a frame the lens puts it elsewhere than a homography of the others.
 fn stands(marker: &Seen, all: &[Seen], layout: &Layout) -> bool {
     let printed = |seen: &Seen| layout.markers[seen.index].corners;
     let middle = mean(&printed(marker));
@@ -163,7 +164,9 @@ fn stands(marker: &Seen, all: &[Seen], layout: &Layout) -> bool {
     let Some(map) = Homography::fitted(&pairs).filter(|_| others.len() == WITNESSES) else { return true };
     let side = distance(marker.corners[0], marker.corners[2]) / std::f64::consts::SQRT_2;
     let limit = (BENT[1] * side).max(BENT[0]);
-    printed(marker).into_iter().zip(marker.corners).all(|(plate, at)| distance(map.at(plate), at) < limit)
+    let off: Vec<Point> = printed(marker).into_iter().zip(marker.corners).map(|(plate, at)| minus(at, map.at(plate))).collect();
+    let shift = times(off.iter().fold([0.0, 0.0], |sum, off| plus(sum, *off)), 0.25);
+    off.into_iter().all(|off| distance(off, shift) < limit)
 }
 
 /// The markers that are seen once, by their ids, and the ids of the others.
@@ -191,6 +194,36 @@ mod tests {
         };
         let entry = |all: Vec<f64>| (all[0] as u32, [1, 3, 5, 7].map(|k| [all[k] - 0.5, all[k + 1] - 0.5]));
         text.lines().map(numbers).filter(|all| all.len() == 9).map(entry).collect()
+    }
+
+    /// All markers of a board, 100 px a square, under a barrel distortion that moves the rim by some 60 px.
+    fn distorted(board: &Board, layout: &Layout) -> Vec<Seen> {
+        let lens = |[u, v]: Point| {
+            let [x, y] = [u - 400.0, 300.0 - v];
+            let factor = 1.0 - 2.4e-7 * (x * x + y * y);
+            [700.0 + x * factor, 500.0 + y * factor]
+        };
+        let of = Markers::new(board, layout).unwrap();
+        let seen = |(index, marker): (usize, &Marker)| {
+            let corners = marker.corners.map(lens);
+            let map = Homography::of_square(of.layout.markers[index].corners, corners).unwrap();
+            Seen { id: marker.id, wrong: 0, corners, index, map, contrast: 0.8 }
+        };
+        layout.markers.iter().enumerate().map(seen).collect()
+    }
+
+    #[test]
+    fn the_lens_bends_no_marker_and_what_is_taken_for_a_part_of_one_does() {
+        let board: Board = "charuco:10x7:100:70:DICT_4X4_50".parse().unwrap();
+        let layout = board.layout().unwrap();
+        let seen = distorted(&board, &layout);
+        let bent: Vec<u32> = seen.iter().filter(|marker| !stands(marker, &seen, &layout)).map(|marker| marker.id).collect();
+        assert!(bent.is_empty(), "{bent:?}");
+        for (marker, corner) in [(0, 0), (4, 1), (17, 2), (34, 3)] {
+            let mut seen = seen.clone();
+            seen[marker].corners[corner][0] += 7.0;
+            assert!(!stands(&seen[marker], &seen, &layout), "marker {marker}, corner {corner}");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use calibench_records::names::SCENARIO;
+use calibench_records::names::{DETECTION, SCENARIO};
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo, Outcome, Trial};
 use calibench_records::stored::{StoredError, Table as Stored, read_adjustments, read_points};
 
@@ -19,10 +19,11 @@ pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, 
     let mut table: Option<Table> = None;
     let start = |trial: &Trial, methods: &[MethodInfo]| Table::new(name, 0, Coordinates::of(has_truth(trial)), methods);
     let adjusted = Stored::Adjustments.is_in(folder)?;
+    let counted = adjusted && is_count(folder)?;
     let head = read_points(folder, |trial, methods| {
         let table = table.get_or_insert_with(|| start(&trial, methods));
         table.name_methods(methods);
-        if !adjusted {
+        if !adjusted || counted {
             table.add(&trial);
         }
     })?;
@@ -36,6 +37,13 @@ pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, 
         adjustments_of(folder, &head.methods, unit, &mut table)?;
     }
     Ok(table)
+}
+
+/// Whether the figures in `folder` are counts of detections alone, beside which the points stand.
+fn is_count(folder: &Path) -> Result<bool, StoredError> {
+    let mut all = true;
+    read_adjustments(folder, |row| all &= row.set == DETECTION)?;
+    Ok(all)
 }
 
 /// Whether any point has an error; records without a point count as of a known truth.

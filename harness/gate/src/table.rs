@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use calibench_records::results::{MethodInfo, Trial};
+use calibench_records::results::{Calibrated, MethodInfo, Trial};
 
 use super::adjusted::{self, FigureKey, Numbers};
 use super::point_entry::{Coordinates, Entry, Place};
@@ -79,8 +79,10 @@ impl Table {
     /// # Panics
     /// When a point names a method that is not in the list given to [`Table::new`]: another run's trial.
     pub fn add(&mut self, trial: &Trial) {
-        if !trial.calibrations.is_empty() {
-            return self.add_adjusted(trial);
+        self.add_adjusted(trial);
+        // Of adjustments the points are those of the first trial alone.
+        if !trial.calibrations.iter().all(Calibrated::is_count) {
+            return;
         }
         for point in &trial.points {
             let place = Place { trial: trial.number, view: point.view.clone(), target: point.target.clone() };
@@ -90,7 +92,7 @@ impl Table {
     }
 
     /// Adds the results of the adjustments of a trial, in place of its points: the camera over the frame (px, 0), the check points
-    /// (RMSE_XY, RMSE_Z in mm), and every figure with its standard deviation.
+    /// (RMSE_XY, RMSE_Z in mm), and every figure with its standard deviation. Counts of detections stand beside the points.
     fn add_adjusted(&mut self, trial: &Trial) {
         for adjusted in &trial.calibrations {
             let method = self.of_index(adjusted.method);

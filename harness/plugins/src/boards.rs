@@ -26,7 +26,8 @@ pub fn points_of(answer: &Answer, sought: &Sought, from_corner: bool) -> Result<
     let half = if from_corner { 0.5 } else { 0.0 };
     for (name, point) in names.iter().zip(points) {
         let Some(&index) = known.get(name.as_str()) else {
-            let near = nearest(name, sought.layout.points.iter().map(|point| point.id.as_str())).map_or_else(String::new, |near| format!(", did you mean `{near}`?"));
+            let near = nearest(name, sought.layout.points.iter().map(|point| point.id.as_str()))
+                .map_or_else(String::new, |near| format!(", did you mean `{near}`?"));
             return Err(malformed(format!("the board `{}` has no point `{name}`{near}", sought.board)));
         };
         if !seen.insert(index) {

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use calibench_model::{Measurement, PixelPoint, Rejection};
 
+use crate::names::DETECTED;
+
 /// A point more than this far from the truth, px, is lost: something else was measured.
 pub const LOST: f64 = 1.0;
 
@@ -166,6 +168,13 @@ pub struct Calibrated {
     pub outcome: Result<Vec<Figure>, String>,
     /// Why the second step has no figures, if so.
     pub check_failed: Option<String>,
+}
+
+impl Calibrated {
+    /// Whether these are counts of what a detector found, and no adjustment: its points stand beside them.
+    pub fn is_count(&self) -> bool {
+        self.outcome.as_ref().is_ok_and(|figures| !figures.is_empty() && figures.iter().all(|figure| figure.name.starts_with(DETECTED)))
+    }
 }
 
 /// One trial: every point of every view, by method and then in the order of the scenario.

@@ -6,10 +6,8 @@ use std::collections::BTreeMap;
 
 use calibench_measure::finder::Named;
 use calibench_model::{PixelPoint, Rejection};
+use calibench_records::names::DETECTED;
 use calibench_records::results::{Calibrated, Figure, Group, LOST};
-
-/// The name under which counts of detections stand in the records.
-pub const DETECTION: &str = "detection";
 
 /// How many of what.
 type Counts = BTreeMap<&'static str, u64>;
@@ -63,7 +61,7 @@ impl Tally {
 
     /// The figures of a trial, by method, under the set of place `set`.
     pub fn calibrated(self, set: usize) -> Vec<Calibrated> {
-        let figure = |(what, count): (&str, u64)| Figure::plain(Group::Network, format!("board/{what}/all"), count as f64, "");
+        let figure = |(what, count): (&str, u64)| Figure::plain(Group::Network, format!("{DETECTED}{what}/all"), count as f64, "");
         let of = |(method, counts): (usize, Counts)| Calibrated {
             method,
             set,

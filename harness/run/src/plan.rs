@@ -7,13 +7,13 @@ use calibench_exchange::NewFolder;
 use calibench_measure::{Configured, Known, Recorded, RunId};
 use calibench_model::Unknowns;
 use calibench_photographs::{Finder, method_info};
+use calibench_records::names::DETECTION;
 use calibench_records::parts::Span;
 use calibench_records::results::MethodInfo;
 use calibench_scenario::transfer::{Calibrates, Solver};
 use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 
 use crate::RunError;
-use crate::detection::DETECTION;
 use crate::measured::{Answers, Asked, Pictured, of_its_kinds};
 use crate::printed::PRINT;
 use crate::tools::Tools;

@@ -252,6 +252,39 @@ fn entries(adjusted: Vec<Calibrated>) -> MethodTable {
     table.method("m").unwrap().clone()
 }
 
+/// What a detector found is judged point by point, and by what it missed and mistook; of an adjustment the points are not.
+#[test]
+fn counts_of_detections_stand_beside_their_points() {
+    let point = || {
+        PointResult::scored(
+            "v".into(),
+            "t".into(),
+            0,
+            PixelPoint::new(10.0, 20.0),
+            Ok(Measurement { position: PixelPoint::new(10.25, 20.0), covariance: None }),
+        )
+    };
+    let counts = |names: [&str; 4]| {
+        let values = [10.0, 8.0, 9.0, 1.0];
+        names.into_iter().zip(values).map(|(name, value)| Figure::plain(Group::Network, name, value, "")).collect::<Vec<_>>()
+    };
+    let places = |figures: Vec<Figure>| {
+        let mut table = table(Coordinates::Errors, &[info("m", "1")], &[]);
+        table.add(&Trial { points: vec![point()], calibrations: vec![adjusted(0, figures)], ..Trial::default() });
+        let found = table.method("m").unwrap().clone();
+        found.points.iter().map(|(place, entry)| (place.to_string(), entry.coordinates())).collect::<Vec<_>>()
+    };
+    let found = places(counts(["board/targets/all", "board/labelled/all", "board/labels/all", "board/wrong labels/all"]));
+    let expected = [("trial 0 adjustment/recognition board", [0.2, 1.0 / 9.0]), ("trial 0 v/t", [0.25, 0.0])];
+    assert_eq!(found.len(), 2, "{found:?}");
+    for ((name, at), (place, [x, y])) in found.iter().zip(expected) {
+        let [dx, dy] = at.unwrap();
+        assert!(name == place && (dx - x).abs() < 1e-8 && (dy - y).abs() < 1e-8, "{name} {at:?}");
+    }
+    let found = places(counts(["modern/targets/all", "modern/labelled/all", "modern/labels/all", "modern/wrong labels/all"]));
+    assert_eq!(found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["trial 0 adjustment/recognition modern"]);
+}
+
 #[test]
 fn adjustments_are_two_points_and_their_figures() {
     let check = |unit, xy: f64, z: f64| {

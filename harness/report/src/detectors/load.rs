@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use calibench_records::description::Sweep;
-use calibench_records::names::cell_folder;
+use calibench_records::names::{DETECTED, DETECTION, cell_folder};
 use calibench_records::results::{Group, Outcome, Trial};
 use calibench_records::statistics::running::Running;
 
@@ -16,8 +16,6 @@ use crate::sweep::{LoadedSweep, load_with};
 
 /// The swept key that makes a sweep one over boards.
 const BOARD: &str = "testfield.board";
-/// The name under which counts of detections stand.
-const SET: &str = "detection";
 
 /// A sweep over boards, and perhaps one more key, with detectors among its methods.
 pub struct Detectors {
@@ -95,7 +93,7 @@ impl Detectors {
         let Some(sweep) = description(&folder, name)?.and_then(|scenario| scenario.sweep).filter(is_of_boards) else { return Ok(None) };
         let counts = (0..sweep.cells.len()).map(|cell| adjustments::load(&cell_folder(&folder, cell)));
         let counts = counts.collect::<Result<Vec<_>, _>>()?;
-        if !counts.iter().flatten().any(|counts| counts.sets.iter().any(|set| set == SET)) {
+        if !counts.iter().flatten().any(|counts| counts.sets.iter().any(|set| set == DETECTION)) {
             return Ok(None);
         }
         let watch = |trial: &Trial, names: &[String], cell: &mut BTreeMap<String, Found>| {
@@ -138,7 +136,7 @@ impl Detectors {
     pub fn counted(&self, board: usize, value: usize, method: &str) -> Option<Counted> {
         let counts = self.counts[self.cell(board, value)].as_ref()?;
         let sum = |what: &str| {
-            let summary = counts.of_set(method, SET, Group::Network, &format!("board/{what}/all"))?;
+            let summary = counts.of_set(method, DETECTION, Group::Network, &format!("{DETECTED}{what}/all"))?;
             Some(summary.value.mean()? * summary.value.count as f64)
         };
         Some(Counted { images: sum("images")?, boards: sum("grids")?, wrong: sum("wrong labels")?, nowhere: sum("off")? })
