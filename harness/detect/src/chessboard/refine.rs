@@ -2,13 +2,11 @@
 
 use calibench_model::Image;
 
-use super::board::Board;
 use super::level::{Pyramid, scaled};
 use crate::meeting::Meeting;
 use crate::plane::{Point, distance, minus, plus};
 
-/// The radius of what is looked at, as a share of the shorter step to a neighbour; px at least and at most.
-const RADIUS: f64 = 0.4;
+/// The radius of what is looked at, px at least and at most.
 const LEAST: f64 = 2.0;
 const GREATEST: f64 = 9.0;
 /// How far beyond this radius gradients are kept, px.
@@ -21,32 +19,32 @@ const SHARP: f64 = 0.4;
 /// The smoothing before gradients are taken.
 const BINOMIAL: [f64; 5] = [0.0625, 0.25, 0.375, 0.25, 0.0625];
 
-/// Moves each corner to where the edges around it meet: in the image, or in a coarser one in which they are sharp. It stays where nothing meets near it.
-/// `factor`: px of the image to one of the level the board was found in.
-pub(super) fn refine(pyramid: &Pyramid, board: &mut Board, factor: f64) {
-    let steps: Vec<f64> = (0..board.corners.len()).map(|index| board.step(index)).collect();
-    let mut best = (f64::INFINITY, board.corners.clone());
+/// Each corner moved to where the edges around it meet: in the image, or in a coarser one in which they are sharp. It stays where nothing meets near it.
+/// `steps`: the shorter step from each to a neighbour, px; `share` of it is the radius of what is looked at. `factor`: px of the image to one of the level in which
+/// they were found.
+pub(crate) fn refined(pyramid: &Pyramid, corners: &[Point], steps: &[f64], share: f64, factor: f64) -> Vec<Point> {
+    let mut best = (f64::INFINITY, corners.to_vec());
     for (image, of) in pyramid.up_to((2.0 * factor).max(1.0)) {
         let met = |(at, step): (&Point, &f64)| {
-            let found = meeting(image, scaled(*at, 1.0 / of), step / of, factor / of);
+            let found = meeting(image, scaled(*at, 1.0 / of), step / of, share, factor / of);
             found.map_or((*at, f64::INFINITY), |(at, variance)| (scaled(at, of), variance))
         };
-        let (corners, mut variances): (Vec<Point>, Vec<f64>) = board.corners.iter().zip(&steps).map(met).unzip();
+        let (moved, mut variances): (Vec<Point>, Vec<f64>) = corners.iter().zip(steps).map(met).unzip();
         variances.sort_by(f64::total_cmp);
         let middle = variances[variances.len() / 2].sqrt();
         if middle < best.0 {
-            best = (middle, corners);
+            best = (middle, moved);
         }
         if middle < SHARP {
             break;
         }
     }
-    board.corners = best.1;
+    best.1
 }
 
 /// Where edges meet near `from`, and its variance, px^2; `scale`: px of this image to one in which `from` is known to a fraction.
-fn meeting(image: &Image, from: Point, step: f64, scale: f64) -> Option<(Point, f64)> {
-    let radius = (RADIUS * step).clamp(LEAST, GREATEST);
+fn meeting(image: &Image, from: Point, step: f64, share: f64, scale: f64) -> Option<(Point, f64)> {
+    let radius = (share * step).clamp(LEAST, GREATEST);
     let mut patch = Patch::around(image, from, radius + SPARE);
     let (mut at, mut known) = (from, f64::INFINITY);
     for _ in 0..STEPS {
