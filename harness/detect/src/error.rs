@@ -129,7 +129,9 @@ pub enum NotFound {
         bits: usize,
     },
     /// No chessboard with dots, or too few of them to tell a place from.
-    #[error("{corners} corners of squares with {dots} dots between them are seen together: no PuzzleBoard, or too little of it to be sure of its place")]
+    #[error(
+        "{corners} corners of squares with {dots} dots between them are seen together: no PuzzleBoard, or too little of it to be sure of its place"
+    )]
     NoPuzzle {
         /// Corners of the grid with most dots.
         corners: usize,
@@ -148,7 +150,9 @@ pub enum NotFound {
         agreeing: usize,
     },
     /// Dots that belong to one place of the pattern a little better than to others.
-    #[error("{agreeing} of {dots} different dots belong to one place of the PuzzleBoard, and nearly as many to another: too few are seen to be sure")]
+    #[error(
+        "{agreeing} of {dots} different dots belong to one place of the PuzzleBoard, and nearly as many to another: too few are seen to be sure"
+    )]
     UnsurePlace {
         /// Dots that were read, those that repeat counted once.
         dots: usize,

@@ -6,8 +6,9 @@
 //! What is believed. Dots that are the same digit of a table are one vote, of their majority: a pattern of another make repeats, too. Of `n` votes a place
 //! that is wrong agrees with each by chance. (1) The expected number of wrong places that agree as well as the best does and that would name a corner of the board is
 //! below [`CHANCE`]. (2) Half of the belief is in the board that was asked for, spread over all ways to see a part of it, half in any part of the pattern,
-//! spread over all of 501 x 501 x 4; how many dots are misread is not known ([`Binomial::likelihood`]). All other places together have less than [`RIVALS`] of the
-//! belief. Both count places in all turns; whether light and dark are exchanged follows from a place and the squares' colours.
+//! spread over all of 501 x 501 x 8; how many dots are misread is not known ([`Binomial::likelihood`]). All other places together have less than [`RIVALS`] of the
+//! belief. Both count places in all turns, and twice: light dots may be dark ones, of a print that is light
+//! on dark. The squares' colours say nothing: another maker begins the pattern elsewhere, and where its end meets its beginning they are exchanged.
 
 use std::collections::BTreeMap;
 
@@ -35,8 +36,10 @@ pub(super) struct Decoded {
     mirrored: bool,
     /// Where its middle is in the pattern.
     at: [usize; 2],
-    /// Whether it is light where the pattern is dark.
-    pub inverted: bool,
+    /// Whether its dots are light where the pattern's are dark.
+    inverted: bool,
+    /// Whether its squares are.
+    pub exchanged: bool,
     /// Votes, and those that the pattern does not have.
     votes: usize,
     wrong: usize,
@@ -70,21 +73,23 @@ impl Decoded {
     }
 }
 
-/// One way to turn a grid: what of its dots disagrees with each place.
+/// One way to take a grid: what of its dots disagrees with each place.
 struct Turn {
+    turn: usize,
+    inverted: bool,
     /// With (x mod 3, y mod 167), by sides to the right.
     right: [[u16; LENGTH]; 3],
     /// With (y mod 3, x mod 167), by sides downwards.
     down: [[u16; LENGTH]; 3],
     votes: usize,
-    /// Whether its middle is a corner of the pattern whose x + y is even, if dark and light are as in the pattern.
+    /// Whether its middle is a corner of the pattern whose x + y is even, by the colours of squares.
     even: bool,
     /// The extent of its corners around the middle.
     extent: [Place; 2],
 }
 
 impl Turn {
-    fn new(sheet: &Sheet, dots: &[Dot], mirrored: bool, turn: usize) -> Self {
+    fn new(sheet: &Sheet, dots: &[Dot], mirrored: bool, turn: usize, inverted: bool) -> Self {
         let middle = sheet.middle();
         let place = |place: Place| turned(place, middle, mirrored, turn);
         let mut tables: [BTreeMap<[usize; 2], i32>; 2] = Default::default();
@@ -92,7 +97,8 @@ impl Turn {
             let [a, b] = dot.ends().map(place);
             let start = [a[0].min(b[0]), a[1].min(b[1])];
             let axis = usize::from(a[0] == b[0]);
-            *tables[axis].entry([rest(start[axis], 3), rest(start[1 - axis], LENGTH)]).or_default() += if dot.light { 1 } else { -1 };
+            let vote = if dot.light == inverted { -1 } else { 1 };
+            *tables[axis].entry([rest(start[axis], 3), rest(start[1 - axis], LENGTH)]).or_default() += vote;
         }
         let places = || sheet.corners.keys().map(|corner| place(*corner));
         let bound = |axis: usize| [places().map(|at| at[axis]).min().unwrap_or(0), places().map(|at| at[axis]).max().unwrap_or(0)];
@@ -101,24 +107,26 @@ impl Turn {
         // A quarter turn exchanges the squares between steps of one sign with the others; at an even place those are dark.
         let even = (sheet.light(middle) < 0.0) == turn.is_multiple_of(2);
         let votes = tables.iter().flat_map(|table| table.values()).filter(|sum| **sum != 0).count();
-        Self { right: wrong(&tables[0], &codes.right), down: wrong(&tables[1], &codes.down), votes, even, extent: [[x[0], y[0]], [x[1], y[1]]] }
-    }
-
-    fn is_inverted(&self, [x, y]: [usize; 2]) -> bool {
-        (x + y).is_multiple_of(2) != self.even
+        Self {
+            turn,
+            inverted,
+            right: wrong(&tables[0], &codes.right),
+            down: wrong(&tables[1], &codes.down),
+            votes,
+            even,
+            extent: [[x[0], y[0]], [x[1], y[1]]],
+        }
     }
 
     /// Votes that a place does not have.
     fn wrong(&self, [x, y]: [usize; 2]) -> usize {
-        let wrong = usize::from(self.right[x % 3][y % LENGTH] + self.down[y % 3][x % LENGTH]);
-        if self.is_inverted([x, y]) { self.votes - wrong } else { wrong }
+        usize::from(self.right[x % 3][y % LENGTH] + self.down[y % 3][x % LENGTH])
     }
 
     /// No place disagrees with fewer.
     fn least(&self) -> usize {
-        let (right, down) = (|| self.right.iter().flatten().map(|count| usize::from(*count)), || self.down.iter().flatten().map(|count| usize::from(*count)));
-        let least = right().min().unwrap_or(0) + down().min().unwrap_or(0);
-        least.min(self.votes - right().max().unwrap_or(0) - down().max().unwrap_or(0))
+        let least = |table: &[[u16; LENGTH]; 3]| table.iter().flatten().copied().min().map_or(0, usize::from);
+        least(&self.right) + least(&self.down)
     }
 
     /// The places of the middle at which a corner may be one of the board's.
@@ -164,16 +172,18 @@ impl Verdict {
 }
 
 fn judged(sheet: &Sheet, dots: &[Dot], puzzle: &Puzzle, mirrored: bool) -> Verdict {
-    let turns = [0, 1, 2, 3].map(|turn| Turn::new(sheet, dots, mirrored, turn));
+    let ways = [false, true].into_iter().flat_map(|inverted| (0..4).map(move |turn| (turn, inverted)));
+    let turns: Vec<Turn> = ways.map(|(turn, inverted)| Turn::new(sheet, dots, mirrored, turn, inverted)).collect();
     let votes = turns[0].votes;
     let binomial = Binomial::new(votes);
-    let decoded = |turn: usize, at: [usize; 2]| {
-        let of: &Turn = &turns[turn];
-        Decoded { middle: sheet.middle(), turn, mirrored, at, inverted: of.is_inverted(at), votes, wrong: of.wrong(at) }
+    let decoded = |index: usize, at: [usize; 2]| {
+        let of: &Turn = &turns[index];
+        let exchanged = (at[0] + at[1]).is_multiple_of(2) != of.even;
+        Decoded { middle: sheet.middle(), turn: of.turn, mirrored, at, inverted: of.inverted, exchanged, votes, wrong: of.wrong(at) }
     };
     let asked = || turns.iter().enumerate().flat_map(|(turn, of)| of.asked(puzzle).map(move |at| (turn, at)));
     let count = asked().count().max(1) as f64;
-    let all = (4 * SIDE * SIDE) as f64;
+    let all = (turns.len() * SIDE * SIDE) as f64;
     // Where nothing can be believed the sum over all places is spared.
     let least = turns.iter().enumerate().min_by_key(|(_, turn)| turn.least());
     if least.as_ref().is_none_or(|(_, turn)| count * binomial.chance(turn.least(), votes) > CHANCE) {
@@ -194,12 +204,14 @@ fn judged(sheet: &Sheet, dots: &[Dot], puzzle: &Puzzle, mirrored: bool) -> Verdi
         Some((near, belief)) if near == far || belief > likelihoods[far.wrong] / (all * total) => {
             Verdict { best: near, named: true, chance: count * binomial.chance(near.wrong, votes), rivals: 1.0 - belief }
         }
-        _ => Verdict { best: far, named: false, chance: all * binomial.chance(far.wrong, votes), rivals: 1.0 - belief(far.wrong, 1.0 / all) },
+        _ => {
+            Verdict { best: far, named: false, chance: all * binomial.chance(far.wrong, votes), rivals: 1.0 - belief(far.wrong, 1.0 / all) }
+        }
     }
 }
 
 /// The place of fewest wrong votes in all of the pattern, and the sum of the likelihoods of all.
-fn everywhere(turns: &[Turn; 4], likelihoods: &[f64]) -> ((usize, [usize; 2]), f64) {
+fn everywhere(turns: &[Turn], likelihoods: &[f64]) -> ((usize, [usize; 2]), f64) {
     let (mut best, mut least) = ((0, [0, 0]), usize::MAX);
     let mut counts = vec![0_u64; likelihoods.len()];
     for (index, turn) in turns.iter().enumerate() {
@@ -207,7 +219,6 @@ fn everywhere(turns: &[Turn; 4], likelihoods: &[f64]) -> ((usize, [usize; 2]), f
             let (right, down) = ([0, 1, 2].map(|x| turn.right[x][y % LENGTH]), &turn.down[y % 3]);
             for x in 0..SIDE {
                 let wrong = usize::from(right[x % 3] + down[x % LENGTH]);
-                let wrong = if turn.is_inverted([x, y]) { turn.votes - wrong } else { wrong };
                 counts[wrong] += 1;
                 if wrong < least {
                     (best, least) = ((index, [x, y]), wrong);
@@ -237,15 +248,11 @@ pub(super) fn decode(sheet: &Sheet, dots: &[Dot], puzzle: &Puzzle) -> Result<Dec
         let places = || sheet.corners.keys().map(|place| verdict.best.pattern(*place));
         let range = |axis: usize| [places().map(|at| at[axis]).min().unwrap_or(0), places().map(|at| at[axis]).max().unwrap_or(0)];
         let asked = |axis: usize, count: usize| [puzzle.place[axis], puzzle.place[axis] + count - 1];
-        return Err(NotFound::OtherPlace {
-            columns: range(0),
-            rows: range(1),
-            asked: [asked(0, puzzle.columns), asked(1, puzzle.rows)],
-        });
+        return Err(NotFound::OtherPlace { columns: range(0), rows: range(1), asked: [asked(0, puzzle.columns), asked(1, puzzle.rows)] });
     }
     let corners = sheet.corners.len();
     // Not even if all agreed.
-    let few = 4.0 * ((puzzle.columns + 1) * (puzzle.rows + 1)) as f64 * 0.5_f64.powi(votes as i32) > CHANCE;
+    let few = 8.0 * ((puzzle.columns + 1) * (puzzle.rows + 1)) as f64 * 0.5_f64.powi(votes as i32) > CHANCE;
     Err(match verdict.chance < CHANCE {
         true => NotFound::UnsurePlace { dots: votes, agreeing: votes - wrong },
         false if few => NotFound::NoPuzzle { corners, dots: dots.len() },

@@ -39,10 +39,12 @@ const SAME: f64 = 3.0;
 /// The corners of the board that are seen, in whatever part of it, to about 0.3 px.
 ///
 /// A grid of corners is believed where its dots are those of one place of the pattern and of no other that is nearly as good (see [`decode`]). Of several
-/// grids each is read by itself. A print that is light where the pattern is dark is found, too.
+/// grids each is read by itself. A print that is light where the pattern is dark is found, too, and one
+/// whose squares are exchanged.
 ///
 /// # Errors
-/// [`NotFound::NoPuzzle`], [`NotFound::OtherDots`], [`NotFound::UnsurePlace`], [`NotFound::OtherPlace`], [`NotFound::Mirrored`].
+/// [`NotFound::NoPuzzle`], [`NotFound::OtherDots`], [`NotFound::UnsurePlace`], [`NotFound::OtherPlace`], [`NotFound::Mirrored`]; [`NotFound::OtherArrangement`] of two
+/// such boards.
 pub(crate) fn detect(image: &Image, puzzle: &Puzzle, layout: &Layout) -> Result<Found, NotFound> {
     let image = sound(image);
     let pyramid = Pyramid::new(&image, Sides::DOTTED);
@@ -64,7 +66,12 @@ pub(crate) fn detect(image: &Image, puzzle: &Puzzle, layout: &Layout) -> Result<
                 Err(_) => {}
             }
         }
-        if let Some(found) = merged(seen, layout).filter(|found| best.as_ref().is_none_or(|best| best.points.len() < found.points.len())) {
+        let together = seen.iter().map(|sight| sight.agreeing).max();
+        let found = merged(seen, layout);
+        if let Some(together) = together.filter(|_| found.points.is_empty()) {
+            why = Some((usize::MAX, NotFound::OtherArrangement { marks: found.markers, together }));
+        }
+        if found.points.len() > best.as_ref().map_or(0, |best| best.points.len()) {
             best = Some(found);
         }
         if best.as_ref().is_some_and(|found| found.points.len() == layout.points.len() || least > ENOUGH) {
@@ -112,7 +119,7 @@ impl Sight {
             let Some(steps) = steps else { continue };
             // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.
             let own = &layout.points[index];
-            let own = BoardPoint { turns: own.turns + u32::from(decoded.inverted), ..own.clone() };
+            let own = BoardPoint { turns: own.turns + u32::from(decoded.exchanged), ..own.clone() };
             points.insert(index, corners::found(index, &own, *at, steps.linear(puzzle.square)));
         }
         let goes_on = beyond[0] + beyond[1] >= BEYOND && beyond[1] >= 3 * beyond[0];
@@ -129,7 +136,7 @@ fn index(place: [i32; 2], puzzle: &Puzzle) -> Option<usize> {
 }
 
 /// All that the grids of one level show; corners that two of them have at different places are left out.
-fn merged(seen: Vec<Sight>, layout: &Layout) -> Option<Found> {
+fn merged(seen: Vec<Sight>, layout: &Layout) -> Found {
     let (mut points, mut twice): (BTreeMap<usize, FoundPoint>, Vec<usize>) = (BTreeMap::new(), Vec::new());
     let (mut markers, mut contradicted, mut beyond) = (0, 0, 0);
     for sight in seen {
@@ -158,5 +165,5 @@ fn merged(seen: Vec<Sight>, layout: &Layout) -> Option<Found> {
     if beyond > 0 {
         doubts.push(Doubt::Beyond { corners: beyond });
     }
-    (!points.is_empty()).then(|| Found { points: points.into_values().collect(), markers, doubts })
+    Found { points: points.into_values().collect(), markers, doubts }
 }

@@ -37,7 +37,7 @@ impl Sheet {
             if single.is_empty() {
                 break;
             }
-            single.iter().for_each(|place| drop(corners.remove(place)));
+            corners.retain(|place, _| !single.contains(place));
         }
         let shortest = |place: &Place| steps(&corners, *place).map_or(0.0, |Steps([u, v])| length(u).min(length(v)));
         let lengths: Vec<f64> = corners.keys().map(shortest).collect();

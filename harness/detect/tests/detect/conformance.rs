@@ -77,6 +77,9 @@ fn other_dictionaries_and_forms_are_found_too() {
         "acircles:3x4:20",
         "rings:14:4x3:60:8",
         "rings:20:4x3:60:10",
+        "puzzle:8x6:30",
+        "puzzle:11x9:30:490,492",
+        "puzzle:16x12:30:165,166",
     ] {
         let (board, layout) = board(text);
         let view = View { turn: 10.0, tilt: [30.0, 40.0], ..View::whole(&layout, scale(&board, &layout, 6.0)) };
@@ -87,8 +90,8 @@ fn other_dictionaries_and_forms_are_found_too() {
 }
 
 #[test]
-fn circles_are_found_light_on_dark() {
-    for text in ["circles:7x5:20", "acircles:4x11:20"] {
+fn circles_and_puzzle_boards_are_found_light_on_dark() {
+    for text in ["circles:7x5:20", "acircles:4x11:20", "puzzle:11x8:30:7,4"] {
         let (board, layout) = board(text);
         let whole = View::whole(&layout, scale(&board, &layout, 4.0));
         let view = View { paper: 0.1, ink: 0.9, tilt: [30.0, 40.0], ..whole };

@@ -90,12 +90,7 @@ impl Puzzle {
             room: (0.5 - 0.5 * self.dot) * self.square,
         };
         let ([u0, v1], [u1, v0]) = (self.at(0, 0), self.at(self.rows + 1, self.columns + 1));
-        Ok(Layout {
-            points: inner.map(point).collect(),
-            markers: Vec::new(),
-            shapes: shapes.collect(),
-            printed: [[u0, v0], [u1, v1]],
-        })
+        Ok(Layout { points: inner.map(point).collect(), markers: Vec::new(), shapes: shapes.collect(), printed: [[u0, v0], [u1, v1]] })
     }
 
     fn check(&self) -> Result<(), BoardError> {

@@ -45,7 +45,8 @@ fn every_kind_of_board_conforms() {
 
 #[test]
 fn boards_are_written_as_they_are_read() {
-    let more = ["charuco:8x5:30:21:DICT_5X5_100:7:legacy", "aprilgrid:6x5:0.03:0.25:4:border1:plain", "acircles:4x11:20:8", "puzzle:11x8:60"];
+    let more =
+        ["charuco:8x5:30:21:DICT_5X5_100:7:legacy", "aprilgrid:6x5:0.03:0.25:4:border1:plain", "acircles:4x11:20:8", "puzzle:11x8:60"];
     for text in KINDS.iter().map(|(_, _, example)| *example).chain(more) {
         let board: Board = text.parse().unwrap();
         assert_eq!(board.to_string().parse(), Ok(board), "{text}: {board}");

@@ -86,7 +86,7 @@ fn a_board_is_told_in_every_turn_either_way_printed() {
             let seen = Seen { turns, inverted, ..Seen::of(&asked) };
             let what = format!("{place:?} {turns} {inverted}");
             let decoded = decode(&seen.sheet(), &seen.dots(), &asked).unwrap_or_else(|error| panic!("{what}: {error}"));
-            assert_eq!((decoded.wrong, decoded.inverted), (0, inverted), "{what}");
+            assert_eq!((decoded.wrong, decoded.inverted, decoded.exchanged), (0, inverted, inverted), "{what}");
             assert!(seen.corners().all(|corner| decoded.pattern(seen.place(corner)) == corner), "{what}");
             assert!(seen.dots().iter().all(|dot| decoded.expects(dot) == dot.light), "{what}");
             let mirror = Seen { mirrored: true, ..seen };
@@ -107,6 +107,17 @@ fn another_part_of_the_pattern_is_named() {
     let larger = Seen { first: [95, 190], size: [20, 20], ..seen };
     let decoded = decode(&larger.sheet(), &larger.dots(), &asked).unwrap();
     assert_eq!(decoded.pattern(larger.place([101, 202])), [101, 202]);
+}
+
+/// Another maker's prints have the squares' colours exchanged where the pattern begins anew.
+#[test]
+fn exchanged_squares_are_read_by_their_dots() {
+    let asked = puzzle(11, 11, [133, 411]);
+    let seen = Seen { turns: 1, ..Seen::of(&asked) };
+    let mut sheet = seen.sheet();
+    sheet.sign = -sheet.sign;
+    let decoded = decode(&sheet, &seen.dots(), &asked).unwrap();
+    assert_eq!((decoded.exchanged, decoded.inverted, decoded.pattern(seen.place([140, 415]))), (true, false, [140, 415]));
 }
 
 /// A window of five by five corners is unique in the pattern; that it is the board's is believed in part, that it is any of the pattern's never.
