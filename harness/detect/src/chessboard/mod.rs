@@ -20,14 +20,13 @@ use candidates::Saddles;
 use complete::complete;
 use grow::Grids;
 use level::{Level, Pyramid};
-use refine::refined;
+use refine::{Around, refined};
 use side::Sides;
 use straight::straighten;
 
 use crate::{Found, NotFound, corners};
 
-/// Around a corner so large a share of the step to the next is looked at.
-const AROUND: f64 = 0.4;
+const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
 /// No larger board is looked for beside one that takes this share of the image.
 const LARGE: f64 = 0.03;
 

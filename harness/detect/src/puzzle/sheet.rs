@@ -5,12 +5,17 @@ use std::collections::BTreeMap;
 use crate::chessboard::complete::sought;
 use crate::chessboard::grow::{Grid, Place, WAYS, moved};
 use crate::chessboard::level::{Level, Pyramid, scaled};
-use crate::chessboard::refine::refined;
+use crate::chessboard::refine::{Around, refined};
 use crate::chessboard::sectors::{Contrast, Steps, contrast};
-use crate::plane::{Point, distance, length};
+use crate::plane::{Homography, Point, distance, length};
 
-/// Around a corner so large a share of the step to the next is looked at: dots begin at a third.
-const AROUND: f64 = 0.3;
+/// Dots begin at a third of a step from a corner, a blur brings them nearer.
+const AROUND: Around = Around { share: 0.22, resolved: 20.0, smooth: 16.0 };
+/// Where the middle one of the steps is shorter than this, px, dots move the corners beside them.
+const NEAR: f64 = 40.0;
+/// So many corners, at most so far away, tell one among them better than the dots around it let it be seen.
+const ENOUGH: usize = 25;
+const FAR: i32 = 5;
 /// Corners are filled in where so many of the four neighbours are there.
 const BESIDE: usize = 2;
 /// Two corners are at least this share of a step apart.
@@ -43,7 +48,12 @@ impl Sheet {
         let lengths: Vec<f64> = corners.keys().map(shortest).collect();
         let places: Vec<Point> = corners.values().copied().collect();
         let found = refined(pyramid, &places, &lengths, AROUND, level.factor);
-        let corners: BTreeMap<Place, Point> = corners.into_keys().zip(found).collect();
+        let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found).collect();
+        let mut sorted = lengths;
+        sorted.sort_by(f64::total_cmp);
+        if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < NEAR) {
+            corners = smoothed(&corners);
+        }
         let signed = |place: &Place| {
             let contrast: Contrast = contrast(pyramid.image(), corners[place], &steps(&corners, *place)?)?;
             Some((*place, parity(*place) * contrast.mean))
@@ -82,6 +92,19 @@ impl Sheet {
         };
         [0, 1].map(|axis| bounds(axis).iter().sum::<i32>().div_euclid(2))
     }
+}
+
+/// Each corner where the homography of those nearest to it on the board, itself among them, has it.
+fn smoothed(corners: &BTreeMap<Place, Point>) -> BTreeMap<Place, Point> {
+    let mut around: Vec<Place> = (-FAR..=FAR).flat_map(|v| (-FAR..=FAR).map(move |u| [u, v])).collect();
+    around.sort_by_key(|[u, v]| u * u + v * v);
+    let own = |(place, at): (&Place, &Point)| {
+        let pair = |by: &Place| Some((by.map(f64::from), *corners.get(&[place[0] + by[0], place[1] + by[1]])?));
+        let pairs: Vec<(Point, Point)> = around.iter().filter_map(pair).take(ENOUGH).collect();
+        let map = Homography::fitted(&pairs).filter(|_| pairs.len() == ENOUGH);
+        (*place, map.map_or(*at, |map| map.at([0.0, 0.0])))
+    };
+    corners.iter().map(own).collect()
 }
 
 fn parity([u, v]: Place) -> f64 {

@@ -90,8 +90,8 @@ fn other_dictionaries_and_forms_are_found_too() {
 }
 
 #[test]
-fn circles_and_puzzle_boards_are_found_light_on_dark() {
-    for text in ["circles:7x5:20", "acircles:4x11:20", "puzzle:11x8:30:7,4"] {
+fn circles_are_found_light_on_dark() {
+    for text in ["circles:7x5:20", "acircles:4x11:20"] {
         let (board, layout) = board(text);
         let whole = View::whole(&layout, scale(&board, &layout, 4.0));
         let view = View { paper: 0.1, ink: 0.9, tilt: [30.0, 40.0], ..whole };

@@ -130,8 +130,10 @@ fn what_is_seen_has_to_be_enough() {
     };
     assert_eq!([4, 5].map(sure), [0, 0]);
     let some = sure(6);
-    assert!(some > 60 && some < 120, "{some}");
-    assert_eq!(sure(7), 120);
+    assert!(some > 20 && some < 100, "{some}");
+    let most = sure(7);
+    assert!(most > 100, "{most}");
+    assert_eq!(sure(8), 120);
     let four = Seen { first: [60, 105], size: [4, 5], turns: 0, mirrored: false, inverted: false };
     assert_eq!(decode(&four.sheet(), &four.dots(), &asked).unwrap_err().name(), "no_puzzle");
 }
@@ -184,7 +186,7 @@ fn believed(asked: &Puzzle, misread: f64, trials: usize) -> usize {
                 assert!(seen.corners().all(|corner| decoded.pattern(seen.place(corner)) == corner), "{place:?}");
                 believed += 1;
             }
-            Err(error) => assert!(["other_dots", "unsure_place"].contains(&error.name()), "{place:?}: {error}"),
+            Err(error) => assert!(["other_dots", "unsure_place", "no_puzzle"].contains(&error.name()), "{place:?}: {error}"),
         }
     }
     believed
@@ -202,6 +204,7 @@ fn misread_dots_cost_belief_and_never_give_another_place() {
         (8, 6, 0.25, 0, 40),
     ] {
         let sure = believed(&puzzle(columns, rows, [0, 0]), misread, count);
+        eprintln!("{columns} x {rows}, {misread}: {sure} of {count}");
         assert!((least..=most).contains(&sure), "{columns} x {rows}, {misread}: {sure} of {count}");
     }
 }
