@@ -140,7 +140,10 @@ fn merged(seen: Vec<Sight>, layout: &Layout) -> Found {
     let (mut points, mut twice): (BTreeMap<usize, FoundPoint>, Vec<usize>) = (BTreeMap::new(), Vec::new());
     let (mut markers, mut contradicted, mut beyond) = (0, 0, 0);
     for sight in seen {
-        markers += sight.agreeing;
+        // Two grids may be grown from the same corners.
+        if sight.points.keys().any(|index| !points.contains_key(index)) {
+            markers += sight.agreeing;
+        }
         contradicted += sight.contradicted;
         beyond += sight.beyond;
         for (index, point) in sight.points {
