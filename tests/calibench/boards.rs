@@ -118,7 +118,7 @@ fn what_is_no_such_board_is_refused_by_name() {
         ("charuco:10x7:38:26.6:DICT_4X4_100:50", "markers"),
         ("aprilgrid:6x4:48:0.3", "35 markers of DICT_4X4_50 are seen"),
         ("rings:12:10x7:38:10", "round areas"),
-        ("puzzle:19x13:20:100,200", "no PuzzleBoard"),
+        ("puzzle:19x13:20:100,200", "another pattern"),
     ] {
         let output = run(folder.path(), &with(&["detect"], &photos[..2], &["--board", board, "-o", "no.csv", "-q"]));
         assert_eq!(output.status.code(), Some(2), "{board}: {}", stderr(&output));
