@@ -6,11 +6,12 @@ use std::path::Path;
 use crate::project::{root, run, stderr, stdout};
 
 /// Scenarios of `targets/` and their boards in a word; how far an approximate point may be off, px, and what measures it, with its largest error.
-const BOARDS: [(&str, &str, &str, f64); 4] = [
+const BOARDS: [(&str, &str, &str, f64); 5] = [
     ("charuco", "charuco:10x7:38:26.6:DICT_4X4_50", "parametric_corner:window=15", 0.1),
     ("aprilgrid", "aprilgrid:6x4:48:0.3", "parametric_corner:window=11", 0.2),
     ("circles", "circles:10x7:38:20", "ellipse_edges", 0.1),
     ("rings", "rings:12:10x7:38:10", "ellipse_edges", 0.1),
+    ("puzzle", "puzzle:19x13:20:100,200", "parametric_corner:window=11", 0.1),
 ];
 const SHOTS: [&str; 8] = ["s01-r1", "s01-r2", "s02-r1", "s02-r2", "s03-r1", "s03-r2", "s04-r1", "s04-r2"];
 
@@ -117,6 +118,7 @@ fn what_is_no_such_board_is_refused_by_name() {
         ("charuco:10x7:38:26.6:DICT_4X4_100:50", "markers"),
         ("aprilgrid:6x4:48:0.3", "35 markers of DICT_4X4_50 are seen"),
         ("rings:12:10x7:38:10", "round areas"),
+        ("puzzle:19x13:20:100,200", "another pattern"),
     ] {
         let output = run(folder.path(), &with(&["detect"], &photos[..2], &["--board", board, "-o", "no.csv", "-q"]));
         assert_eq!(output.status.code(), Some(2), "{board}: {}", stderr(&output));
@@ -149,7 +151,9 @@ fn kalibrs_target_file_is_a_board() {
 /// What is printed goes to Kalibr with its own description, in metres, which is also read here: the same points, a thousandth.
 #[test]
 fn a_printed_board_comes_with_its_target_file() {
-    for (kind, named) in [("chessboard", true), ("aprilgrid", true), ("circles", true), ("charuco", false), ("rings", false)] {
+    for (kind, named) in
+        [("chessboard", true), ("aprilgrid", true), ("circles", true), ("charuco", false), ("rings", false), ("puzzle", false)]
+    {
         let folder = tempfile::tempdir().unwrap();
         let project = root().display().to_string();
         let print = || run(folder.path(), &["--root", &project, "print", &format!("targets/{kind}"), "-o", "sheet"]);

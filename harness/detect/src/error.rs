@@ -128,6 +128,50 @@ pub enum NotFound {
         /// The board's sectors.
         bits: usize,
     },
+    /// No chessboard with dots, or too few of them to tell a place from.
+    #[error(
+        "{corners} corners of squares with {dots} dots between them are seen together: no PuzzleBoard, or too little of it to be sure of its place"
+    )]
+    NoPuzzle {
+        /// Corners of the grid with most dots.
+        corners: usize,
+        /// Dots between them that can be read.
+        dots: usize,
+    },
+    /// Dots that belong to no place of the pattern.
+    #[error(
+        "another pattern: the place of the PuzzleBoard that fits best has {agreeing} of {dots} different dots that are seen, no more than chance; the board \
+         has other codes, or too many dots are hidden"
+    )]
+    OtherDots {
+        /// Dots that were read, those that repeat counted once.
+        dots: usize,
+        /// Those that the best place has.
+        agreeing: usize,
+    },
+    /// Dots that belong to one place of the pattern a little better than to others.
+    #[error(
+        "{agreeing} of {dots} different dots belong to one place of the PuzzleBoard, and nearly as many to another: too few are seen to be sure"
+    )]
+    UnsurePlace {
+        /// Dots that were read, those that repeat counted once.
+        dots: usize,
+        /// Those that the best place has.
+        agreeing: usize,
+    },
+    /// Another part of the pattern than the board's.
+    #[error(
+        "another board: the columns {} to {} and rows {} to {} of the PuzzleBoard's corners are seen, the board has {} to {} and {} to {}",
+        columns[0], columns[1], rows[0], rows[1], asked[0][0], asked[0][1], asked[1][0], asked[1][1]
+    )]
+    OtherPlace {
+        /// The first and the last column that is seen, counted in the pattern.
+        columns: [i32; 2],
+        /// The first and the last row.
+        rows: [i32; 2],
+        /// Those of the board: columns, rows.
+        asked: [[usize; 2]; 2],
+    },
 }
 
 impl NotFound {
@@ -147,6 +191,10 @@ impl NotFound {
             Self::NoCorners { .. } => "no_corners",
             Self::NoGrid { .. } => "no_grid",
             Self::NoCode { .. } => "no_code",
+            Self::NoPuzzle { .. } => "no_puzzle",
+            Self::OtherDots { .. } => "other_dots",
+            Self::UnsurePlace { .. } => "unsure_place",
+            Self::OtherPlace { .. } => "other_place",
         }
     }
 }

@@ -44,15 +44,32 @@ pub enum Doubt {
         /// Its id.
         id: u32,
     },
+    /// Corners of a PuzzleBoard that are seen in two places: none of them is used.
+    TwiceCorners {
+        /// The first of them by name.
+        first: String,
+        /// How many.
+        corners: usize,
+    },
+    /// Corners of a PuzzleBoard between dots most of which its pattern does not have there: left out.
+    Dots {
+        /// How many.
+        corners: usize,
+    },
+    /// Corners of the PuzzleBoard's pattern beyond those that the board has: left out.
+    Beyond {
+        /// How many.
+        corners: usize,
+    },
 }
 
 impl Doubt {
     /// The doubt's name in files.
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::Twice { .. } => "twice",
-            Self::Stray { .. } => "stray",
-            Self::Foreign { .. } => "foreign",
+            Self::Twice { .. } | Self::TwiceCorners { .. } => "twice",
+            Self::Stray { .. } | Self::Dots { .. } => "stray",
+            Self::Foreign { .. } | Self::Beyond { .. } => "foreign",
         }
     }
 }
@@ -63,6 +80,9 @@ impl fmt::Display for Doubt {
             Self::Twice { id } => write!(f, "mark {id} is seen more than once"),
             Self::Stray { id } => write!(f, "mark {id} is seen where the other marks say it cannot be"),
             Self::Foreign { id } => write!(f, "mark {id} is none of the board's"),
+            Self::TwiceCorners { first, corners } => write!(f, "corners are seen more than once, {corners} in all, the first {first}"),
+            Self::Dots { corners } => write!(f, "dots around corners are not the pattern's, {corners} corners left out"),
+            Self::Beyond { corners } => write!(f, "the pattern goes on beyond the board, {corners} corners left out"),
         }
     }
 }

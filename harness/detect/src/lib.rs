@@ -3,7 +3,7 @@
 //! [`detect`] takes an image and a [`Board`], and says which points it sees or, by name, why it sees no such board. It never numbers what contradicts the
 //! board. No pose, no camera, no truth. One thread, the same bytes every time.
 //!
-//! Markers are looked for as dark quadrangles whose sides are adjusted to the edges of the image, discs as round dark areas, the corners of chessboards as saddles. What is decoded has to stand as the board
+//! Markers are looked for as dark quadrangles whose sides are adjusted to the edges of the image, discs as round dark areas, the corners of chessboards and PuzzleBoards as saddles. What is decoded has to stand as the board
 //! has it, each mark to its neighbours; so lens distortion does no harm.
 
 mod arrange;
@@ -20,6 +20,7 @@ mod markers;
 mod meeting;
 mod patches;
 mod plane;
+mod puzzle;
 mod quads;
 mod reasons;
 mod round;
@@ -40,7 +41,7 @@ const LEAST_SIDE: usize = 16;
 
 /// The points of `board` that are seen in `image`, to about a pixel.
 ///
-/// Of boards with markers and of ring codes a part is enough. Chessboards and grids of circles have to be seen whole. Of a chessboard's corners, the ends of the
+/// Of boards with markers, ring codes and PuzzleBoards a part is enough. Chessboards and grids of circles have to be seen whole. Of a chessboard's corners, the ends of the
 /// board with a dark square at its corner are where `r1c1` can be, where there are such; circles may be dark on light or light on dark. Where a half turn leaves a
 /// board as it was (every symmetric one; an asymmetric one with an even number of rows) `r1c1` is the corner nearest to the upper left of the image, and so is it
 /// among the four quarter turns of a symmetric grid with as many rows as columns.
@@ -57,6 +58,7 @@ pub fn detect(image: &Image, board: &Board) -> Result<Found, NotFound> {
         Board::Charuco(_) | Board::AprilGrid(_) => markers::detect(image, board, &layout),
         Board::Circles(circles) => circles::detect(image, circles, &layout),
         Board::Rings(rings) => codes::detect(image, rings, &layout),
+        Board::Puzzle(board) => puzzle::detect(image, board, &layout),
         Board::Chessboard(board) => chessboard::detect(image, board, &layout),
     }
 }

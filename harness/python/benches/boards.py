@@ -21,6 +21,7 @@ WORDS = {
     "aprilgrid": "aprilgrid:6x4:48:0.3",
     "circles": "circles:10x7:38:20",
     "rings": "rings:12:10x7:38:10",
+    "puzzle": "puzzle:19x13:20:100,200",
 }
 
 
@@ -79,6 +80,7 @@ THEIRS = {
     },
     "circles": {"findCirclesGrid": lambda image: listed(*cv2.findCirclesGrid(image, (10, 7)), 10, 7)},
     "rings": {},
+    "puzzle": {},
 }
 
 

@@ -91,6 +91,7 @@ WORDS = {
     "aprilgrid": "aprilgrid:6x4:48:0.3",
     "circles": "circles:10x7:38:20",
     "rings": "rings:12:10x7:38:10",
+    "puzzle": "puzzle:19x13:20:100,200",
 }
 
 
@@ -157,3 +158,36 @@ def test_the_aprilgrid_of_a_photograph():
     for theirs, marker in zip(corners, ids.ravel()):
         mine = np.array([ours[f"t{marker}c{k}"] for k in (1, 0, 3, 2)])
         assert np.abs(theirs.reshape(4, 2) - mine).max() < 4.0, marker  # whole pixels, unrefined
+
+
+def read_puzzle(image, side):
+    """Corners by their place in the pattern, as `calib-targets` reads them; it counts from another corner than the makers."""
+    other = pytest.importorskip("calib_targets")
+    parameters = other.default_puzzleboard_params(20, 20).to_dict() | {"px_per_square": side}
+    seen = other.detect_puzzleboard(eight_bits(image), params=other.PuzzleBoardParams.from_dict(parameters))
+    return {((corner.grid.u - 168) % 501, (corner.grid.v - 168) % 501): np.array(corner.position) for corner in seen.corners}, seen.decode
+
+
+@pytest.mark.parametrize("place", [(0, 0), (100, 200), (333, 165), (482, 488)])
+def test_another_reader_reads_a_puzzle_board_of_ours_in_all_rotations(tmp_path, place):
+    pytest.importorskip("calib_targets")
+    for shot in cb.render(scenario(tmp_path, "puzzle", lambda text: text.replace("[100, 200]", f"[{place[0]}, {place[1]}]")), root=ROOT):
+        corners, decode = read_puzzle(shot.image, 37.0)
+        assert decode.edges_matched == decode.edges_observed == 18 * 13 + 19 * 12, shot.name
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        assert len(corners) == len(truth) == 247
+        for (column, row), xy in corners.items():
+            assert np.linalg.norm(xy - truth[f"r{row - place[1] + 1}c{column - place[0] + 1}"]) < 0.5
+
+
+@pytest.mark.parametrize("origin", [(0, 0), (10, 20), (300, 77)])
+def test_a_puzzle_board_that_another_drew_is_found(origin):
+    """Its last one has its squares exchanged, since the makers' pattern begins elsewhere."""
+    other = pytest.importorskip("calib_targets")
+    document = other.puzzleboard_document(12, 12, 12.0, origin_row=origin[1], origin_col=origin[0])
+    drawn = cv2.imdecode(np.frombuffer(other.render_target_bundle(document).png_bytes, np.uint8), cv2.IMREAD_GRAYSCALE)
+    image = cv2.resize(drawn, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA)
+    place = [(value + 1 - 168) % 501 for value in origin]
+    found = cb.detect(image, f"puzzle:11x11:12:{place[0]},{place[1]}")
+    assert found is not None and len(found.target) == 121
+    assert cb.detect(image, f"puzzle:11x11:12:{(place[0] + 20) % 490},{place[1]}") is None, "another part of the pattern"

@@ -23,7 +23,7 @@ const IN_CELL: f64 = 3.0;
 
 /// A saddle of the grey values.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Saddle {
+pub(crate) struct Saddle {
     /// Where, px of the level.
     pub at: Point,
     /// The direction of the light on both of its sides, of length 1; its negative is the same.
@@ -75,7 +75,7 @@ impl Saddle {
 }
 
 /// The saddles of a level, the strongest first, to be looked up by place.
-pub(super) struct Saddles {
+pub(crate) struct Saddles {
     pub all: Vec<Saddle>,
     /// The side of a cell, px.
     side: f64,
@@ -85,7 +85,7 @@ pub(super) struct Saddles {
 }
 
 impl Saddles {
-    pub(super) fn of(level: &Level) -> Self {
+    pub(crate) fn of(level: &Level) -> Self {
         let (width, height) = (level.smooth.width() as f64, level.smooth.height() as f64);
         let all: Vec<Saddle> = strongest(level).into_iter().filter(|saddle| saddle.is_crossed(&level.smooth)).collect();
         let side = (IN_CELL * width * height / all.len().max(1) as f64).sqrt().max(CELL);

@@ -121,7 +121,7 @@ fn steps(grid: &Grid, place: Place, at: Point) -> Option<Steps> {
 }
 
 /// The corner at a place, if there is one where its neighbours have it.
-fn sought(level: &Level, grid: &Grid, place: Place) -> Option<Saddle> {
+pub(crate) fn sought(level: &Level, grid: &Grid, place: Place) -> Option<Saddle> {
     let (at, step) = expected(grid, place)?;
     let corner = Saddle::near(level, at, (REACH * step).max(LEAST_REACH)).filter(|corner| fits(level, grid, place, corner))?;
     contrast(&level.smooth, corner.at, &steps(grid, place, corner.at)?).map(|_| corner)

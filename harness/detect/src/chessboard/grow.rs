@@ -20,14 +20,14 @@ const SLANT: f64 = 0.2;
 /// By how much a step may differ from the last.
 const STRETCH: [f64; 2] = [0.7, 1.4];
 
-pub(super) type Place = [i32; 2];
+pub(crate) type Place = [i32; 2];
 /// A grid: its corners by their place. The second axis is clockwise of the first in the image.
-pub(super) type Grid = BTreeMap<Place, Saddle>;
+pub(crate) type Grid = BTreeMap<Place, Saddle>;
 
 /// The four ways to a neighbour: axis and sign.
-pub(super) const WAYS: [(usize, i32); 4] = [(0, 1), (0, -1), (1, 1), (1, -1)];
+pub(crate) const WAYS: [(usize, i32); 4] = [(0, 1), (0, -1), (1, 1), (1, -1)];
 
-pub(super) fn moved(mut place: Place, axis: usize, by: i32) -> Place {
+pub(crate) fn moved(mut place: Place, axis: usize, by: i32) -> Place {
     place[axis] += by;
     place
 }
@@ -53,11 +53,11 @@ pub(super) fn foreseen(grid: &Grid, place: Place, (axis, sign): (usize, i32)) ->
 /// Whether a corner at a place has sides to all of its neighbours that are there.
 pub(super) fn fits(level: &Level, grid: &Grid, place: Place, corner: &Saddle) -> bool {
     let mut neighbours = WAYS.iter().filter_map(|(axis, sign)| grid.get(&moved(place, *axis, *sign)));
-    neighbours.all(|neighbour| is_side(&level.smooth, corner, neighbour))
+    neighbours.all(|neighbour| is_side(level, corner, neighbour))
 }
 
 /// The grids of a level, one after the other.
-pub(super) struct Grids<'a> {
+pub(crate) struct Grids<'a> {
     level: &'a Level,
     saddles: &'a Saddles,
     next: usize,
@@ -65,12 +65,12 @@ pub(super) struct Grids<'a> {
 }
 
 impl<'a> Grids<'a> {
-    pub(super) fn new(level: &'a Level, saddles: &'a Saddles) -> Self {
+    pub(crate) fn new(level: &'a Level, saddles: &'a Saddles) -> Self {
         Self { level, saddles, next: 0, taken: vec![false; saddles.all.len()] }
     }
 
     fn side(&self, a: usize, b: usize) -> bool {
-        is_side(&self.level.smooth, &self.saddles.all[a], &self.saddles.all[b])
+        is_side(self.level, &self.saddles.all[a], &self.saddles.all[b])
     }
 
     /// Four corners of a square of which one is the first.

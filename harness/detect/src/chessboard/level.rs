@@ -2,6 +2,7 @@
 
 use calibench_model::{CornerPoint, Image, PixelPoint};
 
+use super::side::Sides;
 use crate::plane::Point;
 
 /// Pixels of the level that is looked at first, and of the finest, at most.
@@ -13,61 +14,66 @@ const ENLARGED: usize = 160_000;
 const LEAST_SIDE: usize = 24;
 
 /// An image, and means of squares of two, four and so on of its pixels.
-pub(super) struct Pyramid<'a>(Vec<Image<'a>>);
+pub(crate) struct Pyramid<'a> {
+    images: Vec<Image<'a>>,
+    sides: Sides,
+}
 
 /// An image at one scale.
-pub(super) struct Level {
+pub(crate) struct Level {
     /// px of the image to one of the level.
     pub factor: f64,
     /// Its grey values, smoothed by a standard deviation of one px.
     pub smooth: Image<'static>,
     /// Minus the determinant of their second derivatives, row by row: positive at saddles. Zero along the border.
     pub saddle: Vec<f32>,
+    /// How the sides of squares are looked at.
+    pub sides: Sides,
 }
 
 /// A point of an image in one whose pixels are `factor` times smaller.
-pub(super) fn scaled([x, y]: Point, factor: f64) -> Point {
+pub(crate) fn scaled([x, y]: Point, factor: f64) -> Point {
     let corner = PixelPoint::new(x, y).to_corner();
     let at = CornerPoint { x: factor * corner.x, y: factor * corner.y }.to_pixel();
     [at.x, at.y]
 }
 
 impl Level {
-    fn new(image: &Image, factor: f64) -> Self {
+    fn new(image: &Image, factor: f64, sides: Sides) -> Self {
         let smooth = smoothed(image);
         let saddle = saddles(&smooth);
-        Self { factor, smooth, saddle }
+        Self { factor, smooth, saddle, sides }
     }
 }
 
 impl<'a> Pyramid<'a> {
-    pub(super) fn new(image: &'a Image<'a>) -> Self {
+    pub(crate) fn new(image: &'a Image<'a>, sides: Sides) -> Self {
         let mut all = vec![image.lent()];
         while let Some(next) = all.last().map(|last| last.reduced(2)).filter(|next| next.width().min(next.height()) >= LEAST_SIDE) {
             all.push(next);
         }
-        Self(all)
+        Self { images: all, sides }
     }
 
     /// The image as it is.
-    pub(super) fn image(&self) -> &Image<'a> {
-        &self.0[0]
+    pub(crate) fn image(&self) -> &Image<'a> {
+        &self.images[0]
     }
 
     /// The images whose pixels are at most `most` of the image's, and how many px of the image theirs are; the finest first.
     pub(super) fn up_to(&self, most: f64) -> impl Iterator<Item = (&Image<'a>, f64)> {
-        self.0.iter().enumerate().map(|(index, image)| (image, (1_u64 << index) as f64)).take_while(move |(_, factor)| *factor <= most)
+        self.images.iter().enumerate().map(|(index, image)| (image, (1_u64 << index) as f64)).take_while(move |(_, factor)| *factor <= most)
     }
 
     /// Levels in the order in which they are looked at: a small one, smaller ones, larger ones, an enlarged one.
-    pub(super) fn levels(&self) -> impl Iterator<Item = Level> {
-        let pixels: Vec<usize> = self.0.iter().map(|level| level.width() * level.height()).collect();
+    pub(crate) fn levels(&self) -> impl Iterator<Item = Level> {
+        let pixels: Vec<usize> = self.images.iter().map(|level| level.width() * level.height()).collect();
         let below = |most: usize| pixels.iter().position(|pixels| *pixels <= most).unwrap_or(pixels.len() - 1);
         let (first, finest) = (below(FIRST), below(FINEST));
         let order = (first..pixels.len()).chain((finest..first).rev());
-        let ordinary = order.map(|index| Level::new(&self.0[index], (1_u64 << index) as f64));
+        let ordinary = order.map(|index| Level::new(&self.images[index], (1_u64 << index) as f64, self.sides));
         let enlarged = (pixels[0] <= ENLARGED).then(|| self.image());
-        ordinary.chain(enlarged.into_iter().map(|image| Level::new(&doubled(image), 0.5)))
+        ordinary.chain(enlarged.into_iter().map(|image| Level::new(&doubled(image), 0.5, self.sides)))
     }
 }
 

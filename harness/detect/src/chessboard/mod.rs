@@ -1,13 +1,13 @@
 //! Chessboards without markers: saddles of the grey values, grown to a grid, completed to a rectangle and proved square by square.
 
 mod board;
-mod candidates;
-mod complete;
-mod grow;
-mod level;
-mod refine;
-mod sectors;
-mod side;
+pub(crate) mod candidates;
+pub(crate) mod complete;
+pub(crate) mod grow;
+pub(crate) mod level;
+pub(crate) mod refine;
+pub(crate) mod sectors;
+pub(crate) mod side;
 mod straight;
 
 use std::borrow::Cow;
@@ -20,11 +20,13 @@ use candidates::Saddles;
 use complete::complete;
 use grow::Grids;
 use level::{Level, Pyramid};
-use refine::refine;
+use refine::{Around, refined};
+use side::Sides;
 use straight::straighten;
 
 use crate::{Found, NotFound, corners};
 
+const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
 /// No larger board is looked for beside one that takes this share of the image.
 const LARGE: f64 = 0.03;
 
@@ -42,7 +44,7 @@ const LARGE: f64 = 0.03;
 pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) -> Result<Found, NotFound> {
     let Chessboard { columns, rows, square } = *chessboard;
     let image = sound(image);
-    let pyramid = Pyramid::new(&image);
+    let pyramid = Pyramid::new(&image, Sides::PLAIN);
     let seen = pyramid.levels().find_map(|level| largest(&pyramid, &level, columns, rows));
     let board = seen.ok_or(NotFound::NoChessboard { columns, rows })?;
     // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.
@@ -67,10 +69,10 @@ fn largest(pyramid: &Pyramid, level: &Level, columns: usize, rows: usize) -> Opt
         }
         let whole = complete(level, grid, columns.max(rows) + 1);
         let Some(mut board) = whole.and_then(|grid| Board::new(level, &grid)).filter(counts) else { continue };
-        refine(pyramid, &mut board, level.factor);
+        board.refine(pyramid, level.factor);
         // What was far off may be met from where it is now.
         if straighten(&mut board) {
-            refine(pyramid, &mut board, level.factor);
+            board.refine(pyramid, level.factor);
             straighten(&mut board);
         }
         if largest.as_ref().is_none_or(|other| other.area() < board.area()) && board.stands(image) {
@@ -83,8 +85,15 @@ fn largest(pyramid: &Pyramid, level: &Level, columns: usize, rows: usize) -> Opt
     largest
 }
 
+impl Board {
+    fn refine(&mut self, pyramid: &Pyramid, factor: f64) {
+        let steps: Vec<f64> = (0..self.corners.len()).map(|index| self.step(index)).collect();
+        self.corners = refined(pyramid, &self.corners, &steps, AROUND, factor);
+    }
+}
+
 /// The image with numbers everywhere.
-fn sound<'a>(image: &'a Image<'a>) -> Cow<'a, Image<'a>> {
+pub(crate) fn sound<'a>(image: &'a Image<'a>) -> Cow<'a, Image<'a>> {
     if image.grey().iter().all(|grey| grey.abs() <= 1e6) {
         return Cow::Borrowed(image);
     }

@@ -2,13 +2,22 @@
 
 use calibench_model::Image;
 
-use super::board::Board;
 use super::level::{Pyramid, scaled};
 use crate::meeting::Meeting;
 use crate::plane::{Point, distance, minus, plus};
 
-/// The radius of what is looked at, as a share of the shorter step to a neighbour; px at least and at most.
-const RADIUS: f64 = 0.4;
+/// What is looked at around corners.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around {
+    /// Its radius as a share of the shorter step to a neighbour.
+    pub share: f64,
+    /// A coarser image is looked at if the middle one of the steps is so long there, px.
+    pub resolved: f64,
+    /// Grey values are smoothed before gradients are taken where the step is so long, px.
+    pub smooth: f64,
+}
+
+/// The radius of what is looked at, px at least and at most.
 const LEAST: f64 = 2.0;
 const GREATEST: f64 = 9.0;
 /// How far beyond this radius gradients are kept, px.
@@ -21,37 +30,40 @@ const SHARP: f64 = 0.4;
 /// The smoothing before gradients are taken.
 const BINOMIAL: [f64; 5] = [0.0625, 0.25, 0.375, 0.25, 0.0625];
 
-/// Moves each corner to where the edges around it meet: in the image, or in a coarser one in which they are sharp. It stays where nothing meets near it.
-/// `factor`: px of the image to one of the level the board was found in.
-pub(super) fn refine(pyramid: &Pyramid, board: &mut Board, factor: f64) {
-    let steps: Vec<f64> = (0..board.corners.len()).map(|index| board.step(index)).collect();
-    let mut best = (f64::INFINITY, board.corners.clone());
-    for (image, of) in pyramid.up_to((2.0 * factor).max(1.0)) {
+/// Each corner moved to where the edges around it meet: in the image, or in a coarser one in which they are sharp. It stays where nothing meets near it.
+/// `steps`: the shorter step from each to a neighbour, px; `factor`: px of the image to one of the level in which they were found.
+pub(crate) fn refined(pyramid: &Pyramid, corners: &[Point], steps: &[f64], around: Around, factor: f64) -> Vec<Point> {
+    let mut best = (f64::INFINITY, corners.to_vec());
+    let mut sorted = steps.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let Some(step) = sorted.get(sorted.len() / 2) else { return best.1 };
+    for (image, of) in pyramid.up_to((2.0 * factor).max(1.0)).filter(|(_, of)| *of == 1.0 || step / of >= around.resolved) {
         let met = |(at, step): (&Point, &f64)| {
-            let found = meeting(image, scaled(*at, 1.0 / of), step / of, factor / of);
+            let found = meeting(image, scaled(*at, 1.0 / of), step / of, around, factor / of);
             found.map_or((*at, f64::INFINITY), |(at, variance)| (scaled(at, of), variance))
         };
-        let (corners, mut variances): (Vec<Point>, Vec<f64>) = board.corners.iter().zip(&steps).map(met).unzip();
+        let (moved, mut variances): (Vec<Point>, Vec<f64>) = corners.iter().zip(steps).map(met).unzip();
         variances.sort_by(f64::total_cmp);
         let middle = variances[variances.len() / 2].sqrt();
         if middle < best.0 {
-            best = (middle, corners);
+            best = (middle, moved);
         }
         if middle < SHARP {
             break;
         }
     }
-    board.corners = best.1;
+    best.1
 }
 
 /// Where edges meet near `from`, and its variance, px^2; `scale`: px of this image to one in which `from` is known to a fraction.
-fn meeting(image: &Image, from: Point, step: f64, scale: f64) -> Option<(Point, f64)> {
-    let radius = (RADIUS * step).clamp(LEAST, GREATEST);
-    let mut patch = Patch::around(image, from, radius + SPARE);
+fn meeting(image: &Image, from: Point, step: f64, around: Around, scale: f64) -> Option<(Point, f64)> {
+    let radius = (around.share * step).clamp(LEAST, GREATEST);
+    let smooth = step >= around.smooth;
+    let mut patch = Patch::around(image, from, radius + SPARE, smooth);
     let (mut at, mut known) = (from, f64::INFINITY);
     for _ in 0..STEPS {
         if distance(at, patch.middle) > SPARE {
-            patch = Patch::around(image, at, radius + SPARE);
+            patch = Patch::around(image, at, radius + SPARE, smooth);
         }
         let (next, variance) = patch.met(at, radius)?;
         if distance(next, from) > (0.2 * step).max(scale) {
@@ -75,7 +87,7 @@ struct Patch {
 }
 
 impl Patch {
-    fn around(image: &Image, middle: Point, reach: f64) -> Self {
+    fn around(image: &Image, middle: Point, reach: f64, smooth: bool) -> Self {
         let reach = reach.ceil() as i64;
         let first = middle.map(|at| at.round() as i64 - reach);
         let side = 2 * reach as usize + 1;
@@ -87,7 +99,7 @@ impl Patch {
             f64::from(image.at(inside(column, image.width()), inside(row, image.height())))
         };
         let raw: Vec<f64> = (0..wide).flat_map(|y| (0..wide).map(move |x| (x, y))).map(|(x, y)| grey(x, y)).collect();
-        let smooth = smoothed(&raw, wide);
+        let smooth = if smooth { smoothed(&raw, wide) } else { raw };
         let at = |x: usize, y: usize| smooth[y * wide + x];
         let gradient = |x: usize, y: usize| {
             let (column, row) = (first[0] + x as i64, first[1] + y as i64);

@@ -12,11 +12,11 @@ const AROUND: [f64; 3] = [-0.08, 0.0, 0.08];
 const SHARE: f64 = 0.08;
 
 /// The steps from a corner to its neighbours on both axes, px.
-pub(super) struct Steps(pub [Point; 2]);
+pub(crate) struct Steps(pub [Point; 2]);
 
 impl Steps {
     /// By the corners before and behind, or by those beside it; `place` tells where a neighbour is.
-    pub(super) fn at(own: Point, place: impl Fn([i32; 2]) -> Option<Point>) -> Option<Self> {
+    pub(crate) fn at(own: Point, place: impl Fn([i32; 2]) -> Option<Point>) -> Option<Self> {
         let by = |axis: usize, sign: i32, across: i32| if axis == 0 { [sign, across] } else { [across, sign] };
         let step = |axis: usize| {
             let straight = match (place(by(axis, -1, 0)), place(by(axis, 1, 0))) {
@@ -31,14 +31,14 @@ impl Steps {
     }
 
     /// From the plane of the board, u right and v up, whose squares have this side, to px.
-    pub(super) fn linear(&self, square: f64) -> Linear {
+    pub(crate) fn linear(&self, square: f64) -> Linear {
         let Self([u, v]) = self;
         Linear([0, 1].map(|axis| [u[axis] / square, -v[axis] / square]))
     }
 }
 
 /// How two opposite sectors around a corner are lighter than the others.
-pub(super) struct Contrast {
+pub(crate) struct Contrast {
     /// Difference of the means: positive if the light ones are those where both steps have the same sign, negative if the others.
     pub mean: f64,
     /// The darker of the light ones less the lighter of the dark ones; positive.
@@ -46,7 +46,7 @@ pub(super) struct Contrast {
 }
 
 /// The contrast of the sectors around a corner; `None` if no two are lighter than the others.
-pub(super) fn contrast(image: &Image, at: Point, Steps([u, v]): &Steps) -> Option<Contrast> {
+pub(crate) fn contrast(image: &Image, at: Point, Steps([u, v]): &Steps) -> Option<Contrast> {
     let sector = |a: f64, b: f64| {
         let samples = AROUND.iter().flat_map(|i| AROUND.iter().map(move |k| [a * MIDDLE + i, b * MIDDLE + k]));
         samples.map(|[i, k]| grey(image, plus(at, plus(times(*u, i), times(*v, k))))).sum::<f64>() / 9.0

@@ -1,13 +1,21 @@
 //! Sides of squares: edges between two corners.
 
-use calibench_model::Image;
-
 use super::candidates::{Saddle, direction};
+use super::level::Level;
 use crate::ground::grey;
 use crate::plane::{Point, cross, dot, plus, times};
 
-/// Where along a side it is looked at, as shares of its length.
-const ALONG: [f64; 5] = [0.2, 0.35, 0.5, 0.65, 0.8];
+/// Where along a side of a square it is looked at, as shares of its length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sides(&'static [f64]);
+
+impl Sides {
+    /// Nothing lies on them.
+    pub(crate) const PLAIN: Self = Self(&[0.2, 0.35, 0.5, 0.65, 0.8]);
+    /// A dot lies on their middles.
+    pub(crate) const DOTTED: Self = Self(&[0.14, 0.25, 0.75, 0.86]);
+}
+
 /// How far beside it, as a share of its length; px of the level at least.
 const BESIDE: f64 = 0.1;
 const LEAST_BESIDE: f64 = 1.0;
@@ -26,7 +34,7 @@ fn light_beside(saddle: &Saddle, way: Point) -> Option<f64> {
 }
 
 /// Whether the side of a square runs from one saddle to another: the same side of it is light all along, as it is at both ends.
-pub(super) fn is_side(image: &Image, a: &Saddle, b: &Saddle) -> bool {
+pub(super) fn is_side(level: &Level, a: &Saddle, b: &Saddle) -> bool {
     let Some((way, far)) = direction(a.at, b.at) else { return false };
     if dot(a.light, b.light).abs() > TURN {
         return false;
@@ -38,10 +46,11 @@ pub(super) fn is_side(image: &Image, a: &Saddle, b: &Saddle) -> bool {
     let beside = times([-way[1], way[0]], from_a * (BESIDE * far).max(LEAST_BESIDE));
     let difference = |share: f64| {
         let at = plus(a.at, times(way, share * far));
-        grey(image, plus(at, beside)) - grey(image, plus(at, times(beside, -1.0)))
+        grey(&level.smooth, plus(at, beside)) - grey(&level.smooth, plus(at, times(beside, -1.0)))
     };
-    let differences = ALONG.map(difference);
-    let least = differences.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = differences.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let Sides(along) = level.sides;
+    let differences = || along.iter().map(|share| difference(*share));
+    let least = differences().fold(f64::INFINITY, f64::min);
+    let greatest = differences().fold(f64::NEG_INFINITY, f64::max);
     least > EVEN * greatest && least > 0.0
 }

@@ -77,6 +77,9 @@ fn other_dictionaries_and_forms_are_found_too() {
         "acircles:3x4:20",
         "rings:14:4x3:60:8",
         "rings:20:4x3:60:10",
+        "puzzle:8x6:30",
+        "puzzle:11x9:30:490,492",
+        "puzzle:16x12:30:165,166",
     ] {
         let (board, layout) = board(text);
         let view = View { turn: 10.0, tilt: [30.0, 40.0], ..View::whole(&layout, scale(&board, &layout, 6.0)) };

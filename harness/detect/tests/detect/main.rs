@@ -4,4 +4,5 @@ mod chessboard;
 mod conformance;
 mod photographs;
 mod picture;
+mod puzzle;
 mod refusals;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_detect::detect;
+use calibench_detect::{NotFound, detect};
 use calibench_model::Image;
 
 use crate::picture::board;
@@ -19,6 +19,17 @@ fn photograph(name: &str) -> Option<PathBuf> {
 fn read(path: &Path) -> Image<'static> {
     let read = image::open(path).unwrap().to_luma32f();
     Image::new(read.width() as usize, read.height() as usize, read.into_raw())
+}
+
+/// A PuzzleBoard with other codes than those that were published: of its sides along one direction the dots repeat after three across, in all 46 pairs, where the
+/// published ones repeat along, and those along the other direction repeat in neither (27 of 47, 27 of 46). It is no part of the pattern in any turn or mirror, nor does
+/// another reader know it.
+#[test]
+fn the_puzzle_board_of_a_photograph_has_other_codes() {
+    let Some(path) = photograph("puzzleboard_example0.png") else { return };
+    let error = detect(&read(&path), &board("puzzle:501x501:1").0).unwrap_err();
+    let NotFound::OtherDots { dots, agreeing } = error else { panic!("{error}") };
+    assert!(dots > 50 && 6 * agreeing < 5 * dots, "{error}");
 }
 
 #[test]

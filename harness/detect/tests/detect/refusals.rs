@@ -41,6 +41,9 @@ fn other_boards_are_named() {
         ("circles:7x5:20", "acircles:7x5:20", "no_grid"),
         ("rings:12:6x5:50:8", "rings:12:6x5:30:8", "other_spacing"),
         ("rings:12:6x5:50:8", "rings:12:5x6:50:8", "other_arrangement"),
+        ("puzzle:11x8:30:40,60", "puzzle:11x8:30:300,60", "other_place"),
+        ("puzzle:11x8:30:40,60", "puzzle:11x8:30:51,60", "other_place"),
+        ("chessboard:11x8:30", "puzzle:11x8:30:40,60", "no_puzzle"),
     ] {
         let error = reason(pictured, asked, |view| view);
         assert_eq!(error.name(), name, "{pictured} as {asked}: {error}");
@@ -60,7 +63,10 @@ fn noise_and_nothing_are_no_board() {
         let flat = Image::from_fn(400, 300, |_, _| 0.5);
         for (image, what) in [(flat.lent(), "flat"), (noisy(&flat, 0.01, 5), "noisy"), (noisy(&flat, 0.3, 5), "very noisy")] {
             let error = detect(&image, &board).expect_err(what);
-            assert!(matches!(error.name(), "no_chessboard" | "no_marker" | "no_grid" | "no_code"), "{example} {what}: {error}");
+            assert!(
+                matches!(error.name(), "no_chessboard" | "no_marker" | "no_grid" | "no_code" | "no_puzzle"),
+                "{example} {what}: {error}"
+            );
         }
         for (image, what) in
             [(Image::from_fn(300, 200, |_, _| f32::NAN), "no numbers"), (Image::from_fn(300, 200, |x, _| x as f32 / 300.0), "ramp")]

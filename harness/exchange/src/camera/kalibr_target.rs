@@ -133,6 +133,7 @@ pub fn kalibr_target(board: &Board, metres: f64) -> Result<String, &'static str>
         }
         Board::Charuco(_) => Err("it knows no ChArUco"),
         Board::Rings(_) => Err("it knows no ring codes"),
+        Board::Puzzle(_) => Err("it knows no PuzzleBoard"),
     }
 }
 
@@ -175,7 +176,7 @@ mod tests {
             let board: Board = example.parse().unwrap();
             match kalibr_target(&board, 1.0) {
                 Ok(written) => assert_eq!(parse(&written), Ok(board), "{kind}: {written}"),
-                Err(why) => assert!(["charuco", "rings"].contains(&kind), "{kind}: {why}"),
+                Err(why) => assert!(["charuco", "rings", "puzzle"].contains(&kind), "{kind}: {why}"),
             }
         }
         let refused = |word: &str, why: &str| {
@@ -187,6 +188,7 @@ mod tests {
         refused("aprilgrid:6x6:88:0.3:plain", "small squares");
         refused("charuco:8x5:30:21:DICT_4X4_50", "ChArUco");
         refused("rings:12:6x5:50:8", "ring codes");
+        refused("puzzle:23x16:30:50,100", "PuzzleBoard");
         let Board::Circles(discs) = "acircles:4x11:20".parse().unwrap() else { panic!() };
         assert_eq!(parse(&kalibr_target(&Board::Circles(discs), 1.0).unwrap()), Ok(Board::Circles(discs)));
         assert!(kalibr_target(&Board::Circles(Circles { hole: Some(4.0), ..discs }), 1.0).is_err());

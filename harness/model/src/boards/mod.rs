@@ -8,6 +8,7 @@ mod chessboard;
 mod circles;
 mod dictionary;
 mod layout;
+mod puzzle;
 mod rings;
 mod text;
 
@@ -21,6 +22,7 @@ pub use chessboard::Chessboard;
 pub use circles::Circles;
 pub use dictionary::{Dictionary, Identified};
 pub use layout::{BoardPoint, Layout, Marker, Shape, marker_shapes, square_marker};
+pub use puzzle::{Puzzle, PuzzleCodes};
 pub use rings::{Rings, least_rotation, ring_codes};
 pub use text::KINDS;
 
@@ -37,6 +39,8 @@ pub enum Board {
     Circles(Circles),
     /// Rows of ring codes.
     Rings(Rings),
+    /// A chessboard with dots on the sides of its squares.
+    Puzzle(Puzzle),
 }
 
 impl Board {
@@ -51,13 +55,14 @@ impl Board {
             Self::AprilGrid(board) => board.layout(),
             Self::Circles(board) => board.layout(),
             Self::Rings(board) => board.layout(),
+            Self::Puzzle(board) => board.layout(),
         }
     }
 
     /// Whether its marks say which they are: a part of it is enough to number its points.
     pub const fn is_coded(&self) -> bool {
         match self {
-            Self::Charuco(_) | Self::AprilGrid(_) | Self::Rings(_) => true,
+            Self::Charuco(_) | Self::AprilGrid(_) | Self::Rings(_) | Self::Puzzle(_) => true,
             Self::Chessboard(_) | Self::Circles(_) => false,
         }
     }
@@ -67,7 +72,7 @@ impl Board {
         match self {
             Self::Charuco(board) => Some((board.dictionary, 1)),
             Self::AprilGrid(board) => Some((board.dictionary, board.border)),
-            Self::Chessboard(_) | Self::Circles(_) | Self::Rings(_) => None,
+            Self::Chessboard(_) | Self::Circles(_) | Self::Rings(_) | Self::Puzzle(_) => None,
         }
     }
 }

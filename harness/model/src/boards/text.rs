@@ -3,16 +3,17 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{AprilGrid, Board, BoardError, Charuco, Chessboard, Circles, Dictionary, Rings};
+use super::{AprilGrid, Board, BoardError, Charuco, Chessboard, Circles, Dictionary, Puzzle, Rings};
 
 /// The kinds of board, how each is written, and an example.
-pub const KINDS: [(&str, &str, &str); 6] = [
+pub const KINDS: [(&str, &str, &str); 7] = [
     ("chessboard", "COLUMNSxROWS:SQUARE", "chessboard:9x6:25"),
     ("charuco", "COLUMNSxROWS:SQUARE:MARKER:DICTIONARY[:FIRST][:legacy]", "charuco:8x5:30:21:DICT_4X4_50"),
     ("aprilgrid", "COLUMNSxROWS:TAG:SPACING[:FIRST][:border1][:plain]", "aprilgrid:6x6:0.088:0.3"),
     ("circles", "COLUMNSxROWS:SPACING[:DIAMETER]", "circles:7x5:20"),
     ("acircles", "COLUMNSxROWS:SPACING[:DIAMETER]", "acircles:4x11:20"),
     ("rings", "BITS:COLUMNSxROWS:SPACING:DIAMETER", "rings:12:6x5:50:8"),
+    ("puzzle", "COLUMNSxROWS:SQUARE[:X,Y]", "puzzle:23x16:30:50,100"),
 ];
 
 impl FromStr for Board {
@@ -30,6 +31,7 @@ impl FromStr for Board {
             "charuco" => parts.charuco(),
             "aprilgrid" => parts.aprilgrid(),
             "rings" => parts.rings(),
+            "puzzle" => parts.puzzle(),
             _ => parts.circles(kind == "acircles"),
         };
         let wrong = |why: String| BoardError::Text(format!("`{text}`: {why}; expected {kind}:{form}, as in {example}"));
@@ -63,6 +65,10 @@ impl fmt::Display for Board {
             }
             Self::Rings(Rings { bits, columns, rows, spacing, diameter, .. }) => {
                 write!(f, "rings:{bits}:{columns}x{rows}:{spacing}:{diameter}")
+            }
+            Self::Puzzle(Puzzle { columns, rows, square, place: [x, y], .. }) => {
+                write!(f, "puzzle:{columns}x{rows}:{square}")?;
+                optional(f, [*x, *y] != [0, 0], format_args!("{x},{y}"))
             }
         }
     }
@@ -146,5 +152,19 @@ impl<'a> Parts<'a> {
         let (columns, rows) = self.counts()?;
         let (spacing, diameter) = (self.number("spacing")?, self.number("diameter")?);
         Ok(Board::Rings(Rings { bits, columns, rows, spacing, diameter, ring: [2.0, 3.0], even: false, first: 1 }))
+    }
+
+    fn puzzle(&mut self) -> Result<Board, String> {
+        let (columns, rows) = self.counts()?;
+        let square = self.number("side of a square")?;
+        let place = match self.all.get(self.next) {
+            None => [0, 0],
+            Some(part) => {
+                self.next += 1;
+                let read = part.split_once(',').and_then(|(x, y)| Some([x.parse().ok()?, y.parse().ok()?]));
+                read.ok_or_else(|| format!("`{part}` is no place X,Y of the first corner in the pattern"))?
+            }
+        };
+        Ok(Board::Puzzle(Puzzle { columns, rows, square, place, dot: Puzzle::DOT }))
     }
 }

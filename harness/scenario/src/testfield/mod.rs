@@ -22,10 +22,11 @@ pub(super) use spans::Spans;
 use wire::{ChessboardWire, CodedWire, Height, HouseWire};
 
 /// The kinds of testfield.
-pub const KINDS: [&str; 10] = ["chessboard", "wall", "coded", "house", "board", "charuco", "aprilgrid", "circles", "rings", "tags"];
+pub const KINDS: [&str; 11] =
+    ["chessboard", "wall", "coded", "house", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "tags"];
 
 /// Those that are boards.
-pub const BOARDS: [&str; 6] = ["chessboard", "board", "charuco", "aprilgrid", "circles", "rings"];
+pub const BOARDS: [&str; 7] = ["chessboard", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle"];
 
 /// The unit of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

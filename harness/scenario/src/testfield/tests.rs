@@ -161,6 +161,8 @@ fn boards_are_read_with_their_defaults() {
     );
     same("kind = \"circles\"\ncolumns = 4\nrows = 11\nspacing = 20\nasymmetric = true\nmargin = 3", "acircles:4x11:20", 3.0);
     same("kind = \"rings\"\ncolumns = 6\nrows = 5\nspacing = 50\ndiameter = 8", "rings:12:6x5:50:8", 50.0);
+    same("kind = \"puzzle\"\ncolumns = 23\nrows = 16\nsquare = 30\nplace = [50, 100]", "puzzle:23x16:30:50,100", 30.0);
+    same("kind = \"puzzle\"\ncolumns = 11\nrows = 8\nsquare = 60\nmargin = 0", "puzzle:11x8:60", 0.0);
 }
 
 const TAGS: &str = "[testfield]

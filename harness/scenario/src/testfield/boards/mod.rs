@@ -1,7 +1,7 @@
 //! Boards with markers, circles or ring codes, and free-standing markers.
 
 use calibench_diagnostics::Problem;
-use calibench_model::boards::{AprilGrid, Board, Charuco, Circles, Dictionary, Rings};
+use calibench_model::boards::{AprilGrid, Board, Charuco, Circles, Dictionary, Puzzle, Rings};
 use calibench_synth::testfield::{BoardSheet, Tag, Tags};
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
@@ -13,10 +13,10 @@ use crate::section::Section;
 
 pub mod wire;
 
-use wire::{AprilGridWire, BoardWire, CharucoWire, CirclesWire, RingsWire, SheetWire, TagWire, TagsWire};
+use wire::{AprilGridWire, BoardWire, CharucoWire, CirclesWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire};
 
 /// The kinds that are one sheet.
-pub const SHEETS: [&str; 5] = ["board", "charuco", "aprilgrid", "circles", "rings"];
+pub const SHEETS: [&str; 6] = ["board", "charuco", "aprilgrid", "circles", "rings", "puzzle"];
 /// The keys that all of them have.
 const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background"];
 
@@ -28,6 +28,7 @@ pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -
         "charuco" => charuco(&section.read(&COMMON, problems)?, problems)?,
         "aprilgrid" => aprilgrid(&section.read(&COMMON, problems)?, problems)?,
         "circles" => circles(&section.read(&COMMON, problems)?),
+        "puzzle" => puzzle(&section.read(&COMMON, problems)?),
         _ => rings(&section.read(&COMMON, problems)?),
     };
     let sheet = sheet?;
@@ -51,6 +52,7 @@ fn in_a_word(wire: &BoardWire, problems: &mut Vec<Problem>) -> Option<(Board, f6
         Board::AprilGrid(board) => board.tag,
         Board::Circles(board) => board.spacing,
         Board::Rings(board) => board.spacing,
+        Board::Puzzle(board) => board.square,
     };
     Some((board, usual_margin))
 }
@@ -121,6 +123,17 @@ fn rings(wire: &RingsWire) -> (Board, f64) {
         first: wire.first.map_or(1, |first| first.0),
     };
     (Board::Rings(board), wire.spacing.0)
+}
+
+fn puzzle(wire: &PuzzleWire) -> (Board, f64) {
+    let board = Puzzle {
+        columns: wire.columns.0,
+        rows: wire.rows.0,
+        square: wire.square.0,
+        place: wire.place.map_or([0, 0], |place| place.0),
+        dot: wire.dot.map_or(Puzzle::DOT, |dot| dot.0),
+    };
+    (Board::Puzzle(board), wire.square.0)
 }
 
 /// Reads free-standing markers; mistakes are added to `problems`, places to `spans`.

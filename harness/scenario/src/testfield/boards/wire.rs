@@ -1,6 +1,8 @@
 //! The tables of boards as they are written.
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -120,6 +122,50 @@ pub struct RingsWire {
     pub even: Option<bool>,
     /// The first id that is used. Default 1.
     pub first: Option<Count>,
+}
+
+/// A part of the PuzzleBoard's pattern, a chessboard with a dot on every side of a square, counted in inner corners; the first at the upper left, r1c1, is the origin; x to the right, y upwards.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PuzzleWire {
+    /// Inner corners in a row, 6 to 501.
+    pub columns: Count,
+    /// Rows of inner corners, 6 to 501.
+    pub rows: Count,
+    /// The side of a square, object units.
+    pub square: Length,
+    /// Column and row of the first corner in the pattern of 501 x 501, from 0. Default [0, 0].
+    pub place: Option<Place>,
+    /// The diameter of a dot, as a share of the square's side, 0.2 to 0.4. Default 1/3, as published.
+    pub dot: Option<Fraction>,
+}
+
+/// Two whole numbers from 0. (An array would take more numbers in silence.)
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "Vec<CountOrNone>")]
+pub struct Place(pub [usize; 2]);
+
+impl TryFrom<Vec<CountOrNone>> for Place {
+    type Error = String;
+
+    fn try_from(counts: Vec<CountOrNone>) -> Result<Self, String> {
+        let counts: Vec<usize> = counts.iter().map(|count| count.0).collect();
+        counts.try_into().map(Self).map_err(|counts: Vec<usize>| format!("expected 2 numbers in brackets, found {}", counts.len()))
+    }
+}
+
+impl JsonSchema for Place {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Place".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "array", "minItems": 2, "maxItems": 2, "items": CountOrNone::json_schema(generator) })
+    }
 }
 
 /// Free-standing markers; their corners are t0c0, t0c1, ... clockwise from the upper left.
