@@ -146,7 +146,8 @@ def dead(book):
 def main(program, mdbook):
     source, book = ROOT / "target/book-source", ROOT / "target/book"
     pages.emptied(source)
-    shutil.copy(pages.DOCS / "book/book.toml", source / "book.toml")
+    for file in ("book.toml", "narrow.css"):
+        shutil.copy(pages.DOCS / "book" / file, source / file)
     complaints, made = run_pages(program, pages.emptied(ROOT / "target/book-work"))
     collect(program, source / "src", made)
     shutil.rmtree(book, ignore_errors=True)

@@ -52,6 +52,11 @@ return all(arguments[0]).filter((node) => shows(node))
 """
 
 
+def show_switches(page):
+    """Opens what many switches are behind."""
+    page.run("const many = document.querySelector('.many'); if (many) many.closest('details').open = true")
+
+
 def browser():
     """Chromium, without a window, that tells what pages ask for and complain of."""
     options = webdriver.ChromeOptions()

@@ -268,3 +268,34 @@ def test_it_fits_any_window_in_either_theme(file):
     nameless = page.run("""return all('button, input, select, summary').filter((node) => shows(node) && node.type !== 'file' &&
         !(node.textContent.trim() || node.getAttribute('aria-label') || node.labels?.length)).map((node) => node.outerHTML)""")
     assert not nameless
+
+
+# Names as they are drawn: text, left, top, right, bottom.
+NAMES = """window.names = []; const fill = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+  if (this.canvas.classList.contains('photo')) window.names.push([text, x, y - 12, x + this.measureText(text).width, y + 2]);
+  fill.call(this, text, x, y); };"""
+
+
+@pytest.mark.parametrize("width", [NARROW, WIDE])
+def test_no_name_is_drawn_on_another(free, width):
+    page = free
+    page.size(width)
+    time.sleep(0.3)
+    page.settle()
+    x, y = page.middle()
+    for index, (dx, dy) in enumerate([(0, 0), (14, 0), (28, 3), (0, 15), (16, 14), (30, 16), (120, 60)]):
+        page.type_name(f"a long name {index}")
+        page.click(x + dx, y + dy)
+    page.key("Escape")
+    page.run(NAMES)
+    page.run("window.dispatchEvent(new Event('resize'))")
+    page.settle()
+    page.settle()
+    drawn = page.run("return window.names")
+    # A redraw may come twice: the last of each name counts.
+    last = list({name: box for name, *box in drawn}.items())
+    assert 3 <= len(last) <= 7 and "a long name 6" in dict(last), last
+    for index, (name, (left, top, right, bottom)) in enumerate(last):
+        for other, (ol, ot, orr, ob) in last[:index]:
+            assert left >= orr or ol >= right or top >= ob or ot >= bottom, (name, other)

@@ -44,16 +44,9 @@ pub fn folder() -> tempfile::TempDir {
 #[test]
 #[cfg_attr(not(browser), ignore = "no Chromium to open pages in: `./bootstrap browser` installs it")]
 fn pages_answer_and_ask_for_nothing() {
-    let Some(environment) = option_env!("CALIBENCH_BROWSER") else { return };
     let folder = folder();
     pages(folder.path());
-    let done = Command::new(Path::new(environment).join("bin/python"))
-        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", concat!(env!("CARGO_MANIFEST_DIR"), "/browser")])
-        .env("CALIBENCH_PAGES", folder.path().join("pages"))
-        .env("PYTHONDONTWRITEBYTECODE", "1")
-        .output()
-        .unwrap();
-    assert!(done.status.success(), "{}{}", stdout(&done), stderr(&done));
+    open(&folder.path().join("pages"), &[]);
 }
 
 /// The cells of the tables of a Markdown text, and of a page, as a reader sees them.
@@ -67,6 +60,12 @@ fn a_page_has_the_numbers_of_the_markdown() {
         assert!(markdown.len() > least, "{name}: {}", markdown.len());
         assert_eq!(markdown, html, "{name}");
         assert!(read("report.html").len() < 5_000_000, "{name}");
+        // Where there are photographs the longest 200 residuals are enlarged, each for a mark of its own.
+        let page = read("report.html");
+        let patches = page.matches("<figure class=\"patch\"").count();
+        assert_eq!(patches, if name == "free" { 0 } else { 200 }, "{name}");
+        let marked = (0..patches).filter(|key| page.matches(&format!(" data-k=\"{key}\"")).count() > 1).count();
+        assert_eq!(marked, patches, "{name}");
     }
 }
 
@@ -133,13 +132,22 @@ fn all_reports_are_one_file_with_the_numbers_of_the_markdown() {
         let cells = of_markdown(&std::fs::read_to_string(here.join("reports/atlas").join(file)).unwrap());
         assert!(cells.len() > 30 && shown.windows(cells.len()).any(|part| part == cells), "{file}");
     }
+    // Curves answer: their methods are named once a figure, their places with all of their values.
+    assert!(html.matches(" data-of=\"").count() > 10 && html.matches(" data-p=\"").count() > 50);
     assert!(run(here, &["report", "-q", "--html", "atlas", "--threads", "1"]).status.success());
     assert!(std::fs::read_to_string(&page).unwrap() == html, "other bytes from the same records");
 
+    open(&folder, &["test_explorer.py", "test_drawings.py", "test_page.py"]);
+}
+
+/// Opens the pages of a folder in the browser and runs these tests on them, or all.
+fn open(pages: &Path, tests: &[&str]) {
     let Some(environment) = option_env!("CALIBENCH_BROWSER").filter(|_| cfg!(browser)) else { return };
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/browser"));
     let done = Command::new(Path::new(environment).join("bin/python"))
-        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", concat!(env!("CARGO_MANIFEST_DIR"), "/browser/test_explorer.py")])
-        .env("CALIBENCH_PAGES", folder)
+        .args(["-m", "pytest", "-q", "-p", "no:cacheprovider"])
+        .args(if tests.is_empty() { vec![folder.to_owned()] } else { tests.iter().map(|test| folder.join(test)).collect() })
+        .env("CALIBENCH_PAGES", pages)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .output()
         .unwrap();

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use calibench_records::names::{DETECTION, SCENARIO};
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo, Outcome, Trial};
@@ -57,7 +58,7 @@ fn has_truth(trial: &Trial) -> bool {
 
 /// Adds the adjustments of the run in `folder`, as a run hands them on: by trial, method and set.
 fn adjustments_of(folder: &Path, methods: &[MethodInfo], unit: &'static str, table: &mut Table) -> Result<(), StoredError> {
-    let mut sets: BTreeMap<String, usize> = BTreeMap::new();
+    let mut sets: BTreeMap<Arc<str>, usize> = BTreeMap::new();
     let mut all: BTreeMap<u64, BTreeMap<(usize, usize), Calibrated>> = BTreeMap::new();
     read_adjustments(folder, |row| {
         let next = sets.len();
@@ -67,7 +68,7 @@ fn adjustments_of(folder: &Path, methods: &[MethodInfo], unit: &'static str, tab
         let one = all.entry(row.trial).or_default().entry((method, set)).or_insert(none);
         match (row.figure, &mut one.outcome) {
             (Ok(numbers), Ok(figures)) => {
-                let (group, name) = (row.group, row.name.into());
+                let (group, name) = (row.group, row.name);
                 figures.push(Figure { group, name, value: numbers.value, sigma: numbers.sigma, error: numbers.error, unit });
             }
             (Err(why), _) if row.group == Group::Check => one.check_failed = Some(why),

@@ -1,9 +1,9 @@
 //! One calibration of many: the camera and its covariance, no report.
 
-use calibench_adjust::{ImageObservation, Network, Options, Variance, adjust};
+use calibench_adjust::{ImageObservation, Network, Options, Residual, Variance, adjust};
 use calibench_calibrate::{CalibrationError, Prepared, Settings, Shape, prepare};
-use calibench_model::Pose;
 use calibench_model::camera::{Camera, CameraModel, Ray};
+use calibench_model::{PixelPoint, Pose};
 use nalgebra::{DMatrix, DVector};
 
 use super::bend::Bend;
@@ -84,6 +84,17 @@ impl Calibrated {
         Self::adjusted(network, views, (self.bend.clone(), self.held.clone()))
     }
 
+    /// What is left of each corner: its view, where it was measured and its residual (adjusted less observed), px.
+    ///
+    /// # Errors
+    /// As [`adjust`].
+    pub fn left(&self) -> Result<Vec<(usize, PixelPoint, [f64; 2])>, CalibrationError> {
+        let solution = adjust(&self.network, &Options::default())?;
+        let of =
+            |residual: Residual| Some((self.views[residual.image], self.network.observations[residual.observation].position, residual.v?));
+        Ok(solution.each_residual().filter_map(of).collect())
+    }
+
     /// The values of its unknown parameters, in the order of `names` and in their units.
     pub fn values(&self) -> DVector<f64> {
         let all = self.camera.parameters();
@@ -97,7 +108,7 @@ impl Calibrated {
         Some(self.network.images[image].pose)
     }
 
-    /// The principal point, x and y, px as in [`PixelPoint`](calibench_model::PixelPoint), each with its standard deviation: where the axis is
+    /// The principal point, x and y, px as in [`PixelPoint`], each with its standard deviation: where the axis is
     /// pictured. `None` for a camera that does not picture it.
     pub fn principal_point(&self) -> Option<[(f64, f64); 2]> {
         let found = self.camera.derivatives(Ray::from_tangent(0.0, 0.0)).ok()?;

@@ -17,6 +17,7 @@ mod operator_and_model;
 mod options;
 mod point_files;
 mod published;
+mod remaining;
 
 /// The example of the README.
 #[cfg(doctest)]
@@ -39,6 +40,7 @@ pub use material::{Corners, FEWEST, Material};
 pub use options::{BENT, METHODS, MODELS, OF_CAMERA, Options, usual_methods, usual_models};
 pub use point_files::Expected;
 pub use published::{published_camera, stated_sigma};
+pub use remaining::{Remaining, remaining};
 
 /// Why nothing can be judged.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]

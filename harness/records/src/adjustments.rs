@@ -1,13 +1,13 @@
 //! The adjustments of a run as one tidy CSV beside its records.
 
 use std::io::{Read, Write};
+use std::sync::Arc;
 
-use csv::StringRecord;
-
-use crate::cells::{Cells, RecordError, open, write_row};
+use crate::cells::{Cells, RecordError, write_row};
 use crate::points::RunInfo;
 use crate::results::MethodInfo;
 use crate::results::{Calibrated, Figure, Group};
+use crate::rows::{Names, Rows};
 
 /// The columns of the file.
 pub const COLUMNS: [&str; 13] =
@@ -99,13 +99,13 @@ pub struct Row {
     /// The trial.
     pub trial: u64,
     /// The method's label.
-    pub method: String,
+    pub method: Arc<str>,
     /// The set's name.
-    pub set: String,
+    pub set: Arc<str>,
     /// The group.
     pub group: Group,
     /// The name within the group.
-    pub name: String,
+    pub name: Arc<str>,
     /// Value, sigma and error, where they are; the reason of a failure otherwise.
     pub figure: Result<Numbers, String>,
     /// The seed of the run.
@@ -128,22 +128,21 @@ pub struct Numbers {
 /// # Errors
 /// A file that is not one of these, with its line.
 pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<(), RecordError> {
-    let mut reader = open(input, &COLUMNS)?;
-    let mut record = StringRecord::new();
-    while reader.read_record(&mut record)? {
-        sink(row(&record)?);
+    let (mut rows, mut names) = (Rows::new(input, &COLUMNS)?, <[Names; 3]>::default());
+    while let Some(cells) = rows.next()? {
+        sink(row(&cells, &mut names)?);
     }
     Ok(())
 }
 
-fn row(record: &StringRecord) -> Result<Row, RecordError> {
-    let cells = Cells { record, columns: &COLUMNS };
-    let text = |column: usize| cells.text(column).to_owned();
+/// `names` are those of methods, sets and figures that were read before.
+fn row(cells: &Cells<'_>, [methods, sets, figures]: &mut [Names; 3]) -> Result<Row, RecordError> {
     let group = Group::ALL.iter().find(|(_, name)| *name == cells.text(4)).ok_or_else(|| cells.bad(4))?.0;
     let figure = match cells.text(10) {
         "adjusted" => Ok(Numbers { value: cells.number(6)?, sigma: cells.optional_number(7)?, error: cells.optional_number(8)? }),
-        "failed" => Err(text(11)),
+        "failed" => Err(cells.text(11).to_owned()),
         _ => return Err(cells.bad(10)),
     };
-    Ok(Row { trial: cells.parse(1)?, method: text(2), set: text(3), group, name: text(5), figure, seed: cells.parse(12)? })
+    let (method, set, name) = (methods.get(cells.text(2)), sets.get(cells.text(3)), figures.get(cells.text(5)));
+    Ok(Row { trial: cells.parse(1)?, method, set, group, name, figure, seed: cells.parse(12)? })
 }

@@ -9,6 +9,7 @@ pub mod parts;
 pub mod plain;
 pub mod points;
 pub mod results;
+mod rows;
 pub mod score;
 pub mod statistics;
 pub mod stored;

@@ -1,14 +1,12 @@
 //! Records of points: one tidy CSV a run, a row a point. What measuring leaves for scoring and reporting.
 
-use std::collections::HashSet;
 use std::io::{Read, Write};
-use std::sync::Arc;
 
 use calibench_model::{PixelPoint, Rejection};
-use csv::StringRecord;
 
-use crate::cells::{Cells, RecordError, open, write_row};
+use crate::cells::{Cells, RecordError, write_row};
 use crate::results::{MethodInfo, Outcome, PointResult, Trial};
+use crate::rows::{Names, Rows};
 
 /// The columns of a records file.
 pub const COLUMNS: [&str; 17] = [
@@ -171,11 +169,10 @@ pub struct RecordHead {
 /// # Errors
 /// A file that was not written by [`RecordWriter`].
 pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, RecordError> {
-    let mut csv = open(input, &COLUMNS)?;
+    let mut rows = Rows::new(input, &COLUMNS)?;
     let mut head = RecordHead { run: RunInfo::default(), methods: Vec::new() };
-    let (mut trial, mut names, mut record): (Option<Trial>, Names, _) = (None, Names::default(), StringRecord::new());
-    while csv.read_record(&mut record)? {
-        let row = Cells { record: &record, columns: &COLUMNS };
+    let (mut trial, mut names, mut last) = (None::<Trial>, Known::default(), 0);
+    while let Some(row) = rows.next()? {
         if head.run.scenario.is_empty() {
             head.run = RunInfo {
                 scenario: row.text(SCENARIO).into(),
@@ -188,7 +185,8 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
             head.run.detector = Some((row.text(METHOD).into(), row.text(VERSION).into()));
             continue;
         }
-        let method = method_index(&mut head.methods, &row)?;
+        let method = method_index(&mut head.methods, &row, last)?;
+        last = method;
         if row.text(STATUS) == "unavailable" {
             head.methods[method].unavailable = Some(row.text(REASON).to_owned());
             continue;
@@ -203,10 +201,14 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
     Ok(head)
 }
 
-fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>) -> Result<usize, RecordError> {
+/// `last` is the place of the method of the row before: mostly it is the same.
+fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>, last: usize) -> Result<usize, RecordError> {
     let (label, version) = (row.text(METHOD), row.text(VERSION));
     if label.is_empty() {
         return Err(row.wrong("a row without a method"));
+    }
+    if methods.get(last).is_some_and(|method| &*method.label == label) {
+        return Ok(last);
     }
     let place = methods.iter().position(|m| &*m.label == label);
     Ok(place.unwrap_or_else(|| {
@@ -217,22 +219,14 @@ fn method_index(methods: &mut Vec<MethodInfo>, row: &Cells<'_>) -> Result<usize,
 
 /// Names of views and targets, each of which is kept once.
 #[derive(Default)]
-struct Names(HashSet<Arc<str>>);
-
-impl Names {
-    fn get(&mut self, name: &str) -> Arc<str> {
-        if let Some(known) = self.0.get(name) {
-            return known.clone();
-        }
-        let new: Arc<str> = name.into();
-        self.0.insert(new.clone());
-        new
-    }
+struct Known {
+    views: Names,
+    targets: Names,
 }
 
 /// Adds a row to its trial.
-fn add(trial: &mut Trial, row: &Cells<'_>, method: usize, names: &mut Names) -> Result<(), RecordError> {
-    let view = names.get(row.text(VIEW));
+fn add(trial: &mut Trial, row: &Cells<'_>, method: usize, names: &mut Known) -> Result<(), RecordError> {
+    let view = names.views.get(row.text(VIEW));
     let outcome = match row.text(STATUS) {
         "missed" => {
             // One row a method: the view is missed once.
@@ -257,7 +251,7 @@ fn add(trial: &mut Trial, row: &Cells<'_>, method: usize, names: &mut Names) -> 
         _ => return Err(row.bad(STATUS)),
     };
     let (bound, predicted) = (row.optional_number(BOUND)?, row.optional_number(PREDICTED)?);
-    let target = names.get(row.text(TARGET));
+    let target = names.targets.get(row.text(TARGET));
     trial.points.push(PointResult { bound, predicted, ..PointResult::new(view, target, method, outcome) });
     Ok(())
 }

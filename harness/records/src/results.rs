@@ -56,6 +56,12 @@ impl PointResult {
     }
 }
 
+/// Whether an error is shorter than [`LOST`] beyond doubt: nearly all are, and of these no root is drawn.
+fn is_short(dx: f64, dy: f64) -> bool {
+    const SURELY: f64 = 0.7 * LOST;
+    dx.abs() < SURELY && dy.abs() < SURELY
+}
+
 /// Measured or rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
@@ -74,14 +80,14 @@ impl Outcome {
     /// The error (dx, dy), px, of a point that was measured and not lost.
     pub fn kept_error(&self) -> Option<(f64, f64)> {
         match self {
-            Self::Measured { error: Some((dx, dy)), .. } if dx.hypot(*dy) <= LOST => Some((*dx, *dy)),
+            Self::Measured { error: Some((dx, dy)), .. } if is_short(*dx, *dy) || dx.hypot(*dy) <= LOST => Some((*dx, *dy)),
             _ => None,
         }
     }
 
     /// Whether it was measured more than [`LOST`] px from the truth.
     pub fn is_lost(&self) -> bool {
-        matches!(self, Self::Measured { error: Some((dx, dy)), .. } if dx.hypot(*dy) > LOST)
+        matches!(self, Self::Measured { error: Some((dx, dy)), .. } if !is_short(*dx, *dy) && dx.hypot(*dy) > LOST)
     }
 
     /// The measured position, lost or not.
@@ -215,7 +221,16 @@ mod tests {
 
     #[test]
     fn a_point_is_lost_beyond_one_pixel_in_the_plane() {
-        for (dx, dy, lost) in [(0.6, 0.8, false), (-1.0, 0.0, false), (0.0, -1.001, true), (0.75, -0.75, true), (0.25, -0.5, false)] {
+        for (dx, dy, lost) in [
+            (0.6, 0.8, false),
+            (-1.0, 0.0, false),
+            (0.0, -1.001, true),
+            (0.75, -0.75, true),
+            (0.25, -0.5, false),
+            (0.699, -0.699, false),
+            (0.3, 0.95, false),
+            (0.3, -0.96, true),
+        ] {
             let outcome = off(dx, dy);
             assert_eq!((outcome.is_lost(), outcome.kept_error()), (lost, (!lost).then_some((dx, dy))));
             assert_eq!(outcome.position(), Some(PixelPoint::new(10.0 + dx, 20.0 + dy)));

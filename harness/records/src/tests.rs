@@ -60,10 +60,7 @@ fn records_of_adjustments() {
     writer.finish().unwrap();
     let mut rows = Vec::new();
     adjustments::read(&bytes[..], |row| rows.push(row)).unwrap();
-    assert_eq!(
-        (rows.len(), rows[0].trial, rows[0].set.as_str(), rows[3].figure.clone()),
-        (4, 7, "c,x0", Err("no convergence, sorry".into()))
-    );
+    assert_eq!((rows.len(), rows[0].trial, &*rows[0].set, rows[3].figure.clone()), (4, 7, "c,x0", Err("no convergence, sorry".into())));
     let c = rows[0].figure.clone().unwrap();
     assert_eq!((c.value, c.sigma), (16.55, Some(0.0125)));
     assert!((c.error.unwrap() + 1.0 / 3.0).abs() < 1e-9);

@@ -3,7 +3,7 @@
 use calibench_model::{Image, PixelPoint};
 use plotters::style::{BLACK, RGBColor};
 
-use super::canvas::{COLOURS, Canvas, METHOD_MARKS, Mark};
+use super::canvas::{COLOURS, Canvas, METHOD_MARKS, Mark, OwnMark};
 
 /// Marks of one kind: their name in the legend, their look.
 #[derive(Clone, Debug)]
@@ -14,12 +14,14 @@ pub struct Layer {
     pub mark: Mark,
     /// Its colour.
     pub colour: RGBColor,
+    /// Whether its name is that of a method.
+    pub is_method: bool,
 }
 
 impl Layer {
     /// The truth.
     pub fn truth() -> Self {
-        Self { name: "truth".into(), mark: Mark::Plus, colour: BLACK }
+        Self { name: "truth".into(), mark: Mark::Plus, colour: BLACK, is_method: false }
     }
 
     /// The truth where targets stand close together.
@@ -29,7 +31,12 @@ impl Layer {
 
     /// Approximate positions.
     pub fn start() -> Self {
-        Self { name: "approximate position".into(), mark: Mark::Square, colour: BLACK }
+        Self { name: "approximate position".into(), mark: Mark::Square, colour: BLACK, is_method: false }
+    }
+
+    /// The series that its marks belong to: they are hidden with all else of a method.
+    fn series(&self) -> Option<&str> {
+        self.is_method.then_some(&*self.name)
     }
 
     /// The results of methods: each has a look of its own, the same on every page as long as no other method of the picture claims it first.
@@ -44,7 +51,7 @@ impl Layer {
             taken.push(place);
             // Another colour for a mark that comes again: no two of the first twelve look alike.
             let colour = COLOURS[(place + place / cycle) % COLOURS.len()];
-            Self { name: label.to_owned(), mark: METHOD_MARKS[place % cycle], colour }
+            Self { name: label.to_owned(), mark: METHOD_MARKS[place % cycle], colour, is_method: true }
         };
         labels.map(layer).collect()
     }
@@ -87,8 +94,9 @@ fn place(at: PixelPoint, (left, top): (i64, i64), zoom: u32, (x, y): (u32, u32))
 }
 
 /// Marks as a canvas draws them.
-fn drawn(layers: &[Layer], marks: &[MarkAt], place: impl Fn(PixelPoint) -> (f64, f64)) -> Vec<(Mark, RGBColor, (f64, f64))> {
-    marks.iter().map(|mark| (layers[mark.layer].mark, layers[mark.layer].colour, place(mark.at))).collect()
+fn drawn<'l>(layers: &'l [Layer], marks: &[MarkAt], place: impl Fn(PixelPoint) -> (f64, f64)) -> Vec<OwnMark<'l>> {
+    let own = |layer: &'l Layer, at| (layer.series(), (layer.mark, layer.colour, place(at)));
+    marks.iter().map(|mark| own(&layers[mark.layer], mark.at)).collect()
 }
 
 /// The whole image with marks, and a label beside each of `labels`.
@@ -99,7 +107,7 @@ pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], la
     let mut canvas = Canvas::new(width + 2 * GAP, height + 2 * GAP + legend_rows * LINE);
     canvas.enlarge(image, (0, 0), size, zoom, (GAP, GAP));
     canvas.frame((GAP, GAP), (width, height));
-    canvas.marks(&drawn(layers, marks, |at| place(at, (0, 0), zoom, (GAP, GAP))));
+    canvas.marks_of(&drawn(layers, marks, |at| place(at, (0, 0), zoom, (GAP, GAP))));
     let mut taken: Vec<(u32, u32, u32)> = Vec::new();
     for (text, at) in labels {
         let (x, y) = place(*at, (0, 0), zoom, (GAP, GAP));
@@ -136,8 +144,8 @@ pub fn panels(panels: &[Panel<'_>], layers: &[Layer], side: u32, zoom: u32, acro
         let (left, right) = (f64::from(x), f64::from(x + edge));
         let (top, bottom) = (f64::from(y + LINE), f64::from(y + LINE + edge));
         let mut marks = drawn(layers, &panel.marks, |at| place(at, first, zoom, (x, y + LINE)));
-        marks.retain(|(_, _, at)| at.0 >= left && at.0 <= right && at.1 >= top && at.1 <= bottom);
-        canvas.marks(&marks);
+        marks.retain(|(_, (_, _, at))| at.0 >= left && at.0 <= right && at.1 >= top && at.1 <= bottom);
+        canvas.marks_of(&marks);
     }
     legend(&mut canvas, layers, columns, rows * (edge + LINE + GAP) + GAP);
     canvas
@@ -155,7 +163,9 @@ fn legend(canvas: &mut Canvas, layers: &[Layer], column: u32, top: u32) {
     let across = (canvas.width() / column).max(1);
     for (index, layer) in (0_u32..).zip(layers) {
         let (x, y) = (GAP + index % across * column, top + index / across * LINE + LINE / 2);
-        canvas.marks(&[(layer.mark, layer.colour, (f64::from(x) + 14.0, f64::from(y)))]);
-        canvas.text(&layer.name, 16, (x + 36, y));
+        canvas.of(layer.series(), |canvas| {
+            canvas.marks(&[(layer.mark, layer.colour, (f64::from(x) + 14.0, f64::from(y)))]);
+            canvas.text(&layer.name, 16, (x + 36, y));
+        });
     }
 }

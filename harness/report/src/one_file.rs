@@ -5,8 +5,9 @@ use std::path::{Component, Path, PathBuf};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use rayon::prelude::*;
 
-use crate::html::{Converted, Page, Section, drawing, escaped, explorer, in_place};
+use crate::html::{Converted, Drawing, Page, Section, escaped, explorer, in_place};
 use crate::places::PAGE;
 use crate::{Composed, Places, ReportError, compose, composed};
 
@@ -38,13 +39,13 @@ pub fn family_pages(places: &Places, family: &str, scenarios: &[String]) -> Resu
             Composed::page(composed::kept(places, family)?, Vec::new())
         }
     };
-    let drawn: BTreeMap<&str, &crate::Canvas> = composed.pictures.iter().map(|(name, canvas)| (name.as_str(), canvas)).collect();
+    let drawn: BTreeMap<&str, Drawing> = composed.pictures.par_iter().map(|(name, canvas)| (name.as_str(), Drawing::of(canvas))).collect();
     let folder = places.reports.join(family);
     let mut pages = FamilyPages { sections: Vec::new(), answer: String::new(), family: family.to_owned(), explorer: composed.explorer };
     for (file, text) in &composed.pages {
         let id = page_id(family, file);
         let mut figure = |name: &str, caption: &str| match drawn.get(name) {
-            Some(canvas) => Some(drawing::figure(&format!("{id}--{name}"), caption, canvas)),
+            Some(drawing) => Some(drawing.figure(&format!("{id}--{name}"), caption)),
             None if kept => still(&folder.join(name), caption),
             None => None,
         };

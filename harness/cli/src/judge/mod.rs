@@ -101,7 +101,7 @@ impl Judge {
         let rows = judge(&material, &options)?;
         let summary = Summary::new(&rows, self.seed);
         if let Some(folder) = folder {
-            folder.replace(|folder| self.write(folder, (&material, &doubts), &rows, &summary))?;
+            folder.replace(|folder| self.write(folder, (&material, &options, &doubts), &rows, &summary))?;
         }
         let Some(trusted) = summary.trusted() else { return Err(Failure::input(section(&summary).0)) };
         let in_use = self.in_use(&trusted);

@@ -1,12 +1,16 @@
 //! The page of a judgement, its pictures and its numbers.
 
+use std::path::PathBuf;
+
 use calibench_exchange::NewFolder;
-use calibench_judge::{CornerFile, Material};
+use calibench_judge::{CornerFile, Material, Options, Remaining, remaining};
 use calibench_model::boards::{Board, Chessboard};
 use calibench_model::escape::{self, code};
-use calibench_records::judgement::{JUDGEMENT, Row, Summary, write_rows};
+use calibench_photographs::names::names;
+use calibench_records::judgement::{JUDGEMENT, Row, Summary, Trusted, write_rows};
 use calibench_records::points::RunInfo;
-use calibench_report::judgement::{in_use as in_words, page, section};
+use calibench_report::Corner;
+use calibench_report::judgement::{Measured, in_use as in_words, page, section};
 
 use super::Judge;
 
@@ -14,7 +18,7 @@ impl Judge {
     pub fn write(
         &self,
         folder: &NewFolder,
-        (material, doubts): (&Material, &[String]),
+        (material, options, doubts): (&Material, &Options, &[String]),
         rows: &[Row],
         summary: &Summary,
     ) -> std::io::Result<()> {
@@ -35,7 +39,11 @@ impl Judge {
         );
         folder.write("README.md", |file| file.write_all(text.as_bytes()))?;
         let title = if self.points.is_empty() { "Photographs judged" } else { "Corners judged" };
-        let page = page(title, &text, (summary, trusted.as_ref()), found.as_ref(), doubts);
+        let names = names(&self.photos);
+        let photos = names.iter().map(String::as_str).zip(self.photos.iter().map(PathBuf::as_path)).collect();
+        let corners = trusted.as_ref().map_or_else(Vec::new, |trusted| left((material, options), summary, trusted));
+        let measured = Measured { corners, photos, size: Some(material.size) };
+        let page = page(title, &text, (summary, trusted.as_ref()), (found.as_ref(), doubts), measured);
         folder.write("report.html", |file| file.write_all(page.as_bytes()))
     }
 
@@ -72,4 +80,17 @@ impl Judge {
             (None, None) => "a chessboard".into(),
         }
     }
+}
+
+/// The corners with what is left of them by the operator and the model to be trusted. Where that cannot be adjusted there is nothing to be shown: what stands in its way is in the rows.
+fn left<'m>((material, options): (&'m Material, &Options), summary: &Summary, trusted: &Trusted<'_>) -> Vec<Corner<'m>> {
+    let operator = material.operators.iter().position(|corners| corners.method == trusted.cell.method);
+    let model = options.models.iter().find(|model| *model.label == *trusted.cell.model);
+    let found = operator.zip(model).and_then(|(operator, model)| remaining(material, operator, model, options).ok()).unwrap_or_default();
+    let corner = |one: Remaining| {
+        let name = &material.views[one.view];
+        let image = summary.views.iter().position(|view| view == name)?;
+        Some(Corner::new((image, &**name), material.field.name(one.corner), one.at, one.v))
+    };
+    found.into_iter().filter_map(corner).collect()
 }

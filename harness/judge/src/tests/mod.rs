@@ -2,6 +2,7 @@
 
 mod fields;
 mod honest;
+mod left;
 mod outliers;
 mod point_files;
 mod ranking;

@@ -23,7 +23,7 @@ const drawLoupe = () => {
   const [left, top] = project(0, 0);
   drawPhoto(context, state.photo, { left: left * ratio, top: top * ratio, scale: scale * ratio, width: width * ratio, height: height * ratio });
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  drawPoints(context, project, scale, false);
+  drawPoints(context, project, scale, null);
   const [a, b] = [width / 2, height / 2];
   stroke(context, new Path2D(`M0 ${b}H${a - 8}M${a + 8} ${b}H${width}M${a} 0V${b - 8}M${a} ${b + 8}V${height}`), "#ffffff", 1);
   loupe.words.textContent = `x ${shortened(x)}, y ${shortened(y)} px; ${scale < 100 ? Number(scale.toPrecision(2)) : Math.round(scale)} times`;

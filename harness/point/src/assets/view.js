@@ -78,16 +78,43 @@ const stroke = (context, path, colour, width = 1.6) => {
   context.stroke(path);
 };
 
-const label = (context, name, x, y, colour) => {
-  const text = name.length > 24 ? `${name.slice(0, 23)}…` : name;
-  context.font = "600 12px system-ui, sans-serif";
-  context.lineJoin = "round";
-  context.lineWidth = 3.5;
-  context.strokeStyle = "#000c";
-  context.strokeText(text, x, y);
-  context.fillStyle = colour;
-  context.fillText(text, x, y);
-};
+const FONT = 12;
+
+/** Names beside their marks, none on another: each goes to the first of four sides that is free, and is left out where none is. */
+class Labels {
+  constructor(context) {
+    this.context = context;
+    this.wanted = [];
+  }
+
+  /** `rank`: the lower the sooner. */
+  add(rank, name, at, aside, colour) {
+    this.wanted.push({ rank, text: name.length > 24 ? `${name.slice(0, 23)}…` : name, at, aside, colour });
+  }
+
+  draw(width, height) {
+    const { context } = this;
+    context.font = `600 ${FONT}px system-ui, sans-serif`;
+    context.lineJoin = "round";
+    context.lineWidth = 3.5;
+    context.strokeStyle = "#000c";
+    const taken = [];
+    for (const { text, at: [x, y], aside, colour } of this.wanted.sort((a, b) => a.rank - b.rank)) {
+      if (x < -aside || y < -aside || x > width + aside || y > height + aside) continue;
+      const wide = context.measureText(text).width;
+      const sides = [[x + aside, y - aside], [x + aside, y + aside + FONT / 2], [x - aside - wide, y - aside], [x - aside - wide, y + aside + FONT / 2]];
+      const box = ([left, base]) => ({ left, right: left + wide, top: base - FONT, bottom: base + 2 });
+      const free = (one) => taken.every((other) => one.left >= other.right || one.right <= other.left || one.top >= other.bottom || one.bottom <= other.top);
+      const inside = (one) => one.left >= 0 && one.right <= width && one.top >= 0 && one.bottom <= height;
+      const place = sides.find((side) => inside(box(side)) && free(box(side))) || sides.find((side) => free(box(side)));
+      if (!place) continue;
+      taken.push(box(place));
+      context.strokeText(text, ...place);
+      context.fillStyle = colour;
+      context.fillText(text, ...place);
+    }
+  }
+}
 
 const SHAPES = {
   /** A ring and four strokes that leave the place itself free. */
@@ -109,15 +136,15 @@ const drawEllipse = (context, row, [sx, sy], scale) => {
   stroke(context, path, COLOURS.measured, 1.2);
 };
 
-/** Everything that is known of points, with names where there is room for them. */
-const drawPoints = (context, project, scale, names) => {
+/** Everything that is known of points, with `labels` for their names, or without. */
+const drawPoints = (context, project, scale, labels) => {
   const rows = measuredIn(state.photo);
   const { targets } = served.predicted[state.photo];
   for (const [name, place] of targets) {
     if (here().has(name)) continue;
     const at = project(place.x, place.y);
     mark(context, "predicted", at);
-    if (names) label(context, name, at[0] + 12, at[1] + 14, COLOURS.predicted);
+    if (labels) labels.add(3, name, at, 12, COLOURS.predicted);
   }
   for (const row of rows) {
     const pointed = here().get(row.name);
@@ -128,12 +155,12 @@ const drawPoints = (context, project, scale, names) => {
     const at = project(row.x, row.y);
     if (row.covariance) drawEllipse(context, row, at, scale);
     mark(context, "measured", at);
-    if (names && !pointed) label(context, row.name, at[0] + 8, at[1] - 8, COLOURS.measured);
+    if (labels && !pointed) labels.add(2, row.name, at, 8, COLOURS.measured);
   }
   for (const [name, place] of here()) {
     const at = project(place.x, place.y);
     mark(context, "pointed", at, name === state.chosen);
-    if (names) label(context, name, at[0] + 10, at[1] - 10, COLOURS.pointed);
+    if (labels) labels.add(name === state.chosen ? 0 : 1, name, at, 10, COLOURS.pointed);
   }
 };
 
@@ -156,7 +183,9 @@ const draw = () => {
   const [left, top] = toStage(0, 0);
   drawPhoto(context, state.photo, { left: left * ratio, top: top * ratio, scale: scale * ratio, width: width * ratio, height: height * ratio });
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  drawPoints(context, toStage, scale, here().size + served.predicted[state.photo].targets.size < 400);
+  const labels = here().size + served.predicted[state.photo].targets.size < 400 ? new Labels(context) : null;
+  drawPoints(context, toStage, scale, labels);
+  if (labels) labels.draw(width, height);
   if (pointer.byKeys) stroke(context, new Path2D(`M${width / 2 - 22} ${height / 2}h16m12 0h16M${width / 2} ${height / 2 - 22}v16m0 12v16`), "#ffffff", 1.4);
 };
 

@@ -3,8 +3,9 @@
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-use crate::cells::{Cells, RecordError, open, write_row};
+use crate::cells::{RecordError, write_row};
 use crate::points::RunInfo;
+use crate::rows::Rows;
 
 /// The file's name in a scenario's folder.
 pub const JUDGEMENT: &str = "judgement.csv";
@@ -104,9 +105,8 @@ pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> io::Result
 /// A file of another form.
 pub fn read_rows(input: impl Read) -> Result<(u64, Vec<Row>), RecordError> {
     let (mut seed, mut rows) = (0, Vec::new());
-    for record in open(input, &COLUMNS)?.records() {
-        let record = record?;
-        let cells = Cells { record: &record, columns: &COLUMNS };
+    let mut all = Rows::new(input, &COLUMNS)?;
+    while let Some(cells) = all.next()? {
         seed = cells.parse(11)?;
         let [method, model, measure, place] = [1, 2, 3, 4].map(|column| cells.text(column).into());
         let [unit, status, reason] = [8, 9, 10].map(|column| cells.text(column).into());

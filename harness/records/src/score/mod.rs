@@ -1,6 +1,6 @@
 //! Errors to figures, trial by trial, in memory that does not grow with their number.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -146,42 +146,50 @@ impl Score {
         self.measured + self.lost + self.rejected.values().sum::<u64>()
     }
 
-    fn target(&mut self, target: &Arc<str>) -> &mut TargetScore {
-        let place = self.targets.iter().position(|score| score.target == *target).unwrap_or_else(|| {
+    /// The place of a target; `last` is that of the one before, after which it is looked for first.
+    fn target(&mut self, target: &Arc<str>, last: usize) -> usize {
+        let is_it =
+            |place: &usize| self.targets.get(*place).is_some_and(|score| Arc::ptr_eq(&score.target, target) || score.target == *target);
+        let found = [last, last + 1, 0].into_iter().find(is_it).or_else(|| self.targets.iter().position(|score| score.target == *target));
+        found.unwrap_or_else(|| {
             self.targets.push(TargetScore { target: target.clone(), whole: Errors::default(), failed: 0 });
             self.targets.len() - 1
-        });
-        &mut self.targets[place]
+        })
     }
 
-    fn add(&mut self, points: &[&PointResult], common: &BTreeSet<PointKey>, groups: &Groups) {
+    /// Adds the points of a trial, each with its place among the trial's keys.
+    fn add(&mut self, points: &[(usize, &PointResult)], keys: &Keys<'_>) {
         let mut errors: [Vec<(f64, f64)>; 3] = Default::default();
         let (mut to_bound, mut to_predicted) = (Vec::new(), Vec::new());
-        let mut targets: BTreeMap<&Arc<str>, Vec<(f64, f64)>> = BTreeMap::new();
-        for point in points {
-            let group = groups.get(&point.target).unwrap_or(&point.target);
+        let (mut targets, mut last): (Vec<Vec<(f64, f64)>>, usize) = (Vec::new(), 0);
+        for &(key, point) in points {
+            last = self.target(keys.groups[key], last);
+            if last >= targets.len() {
+                targets.resize_with(last + 1, Vec::new);
+            }
+            let is_lost = point.outcome.is_lost();
             match point.outcome {
                 Outcome::Rejected(why) => *self.rejected.entry(why.name()).or_default() += 1,
-                Outcome::Measured { .. } if point.outcome.is_lost() => self.lost += 1,
+                Outcome::Measured { .. } if is_lost => self.lost += 1,
                 Outcome::Measured { .. } => self.measured += 1,
             }
-            let target = self.target(group);
+            let target = &mut self.targets[last];
             let Outcome::Measured { error, .. } = point.outcome else {
                 target.failed += 1;
                 continue;
             };
             let Some(error) = error else { continue };
-            target.failed += u64::from(point.outcome.is_lost());
-            targets.entry(group).or_default().push(error);
+            target.failed += u64::from(is_lost);
+            targets[last].push(error);
             errors[0].push(error);
-            if !point.outcome.is_lost() {
+            if !is_lost {
                 errors[1].push(error);
                 let square = error.0 * error.0 + error.1 * error.1;
                 let in_units_of = |sigma: Option<f64>| sigma.filter(|sigma| *sigma > 0.0).map(|sigma| square / (sigma * sigma));
                 to_bound.extend(in_units_of(point.bound));
                 to_predicted.extend(in_units_of(point.predicted));
             }
-            if common.contains(&(point.view.clone(), point.target.clone())) {
+            if keys.common[key] {
                 errors[2].push(error);
             }
         }
@@ -190,11 +198,46 @@ impl Score {
         self.common.add(&errors[2]);
         self.to_bound.add(&to_bound);
         self.to_predicted.add(&to_predicted);
-        targets.into_iter().for_each(|(target, errors)| self.target(target).whole.add(&errors));
+        self.targets.iter_mut().zip(&targets).for_each(|(target, errors)| target.whole.add(errors));
     }
 }
 
-type PointKey = (Arc<str>, Arc<str>);
+/// The points of a trial, whichever method measured them: each view and target once.
+struct Keys<'t> {
+    /// What their targets are scored with.
+    groups: Vec<&'t Arc<str>>,
+    /// Whether every operator that was to measure it did.
+    common: Vec<bool>,
+}
+
+/// The places of points among all views and targets. Every method has them in the same order: the one that is next is tried first.
+#[derive(Default)]
+struct Places<'t> {
+    keys: Vec<(&'t Arc<str>, &'t Arc<str>)>,
+    known: HashMap<(&'t str, &'t str), usize>,
+    next: usize,
+}
+
+impl<'t> Places<'t> {
+    fn of(&mut self, point: &'t PointResult) -> usize {
+        let is_same = |a: &Arc<str>, b: &Arc<str>| Arc::ptr_eq(a, b) || a == b;
+        let is_next = self.keys.get(self.next).is_some_and(|(view, target)| is_same(target, &point.target) && is_same(view, &point.view));
+        let place = if is_next {
+            self.next
+        } else {
+            let count = self.keys.len();
+            *self.known.entry((&*point.view, &*point.target)).or_insert(count)
+        };
+        if place == self.keys.len() {
+            self.keys.push((&point.view, &point.target));
+        }
+        self.next = place + 1;
+        if self.next == self.keys.len() {
+            self.next = 0;
+        }
+        place
+    }
+}
 
 /// The group of each target that is scored as one of many, by the target's name.
 pub type Groups = BTreeMap<Arc<str>, Arc<str>>;
@@ -226,24 +269,29 @@ impl Scores {
         if most > self.methods.len() {
             self.methods.resize_with(most, Score::default);
         }
-        let common = self.common_points(trial, operators);
-        for (index, score) in self.methods.iter_mut().enumerate() {
-            let points: Vec<&PointResult> = trial.points.iter().filter(|point| point.method == index).collect();
-            score.add(&points, &common, &self.groups);
-        }
+        let mut places = Places::default();
+        let mut points: Vec<Vec<(usize, &PointResult)>> = vec![Vec::new(); self.methods.len()];
+        trial.points.iter().for_each(|point| points[point.method].push((places.of(point), point)));
+        let operators: Vec<bool> = (0..points.len()).map(|method| !points[method].is_empty() && operators(method)).collect();
+        let common = self.common_points(&points, &operators, places.keys.len());
+        let groups = places.keys.iter().map(|&(_, target)| self.groups.get(target).unwrap_or(target)).collect();
+        let keys = Keys { groups, common };
+        self.methods.iter_mut().zip(&points).for_each(|(score, points)| score.add(points, &keys));
     }
 
     /// The points that every operator of the trial measured and none lost. One that is limited is asked only for those of which it says something.
-    fn common_points(&self, trial: &Trial, operators: impl Fn(usize) -> bool) -> BTreeSet<PointKey> {
-        let all = |method: usize| operators(method) && !self.limited.contains(&method);
-        let methods: BTreeSet<usize> = trial.points.iter().map(|point| point.method).filter(|m| all(*m)).collect();
-        let mut counts: BTreeMap<PointKey, (usize, usize)> = BTreeMap::new();
-        for point in trial.points.iter().filter(|point| operators(point.method)) {
-            let (asked, kept) = counts.entry((point.view.clone(), point.target.clone())).or_insert((methods.len(), 0));
-            *asked += usize::from(self.limited.contains(&point.method));
-            *kept += usize::from(point.outcome.kept_error().is_some());
+    fn common_points(&self, points: &[Vec<(usize, &PointResult)>], operators: &[bool], count: usize) -> Vec<bool> {
+        let of_all = (0..points.len()).filter(|method| operators[*method] && !self.limited.contains(method)).count();
+        let (mut asked, mut kept, mut seen) = (vec![of_all; count], vec![0; count], vec![false; count]);
+        for (method, points) in points.iter().enumerate().filter(|(method, _)| operators[*method]) {
+            let is_limited = self.limited.contains(&method);
+            for &(key, point) in points {
+                asked[key] += usize::from(is_limited);
+                kept[key] += usize::from(point.outcome.kept_error().is_some());
+                seen[key] = true;
+            }
         }
-        counts.into_iter().filter(|(_, (asked, kept))| asked == kept).map(|(key, _)| key).collect()
+        (0..count).map(|key| seen[key] && asked[key] == kept[key]).collect()
     }
 }
 

@@ -5,7 +5,7 @@ use plotters::style::text_anchor::HPos;
 
 use super::labels::{Box2, place};
 use crate::canvas::{COLOURS, Canvas, Mark};
-use crate::field::{Area, write};
+use crate::field::{Area, plain, write};
 use crate::ticks;
 
 /// A method with its speed and error.
@@ -103,18 +103,25 @@ pub fn picture(spots: &[Spot], title: &str) -> Canvas {
         write(area, "RMSE, px", whole((LEFT, TOP - 14.0)), HPos::Left);
         let line: Vec<(i32, i32)> = front.iter().map(|&index| whole(plan.points[index])).collect();
         area.draw(&PathElement::new(line, ShapeStyle::from(&COLOURS[0]).stroke_width(2))).ok();
-        for (point, label) in plan.points.iter().zip(&plan.labels) {
-            let Some(label) = label else { continue };
-            let near = (point.0.clamp(label.x, label.x + label.width), point.1.clamp(label.y, label.y + label.height));
-            area.draw(&PathElement::new([whole(*point), whole(near)], RGBColor(150, 150, 150))).ok();
-        }
     });
+    canvas.say_as(["method", "points per second, one thread", "RMSE, px"]);
+    for ((spot, point), label) in spots.iter().zip(&plan.points).zip(&plan.labels) {
+        canvas.of(Some(&spot.name), |canvas| {
+            canvas.say(*point, [spot.name.clone(), short(spot.speed), plain(spot.rmse)]);
+            let Some(label) = label else { return };
+            let near = (point.0.clamp(label.x, label.x + label.width), point.1.clamp(label.y, label.y + label.height));
+            canvas.paint(|area| {
+                area.draw(&PathElement::new([whole(*point), whole(near)], RGBColor(150, 150, 150))).ok();
+            });
+        });
+    }
     let mark = |index: usize| if front.contains(&index) { (Mark::Circle, COLOURS[0]) } else { (Mark::Cross, COLOURS[1]) };
-    let marks: Vec<_> = (0..spots.len()).map(|index| (mark(index).0, mark(index).1, plan.points[index])).collect();
-    canvas.marks(&marks);
+    let own = |index: usize| (Some(&*spots[index].name), (mark(index).0, mark(index).1, plan.points[index]));
+    canvas.marks_of(&(0..spots.len()).map(own).collect::<Vec<_>>());
     for (spot, label) in spots.iter().zip(&plan.labels) {
         if let Some(label) = label {
-            canvas.label(&spot.name, 16, ((label.x + 3.0) as u32, (label.y + label.height / 2.0) as u32));
+            let at = ((label.x + 3.0) as u32, (label.y + label.height / 2.0) as u32);
+            canvas.of(Some(&spot.name), |canvas| canvas.label(&spot.name, 16, at));
         }
     }
     canvas

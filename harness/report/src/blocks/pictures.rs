@@ -78,9 +78,15 @@ pub fn heights(found: &Summaries, views: &Views) -> Option<Canvas> {
     let mut canvas = Canvas::new((2 * SIDE + 250) as u32, 560);
     canvas.text(&format!("Object point heights, block `{set}`, {method}"), 20, (90, 22));
     let unit = &views.unit;
+    let names = ["X", "Y", "Z", "standard deviation of Z"].map(|name| format!("{name}, {unit}"));
+    canvas.say_as(names.iter().map(String::as_str));
     for (panel, axis) in ["X", "Y"].into_iter().enumerate() {
         let axes = Axes { at: [90 + panel as i32 * (SIDE + 90), 70, SIDE, 400], x: [-reach, reach], y };
         let mut marks = Vec::new();
+        for (at, z, sigma) in &points {
+            let (x, y) = axes.place(at[panel], *z);
+            canvas.say((f64::from(x), f64::from(y)), [plain(at[0]), plain(at[1]), plain(*z), plain(*sigma)]);
+        }
         canvas.paint(|area| {
             axes.vertical(area, &format!("Z, {unit}; whiskers: one standard deviation"));
             axes.horizontal(area, &format!("{axis}, {unit}"));

@@ -19,7 +19,7 @@ mod warnings;
 
 use calibench_calibrate::Calibration;
 
-pub use html::Pictured;
+pub use crate::corners::Pictured;
 pub(crate) use limits::CORRELATED;
 pub use page::{summary, write_report};
 pub use ply::scene_ply;

@@ -10,12 +10,13 @@ use calibench_model::camera::CameraModel;
 use calibench_model::escape;
 
 use super::digits::rounded;
-use super::html::{self, Pictured};
+use super::html;
 use super::next::NextSection;
 use super::pictures::Picture;
 use super::uncertainty::{self, UncertaintyMap};
 use super::warnings::warnings;
 use super::{board, checks, discs, images_of, of, pictures, sets_page, tables};
+use crate::corners::Pictured;
 use crate::markdown::MarkdownTable;
 use crate::plain;
 

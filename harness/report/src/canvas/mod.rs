@@ -2,6 +2,7 @@
 
 mod raster;
 mod recorder;
+mod series;
 
 use std::io::{self, Write};
 use std::sync::Once;
@@ -17,6 +18,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use rayon::prelude::*;
 
 pub(crate) use recorder::{Area, Recorder, Stroke, Written};
+use series::Series;
+pub(crate) use series::{Depth, OwnMark, Owner};
 
 /// Pictures with their file names.
 pub type Pictures = Vec<(String, Canvas)>;
@@ -68,6 +71,7 @@ pub struct Canvas {
     width: u32,
     height: u32,
     strokes: Vec<Stroke>,
+    series: Series,
 }
 
 impl Canvas {
@@ -78,7 +82,7 @@ impl Canvas {
             // The font is compiled in; it is whole.
             let _ = register_font("sans-serif", FontStyle::Normal, ttf_noto_sans::REGULAR);
         });
-        Self { width, height, strokes: Vec::new() }
+        Self { width, height, strokes: Vec::new(), series: Series::default() }
     }
 
     /// Puts the part of `image` of `columns` x `rows` px from pixel (`left`, `top`) at (`x`, `y`), each pixel `zoom` px wide. Outside the image: hatched white.
@@ -92,13 +96,22 @@ impl Canvas {
 
     /// Marks, each on a white rim so that it shows on any grey. All rims are drawn before the first mark: none hides another.
     pub fn marks(&mut self, marks: &[(Mark, RGBColor, (f64, f64))]) {
+        let own = self.current();
+        self.marks_by(marks.iter().map(|mark| (own, *mark)));
+    }
+
+    fn marks_by(&mut self, marks: impl Iterator<Item = (Option<usize>, (Mark, RGBColor, (f64, f64)))> + Clone) {
         let whole = |(x, y): (f64, f64)| (x.round() as i32, y.round() as i32);
-        for (mark, _, at) in marks {
-            self.outline(*mark, WHITE, mark.stroke() + 2, whole(*at));
+        let before = self.current();
+        for (series, (mark, _, at)) in marks.clone() {
+            self.belong(series, Depth::Rims);
+            self.outline(mark, WHITE, mark.stroke() + 2, whole(at));
         }
-        for (mark, colour, at) in marks {
-            self.outline(*mark, *colour, mark.stroke(), whole(*at));
+        for (series, (mark, colour, at)) in marks {
+            self.belong(series, Depth::Marks);
+            self.outline(mark, colour, mark.stroke(), whole(at));
         }
+        self.belong(before, Depth::Lines);
     }
 
     fn outline(&mut self, mark: Mark, colour: RGBColor, width: u32, (x, y): (i32, i32)) {

@@ -7,6 +7,8 @@ use plotters::prelude::*;
 use plotters_backend::text_anchor::Pos;
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 
+use super::series::Owner;
+
 /// Where is drawn.
 pub(crate) type Area<'a> = DrawingArea<Recorder<'a>, Shift>;
 
@@ -63,6 +65,10 @@ pub(crate) enum Stroke {
         zoom: u32,
         levels: Vec<Option<u8>>,
     },
+    /// What follows belongs to a series, or to none.
+    Belongs(Option<Owner>),
+    /// What a place says, in the order of the names of the picture's values.
+    Said(BackendCoord, Vec<String>),
 }
 
 /// Keeps what is drawn.

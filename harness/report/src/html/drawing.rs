@@ -1,5 +1,7 @@
 //! A picture as a drawing of lines: what was drawn, once more.
 
+mod series;
+
 use std::fmt::Write;
 
 use plotters::style::FontTransform;
@@ -16,20 +18,32 @@ const STEP: usize = 6;
 /// The size of a drawing's text, px, as the page's style has it.
 const USUAL_SIZE: f64 = 11.0;
 
-/// The figure of a picture, with a caption.
-pub(crate) fn figure(id: &str, caption: &str, canvas: &Canvas) -> String {
-    let (width, height) = (canvas.width(), canvas.height());
-    let caption = escaped(caption);
-    format!(
-        "<figure class=\"plot\" id=\"{}\"><svg class=\"still\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{caption}\" data-box=\"0 0 {width} {height}\">\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/><g class=\"marks\" fill=\"none\">{}</g></svg><figcaption>{caption}</figcaption></figure>\n",
-        escaped(id),
-        strokes(canvas.strokes())
-    )
+/// A picture as a drawing, before it is known where it stands.
+pub(crate) struct Drawing {
+    size: (u32, u32),
+    attributes: String,
+    inside: String,
 }
 
-fn strokes(strokes: &[Stroke]) -> String {
-    let mut pen = Pencil::default();
+impl Drawing {
+    /// What was drawn.
+    pub(crate) fn of(canvas: &Canvas) -> Self {
+        Self { size: (canvas.width(), canvas.height()), attributes: series::attributes(canvas), inside: series::groups(canvas.strokes()) }
+    }
+
+    /// The figure, with a caption.
+    pub(crate) fn figure(&self, id: &str, caption: &str) -> String {
+        let Self { size: (width, height), attributes, inside } = self;
+        let (id, caption) = (escaped(id), escaped(caption));
+        format!(
+            "<figure class=\"plot\" id=\"{id}\"><svg class=\"still\" viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{caption}\" data-box=\"0 0 {width} {height}\">\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/><g class=\"marks\" fill=\"none\"{attributes}>{inside}</g></svg><figcaption>{caption}</figcaption></figure>\n"
+        )
+    }
+}
+
+/// Adds strokes, in their order.
+fn draw(pen: &mut Pencil, strokes: &[Stroke]) {
     let mut rest = strokes;
     while let [stroke, ..] = rest {
         let (rows, dots) = (scale(rest), rest.iter().take_while(|one| matches!(one, Stroke::Pixel(..))).count());
@@ -42,8 +56,6 @@ fn strokes(strokes: &[Stroke]) -> String {
         }
         rest = &rest[rows.max(dots)..];
     }
-    pen.close();
-    pen.out
 }
 
 /// A line along a row: left, right, row and colour.
@@ -134,6 +146,12 @@ impl Piece {
 }
 
 impl Pencil {
+    /// What was drawn.
+    fn end(mut self) -> String {
+        self.close();
+        self.out
+    }
+
     fn close(&mut self) {
         if !self.path.is_empty() {
             // Writing to a String cannot fail.
@@ -195,6 +213,8 @@ impl Pencil {
             }
             Stroke::Text(text) => self.write(text),
             Stroke::Pixels { at, columns, zoom, levels } => self.image(*at, (*columns, *zoom), levels),
+            // Taken apart before.
+            Stroke::Belongs(_) | Stroke::Said(..) => {}
         }
     }
 
@@ -203,13 +223,8 @@ impl Pencil {
         let (x, y) = text.at;
         let anchor = match text.anchor.h_pos {
             HPos::Left => "",
-            HPos::Center => " text-anchor=\"middle\"",
-            HPos::Right => " text-anchor=\"end\"",
-        };
-        let baseline = match text.anchor.v_pos {
-            VPos::Top => " dominant-baseline=\"text-before-edge\"",
-            VPos::Center => " dominant-baseline=\"central\"",
-            VPos::Bottom => "",
+            HPos::Center => " class=\"m\"",
+            HPos::Right => " class=\"e\"",
         };
         let turn = match text.transform {
             FontTransform::None => String::new(),
@@ -218,8 +233,7 @@ impl Pencil {
             FontTransform::Rotate270 => format!(" transform=\"rotate(270 {x} {y})\""),
         };
         let rim = if text.has_rim { " stroke=\"#fff\" stroke-width=\"2\" paint-order=\"stroke\"" } else { "" };
-        let _ =
-            write!(self.out, "<text x=\"{x}\" y=\"{y}\"{}{anchor}{baseline}{turn}{rim}>{}</text>", text_style(text), escaped(&text.text));
+        let _ = write!(self.out, "<text x=\"{x}\" y=\"{y}\"{}{anchor}{turn}{rim}>{}</text>", text_style(text), escaped(&text.text));
     }
 
     /// Single pixels, one after the other: an image.
@@ -257,11 +271,16 @@ fn paint(what: &str, colour: BackendColor) -> String {
     format!("{what}=\"{}\"{alpha}", hex(colour))
 }
 
-/// What differs from the usual text of a drawing, which the page's style says.
+/// What differs from the usual text of a drawing, which the page's style says: from the middle of its height, beginning at its place.
 fn text_style(text: &Written) -> String {
     // A letter of the pictures' font is as many px high as eleven twelfths of one of a browser's.
     let size = (text.size * 11.0 / 12.0).round();
     let mut parts = Vec::new();
+    match text.anchor.v_pos {
+        VPos::Top => parts.push("dominant-baseline:text-before-edge".to_owned()),
+        VPos::Center => {}
+        VPos::Bottom => parts.push("dominant-baseline:auto".to_owned()),
+    }
     if size != USUAL_SIZE {
         parts.push(format!("font-size:{size}px"));
     }
@@ -314,7 +333,7 @@ mod tests {
         canvas.paint(|area| {
             area.draw(&PathElement::new([(1, 2), (3, 4)], RED)).ok();
         });
-        let html = figure("f--a", "it's <b>", &canvas);
+        let html = Drawing::of(&canvas).figure("f--a", "it's <b>");
         for part in [
             "id=\"f--a\"",
             "viewBox=\"0 0 200 100\"",

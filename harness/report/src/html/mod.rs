@@ -1,6 +1,6 @@
 //! Reports as one file: a page that is readable without JavaScript, and answers with it. It asks for nothing and is a function of what it is made of.
 
-pub(crate) mod drawing;
+mod drawing;
 mod embedded;
 pub(crate) mod explorer;
 mod from_markdown;
@@ -11,6 +11,7 @@ mod scene;
 
 use std::fmt::Write;
 
+pub(crate) use drawing::Drawing;
 pub(crate) use from_markdown::{Converted, Figures, Groups, in_place};
 pub(crate) use marks::{Said, Shape};
 pub use markup::{escaped, json as in_script};

@@ -93,8 +93,10 @@ struct CalibratedCamera {
     camera: CameraAnswer,
     /// The parameters that were solved for.
     solved: Vec<Solved>,
-    /// What to photograph next; null where nothing is proposed.
+    /// What to photograph next; null where nothing is proposed, for the reason that `why_no_next` tells.
     next: Option<NextAnswer>,
+    /// Why nothing is proposed, in words; null where something is.
+    why_no_next: Option<String>,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -284,13 +286,18 @@ fn camera(calibration: &Calibration<'_>, index: usize, tests: &[Significance]) -
             held: prepared.held.contains(&calibration.parameter_name(&(index, name))),
         }
     };
+    let (next, why_no_next) = match calibration.next(index) {
+        Ok(next) => (Some(NextAnswer::new(&next)), None),
+        Err(why) => (None, Some(why)),
+    };
     Ok(CalibratedCamera {
         name: calibration.name_of(index).to_owned(),
         start: prepared.origins.get(index).cloned().unwrap_or_default(),
         images: images_of(calibration, index).count(),
         camera: CameraAnswer::new(&calibration.named_camera(index)?),
         solved: names.iter().enumerate().map(solved).collect(),
-        next: calibration.next(index).ok().map(|next| NextAnswer::new(&next)),
+        next,
+        why_no_next,
     })
 }
 

@@ -1,22 +1,35 @@
 //! A judgement as one file that answers questions: the text of the page, with figures in the place of its pictures.
 
+use calibench_model::camera::ImageSize;
 use calibench_records::judgement::{Cell, InUse, OUTLIER_ALPHA, Principal, StillHolds, Summary, Trusted};
 
 use super::map::grid;
 use super::matrix::scale;
 use super::principal::{NINETY_FIVE, extent};
 use super::{in_use, verdict};
+use crate::corners::{Corner, Pictured, choose, over_frame, patches};
 use crate::field::shade;
-use crate::html::{Axis, Figures, Groups, Level, Page, Plot, Said, Shape};
+use crate::html::{Axis, Figures, Groups, Level, Page, Plot, Said, Shape, escaped};
 use crate::plain;
+
+/// Where points were measured that a page of a judgement shows, and in which photographs.
+#[derive(Default)]
+pub struct Measured<'a> {
+    /// The points of what is to be trusted with their residuals; photographs are numbered as in the summary.
+    pub corners: Vec<Corner<'a>>,
+    /// The photographs by their names, where they are at hand.
+    pub photos: Vec<Pictured<'a>>,
+    /// Their size, px.
+    pub size: Option<ImageSize>,
+}
 
 /// The page: `text` is the Markdown page. `found` is what was found of a camera in use, if one was asked about; doubts were had before, of the photographs.
 pub fn page(
     title: &str,
     text: &str,
     (summary, trusted): (&Summary, Option<&Trusted<'_>>),
-    found: Option<&InUse>,
-    doubts: &[String],
+    (found, doubts): (Option<&InUse>, &[String]),
+    measured: Measured<'_>,
 ) -> String {
     let mut page = Page::new(title);
     match trusted {
@@ -33,7 +46,26 @@ pub fn page(
     let text = if text.contains("\n## ") { text.to_owned() } else { text.replace("\n### ", "\n## ") };
     let mut figures = trusted.map_or_else(Figures::new, |trusted| figures(summary, trusted));
     page.markdown(&text, &mut figures, &groups);
+    if let Some(trusted) = trusted {
+        residuals(&mut page, trusted, measured);
+    }
     page.render()
+}
+
+/// What the adjustment that is trusted left of each point, and the longest enlarged.
+fn residuals(page: &mut Page, trusted: &Trusted<'_>, Measured { mut corners, photos, size }: Measured<'_>) {
+    let Some(size) = size.filter(|_| !corners.is_empty()) else { return };
+    choose(&mut corners);
+    let enlarged = if photos.is_empty() { "" } else { " A click on one of the longest 200 shows its point enlarged." };
+    let about = format!(
+        "<p>With <code>{}</code> and <code>{}</code>, all photographs adjusted together.{enlarged}</p>\n",
+        escaped(&trusted.cell.method),
+        escaped(&trusted.cell.model)
+    );
+    page.section("Residuals over the frame", about + &over_frame("residuals", "", size, corners.iter()));
+    for (key, figure) in patches(&corners, &photos) {
+        page.patch(key, &figure);
+    }
 }
 
 fn head(summary: &Summary, trusted: &Trusted<'_>, found: Option<&InUse>, doubted: bool) -> (Level, String) {
@@ -157,7 +189,7 @@ fn halves(cell: &Cell) -> Option<String> {
     let split = cell.split?;
     let [xs, ys] = grid(&cell.map);
     let most = cell.map.iter().map(|place| place.2).fold(f64::MIN_POSITIVE, f64::max);
-    let size = calibench_model::camera::ImageSize { width: *xs.last()? as u32 + 1, height: *ys.last()? as u32 + 1 };
+    let size = ImageSize { width: *xs.last()? as u32 + 1, height: *ys.last()? as u32 + 1 };
     let mut plot = Plot::frame("halves", "RMS difference of two halves over the frame", size);
     plot.series(1, None, &["x, px", "y, px", "RMS difference of halves, px", "predicted, px"]);
     for &(x, y, found, predicted) in &cell.map {

@@ -12,7 +12,7 @@ use calibench_records::judgement::Summary;
 
 use super::canvas::Canvas;
 
-pub use html::page;
+pub use html::{Measured, page};
 pub use verdict::{in_use, verdict};
 
 /// The operator and the model to trust, and how far, in a sentence or two; `None` where nothing could be judged.

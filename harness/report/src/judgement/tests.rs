@@ -328,7 +328,7 @@ fn a_page_is_green_only_where_halves_say_nothing_against_it() {
     cell(&mut summary, "m", "b").predicted = Some(Predicted { formal: 0.5, by_views: None, modes: 1.0 });
     let level = |summary: &Summary, doubts: &[String]| {
         let trusted = summary.trusted().unwrap();
-        let html = super::page("T", "# T\n\nText.\n", (summary, Some(&trusted)), None, doubts);
+        let html = super::page("T", "# T\n\nText.\n", (summary, Some(&trusted)), (None, doubts), super::Measured::default());
         html.split("class=\"verdict ").nth(1).unwrap().split('"').next().unwrap().to_owned()
     };
     cell(&mut summary, "m", "b").split = None;

@@ -4,7 +4,7 @@ use calibench_records::judgement::{Cell, Summary};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, OwnMark};
 use crate::field::{Area, write};
 use crate::figures::Layer;
 use crate::plain;
@@ -33,25 +33,31 @@ pub fn picture(summary: &Summary, model: &str) -> Canvas {
     let y = |rms: f64| TOP + HEIGHT - ((rms.max(low) / low).ln() / span * f64::from(HEIGHT)).round() as i32;
     let x = |view: usize| LEFT + view as i32 * step + step / 2;
     canvas.paint(|area| axes(area, summary, (width, low, high), &y, &x));
-    let mut marks = Vec::new();
+    canvas.say_as(["photograph", "operator", "RMS residual, px", "points", "p of being like the others"]);
+    let mut marks: Vec<OwnMark<'_>> = Vec::new();
     let mut rings = Vec::new();
     for (index, (cell, layer)) in cells.iter().zip(&layers).enumerate() {
         for view in &cell.views {
             let Some(place) = summary.views.iter().position(|name| *name == view.name) else { continue };
             let aside = (index as f64 - (cells.len() as f64 - 1.0) / 2.0) * f64::from(step) / (cells.len() as f64 + 2.0);
             let at = (f64::from(x(place)) + aside, f64::from(y(view.residual.0)));
-            marks.push((layer.mark, layer.colour, at));
+            marks.push((Some(&cell.method), (layer.mark, layer.colour, at)));
+            let (rms, points) = view.residual;
+            let texts = [view.name.to_string(), cell.method.to_string(), plain(rms), points.to_string(), format!("{:.3}", view.p)];
+            canvas.of(Some(&cell.method), |canvas| canvas.say(at, texts));
             if view.p < calibench_records::judgement::OUTLIER_ALPHA {
-                rings.push((at.0.round() as i32, at.1.round() as i32));
+                rings.push((&*cell.method, (at.0.round() as i32, at.1.round() as i32)));
             }
         }
     }
-    canvas.marks(&marks);
-    canvas.paint(|area| {
-        for ring in &rings {
-            area.draw(&Circle::new(*ring, 13, ShapeStyle::from(&BLACK).stroke_width(2))).ok();
-        }
-    });
+    canvas.marks_of(&marks);
+    for (method, ring) in rings {
+        canvas.of(Some(method), |canvas| {
+            canvas.paint(|area| {
+                area.draw(&Circle::new(ring, 13, ShapeStyle::from(&BLACK).stroke_width(2))).ok();
+            });
+        });
+    }
     key(&mut canvas, &layers);
     canvas
 }
@@ -78,8 +84,10 @@ fn key(canvas: &mut Canvas, layers: &[Layer]) {
     let top = TOP + HEIGHT + BELOW;
     for (index, layer) in layers.iter().enumerate() {
         let (x, y) = (LEFT + (index as i32 % 2) * 360, top + index as i32 / 2 * LINE);
-        canvas.marks(&[(layer.mark, layer.colour, (f64::from(x), f64::from(y)))]);
-        canvas.text(&layer.name, 16, ((x + 18) as u32, y as u32));
+        canvas.of(Some(&layer.name), |canvas| {
+            canvas.marks(&[(layer.mark, layer.colour, (f64::from(x), f64::from(y)))]);
+            canvas.text(&layer.name, 16, ((x + 18) as u32, y as u32));
+        });
     }
     let y = top + (layers.len() as i32 + 1) / 2 * LINE;
     canvas.paint(|area| {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
+use std::sync::Arc;
 
 use calibench_records::adjustments::{Numbers, Row};
 use calibench_records::results::Group;
@@ -60,20 +61,47 @@ pub struct Summaries {
 /// # Errors
 /// A file that is not whole or not of this version.
 pub fn load(folder: &Path) -> Result<Option<Summaries>, LoadError> {
+    load_with(folder, |_| ())
+}
+
+/// As [`load`]; `watch` is shown every row.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(folder: &Path, mut watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
     if !Table::Adjustments.is_in(folder)? {
         return Ok(None);
     }
     let mut reader = Reader::default();
-    read_adjustments(folder, |row| reader.add(row))?;
-    Ok(Some(reader.found))
+    read_adjustments(folder, |row| {
+        watch(&row);
+        reader.add(row);
+    })?;
+    Ok(Some(reader.found()))
 }
+
+/// A figure while trials are read.
+struct Kept {
+    key: Key,
+    summary: Summary,
+    /// Its numbers in a trial, and in which.
+    now: (u64, Numbers),
+    /// The place of the same figure of the reference method, once that has come.
+    reference: Option<usize>,
+}
+
+/// Method, set, group and name, each name kept once.
+type Key = (Arc<str>, Arc<str>, Group, Arc<str>);
 
 #[derive(Default)]
 struct Reader {
     found: Summaries,
     trial: Option<u64>,
-    /// The reference method's figures of this trial.
-    reference: HashMap<(String, Group, String), Numbers>,
+    /// In the order in which they came.
+    figures: Vec<Kept>,
+    places: HashMap<Key, usize>,
+    /// The place after that of the row before: trials have their figures in the same order.
+    next: usize,
 }
 
 impl Reader {
@@ -81,7 +109,6 @@ impl Reader {
         if self.trial != Some(row.trial) {
             self.trial = Some(row.trial);
             (self.found.trials, self.found.seed) = (self.found.trials + 1, row.seed);
-            self.reference.clear();
         }
         let remember = |list: &mut Vec<String>, name: &str| {
             if !list.iter().any(|known| known == name) {
@@ -90,28 +117,28 @@ impl Reader {
         };
         remember(&mut self.found.methods, &row.method);
         remember(&mut self.found.sets, &row.set);
+        let text = |name: &Arc<str>| name.to_string();
         match row.figure {
-            Err(why) => self.found.failed.entry((row.method, row.set, row.group)).or_insert((0, why)).0 += 1,
+            Err(why) => self.found.failed.entry((text(&row.method), text(&row.set), row.group)).or_insert((0, why)).0 += 1,
             Ok(numbers) if row.group == Group::Point => {
-                self.found.residuals.push((row.method, row.name, numbers.value));
-                self.found.sets_of_residuals.push(row.set);
+                self.found.residuals.push((text(&row.method), text(&row.name), numbers.value));
+                self.found.sets_of_residuals.push(text(&row.set));
             }
             Ok(numbers) => self.figure((row.method, row.set, row.group, row.name), numbers),
         }
     }
 
-    fn figure(&mut self, key: FigureKey, numbers: Numbers) {
-        let place = (key.1.clone(), key.2, key.3.clone());
-        if self.found.methods.first() == Some(&key.0) {
-            self.reference.insert(place.clone(), numbers);
-        }
-        let reference = self.reference.get(&place).copied();
-        let summary = self.found.figures.entry(key).or_default();
+    fn figure(&mut self, key: Key, numbers: Numbers) {
+        let trial = self.found.trials;
+        let place = self.place(key);
+        self.figures[place].now = (trial, numbers);
+        let reference = self.reference(place).map(|reference| self.figures[reference].now).filter(|now| now.0 == trial);
+        let summary = &mut self.figures[place].summary;
         summary.first.get_or_insert(numbers);
         summary.value.add(numbers.value);
         numbers.sigma.into_iter().for_each(|sigma| summary.sigma.add(sigma));
         numbers.error.into_iter().for_each(|error| summary.square.add(error * error));
-        let Some(reference) = reference else { return };
+        let Some((_, reference)) = reference else { return };
         if let (Some(own), Some(other)) = (numbers.sigma, reference.sigma.filter(|sigma| *sigma > 0.0)) {
             summary.sigma_ratio.add(own / other);
         }
@@ -122,6 +149,41 @@ impl Reader {
         if let (Some(own), Some(other)) = (numbers.error, reference.error) {
             summary.errors.add(own, other);
         }
+    }
+
+    fn place(&mut self, key: Key) -> usize {
+        let is_it = |kept: &Kept| {
+            let same = |a: &Arc<str>, b: &Arc<str>| Arc::ptr_eq(a, b) || a == b;
+            same(&kept.key.3, &key.3) && kept.key.2 == key.2 && same(&kept.key.1, &key.1) && same(&kept.key.0, &key.0)
+        };
+        let place = if self.figures.get(self.next).is_some_and(is_it) {
+            self.next
+        } else if let Some(place) = self.places.get(&key) {
+            *place
+        } else {
+            let none = Numbers { value: f64::NAN, sigma: None, error: None };
+            self.places.insert(key.clone(), self.figures.len());
+            self.figures.push(Kept { key, summary: Summary::default(), now: (0, none), reference: None });
+            self.figures.len() - 1
+        };
+        self.next = if place + 1 < self.figures.len() { place + 1 } else { 0 };
+        place
+    }
+
+    /// The place of the same figure of the reference method; of that method it is its own.
+    fn reference(&mut self, place: usize) -> Option<usize> {
+        if self.figures[place].reference.is_none() {
+            let (_, set, group, name) = self.figures[place].key.clone();
+            let first: Arc<str> = self.found.methods.first()?.as_str().into();
+            self.figures[place].reference = self.places.get(&(first, set, group, name)).copied();
+        }
+        self.figures[place].reference
+    }
+
+    fn found(mut self) -> Summaries {
+        let text = |(method, set, group, name): Key| (method.to_string(), set.to_string(), group, name.to_string());
+        self.found.figures = self.figures.into_iter().map(|kept| (text(kept.key), kept.summary)).collect();
+        self.found
     }
 }
 

@@ -2,6 +2,7 @@
 
 use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
+use rayon::prelude::*;
 
 use super::pictures::floor::{Curve, floor};
 use super::sweep_orientation;
@@ -23,8 +24,9 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
         return Ok(None);
     }
     let mut cells = Vec::new();
-    for index in 0..loaded.cells.len() {
-        if let Some(found) = load(&cell_folder(&loaded.folder, index))? {
+    let read: Vec<_> = (0..loaded.cells.len()).into_par_iter().map(|index| load(&cell_folder(&loaded.folder, index))).collect();
+    for (index, found) in read.into_iter().enumerate() {
+        if let Some(found) = found? {
             cells.push((loaded.sweep.values(index)[0].clone(), found));
         }
     }
@@ -39,7 +41,11 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
     let mut curves: Vec<Curve> = methods
         .iter()
         .flat_map(|method| {
-            ["reported standard deviations", "true errors"].map(|what| Curve { name: format!("{method}, {what}"), points: Vec::new() })
+            ["reported standard deviations", "true errors"].map(|what| Curve {
+                method: method.clone(),
+                name: format!("{method}, {what}"),
+                points: Vec::new(),
+            })
         })
         .collect();
     for (value, found) in &cells {

@@ -44,7 +44,17 @@ impl Look {
 struct Curve {
     name: String,
     look: Look,
-    points: Vec<(f64, Option<Estimate>)>,
+    points: Vec<Point>,
+}
+
+/// A place of a curve.
+struct Point {
+    /// From the left of the panel, px of the picture.
+    at: f64,
+    found: Option<Estimate>,
+    /// The value along x, as its axis has it.
+    x: String,
+    trials: u64,
 }
 
 /// The sweep as curves with 95 % bars; `y` is logarithmic where the figures span a wide range, x where the sweep's steps are factors.
@@ -52,29 +62,36 @@ pub fn curves(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
     let places = Places::of(&loaded.sweep.axes[layout.x]);
     let panels: Vec<(String, Vec<Curve>)> =
         layout.panels(loaded).into_iter().map(|(title, at)| (title, panel_curves(loaded, layout, &places, &at))).collect();
-    let estimates = || panels.iter().flat_map(|(_, curves)| curves).flat_map(|curve| &curve.points).filter_map(|(_, found)| *found);
+    let estimates = || panels.iter().flat_map(|(_, curves)| curves).flat_map(|curve| &curve.points).filter_map(|point| point.found);
     let scale = Scale::of(estimates().map(|found| found.value));
     let across = panels.len().min(if panels.len() > 4 { 3 } else { 2 }) as u32;
     let (width, height) = (LEFT + PANEL.0 + RIGHT, TOP + PANEL.1 + BOTTOM);
     let rows = (panels.len() as u32).div_ceil(across.max(1));
     let names: Vec<(String, Look)> =
         panels.first().map_or(Vec::new(), |(_, curves)| curves.iter().map(|c| (c.name.clone(), c.look)).collect());
+    // What is told apart by a swept key is told apart in this picture alone.
+    let is_method = layout.by == Dimension::Method;
     let column = names.iter().map(|(name, _)| name.chars().count() as u32 * 9 + 74).max().unwrap_or(1);
     let columns = ((across * width - LEFT) / column).max(1);
     let legend = (names.len() as u32).div_ceil(columns);
     let mut canvas = Canvas::new(across * width, rows * height + (legend + 1) * LINE);
+    let facet = layout.facet.map_or_else(String::new, |facet| title(loaded, facet));
+    canvas.say_as([&*facet, &title(loaded, layout.by), &axis_title(loaded, layout), layout.metric.title(), "95 % from", "to", "trials"]);
     for (index, (title, curves)) in (0_u32..).zip(&panels) {
         let origin = (index % across * width + LEFT, index / across * height + TOP);
         frame(&mut canvas, origin, &places, &scale, layout.metric.reference(), (title, &axis_title(loaded, layout), layout.metric.title()));
-        curves.iter().for_each(|curve| draw(&mut canvas, origin, &scale, curve));
+        let panel = layout.facet.map_or("", |_| title.rsplit(" = ").next().unwrap_or(title));
+        curves.iter().for_each(|curve| canvas.of(is_method.then_some(&*curve.name), |canvas| draw(canvas, origin, &scale, curve, panel)));
     }
     let by = format!("{}{}; bars: 95 %", title(loaded, layout.by), layout.held(loaded));
     canvas.text(&by, 16, (LEFT, rows * height + LINE / 2));
     for (index, (name, look)) in (0_u32..).zip(&names) {
         let (x, y) = (LEFT + index % columns * column, rows * height + (index / columns + 1) * LINE + LINE / 2);
-        line(&mut canvas, &[(f64::from(x), f64::from(y)), (f64::from(x) + 44.0, f64::from(y))], *look);
-        canvas.marks(&[(look.mark, look.colour, (f64::from(x) + 22.0, f64::from(y)))]);
-        canvas.text(name, 16, (x + 54, y));
+        canvas.of(is_method.then_some(&**name), |canvas| {
+            line(canvas, &[(f64::from(x), f64::from(y)), (f64::from(x) + 44.0, f64::from(y))], *look);
+            canvas.marks(&[(look.mark, look.colour, (f64::from(x) + 22.0, f64::from(y)))]);
+            canvas.text(name, 16, (x + 54, y));
+        });
     }
     canvas
 }
@@ -90,11 +107,12 @@ fn panel_curves(loaded: &LoadedSweep, layout: &Layout, places: &Places, at: &At)
         let at = at.with(layout.by, place);
         let aside = (index as f64 - middle) * APART.min(24.0 / middle.max(1.0));
         let point = |(x, part): (usize, &f64)| {
-            let estimate = layout.estimate(loaded, &at.with(Dimension::Axis(layout.x), x));
-            (part * f64::from(PANEL.0) + aside, estimate)
+            let at = at.with(Dimension::Axis(layout.x), x);
+            let trials = loaded.cells.get(at.cell(loaded)).map_or(0, |cell| cell.trials);
+            Point { at: part * f64::from(PANEL.0) + aside, found: layout.estimate(loaded, &at), x: places.labels[x].clone(), trials }
         };
         let mut points: Vec<_> = places.parts.iter().enumerate().map(point).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.sort_by(|a, b| a.at.total_cmp(&b.at));
         let look = Look::of(index);
         Curve { name: value(loaded, layout.by, place), look, points }
     };
@@ -133,19 +151,21 @@ fn frame(
     });
 }
 
-fn draw(canvas: &mut Canvas, (x, y): (u32, u32), scale: &Scale, curve: &Curve) {
+fn draw(canvas: &mut Canvas, (x, y): (u32, u32), scale: &Scale, curve: &Curve, panel: &str) {
     let (left, bottom) = (f64::from(x), f64::from(y + PANEL.1));
     let high = |value: f64| bottom - scale.part(value) * f64::from(PANEL.1);
     let mut run: Vec<(f64, f64)> = Vec::new();
     let mut marks = Vec::new();
-    for (at, estimate) in &curve.points {
+    for point in &curve.points {
         // A curve ends where nothing was measured.
-        let Some(estimate) = estimate else {
+        let Some(estimate) = point.found else {
             line(canvas, &run, curve.look);
             run.clear();
             continue;
         };
-        let at = left + at;
+        let at = left + point.at;
+        let before = [panel, &curve.name, &point.x];
+        canvas.say_estimate((at, high(estimate.value)), &before, (estimate.value, estimate.interval), &[&point.trials.to_string()]);
         run.push((at, high(estimate.value)));
         marks.push((curve.look.mark, curve.look.colour, (at, high(estimate.value))));
         if let Some((low, top)) = estimate.interval {

@@ -8,6 +8,7 @@ use calibench_records::description::Sweep;
 use calibench_records::names::cell_folder;
 use calibench_records::results::{Group, Outcome, Trial};
 use calibench_records::statistics::running::Running;
+use rayon::prelude::*;
 
 use crate::LoadError;
 use crate::load::adjustments::{self, Summaries};
@@ -40,8 +41,12 @@ pub struct Found {
     squares: f64,
     /// Squared bounds of the measured that have one, px^2.
     bounds: Running,
-    /// Errors of each point over the trials.
-    points: HashMap<(Arc<str>, Arc<str>), [Running; 2]>,
+    /// Errors of each point over the trials, in the order in which they came.
+    points: Vec<[Running; 2]>,
+    places: HashMap<(Arc<str>, Arc<str>), usize>,
+    /// The points by their places, and the place after that of the last: trials have them in the same order.
+    keys: Vec<(Arc<str>, Arc<str>)>,
+    next: usize,
 }
 
 impl Found {
@@ -52,9 +57,21 @@ impl Found {
         self.measured += 1;
         self.squares += dx * dx + dy * dy;
         bound.into_iter().for_each(|bound| self.bounds.add(bound * bound));
-        let [x, y] = self.points.entry((view.clone(), target.clone())).or_default();
+        let place = self.place(view, target);
+        let [x, y] = &mut self.points[place];
         x.add(dx);
         y.add(dy);
+    }
+
+    fn place(&mut self, view: &Arc<str>, target: &Arc<str>) -> usize {
+        let is_next = self.keys.get(self.next).is_some_and(|(known, of)| *of == *target && *known == *view);
+        let place = if is_next { self.next } else { *self.places.entry((view.clone(), target.clone())).or_insert(self.keys.len()) };
+        if place == self.keys.len() {
+            self.keys.push((view.clone(), target.clone()));
+            self.points.push(Default::default());
+        }
+        self.next = if place + 1 < self.keys.len() { place + 1 } else { 0 };
+        place
     }
 
     /// Root mean square error of a coordinate, px.
@@ -65,7 +82,7 @@ impl Found {
     /// What trials differ by at one point, over the bound: the standard deviation, without what every trial has alike.
     pub fn scatter_to_bound(&self) -> Option<f64> {
         let (mut sum, mut free) = (0.0, 0);
-        for axis in self.points.values().flatten().filter(|axis| axis.count > 1) {
+        for axis in self.points.iter().flatten().filter(|axis| axis.count > 1) {
             sum += axis.deviation()?.powi(2) * (axis.count - 1) as f64;
             free += axis.count - 1;
         }
@@ -107,16 +124,21 @@ impl Comparison {
     pub fn load(records: &Path, name: &str) -> Result<Option<Self>, LoadError> {
         let watch = |trial: &Trial, names: &[String], cell: &mut BTreeMap<String, Found>| {
             for point in &trial.points {
-                if let Some(name) = names.get(point.method) {
-                    cell.entry(name.clone()).or_default().add((&point.view, &point.target), &point.outcome, point.bound);
+                let Some(name) = names.get(point.method) else { continue };
+                if !cell.contains_key(name) {
+                    cell.insert(name.clone(), Found::default());
+                }
+                if let Some(found) = cell.get_mut(name) {
+                    found.add((&point.view, &point.target), &point.outcome, point.bound);
                 }
             }
         };
         let of_boards =
             description(&records.join(name), name)?.and_then(|scenario| scenario.sweep).is_some_and(|sweep| is_of_boards(&sweep));
         let Some((sweep, cells)) = (if of_boards { load_with(records, name, watch)? } else { None }) else { return Ok(None) };
-        let cameras = (0..sweep.cells.len()).map(|cell| adjustments::load(&cell_folder(&sweep.folder, cell)));
-        let cameras = cameras.collect::<Result<_, _>>()?;
+        let cells_of = (0..sweep.cells.len()).into_par_iter();
+        let cameras: Vec<_> = cells_of.map(|cell| adjustments::load(&cell_folder(&sweep.folder, cell))).collect();
+        let cameras = cameras.into_iter().collect::<Result<_, _>>()?;
         Ok(Some(Self { sweep, cells, cameras }))
     }
 
@@ -173,6 +195,11 @@ impl Comparison {
             left_out: summaries.left_out(method),
             failed: summaries.failures(method, None),
         })
+    }
+
+    /// How many trials a cell has.
+    pub fn trials(&self, board: usize, value: usize) -> u64 {
+        self.sweep.cells.get(self.cell(board, value)).map_or(0, |cell| cell.trials)
     }
 
     /// Whether cameras were calibrated.

@@ -1,19 +1,18 @@
 //! A sweep of calibrations that are applied elsewhere: how many views, how tilted, where.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::sync::Arc;
 
 use calibench_records::adjustments::{Numbers, Row};
 use calibench_records::results::Group;
-use calibench_records::stored::read_adjustments;
 use plotters::prelude::*;
 
 use super::cases::hundredths;
-use crate::LoadError;
 use crate::axes::Axes;
-use crate::canvas::{COLOURS, Canvas, METHOD_MARKS};
+use crate::canvas::{COLOURS, Canvas, METHOD_MARKS, OwnMark};
 use crate::load::adjustments::{Summaries, Summary};
 use crate::markdown::{MarkdownTable, fixed};
+use crate::plain;
 
 /// What was found under one combination of swept values.
 pub struct Cell {
@@ -25,20 +24,26 @@ pub struct Cell {
     pub medians: BTreeMap<String, f64>,
 }
 
-/// Median distance from the true camera by method, px, of the first set that has one. A few trials stand in each cell: they are kept together.
-///
-/// # Errors
-/// Records that cannot be read.
-pub fn medians(folder: &Path) -> Result<BTreeMap<String, f64>, LoadError> {
-    let (mut values, mut sets): (BTreeMap<String, Vec<f64>>, BTreeMap<String, String>) = Default::default();
-    let add = |row: Row| {
+/// Distances from the true camera by method, px, of the first set that has one. A few trials stand in each cell: they are kept together.
+#[derive(Default)]
+pub struct Distances {
+    values: BTreeMap<Arc<str>, Vec<f64>>,
+    sets: BTreeMap<Arc<str>, Arc<str>>,
+}
+
+impl Distances {
+    /// Adds what a row says of them.
+    pub fn add(&mut self, row: &Row) {
         let Row { method, set, group: Group::Frame, figure: Ok(Numbers { value, .. }), .. } = row else { return };
-        if *sets.entry(method.clone()).or_insert_with(|| set.clone()) == set {
-            values.entry(method).or_default().push(value);
+        if self.sets.entry(method.clone()).or_insert_with(|| set.clone()) == set {
+            self.values.entry(method.clone()).or_default().push(*value);
         }
-    };
-    read_adjustments(folder, add)?;
-    Ok(values.into_iter().map(|(method, values)| (method, median(values))).collect())
+    }
+
+    /// Their medians, px.
+    pub fn medians(self) -> BTreeMap<String, f64> {
+        self.values.into_iter().map(|(method, values)| (method.to_string(), median(values))).collect()
+    }
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -94,18 +99,29 @@ fn untouched(cell: &Cell, cases: &[&String], methods: &[&String]) -> String {
     methods.iter().map(of).collect()
 }
 
+/// A place of a curve: value along x, median of the camera's error, px.
+#[derive(Clone, Copy)]
+struct Place {
+    x: f64,
+    median: f64,
+    trials: u64,
+}
+
+/// By the values of the other axes and the method.
+type Curves = BTreeMap<(String, String), Vec<Place>>;
+
 /// The median over the first axis, a curve for each value of the others and each method; `None` where the first axis has fewer than two numbers.
 pub fn picture(axes: &[String], cells: &[Cell]) -> Option<Canvas> {
-    let mut curves: BTreeMap<(String, String), Vec<(f64, f64)>> = BTreeMap::new();
+    let mut curves = Curves::new();
     for cell in cells {
         let x: f64 = cell.values.first()?.parse().ok()?;
         let others = axes.iter().zip(&cell.values).skip(1).map(|(axis, value)| format!("{axis} {value}")).collect::<Vec<_>>().join(", ");
         for (method, median) in cell.medians.iter().filter(|(_, median)| **median > 0.0) {
             // What the axes do not touch is the same everywhere.
-            curves.entry((others.clone(), method.clone())).or_default().push((x, *median));
+            curves.entry((others.clone(), method.clone())).or_default().push(Place { x, median: *median, trials: cell.found.trials });
         }
     }
-    let changing = |points: &[(f64, f64)]| points.windows(2).any(|pair| (pair[0].1 / pair[1].1 - 1.0).abs() > 1e-9);
+    let changing = |points: &[Place]| points.windows(2).any(|pair| (pair[0].median / pair[1].median - 1.0).abs() > 1e-9);
     let panels: Vec<String> =
         curves.keys().map(|(others, _)| others.clone()).collect::<std::collections::BTreeSet<_>>().into_iter().collect();
     let methods: Vec<String> = {
@@ -119,10 +135,10 @@ pub fn picture(axes: &[String], cells: &[Cell]) -> Option<Canvas> {
             .for_each(|m| known.push(m.clone()));
         known
     };
-    let all: Vec<(f64, f64)> =
+    let all: Vec<Place> =
         curves.iter().filter(|((_, method), _)| methods.contains(method)).flat_map(|(_, points)| points.clone()).collect();
-    let span = |of: fn(&(f64, f64)) -> f64| all.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
-    let ([left, right], [low, high]) = (span(|p| p.0), span(|p| p.1));
+    let span = |of: fn(&Place) -> f64| all.iter().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+    let ([left, right], [low, high]) = (span(|p| p.x), span(|p| p.median));
     if methods.is_empty() || right <= left {
         return None;
     }
@@ -132,13 +148,7 @@ pub fn picture(axes: &[String], cells: &[Cell]) -> Option<Canvas> {
 const PANEL: [i32; 2] = [330, 260];
 const COLUMNS: usize = 3;
 
-fn drawn(
-    axis: &str,
-    panels: &[String],
-    methods: &[String],
-    curves: &BTreeMap<(String, String), Vec<(f64, f64)>>,
-    ([left, right], [low, high]): ([f64; 2], [f64; 2]),
-) -> Canvas {
+fn drawn(axis: &str, panels: &[String], methods: &[String], curves: &Curves, ([left, right], [low, high]): ([f64; 2], [f64; 2])) -> Canvas {
     let rows = panels.len().div_ceil(COLUMNS) as i32;
     let columns = panels.len().min(COLUMNS) as i32;
     let (width, height) = (columns * (PANEL[0] + 90) + 20, 60 + rows * (PANEL[1] + 100) + 26 * methods.len() as i32);
@@ -146,28 +156,38 @@ fn drawn(
     canvas.text("Error of the camera over the frame, px (median; both scales logarithmic)", 19, (20, 14));
     let (x, y) = ([left.log10() - 0.05, right.log10() + 0.05], [low.log10().floor(), high.log10().ceil()]);
     let look = |i: usize| (METHOD_MARKS[i % METHOD_MARKS.len()], COLOURS[i % COLOURS.len()]);
-    let mut marks = Vec::new();
+    canvas.say_as(["", "method", axis, "error of the camera (median), px", "trials"]);
+    let mut marks: Vec<OwnMark<'_>> = Vec::new();
     for (place, panel) in panels.iter().enumerate() {
         let at = [60 + (place % COLUMNS) as i32 * (PANEL[0] + 90), 80 + (place / COLUMNS) as i32 * (PANEL[1] + 100), PANEL[0], PANEL[1]];
         let axes = Axes { at, x, y };
         let xs: std::collections::BTreeSet<u64> =
-            curves.iter().filter(|((others, _), _)| others == panel).flat_map(|(_, points)| points.iter().map(|p| p.0.to_bits())).collect();
+            curves.iter().filter(|((others, _), _)| others == panel).flat_map(|(_, points)| points.iter().map(|p| p.x.to_bits())).collect();
         canvas.paint(|area| {
             axes.decades(area, panel);
             axes.values(area, axis, &xs.into_iter().map(f64::from_bits).collect::<Vec<_>>());
-            for (i, method) in methods.iter().enumerate() {
-                let Some(points) = curves.get(&(panel.clone(), method.clone())) else { continue };
-                let line: Vec<(i32, i32)> = points.iter().map(|(x, y)| axes.place(x.log10(), y.log10())).collect();
-                marks.extend(line.iter().map(|(x, y)| (look(i).0, look(i).1, (f64::from(*x), f64::from(*y)))));
-                area.draw(&PathElement::new(line, ShapeStyle::from(&look(i).1).stroke_width(2))).ok();
-            }
         });
+        for (i, method) in methods.iter().enumerate() {
+            let Some(points) = curves.get(&(panel.clone(), method.clone())) else { continue };
+            let line: Vec<(i32, i32)> = points.iter().map(|point| axes.place(point.x.log10(), point.median.log10())).collect();
+            let places: Vec<(f64, f64)> = line.iter().map(|(x, y)| (f64::from(*x), f64::from(*y))).collect();
+            marks.extend(places.iter().map(|at| (Some(&**method), (look(i).0, look(i).1, *at))));
+            canvas.of(Some(method), |canvas| {
+                canvas.paint(|area| {
+                    area.draw(&PathElement::new(line, ShapeStyle::from(&look(i).1).stroke_width(2))).ok();
+                });
+                for (point, at) in points.iter().zip(places) {
+                    let texts = [panel.clone(), method.clone(), point.x.to_string(), plain(point.median), point.trials.to_string()];
+                    canvas.say(at, texts);
+                }
+            });
+        }
     }
     for (i, method) in methods.iter().enumerate() {
         let y = 60 + rows * (PANEL[1] + 100) + 26 * i as i32;
-        marks.push((look(i).0, look(i).1, (40.0, f64::from(y - 4))));
-        canvas.text(method, 16, (58, (y - 4) as u32));
+        marks.push((Some(method), (look(i).0, look(i).1, (40.0, f64::from(y - 4)))));
+        canvas.of(Some(method), |canvas| canvas.text(method, 16, (58, (y - 4) as u32)));
     }
-    canvas.marks(&marks);
+    canvas.marks_of(&marks);
     canvas
 }

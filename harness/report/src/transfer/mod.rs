@@ -10,11 +10,12 @@ mod tests;
 use calibench_records::description::Subject;
 use calibench_records::names::cell_folder;
 use calibench_records::results::Group;
+use rayon::prelude::*;
 
 use crate::LoadError;
 use crate::canvas::Pictures;
 use crate::load::Loaded;
-use crate::load::adjustments::{Summaries, load};
+use crate::load::adjustments::{Summaries, load_with};
 use crate::network::pictures::plan::plan;
 use crate::sweep::LoadedSweep;
 
@@ -48,15 +49,19 @@ pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
 /// # Errors
 /// Records that cannot be read.
 pub fn sweep(loaded: &LoadedSweep, stem: &str) -> Result<Option<(String, Pictures)>, LoadError> {
-    let mut cells = Vec::new();
-    for index in 0..loaded.cells.len() {
-        let folder = cell_folder(&loaded.folder, index);
-        let Some(found) = load(&folder)? else { return Ok(None) };
-        if !is_transfer(&found) {
-            return Ok(None);
-        }
+    let read = |index: usize| -> Result<Option<boards::Cell>, LoadError> {
+        let mut distances = boards::Distances::default();
+        let Some(found) = load_with(&cell_folder(&loaded.folder, index), |row| distances.add(row))? else { return Ok(None) };
         let values = loaded.sweep.values(index).iter().map(|value| value.text.clone()).collect();
-        cells.push(boards::Cell { values, found, medians: boards::medians(&folder)? });
+        Ok(is_transfer(&found).then(|| boards::Cell { values, found, medians: distances.medians() }))
+    };
+    // The first cell says what the others are.
+    let Some(first) = (if loaded.cells.is_empty() { None } else { read(0)? }) else { return Ok(None) };
+    let others: Vec<_> = (1..loaded.cells.len()).into_par_iter().map(read).collect();
+    let mut cells = vec![first];
+    for cell in others {
+        let Some(cell) = cell? else { return Ok(None) };
+        cells.push(cell);
     }
     let axes: Vec<String> = loaded.sweep.axes.iter().map(|axis| axis.name.clone()).collect();
     let mut text = boards::table(&axes, &cells);

@@ -17,8 +17,11 @@ pub(super) fn section(loaded: &Loaded) -> Option<Part> {
     let image = loaded.image(view)?;
     let method = loaded.head.methods.iter().position(|info| info.label.starts_with(OPERATOR))?;
     let pixel = loaded.method("pixel");
-    let refined =
-        Layer { name: format!("{}: refined", loaded.head.methods[method].label), ..Layer::methods(std::iter::once(OPERATOR)).remove(0) };
+    let refined = Layer {
+        name: format!("{}: refined", loaded.head.methods[method].label),
+        is_method: false,
+        ..Layer::methods(std::iter::once(OPERATOR)).remove(0)
+    };
     // In colour: black marks on black areas would show by their rims alone.
     let truth = Layer { colour: COLOURS[0], ..Layer::truth() };
     let detected = Layer { name: "detected pixel".into(), colour: COLOURS[5], ..Layer::start() };

@@ -2,7 +2,6 @@
 
 mod maps;
 pub(super) mod network;
-mod patches;
 mod residuals;
 
 use calibench_calibrate::{Calibration, Checked};
@@ -11,10 +10,8 @@ use super::images_of;
 use super::pictures::{PANELS, named};
 use super::uncertainty::UncertaintyMap;
 use super::warnings::warnings;
+use crate::corners::{Corner, Pictured, patches};
 use crate::html::{Figures, Groups, Level, Page};
-
-pub use patches::Pictured;
-use residuals::Worst;
 
 /// Whose figures are made.
 struct OfCamera<'c, 'n> {
@@ -56,9 +53,9 @@ pub(super) fn page(
     page.verdict(level, &sentence, reasons(calibration, doubts));
     let names = calibration.prepared.survey.images.iter();
     let groups: Groups = names.enumerate().map(|(image, name)| (name.clone(), image)).collect();
-    let worst = residuals::worst(calibration);
+    let corners = residuals::corners(calibration);
     let cameras: Vec<OfCamera<'_, '_>> = maps.iter().enumerate().map(|(camera, maps)| OfCamera::new(calibration, camera, maps)).collect();
-    let mut figures = figures(&cameras, &worst);
+    let mut figures = figures(&cameras, &corners);
     figures.extend(next);
     page.markdown(text, &mut figures, &groups);
     for of in &cameras {
@@ -67,7 +64,7 @@ pub(super) fn page(
         }
     }
     page.section("The network in space", network::figure(calibration));
-    for (key, figure) in patches::patches(calibration, &worst, photos) {
+    for (key, figure) in patches(&corners, photos) {
         page.patch(key, &figure);
     }
     page.render()
@@ -91,12 +88,12 @@ fn reasons(calibration: &Calibration<'_>, doubts: Vec<String>) -> Vec<String> {
 }
 
 /// Figures by the names of the pictures whose place they take.
-fn figures(cameras: &[OfCamera<'_, '_>], worst: &Worst) -> Figures {
+fn figures(cameras: &[OfCamera<'_, '_>], corners: &[Corner<'_>]) -> Figures {
     let mut figures = Figures::new();
     figures.extend(cameras.first().and_then(|of| maps::board(of.calibration)).map(|figure| ("board.png".to_owned(), figure)));
     for of in cameras {
         let mut put = |name: &str, figure: String| drop(figures.insert(format!("{}.png", of.id(name)), figure));
-        put("residuals", residuals::together(of, worst));
+        put("residuals", residuals::together(of, corners));
         put("distribution", maps::distribution(of));
         maps::correlations(of).into_iter().for_each(|figure| put("correlations", figure));
         maps::uncertainty(of).into_iter().for_each(|(name, figure)| put(name, figure));

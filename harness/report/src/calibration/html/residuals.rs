@@ -1,95 +1,48 @@
 //! Residuals over the frame and by photograph.
 
-use std::collections::HashMap;
-
-use calibench_adjust::{Residual, Use};
+use calibench_adjust::Use;
 use calibench_calibrate::Calibration;
 use calibench_model::camera::CameraModel;
 
 use super::super::images_of;
-use super::super::pictures::{length, shown, times};
+use super::super::pictures::length;
 use super::OfCamera;
-use crate::field::MAP;
+use crate::corners::{Corner, choose, over_frame};
 use crate::html::{Axis, Plot, Said, Shape};
 use crate::plain;
 
-/// Points that are enlarged.
-const ENLARGED: usize = 200;
-/// Arrows of a figure: of more than these the longest are drawn, and of the others some.
-const MOST: usize = 4000;
-
-const SAYS: [&str; 6] = ["image", "target", "residual, px", "vx, px", "vy, px", "normalised"];
-
-/// The observations with the longest residuals, with their keys: the longest first.
-pub(super) type Worst = HashMap<usize, usize>;
-
-/// Of one that has no residual it is longer than any.
-fn longest_first(residual: &Residual) -> f64 {
-    length(residual).unwrap_or(f64::INFINITY)
-}
-
-pub(super) fn worst(calibration: &Calibration<'_>) -> Worst {
-    let mut all: Vec<(f64, usize)> =
-        calibration.solution.each_residual().map(|residual| (longest_first(&residual), residual.observation)).collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    all.truncate(ENLARGED);
-    all.into_iter().enumerate().map(|(key, (_, observation))| (observation, key)).collect()
+/// All points of all images, the longest residuals with their keys.
+pub(super) fn corners<'c>(calibration: &'c Calibration<'_>) -> Vec<Corner<'c>> {
+    let prepared = calibration.prepared;
+    let normalised = |observation: usize| {
+        let found = calibration.reliability.as_ref()?;
+        let at = found.points.binary_search_by_key(&observation, |point| point.observation).ok()?;
+        let [x, y] = found.points[at].w;
+        Some(x.abs().max(y.abs()))
+    };
+    let corner = |residual: calibench_adjust::Residual| {
+        let sight = prepared.survey.sight(prepared.sights[residual.observation] as usize);
+        Corner {
+            image: residual.image,
+            name: &prepared.survey.images[sight.image],
+            target: prepared.survey.target(sight.target).into(),
+            at: prepared.network.observations[residual.observation].position,
+            v: residual.v,
+            used: residual.used,
+            normalised: normalised(residual.observation),
+            key: None,
+        }
+    };
+    let mut all: Vec<Corner<'c>> = calibration.solution.each_residual().map(corner).collect();
+    choose(&mut all);
+    all
 }
 
 /// All residuals of a camera's images in one frame.
-pub(super) fn together(of: &OfCamera<'_, '_>, worst: &Worst) -> String {
+pub(super) fn together(of: &OfCamera<'_, '_>, corners: &[Corner<'_>]) -> String {
     let OfCamera { calibration, camera, .. } = of;
-    let size = calibration.camera(*camera).size();
-    let own = |residual: &Residual| calibration.owner(residual.image) == *camera && residual.v.is_some();
-    let mut all: Vec<Residual> = calibration.solution.each_residual().filter(own).collect();
-    let count = all.len();
-    all.sort_by(|a, b| longest_first(b).total_cmp(&longest_first(a)).then(a.observation.cmp(&b.observation)));
-    let every = count.saturating_sub(MOST / 2).div_ceil(MOST / 2).max(1);
-    let drawn: Vec<&Residual> =
-        all.iter().enumerate().filter(|(place, _)| *place < MOST / 2 || place % every == 0).map(|(_, r)| r).collect();
-    let times = times(&all, size, MAP);
-    let mut plot = Plot::frame(&of.id("residuals"), "Residuals of all images over the frame", size);
-    for (colour, is_full) in [(1, true), (0, false)] {
-        plot.series(colour, None, &SAYS);
-        for residual in drawn.iter().filter(|residual| (residual.used == Use::Full) == is_full) {
-            arrow(&mut plot, calibration, residual, times, worst);
-        }
-    }
-    let longest = all.iter().filter(|r| r.used != Use::LeftOut).filter_map(length).fold(0.0, f64::max);
-    let doubted = all.iter().filter(|r| r.used != Use::Full).count();
-    let doubted = if doubted > 0 { format!("; orange: {doubted} left out or of less weight") } else { String::new() };
-    let some =
-        if every > 1 { format!("; of {count} the longest {} are drawn and one in {every} of the others", MOST / 2) } else { String::new() };
-    plot.figure(&of.caption(&format!(
-        "Residuals (adjusted less observed) of all images together. Arrows {times} times their length; the longest {} px{doubted}{some}. A click chooses an image.",
-        plain(longest)
-    )))
-}
-
-fn arrow(plot: &mut Plot, calibration: &Calibration<'_>, residual: &Residual, times: f64, worst: &Worst) {
-    let Some(v) = residual.v else { return };
-    let prepared = calibration.prepared;
-    let sight = prepared.survey.sight(prepared.sights[residual.observation] as usize);
-    let normalised = calibration.reliability.as_ref().and_then(|found| {
-        let at = found.points.binary_search_by_key(&residual.observation, |point| point.observation).ok()?;
-        let [x, y] = found.points[at].w;
-        Some(plain(x.abs().max(y.abs())))
-    });
-    let said = Said {
-        values: vec![
-            prepared.survey.images[sight.image].clone(),
-            prepared.survey.target(sight.target).to_owned(),
-            plain(v[0].hypot(v[1])),
-            plain(v[0]),
-            plain(v[1]),
-            normalised.unwrap_or_default(),
-        ],
-        group: Some(residual.image),
-        key: worst.get(&residual.observation).copied(),
-    };
-    let size = calibration.camera(calibration.owner(residual.image)).size();
-    let [x, y] = shown(v, size, times);
-    plot.arrow(prepared.network.observations[residual.observation].position, (x, y), &said);
+    let own = corners.iter().filter(|corner| calibration.owner(corner.image) == *camera);
+    over_frame(&of.id("residuals"), &of.whose, calibration.camera(*camera).size(), own)
 }
 
 /// RMS and longest residual of each image.

@@ -17,7 +17,7 @@ use crate::Canvas;
 
 pub(super) use correlations::{own, tint};
 pub(super) use distribution::counts;
-pub(super) use residuals::{PANELS, length, shown, times};
+pub(super) use residuals::{PANELS, length};
 pub(super) use uncertainty::plain_level;
 
 /// A picture and what it shows.

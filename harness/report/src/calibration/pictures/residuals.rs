@@ -7,7 +7,8 @@ use calibench_model::camera::{CameraModel, ImageSize};
 use plotters::prelude::*;
 
 use super::super::images_of;
-use crate::field::{Area, BOTTOM, LEFT, MAP, TOP, arrow, stretch};
+use crate::corners::{shown, stretched};
+use crate::field::{Area, BOTTOM, LEFT, MAP, TOP, arrow};
 use crate::frame::Map;
 use crate::{Canvas, plain};
 
@@ -20,9 +21,6 @@ pub(in super::super) const PANELS: usize = 24;
 const PANEL: u32 = 300;
 const GAP: u32 = 12;
 const NAME: u32 = 24;
-/// The length that the residual at the 95th percentile is drawn with, in widths of the frame.
-const LENGTH: f64 = 0.06;
-
 /// Residuals that are drawn at most: more of them cover each other.
 const MOST: usize = 50_000;
 
@@ -102,13 +100,8 @@ pub(in super::super) fn length(residual: &Residual) -> Option<f64> {
 }
 
 /// How many times too long the vectors are drawn in a map `width` px wide, of an image of some size.
-pub(in super::super) fn times(residuals: &[Residual], size: ImageSize, width: u32) -> f64 {
-    let mut lengths: Vec<f64> = residuals.iter().filter(|r| r.used != Use::LeftOut).filter_map(length).collect();
-    lengths.sort_by(f64::total_cmp);
-    let most = lengths.get(lengths.len() * 95 / 100).copied().unwrap_or(0.0);
-    // Small maps get relatively longer vectors, so that they are seen.
-    let share = if width < MAP { 2.0 * LENGTH } else { LENGTH };
-    stretch(share * f64::from(size.width), most.max(1e-12))
+fn times(residuals: &[Residual], size: ImageSize, width: u32) -> f64 {
+    stretched(residuals.iter().filter(|r| r.used != Use::LeftOut).filter_map(length), size, width)
 }
 
 fn vector(area: &Area<'_>, map: &Map, calibration: &Calibration<'_>, residual: &Residual, times: f64) {
@@ -119,13 +112,6 @@ fn vector(area: &Area<'_>, map: &Map, calibration: &Calibration<'_>, residual: &
     let Some(v) = residual.v else { return };
     let [x, y] = shown(v, calibration.camera(calibration.owner(residual.image)).size(), times);
     arrow(area, from, map.place(PixelPoint::new(at.x + x, at.y + y)));
-}
-
-/// A residual as it is drawn, so many times too long, px. A blunder that is left out may be as long as the frame: its direction is enough.
-pub(in super::super) fn shown([x, y]: [f64; 2], size: ImageSize, times: f64) -> [f64; 2] {
-    let limit = 0.15 * f64::from(size.width) / (times * x.hypot(y)).max(f64::MIN_POSITIVE);
-    let times = times * limit.min(1.0);
-    [x * times, y * times]
 }
 
 fn legend(residuals: &Residuals, times: f64) -> String {

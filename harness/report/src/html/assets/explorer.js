@@ -24,6 +24,7 @@ class Explorer {
     box.replaceChildren(this.form, this.out, box.querySelector("script"));
     this.home = this.state();
     keep("ask", () => (this.state() === this.home ? "" : this.state()), (text) => this.restore(text || this.home));
+    series.told.push(() => this.tell());
     this.build();
   }
 
@@ -114,7 +115,7 @@ class Explorer {
       .filter(({ rmse }) => rmse !== null)
       .filter(({ speed }) => !this.speed || (speed !== null && speed >= this.speed))
       .sort((a, b) => (a.failed > this.data.most) - (b.failed > this.data.most) || a.rmse - b.rmse);
-    this.out.replaceChildren(...this.answer(asked, row, methods), ...(cells ? [this.where(asked, cells)] : []), ...this.ranking(methods));
+    this.out.replaceChildren(...this.answer(asked, row, methods), ...(cells ? [this.where(asked, cells)] : []), ...this.ranking(methods.filter(({ name }) => !isOff(name))));
   }
 
   answer(asked, row, methods) {

@@ -12,7 +12,8 @@ const OWN = [["opacity", "1"], ["vector-effect", "none"], ["dominant-baseline", 
 /** Writes onto `copy` how `node` looks, and drops what does not show. */
 const inlineStyle = (node, copy, above) => {
   const style = getComputedStyle(node);
-  if (style.display === "none") {
+  // Places that only answer are nothing to see.
+  if (style.display === "none" || node.matches(".point")) {
     copy.remove();
     return;
   }

@@ -15,6 +15,9 @@ const make = (tag, attributes = {}, ...children) => {
 
 const button = (text, title, click) => make("button", { type: "button", title, click }, text);
 
+/** What an element says, its spaces as a reader sees them. */
+const textOf = (element) => element.textContent.trim().replace(/\s+/g, " ");
+
 const within = (value, low, high) => Math.min(Math.max(value, low), high);
 
 /** Calls `work` once in the next frame, however often it is asked for. */

@@ -2,6 +2,7 @@
 
 const MOST_ZOOM = 200;
 const REACH = 10;
+const ASIDE = { ArrowLeft: -1, ArrowRight: 1 };
 
 /** Where an element of a plot is, in the plot's own units. */
 const placeOf = (element) => {
@@ -13,6 +14,24 @@ const placeOf = (element) => {
   if (element.tagName === "line") return [number("x1"), number("y1")];
   const text = element.getAttribute("d") || element.getAttribute("points") || "";
   return (text.match(/-?\d*\.?\d+(e[-+]?\d+)?/gi) || [NaN, NaN]).slice(0, 2).map(Number);
+};
+
+/** As fields between bars again. */
+const joined = (values) => values.map((value) => value.replace(/[\\|]/g, "\\$&")).join("|");
+
+/** Elements at the places that a group tells of, a line each: an empty value is that of the line before. */
+const pointsOf = (group) => {
+  let last = [];
+  return group.dataset.p.split("\n").map((line) => {
+    const [place, ...values] = fields(line);
+    last = values.map((value, index) => value || last[index] || "");
+    const point = document.createElementNS(SVG, "path");
+    point.setAttribute("class", "mark point");
+    point.setAttribute("transform", `translate(${place})`);
+    point.setAttribute("d", "M-9 0a9 9 0 1 0 18 0a9 9 0 1 0-18 0");
+    point.dataset.t = joined(last);
+    return point;
+  });
 };
 
 class Plot {
@@ -28,23 +47,41 @@ class Plot {
     this.box = { x, y, width, height, right: x + width, bottom: y + height };
     this.now = -1;
     this.at = { k: 1, x: 0, y: 0 };
-    this.gatherMarks();
+    this.items = [];
+    this.told = [];
+    this.folded = all("[data-p]", this.marks);
+    this.gather(all("[data-t], .mark", this.marks));
     this.axes = [this.axis("x"), this.axis("y")].filter(Boolean);
     this.update = oncePerFrame(() => this.draw());
     this.addTools();
     gestures(svg, this);
+    svg.addEventListener("focus", () => this.unfold());
     if (!svg.querySelector("title")) svg.setAttribute("aria-roledescription", "plot; + and - zoom, brackets step through its marks");
     keep(`zoom.${this.id}`, () => this.zoomText(), (text) => this.setZoom(text));
   }
 
-  gatherMarks() {
-    this.items = all("[data-t], .mark", this.marks).map((element) => {
+  /** Places that are told of become elements when somebody turns to the drawing: of most nobody asks. */
+  unfold() {
+    if (!this.folded.length) return;
+    const points = this.folded.flatMap((group) => {
+      const own = pointsOf(group);
+      group.append(...own);
+      return own;
+    });
+    this.folded = [];
+    this.gather(points);
+    this.draw();
+  }
+
+  gather(elements) {
+    const items = elements.map((element) => {
       const [x, y] = placeOf(element);
       const owner = element.closest("[data-series]");
       const symbol = element.classList.contains("mark");
       return { element, x, y, symbol, k: 1, home: element.getAttribute("transform") || "", series: owner ? owner.dataset.series : undefined };
     });
-    this.told = this.items.filter((item) => item.element.dataset.t !== undefined);
+    this.items.push(...items);
+    this.told.push(...items.filter((item) => item.element.dataset.t !== undefined));
   }
 
   /** An axis whose ticks can be made anew: with a scale, and a tick to copy. */
@@ -75,7 +112,7 @@ class Plot {
       );
     }
     this.tools.append(button("SVG", "what is shown, as an SVG file", () => download(`${this.id}.svg`, "image/svg+xml", standalone(this.svg))));
-    if (this.told.length) this.tools.append(button("CSV", "the marks shown, as a CSV file", () => download(`${this.id}.csv`, "text/csv", this.csv())));
+    if (this.told.length || this.folded.length) this.tools.append(button("CSV", "the marks shown, as a CSV file", () => download(`${this.id}.csv`, "text/csv", this.csv())));
     wide.after(this.tools);
   }
 
@@ -172,6 +209,7 @@ class Plot {
 
   /** What the pointer means: the nearest mark, or what lies right under it. */
   under(event) {
+    this.unfold();
     const [px, py, unit] = this.toPlot(event.clientX, event.clientY);
     const [x, y] = [(px - this.at.x) / this.at.k, (py - this.at.y) / this.at.k];
     let nearest = null;
@@ -211,6 +249,7 @@ class Plot {
 
   /** On to the next mark, for readers without a mouse. */
   step(by) {
+    this.unfold();
     const { told } = this;
     const start = this.now < 0 && by < 0 ? 0 : this.now;
     for (let turn = 1; turn <= told.length; turn += 1) {
@@ -235,6 +274,7 @@ class Plot {
       pick(this.marked);
       return true;
     }
+    if (this.at.k === 1 && key in ASIDE) return this.step(ASIDE[key]);
     if (key === "+" || key === "=") return this.zoomMiddle(1.5) || true;
     if (key === "-" || key === "_") return this.zoomMiddle(1 / 1.5) || true;
     // Escape undoes one thing at a time: first a choice.
@@ -248,6 +288,7 @@ class Plot {
   }
 
   csv() {
+    this.unfold();
     const rows = this.told.filter((item) => this.seen(item)).map((item) => {
       const lines = linesOf(item.element).map(([name, value], index) => [name || `value ${index + 1}`, value]);
       return { owner: item.series || "", values: new Map(lines) };

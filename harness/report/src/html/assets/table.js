@@ -5,8 +5,6 @@ const NOTHING = /^(|-|–|—|NaN)$/;
 
 const collator = new Intl.Collator("en", { numeric: true });
 
-const textOf = (cell) => cell.textContent.trim().replace(/\s+/g, " ");
-
 /** What a cell is sorted and compared by: a number, a text, or null where there is nothing. */
 const valueOf = (cell) => {
   if (!cell) return null;
@@ -85,7 +83,7 @@ class Table {
     this.makeRowsReachable();
     keep(`sort.${this.id}`, () => this.sortText(), (text) => this.setSort(text));
     keep(`filter.${this.id}`, () => this.filterText(), (text) => this.setFilter(text));
-    series.told.push(() => this.filter());
+    series.told.push(() => this.hide());
     this.filter();
   }
 
@@ -165,6 +163,15 @@ class Table {
     changed();
   }
 
+  /** Rows and columns of hidden series. */
+  hide() {
+    this.names.forEach((name, column) => {
+      if (!series.known.has(name) || this.heads[column].classList.contains("off") === isOff(name)) return;
+      for (const row of [...this.table.tHead.rows, ...this.rows]) if (row.cells[column]) row.cells[column].classList.toggle("off", isOff(name));
+    });
+    this.filter();
+  }
+
   filter() {
     const asked = conditions(this.input.value, this.names);
     for (const { column, select, values } of this.selects) {
@@ -187,7 +194,8 @@ class Table {
 
   csv() {
     const cellText = (cell) => (cell.dataset.v !== undefined && !NOTHING.test(cell.dataset.v) ? cell.dataset.v : textOf(cell));
-    return csv([this.names, ...this.shown.map((row) => [...row.cells].map(cellText))]);
+    const shown = (cell) => !cell.classList.contains("off");
+    return csv([this.heads, ...this.shown.map((row) => [...row.cells])].map((cells) => cells.filter(shown).map(cellText)));
   }
 
   sortText() {

@@ -18,7 +18,7 @@ const fields = (text) => {
 const linesOf = (element) => {
   const named = element.closest("[data-names]");
   const names = named ? fields(named.dataset.names) : [];
-  return fields(element.dataset.t).map((value, index) => [names[index] || "", value]);
+  return fields(element.dataset.t).map((value, index) => [names[index] || "", value]).filter(([name, value]) => name || value);
 };
 
 const hideTip = () => {

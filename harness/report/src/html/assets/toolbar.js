@@ -5,7 +5,7 @@ const KEYS = [
   ["wheel", "zoom a drawing that was clicked, or with Ctrl"],
   ["drag", "move a zoomed plot, turn the scene (Shift or right button: move it)"],
   ["+ − 0", "zoom in, out, reset (also double click)"],
-  ["arrows", "move a zoomed plot, turn the scene (Shift: move it); rows of a table"],
+  ["arrows", "from mark to mark of a plot, move a zoomed one, turn the scene (Shift: move it); rows of a table"],
   ["[ ] or , .", "step through marks and points; Enter chooses"],
   ["{ } or < >", "step through stations"],
   ["filter", "a text, or column>0.1; a semicolon between several"],
@@ -27,6 +27,39 @@ const swatch = (name) => {
   return icon;
 };
 
+// More switches than these are behind a button.
+const MOST_SWITCHES = 10;
+
+/** Something that opens below its name, and closes by Escape or a click elsewhere. */
+const popover = (name, ...content) => {
+  const box = make("details", { class: "keys" }, make("summary", {}, name), ...content);
+  document.addEventListener("click", (event) => box.contains(event.target) || box.removeAttribute("open"));
+  box.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !box.open) return;
+    box.removeAttribute("open");
+    box.firstChild.focus();
+    event.preventDefault();
+  });
+  return box;
+};
+
+/** Many switches, with those that a text finds, all and none. */
+const manySwitches = (box) => {
+  const find = make("input", { type: "search", placeholder: "find", "aria-label": "find a method", input: () => {
+    for (const one of box.children) one.hidden = !one.textContent.toLowerCase().includes(find.value.trim().toLowerCase());
+  } });
+  const every = button("all", "show all methods", () => hideSeries([]));
+  const none = button("none", "hide all methods", () => hideSeries(series.names));
+  const opened = popover("", make("div", { class: "many" }, make("div", { class: "tools" }, find, every, none), box));
+  const tell = () => {
+    const count = series.names.filter((name) => !isOff(name)).length;
+    opened.firstChild.textContent = `methods: ${count === series.names.length ? "all" : count} of ${series.names.length}`;
+  };
+  series.told.push(tell);
+  tell();
+  return opened;
+};
+
 const seriesSwitches = () => {
   const box = make("span", { class: "switches", role: "group", "aria-label": "series" });
   const buttons = series.names.map((name) => {
@@ -38,7 +71,7 @@ const seriesSwitches = () => {
   const tell = () => buttons.forEach(([name, one]) => one.setAttribute("aria-pressed", String(!isOff(name))));
   series.told.push(tell);
   tell();
-  return box;
+  return series.names.length > MOST_SWITCHES ? manySwitches(box) : box;
 };
 
 const choiceLabel = () => {
@@ -70,10 +103,7 @@ const themeSelect = () => {
 
 const keysHelp = () => {
   const list = make("dl", {}, ...KEYS.flatMap(([key, meaning]) => [make("dt", {}, key), make("dd", {}, meaning)]));
-  const help = make("details", { class: "keys" }, make("summary", {}, "keys"), list);
-  document.addEventListener("click", (event) => help.contains(event.target) || help.removeAttribute("open"));
-  help.addEventListener("keydown", (event) => event.key === "Escape" && help.removeAttribute("open"));
-  return help;
+  return popover("keys", list);
 };
 
 const setUpToolbar = () => {

@@ -6,6 +6,7 @@ use plotters::prelude::*;
 use crate::axes::{Axes, upright, whisker};
 use crate::canvas::{COLOURS, Canvas, Mark};
 use crate::load::adjustments::Summaries;
+use crate::plain;
 
 const BAR: i32 = 18;
 
@@ -50,6 +51,14 @@ pub fn factors(found: &Summaries, method: &str) -> Option<Canvas> {
             }
         }
     });
+    canvas.say_as(["parameter", "by reported standard deviations", "by true errors", "95 % from", "to", "trials"]);
+    for (i, (group, name, ratio, truth)) in values.iter().enumerate() {
+        let Some((of_errors, half)) = truth else { continue };
+        let trials = found.get(method, *group, name).map_or(0, |summary| summary.value.count);
+        let (x, y) = axes.place(i as f64 + 0.5, of_errors.min(highest));
+        let ends = half.map(|half| (of_errors - half, of_errors + half));
+        canvas.say_estimate((f64::from(x), f64::from(y)), &[name, &plain(*ratio)], (*of_errors, ends), &[&trials.to_string()]);
+    }
     let marks = values.iter().enumerate().filter_map(|(i, v)| {
         let (x, y) = axes.place(i as f64 + 0.5, v.3?.0.min(highest));
         Some((Mark::Circle, COLOURS[0], (f64::from(x), f64::from(y))))

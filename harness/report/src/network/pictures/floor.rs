@@ -3,10 +3,12 @@
 use plotters::prelude::*;
 
 use crate::axes::{Axes, whisker};
-use crate::canvas::{COLOURS, Canvas, METHOD_MARKS, Mark};
+use crate::canvas::{COLOURS, Canvas, METHOD_MARKS, OwnMark};
 
 /// Circles and crosses over what is swept.
 pub struct Curve {
+    /// The method.
+    pub method: String,
     /// Its name.
     pub name: String,
     /// Value of the swept key, reduction factor, half its 95 % interval.
@@ -35,26 +37,36 @@ pub fn floor(curves: &[Curve], x: &str, printed: &[(String, f64)]) -> Option<Can
             let aside = if i == 0 { -10 } else { 12 };
             crate::field::write(area, name, (left + 4, y + aside), plotters::style::text_anchor::HPos::Left);
         }
-        for (i, curve) in curves.iter().enumerate() {
-            let colour = COLOURS[i % COLOURS.len()];
-            let line: Vec<_> = curve.points.iter().map(|p| axes.place(p.0, p.1)).collect();
-            area.draw(&PathElement::new(line, ShapeStyle::from(&colour).stroke_width(2))).ok();
-            for (x, y, half) in &curve.points {
-                whisker(area, &axes, *x, (y - half, y + half), colour);
-            }
-        }
     });
-    let mut marks: Vec<(Mark, RGBColor, (f64, f64))> = Vec::new();
+    canvas.say_as(["method", x, "reduction factor", "95 % from", "to"]);
+    let place = |p: &(f64, f64, f64)| {
+        let (x, y) = axes.place(p.0, p.1);
+        (f64::from(x), f64::from(y))
+    };
+    for (i, curve) in curves.iter().enumerate() {
+        canvas.of(Some(&curve.method), |canvas| {
+            let colour = COLOURS[i % COLOURS.len()];
+            canvas.paint(|area| {
+                let line: Vec<_> = curve.points.iter().map(|p| axes.place(p.0, p.1)).collect();
+                area.draw(&PathElement::new(line, ShapeStyle::from(&colour).stroke_width(2))).ok();
+                for (x, y, half) in &curve.points {
+                    whisker(area, &axes, *x, (y - half, y + half), colour);
+                }
+            });
+            for p in &curve.points {
+                canvas.say_estimate(place(p), &[&curve.name, &p.0.to_string()], (p.1, Some((p.1 - p.2, p.1 + p.2))), &[]);
+            }
+        });
+    }
+    let mut marks: Vec<OwnMark<'_>> = Vec::new();
     for (i, curve) in curves.iter().enumerate() {
         let look = (METHOD_MARKS[i % METHOD_MARKS.len()], COLOURS[i % COLOURS.len()]);
-        marks.extend(curve.points.iter().map(|p| {
-            let (x, y) = axes.place(p.0, p.1);
-            (look.0, look.1, (f64::from(x), f64::from(y)))
-        }));
+        let of = Some(&*curve.method);
+        marks.extend(curve.points.iter().map(|p| (of, (look.0, look.1, place(p)))));
         let y = 545 + 24 * i as u32;
-        marks.push((look.0, look.1, (90.0, f64::from(y))));
-        canvas.text(&curve.name, 16, (110, y));
+        marks.push((of, (look.0, look.1, (90.0, f64::from(y)))));
+        canvas.of(of, |canvas| canvas.text(&curve.name, 16, (110, y)));
     }
-    canvas.marks(&marks);
+    canvas.marks_of(&marks);
     Some(canvas)
 }

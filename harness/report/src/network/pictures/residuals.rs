@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use crate::axes::{Axes, whisker};
-use crate::canvas::{COLOURS, Canvas, METHOD_MARKS};
+use crate::canvas::{COLOURS, Canvas, METHOD_MARKS, OwnMark};
 use crate::field::write;
 use crate::load::adjustments::Summaries;
 
@@ -89,26 +89,36 @@ pub fn by_convergence(found: &Summaries, views: &Views) -> Option<Canvas> {
     let rows = found.methods.len() as u32;
     let mut canvas = Canvas::new(830, 520 + rows * 24);
     canvas.text("Residuals by the convergence of the image", 20, (70, 22));
-    let (mut marks, mut keys) = (Vec::new(), Vec::new());
+    let (mut marks, mut keys): (Vec<OwnMark<'_>>, Vec<_>) = (Vec::new(), Vec::new());
     for (m, method) in found.methods.iter().enumerate() {
         let look = (METHOD_MARKS[m % METHOD_MARKS.len()], COLOURS[m % COLOURS.len()]);
         keys.push((look.0, look.1, method));
         for (station, angle) in views.stations.iter().zip(&angles) {
             let Some(value) = figure(method, &station.name) else { continue };
             let (x, y) = axes.place(*angle, value.mean);
-            marks.push((look.0, look.1, (f64::from(x), f64::from(y))));
+            marks.push((Some(method), (look.0, look.1, (f64::from(x), f64::from(y)))));
         }
     }
     canvas.paint(|area| {
         axes.vertical(area, "root mean square residual per axis, px; whiskers: 95 % of single trials");
         axes.horizontal(area, "angle between the image's axis and the wall's normal, degrees");
-        for (m, method) in found.methods.iter().enumerate() {
+    });
+    canvas.say_as(["image", "method", "angle, degrees", "RMS residual per axis, px", "95 % of single trials from", "to", "trials"]);
+    for (m, method) in found.methods.iter().enumerate() {
+        canvas.of(Some(method), |canvas| {
             for (station, angle) in views.stations.iter().zip(&angles) {
                 let Some(value) = figure(method, &station.name) else { continue };
                 let scatter = 1.96 * value.deviation().unwrap_or(0.0);
-                whisker(area, &axes, *angle, (value.mean - scatter, value.mean + scatter), COLOURS[m % COLOURS.len()]);
+                let ends = (value.mean - scatter, value.mean + scatter);
+                canvas.paint(|area| whisker(area, &axes, *angle, ends, COLOURS[m % COLOURS.len()]));
+                let (x, y) = axes.place(*angle, value.mean);
+                let before = [&*station.name, method, &format!("{angle:.1}")];
+                let interval = value.deviation().map(|_| ends);
+                canvas.say_estimate((f64::from(x), f64::from(y)), &before, (value.mean, interval), &[&value.count.to_string()]);
             }
-        }
+        });
+    }
+    canvas.paint(|area| {
         let mut named: Vec<_> = angles.iter().zip(&views.stations).collect();
         named.sort_by(|a, b| a.0.total_cmp(b.0));
         for (place, (angle, station)) in (0..).zip(named) {
@@ -116,11 +126,13 @@ pub fn by_convergence(found: &Summaries, views: &Views) -> Option<Canvas> {
             write(area, &station.name, (x, y + 12 + 16 * (place % 3)), HPos::Center);
         }
     });
-    canvas.marks(&marks);
+    canvas.marks_of(&marks);
     for (row, (mark, colour, method)) in (0_u32..).zip(keys) {
         let y = 525 + row * 24;
-        canvas.marks(&[(mark, colour, (90.0, f64::from(y)))]);
-        canvas.text(method, 16, (110, y));
+        canvas.of(Some(method), |canvas| {
+            canvas.marks(&[(mark, colour, (90.0, f64::from(y)))]);
+            canvas.text(method, 16, (110, y));
+        });
     }
     Some(canvas)
 }

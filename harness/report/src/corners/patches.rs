@@ -6,14 +6,13 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use calibench_adjust::Use;
-use calibench_calibrate::Calibration;
 use calibench_exchange::read_photo;
 use calibench_model::{Image, PixelPoint};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use rayon::prelude::*;
 
-use super::residuals::Worst;
+use super::Corner;
 use crate::html::escaped;
 use crate::plain;
 
@@ -23,40 +22,27 @@ pub type Pictured<'a> = (&'a str, &'a Path);
 /// Columns and rows of an enlarged part, px: odd, so that one is in the middle.
 const SIDE: i64 = 31;
 
-/// What of an observation is enlarged.
-struct Wanted {
-    key: usize,
-    observation: usize,
-    v: Option<[f64; 2]>,
-    is_used: bool,
-}
-
-/// The enlarged parts by their keys. A photograph that cannot be read any more has none.
-pub(super) fn patches(calibration: &Calibration<'_>, worst: &Worst, photos: &[Pictured<'_>]) -> Vec<(usize, String)> {
-    let observations = &calibration.prepared.network.observations;
-    let mut by_image: BTreeMap<usize, Vec<Wanted>> = BTreeMap::new();
-    for residual in calibration.solution.each_residual() {
-        let Some(&key) = worst.get(&residual.observation) else { continue };
-        let wanted = Wanted { key, observation: residual.observation, v: residual.v, is_used: residual.used != Use::LeftOut };
-        by_image.entry(observations[residual.observation].image).or_default().push(wanted);
+/// The enlarged parts of the corners that have a key, by their keys. A photograph that cannot be read any more has none.
+pub(crate) fn patches(corners: &[Corner<'_>], photos: &[Pictured<'_>]) -> Vec<(usize, String)> {
+    let mut by_image: BTreeMap<usize, Vec<(usize, &Corner<'_>)>> = BTreeMap::new();
+    for corner in corners {
+        corner.key.into_iter().for_each(|key| by_image.entry(corner.image).or_default().push((key, corner)));
     }
-    let names = &calibration.prepared.survey.images;
-    let one = |(image, wanted): (usize, Vec<Wanted>)| {
-        let Some((_, path)) = photos.iter().find(|(name, _)| *name == names[image]) else { return Vec::new() };
+    let one = |wanted: Vec<(usize, &Corner<'_>)>| {
+        let name = wanted[0].1.name;
+        let Some((_, path)) = photos.iter().find(|(photo, _)| *photo == name) else { return Vec::new() };
         let Ok(photo) = read_photo(path) else { return Vec::new() };
-        wanted.iter().map(|wanted| (wanted.key, figure(calibration, &photo.image, wanted))).collect()
+        wanted.iter().map(|(key, corner)| (*key, figure(&photo.image, corner))).collect()
     };
-    let mut all: Vec<(usize, String)> = by_image.into_par_iter().flat_map_iter(one).collect();
+    let mut all: Vec<(usize, String)> = by_image.into_values().collect::<Vec<_>>().into_par_iter().flat_map_iter(one).collect();
     all.sort_by_key(|(key, _)| *key);
     all
 }
 
-fn figure(calibration: &Calibration<'_>, image: &Image<'_>, wanted: &Wanted) -> String {
-    let prepared = calibration.prepared;
-    let at = prepared.network.observations[wanted.observation].position;
-    let sight = prepared.survey.sight(prepared.sights[wanted.observation] as usize);
+fn figure(image: &Image<'_>, corner: &Corner<'_>) -> String {
+    let at = corner.at;
     let (left, top) = (at.x.round() as i64 - SIDE / 2, at.y.round() as i64 - SIDE / 2);
-    let adjusted = wanted.v.map(|[vx, vy]| PixelPoint::new(at.x + vx, at.y + vy));
+    let adjusted = corner.v.map(|[vx, vy]| PixelPoint::new(at.x + vx, at.y + vy));
     let place = |point: PixelPoint| (point.x - left as f64 + 0.5, point.y - top as f64 + 0.5);
     let cross = |point: PixelPoint, class: &str, shape: &str| {
         let (x, y) = place(point);
@@ -64,14 +50,14 @@ fn figure(calibration: &Calibration<'_>, image: &Image<'_>, wanted: &Wanted) -> 
     };
     let measured = cross(at, "s0", "M-1.5 -1.5L1.5 1.5M-1.5 1.5L1.5 -1.5");
     let adjusted = adjusted.map_or(String::new(), |point| cross(point, "s1", "M-1.2 0a1.2 1.2 0 1 0 2.4 0a1.2 1.2 0 1 0 -2.4 0"));
-    let length = wanted.v.map_or(String::new(), |[x, y]| format!(", {} px", plain(x.hypot(y))));
-    let used = if wanted.is_used { "" } else { ", left out" };
+    let length = corner.v.map_or(String::new(), |[x, y]| format!(", {} px", plain(x.hypot(y))));
+    let used = if corner.used != Use::LeftOut { "" } else { ", left out" };
     format!(
         "<svg viewBox=\"0 0 {SIDE} {SIDE}\" role=\"img\" aria-label=\"the image around the point\"><image width=\"{SIDE}\" height=\"{SIDE}\" href=\"data:image/png;base64,{}\"/>\
          {adjusted}{measured}</svg><figcaption>{}: {}{length}{used}. Cross: measured; circle: where the adjusted point is pictured.</figcaption>",
         STANDARD.encode(png(image, (left, top))),
-        escaped(&prepared.survey.images[sight.image]),
-        escaped(prepared.survey.target(sight.target)),
+        escaped(corner.name),
+        escaped(&corner.target),
     )
 }
 
