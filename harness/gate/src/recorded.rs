@@ -43,7 +43,7 @@ pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, 
 /// Whether the figures in `folder` are counts of detections alone, beside which the points stand.
 fn is_count(folder: &Path) -> Result<bool, StoredError> {
     let mut all = true;
-    read_adjustments(folder, |row| all &= row.set == DETECTION)?;
+    read_adjustments(folder, |row| all &= &*row.set == DETECTION)?;
     Ok(all)
 }
 
