@@ -96,7 +96,7 @@ fn mistakes_are_told_with_their_places() {
     let board = "[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\n";
     refused(
         "[testfield]\nrows = 3",
-        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, tags)",
+        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, tags)",
     );
     refused("[testfield]\nkind = \"chesboard\"", "2:8: `kind` of [testfield] is one of");
     refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
