@@ -102,7 +102,7 @@ fn mistakes_are_told_with_their_places() {
     refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
     refused(
         "[testfield]\nkind = 3",
-        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, tags; found a value of type integer",
+        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, tags; found a value of type integer",
     );
     refused("[testfield]\nkind = \"house\"\nunit = \"cm\"\nwidth = 3", "3:8: `unit` is \"mm\" or \"m\"; found `cm`");
     refused(board, "[testfield] has no `square`");
