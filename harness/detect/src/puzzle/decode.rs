@@ -74,7 +74,7 @@ impl Decoded {
 }
 
 /// One way to take a grid: what of its dots disagrees with each place.
-struct Turn {
+struct Way {
     turn: usize,
     inverted: bool,
     /// With (x mod 3, y mod 167), by sides to the right.
@@ -88,7 +88,7 @@ struct Turn {
     extent: [Place; 2],
 }
 
-impl Turn {
+impl Way {
     fn new(sheet: &Sheet, dots: &[Dot], mirrored: bool, turn: usize, inverted: bool) -> Self {
         let middle = sheet.middle();
         let place = |place: Place| turned(place, middle, mirrored, turn);
@@ -173,11 +173,11 @@ impl Verdict {
 
 fn judged(sheet: &Sheet, dots: &[Dot], puzzle: &Puzzle, mirrored: bool) -> Verdict {
     let ways = [false, true].into_iter().flat_map(|inverted| (0..4).map(move |turn| (turn, inverted)));
-    let turns: Vec<Turn> = ways.map(|(turn, inverted)| Turn::new(sheet, dots, mirrored, turn, inverted)).collect();
+    let turns: Vec<Way> = ways.map(|(turn, inverted)| Way::new(sheet, dots, mirrored, turn, inverted)).collect();
     let votes = turns[0].votes;
     let binomial = Binomial::new(votes);
     let decoded = |index: usize, at: [usize; 2]| {
-        let of: &Turn = &turns[index];
+        let of: &Way = &turns[index];
         let exchanged = (at[0] + at[1]).is_multiple_of(2) != of.even;
         Decoded { middle: sheet.middle(), turn: of.turn, mirrored, at, inverted: of.inverted, exchanged, votes, wrong: of.wrong(at) }
     };
@@ -211,7 +211,7 @@ fn judged(sheet: &Sheet, dots: &[Dot], puzzle: &Puzzle, mirrored: bool) -> Verdi
 }
 
 /// The place of fewest wrong votes in all of the pattern, and the sum of the likelihoods of all.
-fn everywhere(turns: &[Turn], likelihoods: &[f64]) -> ((usize, [usize; 2]), f64) {
+fn everywhere(turns: &[Way], likelihoods: &[f64]) -> ((usize, [usize; 2]), f64) {
     let (mut best, mut least) = ((0, [0, 0]), usize::MAX);
     let mut counts = vec![0_u64; likelihoods.len()];
     for (index, turn) in turns.iter().enumerate() {

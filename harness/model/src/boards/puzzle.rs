@@ -43,6 +43,9 @@ impl PuzzleCodes {
     pub const SIDE: usize = 3 * Self::LENGTH;
 
     /// The codes that the makers published.
+    ///
+    /// # Panics
+    /// Never: the file is our own.
     pub fn published() -> &'static Self {
         static READ: OnceLock<PuzzleCodes> = OnceLock::new();
         READ.get_or_init(|| {

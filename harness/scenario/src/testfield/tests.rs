@@ -96,13 +96,13 @@ fn mistakes_are_told_with_their_places() {
     let board = "[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\n";
     refused(
         "[testfield]\nrows = 3",
-        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, tags)",
+        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, tags)",
     );
     refused("[testfield]\nkind = \"chesboard\"", "2:8: `kind` of [testfield] is one of");
     refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
     refused(
         "[testfield]\nkind = 3",
-        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, tags; found a value of type integer",
+        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, tags; found a value of type integer",
     );
     refused("[testfield]\nkind = \"house\"\nunit = \"cm\"\nwidth = 3", "3:8: `unit` is \"mm\" or \"m\"; found `cm`");
     refused(board, "[testfield] has no `square`");
