@@ -38,6 +38,9 @@ def test_series_vanish_everywhere(fresh):
             tools(page, table, "button:last-of-type", "node.click()")
             [file] = page.files()
             assert len(list(csv.reader(io.StringIO(file["text"], newline="")))) == len(shown) + 1
+        # A click elsewhere folded them up.
+        show_switches(page)
+        page.run("document.querySelectorAll('.switches button')[arguments[0]].focus()", index)
         page.key(" ")
         assert page.run(left, name) > 0
 

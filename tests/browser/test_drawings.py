@@ -195,7 +195,7 @@ def test_many_switches_are_found_hidden_and_shown_together(drawn):
     page.run("const find = document.querySelector('.many input'); find.value = arguments[0].toUpperCase(); find.dispatchEvent(new Event('input'))", wanted)
     found = page.run("return all('.many .switches button').filter((one) => shows(one)).map((one) => one.textContent)")
     assert wanted in found and all(wanted.lower() in one.lower() for one in found)
-    press = "all('.many .tools button').find((one) => one.textContent === arguments[0]).click()"
+    press = "all('.many .find button').find((one) => one.textContent === arguments[0]).click()"
     summary = "return document.querySelector('.many').closest('details').querySelector('summary').textContent"
     count = page.count(".switches button")
     page.run(press, "none")

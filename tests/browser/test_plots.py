@@ -168,7 +168,12 @@ def number(text):
 
 def test_ticks_say_the_values_at_their_places(fresh):
     page = fresh
+    tried = 0
     for plot in plots(page):
+        if page.run(PLOT + "return svg.classList.contains('still')", plot):
+            # What was a picture is zoomed as a whole: its ticks are drawn, and move with it.
+            continue
+        tried += 1
         centre(page, plot)
         page.key("+", "+", "+", "ArrowRight", "ArrowDown")
         found = page.run(PLOT + """const m = marks.transform.baseVal.consolidate().matrix; const out = [];
@@ -191,6 +196,8 @@ def test_ticks_say_the_values_at_their_places(fresh):
                 size_of_all = abs(wanted) if found[axis + "log"] else abs(high - low)
                 assert number(text) == pytest.approx(wanted, abs=1e-3 * size_of_all), (plot, axis, text)
         page.key("0")
+    if not tried:
+        pytest.skip("this page has no plots whose ticks are made anew")
 
 
 def test_symbols_keep_their_size_under_zoom(fresh):

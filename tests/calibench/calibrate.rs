@@ -101,6 +101,7 @@ fn what_to_photograph_next_is_the_same_on_the_page_and_for_programs() {
     assert!(output.status.success(), "{}", stderr(&output));
     let answer: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
     let next = &answer["cameras"][0]["next"];
+    assert!(answer["cameras"][0]["why_no_next"].is_null());
     let value = |of: &serde_json::Value| of.as_f64().unwrap();
     let page = std::fs::read_to_string(folder.path().join("report/README.md")).unwrap();
     let section = page.split("## What to photograph next").nth(1).unwrap().split("\n## ").next().unwrap();
@@ -126,6 +127,14 @@ fn what_to_photograph_next_is_the_same_on_the_page_and_for_programs() {
     );
     let then: Vec<f64> = photographs.iter().map(|one| value(&one["then_px"])).collect();
     assert!(now > usual && usual > then[0] && then[0] > then[1] && then[1] > then[2], "{next}");
+    // Without known control nothing is proposed, for a reason that both tell.
+    let output = run(folder.path(), &[&WALL[..], &["--datum", "free", "--json", "--report", "free"]].concat());
+    let answer: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let camera = &answer["cameras"][0];
+    let why = camera["why_no_next"].as_str().unwrap();
+    assert!(camera["next"].is_null() && why.contains("control points are known"), "{camera}");
+    let page = std::fs::read_to_string(folder.path().join("free/README.md")).unwrap();
+    assert!(page.contains(&format!("Nothing is proposed: {why}.")), "{page}");
 }
 
 /// As many vertices and faces as the head says, and a vertex at each projection centre.

@@ -29,25 +29,24 @@ pub(crate) fn write_row<W: Write>(csv: &mut csv::Writer<W>, cells: impl IntoIter
     csv.write_record(None::<&[u8]>)
 }
 
-/// A row of a file of records: its cells are parts of one text, each as far as the next comma.
+/// A row of a file of records: its cells are parts of one text.
 #[derive(Clone, Copy)]
 pub(crate) struct Cells<'a> {
     pub(crate) text: &'a str,
-    pub(crate) ends: &'a [usize],
+    pub(crate) spans: &'a [(usize, usize)],
     pub(crate) line: u64,
     pub(crate) columns: &'a [&'a str],
 }
 
 impl<'a> Cells<'a> {
     pub(crate) fn text(&self, column: usize) -> &'a str {
-        let start = column.checked_sub(1).map_or(0, |before| self.ends.get(before).map_or(self.text.len(), |end| end + 1));
-        let cell = self.ends.get(column).and_then(|end| self.text.get(start..*end)).unwrap_or_default();
+        let cell = self.spans.get(column).and_then(|(start, end)| self.text.get(*start..*end)).unwrap_or_default();
         if cell.starts_with('\'') { escape::from_cell(cell) } else { cell }
     }
 
     /// How many cells it has.
     pub(crate) fn count(&self) -> usize {
-        self.ends.len()
+        self.spans.len()
     }
 
     pub(crate) fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, RecordError> {

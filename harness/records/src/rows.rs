@@ -21,10 +21,10 @@ pub(crate) struct Rows<'c, R> {
     end: usize,
     /// The line at `start`, counted from 1.
     line: u64,
-    /// A row in which something is quoted, without the quotes.
+    /// A row in which quotes are doubled, with single ones.
     plain: String,
-    /// Where its cells end.
-    ends: Vec<usize>,
+    /// Where its cells begin and end.
+    spans: Vec<(usize, usize)>,
 }
 
 impl<'c, R: Read> Rows<'c, R> {
@@ -33,10 +33,10 @@ impl<'c, R: Read> Rows<'c, R> {
     /// # Errors
     /// What cannot be read, another header than `columns`.
     pub(crate) fn new(input: R, columns: &'c [&'c str]) -> Result<Self, RecordError> {
-        let (plain, ends) = (String::new(), Vec::with_capacity(columns.len()));
-        let mut rows = Self { input, columns, buffer: vec![0; BLOCK], start: 0, end: 0, line: 1, plain, ends };
+        let (plain, spans) = (String::new(), Vec::with_capacity(columns.len()));
+        let mut rows = Self { input, columns, buffer: vec![0; BLOCK], start: 0, end: 0, line: 1, plain, spans };
         let is_header = rows.row()?.is_some_and(|header| (0..columns.len()).all(|column| header.text(column) == columns[column]));
-        if !is_header || rows.ends.len() != columns.len() {
+        if !is_header || rows.spans.len() != columns.len() {
             return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", columns.join(",")) });
         }
         Ok(rows)
@@ -71,15 +71,17 @@ impl<'c, R: Read> Rows<'c, R> {
         let row = &self.buffer[from..to];
         self.line += memchr_iter(b'\n', &self.buffer[from..self.start]).count().max(1) as u64;
         let row = std::str::from_utf8(row).map_err(|_| RecordError::Row { line, problem: "not UTF-8".into() })?;
-        self.ends.clear();
-        if is_quoted {
-            self.plain.clear();
-            unquote(row, &mut self.plain, &mut self.ends);
+        self.spans.clear();
+        let text = if !is_quoted {
+            split(row, &mut self.spans);
+            row
+        } else if split_quoted(row, &mut self.spans) {
+            row
         } else {
-            self.ends.extend(memchr_iter(b',', row.as_bytes()));
-            self.ends.push(row.len());
-        }
-        Ok(Some(Cells { text: if is_quoted { &self.plain } else { row }, ends: &self.ends, line, columns: self.columns }))
+            (self.plain, self.spans) = unquoted(row);
+            &self.plain
+        };
+        Ok(Some(Cells { text, spans: &self.spans, line, columns: self.columns }))
     }
 
     /// The bytes of the next row with what ends it, and how many quotes are in it: a line break between quotes is part of a cell.
@@ -120,13 +122,49 @@ impl<'c, R: Read> Rows<'c, R> {
     }
 }
 
-/// The cells of a row one after the other with a comma between them, and where each ends. A doubled quote in a quoted cell is one.
-fn unquote(row: &str, plain: &mut String, ends: &mut Vec<usize>) {
-    let mut rest = row;
+/// The cells of a row in which nothing is quoted.
+fn split(row: &str, spans: &mut Vec<(usize, usize)>) {
+    let mut start = 0;
+    for comma in memchr_iter(b',', row.as_bytes()) {
+        spans.push((start, comma));
+        start = comma + 1;
+    }
+    spans.push((start, row.len()));
+}
+
+/// The cells of a row in which cells are quoted, without their quotes; whether they are all there: not where a quote is doubled or stands alone.
+fn split_quoted(row: &str, spans: &mut Vec<(usize, usize)>) -> bool {
+    let bytes = row.as_bytes();
+    let mut start = 0;
     loop {
+        let end = if bytes.get(start) == Some(&b'"') {
+            let Some(length) = memchr(b'"', &bytes[start + 1..]) else { return false };
+            let close = start + 1 + length;
+            spans.push((start + 1, close));
+            close + 1
+        } else {
+            let end = memchr(b',', &bytes[start..]).map_or(bytes.len(), |length| start + length);
+            spans.push((start, end));
+            end
+        };
+        match bytes.get(end) {
+            None => return true,
+            Some(b',') => start = end + 1,
+            Some(_) => return false,
+        }
+    }
+}
+
+/// The cells of a row one after the other, and where each begins and ends. A doubled quote in a quoted cell is one.
+fn unquoted(row: &str) -> (String, Vec<(usize, usize)>) {
+    let (mut plain, mut spans, mut rest) = (String::with_capacity(row.len()), Vec::new(), row);
+    loop {
+        let start = plain.len();
         if let Some(quoted) = rest.strip_prefix('"') {
             rest = quoted;
-            while let Some((inside, after)) = rest.split_once('"') {
+            loop {
+                // Without an end it goes as far as the file.
+                let (inside, after) = rest.split_once('"').unwrap_or((rest, ""));
                 plain.push_str(inside);
                 rest = after;
                 let Some(more) = rest.strip_prefix('"') else { break };
@@ -136,10 +174,11 @@ fn unquote(row: &str, plain: &mut String, ends: &mut Vec<usize>) {
         }
         let (cell, after) = rest.split_once(',').map_or((rest, None), |(cell, after)| (cell, Some(after)));
         plain.push_str(cell);
-        ends.push(plain.len());
-        let Some(after) = after else { return };
-        plain.push(',');
-        rest = after;
+        spans.push((start, plain.len()));
+        match after {
+            None => return (plain, spans),
+            Some(after) => rest = after,
+        }
     }
 }
 

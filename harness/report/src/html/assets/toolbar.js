@@ -50,7 +50,7 @@ const manySwitches = (box) => {
   } });
   const every = button("all", "show all methods", () => hideSeries([]));
   const none = button("none", "hide all methods", () => hideSeries(series.names));
-  const opened = popover("", make("div", { class: "many" }, make("div", { class: "tools" }, find, every, none), box));
+  const opened = popover("", make("div", { class: "many" }, make("div", { class: "find" }, find, every, none), box));
   const tell = () => {
     const count = series.names.filter((name) => !isOff(name)).length;
     opened.firstChild.textContent = `methods: ${count === series.names.length ? "all" : count} of ${series.names.length}`;
