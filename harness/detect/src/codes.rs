@@ -60,12 +60,6 @@ pub(crate) fn detect(image: &Image, rings: &Rings, layout: &Layout) -> Result<Fo
     kept.sort_by_key(|coded| coded.index);
     let mut doubts: Vec<Doubt> = arranged.strays.iter().map(|index| Doubt::Stray { id: seen.coded[*index].mark.id }).collect();
     doubts.extend(seen.foreign.iter().map(|id| Doubt::Foreign { id: *id }));
-    for c in &seen.coded {
-        if c.mark.id == 1 {}
-    }
-    for c in &seen.coded {
-        if c.mark.id < 4 {}
-    }
     let twice: Vec<usize> = kept.windows(2).filter(|pair| pair[0].index == pair[1].index).map(|pair| pair[0].index).collect();
     kept.retain(|coded| !twice.contains(&coded.index));
     doubts.extend(twice.iter().map(|index| Doubt::Twice { id: (rings.first + index) as u32 }));

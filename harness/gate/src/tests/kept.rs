@@ -7,8 +7,8 @@ use crate::{
     CeilingError, CeilingMetric, Ceilings, Cells, Coordinates, Entry, Found, Index, IndexError, Kept, MethodTable, PointSums, Table,
     Verdict, Verdicts, read_baseline, write_baseline,
 };
-use calibench_model::Rejection;
-use calibench_records::results::{Calibrated, Figure, Group, Trial};
+use calibench_model::{Measurement, PixelPoint, Rejection};
+use calibench_records::results::{Calibrated, Figure, Group, PointResult, Trial};
 
 fn kept(dx: f64) -> Entry {
     measured([dx, 0.0], None)
