@@ -4,6 +4,7 @@ import base64
 import json
 import os
 import time
+import warnings
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,18 @@ return all(arguments[0]).filter((node) => shows(node))
     return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), node.tagName + ' ' + node.className + ' ' + node.textContent.slice(0, 30)]; })
   .filter(([ratio]) => ratio < 4.5);
 """
+
+
+# More of one kind on a page, say plots, are tried by a sample: the same script drives each.
+MOST = 16
+
+
+def some(page, count, what):
+    """The places of all of so many on a page, or of a sample that is spread evenly; that it is one is said."""
+    if count <= MOST:
+        return range(count)
+    warnings.warn(f"{page.name}: {MOST} of {count} {what} are tried", stacklevel=2)
+    return [round(index * (count - 1) / (MOST - 1)) for index in range(MOST)]
 
 
 def show_switches(page):

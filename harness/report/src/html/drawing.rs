@@ -16,7 +16,7 @@ use crate::canvas::{Stroke, Written};
 /// Rows of a scale of colours that are drawn as one.
 const STEP: usize = 6;
 /// The size of a drawing's text, px, as the page's style has it.
-const USUAL_SIZE: f64 = 11.0;
+const USUAL_SIZE: f64 = 15.0;
 
 /// A picture as a drawing, before it is known where it stands.
 pub(crate) struct Drawing {
@@ -118,31 +118,32 @@ impl Piece {
 
     fn circle((x, y): BackendCoord, radius: u32) -> Self {
         let (r, wide) = (radius as i32, 2 * radius);
-        Self::closed((x - r, y), format!("a{r} {r} 0 1 0 {wide} 0a{r} {r} 0 1 0-{wide} 0"))
+        // Both flags of an arc are one digit.
+        Self::closed((x - r, y), format!("a{r} {r} 0 10{wide} 0a{r} {r} 0 10-{wide} 0"))
     }
 
-    /// Lines through places, each relative to the one before: shorter.
+    /// Lines through places, each relative to the one before: shorter. Of a place alone nothing is to be seen but a round end.
     fn lines(path: &[BackendCoord]) -> Self {
         let start = path.first().copied().unwrap_or_default();
-        let (mut rest, mut last) = (String::new(), start);
-        for (place, &(x, y)) in path.iter().skip(1).enumerate() {
+        let (mut rest, mut last, mut is_oblique) = (String::new(), start, false);
+        for &(x, y) in path.iter().skip(1) {
             let (dx, dy) = (x - last.0, y - last.1);
-            let _ = write!(
-                rest,
-                "{}{dx}{}{dy}",
-                if place == 0 {
-                    "l"
-                } else if dx < 0 {
-                    ""
-                } else {
-                    " "
-                },
-                if dy < 0 { "" } else { " " }
-            );
-            last = (x, y);
+            let oblique = dx != 0 && dy != 0;
+            let _ = match (oblique, is_oblique) {
+                (false, _) if dx == 0 && dy != 0 => write!(rest, "v{dy}"),
+                (false, _) => write!(rest, "h{dx}"),
+                (true, false) => write!(rest, "l{dx}{}{dy}", apart(dy)),
+                (true, true) => write!(rest, "{}{dx}{}{dy}", apart(dx), apart(dy)),
+            };
+            (last, is_oblique) = ((x, y), oblique);
         }
         Self { start, rest, end: last }
     }
+}
+
+/// What parts a number from the one before it: a sign does so itself.
+fn apart(number: i32) -> &'static str {
+    if number < 0 { "" } else { " " }
 }
 
 impl Pencil {
@@ -169,7 +170,7 @@ impl Pencil {
         let _ = if self.path.is_empty() {
             write!(self.path, "M{x} {y}{}", piece.rest)
         } else {
-            write!(self.path, "m{} {}{}", x - self.at.0, y - self.at.1, piece.rest)
+            write!(self.path, "m{}{}{}{}", x - self.at.0, apart(y - self.at.1), y - self.at.1, piece.rest)
         };
         self.at = piece.end;
     }
@@ -181,6 +182,12 @@ impl Pencil {
     fn line(&mut self, colour: BackendColor, width: u32, piece: &Piece) {
         let width = if width == 1 { String::new() } else { format!(" stroke-width=\"{width}\"") };
         self.trace(format!("{}{width}", paint("stroke", colour)), piece);
+    }
+
+    /// A full circle: the round ends of a line of no length, which is shorter than two arcs.
+    fn dot(&mut self, centre: BackendCoord, radius: u32, colour: BackendColor) {
+        let style = format!("{} stroke-width=\"{}\" stroke-linecap=\"round\"", paint("stroke", colour), 2 * radius);
+        self.trace(style, &Piece::closed(centre, "h0".to_owned()));
     }
 
     /// Rows of a scale of colours, in the colour of the middle one.
@@ -207,10 +214,8 @@ impl Pencil {
                 let piece = Piece::rectangle((*ax, *ay), bx - ax, by - ay);
                 if *fill { self.fill(pen.colour, &piece) } else { self.line(pen.colour, pen.width, &piece) }
             }
-            Stroke::Circle((x, y), radius, pen, fill) => {
-                let piece = Piece::circle((*x, *y), *radius);
-                if *fill { self.fill(pen.colour, &piece) } else { self.line(pen.colour, pen.width, &piece) }
-            }
+            Stroke::Circle(centre, radius, pen, true) => self.dot(*centre, *radius, pen.colour),
+            Stroke::Circle(centre, radius, pen, false) => self.line(pen.colour, pen.width, &Piece::circle(*centre, *radius)),
             Stroke::Text(text) => self.write(text),
             Stroke::Pixels { at, columns, zoom, levels } => self.image(*at, (*columns, *zoom), levels),
             // Taken apart before.
@@ -253,7 +258,7 @@ impl Pencil {
         let Embedded { at: (x, y), size: (width, height), url } = image;
         let _ = write!(
             self.out,
-            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{url}\"/>"
+            "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" href=\"{url}\"/>"
         );
     }
 }
@@ -308,8 +313,19 @@ mod tests {
         pencil.line(black, 1, &Piece::lines(&[(3, 14), (3, 10)]));
         pencil.fill(BackendColor { alpha: 0.5, rgb: (1, 34, 255) }, &Piece::lines(&[(1, 1), (2, 3)]));
         pencil.close();
-        let one = "<path stroke=\"#000\" d=\"M10 20l-3 4 2 0m-6-20h5v6h-5zm0 10l0-4\"/>";
-        assert_eq!(pencil.out, format!("{one}<path fill=\"#0122ff\" fill-opacity=\"0.50\" d=\"M1 1l1 2\"/>").replace("-6-20", "-6 -20"));
+        let one = "<path stroke=\"#000\" d=\"M10 20l-3 4h2m-6-20h5v6h-5zm0 10v-4\"/>";
+        assert_eq!(pencil.out, format!("{one}<path fill=\"#0122ff\" fill-opacity=\"0.50\" d=\"M1 1l1 2\"/>"));
+    }
+
+    #[test]
+    fn lines_along_the_axes_and_dots_are_short() {
+        let mut pencil = Pencil::default();
+        let black = BackendColor { alpha: 1.0, rgb: (0, 0, 0) };
+        pencil.line(black, 1, &Piece::lines(&[(1, 1), (4, 1), (4, 0), (5, 1), (3, 4), (3, 4), (1, 2)]));
+        pencil.dot((7, 8), 3, black);
+        pencil.dot((5, 9), 3, black);
+        let dots = "<path stroke=\"#000\" stroke-width=\"6\" stroke-linecap=\"round\" d=\"M7 8h0m-2 1h0\"/>";
+        assert_eq!(pencil.end(), format!("<path stroke=\"#000\" d=\"M1 1h3v-1l1 1-2 3h0l-2-2\"/>{dots}"));
     }
 
     #[test]

@@ -220,7 +220,7 @@ impl Writer<'_> {
                         let group = self.groups.get(&plain).map_or(String::new(), |group| format!(" data-g=\"{group}\""));
                         self.out.push_str(&format!("<tr{group}>"));
                     }
-                    self.out.push_str(&cell(is_head, numeric, &html, &plain));
+                    self.out.push_str(&cell(is_head, numeric, &html));
                     column += 1;
                 }
                 Event::End(TagEnd::TableHead) => {
@@ -238,23 +238,14 @@ impl Writer<'_> {
     }
 }
 
-fn cell(is_head: bool, numeric: bool, html: &str, plain: &str) -> String {
+fn cell(is_head: bool, numeric: bool, html: &str) -> String {
     match (is_head, numeric) {
         (true, true) => format!("<th scope=\"col\" class=\"n\">{html}</th>"),
         (true, false) => format!("<th scope=\"col\">{html}</th>"),
         (false, false) => format!("<td>{html}</td>"),
-        (false, true) => {
-            let value = leading_number(plain).map_or(String::new(), |value| format!(" data-v=\"{value}\""));
-            format!("<td class=\"n\"{value}>{html}</td>")
-        }
+        // The script sorts it by the number that it begins with.
+        (false, true) => format!("<td class=\"n\">{html}</td>"),
     }
-}
-
-/// The number that a cell begins with: what it is sorted by.
-fn leading_number(text: &str) -> Option<f64> {
-    let text = text.trim_start_matches(['<', ' ']).replace('\u{2212}', "-");
-    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(text.len());
-    (0..=end).rev().find_map(|end| text.get(..end)?.parse().ok())
 }
 
 const fn closing(end: TagEnd) -> &'static str {

@@ -7,7 +7,7 @@ const SVG = "http://www.w3.org/2000/svg";
 // Those that children take over from their parent, and those that they do not, with what they are unless set.
 const INHERITED = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "fill-opacity", "stroke-opacity",
   "font-family", "font-size", "font-weight", "font-style", "text-anchor"];
-const OWN = [["opacity", "1"], ["vector-effect", "none"], ["dominant-baseline", "auto"]];
+const OWN = [["opacity", "1"], ["vector-effect", "none"], ["dominant-baseline", "auto"], ["image-rendering", "auto"]];
 
 /** Writes onto `copy` how `node` looks, and drops what does not show. */
 const inlineStyle = (node, copy, above) => {

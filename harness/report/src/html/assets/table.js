@@ -83,7 +83,7 @@ class Table {
     this.makeRowsReachable();
     keep(`sort.${this.id}`, () => this.sortText(), (text) => this.setSort(text));
     keep(`filter.${this.id}`, () => this.filterText(), (text) => this.setFilter(text));
-    series.told.push(() => this.hide());
+    if (this.names.some((name) => series.known.has(name)) || this.rows.some((row) => row.dataset.series !== undefined)) series.told.push(() => this.hide());
     this.filter();
   }
 
@@ -121,6 +121,7 @@ class Table {
     const inner = make("button", { type: "button", class: "sort" });
     inner.append(...head.childNodes);
     head.append(inner);
+    if (!this.names[column]) inner.setAttribute("aria-label", `sort by column ${column + 1}`);
     head.setAttribute("aria-sort", "none");
     head.addEventListener("click", () => {
       const { column: now, direction } = this.sorted;
@@ -224,6 +225,19 @@ class Table {
   }
 }
 
-const setUpTables = () => all("table.data").forEach((table, index) => {
-  if (table.tBodies.length && table.tHead && table.tHead.rows.length) new Table(table, index);
-});
+const LEADING = /^[<\s]*([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)/i;
+
+/** Cells of numbers are sorted by the one that they begin with, whatever follows: an interval, a share. */
+const nameValues = () => {
+  for (const cell of all("table.data td.n:not([data-v])")) {
+    const [, value] = LEADING.exec(cell.textContent.replace(/−/g, "-")) || [];
+    if (value) cell.dataset.v = value;
+  }
+};
+
+const setUpTables = () => {
+  nameValues();
+  all("table.data").forEach((table, index) => {
+    if (table.tBodies.length && table.tHead && table.tHead.rows.length) new Table(table, index);
+  });
+};

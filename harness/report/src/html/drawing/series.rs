@@ -89,7 +89,7 @@ mod tests {
     fn a_series_is_one_group_over_all_panels_below_its_marks() {
         let html = Drawing::of(&canvas()).figure("f", "c");
         assert!(html.contains("data-of=\"a|b\\|&lt;\" data-names=\"blur, px|RMSE, px|&lt;b&gt;\\|c\""), "{html}");
-        let lines = "<g data-m=\"0\"><path stroke=\"#f00\" d=\"M1 10l8 0m-8 40l8 0\"/></g><g data-m=\"1\"><path";
+        let lines = "<g data-m=\"0\"><path stroke=\"#f00\" d=\"M1 10h8m-8 40h8\"/></g><g data-m=\"1\"><path";
         assert_eq!(html.matches(lines).count(), 1, "{html}");
         let place = |what: &str| html.find(what).unwrap_or_else(|| panic!("{what}: {html}"));
         assert!(place(lines) < place("<g data-m=\"0\"><path stroke=\"#fff\""), "the rim of a mark is above all lines");
