@@ -3,8 +3,8 @@
 use calibench_records::description::{is_limited, looks};
 use calibench_records::score::Score;
 
-use crate::field::plain;
 use crate::load::{Loaded, LoadedSweep};
+use crate::markdown::plain;
 use crate::markdown::{MarkdownTable, anchor};
 use crate::published::Tally;
 

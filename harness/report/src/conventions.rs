@@ -13,10 +13,11 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::canvas::Canvas;
-use super::field::{Field, plain};
+use super::field::Field;
 use super::markdown::{MarkdownTable, contents};
 use super::{Places, ReportError};
 use crate::composed::Composed;
+use crate::markdown::plain;
 
 /// The family of this report.
 pub const FAMILY: &str = "conventions";

@@ -6,6 +6,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::canvas::Canvas;
 use super::hull::Hull;
+use super::markdown::plain;
 
 /// A regular grid of vectors over an image, row by row.
 pub struct Field {
@@ -207,15 +208,6 @@ pub(crate) fn arrow(area: &Area<'_>, from: (i32, i32), to: (i32, i32)) {
 pub(crate) fn write(area: &Area<'_>, text: &str, at: (i32, i32), side: HPos) {
     let style = ("sans-serif", 16).into_font().color(&BLACK).pos(Pos::new(side, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).ok();
-}
-
-/// Three digits, without an exponent where that is readable.
-pub fn plain(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if (-4..6).contains(&magnitude) { format!("{value:.*}", (2 - magnitude).max(0) as usize) } else { format!("{value:.2e}") }
 }
 
 #[cfg(test)]

@@ -6,9 +6,10 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use crate::Canvas;
-use crate::field::{Area, Field, arrow, plain, shade, stretch, write};
+use crate::field::{Area, Field, arrow, shade, stretch, write};
 use crate::frame::Map;
 use crate::levels::Scale;
+use crate::markdown::plain;
 
 /// Width of a panel, px of the picture.
 const PANEL: u32 = 440;

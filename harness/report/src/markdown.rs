@@ -114,6 +114,15 @@ pub fn with_half(value: f64, half: Option<f64>, digits: usize) -> String {
     half.map_or_else(|| fixed(value, digits), |half| format!("{} ± {}", fixed(value, digits), fixed(half, digits)))
 }
 
+/// Three digits, without an exponent where that is readable.
+pub fn plain(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) { format!("{value:.*}", (2 - magnitude).max(0) as usize) } else { format!("{value:.2e}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

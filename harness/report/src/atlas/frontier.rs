@@ -5,7 +5,8 @@ use plotters::style::text_anchor::HPos;
 
 use super::labels::{Box2, place};
 use crate::canvas::{COLOURS, Canvas, Mark};
-use crate::field::{Area, plain, write};
+use crate::field::{Area, write};
+use crate::markdown::plain;
 use crate::ticks;
 
 /// A method with its speed and error.

@@ -3,7 +3,7 @@
 use super::choose::{Candidate, LEVEL, MOST_FAILURES, Verdict, decide};
 use super::frontier::short;
 use super::rows::Row;
-use crate::field::plain;
+use crate::markdown::plain;
 use crate::markdown::{MarkdownTable, anchor, contents};
 
 /// A table of the page.

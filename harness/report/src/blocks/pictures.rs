@@ -9,9 +9,10 @@ use plotters::style::text_anchor::HPos;
 
 use crate::axes::{Axes, whisker};
 use crate::canvas::{COLOURS, Canvas, Mark};
-use crate::field::{arrow, plain, stretch, write};
+use crate::field::{arrow, stretch, write};
 use crate::load::Loaded;
 use crate::load::adjustments::Summaries;
+use crate::markdown::plain;
 
 /// Side of a square panel, px of the picture.
 const SIDE: i32 = 520;

@@ -1,7 +1,7 @@
 //! The page `detectors of boards`.
 
 use super::load::{Counted, Detectors, Found};
-use crate::field::plain;
+use crate::markdown::plain;
 use crate::markdown::{MarkdownTable, contents, fixed, signed};
 use crate::speeds::Speeds;
 use crate::sweep::titled;

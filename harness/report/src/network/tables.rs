@@ -3,8 +3,8 @@
 use calibench_records::description::is_limited;
 use calibench_records::results::Group;
 
-use crate::field::plain;
 use crate::load::adjustments::{Summaries, Summary};
+use crate::markdown::plain;
 use crate::markdown::{MarkdownTable, fixed, with_half};
 
 /// What is to be known where methods measure different targets.

@@ -7,7 +7,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
 use crate::Canvas;
-use crate::field::{plain, stretch, write};
+use crate::field::{stretch, write};
+use crate::markdown::plain;
 
 /// Squares along the longer side.
 const SQUARES: f64 = 12.0;

@@ -4,7 +4,8 @@ use calibench_model::camera::Camera;
 use calibench_model::convert::{ConvertError, Difference, DifferenceOptions, Region, difference};
 use calibench_records::description::{Printed, PrintedCamera};
 
-use crate::field::{Field, plain};
+use crate::field::Field;
+use crate::markdown::plain;
 
 /// The distortion of every camera that has any: from where the same camera without distortion has a ray to where it has it.
 pub(super) fn distortions(printed: &Printed) -> Vec<(String, Result<Field, ConvertError>)> {

@@ -10,10 +10,10 @@ use calibench_records::description::Printed;
 use calibench_records::results::Group;
 
 use crate::canvas::Pictures;
-use crate::field::plain;
 use crate::load::Loaded;
 use crate::load::adjustments::Summaries;
 use crate::markdown::MarkdownTable;
+use crate::markdown::plain;
 use pictures::Drawn;
 
 /// What stands above the figures of the network.

@@ -6,8 +6,9 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::axes::Scale;
 use super::layout::{Dimension, Layout};
 use crate::canvas::Canvas;
-use crate::field::{Area, plain, shade, write};
+use crate::field::{Area, shade, write};
 use crate::load::sweep::LoadedSweep;
+use crate::markdown::plain;
 
 /// A cell of the map, px of the picture.
 const CELL: (u32, u32) = (74, 44);

@@ -3,7 +3,7 @@
 use super::load::{Camera, Comparison, Found, kind};
 use super::picture::picture;
 use crate::Canvas;
-use crate::field::plain;
+use crate::markdown::plain;
 use crate::markdown::{MarkdownTable, contents, fixed};
 use crate::sweep::titled;
 

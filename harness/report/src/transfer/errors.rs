@@ -8,8 +8,9 @@ use plotters::style::text_anchor::HPos;
 
 use crate::axes::Axes;
 use crate::canvas::{Canvas, Mark};
-use crate::field::{arrow, plain, write};
+use crate::field::{arrow, write};
 use crate::load::adjustments::Summaries;
+use crate::markdown::plain;
 
 const WIDTH: i32 = 620;
 const HEIGHT: i32 = 250;
