@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use calibench_records::names::{DETECTION, SCENARIO};
+use calibench_records::names::SCENARIO;
 use calibench_records::results::{Calibrated, Figure, Group, MethodInfo, Outcome, Trial};
 use calibench_records::stored::{StoredError, Table as Stored, read_adjustments, read_points};
 
@@ -19,12 +19,13 @@ use super::table::{Table, fingerprint};
 pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, StoredError> {
     let mut table: Option<Table> = None;
     let start = |trial: &Trial, methods: &[MethodInfo]| Table::new(name, 0, Coordinates::of(has_truth(trial)), methods);
-    let adjusted = Stored::Adjustments.is_in(folder)?;
-    let counted = adjusted && is_count(folder)?;
+    let adjusted = if Stored::Adjustments.is_in(folder)? { Some(adjustments_of(folder, unit)?) } else { None };
+    // Of adjustments the points are those of the first trial alone.
+    let has_points = adjusted.as_ref().is_none_or(|trials| trials.values().flatten().all(|(_, one)| one.is_count()));
     let head = read_points(folder, |trial, methods| {
         let table = table.get_or_insert_with(|| start(&trial, methods));
         table.name_methods(methods);
-        if !adjusted || counted {
+        if has_points {
             table.add(&trial);
         }
     })?;
@@ -34,17 +35,11 @@ pub fn recorded(folder: &Path, name: &str, unit: &'static str) -> Result<Table, 
     if let Ok(text) = std::fs::read_to_string(folder.join(SCENARIO)) {
         table.text = fingerprint(&text);
     }
-    if adjusted {
-        adjustments_of(folder, &head.methods, unit, &mut table)?;
+    for (number, trial) in adjusted.into_iter().flatten() {
+        let of = |(label, one)| Some(Calibrated { method: head.methods.iter().position(|info| info.label == label)?, ..one });
+        table.add(&Trial { number, calibrations: trial.into_iter().filter_map(of).collect(), ..Trial::default() });
     }
     Ok(table)
-}
-
-/// Whether the figures in `folder` are counts of detections alone, beside which the points stand.
-fn is_count(folder: &Path) -> Result<bool, StoredError> {
-    let mut all = true;
-    read_adjustments(folder, |row| all &= &*row.set == DETECTION)?;
-    Ok(all)
 }
 
 /// Whether any point has an error; records without a point count as of a known truth.
@@ -56,16 +51,15 @@ fn has_truth(trial: &Trial) -> bool {
     outcomes.next().unwrap_or(true)
 }
 
-/// Adds the adjustments of the run in `folder`, as a run hands them on: by trial, method and set.
-fn adjustments_of(folder: &Path, methods: &[MethodInfo], unit: &'static str, table: &mut Table) -> Result<(), StoredError> {
+/// The adjustments of the run in `folder` by trial, each with the label of its method, as a run hands them on: by method and set.
+fn adjustments_of(folder: &Path, unit: &'static str) -> Result<BTreeMap<u64, Vec<(Arc<str>, Calibrated)>>, StoredError> {
     let mut sets: BTreeMap<Arc<str>, usize> = BTreeMap::new();
-    let mut all: BTreeMap<u64, BTreeMap<(usize, usize), Calibrated>> = BTreeMap::new();
+    let mut all: BTreeMap<u64, BTreeMap<(Arc<str>, usize), Calibrated>> = BTreeMap::new();
     read_adjustments(folder, |row| {
         let next = sets.len();
         let set = *sets.entry(row.set).or_insert(next);
-        let Some(method) = methods.iter().position(|info| *info.label == *row.method) else { return };
-        let none = Calibrated { method, set, outcome: Ok(Vec::new()), check_failed: None };
-        let one = all.entry(row.trial).or_default().entry((method, set)).or_insert(none);
+        let none = Calibrated { method: 0, set, outcome: Ok(Vec::new()), check_failed: None };
+        let one = all.entry(row.trial).or_default().entry((row.method, set)).or_insert(none);
         match (row.figure, &mut one.outcome) {
             (Ok(numbers), Ok(figures)) => {
                 let (group, name) = (row.group, row.name);
@@ -76,8 +70,8 @@ fn adjustments_of(folder: &Path, methods: &[MethodInfo], unit: &'static str, tab
             (Ok(_), Err(_)) => {}
         }
     })?;
-    for (number, calibrated) in all {
-        table.add(&Trial { number, calibrations: calibrated.into_values().collect(), ..Trial::default() });
-    }
-    Ok(())
+    let trial = |(number, all): (u64, BTreeMap<(Arc<str>, usize), Calibrated>)| {
+        (number, all.into_iter().map(|((label, _), one)| (label, one)).collect())
+    };
+    Ok(all.into_iter().map(trial).collect())
 }

@@ -124,9 +124,12 @@ impl Asked {
 
 impl BoardFinder for Asked {
     fn unfit(&self, board: &Board) -> Option<String> {
-        let (word, kinds) = (board.to_string(), &self.boards()?.kinds);
-        let kind = word.split(':').next().unwrap_or(&word);
-        (!kinds.is_empty() && !kinds.iter().any(|known| known == kind)).then(|| format!("it finds these alone: {}", kinds.join(", ")))
+        let kinds = &self.boards()?.kinds;
+        if board.to_string().parse() != Ok(*board) {
+            return Some(format!("it is told boards in a word, and `{board}` does not tell all of this one"));
+        }
+        (!kinds.is_empty() && !kinds.iter().any(|known| known == board.kind()))
+            .then(|| format!("it finds these alone: {}", kinds.join(", ")))
     }
 
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {

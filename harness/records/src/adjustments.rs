@@ -3,11 +3,13 @@
 use std::io::{Read, Write};
 use std::sync::Arc;
 
-use crate::cells::{Cells, RecordError, write_row};
+use csv::StringRecord;
+
+use crate::cells::{Cells, RecordError, open, write_row};
+use crate::interned::Names;
 use crate::points::RunInfo;
 use crate::results::MethodInfo;
 use crate::results::{Calibrated, Figure, Group};
-use crate::rows::{Names, Rows};
 
 /// The columns of the file.
 pub const COLUMNS: [&str; 13] =
@@ -128,9 +130,9 @@ pub struct Numbers {
 /// # Errors
 /// A file that is not one of these, with its line.
 pub fn read(input: impl Read, mut sink: impl FnMut(Row)) -> Result<(), RecordError> {
-    let (mut rows, mut names) = (Rows::new(input, &COLUMNS)?, <[Names; 3]>::default());
-    while let Some(cells) = rows.next()? {
-        sink(row(&cells, &mut names)?);
+    let (mut reader, mut record, mut names) = (open(input, &COLUMNS)?, StringRecord::new(), <[Names; 3]>::default());
+    while reader.read_record(&mut record)? {
+        sink(row(&Cells { record: &record, columns: &COLUMNS }, &mut names)?);
     }
     Ok(())
 }

@@ -1,11 +1,10 @@
 //! Files of records, cell by cell.
 
-use std::io::Write;
+use std::io::{Read, Write};
 
 use calibench_model::escape;
+use csv::StringRecord;
 use thiserror::Error;
-
-use crate::rows::decimal;
 
 /// A records file that is none.
 #[derive(Debug, Error)]
@@ -23,30 +22,30 @@ pub enum RecordError {
     },
 }
 
+/// A reader of a file of records whose header has been checked.
+pub(crate) fn open<R: Read>(input: R, columns: &[&str]) -> Result<csv::Reader<R>, RecordError> {
+    let mut csv = csv::Reader::from_reader(input);
+    if csv.headers()?.iter().ne(columns.iter().copied()) {
+        return Err(RecordError::Row { line: 1, problem: format!("expected the columns {}", columns.join(",")) });
+    }
+    Ok(csv)
+}
+
 /// Writes a row, its names safe from being taken for formulas; [`Cells::text`] reads them again.
 pub(crate) fn write_row<W: Write>(csv: &mut csv::Writer<W>, cells: impl IntoIterator<Item: AsRef<str>>) -> Result<(), csv::Error> {
     cells.into_iter().try_for_each(|cell| csv.write_field(escape::cell(cell.as_ref()).as_bytes()))?;
     csv.write_record(None::<&[u8]>)
 }
 
-/// A row of a file of records: its cells are parts of one text.
-#[derive(Clone, Copy)]
+/// A row of a file of records.
 pub(crate) struct Cells<'a> {
-    pub(crate) text: &'a str,
-    pub(crate) spans: &'a [(usize, usize)],
-    pub(crate) line: u64,
+    pub(crate) record: &'a StringRecord,
     pub(crate) columns: &'a [&'a str],
 }
 
-impl<'a> Cells<'a> {
-    pub(crate) fn text(&self, column: usize) -> &'a str {
-        let cell = self.spans.get(column).and_then(|(start, end)| self.text.get(*start..*end)).unwrap_or_default();
-        if cell.starts_with('\'') { escape::from_cell(cell) } else { cell }
-    }
-
-    /// How many cells it has.
-    pub(crate) fn count(&self) -> usize {
-        self.spans.len()
+impl Cells<'_> {
+    pub(crate) fn text(&self, column: usize) -> &str {
+        escape::from_cell(self.record.get(column).unwrap_or_default())
     }
 
     pub(crate) fn parse<T: std::str::FromStr>(&self, column: usize) -> Result<T, RecordError> {
@@ -55,7 +54,7 @@ impl<'a> Cells<'a> {
 
     /// A finite number.
     pub(crate) fn number(&self, column: usize) -> Result<f64, RecordError> {
-        decimal(self.text(column)).filter(|number| number.is_finite()).ok_or_else(|| self.bad(column))
+        self.parse(column).ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| self.bad(column))
     }
 
     /// A finite number, or an empty cell.
@@ -75,7 +74,7 @@ impl<'a> Cells<'a> {
 
     /// Its line, counted from 1.
     pub(crate) fn line(&self) -> u64 {
-        self.line
+        self.record.position().map_or(0, csv::Position::line)
     }
 
     /// A row that means nothing, and why.

@@ -3,13 +3,13 @@
 pub mod adjustments;
 mod cells;
 pub mod description;
+mod interned;
 pub mod judgement;
 pub mod names;
 pub mod parts;
 pub mod plain;
 pub mod points;
 pub mod results;
-mod rows;
 pub mod score;
 pub mod statistics;
 pub mod stored;

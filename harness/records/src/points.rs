@@ -4,9 +4,11 @@ use std::io::{Read, Write};
 
 use calibench_model::{PixelPoint, Rejection};
 
-use crate::cells::{Cells, RecordError, write_row};
+use csv::StringRecord;
+
+use crate::cells::{Cells, RecordError, open, write_row};
+use crate::interned::Names;
 use crate::results::{MethodInfo, Outcome, PointResult, Trial};
-use crate::rows::{Names, Rows};
 
 /// The columns of a records file.
 pub const COLUMNS: [&str; 17] = [
@@ -169,10 +171,11 @@ pub struct RecordHead {
 /// # Errors
 /// A file that was not written by [`RecordWriter`].
 pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])) -> Result<RecordHead, RecordError> {
-    let mut rows = Rows::new(input, &COLUMNS)?;
+    let mut csv = open(input, &COLUMNS)?;
     let mut head = RecordHead { run: RunInfo::default(), methods: Vec::new() };
-    let (mut trial, mut names, mut last) = (None::<Trial>, Known::default(), 0);
-    while let Some(row) = rows.next()? {
+    let (mut trial, mut names, mut last, mut record) = (None::<Trial>, Known::default(), 0, StringRecord::new());
+    while csv.read_record(&mut record)? {
+        let row = Cells { record: &record, columns: &COLUMNS };
         if head.run.scenario.is_empty() {
             head.run = RunInfo {
                 scenario: row.text(SCENARIO).into(),

@@ -5,9 +5,8 @@ use std::io::{self, Read, Write};
 
 use calibench_model::PixelPoint;
 
-use crate::cells::{Cells, RecordError};
+use crate::cells::{Cells, RecordError, open};
 use crate::points::RunInfo;
-use crate::rows::Rows;
 
 /// The file's name in a scenario's folder.
 pub const THEORY: &str = "theory.csv";
@@ -106,8 +105,9 @@ fn rows(theory: &Theory) -> Vec<Row> {
 /// A file of another form.
 pub fn read(input: impl Read) -> Result<Vec<Theory>, RecordError> {
     let mut all: Vec<Gathered> = Vec::new();
-    let mut rows = Rows::new(input, &COLUMNS)?;
-    while let Some(cells) = rows.next()? {
+    for record in open(input, &COLUMNS)?.records() {
+        let record = record?;
+        let cells = Cells { record: &record, columns: &COLUMNS };
         let (method, target) = (cells.text(1), cells.text(2));
         if all.last().is_none_or(|last| last.method != method || last.target != target) {
             all.push(Gathered { method: method.to_owned(), target: target.to_owned(), ..Gathered::default() });

@@ -2,7 +2,7 @@
 //!
 //! A point of the board is right within [`LOST`] px of its true place. Beyond that it was taken for another one, if the true place of one is as near, or it lies somewhere.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use calibench_measure::finder::Named;
 use calibench_model::{PixelPoint, Rejection};
@@ -18,28 +18,22 @@ pub struct Tally(BTreeMap<usize, Counts>);
 
 /// Where the points of a board truly are in an image.
 pub struct TruePlaces<'a> {
-    /// Those that are in view, by name, px: each of them is expected.
-    pub expected: Vec<(&'a str, PixelPoint)>,
-    /// All that have a place in the image plane: whatever lies at the border may be found or not.
-    pub all: Vec<(&'a str, PixelPoint)>,
+    /// By name, px, and whether it is in view and so expected: what lies at the border may be found or not.
+    pub all: HashMap<&'a str, (PixelPoint, bool)>,
 }
 
 impl TruePlaces<'_> {
-    fn of(&self, name: &str) -> Option<PixelPoint> {
-        self.all.iter().find(|(other, _)| *other == name).map(|(_, at)| *at)
-    }
-
-    fn is_expected(&self, name: &str) -> bool {
-        self.expected.iter().any(|(other, _)| *other == name)
+    fn expected(&self) -> usize {
+        self.all.values().filter(|(_, expected)| *expected).count()
     }
 
     /// What a found point is called in the records.
     fn judged(&self, name: &str, at: PixelPoint) -> &'static str {
         let near = |place: &PixelPoint| place.distance(at) <= LOST;
-        match self.of(name).filter(near) {
-            Some(_) if self.is_expected(name) => "labelled",
-            Some(_) => "not expected",
-            None if self.all.iter().any(|(_, place)| near(place)) => "wrong labels",
+        match self.all.get(name).filter(|(place, _)| near(place)) {
+            Some((_, true)) => "labelled",
+            Some((_, false)) => "not expected",
+            None if self.all.values().any(|(place, _)| near(place)) => "wrong labels",
             None => "off",
         }
     }
@@ -51,7 +45,7 @@ impl Tally {
         let counts = self.0.entry(method).or_default();
         let mut add = |what: &'static str, count: usize| *counts.entry(what).or_default() += count as u64;
         add("images", 1);
-        add("targets", truth.expected.len());
+        add("targets", truth.expected());
         ["grids", "labels", "labelled", "not expected", "wrong labels", "off"].into_iter().for_each(|what| add(what, 0));
         let Some(found) = found.as_ref().ok().filter(|found| !found.is_empty()) else { return };
         add("grids", 1);
@@ -81,8 +75,8 @@ mod tests {
     }
 
     fn counted(found: &Result<Named<'_>, Rejection>) -> impl Fn(&str) -> Option<f64> + use<> {
-        let all = vec![("a", at(10.0)), ("b", at(30.0)), ("c", at(50.0)), ("rim", at(70.0))];
-        let truth = TruePlaces { expected: all[..3].to_vec(), all };
+        let all = [("a", 10.0, true), ("b", 30.0, true), ("c", 50.0, true), ("rim", 70.0, false)];
+        let truth = TruePlaces { all: all.map(|(name, x, expected)| (name, (at(x), expected))).into() };
         let mut tally = Tally::default();
         tally.image(2, found, &truth);
         let mut all = tally.calibrated(4);

@@ -52,14 +52,13 @@ impl<'a> Order<'a> {
         Ok(Planned::Sweep(SweepPlan { order: self, sweep }))
     }
 
-    /// Whether every method that finds boards knows the board of the scenario, if it is not swept: of what is swept each needs to know some.
+    /// Whether every method of the order that finds boards knows the board of a scenario that is not swept; of its own methods its file was checked.
     ///
     /// # Errors
     /// [`RunError::Asked`]: the first that does not, and why.
     fn known_boards(&self) -> Result<(), RunError> {
         let name = &self.scenario.name;
-        let methods = if self.methods.is_empty() { &self.scenario.methods[..] } else { self.methods };
-        for (method, finder) in methods.iter().filter_map(|method| Some((method, method.board_finder()?))) {
+        for (method, finder) in self.methods.iter().filter_map(|method| Some((method, method.board_finder()?))) {
             if let Some(why) = no_board(&self.scenario.subject, finder) {
                 return Err(RunError::Asked(format!("`{}` finds boards, and in `{name}` {why}", method.label)));
             }

@@ -234,9 +234,10 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
         let asked = seen.iter().zip(starts).map(|(point, start)| Asked { name: name(point), kind: kind_of(prepared, point), start });
         let which = Some(ImageId { trial: number, view: &view.station.name });
         let picture = Pictured { which, image: &image, board: prepared.sought.as_ref() };
+        let truth = counts.then(|| true_places(prepared, view));
         for (method, answers) in plan.measure(picture, &asked.collect::<Vec<_>>()) {
-            if let (Some(found), true) = (&answers.found, counts) {
-                tally.image(method, found, &true_places(prepared, view, &seen));
+            if let (Some(found), Some(truth)) = (&answers.found, &truth) {
+                tally.image(method, found, truth);
             }
             let unknowns = plan.unknowns(method);
             let points = seen.iter().zip(answers.results).filter_map(|(point, result)| Some((point, result?))).map(|(point, result)| {
@@ -259,11 +260,10 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
     Ok(trial)
 }
 
-/// Where the targets are in an image in which `seen` are expected.
-fn true_places<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>, seen: &[Pointed]) -> TruePlaces<'p> {
-    let name = |target: usize| &*prepared.targets[target];
-    let all = view.truth.iter().enumerate().filter_map(|(target, truth)| Some((name(target), truth.at?)));
-    TruePlaces { expected: seen.iter().map(|point| (name(point.target), point.truth)).collect(), all: all.collect() }
+/// Where the targets are in the image of a view.
+fn true_places<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>) -> TruePlaces<'p> {
+    let place = |(name, truth): (&'p Arc<str>, &TargetTruth)| Some((&**name, (truth.at?, is_pointed_at(prepared.subject, truth))));
+    TruePlaces { all: prepared.targets.iter().zip(&view.truth).filter_map(place).collect() }
 }
 
 /// Whether the first point of all, which decides the image that pages show, lies in `view`. Noisy images do not compress: only this one is kept.

@@ -59,6 +59,19 @@ impl Board {
         }
     }
 
+    /// Its kind, as in [`KINDS`].
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Chessboard(_) => "chessboard",
+            Self::Charuco(_) => "charuco",
+            Self::AprilGrid(_) => "aprilgrid",
+            Self::Circles(Circles { asymmetric: true, .. }) => "acircles",
+            Self::Circles(_) => "circles",
+            Self::Rings(_) => "rings",
+            Self::Puzzle(_) => "puzzle",
+        }
+    }
+
     /// Whether its marks say which they are: a part of it is enough to number its points.
     pub const fn is_coded(&self) -> bool {
         match self {

@@ -47,27 +47,26 @@ impl FromStr for Board {
 /// As options write it.
 impl fmt::Display for Board {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.kind())?;
         match self {
-            Self::Chessboard(Chessboard { columns, rows, square }) => write!(f, "chessboard:{columns}x{rows}:{square}"),
+            Self::Chessboard(Chessboard { columns, rows, square }) => write!(f, "{columns}x{rows}:{square}"),
             Self::Charuco(Charuco { columns, rows, square, marker, dictionary, first, legacy }) => {
-                write!(f, "charuco:{columns}x{rows}:{square}:{marker}:{}", dictionary.name)?;
+                write!(f, "{columns}x{rows}:{square}:{marker}:{}", dictionary.name)?;
                 optional(f, *first != 0, first)?;
                 optional(f, *legacy, "legacy")
             }
             Self::AprilGrid(AprilGrid { columns, rows, tag, spacing, first, border, squares, .. }) => {
-                write!(f, "aprilgrid:{columns}x{rows}:{tag}:{spacing}")?;
+                write!(f, "{columns}x{rows}:{tag}:{spacing}")?;
                 optional(f, *first != 0, first)?;
                 optional(f, *border == 1, "border1")?;
                 optional(f, squares.is_none(), "plain")
             }
-            Self::Circles(Circles { columns, rows, spacing, diameter, asymmetric, .. }) => {
-                write!(f, "{}circles:{columns}x{rows}:{spacing}:{diameter}", if *asymmetric { "a" } else { "" })
-            }
+            Self::Circles(Circles { columns, rows, spacing, diameter, .. }) => write!(f, "{columns}x{rows}:{spacing}:{diameter}"),
             Self::Rings(Rings { bits, columns, rows, spacing, diameter, .. }) => {
-                write!(f, "rings:{bits}:{columns}x{rows}:{spacing}:{diameter}")
+                write!(f, "{bits}:{columns}x{rows}:{spacing}:{diameter}")
             }
             Self::Puzzle(Puzzle { columns, rows, square, place: [x, y], .. }) => {
-                write!(f, "puzzle:{columns}x{rows}:{square}")?;
+                write!(f, "{columns}x{rows}:{square}")?;
                 optional(f, [*x, *y] != [0, 0], format_args!("{x},{y}"))
             }
         }

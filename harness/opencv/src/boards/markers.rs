@@ -1,6 +1,6 @@
 //! `opencv_find_charuco` and `opencv_find_aprilgrid`: the module `aruco` as it is in OpenCV 4.5 and 4.6.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use calibench_measure::{BoardFinder, BoardPointFound, Settings, Sought};
 use calibench_model::boards::{Board, Charuco, Dictionary as Codes};
@@ -73,8 +73,8 @@ fn seen(image: &Image, dictionary: &Ptr<Dictionary>, border: usize, refinement: 
 
 /// Each place once: the first that is seen there.
 fn once(points: impl Iterator<Item = (usize, PixelPoint)>) -> Vec<BoardPointFound> {
-    let mut known: HashMap<usize, ()> = HashMap::new();
-    let new = points.filter(|(index, at)| is_place(*at) && known.insert(*index, ()).is_none());
+    let mut known = HashSet::new();
+    let new = points.filter(|(index, at)| is_place(*at) && known.insert(*index));
     new.map(|(index, position)| BoardPointFound { index, position }).collect()
 }
 

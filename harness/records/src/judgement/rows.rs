@@ -3,9 +3,8 @@
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-use crate::cells::{RecordError, write_row};
+use crate::cells::{Cells, RecordError, open, write_row};
 use crate::points::RunInfo;
-use crate::rows::Rows;
 
 /// The file's name in a scenario's folder.
 pub const JUDGEMENT: &str = "judgement.csv";
@@ -105,8 +104,9 @@ pub fn write_rows(output: impl Write, run: &RunInfo, rows: &[Row]) -> io::Result
 /// A file of another form.
 pub fn read_rows(input: impl Read) -> Result<(u64, Vec<Row>), RecordError> {
     let (mut seed, mut rows) = (0, Vec::new());
-    let mut all = Rows::new(input, &COLUMNS)?;
-    while let Some(cells) = all.next()? {
+    for record in open(input, &COLUMNS)?.records() {
+        let record = record?;
+        let cells = Cells { record: &record, columns: &COLUMNS };
         seed = cells.parse(11)?;
         let [method, model, measure, place] = [1, 2, 3, 4].map(|column| cells.text(column).into());
         let [unit, status, reason] = [8, 9, 10].map(|column| cells.text(column).into());

@@ -13,9 +13,7 @@ use crate::LoadError;
 use crate::load::adjustments::{self, Summaries};
 use crate::load::description;
 use crate::sweep::{LoadedSweep, load_with};
-
-/// The swept key that makes a sweep one over boards.
-const BOARD: &str = "testfield.board";
+use crate::targets::BOARD;
 
 /// A sweep over boards, and perhaps one more key, with detectors among its methods.
 pub struct Detectors {

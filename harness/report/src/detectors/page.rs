@@ -5,7 +5,7 @@ use crate::markdown::plain;
 use crate::markdown::{MarkdownTable, contents, fixed, signed};
 use crate::speeds::Speeds;
 use crate::sweep::titled;
-use crate::targets::without_kinds;
+use crate::targets::{kind, without_kinds};
 
 /// The page's name.
 pub const FILE: &str = "detectors.md";
@@ -123,8 +123,7 @@ fn cells(method: &str, found: &Found, counted: Option<Counted>) -> Vec<String> {
 
 /// How long a detector takes for the first image of the scenario of that board, as measured by `calibench speed`, one thread.
 fn milliseconds(board: &str, method: &str, speeds: &Speeds) -> String {
-    let kind = board.split(':').next().unwrap_or(board);
-    let speed = speeds.of(&format!("targets/{kind}"), method);
+    let speed = speeds.of(&format!("targets/{}", kind(board)), method);
     speed.map_or_else(String::new, |speed| plain(1e3 * speed.points as f64 / speed.points_per_second))
 }
 

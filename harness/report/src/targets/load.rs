@@ -16,7 +16,7 @@ use crate::load::description;
 use crate::sweep::{LoadedSweep, load_with};
 
 /// The swept key that makes a sweep one over boards.
-const BOARD: &str = "testfield.board";
+pub const BOARD: &str = "testfield.board";
 
 /// A sweep over boards and at least one more key.
 pub struct Comparison {

@@ -4,5 +4,5 @@ mod load;
 mod page;
 mod picture;
 
-pub use load::Comparison;
+pub use load::{BOARD, Comparison, kind};
 pub use page::{FILE, page, without_kinds};
