@@ -95,6 +95,25 @@ fn photographs_are_not_measured_by_a_finder() {
     assert!(stderr(&output).contains("it finds boards in whole images"), "{}", stderr(&output));
 }
 
+/// Upright and on its side, a board that is seen whole is found whole by those that find it.
+#[test]
+fn a_board_on_its_side_is_counted_whole() {
+    let project = copy();
+    let methods = ["detect", "calib_targets", "opencv_find_chessboard"];
+    let arguments = ["run", "targets/chessboard", "--trials", "1", "-m", methods[0], "-m", methods[1], "-m", methods[2]];
+    let output = run(project.path(), &arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let records = table(&project.path().join("records/targets/chessboard/records.csv.gz"));
+    for method in methods {
+        for view in ["s01-r1", "s01-r2", "s02-r2"] {
+            let measured = records
+                .lines()
+                .filter(|line| line.contains(&format!(",{view},")) && line.contains(&format!(",{method},")) && line.contains(",measured,"));
+            assert_eq!(measured.count(), 54, "{method}, {view}");
+        }
+    }
+}
+
 /// At the rim of a frame the lens puts a marker elsewhere than a homography of the others.
 #[test]
 fn a_sound_board_at_the_rim_of_a_distorted_frame_is_in_no_doubt() {

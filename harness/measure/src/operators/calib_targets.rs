@@ -32,9 +32,15 @@ pub fn method() -> Method {
 fn chessboard(view: &GrayImageView<'_>, board: &Chessboard) -> Option<Vec<BoardPointFound>> {
     let frame = detect_corner_frame(view, &default_chess_config());
     let found = ChessboardDetector::new(ChessboardParams::default()).ok()?.detect(&frame.corners)?;
+    // It finds any chessboard and numbers what it sees from (0, 0), along the image: a board on its side has its columns downwards.
+    let lies = |columns: usize, rows: usize| {
+        found.corners.iter().all(|corner| (corner.grid.u as usize) < columns && (corner.grid.v as usize) < rows)
+    };
+    let is_on_its_side = !lies(board.columns, board.rows) && lies(board.rows, board.columns);
     let point = |corner: &calib_targets_chessboard::ChessboardCorner| {
-        // It finds any chessboard, and numbers what it sees from (0, 0): what is more than the board has no place.
-        let (column, row) = (usize::try_from(corner.grid.u).ok()?, usize::try_from(corner.grid.v).ok()?);
+        let (u, v) = (usize::try_from(corner.grid.u).ok()?, usize::try_from(corner.grid.v).ok()?);
+        let (column, row) = if is_on_its_side { (v, u) } else { (u, v) };
+        // What is more than the board has no place.
         let index = (column < board.columns && row < board.rows).then_some(row * board.columns + column)?;
         Some(BoardPointFound { index, position: place(corner.position.x, corner.position.y) })
     };
