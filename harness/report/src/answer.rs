@@ -1,6 +1,6 @@
 //! What a page says first: who has the least error in which scenario, and how many printed figures reproduce.
 
-use calibench_records::description::{is_limited, looks};
+use calibench_records::description::is_limited;
 use calibench_records::score::Score;
 
 use crate::load::{Loaded, LoadedSweep};
@@ -48,7 +48,8 @@ impl Answers {
         if labels.clone().any(is_limited) {
             return;
         }
-        let candidates: Vec<(&str, &Score)> = labels.zip(&loaded.scores.methods).filter(|(name, _)| looks(name)).collect();
+        let candidates: Vec<(&str, &Score)> =
+            labels.zip(&loaded.scores.methods).filter(|(name, _)| loaded.scenario.compares(name)).collect();
         if let Some((method, least, row)) = lead(&candidates) {
             let (scenario, method) = (loaded.name.clone(), method.to_owned());
             self.winners.push(Winner { scenario, cells: 1, method, least: vec![least], row });
@@ -63,7 +64,7 @@ impl Answers {
             return;
         }
         for cell in 0..cells {
-            let named = loaded.methods.iter().enumerate().filter(|(_, method)| looks(&method.name));
+            let named = loaded.methods.iter().enumerate().filter(|(_, method)| loaded.scenario.compares(&method.name));
             let candidates: Vec<(&str, &Score)> =
                 named.filter_map(|(index, method)| Some((method.name.as_str(), loaded.score(cell, index)?))).collect();
             if let Some((best, rmse, _)) = lead(&candidates) {

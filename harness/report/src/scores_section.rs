@@ -300,6 +300,7 @@ mod tests {
             trials,
             bound_window: 11,
             bound_window_discs: None,
+            finders: Vec::new(),
             methods: Vec::new(),
             defaults: [].into(),
             subject: Subject::Scene,

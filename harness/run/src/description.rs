@@ -1,5 +1,7 @@
 //! What the pages of a scenario tell of it, for its records.
 
+use std::collections::BTreeSet;
+
 use calibench_measure::Configured;
 use calibench_measure::registry::notes;
 use calibench_model::camera::{CameraModel, Photogrammetric};
@@ -34,10 +36,17 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         bound_window: scenario.bound_window,
         bound_window_discs: Some(scenario.bound_window_discs).filter(|window| *window != scenario.bound_window),
         methods: labels(scenario),
+        finders: finders(scenario.methods.iter().chain(methods)),
         defaults: scenario.methods.iter().chain(methods).map(default).collect(),
         subject,
         sweep: scenario.sweep.as_ref().map(sweep),
     }
+}
+
+/// The names of methods that find boards, each once.
+fn finders<'m>(methods: impl Iterator<Item = &'m Configured>) -> Vec<String> {
+    let names: BTreeSet<&str> = methods.filter(|method| method.board_finder().is_some()).map(Configured::name).collect();
+    names.into_iter().map(str::to_owned).collect()
 }
 
 /// Those of methods that measure, or of calibrations that are applied.

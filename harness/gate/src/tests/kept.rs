@@ -275,14 +275,14 @@ fn counts_of_detections_stand_beside_their_points() {
         found.points.iter().map(|(place, entry)| (place.to_string(), entry.coordinates())).collect::<Vec<_>>()
     };
     let found = places(counts(["board/targets/all", "board/labelled/all", "board/labels/all", "board/wrong labels/all"]));
-    let expected = [("trial 0 adjustment/recognition board", [0.2, 1.0 / 9.0]), ("trial 0 v/t", [0.25, 0.0])];
+    let expected = [("adjustment/recognition board", [0.2, 1.0 / 9.0]), ("v/t", [0.25, 0.0])];
     assert_eq!(found.len(), 2, "{found:?}");
     for ((name, at), (place, [x, y])) in found.iter().zip(expected) {
         let [dx, dy] = at.unwrap();
         assert!(name == place && (dx - x).abs() < 1e-8 && (dy - y).abs() < 1e-8, "{name} {at:?}");
     }
     let found = places(counts(["modern/targets/all", "modern/labelled/all", "modern/labels/all", "modern/wrong labels/all"]));
-    assert_eq!(found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["trial 0 adjustment/recognition modern"]);
+    assert_eq!(found.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["adjustment/recognition modern"]);
 }
 
 #[test]

@@ -34,6 +34,9 @@ pub struct Description {
     pub bound_window_discs: Option<usize>,
     /// The labels of the methods of its file, in their order.
     pub methods: Vec<String>,
+    /// The names of those of its methods that find boards in whole images.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub finders: Vec<String>,
     /// The label of each operator with all parameters at their defaults, by the operator's name.
     pub defaults: BTreeMap<String, String>,
     /// What is measured.
@@ -75,6 +78,11 @@ impl Description {
     pub fn in_blocks(&self) -> Option<(&Views, &Blocks)> {
         let Subject::Views(views) = &self.subject else { return None };
         Some((views, views.blocks.as_ref()?))
+    }
+
+    /// Whether the method of `label` measures points from starts, as those do that are compared with each other: it neither returns its start nor finds the board by itself.
+    pub fn compares(&self, label: &str) -> bool {
+        looks(label) && !self.finders.iter().any(|name| name == operator(label))
     }
 
     /// Whether `label` is that of an operator with all parameters at their defaults.
@@ -142,6 +150,7 @@ mod tests {
             trials: 3,
             bound_window: 15,
             bound_window_discs: None,
+            finders: Vec::new(),
             methods: vec!["forstner:window=15".into()],
             defaults: [("forstner".into(), "forstner:window=11".into())].into(),
             subject: Subject::Views(Box::new(views)),
@@ -176,6 +185,7 @@ mod tests {
             trials: 1,
             bound_window: 11,
             bound_window_discs: None,
+            finders: Vec::new(),
             methods: Vec::new(),
             defaults: BTreeMap::new(),
             subject,
@@ -194,5 +204,14 @@ mod tests {
         assert_eq!(["forstner", "pixel:kinds=disc", "pixel"].map(looks), [true, false, false]);
         assert_eq!(["pixel:kinds=disc", "a:b=1,kinds=corner+disc", "kinds", "a:b=1"].map(is_limited), [true, true, false, false]);
         assert_eq!(["forstner:window=15,k=a:b", "pixel", ""].map(operator), ["forstner", "pixel", ""]);
+    }
+
+    #[test]
+    fn what_finds_boards_is_not_compared_with_what_measures_points() {
+        let json = r#"{"why": "", "source": "", "notes": [], "seed": 1, "trials": 1, "bound_window": 15, "methods": [], "finders": ["detect"],
+            "defaults": {}, "subject": "scene", "sweep": null}"#;
+        let found: Description = serde_json::from_str(json).unwrap();
+        let compared = ["forstner:window=15", "pixel", "detect", "detect:corrected=1"].map(|label| found.compares(label));
+        assert_eq!(compared, [true, false, false, false]);
     }
 }

@@ -247,7 +247,7 @@ mod tests {
         reader.add(row(3, "good", "c", Err("one")));
         reader.add(row(4, "good", "c", Err("two")));
         reader.add(Row { group: Group::Point, ..row(4, "good", "6/left/3/x", Ok((0.5, 0.0, 0.0))) });
-        let found = reader.found;
+        let found = reader.found();
         assert_eq!((found.trials, found.seed, found.methods.len(), found.sets.len(), found.scored()), (5, 7, 2, 1, vec!["c", "b1"]));
         let c = found.get("good", Group::Iop, "c").unwrap();
         assert_eq!(c.first, Some(Numbers { value: 3.0, sigma: Some(1.5), error: Some(3.0) }));

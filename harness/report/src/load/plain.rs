@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::read_photo;
 use calibench_model::Image;
-use calibench_records::description::{Description, looks};
+use calibench_records::description::Description;
 use calibench_records::names::{SCENARIO, kept_image};
 use calibench_records::points::RecordHead;
 use calibench_records::results::{MethodInfo, Trial};
@@ -46,10 +46,10 @@ pub fn load(records: &Path, name: &str) -> Result<Loaded, LoadError> {
     let scenario = description(&folder, name)?.ok_or_else(|| LoadError::None(name.to_owned()))?;
     let mut scores = Scores { groups: groups(&scenario), ..Scores::default() };
     let mut first = None;
-    // The methods of a file are named as they come; `pixel` is the one that does not look at the image.
+    // The methods of a file are named as they come.
     let mut head = read_points(&folder, |trial, methods| {
         scores.limited = limited(methods);
-        scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
+        scores.add(&trial, |method| methods.get(method).is_some_and(|info| scenario.compares(&info.label)));
         first.get_or_insert(trial);
     })?;
     scores.methods.resize_with(head.methods.len(), Default::default);

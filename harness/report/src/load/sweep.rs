@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use calibench_records::description::{Description, Sweep, looks};
+use calibench_records::description::{Description, Sweep};
 use calibench_records::names::cell_folder;
 use calibench_records::points::RecordHead;
 use calibench_records::results::Trial;
@@ -101,7 +101,7 @@ fn read_cell<T: Default>(
             scores.limited = limited(methods);
         }
         watch(&trial, &names, &mut gathered);
-        scores.add(&trial, |method| methods.get(method).is_some_and(|info| looks(&info.label)));
+        scores.add(&trial, |method| methods.get(method).is_some_and(|info| scenario.compares(&info.label)));
     })?;
     scores.methods.resize_with(head.methods.len(), Score::default);
     Ok((head, scores, gathered))

@@ -127,6 +127,7 @@ mod tests {
             trials: 2,
             bound_window: 11,
             bound_window_discs: None,
+            finders: Vec::new(),
             methods: Vec::new(),
             defaults: BTreeMap::new(),
             subject: Subject::Scene,

@@ -83,6 +83,7 @@ fn description() -> Description {
         trials: 2,
         bound_window: 15,
         bound_window_discs: None,
+        finders: Vec::new(),
         methods: vec!["pixel".into(), "centroid:window=15".into()],
         defaults: [("pixel".into(), "pixel".into()), ("centroid".into(), "centroid:window=15".into())].into(),
         subject: Subject::Scene,
