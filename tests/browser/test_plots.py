@@ -19,7 +19,9 @@ const [bx, by, bw, bh] = svg.dataset.box.split(' ').map(Number); const m = svg.g
 const clip = {left: bx * m.a + m.e, right: (bx + bw) * m.a + m.e, top: by * m.d + m.f, bottom: (by + bh) * m.d + m.f};
 return all('[data-t]:not(.line)', marks).filter((mark) => shows(mark)).map((mark) => {
   const box = mark.getBoundingClientRect();
-  return {x: box.left + box.width / 2, y: box.top + box.height / 2, w: box.width, h: box.height,
+  // An arrow is where its foot is: there the point was measured.
+  const foot = mark.matches('.arrow') ? mark.getPointAtLength(0).matrixTransform(mark.getScreenCTM()) : {x: box.left + box.width / 2, y: box.top + box.height / 2};
+  return {x: foot.x, y: foot.y, w: box.width, h: box.height,
     t: mark.dataset.t, g: (mark.closest('[data-g]') || {dataset: {}}).dataset.g || '',
     k: mark.dataset.k || '', kind: mark.classList[0], series: (mark.closest('[data-series]') || {dataset: {}}).dataset.series || ''};
 }).filter(({x, y}) => x > clip.left && x < clip.right && y > clip.top && y < clip.bottom);

@@ -14,14 +14,14 @@ PROGRAM = Path(os.environ.get("CALIBENCH_PROGRAM", ROOT / "target/release/calibe
 
 @pytest.fixture
 def program(tmp_path):
-    """Runs the command line in a clean folder."""
+    """Runs the command line in a clean folder; gives what it prints, of what it refuses why."""
     if not PROGRAM.is_file():
         pytest.skip(f"no program at {PROGRAM}")
 
     def run(*words, code=0):
         done = subprocess.run([PROGRAM, *map(str, words)], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == code, done.stderr
-        return done.stdout
+        return done.stderr if code == 2 else done.stdout
 
     return run
 

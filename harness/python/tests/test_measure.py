@@ -12,6 +12,9 @@ from conftest import ROOT, rows, same
 import calibench as cb
 
 OF_DISCS = ("parametric_circle", "ellipse_edges", "centroid", "centroid_binary")
+# They find boards in whole images and measure no point from a start.
+FINDERS = ("detect", "calib_targets")
+OURS = [name for name, _ in cb.methods() if not name.startswith(("opencv_", "cv2_"))]
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +22,7 @@ def shot():
     return cb.render("operators/targets", root=ROOT, trial=3)[0]
 
 
-@pytest.mark.parametrize("method", [name for name, _ in cb.methods() if not name.startswith(("opencv_", "cv2_"))])
+@pytest.mark.parametrize("method", [name for name in OURS if name not in FINDERS])
 def test_every_method_measures_as_the_command_line_does(method, program, project, tmp_path):
     """To the last bit, of a picture that both render: values, covariances and reasons."""
     scenario = "testfields/wall" if method in OF_DISCS else "testfields/chessboard"
@@ -38,6 +41,15 @@ def test_every_method_measures_as_the_command_line_does(method, program, project
     assert [reason or "" for reason in found.reason] == [row["reason"] for row in expected]
     assert found.method == expected[0]["method"]
     assert found.status.count("measured") > 0
+
+
+@pytest.mark.parametrize("method", FINDERS)
+def test_what_finds_boards_is_refused_as_the_command_line_does(method, shot, program, project):
+    assert method in OURS
+    with pytest.raises(cb.Error) as said:
+        cb.measure(shot.image, shot.starts.xy, method)
+    refusal = program("measure", "none.png", "--points", "none.csv", "-m", method, "-o", "none.csv", code=2)
+    assert refusal.strip() == f"error: -m {said.value}" and "finds boards" in refusal
 
 
 def test_grey_values_mean_the_same_in_every_type(shot):
