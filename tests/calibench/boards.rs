@@ -6,12 +6,13 @@ use std::path::Path;
 use crate::project::{root, run, stderr, stdout};
 
 /// Scenarios of `targets/` and their boards in a word; how far an approximate point may be off, px, and what measures it, with its largest error.
-const BOARDS: [(&str, &str, &str, f64); 5] = [
+const BOARDS: [(&str, &str, &str, f64); 6] = [
     ("charuco", "charuco:10x7:38:26.6:DICT_4X4_50", "parametric_corner:window=15", 0.1),
     ("aprilgrid", "aprilgrid:6x4:48:0.3", "parametric_corner:window=11", 0.2),
     ("circles", "circles:10x7:38:20", "ellipse_edges", 0.1),
     ("rings", "rings:12:10x7:38:10", "ellipse_edges", 0.1),
     ("puzzle", "puzzle:19x13:20:100,200", "parametric_corner:window=11", 0.1),
+    ("dotted", "dotted:15x9:25", "parametric_corner:window=15", 0.1),
 ];
 const SHOTS: [&str; 8] = ["s01-r1", "s01-r2", "s02-r1", "s02-r2", "s03-r1", "s03-r2", "s04-r1", "s04-r2"];
 
@@ -119,6 +120,7 @@ fn what_is_no_such_board_is_refused_by_name() {
         ("aprilgrid:6x4:48:0.3", "35 markers of DICT_4X4_50 are seen"),
         ("rings:12:10x7:38:10", "round areas"),
         ("puzzle:19x13:20:100,200", "another pattern"),
+        ("dotted:9x6:38", "nowhere three as the board has them"),
     ] {
         let output = run(folder.path(), &with(&["detect"], &photos[..2], &["--board", board, "-o", "no.csv", "-q"]));
         assert_eq!(output.status.code(), Some(2), "{board}: {}", stderr(&output));
@@ -152,7 +154,7 @@ fn kalibrs_target_file_is_a_board() {
 #[test]
 fn a_printed_board_comes_with_its_target_file() {
     for (kind, named) in
-        [("chessboard", true), ("aprilgrid", true), ("circles", true), ("charuco", false), ("rings", false), ("puzzle", false)]
+        [("chessboard", true), ("aprilgrid", true), ("circles", true), ("charuco", false), ("rings", false), ("puzzle", false), ("dotted", false)]
     {
         let folder = tempfile::tempdir().unwrap();
         let project = root().display().to_string();

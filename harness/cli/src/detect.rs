@@ -28,7 +28,7 @@ pub struct Detect {
     /// The chessboard's inner corners, as in 9x6
     #[arg(long, value_name = "COLUMNSxROWS", required_unless_present_any = ["board", "testfield"], conflicts_with_all = ["board", "testfield"])]
     chessboard: Option<Counts>,
-    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, or a target file of Kalibr's (.yaml)
+    /// A board that may be in view in part: charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml)
     #[arg(long, value_name = "BOARD", value_parser = board_of, conflicts_with = "testfield")]
     board: Option<Board>,
     /// The coded field that a scenario describes, by its name or TOML file: the targets of its whole squares in view

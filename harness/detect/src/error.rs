@@ -138,6 +138,30 @@ pub enum NotFound {
         /// Dots between them that can be read.
         dots: usize,
     },
+    /// No grid of corners with the three dots of the board.
+    #[error(
+        "{corners} corners of squares are seen together, {dots} of their squares with a dot, and nowhere three as the board has them: its dots are hidden, too \
+         small or too blurred, or it is another board"
+    )]
+    NoDots {
+        /// Corners of the largest grid.
+        corners: usize,
+        /// Its squares with a dot.
+        dots: usize,
+    },
+    /// A chessboard with the three dots and corners that the board does not have.
+    #[error(
+        "another board: counted from its dots the columns {} to {} and rows {} to {} of inner corners are seen, the board has 1 to {} and 1 to {}",
+        columns[0], columns[1], rows[0], rows[1], asked[0], asked[1]
+    )]
+    OtherCounts {
+        /// The first and the last column that is seen.
+        columns: [i32; 2],
+        /// The first and the last row.
+        rows: [i32; 2],
+        /// The board's columns and rows.
+        asked: [usize; 2],
+    },
     /// Dots that belong to no place of the pattern.
     #[error(
         "another pattern: the place of the PuzzleBoard that fits best has {agreeing} of {dots} different dots that are seen, no more than chance; the board \
@@ -192,6 +216,8 @@ impl NotFound {
             Self::NoGrid { .. } => "no_grid",
             Self::NoCode { .. } => "no_code",
             Self::NoPuzzle { .. } => "no_puzzle",
+            Self::NoDots { .. } => "no_dots",
+            Self::OtherCounts { .. } => "other_counts",
             Self::OtherDots { .. } => "other_dots",
             Self::UnsurePlace { .. } => "unsure_place",
             Self::OtherPlace { .. } => "other_place",

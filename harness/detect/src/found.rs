@@ -44,7 +44,7 @@ pub enum Doubt {
         /// Its id.
         id: u32,
     },
-    /// Corners of a PuzzleBoard that are seen in two places: none of them is used.
+    /// Corners of a board that are seen in two places: none of them is used.
     TwiceCorners {
         /// The first of them by name.
         first: String,
@@ -56,7 +56,7 @@ pub enum Doubt {
         /// How many.
         corners: usize,
     },
-    /// Corners of the PuzzleBoard's pattern beyond those that the board has: left out.
+    /// Corners of the pattern beyond those that the board has: left out.
     Beyond {
         /// How many.
         corners: usize,

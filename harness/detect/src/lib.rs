@@ -12,12 +12,14 @@ mod chessboard;
 mod circles;
 mod codes;
 mod corners;
+mod dotted;
 mod error;
 mod found;
 mod ground;
 mod lattice;
 mod markers;
 mod meeting;
+mod parts;
 mod patches;
 mod plane;
 mod puzzle;
@@ -41,7 +43,7 @@ const LEAST_SIDE: usize = 16;
 
 /// The points of `board` that are seen in `image`, to about a pixel.
 ///
-/// Of boards with markers, ring codes and PuzzleBoards a part is enough. Chessboards and grids of circles have to be seen whole. Of a chessboard's corners, the ends of the
+/// Of boards with markers, ring codes and PuzzleBoards a part is enough, of a chessboard with dots one with all three of them. Chessboards and grids of circles have to be seen whole. Of a chessboard's corners, the ends of the
 /// board with a dark square at its corner are where `r1c1` can be, where there are such; circles may be dark on light or light on dark. Where a half turn leaves a
 /// board as it was (every symmetric one; an asymmetric one with an even number of rows) `r1c1` is the corner nearest to the upper left of the image, and so is it
 /// among the four quarter turns of a symmetric grid with as many rows as columns.
@@ -58,6 +60,7 @@ pub fn detect(image: &Image, board: &Board) -> Result<Found, NotFound> {
         Board::Charuco(_) | Board::AprilGrid(_) => markers::detect(image, board, &layout),
         Board::Circles(circles) => circles::detect(image, circles, &layout),
         Board::Rings(rings) => codes::detect(image, rings, &layout),
+        Board::Dotted(board) => dotted::detect(image, board, &layout),
         Board::Puzzle(board) => puzzle::detect(image, board, &layout),
         Board::Chessboard(board) => chessboard::detect(image, board, &layout),
     }

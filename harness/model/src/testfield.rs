@@ -158,6 +158,8 @@ pub struct ObjectTarget {
     pub axes: [PlatePoint; 2],
     /// Where a user believes it to be, object units: the plan or the survey, without what went wrong in printing or mounting.
     pub surveyed: Point3<f64>,
+    /// The half side of the largest square around it, along its own axes, that holds nothing of anything else, object units; where that is known.
+    pub room: Option<f64>,
 }
 
 /// A testfield: what a camera is pointed at.

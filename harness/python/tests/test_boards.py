@@ -92,6 +92,7 @@ WORDS = {
     "circles": "circles:10x7:38:20",
     "rings": "rings:12:10x7:38:10",
     "puzzle": "puzzle:19x13:20:100,200",
+    "dotted": "dotted:15x9:25",
 }
 
 
@@ -191,3 +192,54 @@ def test_a_puzzle_board_that_another_drew_is_found(origin):
     found = cb.detect(image, f"puzzle:11x11:12:{place[0]},{place[1]}")
     assert found is not None and len(found.target) == 121
     assert cb.detect(image, f"puzzle:11x11:12:{(place[0] + 20) % 490},{place[1]}") is None, "another part of the pattern"
+
+
+@pytest.mark.parametrize("place", [(8, 5), (3, 2), (12, 7)])
+def test_opencv_reads_a_board_with_three_dots_of_ours_in_all_rotations(tmp_path, place):
+    """Its squares with dots are where ours are, and no other has one."""
+    flags = cv2.CALIB_CB_LARGER | cv2.CALIB_CB_MARKER
+    for shot in cb.render(scenario(tmp_path, "dotted", lambda text: text.replace("square = 25", f"square = 25\nplace = {list(place)}")), root=ROOT):
+        found, corners, meta = cv2.findChessboardCornersSBWithMeta(eight_bits(shot.image), (5, 5), flags)
+        assert found and meta.size == 135, shot.name
+        corners, meta = corners.reshape(-1, 2), meta.ravel()
+        truth = dict(zip(shot.truth.target, shot.truth.xy))
+        at = lambda column, row: truth[f"r{row}c{column}"]
+        middles = [np.mean([at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)], axis=0) for x, y in [place, (place[0] + 1, place[1]), (place[0], place[1] + 1)]]
+        square = np.linalg.norm(at(2, 1) - at(1, 1))
+        # The square after a corner: that corner is one of its four.
+        for mark, expected in [(4, middles[:1]), (3, middles[1:])]:
+            marked = corners[meta == mark]
+            assert len(marked) == len(expected), shot.name
+            for middle in expected:
+                assert np.linalg.norm(marked - middle, axis=1).min() < 0.9 * square
+
+
+def test_a_board_with_three_dots_that_another_drew_is_found():
+    """As OpenCV's gen_pattern draws it: squares with dots of 0.34 of a square, the first in a light square in the middle."""
+    square, columns, rows = 40, 10, 7
+    drawn = np.full(((rows + 2) * square * 4, (columns + 2) * square * 4), 255, np.uint8)
+    s = 4 * square
+    dark = lambda x, y: (x + y) % 2 == 0
+    for y in range(rows):
+        for x in range(columns):
+            if dark(x, y):
+                drawn[(y + 1) * s : (y + 2) * s, (x + 1) * s : (x + 2) * s] = 0
+    for x, y in [(4, 3), (5, 3), (4, 4)]:
+        cv2.circle(drawn, (int((x + 1.5) * s), int((y + 1.5) * s)), round(0.17 * s), 255 if dark(x, y) else 0, -1)
+    image = cv2.GaussianBlur(cv2.resize(drawn, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA), (0, 0), 0.8)
+    for turns in range(4):
+        turned = np.ascontiguousarray(np.rot90(image, turns))
+        part = np.ascontiguousarray(turned[70:, 70:])
+        for picture, shift in [(turned, 0), (part, 70)]:
+            found = cb.detect(picture, "dotted:9x6:25")
+            assert found is not None and len(found.target) >= 35, turns
+            off = []
+            for name, (x, y) in zip(found.target, found.xy + shift):
+                row, column = (int(number) for number in name[1:].split("c"))
+                u, v = (column + 1) * square - 0.5, (row + 1) * square - 0.5
+                for _ in range(turns):
+                    # A quarter turn counterclockwise of an image whose side it was.
+                    u, v = v, ((columns + 2) * square if _ % 2 == 0 else (rows + 2) * square) - 1 - u
+                off.append(np.hypot(x - u, y - v))
+            assert max(off) < 1.0, turns
+        assert cb.detect(np.ascontiguousarray(turned[:, ::-1]), "dotted:9x6:25") is None, "a mirror image"

@@ -36,6 +36,7 @@ mod printed;
 pub mod published;
 mod recognition;
 mod recognition_steps;
+mod room;
 mod scene_figures;
 mod scores_section;
 mod sides;

@@ -149,6 +149,7 @@ mod tests {
             targets: vec![corner(-90.0, -60.0), corner(90.0, -60.0), corner(0.0, 60.0)],
             adjustment: None,
             blocks: None,
+            room: None,
         }
     }
 

@@ -5,6 +5,7 @@ use calibench_records::score::{Errors, Pooled, Score, root};
 
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed, signed};
+use super::room;
 
 /// Fewer common points than this are not worth a figure.
 const FEW: u64 = 10;
@@ -31,8 +32,9 @@ pub fn section(loaded: &Loaded) -> String {
         _ => format!("{trials} trials"),
     };
     let kinds = if loaded.head.methods.iter().any(|info| is_limited(&info.label)) { KINDS } else { "" };
+    let room = room::sentence(&loaded.scenario, loaded.head.methods.iter().map(|info| &*info.label));
     format!(
-        "{}\n{kinds}{trials}, seed {}, errors in px, bounds of a {window} x {window} px window{discs}. [What the columns mean]({LEGEND_ANCHOR}).\n\n\
+        "{}\n{room}{kinds}{trials}, seed {}, errors in px, bounds of a {window} x {window} px window{discs}. [What the columns mean]({LEGEND_ANCHOR}).\n\n\
          <details><summary>Bias, scatter, common points, targets</summary>\n\n{}\n{}\n</details>\n",
         main.render(),
         loaded.head.run.seed,

@@ -8,13 +8,16 @@ use calibench_model::camera::{CameraModel, Photogrammetric};
 use calibench_model::convert::Tool;
 use calibench_model::escape::markdown;
 use calibench_records::description::{
-    self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Station, Target, Value, Views, operator,
+    self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Room, Target, Value, Views, operator,
 };
 use calibench_scenario::calibration::CheckPlan;
 use calibench_scenario::printed::{NETWORK, SENSOR};
 use calibench_scenario::{Blocks, Printed, Scenario, Subject, Sweep, ViewsSubject};
+use calibench_synth::stations::Station;
+use calibench_synth::view::View;
 
 use crate::printed::PRINT;
+use crate::views::is_pointed_at;
 
 /// The description of `scenario`, which `methods` were run on: its own or others.
 pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
@@ -115,7 +118,22 @@ fn views(subject: &ViewsSubject) -> Views {
             .as_ref()
             .map(|calibration| Adjustment { pitch_um: calibration.start.pitch_um, drawn: calibration.drawn.is_some() }),
         blocks: subject.blocks.as_ref().map(|blocks| in_blocks(subject, blocks)),
+        room: room(subject),
     }
+}
+
+/// The room of the targets in view, as the testfield is meant to be.
+fn room(subject: &ViewsSubject) -> Option<Room> {
+    subject.field.targets.iter().find(|target| target.room.is_some())?;
+    let of_station = |station: &Station| {
+        let field = station.field(&subject.field);
+        let seen = View { field: &field, camera: &subject.camera, local: None, pose: &station.pose }.seen(0.0);
+        let truth = seen.map_or_else(|_| Vec::new(), |seen| seen.truth());
+        truth.into_iter().filter(|truth| is_pointed_at(subject, truth)).filter_map(|truth| truth.room).collect::<Vec<_>>()
+    };
+    let mut all: Vec<f64> = subject.stations.iter().flat_map(of_station).collect();
+    all.sort_by(f64::total_cmp);
+    Some(Room { least: *all.first()?, middle: all[all.len() / 2] })
 }
 
 fn in_blocks(subject: &ViewsSubject, blocks: &Blocks) -> description::Blocks {
@@ -128,8 +146,8 @@ fn in_blocks(subject: &ViewsSubject, blocks: &Blocks) -> description::Blocks {
     }
 }
 
-fn stations(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<Station> {
-    let station = |(index, station): (usize, &calibench_synth::stations::Station)| Station {
+fn stations(subject: &ViewsSubject, check: Option<&CheckPlan>) -> Vec<description::Station> {
+    let station = |(index, station): (usize, &Station)| description::Station {
         name: station.name.clone(),
         centre: station.pose.centre.coords.into(),
         // A camera looks along its -z.

@@ -167,6 +167,7 @@ mod tests {
             visibility: Visibility::Visible,
             affine: None,
             ellipse: None,
+            room: None,
         };
         (0..KINDS.len()).map(of).collect()
     }

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::views::PreparedView;
 
 /// Those of a point file, and what else is known: its reader knows these names, too.
-const VIEW_COLUMNS: [&str; 20] = [
+const VIEW_COLUMNS: [&str; 21] = [
     "image",
     "target",
     "kind",
@@ -37,6 +37,7 @@ const VIEW_COLUMNS: [&str; 20] = [
     "Y",
     "Z",
     "size_px",
+    "room_px",
     "warning",
 ];
 
@@ -107,7 +108,9 @@ fn view_row(subject: &ViewsSubject, image: &str, target: &ObjectTarget, truth: &
     let ellipse = truth.ellipse.map(|Ellipse { centre, axes, angle }| [centre.x, centre.y, axes[0], axes[1], angle.to_degrees()]);
     numbers(&mut row, ellipse.as_ref().map(<[f64; 5]>::as_slice), 5);
     row.extend(truth.object.iter().map(f64::to_string));
-    numbers(&mut row, size_px(truth).map(|size| [size]).as_ref().map(<[f64; 1]>::as_slice), 1);
+    for side in [size_px(truth), truth.room] {
+        row.push(side.map_or_else(String::new, |side| side.to_string()));
+    }
     row.push(warning(subject, truth).unwrap_or_default().to_owned());
     row
 }

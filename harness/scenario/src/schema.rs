@@ -20,7 +20,7 @@ use super::sensor::SensorWire;
 use super::stations::wire::{ArcWire, BoardWire, CommonWire, ConvergentWire, RandomWire, StandWire, StationWire};
 use super::sweep::wire::SweepWire;
 use super::testfield::boards::wire::{
-    AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire,
+    AprilGridWire, BoardWire as BoardFieldWire, CharucoWire, CirclesWire, DottedWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire,
 };
 use super::testfield::wire::{ChessboardWire, CodedWire, FillWire, HouseWire, PanelsWire, PlateWire, WallTargetWire, WallWire};
 use super::transfer::wire::{BoardWire as TransferBoardWire, CaseWire, DecompositionWire, MethodWire, TransferWire};
@@ -122,6 +122,7 @@ fn testfield() -> Value {
         ("aprilgrid", with(table::<AprilGridWire>(), &table::<SheetWire>())),
         ("circles", with(table::<CirclesWire>(), &table::<SheetWire>())),
         ("rings", with(table::<RingsWire>(), &table::<SheetWire>())),
+        ("dotted", with(table::<DottedWire>(), &table::<SheetWire>())),
         ("puzzle", with(table::<PuzzleWire>(), &table::<SheetWire>())),
         ("tags", tags),
     ];

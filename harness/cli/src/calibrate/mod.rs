@@ -30,7 +30,7 @@ pub struct Calibrate {
     /// The chessboard's inner corners and the side of a square in object units, as in 9x6:25
     #[arg(long, value_name = "COLUMNSxROWS:SIDE", requires = "photos", group = "pictured")]
     chessboard: Option<Chessboard>,
-    /// The board: 9x6:25, charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, or a target file of Kalibr's (.yaml); lengths in object units
+    /// The board: 9x6:25, charuco:8x5:30:21:DICT_4X4_50, aprilgrid:6x6:0.088:0.3, circles:7x5:20, acircles:4x11:20, rings:12:6x5:50:8, puzzle:23x16:30:50,100, dotted:9x6:25, or a target file of Kalibr's (.yaml); lengths in object units
     #[arg(long, value_name = "BOARD", value_parser = board_of, requires = "photos", group = "pictured")]
     board: Option<Board>,
     /// The method that measures the board's points [default: parametric_corner; of circles and rings ellipse_edges]

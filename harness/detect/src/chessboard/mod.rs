@@ -7,6 +7,7 @@ pub(crate) mod grow;
 pub(crate) mod level;
 pub(crate) mod refine;
 pub(crate) mod sectors;
+pub(crate) mod sheet;
 pub(crate) mod side;
 mod straight;
 
@@ -26,7 +27,8 @@ use straight::straighten;
 
 use crate::{Found, NotFound, corners};
 
-const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
+/// What is looked at around the corners of a chessboard.
+pub(crate) const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
 /// No larger board is looked for beside one that takes this share of the image.
 const LARGE: f64 = 0.03;
 

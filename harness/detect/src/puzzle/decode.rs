@@ -16,9 +16,9 @@ use calibench_model::boards::{Puzzle, PuzzleCodes};
 
 use super::chance::Binomial;
 use super::dots::Dot;
-use super::sheet::Sheet;
 use crate::NotFound;
 use crate::chessboard::grow::Place;
+use crate::chessboard::sheet::Sheet;
 
 /// So many wrong places, expected, agree with dots that are no pattern's as well as one that is believed.
 const CHANCE: f64 = 1e-6;

@@ -2,9 +2,9 @@
 
 use calibench_model::Image;
 
-use super::sheet::Sheet;
 use crate::chessboard::grow::{Place, moved};
 use crate::chessboard::sectors::Steps;
+use crate::chessboard::sheet::Sheet;
 use crate::ground::grey;
 use crate::plane::{Point, minus, plus, times};
 

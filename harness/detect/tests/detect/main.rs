@@ -2,6 +2,7 @@
 
 mod chessboard;
 mod conformance;
+mod dotted;
 mod photographs;
 mod picture;
 mod puzzle;

@@ -44,6 +44,11 @@ fn other_boards_are_named() {
         ("puzzle:11x8:30:40,60", "puzzle:11x8:30:300,60", "other_place"),
         ("puzzle:11x8:30:40,60", "puzzle:11x8:30:51,60", "other_place"),
         ("chessboard:11x8:30", "puzzle:11x8:30:40,60", "no_puzzle"),
+        ("chessboard:11x8:30", "dotted:11x8:30", "no_dots"),
+        ("dotted:11x8:30", "dotted:11x8:30:2,3", "other_counts"),
+        ("dotted:12x8:30:5,4", "dotted:11x8:30:5,4", "other_counts"),
+        ("puzzle:11x8:30:40,60", "dotted:11x8:30", "no_dots"),
+        ("charuco:8x5:30:21:DICT_4X4_50", "dotted:7x4:30", "other_arrangement"),
     ] {
         let error = reason(pictured, asked, |view| view);
         assert_eq!(error.name(), name, "{pictured} as {asked}: {error}");
@@ -64,7 +69,7 @@ fn noise_and_nothing_are_no_board() {
         for (image, what) in [(flat.lent(), "flat"), (noisy(&flat, 0.01, 5), "noisy"), (noisy(&flat, 0.3, 5), "very noisy")] {
             let error = detect(&image, &board).expect_err(what);
             assert!(
-                matches!(error.name(), "no_chessboard" | "no_marker" | "no_grid" | "no_code" | "no_puzzle"),
+                matches!(error.name(), "no_chessboard" | "no_marker" | "no_grid" | "no_code" | "no_puzzle" | "no_dots"),
                 "{example} {what}: {error}"
             );
         }

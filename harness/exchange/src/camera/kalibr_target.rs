@@ -134,6 +134,7 @@ pub fn kalibr_target(board: &Board, metres: f64) -> Result<String, &'static str>
         Board::Charuco(_) => Err("it knows no ChArUco"),
         Board::Rings(_) => Err("it knows no ring codes"),
         Board::Puzzle(_) => Err("it knows no PuzzleBoard"),
+        Board::Dotted(_) => Err("it knows no dots in a chessboard"),
     }
 }
 
@@ -176,7 +177,7 @@ mod tests {
             let board: Board = example.parse().unwrap();
             match kalibr_target(&board, 1.0) {
                 Ok(written) => assert_eq!(parse(&written), Ok(board), "{kind}: {written}"),
-                Err(why) => assert!(["charuco", "rings", "puzzle"].contains(&kind), "{kind}: {why}"),
+                Err(why) => assert!(["charuco", "rings", "puzzle", "dotted"].contains(&kind), "{kind}: {why}"),
             }
         }
         let refused = |word: &str, why: &str| {
@@ -189,6 +190,7 @@ mod tests {
         refused("charuco:8x5:30:21:DICT_4X4_50", "ChArUco");
         refused("rings:12:6x5:50:8", "ring codes");
         refused("puzzle:23x16:30:50,100", "PuzzleBoard");
+        refused("dotted:9x6:25", "dots");
         let Board::Circles(discs) = "acircles:4x11:20".parse().unwrap() else { panic!() };
         assert_eq!(parse(&kalibr_target(&Board::Circles(discs), 1.0).unwrap()), Ok(Board::Circles(discs)));
         assert!(kalibr_target(&Board::Circles(Circles { hole: Some(4.0), ..discs }), 1.0).is_err());

@@ -67,6 +67,7 @@ impl BoardPoint {
             size: self.size,
             axes: axes(f64::from(self.turns) * FRAC_PI_2),
             surveyed: Point3::new(self.at[0], self.at[1], 0.0),
+            room: Some(self.room),
         }
     }
 }

@@ -7,6 +7,7 @@ mod charuco;
 mod chessboard;
 mod circles;
 mod dictionary;
+mod dotted;
 mod layout;
 mod puzzle;
 mod rings;
@@ -21,6 +22,7 @@ pub use charuco::Charuco;
 pub use chessboard::Chessboard;
 pub use circles::Circles;
 pub use dictionary::{Dictionary, Identified};
+pub use dotted::Dotted;
 pub use layout::{BoardPoint, Layout, Marker, Shape, marker_shapes, square_marker};
 pub use puzzle::{Puzzle, PuzzleCodes};
 pub use rings::{Rings, least_rotation, ring_codes};
@@ -41,6 +43,8 @@ pub enum Board {
     Rings(Rings),
     /// A chessboard with dots on the sides of its squares.
     Puzzle(Puzzle),
+    /// A chessboard with three dots.
+    Dotted(Dotted),
 }
 
 impl Board {
@@ -56,6 +60,7 @@ impl Board {
             Self::Circles(board) => board.layout(),
             Self::Rings(board) => board.layout(),
             Self::Puzzle(board) => board.layout(),
+            Self::Dotted(board) => board.layout(),
         }
     }
 
@@ -69,13 +74,14 @@ impl Board {
             Self::Circles(_) => "circles",
             Self::Rings(_) => "rings",
             Self::Puzzle(_) => "puzzle",
+            Self::Dotted(_) => "dotted",
         }
     }
 
     /// Whether its marks say which they are: a part of it is enough to number its points.
     pub const fn is_coded(&self) -> bool {
         match self {
-            Self::Charuco(_) | Self::AprilGrid(_) | Self::Rings(_) | Self::Puzzle(_) => true,
+            Self::Charuco(_) | Self::AprilGrid(_) | Self::Rings(_) | Self::Puzzle(_) | Self::Dotted(_) => true,
             Self::Chessboard(_) | Self::Circles(_) => false,
         }
     }
@@ -85,7 +91,7 @@ impl Board {
         match self {
             Self::Charuco(board) => Some((board.dictionary, 1)),
             Self::AprilGrid(board) => Some((board.dictionary, board.border)),
-            Self::Chessboard(_) | Self::Circles(_) | Self::Rings(_) | Self::Puzzle(_) => None,
+            Self::Chessboard(_) | Self::Circles(_) | Self::Rings(_) | Self::Puzzle(_) | Self::Dotted(_) => None,
         }
     }
 }

@@ -3,10 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{AprilGrid, Board, BoardError, Charuco, Chessboard, Circles, Dictionary, Puzzle, Rings};
+use super::{AprilGrid, Board, BoardError, Charuco, Chessboard, Circles, Dictionary, Dotted, Puzzle, Rings};
 
 /// The kinds of board, how each is written, and an example.
-pub const KINDS: [(&str, &str, &str); 7] = [
+pub const KINDS: [(&str, &str, &str); 8] = [
     ("chessboard", "COLUMNSxROWS:SQUARE", "chessboard:9x6:25"),
     ("charuco", "COLUMNSxROWS:SQUARE:MARKER:DICTIONARY[:FIRST][:legacy]", "charuco:8x5:30:21:DICT_4X4_50"),
     ("aprilgrid", "COLUMNSxROWS:TAG:SPACING[:FIRST][:border1][:plain]", "aprilgrid:6x6:0.088:0.3"),
@@ -14,6 +14,7 @@ pub const KINDS: [(&str, &str, &str); 7] = [
     ("acircles", "COLUMNSxROWS:SPACING[:DIAMETER]", "acircles:4x11:20"),
     ("rings", "BITS:COLUMNSxROWS:SPACING:DIAMETER", "rings:12:6x5:50:8"),
     ("puzzle", "COLUMNSxROWS:SQUARE[:X,Y]", "puzzle:23x16:30:50,100"),
+    ("dotted", "COLUMNSxROWS:SQUARE[:X,Y]", "dotted:9x6:25:2,1"),
 ];
 
 impl FromStr for Board {
@@ -32,6 +33,7 @@ impl FromStr for Board {
             "aprilgrid" => parts.aprilgrid(),
             "rings" => parts.rings(),
             "puzzle" => parts.puzzle(),
+            "dotted" => parts.dotted(),
             _ => parts.circles(kind == "acircles"),
         };
         let wrong = |why: String| BoardError::Text(format!("`{text}`: {why}; expected {kind}:{form}, as in {example}"));
@@ -68,6 +70,10 @@ impl fmt::Display for Board {
             Self::Puzzle(Puzzle { columns, rows, square, place: [x, y], .. }) => {
                 write!(f, "{columns}x{rows}:{square}")?;
                 optional(f, [*x, *y] != [0, 0], format_args!("{x},{y}"))
+            }
+            Self::Dotted(Dotted { columns, rows, square, place: [x, y], .. }) => {
+                write!(f, "{columns}x{rows}:{square}")?;
+                optional(f, [*x, *y] != Dotted::middle(*columns, *rows), format_args!("{x},{y}"))
             }
         }
     }
@@ -156,14 +162,22 @@ impl<'a> Parts<'a> {
     fn puzzle(&mut self) -> Result<Board, String> {
         let (columns, rows) = self.counts()?;
         let square = self.number("side of a square")?;
-        let place = match self.all.get(self.next) {
-            None => [0, 0],
-            Some(part) => {
-                self.next += 1;
-                let read = part.split_once(',').and_then(|(x, y)| Some([x.parse().ok()?, y.parse().ok()?]));
-                read.ok_or_else(|| format!("`{part}` is no place X,Y of the first corner in the pattern"))?
-            }
-        };
+        let place = self.place("first corner in the pattern")?.unwrap_or([0, 0]);
         Ok(Board::Puzzle(Puzzle { columns, rows, square, place, dot: Puzzle::DOT }))
+    }
+
+    fn dotted(&mut self) -> Result<Board, String> {
+        let (columns, rows) = self.counts()?;
+        let square = self.number("side of a square")?;
+        let place = self.place("square with the first dot")?.unwrap_or(Dotted::middle(columns, rows));
+        Ok(Board::Dotted(Dotted { columns, rows, square, place, dot: Dotted::DOT }))
+    }
+
+    /// Two whole numbers with a comma between them, if there is one more part.
+    fn place(&mut self, of: &str) -> Result<Option<[usize; 2]>, String> {
+        let Some(part) = self.all.get(self.next) else { return Ok(None) };
+        self.next += 1;
+        let read = part.split_once(',').and_then(|(x, y)| Some([x.parse().ok()?, y.parse().ok()?]));
+        read.map(Some).ok_or_else(|| format!("`{part}` is no place X,Y of the {of}"))
     }
 }

@@ -6,7 +6,7 @@ use calibench_model::{Image, Rejection};
 use opencv::calib3d::{find_chessboard_corners_def, find_chessboard_corners_sb_def};
 use opencv::core::{Point2f, Size, Vector};
 
-use super::in_order;
+use super::{dotted, in_order};
 use crate::chessboard::to_8_bit;
 
 /// OpenCV's chessboards, with its own default flags: the whole board is found or none of it. Time has no bound: in an image of noise of 12 megapixels it takes minutes.
@@ -37,14 +37,21 @@ impl BoardFinder for Chessboards {
         match board {
             Board::Chessboard(board) if board.columns.min(board.rows) > 2 => None,
             Board::Chessboard(_) => Some("OpenCV finds chessboards from 3 x 3 inner corners on".into()),
-            _ => Some("it finds chessboards alone".into()),
+            Board::Dotted(board) if self.sb => dotted::unfit(board),
+            _ => Some("it finds chessboards, with `sb = 1` also those with three dots".into()),
         }
     }
 
     fn find(&self, image: &Image, sought: &Sought) -> Result<Vec<BoardPointFound>, Rejection> {
-        let Board::Chessboard(board) = sought.board else { return Err(Rejection::NotDetected) };
-        let size = Size::new(board.columns as i32, board.rows as i32);
+        let found = match &sought.board {
+            Board::Chessboard(board) => {
+                let size = Size::new(board.columns as i32, board.rows as i32);
+                self.corners(image, size).map(|corners| corners.map(|corners| in_order(&corners)))
+            }
+            Board::Dotted(board) => to_8_bit(image).and_then(|grey| dotted::corners(&grey, board)),
+            _ => Ok(None),
+        };
         // What OpenCV objects to, an image of a few pixels for one, shows no board.
-        self.corners(image, size).ok().flatten().map(|corners| in_order(&corners)).ok_or(Rejection::NotDetected)
+        found.ok().flatten().ok_or(Rejection::NotDetected)
     }
 }

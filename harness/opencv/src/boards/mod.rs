@@ -2,6 +2,7 @@
 
 mod chessboard;
 mod circles;
+mod dotted;
 #[cfg(aruco_contrib)]
 mod markers;
 

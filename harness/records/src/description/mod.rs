@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 pub use printed::{CheckPoint, PlacedNetwork, Printed, PrintedCamera};
 pub use sweep::{Axis, Cell, Sweep, Value};
-pub use views::{Adjustment, Blocks, Role, Station, Target, Views};
+pub use views::{Adjustment, Blocks, Role, Room, Station, Target, Views};
 
 /// A scenario: its words, what was to be run, and what its pages draw. That of a sweep is of its first cell but for the sweep itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -141,6 +141,7 @@ mod tests {
             targets: vec![target],
             adjustment: Some(Adjustment { pitch_um: 3.9, drawn: true }),
             blocks: Some(Blocks { pitch_um: 3.9, pairs: vec![["1".into(), "2".into()]], compared: vec!["all".into()] }),
+            room: Some(Room { least: 0.1 + 0.2, middle: 1.0 / 3.0 }),
         };
         let description = Description {
             why: "To see \"this\".\n".into(),
@@ -176,6 +177,7 @@ mod tests {
             targets: Vec::new(),
             adjustment,
             blocks: None,
+            room: None,
         };
         let of = |subject| Description {
             why: String::new(),

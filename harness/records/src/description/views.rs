@@ -22,6 +22,19 @@ pub struct Views {
     pub adjustment: Option<Adjustment>,
     /// What free networks of the measured points are told, if there are any.
     pub blocks: Option<Blocks>,
+    /// How much room a target has before something else begins, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub room: Option<Room>,
+}
+
+/// The half sides of the largest upright windows around targets in view that hold nothing else, px.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Room {
+    /// The least.
+    pub least: f64,
+    /// The one in the middle.
+    pub middle: f64,
 }
 
 /// A station.

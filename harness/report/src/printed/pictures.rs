@@ -128,5 +128,6 @@ pub(super) fn views(printed: &Printed, network: &PlacedNetwork, found: &Summarie
         targets: printed.points.iter().map(target).collect(),
         adjustment: None,
         blocks: None,
+        room: None,
     }
 }

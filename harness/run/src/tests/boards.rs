@@ -83,6 +83,7 @@ fn every_board_is_pointed_at_by_its_detector() {
         ("acircles:4x7:26", "ellipse_edges"),
         ("rings:12:5x4:40:12", "ellipse_edges"),
         ("puzzle:9x7:30:50,100", "parametric_corner"),
+        ("dotted:8x6:30", "parametric_corner"),
     ] {
         let found = first(&board(
             word,

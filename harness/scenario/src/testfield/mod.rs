@@ -22,11 +22,11 @@ pub(super) use spans::Spans;
 use wire::{ChessboardWire, CodedWire, Height, HouseWire};
 
 /// The kinds of testfield.
-pub const KINDS: [&str; 11] =
-    ["chessboard", "wall", "coded", "house", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "tags"];
+pub const KINDS: [&str; 12] =
+    ["chessboard", "wall", "coded", "house", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "dotted", "tags"];
 
 /// Those that are boards.
-pub const BOARDS: [&str; 7] = ["chessboard", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle"];
+pub const BOARDS: [&str; 8] = ["chessboard", "board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "dotted"];
 
 /// The unit of object space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

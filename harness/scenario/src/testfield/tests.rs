@@ -96,13 +96,13 @@ fn mistakes_are_told_with_their_places() {
     let board = "[testfield]\nkind = \"chessboard\"\nrows = 6\ncolumns = 9\n";
     refused(
         "[testfield]\nrows = 3",
-        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, tags)",
+        "1:2: [testfield] has no `kind` (`kind`: one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, dotted, tags)",
     );
     refused("[testfield]\nkind = \"chesboard\"", "2:8: `kind` of [testfield] is one of");
     refused("[testfield]\nkind = \"chesboard\"", "did you mean `chessboard`?");
     refused(
         "[testfield]\nkind = 3",
-        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, tags; found a value of type integer",
+        "2:8: `kind` of [testfield] is one of chessboard, wall, coded, house, board, charuco, aprilgrid, circles, rings, puzzle, dotted, tags; found a value of type integer",
     );
     refused("[testfield]\nkind = \"house\"\nunit = \"cm\"\nwidth = 3", "3:8: `unit` is \"mm\" or \"m\"; found `cm`");
     refused(board, "[testfield] has no `square`");
@@ -162,6 +162,8 @@ fn boards_are_read_with_their_defaults() {
     same("kind = \"circles\"\ncolumns = 4\nrows = 11\nspacing = 20\nasymmetric = true\nmargin = 3", "acircles:4x11:20", 3.0);
     same("kind = \"rings\"\ncolumns = 6\nrows = 5\nspacing = 50\ndiameter = 8", "rings:12:6x5:50:8", 50.0);
     same("kind = \"puzzle\"\ncolumns = 23\nrows = 16\nsquare = 30\nplace = [50, 100]", "puzzle:23x16:30:50,100", 30.0);
+    same("kind = \"dotted\"\ncolumns = 9\nrows = 6\nsquare = 25", "dotted:9x6:25", 25.0);
+    same("kind = \"dotted\"\ncolumns = 9\nrows = 6\nsquare = 25\nplace = [2, 1]\nmargin = 0", "dotted:9x6:25:2,1", 0.0);
     same("kind = \"puzzle\"\ncolumns = 11\nrows = 8\nsquare = 60\nmargin = 0", "puzzle:11x8:60", 0.0);
 }
 

@@ -73,6 +73,7 @@ impl Chessboard {
                 // The dark squares lie at the lower right and the upper left of every other corner.
                 axes: axes(if (row + column) % 2 == 0 { 0.0 } else { FRAC_PI_2 }),
                 surveyed: Point3::new(u, v, 0.0),
+                room: Some(self.square),
             }
         };
         Ok(Testfield { targets: inner.map(target).collect(), plates: vec![plate], background: self.background })

@@ -113,7 +113,7 @@ impl House {
         let target = |&(at, name): &(PlatePoint, &str)| {
             let at = scaled(at);
             let surveyed = Point3::new(at[0], at[1], 0.0);
-            ObjectTarget { id: name.into(), kind: TargetKind::Junction, plate: 0, at, size: scale, axes: axes(0.0), surveyed }
+            ObjectTarget { id: name.into(), kind: TargetKind::Junction, plate: 0, at, size: scale, axes: axes(0.0), surveyed, room: None }
         };
         let plate = Plate {
             id: "house".into(),

@@ -59,6 +59,8 @@ pub struct TargetTruth {
     pub affine: Option<Affine>,
     /// For a disc.
     pub ellipse: Option<Ellipse>,
+    /// The half side of the largest upright square of the image around it that holds nothing of anything else, px; where that is known.
+    pub room: Option<f64>,
 }
 
 /// The truth about `target`, which is on `sheet`, if that is in the image.
@@ -68,7 +70,17 @@ pub(super) fn truth(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Sheet
     let visibility = at.map_or(Visibility::Hidden, |at| visibility(view, target, sheet, &point, at));
     let affine = at.and_then(|_| affine(view, target));
     let ellipse = if target.kind == TargetKind::Disc && at.is_some() { ellipse(view, target) } else { None };
-    TargetTruth { object: point, at, visibility, affine, ellipse }
+    let room = affine.and_then(|affine| room(&affine, target));
+    TargetTruth { object: point, at, visibility, affine, ellipse, room }
+}
+
+/// Of the largest window whose corners lie in the free square around a target.
+fn room(affine: &Affine, target: &ObjectTarget) -> Option<f64> {
+    let Affine { axx, axy, ayx, ayy } = *affine;
+    let determinant = (axx * ayy - axy * ayx).abs();
+    // How far a corner of a window of half side 1 px is from the middle along an axis of the target, in units of its size.
+    let reach = (ayy.abs() + axy.abs()).max(ayx.abs() + axx.abs()) / determinant;
+    target.room.map(|room| room / target.size / reach).filter(|room| room.is_finite())
 }
 
 fn visibility(view: &View<'_>, target: &ObjectTarget, sheet: Option<&Sheet<'_>>, point: &Point3<f64>, at: PixelPoint) -> Visibility {

@@ -1,7 +1,7 @@
 //! Boards with markers, circles or ring codes, and free-standing markers.
 
 use calibench_diagnostics::Problem;
-use calibench_model::boards::{AprilGrid, Board, Charuco, Circles, Dictionary, Puzzle, Rings};
+use calibench_model::boards::{AprilGrid, Board, Charuco, Circles, Dictionary, Dotted, Puzzle, Rings};
 use calibench_synth::testfield::{BoardSheet, Tag, Tags};
 use nalgebra::{Point3, Vector3};
 use toml::Spanned;
@@ -13,10 +13,10 @@ use crate::section::Section;
 
 pub mod wire;
 
-use wire::{AprilGridWire, BoardWire, CharucoWire, CirclesWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire};
+use wire::{AprilGridWire, BoardWire, CharucoWire, CirclesWire, DottedWire, PuzzleWire, RingsWire, SheetWire, TagWire, TagsWire};
 
 /// The kinds that are one sheet.
-pub const SHEETS: [&str; 6] = ["board", "charuco", "aprilgrid", "circles", "rings", "puzzle"];
+pub const SHEETS: [&str; 7] = ["board", "charuco", "aprilgrid", "circles", "rings", "puzzle", "dotted"];
 /// The keys that all of them have.
 const COMMON: [&str; 7] = ["margin", "bend", "bend_across", "print_noise", "paper", "ink", "background"];
 
@@ -29,6 +29,7 @@ pub fn read(mut section: Section<'_>, kind: &str, problems: &mut Vec<Problem>) -
         "aprilgrid" => aprilgrid(&section.read(&COMMON, problems)?, problems)?,
         "circles" => circles(&section.read(&COMMON, problems)?),
         "puzzle" => puzzle(&section.read(&COMMON, problems)?),
+        "dotted" => dotted(&section.read(&COMMON, problems)?),
         _ => rings(&section.read(&COMMON, problems)?),
     };
     let sheet = sheet?;
@@ -53,6 +54,7 @@ fn in_a_word(wire: &BoardWire, problems: &mut Vec<Problem>) -> Option<(Board, f6
         Board::Circles(board) => board.spacing,
         Board::Rings(board) => board.spacing,
         Board::Puzzle(board) => board.square,
+        Board::Dotted(board) => board.square,
     };
     Some((board, usual_margin))
 }
@@ -123,6 +125,13 @@ fn rings(wire: &RingsWire) -> (Board, f64) {
         first: wire.first.map_or(1, |first| first.0),
     };
     (Board::Rings(board), wire.spacing.0)
+}
+
+fn dotted(wire: &DottedWire) -> (Board, f64) {
+    let (columns, rows) = (wire.columns.0, wire.rows.0);
+    let place = wire.place.map_or(Dotted::middle(columns, rows), |place| place.0);
+    let board = Dotted { columns, rows, square: wire.square.0, place, dot: wire.dot.map_or(Dotted::DOT, |dot| dot.0) };
+    (Board::Dotted(board), wire.square.0)
 }
 
 fn puzzle(wire: &PuzzleWire) -> (Board, f64) {

@@ -140,6 +140,22 @@ pub struct PuzzleWire {
     pub dot: Option<Fraction>,
 }
 
+/// A chessboard with dots in three squares: one, the next to its right and the next below, counted in inner corners; the first at the upper left, r1c1, is the origin; x to the right, y upwards. The square at the upper left is dark.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DottedWire {
+    /// Inner corners in a row, 4 to 100.
+    pub columns: Count,
+    /// Rows of inner corners, 4 to 100.
+    pub rows: Count,
+    /// The side of a square, object units.
+    pub square: Length,
+    /// Column and row of the square with the first dot, from 0 at the upper left. Default: the light square in the middle, or to the left of it.
+    pub place: Option<Place>,
+    /// The diameter of a dot, as a share of the square's side, 0.2 to 0.5. Default 0.34, as OpenCV draws it.
+    pub dot: Option<Fraction>,
+}
+
 /// Two whole numbers from 0. (An array would take more numbers in silence.)
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(try_from = "Vec<CountOrNone>")]

@@ -95,7 +95,7 @@ impl Wall {
                 then + Vector3::from_fn(|_, _| self.survey_sigma * standard(&mut rng))
             });
             let (kind, axes) = (target.shape.kind(), target.shape.axes(target.turn));
-            ObjectTarget { id: target.id, kind, plate, at: target.at, size: target.size, axes, surveyed }
+            ObjectTarget { id: target.id, kind, plate, at: target.at, size: target.size, axes, surveyed, room: None }
         });
         Ok(Testfield { targets: targets.collect(), plates, background: self.background })
     }

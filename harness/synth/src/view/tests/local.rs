@@ -38,7 +38,7 @@ fn disc_alone(bend: Bend) -> Testfield {
     let (at, size) = ([0.02, -0.03], 0.12);
     let disc = Area { outline: Outline::disc(at, 0.5 * size), level: 0.05, ground: 0.85 };
     let sheet = Plate { areas: vec![disc], level: 0.85, ..plate("a", [0.0, 0.0, 0.0], 0.6, Some(bend)) };
-    let target = ObjectTarget { at, size, ..disc_target(0, 1.0) };
+    let target = ObjectTarget { at, size, room: Some(0.01), ..disc_target(0, 1.0) };
     Testfield { plates: vec![sheet], targets: vec![target], background: 0.2 }
 }
 
@@ -79,6 +79,24 @@ fn the_affine_map_is_that_of_differences() {
         for (found, expected) in [(affine.axx, axx), (affine.axy, axy), (affine.ayx, ayx), (affine.ayy, ayy)] {
             assert!((found - expected).abs() < 1e-6, "{affine:?}, expected {expected}");
         }
+    });
+}
+
+/// The border of the free square around the target, in the image: no nearer to the middle, along an axis of the image, than the room says, and as near somewhere.
+#[test]
+fn the_room_is_that_of_the_square_s_picture() {
+    with_view(|view, truth| {
+        let (plate, target) = (&view.field.plates[0], &view.field.targets[0]);
+        let [u, v] = target.axes;
+        let away = |s: f64, t: f64| {
+            let ray = view.pose.ray(&plate.point([0, 1].map(|i| target.at[i] + 0.01 * (s * u[i] + t * v[i]))));
+            let at = view.local.unwrap().displaced(view.camera.project(ray).unwrap());
+            (at.x - truth.at.unwrap().x).abs().max((at.y - truth.at.unwrap().y).abs())
+        };
+        let sides = (-500..=500).map(|step| f64::from(step) / 500.0).flat_map(|s| [(s, 1.0), (s, -1.0), (1.0, s), (-1.0, s)]);
+        let nearest = sides.map(|(s, t)| away(s, t)).fold(f64::INFINITY, f64::min);
+        let room = truth.room.unwrap();
+        assert!((nearest / room - 1.0).abs() < 0.05, "{nearest} px, {room} px");
     });
 }
 

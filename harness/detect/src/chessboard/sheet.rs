@@ -2,17 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::chessboard::complete::sought;
-use crate::chessboard::grow::{Grid, Place, WAYS, moved};
-use crate::chessboard::level::{Level, Pyramid, scaled};
-use crate::chessboard::refine::{Around, refined};
-use crate::chessboard::sectors::{Contrast, Steps, contrast};
+use super::complete::sought;
+use super::grow::{Grid, Place, WAYS, moved};
+use super::level::{Level, Pyramid, scaled};
+use super::refine::{Around, refined};
+use super::sectors::{Contrast, Steps, contrast};
 use crate::plane::{Homography, Point, distance, length};
 
-/// Dots begin at a third of a step from a corner, a blur brings them nearer.
-const AROUND: Around = Around { share: 0.22, resolved: 20.0, smooth: 16.0 };
-/// Where the middle one of the steps is shorter than this, px, dots move the corners beside them.
-const NEAR: f64 = 40.0;
 /// So many corners, at most so far away, tell one among them better than the dots around it let it be seen.
 const ENOUGH: usize = 25;
 const FAR: i32 = 5;
@@ -22,7 +18,7 @@ const BESIDE: usize = 2;
 const APART: f64 = 0.5;
 
 /// Corners by their place; the second axis is clockwise of the first in the image.
-pub(super) struct Sheet {
+pub(crate) struct Sheet {
     /// Where, px of the image.
     pub corners: BTreeMap<Place, Point>,
     /// 1 if the squares between the steps of one sign are light at places whose sum is even, -1 if those at the others.
@@ -32,8 +28,9 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// `None` for what has no steps or no colours.
-    pub(super) fn new(pyramid: &Pyramid, level: &Level, mut grid: Grid) -> Option<Self> {
+    /// `near`: where the middle one of the steps is shorter than this, px, what lies beside corners moves them, so that they are smoothed. `None` for what has no
+    /// steps or no colours.
+    pub(crate) fn new(pyramid: &Pyramid, level: &Level, mut grid: Grid, around: Around, near: f64) -> Option<Self> {
         close(level, &mut grid);
         let mut corners: BTreeMap<Place, Point> = grid.iter().map(|(place, saddle)| (*place, scaled(saddle.at, level.factor))).collect();
         // What has no neighbour on one of the axes has no square beside it.
@@ -47,11 +44,11 @@ impl Sheet {
         let shortest = |place: &Place| steps(&corners, *place).map_or(0.0, |Steps([u, v])| length(u).min(length(v)));
         let lengths: Vec<f64> = corners.keys().map(shortest).collect();
         let places: Vec<Point> = corners.values().copied().collect();
-        let found = refined(pyramid, &places, &lengths, AROUND, level.factor);
+        let found = refined(pyramid, &places, &lengths, around, level.factor);
         let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found).collect();
         let mut sorted = lengths;
         sorted.sort_by(f64::total_cmp);
-        if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < NEAR) {
+        if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < near) {
             corners = smoothed(&corners);
         }
         let signed = |place: &Place| {
@@ -69,23 +66,23 @@ impl Sheet {
     }
 
     /// The steps from a corner to its neighbours.
-    pub(super) fn steps(&self, place: Place) -> Option<Steps> {
+    pub(crate) fn steps(&self, place: Place) -> Option<Steps> {
         steps(&self.corners, place)
     }
 
     /// Whether the squares between steps of the same sign are light at a place: 1 or -1.
-    pub(super) fn light(&self, place: Place) -> f64 {
+    pub(crate) fn light(&self, place: Place) -> f64 {
         self.sign * parity(place)
     }
 
     /// The shortest step, px.
-    pub(super) fn least_step(&self) -> f64 {
+    pub(crate) fn least_step(&self) -> f64 {
         let all = self.corners.keys().filter_map(|place| self.steps(*place));
         all.map(|Steps([u, v])| length(u).min(length(v))).fold(f64::INFINITY, f64::min)
     }
 
     /// The place in the middle of all.
-    pub(super) fn middle(&self) -> Place {
+    pub(crate) fn middle(&self) -> Place {
         let bounds = |axis: usize| {
             let all = || self.corners.keys().map(|place| place[axis]);
             [all().min().unwrap_or(0), all().max().unwrap_or(0)]
