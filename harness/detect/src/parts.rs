@@ -11,7 +11,6 @@ use crate::chessboard::level::Pyramid;
 use crate::chessboard::refine::Around;
 use crate::chessboard::sectors::Steps;
 use crate::chessboard::sheet::Sheet;
-use crate::chessboard::side::Sides;
 use crate::chessboard::sound;
 use crate::plane::{Point, distance};
 use crate::{Doubt, Found, FoundPoint, NotFound, corners};
@@ -26,7 +25,6 @@ const SAME: f64 = 3.0;
 /// How such a board is looked at.
 #[derive(Clone, Copy)]
 pub(crate) struct Reading {
-    pub sides: Sides,
     /// What is looked at around a corner.
     pub around: Around,
     /// As of [`Sheet::new`].
@@ -47,7 +45,7 @@ pub(crate) fn detect(
     read: impl Fn(&Sheet, &Image) -> Result<Sight, (usize, NotFound)>,
 ) -> Result<Found, NotFound> {
     let image = sound(image);
-    let pyramid = Pyramid::new(&image, reading.sides);
+    let pyramid = Pyramid::new(&image);
     let mut best: Option<Found> = None;
     let mut why: Option<(usize, NotFound)> = None;
     for level in pyramid.levels() {
@@ -132,8 +130,9 @@ impl Sight {
     }
 }
 
-/// All that the grids of one level show; corners that two of them have at different places are left out.
-fn merged(seen: Vec<Sight>, layout: &Layout) -> Found {
+/// All that the grids of one level show, the largest first; corners of two boards, at different places, are left out. Of the same board another grid adds corners.
+fn merged(mut seen: Vec<Sight>, layout: &Layout) -> Found {
+    seen.sort_by_key(|sight| std::cmp::Reverse(sight.points.len()));
     let (mut points, mut twice): (BTreeMap<usize, FoundPoint>, Vec<usize>) = (BTreeMap::new(), Vec::new());
     let (mut markers, mut contradicted, mut beyond) = (0, 0, 0);
     for sight in seen {
@@ -143,10 +142,15 @@ fn merged(seen: Vec<Sight>, layout: &Layout) -> Found {
         }
         contradicted += sight.contradicted;
         beyond += sight.beyond;
-        for (index, point) in sight.points {
+        let elsewhere = |index: &usize, point: &FoundPoint| {
             let at = |point: &FoundPoint| [point.position.x, point.position.y];
+            points.get(index).map(|other| distance(at(other), at(point)) > SAME)
+        };
+        let all: Vec<bool> = sight.points.iter().filter_map(|(index, point)| elsewhere(index, point)).collect();
+        let is_other = 2 * all.iter().filter(|elsewhere| **elsewhere).count() > all.len();
+        for (index, point) in sight.points {
             match points.get(&index) {
-                Some(other) if distance(at(other), at(&point)) > SAME => twice.push(index),
+                Some(_) if is_other => twice.push(index),
                 Some(_) => {}
                 None => drop(points.insert(index, point)),
             }

@@ -6,7 +6,7 @@ use super::complete::extent;
 use super::grow::Grid;
 use super::level::{Level, scaled};
 use super::sectors::{Steps, contrast};
-use super::straight::is_flat;
+use super::straight::{Corners, is_flat, straighten};
 use crate::plane::{Point, cross, length, minus, plus, times};
 
 /// The contrast at a corner is this share of the middle one of all at least.
@@ -47,6 +47,21 @@ impl Board {
 
     pub(super) fn place(&self, index: usize) -> [usize; 2] {
         [index % self.columns, index / self.columns]
+    }
+
+    fn by_place(&self) -> Corners {
+        let place = |index: usize| self.place(index).map(|at| at as i32);
+        self.corners.iter().enumerate().map(|(index, at)| (place(index), *at)).collect()
+    }
+
+    /// Puts few corners that are off to where the others have them; whether there were any.
+    pub(super) fn straighten(&mut self) -> bool {
+        let mut corners = self.by_place();
+        let moved = straighten(&mut corners);
+        for ([column, row], at) in corners {
+            self.corners[row as usize * self.columns + column as usize] = at;
+        }
+        moved
     }
 
     /// Where the corner `by` columns and rows from another is.
@@ -124,7 +139,7 @@ impl Board {
 
     /// Whether these are the corners of a board, all of them.
     pub(super) fn stands(&self, image: &Image) -> bool {
-        self.is_resolved() && self.contrasts(image).is_some() && is_flat(self) && !self.is_larger(image)
+        self.is_resolved() && self.contrasts(image).is_some() && is_flat(&self.by_place()) && !self.is_larger(image)
     }
 
     /// Turned by a quarter: the last of each row comes first.

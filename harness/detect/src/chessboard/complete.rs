@@ -128,7 +128,7 @@ pub(crate) fn sought(level: &Level, grid: &Grid, place: Place) -> Option<Saddle>
 }
 
 /// The corner at a place where its neighbours have it, if the squares around it are there: the edge of a shadow may hide it.
-fn inferred(level: &Level, grid: &Grid, place: Place) -> Option<Saddle> {
+pub(crate) fn inferred(level: &Level, grid: &Grid, place: Place) -> Option<Saddle> {
     let (at, _) = expected(grid, place)?;
     let steps = steps(grid, place, at)?;
     let contrast = contrast(&level.smooth, at, &steps)?;

@@ -2,7 +2,6 @@
 
 use calibench_model::{CornerPoint, Image, PixelPoint};
 
-use super::side::Sides;
 use crate::plane::Point;
 
 /// Pixels of the level that is looked at first, and of the finest, at most.
@@ -16,7 +15,6 @@ const LEAST_SIDE: usize = 24;
 /// An image, and means of squares of two, four and so on of its pixels.
 pub(crate) struct Pyramid<'a> {
     images: Vec<Image<'a>>,
-    sides: Sides,
 }
 
 /// An image at one scale.
@@ -27,8 +25,6 @@ pub(crate) struct Level {
     pub smooth: Image<'static>,
     /// Minus the determinant of their second derivatives, row by row: positive at saddles. Zero along the border.
     pub saddle: Vec<f32>,
-    /// How the sides of squares are looked at.
-    pub sides: Sides,
 }
 
 /// A point of an image in one whose pixels are `factor` times smaller.
@@ -39,20 +35,20 @@ pub(crate) fn scaled([x, y]: Point, factor: f64) -> Point {
 }
 
 impl Level {
-    fn new(image: &Image, factor: f64, sides: Sides) -> Self {
+    fn new(image: &Image, factor: f64) -> Self {
         let smooth = smoothed(image);
         let saddle = saddles(&smooth);
-        Self { factor, smooth, saddle, sides }
+        Self { factor, smooth, saddle }
     }
 }
 
 impl<'a> Pyramid<'a> {
-    pub(crate) fn new(image: &'a Image<'a>, sides: Sides) -> Self {
+    pub(crate) fn new(image: &'a Image<'a>) -> Self {
         let mut all = vec![image.lent()];
         while let Some(next) = all.last().map(|last| last.reduced(2)).filter(|next| next.width().min(next.height()) >= LEAST_SIDE) {
             all.push(next);
         }
-        Self { images: all, sides }
+        Self { images: all }
     }
 
     /// The image as it is.
@@ -71,9 +67,9 @@ impl<'a> Pyramid<'a> {
         let below = |most: usize| pixels.iter().position(|pixels| *pixels <= most).unwrap_or(pixels.len() - 1);
         let (first, finest) = (below(FIRST), below(FINEST));
         let order = (first..pixels.len()).chain((finest..first).rev());
-        let ordinary = order.map(|index| Level::new(&self.images[index], (1_u64 << index) as f64, self.sides));
+        let ordinary = order.map(|index| Level::new(&self.images[index], (1_u64 << index) as f64));
         let enlarged = (pixels[0] <= ENLARGED).then(|| self.image());
-        ordinary.chain(enlarged.into_iter().map(|image| Level::new(&doubled(image), 0.5, self.sides)))
+        ordinary.chain(enlarged.into_iter().map(|image| Level::new(&doubled(image), 0.5)))
     }
 }
 

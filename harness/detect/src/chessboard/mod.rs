@@ -8,7 +8,7 @@ pub(crate) mod level;
 pub(crate) mod refine;
 pub(crate) mod sectors;
 pub(crate) mod sheet;
-pub(crate) mod side;
+mod side;
 mod straight;
 
 use std::borrow::Cow;
@@ -22,12 +22,10 @@ use complete::complete;
 use grow::Grids;
 use level::{Level, Pyramid};
 use refine::{Around, refined};
-use side::Sides;
-use straight::straighten;
 
 use crate::{Found, NotFound, corners};
 
-/// What is looked at around the corners of a chessboard.
+/// What is looked at around corners that nothing is near.
 pub(crate) const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
 /// No larger board is looked for beside one that takes this share of the image.
 const LARGE: f64 = 0.03;
@@ -46,7 +44,7 @@ const LARGE: f64 = 0.03;
 pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) -> Result<Found, NotFound> {
     let Chessboard { columns, rows, square } = *chessboard;
     let image = sound(image);
-    let pyramid = Pyramid::new(&image, Sides::PLAIN);
+    let pyramid = Pyramid::new(&image);
     let seen = pyramid.levels().find_map(|level| largest(&pyramid, &level, columns, rows));
     let board = seen.ok_or(NotFound::NoChessboard { columns, rows })?;
     // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.
@@ -73,9 +71,9 @@ fn largest(pyramid: &Pyramid, level: &Level, columns: usize, rows: usize) -> Opt
         let Some(mut board) = whole.and_then(|grid| Board::new(level, &grid)).filter(counts) else { continue };
         board.refine(pyramid, level.factor);
         // What was far off may be met from where it is now.
-        if straighten(&mut board) {
+        if board.straighten() {
             board.refine(pyramid, level.factor);
-            straighten(&mut board);
+            board.straighten();
         }
         if largest.as_ref().is_none_or(|other| other.area() < board.area()) && board.stands(image) {
             largest = board.ordered(image, columns, rows);

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::complete::sought;
+use super::complete::{inferred, sought};
 use super::grow::{Grid, Place, WAYS, moved};
 use super::level::{Level, Pyramid, scaled};
 use super::refine::{Around, refined};
 use super::sectors::{Contrast, Steps, contrast};
+use super::straight::straighten;
 use crate::plane::{Homography, Point, distance, length};
 
 /// So many corners, at most so far away, tell one among them better than the dots around it let it be seen.
@@ -14,6 +15,12 @@ const ENOUGH: usize = 25;
 const FAR: i32 = 5;
 /// Corners are filled in where so many of the four neighbours are there.
 const BESIDE: usize = 2;
+/// A corner that is no saddle is put where the squares around it are there, and so many of the four neighbours.
+const AMONG: usize = 3;
+/// The surroundings of a corner that is nearer to the border of the image are cut, px.
+const RIM: i64 = 3;
+/// Around a corner that nothing covers in part the darker of two light squares is lighter than the lighter of two dark ones by this share of the contrast.
+const EVEN: f64 = 0.5;
 /// Two corners are at least this share of a step apart.
 const APART: f64 = 0.5;
 
@@ -50,9 +57,14 @@ impl Sheet {
         sorted.sort_by(f64::total_cmp);
         if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < near) {
             corners = smoothed(&corners);
+        } else {
+            straighten(&mut corners);
         }
+        let whole = |[x, y]: Point| pyramid.image().holds(x.round() as i64, y.round() as i64, RIM);
+        corners.retain(|_, at| whole(*at));
         let signed = |place: &Place| {
             let contrast: Contrast = contrast(pyramid.image(), corners[place], &steps(&corners, *place)?)?;
+            (contrast.least > EVEN * contrast.mean.abs()).then_some(())?;
             Some((*place, parity(*place) * contrast.mean))
         };
         let all: Vec<(Place, f64)> = corners.keys().filter_map(signed).collect();
@@ -119,11 +131,12 @@ fn close(level: &Level, grid: &mut Grid) {
         for place in grid.keys() {
             WAYS.iter().for_each(|(axis, sign)| *beside.entry(moved(*place, *axis, *sign)).or_default() += 1);
         }
-        let gaps: Vec<Place> =
-            beside.into_iter().filter(|(place, count)| *count >= BESIDE && !grid.contains_key(place)).map(|(place, _)| place).collect();
+        let gaps: Vec<(Place, usize)> =
+            beside.into_iter().filter(|(place, count)| *count >= BESIDE && !grid.contains_key(place)).collect();
         let before = grid.len();
-        for place in gaps {
-            let Some(corner) = sought(level, grid, place) else { continue };
+        for (place, count) in gaps {
+            let put = || inferred(level, grid, place).filter(|_| count >= AMONG);
+            let Some(corner) = sought(level, grid, place).or_else(put) else { continue };
             let around = (-2..=2).flat_map(|v| (-2..=2).map(move |u| [place[0] + u, place[1] + v]));
             let others: Vec<Point> = around.filter_map(|place| grid.get(&place)).map(|saddle| saddle.at).collect();
             let near = |other: &Point| distance(*other, corner.at);

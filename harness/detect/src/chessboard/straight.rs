@@ -1,6 +1,8 @@
 //! Whether each corner lies where the others around it have it.
 
-use super::board::Board;
+use std::collections::BTreeMap;
+
+use super::grow::{Place, WAYS, moved};
 use crate::plane::{Homography, Point, distance};
 
 /// How far a corner may be from where the eight around it have it, as a share of the shorter step, and px more.
@@ -14,38 +16,45 @@ const MOVED: f64 = 0.06;
 /// By how much an error of a point exceeds one of the others: in the middle, on a side and in a corner of nine, of which eight determine an affine map and its twist.
 const EXTRAPOLATION: [f64; 3] = [1.06, 1.18, 1.81];
 
-/// Where the eight others of the 3 x 3 around a corner have it, and how much worse they know than in their middle.
-fn foreseen(board: &Board, index: usize) -> Option<(Point, f64)> {
-    let start = |at: usize, size: usize| at.saturating_sub(1).min(size.saturating_sub(3));
-    let [column, row] = board.place(index);
-    let (left, top) = (start(column, board.columns), start(row, board.rows));
-    let around = (top..top + 3).flat_map(|row| (left..left + 3).map(move |column| [column, row]));
-    let local = |[u, v]: [usize; 2]| [u as f64 - column as f64, v as f64 - row as f64];
-    let others = around.filter(|place| *place != [column, row]);
-    let pairs: Vec<(Point, Point)> = others.map(|place| (local(place), board.corners[place[1] * board.columns + place[0]])).collect();
-    let outside = usize::from(column != left + 1) + usize::from(row != top + 1);
+/// The middles of nine that hold a corner, from it: it is their middle, on a side, in a corner.
+const MIDDLES: [Place; 9] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]];
+
+/// Corners by their place.
+pub(super) type Corners = BTreeMap<Place, Point>;
+
+/// Where the eight others of 3 x 3 around a corner have it, and how much worse they know than in their middle; `None` where no such eight are there.
+fn foreseen(corners: &Corners, [u, v]: Place) -> Option<(Point, f64)> {
+    let others = |[x, y]: Place| {
+        let around = (y - 1..=y + 1).flat_map(|y| (x - 1..=x + 1).map(move |x| [x, y])).filter(|by| *by != [0, 0]);
+        around.map(|by| Some((by.map(f64::from), *corners.get(&[u + by[0], v + by[1]])?))).collect::<Option<Vec<(Point, Point)>>>()
+    };
+    let (middle, pairs) = MIDDLES.into_iter().find_map(|middle| Some((middle, others(middle)?)))?;
+    let outside = middle.iter().filter(|by| **by != 0).count();
     Some((Homography::fitted(&pairs)?.at([0.0, 0.0]), EXTRAPOLATION[outside]))
 }
 
-/// How far each corner is off, relative to what its neighbours know, px.
-fn off(board: &Board, index: usize) -> f64 {
-    foreseen(board, index).map_or(f64::INFINITY, |(at, factor)| distance(at, board.corners[index]) / factor)
+/// How far a corner is off, relative to what its neighbours know, px.
+fn off(corners: &Corners, place: Place) -> Option<f64> {
+    foreseen(corners, place).map(|(at, factor)| distance(at, corners[&place]) / factor)
+}
+
+/// The shortest step to a neighbour, px.
+fn step(corners: &Corners, place: Place) -> f64 {
+    let neighbours = WAYS.iter().filter_map(|(axis, sign)| corners.get(&moved(place, *axis, *sign)));
+    neighbours.map(|other| distance(*other, corners[&place])).fold(f64::INFINITY, f64::min)
 }
 
 /// Puts few corners that are off, by the edge of a shadow for instance, to where the others have them; whether there were any.
-pub(super) fn straighten(board: &mut Board) -> bool {
-    let count = board.corners.len();
-    let mut offs: Vec<f64> = (0..count).map(|index| off(board, index)).collect();
-    for moved in 0..(MOVED * count as f64) as usize {
-        let Some(worst) = (0..count).max_by(|a, b| offs[*a].total_cmp(&offs[*b])) else { return false };
-        let limit = OFF * board.step(worst) + OFF_PX;
-        let Some((at, _)) = foreseen(board, worst).filter(|_| offs[worst] > limit) else { return moved > 0 };
-        board.corners[worst] = at;
-        let [column, row] = board.place(worst);
-        for (index, own) in offs.iter_mut().enumerate() {
-            let [u, v] = board.place(index);
-            if u.abs_diff(column) <= 2 && v.abs_diff(row) <= 2 {
-                *own = off(board, index);
+pub(super) fn straighten(corners: &mut Corners) -> bool {
+    let mut offs: BTreeMap<Place, f64> = corners.keys().filter_map(|place| Some((*place, off(corners, *place)?))).collect();
+    for moved in 0..(MOVED * corners.len() as f64) as usize {
+        let Some((worst, by)) = offs.iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(place, by)| (*place, *by)) else { return false };
+        let limit = OFF * step(corners, worst) + OFF_PX;
+        let Some((at, _)) = foreseen(corners, worst).filter(|_| by > limit) else { return moved > 0 };
+        corners.insert(worst, at);
+        for (place, own) in &mut offs {
+            if (0..2).all(|axis| (place[axis] - worst[axis]).abs() <= 2) {
+                *own = off(corners, *place).unwrap_or(*own);
             }
         }
     }
@@ -53,6 +62,6 @@ pub(super) fn straighten(board: &mut Board) -> bool {
 }
 
 /// Whether no corner is far off.
-pub(super) fn is_flat(board: &Board) -> bool {
-    (0..board.corners.len()).all(|index| off(board, index) < BENT * board.step(index) + BENT_PX)
+pub(super) fn is_flat(corners: &Corners) -> bool {
+    corners.keys().all(|place| off(corners, *place).is_none_or(|off| off < BENT * step(corners, *place) + BENT_PX))
 }

@@ -142,7 +142,7 @@ fn texts_that_describe_no_board_are_told_what_was_expected() {
         ("puzzle:11x8", "no side of a square; expected puzzle:COLUMNSxROWS:SQUARE[:X,Y]"),
         ("puzzle:11x8:60:12", "`12` is no place X,Y"),
         ("puzzle:11x5:60", "`rows` is 5"),
-        ("dotted:9x6:25:4", "`4` is no place X,Y of the square with the first dot; expected dotted:COLUMNSxROWS:SQUARE[:X,Y]"),
+        ("dotted:9x6:25:4", "`4` is no place X,Y of the square with the first dot; expected dotted:COLUMNSxROWS:SQUARE[:X,Y], as in dotted:13x9:25:2,1"),
         ("puzzle:11x8:60:491,0", "`place[0]` is 491: expected a whole number from 0 to 490"),
         ("puzzle:11x8:60:0,494", "`place[1]` is 494"),
     ] {

@@ -14,7 +14,7 @@ pub const KINDS: [(&str, &str, &str); 8] = [
     ("acircles", "COLUMNSxROWS:SPACING[:DIAMETER]", "acircles:4x11:20"),
     ("rings", "BITS:COLUMNSxROWS:SPACING:DIAMETER", "rings:12:6x5:50:8"),
     ("puzzle", "COLUMNSxROWS:SQUARE[:X,Y]", "puzzle:23x16:30:50,100"),
-    ("dotted", "COLUMNSxROWS:SQUARE[:X,Y]", "dotted:9x6:25:2,1"),
+    ("dotted", "COLUMNSxROWS:SQUARE[:X,Y]", "dotted:13x9:25:2,1"),
 ];
 
 impl FromStr for Board {

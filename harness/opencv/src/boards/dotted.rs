@@ -7,7 +7,6 @@ use calibench_model::PixelPoint;
 use calibench_model::boards::Dotted;
 use opencv::calib3d::{CALIB_CB_LARGER, CALIB_CB_MARKER, find_chessboard_corners_sb_with_meta};
 use opencv::core::{Mat, MatTraitConst, Point2f, Size, Vector};
-use opencv::prelude::*;
 
 use crate::subpix::pixel;
 
