@@ -100,9 +100,9 @@ impl Verdict {
         let (best, _, least) = all.iter().filter(sound).min_by(|a, b| a.2.worth().total_cmp(&b.2.worth()))?;
         let half = |camera: &Camera| camera.error.1.unwrap_or(f64::INFINITY);
         let near = |(_, _, camera): &&(usize, f64, Camera)| camera.worth() - least.worth() <= half(camera).hypot(half(least));
-        let as_good: Vec<usize> = all.iter().filter(sound).filter(near).map(|(board, ..)| *board).filter(|board| board != best).collect();
-        let worse = all.iter().filter(|(board, ..)| board != best && !as_good.contains(board));
-        let worst = worse.max_by(|a, b| a.2.worth().total_cmp(&b.2.worth()));
+        let as_good = all.iter().filter(sound).filter(near).map(|(board, ..)| *board).filter(|board| board != best).collect();
+        let worse = |one: &&(usize, f64, Camera)| !near(one) && one.2.worth() > least.worth();
+        let worst = all.iter().filter(worse).max_by(|a, b| a.2.worth().total_cmp(&b.2.worth()));
         Some(Self { best: *best, as_good, worst: worst.map(|(board, _, camera)| (*board, camera.worth() / least.worth())) })
     }
 }
@@ -221,7 +221,7 @@ mod tests {
         let found = Verdict::among(&all).unwrap();
         assert_eq!((found.best, found.as_good.as_slice()), (0, [2].as_slice()));
         assert_eq!(found.worst, Some((4, 10.0)));
-        assert_eq!(Verdict::among(&[all[0], all[2]]).unwrap().worst, None, "none is worse");
+        assert_eq!(Verdict::among(&[all[0], all[2], all[3]]).unwrap().worst, None, "one is as good, of one few points are found");
         // Where all are found badly the best of them is taken; a board that fails is none.
         let mut failed = board(1, 0.5, 0.001, 0.001, 0.001);
         failed.2.failed = 1;
