@@ -153,9 +153,15 @@ fn kalibrs_target_file_is_a_board() {
 /// What is printed goes to Kalibr with its own description, in metres, which is also read here: the same points, a thousandth.
 #[test]
 fn a_printed_board_comes_with_its_target_file() {
-    for (kind, named) in
-        [("chessboard", true), ("aprilgrid", true), ("circles", true), ("charuco", false), ("rings", false), ("puzzle", false), ("dotted", false)]
-    {
+    for (kind, named) in [
+        ("chessboard", true),
+        ("aprilgrid", true),
+        ("circles", true),
+        ("charuco", false),
+        ("rings", false),
+        ("puzzle", false),
+        ("dotted", false),
+    ] {
         let folder = tempfile::tempdir().unwrap();
         let project = root().display().to_string();
         let print = || run(folder.path(), &["--root", &project, "print", &format!("targets/{kind}"), "-o", "sheet"]);

@@ -35,7 +35,9 @@ const WAYS: [[i32; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 /// [`NotFound::NoDots`], [`NotFound::OtherCounts`], [`NotFound::Mirrored`]; [`NotFound::OtherArrangement`] of more dots, or of two such boards.
 pub(crate) fn detect(image: &Image, board: &Dotted, layout: &Layout) -> Result<Found, NotFound> {
     let none = NotFound::NoDots { corners: 0, dots: 0 };
-    parts::detect(image, layout, READING, none, |sheet, image| sight(sheet, image, board, layout).map_err(|error| (sheet.corners.len(), error)))
+    parts::detect(image, layout, READING, none, |sheet, image| {
+        sight(sheet, image, board, layout).map_err(|error| (sheet.corners.len(), error))
+    })
 }
 
 fn sight(sheet: &Sheet, image: &Image, board: &Dotted, layout: &Layout) -> Result<Sight, NotFound> {
@@ -45,7 +47,13 @@ fn sight(sheet: &Sheet, image: &Image, board: &Dotted, layout: &Layout) -> Resul
         let inside = (1..=board.columns as i32).contains(&column) && (1..=board.rows as i32).contains(&row);
         inside.then(|| (row as usize - 1) * board.columns + column as usize - 1)
     };
-    let mut sight = Sight::new(sheet, |place| placed.on_board(place), Placing { square: board.square, exchanged: placed.exchanged, index }, layout, |_| false);
+    let mut sight = Sight::new(
+        sheet,
+        |place| placed.on_board(place),
+        Placing { square: board.square, exchanged: placed.exchanged, index },
+        layout,
+        |_| false,
+    );
     sight.marks = 3;
     if sight.beyond < BEYOND {
         return Ok(sight);

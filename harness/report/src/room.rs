@@ -45,7 +45,10 @@ mod tests {
         let said = |labels: &[&str]| sentence(&scenario, labels.iter().copied());
         let room = "Room: around every point a window of 15 px holds nothing else, around half of them one of 25 px";
         assert_eq!(said(&["c:window=15", "b"]), format!("{room}.\n\n"));
-        assert_eq!(said(&["c:window=15", "c:window=17", "a", "b"]), format!("{room}; the windows of `c:window=17` and `a` reach further.\n\n"));
+        assert_eq!(
+            said(&["c:window=15", "c:window=17", "a", "b"]),
+            format!("{room}; the windows of `c:window=17` and `a` reach further.\n\n")
+        );
         assert_eq!((odd(16.0), odd(15.0), odd(14.99), odd(0.2)), (15, 15, 13, 1));
     }
 }

@@ -131,8 +131,7 @@ fn close(level: &Level, grid: &mut Grid) {
         for place in grid.keys() {
             WAYS.iter().for_each(|(axis, sign)| *beside.entry(moved(*place, *axis, *sign)).or_default() += 1);
         }
-        let gaps: Vec<(Place, usize)> =
-            beside.into_iter().filter(|(place, count)| *count >= BESIDE && !grid.contains_key(place)).collect();
+        let gaps: Vec<(Place, usize)> = beside.into_iter().filter(|(place, count)| *count >= BESIDE && !grid.contains_key(place)).collect();
         let before = grid.len();
         for (place, count) in gaps {
             let put = || inferred(level, grid, place).filter(|_| count >= AMONG);

@@ -60,7 +60,8 @@ fn a_print_that_is_light_on_dark_is_found_its_axes_a_quarter_on() {
     let (board, layout, whole) = seen();
     let view = View { paper: 0.1, ink: 0.9, turn: 100.0, tilt: [30.0, 40.0], ..whole };
     let found = detect(&view.draw(&layout), &board).unwrap();
-    let turned = |point: &calibench_model::boards::BoardPoint| calibench_model::boards::BoardPoint { turns: point.turns + 1, ..point.clone() };
+    let turned =
+        |point: &calibench_model::boards::BoardPoint| calibench_model::boards::BoardPoint { turns: point.turns + 1, ..point.clone() };
     let exchanged = Layout { points: layout.points.iter().map(turned).collect(), ..layout.clone() };
     view.check(&exchanged, &found, 1.0, "light on dark");
     assert_eq!(found.points.len(), 130);

@@ -206,7 +206,8 @@ struct Columns([Option<usize>; KNOWN.len()]);
 const KNOWN: [&str; 16] =
     ["image", "target", "x", "y", "sxx", "sxy", "syy", "kind", "axx", "axy", "ayx", "ayy", "method", "status", "reason", "visibility"];
 /// What the truth of a rendered image holds beside `visibility`, and is not needed here.
-const TRUTH: [&str; 11] = ["ellipse_x", "ellipse_y", "semi_major", "semi_minor", "angle_deg", "X", "Y", "Z", "size_px", "room_px", "warning"];
+const TRUTH: [&str; 11] =
+    ["ellipse_x", "ellipse_y", "semi_major", "semi_minor", "angle_deg", "X", "Y", "Z", "size_px", "room_px", "warning"];
 /// Of such a truth, targets of which there is nothing to measure.
 const UNSEEN: [&str; 2] = ["hidden", "outside"];
 /// And of which there is.

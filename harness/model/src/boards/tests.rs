@@ -45,8 +45,13 @@ fn every_kind_of_board_conforms() {
 
 #[test]
 fn boards_are_written_as_they_are_read() {
-    let more =
-        ["charuco:8x5:30:21:DICT_5X5_100:7:legacy", "aprilgrid:6x5:0.03:0.25:4:border1:plain", "acircles:4x11:20:8", "puzzle:11x8:60", "dotted:9x6:25:2,1"];
+    let more = [
+        "charuco:8x5:30:21:DICT_5X5_100:7:legacy",
+        "aprilgrid:6x5:0.03:0.25:4:border1:plain",
+        "acircles:4x11:20:8",
+        "puzzle:11x8:60",
+        "dotted:9x6:25:2,1",
+    ];
     for text in KINDS.iter().map(|(_, _, example)| *example).chain(more) {
         let board: Board = text.parse().unwrap();
         assert_eq!(board.to_string().parse(), Ok(board), "{text}: {board}");
@@ -142,7 +147,10 @@ fn texts_that_describe_no_board_are_told_what_was_expected() {
         ("puzzle:11x8", "no side of a square; expected puzzle:COLUMNSxROWS:SQUARE[:X,Y]"),
         ("puzzle:11x8:60:12", "`12` is no place X,Y"),
         ("puzzle:11x5:60", "`rows` is 5"),
-        ("dotted:9x6:25:4", "`4` is no place X,Y of the square with the first dot; expected dotted:COLUMNSxROWS:SQUARE[:X,Y], as in dotted:13x9:25:2,1"),
+        (
+            "dotted:9x6:25:4",
+            "`4` is no place X,Y of the square with the first dot; expected dotted:COLUMNSxROWS:SQUARE[:X,Y], as in dotted:13x9:25:2,1",
+        ),
         ("puzzle:11x8:60:491,0", "`place[0]` is 491: expected a whole number from 0 to 490"),
         ("puzzle:11x8:60:0,494", "`place[1]` is 494"),
     ] {

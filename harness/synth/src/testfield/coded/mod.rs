@@ -103,7 +103,16 @@ impl Coded {
                 if listed {
                     let surveyed = Point3::new(at[0], at[1], 0.0);
                     let id = format!("{name}-{}", printed.name());
-                    targets.push(ObjectTarget { id, kind: shape.kind(), plate: 0, at, size, axes: shape.axes(printed.turn), surveyed, room: None });
+                    targets.push(ObjectTarget {
+                        id,
+                        kind: shape.kind(),
+                        plate: 0,
+                        at,
+                        size,
+                        axes: shape.axes(printed.turn),
+                        surveyed,
+                        room: None,
+                    });
                 }
             }
         }

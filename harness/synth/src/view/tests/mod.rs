@@ -40,7 +40,16 @@ fn plate(id: &str, [x, y, z]: [f64; 3], half: f64, bend: Option<Bend>) -> Plate 
 
 fn disc_target(plate: usize, half: f64) -> ObjectTarget {
     let at = [-0.4 * half, 0.3 * half];
-    ObjectTarget { id: "d".into(), kind: TargetKind::Disc, plate, at, size: 0.5 * half, axes: axes(0.3), surveyed: Point3::origin(), room: None }
+    ObjectTarget {
+        id: "d".into(),
+        kind: TargetKind::Disc,
+        plate,
+        at,
+        size: 0.5 * half,
+        axes: axes(0.3),
+        surveyed: Point3::origin(),
+        room: None,
+    }
 }
 
 fn field(plates: Vec<Plate>) -> Testfield {
