@@ -50,7 +50,7 @@ fn sight(sheet: &Sheet, image: &Image, board: &Dotted, layout: &Layout) -> Resul
     let mut sight = Sight::new(
         sheet,
         |place| placed.on_board(place),
-        Placing { square: board.square, exchanged: placed.exchanged, index },
+        &Placing { square: board.square, exchanged: placed.exchanged, index },
         layout,
         |_| false,
     );

@@ -104,7 +104,7 @@ impl Sight {
     pub(crate) fn new(
         sheet: &Sheet,
         on_board: impl Fn(Place) -> [i32; 2],
-        placing: Placing<impl Fn([i32; 2]) -> Option<usize>>,
+        placing: &Placing<impl Fn([i32; 2]) -> Option<usize>>,
         layout: &Layout,
         contradicted: impl Fn(&[i32; 2]) -> bool,
     ) -> Self {

@@ -51,8 +51,11 @@ fn has_truth(trial: &Trial) -> bool {
     outcomes.next().unwrap_or(true)
 }
 
+/// Adjustments by trial, each with the label of its method.
+type ByTrial = BTreeMap<u64, Vec<(Arc<str>, Calibrated)>>;
+
 /// The adjustments of the run in `folder` by trial, each with the label of its method, as a run hands them on: by method and set.
-fn adjustments_of(folder: &Path, unit: &'static str) -> Result<BTreeMap<u64, Vec<(Arc<str>, Calibrated)>>, StoredError> {
+fn adjustments_of(folder: &Path, unit: &'static str) -> Result<ByTrial, StoredError> {
     let mut sets: BTreeMap<Arc<str>, usize> = BTreeMap::new();
     let mut all: BTreeMap<u64, BTreeMap<(Arc<str>, usize), Calibrated>> = BTreeMap::new();
     read_adjustments(folder, |row| {

@@ -61,7 +61,7 @@ fn sight(sheet: &Sheet, dots: &[Dot], decoded: Decoded, puzzle: &Puzzle, layout:
         wrong + right >= AROUND && wrong > right
     };
     let placing = Placing { square: puzzle.square, exchanged: decoded.exchanged, index: |place| index(place, puzzle) };
-    let mut sight = Sight::new(sheet, |place| decoded.pattern(place), placing, layout, contradicted);
+    let mut sight = Sight::new(sheet, |place| decoded.pattern(place), &placing, layout, contradicted);
     sight.marks = agreeing;
     if beyond[0] + beyond[1] < BEYOND || beyond[1] < 3 * beyond[0] {
         sight.beyond = 0;

@@ -66,7 +66,6 @@ fn place(x: f32, y: f32) -> PixelPoint {
 impl BoardFinder for CalibTargets {
     fn unfit(&self, board: &Board) -> Option<String> {
         match board {
-            Board::Chessboard(_) => None,
             Board::Charuco(board) if board.legacy && board.rows.is_multiple_of(2) => {
                 Some("the crate knows ChArUco boards as OpenCV makes them since 4.6 alone".into())
             }
@@ -74,7 +73,7 @@ impl BoardFinder for CalibTargets {
             Board::Charuco(board) if resolve_dictionary(board.dictionary.name).is_none() => {
                 Some(format!("the crate has no {}", board.dictionary.name))
             }
-            Board::Charuco(_) => None,
+            Board::Chessboard(_) | Board::Charuco(_) => None,
             _ => Some("it finds chessboards and ChArUco boards alone".into()),
         }
     }

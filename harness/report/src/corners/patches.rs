@@ -51,7 +51,7 @@ fn figure(image: &Image<'_>, corner: &Corner<'_>) -> String {
     let measured = cross(at, "s0", "M-1.5 -1.5L1.5 1.5M-1.5 1.5L1.5 -1.5");
     let adjusted = adjusted.map_or(String::new(), |point| cross(point, "s1", "M-1.2 0a1.2 1.2 0 1 0 2.4 0a1.2 1.2 0 1 0 -2.4 0"));
     let length = corner.v.map_or(String::new(), |[x, y]| format!(", {} px", plain(x.hypot(y))));
-    let used = if corner.used != Use::LeftOut { "" } else { ", left out" };
+    let used = if corner.used == Use::LeftOut { ", left out" } else { "" };
     format!(
         "<svg viewBox=\"0 0 {SIDE} {SIDE}\" role=\"img\" aria-label=\"the image around the point\"><image width=\"{SIDE}\" height=\"{SIDE}\" href=\"data:image/png;base64,{}\"/>\
          {adjusted}{measured}</svg><figcaption>{}: {}{length}{used}. Cross: measured; circle: where the adjusted point is pictured.</figcaption>",

@@ -37,7 +37,7 @@ pub fn picture(sweep: &Comparison) -> Option<Canvas> {
     let look = |board: usize| (MARKS[board % MARKS.len()], COLOURS[board % COLOURS.len()]);
     let mut marks: Vec<OwnMark<'_>> = Vec::new();
     for (board, points) in curves.iter().enumerate() {
-        let (name, (mark, colour)) = (kind(&boards[board]), look(board));
+        let (name, (mark, colour)) = (kind(boards[board]), look(board));
         let line: Vec<(i32, i32)> = points.iter().map(|(value, camera)| axes.place(*value as f64, camera.error.0.log10())).collect();
         let places: Vec<(f64, f64)> = line.iter().map(|(x, y)| (f64::from(*x), f64::from(*y))).collect();
         marks.extend(places.iter().map(|at| (Some(name), (mark, colour, *at))));
