@@ -8,9 +8,8 @@ use calibench_model::boards::{BoardPoint, Layout};
 use crate::chessboard::candidates::Saddles;
 use crate::chessboard::grow::{Grids, Place};
 use crate::chessboard::level::Pyramid;
-use crate::chessboard::refine::Around;
 use crate::chessboard::sectors::Steps;
-use crate::chessboard::sheet::Sheet;
+use crate::chessboard::sheet::{Reading, Sheet};
 use crate::chessboard::sound;
 use crate::plane::{Point, distance};
 use crate::{Doubt, Found, FoundPoint, NotFound, corners};
@@ -21,17 +20,6 @@ const GRIDS: usize = 12;
 const ENOUGH: f64 = 10.0;
 /// The same point seen by two grids, px.
 const SAME: f64 = 3.0;
-
-/// How such a board is looked at.
-#[derive(Clone, Copy)]
-pub(crate) struct Reading {
-    /// What is looked at around a corner.
-    pub around: Around,
-    /// As of [`Sheet::new`].
-    pub near: f64,
-    /// Grids of fewer corners are not looked at.
-    pub fewest: usize,
-}
 
 /// The points of the board that are seen, in whatever part of it. `read` tells what a grid shows of the board, or why not and how much there was to read.
 ///
@@ -53,7 +41,7 @@ pub(crate) fn detect(
         let grids = Grids::new(&level, &saddles).filter(|grid| grid.len() >= reading.fewest).take(GRIDS);
         let (mut seen, mut least) = (Vec::new(), f64::INFINITY);
         for grid in grids {
-            let Some(sheet) = Sheet::new(&pyramid, &level, grid, reading.around, reading.near) else { continue };
+            let Some(sheet) = Sheet::new(&pyramid, &level, grid, &reading) else { continue };
             match read(&sheet, &image) {
                 Ok(sight) => {
                     least = least.min(sheet.least_step() / level.factor);

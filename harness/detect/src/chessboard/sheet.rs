@@ -19,10 +19,21 @@ const BESIDE: usize = 2;
 const AMONG: usize = 3;
 /// The surroundings of a corner that is nearer to the border of the image are cut, px.
 const RIM: i64 = 3;
-/// Around a corner that nothing covers in part the darker of two light squares is lighter than the lighter of two dark ones by this share of the contrast.
-const EVEN: f64 = 0.5;
 /// Two corners are at least this share of a step apart.
 const APART: f64 = 0.5;
+
+/// How a board of squares with something in or between them is looked at.
+#[derive(Clone, Copy)]
+pub(crate) struct Reading {
+    /// What is looked at around a corner.
+    pub around: Around,
+    /// Where the middle one of the steps is shorter than this, px, what lies beside corners moves them, so that they are smoothed.
+    pub near: f64,
+    /// Around a corner that nothing covers in part the darker of two light squares is lighter than the lighter of two dark ones by this share of the contrast.
+    pub even: f64,
+    /// Grids of fewer corners are not looked at.
+    pub fewest: usize,
+}
 
 /// Corners by their place; the second axis is clockwise of the first in the image.
 pub(crate) struct Sheet {
@@ -35,9 +46,8 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// `near`: where the middle one of the steps is shorter than this, px, what lies beside corners moves them, so that they are smoothed. `None` for what has no
-    /// steps or no colours.
-    pub(crate) fn new(pyramid: &Pyramid, level: &Level, mut grid: Grid, around: Around, near: f64) -> Option<Self> {
+    /// `None` for what has no steps or no colours.
+    pub(crate) fn new(pyramid: &Pyramid, level: &Level, mut grid: Grid, reading: &Reading) -> Option<Self> {
         close(level, &mut grid);
         let mut corners: BTreeMap<Place, Point> = grid.iter().map(|(place, saddle)| (*place, scaled(saddle.at, level.factor))).collect();
         // What has no neighbour on one of the axes has no square beside it.
@@ -51,11 +61,11 @@ impl Sheet {
         let shortest = |place: &Place| steps(&corners, *place).map_or(0.0, |Steps([u, v])| length(u).min(length(v)));
         let lengths: Vec<f64> = corners.keys().map(shortest).collect();
         let places: Vec<Point> = corners.values().copied().collect();
-        let found = refined(pyramid, &places, &lengths, around, level.factor);
+        let found = refined(pyramid, &places, &lengths, reading.around, level.factor);
         let mut corners: BTreeMap<Place, Point> = corners.into_keys().zip(found).collect();
         let mut sorted = lengths;
         sorted.sort_by(f64::total_cmp);
-        if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < near) {
+        if sorted.get(sorted.len() / 2).is_some_and(|middle| *middle < reading.near) {
             corners = smoothed(&corners);
         } else {
             straighten(&mut corners);
@@ -64,7 +74,7 @@ impl Sheet {
         corners.retain(|_, at| whole(*at));
         let signed = |place: &Place| {
             let contrast: Contrast = contrast(pyramid.image(), corners[place], &steps(&corners, *place)?)?;
-            (contrast.least > EVEN * contrast.mean.abs()).then_some(())?;
+            (contrast.least > reading.even * contrast.mean.abs()).then_some(())?;
             Some((*place, parity(*place) * contrast.mean))
         };
         let all: Vec<(Place, f64)> = corners.keys().filter_map(signed).collect();
