@@ -8,12 +8,13 @@ use calibench_model::boards::{Dotted, Layout};
 use crate::chessboard::AROUND;
 use crate::chessboard::grow::Place;
 use crate::chessboard::sheet::{Reading, Sheet};
+use crate::chessboard::side::Sides;
 use crate::ground::grey;
 use crate::parts::{self, Placing, Sight};
 use crate::plane::{Homography, Point};
 use crate::{Found, NotFound};
 
-const READING: Reading = Reading { around: AROUND, near: 0.0, even: 0.5, fewest: 12 };
+const READING: Reading = Reading { sides: Sides::PLAIN, around: AROUND, near: 0.0, even: 0.5, fewest: 12 };
 /// Where in a square its dot is looked at, and what is around the largest one, as shares of the side from the middle.
 const WITHIN: [Point; 5] = [[0.0, 0.0], [0.06, 0.0], [-0.06, 0.0], [0.0, 0.06], [0.0, -0.06]];
 const OUTSIDE: f64 = 0.33;

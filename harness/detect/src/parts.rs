@@ -33,7 +33,7 @@ pub(crate) fn detect(
     read: impl Fn(&Sheet, &Image) -> Result<Sight, (usize, NotFound)>,
 ) -> Result<Found, NotFound> {
     let image = sound(image);
-    let pyramid = Pyramid::new(&image);
+    let pyramid = Pyramid::new(&image, reading.sides);
     let mut best: Option<Found> = None;
     let mut why: Option<(usize, NotFound)> = None;
     for level in pyramid.levels() {

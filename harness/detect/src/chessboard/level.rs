@@ -2,6 +2,7 @@
 
 use calibench_model::{CornerPoint, Image, PixelPoint};
 
+use super::side::Sides;
 use crate::plane::Point;
 
 /// Pixels of the level that is looked at first, and of the finest, at most.
@@ -15,6 +16,7 @@ const LEAST_SIDE: usize = 24;
 /// An image, and means of squares of two, four and so on of its pixels.
 pub(crate) struct Pyramid<'a> {
     images: Vec<Image<'a>>,
+    sides: Sides,
 }
 
 /// An image at one scale.
@@ -25,6 +27,8 @@ pub(crate) struct Level {
     pub smooth: Image<'static>,
     /// Minus the determinant of their second derivatives, row by row: positive at saddles. Zero along the border.
     pub saddle: Vec<f32>,
+    /// How the sides of squares are looked at.
+    pub sides: Sides,
 }
 
 /// A point of an image in one whose pixels are `factor` times smaller.
@@ -35,20 +39,20 @@ pub(crate) fn scaled([x, y]: Point, factor: f64) -> Point {
 }
 
 impl Level {
-    fn new(image: &Image, factor: f64) -> Self {
+    fn new(image: &Image, factor: f64, sides: Sides) -> Self {
         let smooth = smoothed(image);
         let saddle = saddles(&smooth);
-        Self { factor, smooth, saddle }
+        Self { factor, smooth, saddle, sides }
     }
 }
 
 impl<'a> Pyramid<'a> {
-    pub(crate) fn new(image: &'a Image<'a>) -> Self {
+    pub(crate) fn new(image: &'a Image<'a>, sides: Sides) -> Self {
         let mut all = vec![image.lent()];
         while let Some(next) = all.last().map(|last| last.reduced(2)).filter(|next| next.width().min(next.height()) >= LEAST_SIDE) {
             all.push(next);
         }
-        Self { images: all }
+        Self { images: all, sides }
     }
 
     /// The image as it is.
@@ -67,9 +71,9 @@ impl<'a> Pyramid<'a> {
         let below = |most: usize| pixels.iter().position(|pixels| *pixels <= most).unwrap_or(pixels.len() - 1);
         let (first, finest) = (below(FIRST), below(FINEST));
         let order = (first..pixels.len()).chain((finest..first).rev());
-        let ordinary = order.map(|index| Level::new(&self.images[index], (1_u64 << index) as f64));
+        let ordinary = order.map(|index| Level::new(&self.images[index], (1_u64 << index) as f64, self.sides));
         let enlarged = (pixels[0] <= ENLARGED).then(|| self.image());
-        ordinary.chain(enlarged.into_iter().map(|image| Level::new(&doubled(image), 0.5)))
+        ordinary.chain(enlarged.into_iter().map(|image| Level::new(&doubled(image), 0.5, self.sides)))
     }
 }
 

@@ -8,7 +8,7 @@ pub(crate) mod level;
 pub(crate) mod refine;
 pub(crate) mod sectors;
 pub(crate) mod sheet;
-mod side;
+pub(crate) mod side;
 mod straight;
 
 use std::borrow::Cow;
@@ -22,6 +22,7 @@ use complete::complete;
 use grow::Grids;
 use level::{Level, Pyramid};
 use refine::{Around, refined};
+use side::Sides;
 
 use crate::{Found, NotFound, corners};
 
@@ -44,7 +45,7 @@ const LARGE: f64 = 0.03;
 pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) -> Result<Found, NotFound> {
     let Chessboard { columns, rows, square } = *chessboard;
     let image = sound(image);
-    let pyramid = Pyramid::new(&image);
+    let pyramid = Pyramid::new(&image, Sides::PLAIN);
     let seen = pyramid.levels().find_map(|level| largest(&pyramid, &level, columns, rows));
     let board = seen.ok_or(NotFound::NoChessboard { columns, rows })?;
     // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.

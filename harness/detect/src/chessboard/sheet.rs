@@ -7,6 +7,7 @@ use super::grow::{Grid, Place, WAYS, moved};
 use super::level::{Level, Pyramid, scaled};
 use super::refine::{Around, refined};
 use super::sectors::{Contrast, Steps, contrast};
+use super::side::Sides;
 use super::straight::straighten;
 use crate::plane::{Homography, Point, distance, length};
 
@@ -25,6 +26,8 @@ const APART: f64 = 0.5;
 /// How a board of squares with something in or between them is looked at.
 #[derive(Clone, Copy)]
 pub(crate) struct Reading {
+    /// How the sides of squares are looked at.
+    pub sides: Sides,
     /// What is looked at around a corner.
     pub around: Around,
     /// Where the middle one of the steps is shorter than this, px, what lies beside corners moves them, so that they are smoothed.

@@ -5,8 +5,17 @@ use super::level::Level;
 use crate::ground::grey;
 use crate::plane::{Point, cross, dot, plus, times};
 
-/// Where along a side of a square it is looked at, as shares of its length. Dots on sides are smoothed away in the coarse level that shows their board.
-const ALONG: [f64; 5] = [0.2, 0.35, 0.5, 0.65, 0.8];
+/// Where along a side of a square it is looked at, as shares of its length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sides(&'static [f64]);
+
+impl Sides {
+    /// Nothing lies on them.
+    pub(crate) const PLAIN: Self = Self(&[0.2, 0.35, 0.5, 0.65, 0.8]);
+    /// A dot lies on their middles.
+    pub(crate) const DOTTED: Self = Self(&[0.14, 0.25, 0.75, 0.86]);
+}
+
 /// How far beside it, as a share of its length; px of the level at least.
 const BESIDE: f64 = 0.1;
 const LEAST_BESIDE: f64 = 1.0;
@@ -39,7 +48,8 @@ pub(super) fn is_side(level: &Level, a: &Saddle, b: &Saddle) -> bool {
         let at = plus(a.at, times(way, share * far));
         grey(&level.smooth, plus(at, beside)) - grey(&level.smooth, plus(at, times(beside, -1.0)))
     };
-    let differences = || ALONG.iter().map(|share| difference(*share));
+    let Sides(along) = level.sides;
+    let differences = || along.iter().map(|share| difference(*share));
     let least = differences().fold(f64::INFINITY, f64::min);
     let greatest = differences().fold(f64::NEG_INFINITY, f64::max);
     least > EVEN * greatest && least > 0.0

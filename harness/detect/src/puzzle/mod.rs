@@ -12,6 +12,7 @@ use calibench_model::boards::{Layout, Puzzle};
 use crate::NotFound;
 use crate::chessboard::refine::Around;
 use crate::chessboard::sheet::{Reading, Sheet};
+use crate::chessboard::side::Sides;
 use crate::parts::{self, Placing, Sight};
 
 use decode::{Decoded, decode};
@@ -19,7 +20,8 @@ use dots::Dot;
 
 /// Dots lie on the middles of sides; they begin at a third of a step from a corner, a blur brings them nearer and moves the corners beside them. Grids of fewer
 /// corners hold too few.
-const READING: Reading = Reading { around: Around { share: 0.22, resolved: 20.0, smooth: 16.0 }, near: 40.0, even: 0.0, fewest: 20 };
+const READING: Reading =
+    Reading { sides: Sides::DOTTED, around: Around { share: 0.22, resolved: 20.0, smooth: 16.0 }, near: 40.0, even: 0.0, fewest: 20 };
 /// A corner is left out if so many dots around it were read and most of them are not those of the pattern.
 const AROUND: usize = 3;
 /// So many dots beyond the board's rim, three quarters of them those of the pattern, are no chance: the pattern goes on there.

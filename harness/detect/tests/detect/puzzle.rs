@@ -43,6 +43,18 @@ fn a_blur_of_three_pixels_loses_nothing() {
     }
 }
 
+/// Few squares of 60 px: dots are seen on their sides from the first level on.
+#[test]
+fn large_squares_with_large_dots_lose_nothing() {
+    let (board, layout, whole) = upright("puzzle:9x7:30:50,100", 20.0);
+    for (turn, tilt) in [(0.0, [-25.0, 65.0]), (80.0, [30.0, 0.0]), (10.0, [-35.0, 90.0]), (0.0, [0.0, 0.0])] {
+        let view = View { turn, tilt, ..whole };
+        let found = detect(&view.draw(&layout), &board).unwrap();
+        view.check(&layout, &found, 1.0, "large");
+        assert_eq!(found.points.len(), 63, "{turn} {tilt:?}");
+    }
+}
+
 #[test]
 fn half_of_it_is_enough() {
     let (board, layout, whole) = upright("puzzle:16x12:30:222,333", 6.0);
