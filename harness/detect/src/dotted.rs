@@ -44,23 +44,14 @@ pub(crate) fn detect(image: &Image, board: &Dotted, layout: &Layout) -> Result<F
 fn sight(sheet: &Sheet, image: &Image, board: &Dotted, layout: &Layout) -> Result<Sight, NotFound> {
     let squares = sheet.squares(image);
     let placed = Placed::by(&squares, sheet, board)?;
-    let index = |[column, row]: [i32; 2]| {
-        let inside = (1..=board.columns as i32).contains(&column) && (1..=board.rows as i32).contains(&row);
-        inside.then(|| (row as usize - 1) * board.columns + column as usize - 1)
-    };
-    let mut sight = Sight::new(
-        sheet,
-        |place| placed.on_board(place),
-        &Placing { square: board.square, exchanged: placed.exchanged, index },
-        layout,
-        |_| false,
-    );
+    let placing = Placing { square: board.square, exchanged: placed.exchanged, index: |corner| board.index(corner) };
+    let mut sight = Sight::new(sheet, |place| placed.on_board(place), &placing, layout, |_| false);
     sight.marks = 3;
     if sight.beyond < BEYOND {
         return Ok(sight);
     }
     let mirrored = Placed { mirrored: true, ..placed };
-    if sheet.corners.keys().all(|place| index(mirrored.on_board(*place)).is_some()) {
+    if sheet.corners.keys().all(|place| board.index(mirrored.on_board(*place)).is_some()) {
         return Err(NotFound::Mirrored { markers: 3 });
     }
     let span = |axis: usize| {
@@ -97,11 +88,11 @@ impl Sheet {
 }
 
 /// How a grid lies on the board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Placed {
-    /// The square with the first dot, in the grid and on the board.
+#[derive(Clone, Copy)]
+struct Placed<'b> {
+    board: &'b Dotted,
+    /// The square of the grid with the first dot.
     first: Place,
-    at: [i32; 2],
     /// Which of [`WAYS`] is the board's way to the right; the next is its way down.
     turn: usize,
     mirrored: bool,
@@ -109,8 +100,8 @@ struct Placed {
     exchanged: bool,
 }
 
-impl Placed {
-    fn by(squares: &BTreeMap<Place, bool>, sheet: &Sheet, board: &Dotted) -> Result<Self, NotFound> {
+impl<'b> Placed<'b> {
+    fn by(squares: &BTreeMap<Place, bool>, sheet: &Sheet, board: &'b Dotted) -> Result<Self, NotFound> {
         let has_dot = |place: &Place| squares.get(place) == Some(&true);
         let dots: Vec<Place> = squares.keys().copied().filter(has_dot).collect();
         let beside = |[u, v]: Place, turn: usize| [u + WAYS[turn % 4][0], v + WAYS[turn % 4][1]];
@@ -124,7 +115,7 @@ impl Placed {
         }
         let [column, row] = board.place;
         let exchanged = (sheet.light(first) < 0.0) != (column + row).is_multiple_of(2);
-        Ok(Self { first, at: [column as i32, row as i32], turn, mirrored: false, exchanged })
+        Ok(Self { board, first, turn, mirrored: false, exchanged })
     }
 
     /// Column and row of the board's corner at a place, from 1 for the inner ones.
@@ -132,10 +123,7 @@ impl Placed {
         // Twice the way from the middle of the first square.
         let way = [0, 1].map(|i| 2 * (place[i] - self.first[i]) - 1);
         let along = |turn: usize| way[0] * WAYS[turn % 4][0] + way[1] * WAYS[turn % 4][1];
-        let (mut right, mut down) = (along(self.turn), along(self.turn + 1));
-        if self.mirrored {
-            (right, down) = (down, right);
-        }
-        [(2 * self.at[0] + 1 + right) / 2, (2 * self.at[1] + 1 + down) / 2]
+        let (right, down) = (along(self.turn), along(self.turn + 1));
+        self.board.corner(if self.mirrored { [down, right] } else { [right, down] })
     }
 }

@@ -107,8 +107,7 @@ impl Sight {
                 sight.contradicted += 1;
                 continue;
             }
-            let steps = Steps::at(*at, |by| corners.get(&[place[0] + by[0], place[1] + by[1]]).copied());
-            let Some(steps) = steps else { continue };
+            let Some(steps) = Steps::among(&corners, *place) else { continue };
             // Printed the other way round every corner is turned by a quarter.
             let own = &layout.points[index];
             let own = BoardPoint { turns: own.turns + u32::from(placing.exchanged), ..own.clone() };

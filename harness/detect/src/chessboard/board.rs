@@ -78,7 +78,7 @@ impl Board {
 
     /// The shorter of the steps to the neighbours of a corner, px.
     pub(super) fn step(&self, index: usize) -> f64 {
-        self.steps(index).map_or(0.0, |Steps([u, v])| length(u).min(length(v)))
+        self.steps(index).map_or(0.0, |steps| steps.shorter())
     }
 
     /// Contrasts of the sectors of all corners as if at an even place; `None` if dark and light do not alternate.

@@ -1,9 +1,12 @@
 //! The four sectors around a corner, as large as its squares.
 
+use std::collections::BTreeMap;
+
 use calibench_model::Image;
 
+use super::grow::Place;
 use crate::ground::grey;
-use crate::plane::{Linear, Point, minus, plus, times};
+use crate::plane::{Linear, Point, length, minus, plus, times};
 
 /// How far along both steps the middle of a sector lies, and how far around it samples are taken.
 const MIDDLE: f64 = 0.22;
@@ -28,6 +31,17 @@ impl Steps {
             straight.or_else(|| beside(1)).or_else(|| beside(-1))
         };
         Some(Self([step(0)?, step(1)?]))
+    }
+
+    /// Of a corner among others.
+    pub(crate) fn among(corners: &BTreeMap<Place, Point>, [u, v]: Place) -> Option<Self> {
+        Self::at(*corners.get(&[u, v])?, |by| corners.get(&[u + by[0], v + by[1]]).copied())
+    }
+
+    /// The length of the shorter one, px.
+    pub(crate) fn shorter(&self) -> f64 {
+        let Self([u, v]) = self;
+        length(*u).min(length(*v))
     }
 
     /// From the plane of the board, u right and v up, whose squares have this side, to px.

@@ -9,7 +9,7 @@ use super::refine::{Around, refined};
 use super::sectors::{Contrast, Steps, contrast};
 use super::side::Sides;
 use super::straight::straighten;
-use crate::plane::{Homography, Point, distance, length};
+use crate::plane::{Homography, Point, distance};
 
 /// So many corners, at most so far away, tell one among them better than the dots around it let it be seen.
 const ENOUGH: usize = 25;
@@ -55,13 +55,13 @@ impl Sheet {
         let mut corners: BTreeMap<Place, Point> = grid.iter().map(|(place, saddle)| (*place, scaled(saddle.at, level.factor))).collect();
         // What has no neighbour on one of the axes has no square beside it.
         loop {
-            let single: Vec<Place> = corners.keys().copied().filter(|place| steps(&corners, *place).is_none()).collect();
+            let single: Vec<Place> = corners.keys().copied().filter(|place| Steps::among(&corners, *place).is_none()).collect();
             if single.is_empty() {
                 break;
             }
             corners.retain(|place, _| !single.contains(place));
         }
-        let shortest = |place: &Place| steps(&corners, *place).map_or(0.0, |Steps([u, v])| length(u).min(length(v)));
+        let shortest = |place: &Place| Steps::among(&corners, *place).map_or(0.0, |steps| steps.shorter());
         let lengths: Vec<f64> = corners.keys().map(shortest).collect();
         let places: Vec<Point> = corners.values().copied().collect();
         let found = refined(pyramid, &places, &lengths, reading.around, level.factor);
@@ -76,7 +76,7 @@ impl Sheet {
         let whole = |[x, y]: Point| pyramid.image().holds(x.round() as i64, y.round() as i64, RIM);
         corners.retain(|_, at| whole(*at));
         let signed = |place: &Place| {
-            let contrast: Contrast = contrast(pyramid.image(), corners[place], &steps(&corners, *place)?)?;
+            let contrast: Contrast = contrast(pyramid.image(), corners[place], &Steps::among(&corners, *place)?)?;
             (contrast.least > reading.even * contrast.mean.abs()).then_some(())?;
             Some((*place, parity(*place) * contrast.mean))
         };
@@ -92,7 +92,7 @@ impl Sheet {
 
     /// The steps from a corner to its neighbours.
     pub(crate) fn steps(&self, place: Place) -> Option<Steps> {
-        steps(&self.corners, place)
+        Steps::among(&self.corners, place)
     }
 
     /// Whether the squares between steps of the same sign are light at a place: 1 or -1.
@@ -103,7 +103,7 @@ impl Sheet {
     /// The shortest step, px.
     pub(crate) fn least_step(&self) -> f64 {
         let all = self.corners.keys().filter_map(|place| self.steps(*place));
-        all.map(|Steps([u, v])| length(u).min(length(v))).fold(f64::INFINITY, f64::min)
+        all.map(|steps| steps.shorter()).fold(f64::INFINITY, f64::min)
     }
 
     /// The place in the middle of all.
@@ -131,10 +131,6 @@ fn smoothed(corners: &BTreeMap<Place, Point>) -> BTreeMap<Place, Point> {
 
 fn parity([u, v]: Place) -> f64 {
     if (u + v).rem_euclid(2) == 0 { 1.0 } else { -1.0 }
-}
-
-fn steps(corners: &BTreeMap<Place, Point>, place: Place) -> Option<Steps> {
-    Steps::at(*corners.get(&place)?, |by| corners.get(&[place[0] + by[0], place[1] + by[1]]).copied())
 }
 
 /// Adds corners that were no candidates, where two neighbours say that they are; none of them twice.

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::grow::{Place, WAYS, moved};
+use super::grow::Place;
+use super::sectors::Steps;
 use crate::plane::{Homography, Point, distance};
 
 /// How far a corner may be from where the eight around it have it, as a share of the shorter step, and px more.
@@ -38,10 +39,9 @@ fn off(corners: &Corners, place: Place) -> Option<f64> {
     foreseen(corners, place).map(|(at, factor)| distance(at, corners[&place]) / factor)
 }
 
-/// The shortest step to a neighbour, px.
+/// The shorter of the steps to the neighbours, px.
 fn step(corners: &Corners, place: Place) -> f64 {
-    let neighbours = WAYS.iter().filter_map(|(axis, sign)| corners.get(&moved(place, *axis, *sign)));
-    neighbours.map(|other| distance(*other, corners[&place])).fold(f64::INFINITY, f64::min)
+    Steps::among(corners, place).map_or(0.0, |steps| steps.shorter())
 }
 
 /// Puts few corners that are off, by the edge of a shadow for instance, to where the others have them; whether there were any.
@@ -61,7 +61,7 @@ pub(super) fn straighten(corners: &mut Corners) -> bool {
     true
 }
 
-/// Whether no corner is far off.
+/// Whether every corner is where the eight around it have it, about.
 pub(super) fn is_flat(corners: &Corners) -> bool {
-    corners.keys().all(|place| off(corners, *place).is_none_or(|off| off < BENT * step(corners, *place) + BENT_PX))
+    corners.keys().all(|place| off(corners, *place).is_some_and(|off| off < BENT * step(corners, *place) + BENT_PX))
 }

@@ -38,6 +38,18 @@ impl Dotted {
         [[column, row], [column + 1, row], [column, row + 1]]
     }
 
+    /// Column and row, from 1 for the inner ones, of the corner so many half squares to the right and down of the middle of the first dot; both are odd.
+    pub const fn corner(&self, [right, down]: [i32; 2]) -> [i32; 2] {
+        let [column, row] = self.place;
+        [(2 * column as i32 + 1 + right) / 2, (2 * row as i32 + 1 + down) / 2]
+    }
+
+    /// Which point of the layout a corner is; none where the board has no inner corner.
+    pub fn index(&self, [column, row]: [i32; 2]) -> Option<usize> {
+        let inside = (1..=self.columns as i32).contains(&column) && (1..=self.rows as i32).contains(&row);
+        inside.then(|| (row as usize - 1) * self.columns + column as usize - 1)
+    }
+
     /// What is printed.
     ///
     /// # Errors
@@ -68,6 +80,21 @@ impl Dotted {
 mod tests {
     use super::super::Board;
     use super::*;
+
+    /// Every point is found by the way to it from the first dot, and nothing beyond them is.
+    #[test]
+    fn corners_are_counted_from_the_first_dot() {
+        let board = Dotted { columns: 7, rows: 5, square: 2.0, place: [4, 2], dot: Dotted::DOT };
+        let layout = board.layout().unwrap();
+        // The middle of the first dot is 3.5 squares to the right and 1.5 down from r1c1.
+        let ways = |from: f64, at: f64| (2.0 * (at / 2.0 - from)).round() as i32;
+        for (index, point) in layout.points.iter().enumerate() {
+            let corner = board.corner([ways(3.5, point.at[0]), ways(1.5, -point.at[1])]);
+            assert_eq!((board.index(corner), format!("r{}c{}", corner[1], corner[0])), (Some(index), point.id.clone()));
+        }
+        assert_eq!(board.corner([-9, -5]), [0, 0], "the upper left of the board");
+        assert!([[0, 1], [1, 0], [8, 1], [1, 6], [-1, 3]].iter().all(|corner| board.index(*corner).is_none()));
+    }
 
     #[test]
     fn dots_are_where_they_are_said_to_be_and_of_the_other_shade() {

@@ -63,10 +63,9 @@ fn numbered(at: &BTreeMap<Place, PixelPoint>, dark: &[Place], light: &[Place], b
     let point = |(place, position): (&Place, &PixelPoint)| {
         // Twice the way from the middle of the first square, which is after its corner in rows and columns.
         let way = [0, 1].map(|i| 2 * (place[i] - first[i]) - 1);
-        let count = |along: Place, from: usize| usize::try_from((2 * from as i32 + 1 + way[0] * along[0] + way[1] * along[1]) / 2).ok();
-        let (column, row) = (count(right, board.place[0])?, count(down, board.place[1])?);
-        let inside = (1..=board.columns).contains(&column) && (1..=board.rows).contains(&row);
-        inside.then(|| BoardPointFound { index: (row - 1) * board.columns + column - 1, position: *position })
+        let along = |axis: Place| way[0] * axis[0] + way[1] * axis[1];
+        let index = board.index(board.corner([along(right), along(down)]))?;
+        Some(BoardPointFound { index, position: *position })
     };
     let mut points: Vec<BoardPointFound> = at.iter().filter_map(point).collect();
     points.sort_by_key(|point| point.index);

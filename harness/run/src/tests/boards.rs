@@ -47,7 +47,7 @@ sigma_px = 0.02
 name = "METHOD"
 "#;
 
-fn board(word: &str, method: &str, changes: &[(&str, &str)]) -> Scenario {
+pub(super) fn board(word: &str, method: &str, changes: &[(&str, &str)]) -> Scenario {
     let mut text = BOARD.replace("WORD", word).replace("METHOD", method);
     for (old, new) in changes {
         assert!(text.contains(old), "{old}");

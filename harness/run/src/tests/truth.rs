@@ -8,8 +8,10 @@ use calibench_exchange::camera::read_camera;
 use calibench_exchange::{NewFolder, OutputFolder, read_control, read_stations};
 use calibench_model::TargetKind;
 use calibench_model::camera::CameraModel;
+use calibench_records::description;
 use calibench_synth::sensor::Clipped;
 
+use super::boards::board;
 use super::{KEY, scenario, views};
 use crate::truth::{self, StationRow};
 use crate::views::Prepared;
@@ -45,10 +47,34 @@ fn a_view_s_table_is_the_drawing_on_paper() {
         let (x, y) = (499.5 + number(row, "X") * 2000.0 / 6.0, 400.0 - number(row, "Y") * 2000.0 / 6.0);
         assert!((number(row, "x") - x).abs() < 1e-9 && (number(row, "y") - y).abs() < 1e-9, "{row:?}");
         assert!((number(row, "size_px") - 0.06 * 2000.0 / 6.0).abs() < 1e-6, "60 mm are 20 px: {}", row["size_px"]);
-        assert_eq!((number(row, "Z"), &*row["ellipse_x"]), (0.0, ""));
+        assert_eq!((number(row, "Z"), &*row["ellipse_x"], &*row["room_px"]), (0.0, "", ""));
     }
     let xs: Vec<f64> = found.iter().map(|row| number(row, "x")).collect();
     assert!(xs.iter().any(|x| *x < 400.0) && xs.iter().any(|x| *x > 600.0), "the wall is not a point");
+}
+
+/// From 420 mm straight ahead 1 mm is 4 mm / 5 um / 420 px, and markers begin 4.5 mm beside a corner; rolled by 80 degrees the free square holds a smaller window.
+#[test]
+fn the_room_of_a_board_is_the_drawing_on_paper() {
+    let straight = ("tilts = [[0, 0], [30, 0], [0, -35], [-25, 25]]", "tilts = [[0, 0]]");
+    let scenario = board("charuco:8x6:30:21:DICT_4X4_50", "parametric_corner", &[straight]);
+    let subject = views(&scenario);
+    let folder = tempfile::tempdir().unwrap();
+    let prepared = Prepared::new(subject, KEY).unwrap();
+    let upright = 4.5 * 800.0 / 420.0;
+    let (sine, cosine) = 80.0_f64.to_radians().sin_cos();
+    let expected = [upright, upright / (sine + cosine)];
+    for (view, expected) in prepared.views.iter().zip(expected) {
+        let path = folder.path().join(&view.station.name);
+        fill(&path, |folder| truth::write_view(folder, "seen", subject, view));
+        let found = rows(&path.join("seen.csv"));
+        assert_eq!(found.len(), 35);
+        assert!(found.iter().all(|row| (number(row, "room_px") - expected).abs() < 1e-6), "{expected} {:?}", found[0]);
+    }
+    // All are in view, so that the middle one of both rolls is the larger.
+    let description::Subject::Views(told) = crate::description::description(&scenario, &[]).subject else { panic!() };
+    let room = told.room.unwrap();
+    assert!((room.least - expected[1]).abs() < 1e-6 && (room.middle - expected[0]).abs() < 1e-6, "{room:?}");
 }
 
 #[test]
