@@ -7,7 +7,9 @@ for any number of lines. A command that ends with another exit code than 0 is fo
 
 A fenced block of another language below a paragraph that ends with a file's name, as in "Save it as `board.toml`:",
 becomes this file before the commands below it run. `<!-- figure: FILE | words -->` is a picture that the page's commands make.
-Other blocks, indented ones too, are no commands: they show how something is written.
+`<!-- first: COMMAND -->` runs unseen where it stands: it brings what readers have, as photographs of their own. It finds
+`project NAME...`, which makes the folder a project with these scenarios of ours, and `ours FILE...`, which copies files of ours.
+Other blocks, indented ones too, show how something is written; a line of theirs that begins as a command is one that nobody runs.
 """
 
 import os
@@ -20,6 +22,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```\s*$", re.DOTALL | re.MULTILINE)
+STEP = re.compile(rf"{FENCE.pattern}|^<!-- first: (.+?) -->$", re.DOTALL | re.MULTILINE)
+INDENTED = re.compile(r"^ {4}(?:\$ )?((?:calibench|just|\./bootstrap|cargo|python3?|pip|git|docker|npx|mdbook) .*)$", re.MULTILINE)
 FIGURE = re.compile(r"^<!-- figure: (\S+) \| (.+?) -->$", re.MULTILINE)
 NAMED = re.compile(r"`([\w./-]+)`:\s*\Z")
 SHELLS = {"sh", "bash", "shell", "zsh"}
@@ -32,6 +36,7 @@ class Command:
     line: int
     words: str
     shown: list = field(default_factory=list)
+    seen: bool = True
 
 
 @dataclass
@@ -51,9 +56,12 @@ def pages(folder=DOCS):
 def steps(text):
     """What a page does: its files and commands, in order."""
     found = []
-    for block in FENCE.finditer(text):
-        language, inside = block.groups()
+    for block in STEP.finditer(text):
+        language, inside, first = block.groups()
         line = text.count("\n", 0, block.start()) + 2
+        if first:
+            found.append(Command(line - 1, first, seen=False))
+            continue
         named = NAMED.search(text[: block.start()])
         if language == "console":
             found += commands(inside, line)
@@ -80,6 +88,11 @@ def commands(block, line):
     return found
 
 
+def indented(text):
+    """Commands of indented blocks, without what follows their `#`."""
+    return [words.split("  #")[0].rstrip() for words in INDENTED.findall(FENCE.sub("", text))]
+
+
 def figures(text):
     """The pictures that a page's commands make: names and words."""
     return FIGURE.findall(text)
@@ -97,6 +110,19 @@ def matches(shown, answered):
     return re.fullmatch(pattern, text) is not None
 
 
+# What commands before a page's own may call.
+OURS = r"""
+ours() { for file; do mkdir -p "$(dirname "$file")" && cp -r "$OURS/$file" "$file" || return; done; }
+project() {
+    mkdir -p scenarios reference/baselines methods
+    for name; do
+        ours "scenarios/$name.toml" || return
+        for file in "$OURS/reference/baselines/${name//\//--}".*; do [ ! -e "$file" ] || cp "$file" reference/baselines; done
+    done
+}
+"""
+
+
 class Shell:
     """A shell in an empty folder that has the program on its path, and keeps its folder and variables from command to command."""
 
@@ -108,12 +134,13 @@ class Shell:
         self.folder = folder / "here"
         self.folder.mkdir()
         own = {name: value for name, value in os.environ.items() if not name.startswith("CALIBENCH_")}
-        own |= {"PATH": f"{bin}{os.pathsep}{own['PATH']}", "HOME": str(self.folder), "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}
+        own |= {"OURS": str(ROOT), "PATH": f"{bin}{os.pathsep}{own['PATH']}", "HOME": str(self.folder), "LC_ALL": "C.UTF-8", "PYTHONDONTWRITEBYTECODE": "1"}
         self.process = subprocess.Popen(
             ["bash", "--noprofile", "--norc"], cwd=self.folder, env=own, text=True, bufsize=1,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
         self.code = 0
+        self.run(OURS)
 
     def run(self, words):
         """Lines that a command answers, and its exit code."""
@@ -156,7 +183,7 @@ def run(page, folder, program, leave_out=()):
         answered, code = shell.run(step.words)
         if code and not (isinstance(after, Command) and after.words == "echo $?"):
             complaints.append(f"{name}:{step.line}: $ {step.words}\nended with exit code {code}:\n" + "\n".join(answered))
-        elif not matches(step.shown, answered):
+        elif step.seen and not matches(step.shown, answered):
             complaints.append(f"{name}:{step.line}: $ {step.words}\nthe page shows:\n" + "\n".join(step.shown) + "\nit answers:\n" + "\n".join(answered))
     shell.close()
     for figure, _ in figures(text):
@@ -176,7 +203,7 @@ def rewritten(page, folder, program, leave_out=()):
             shell.write(step)
         elif step.words not in leave_out:
             answered, _ = shell.run(step.words)
-            if not matches(step.shown, answered):
+            if step.seen and not matches(step.shown, answered):
                 first = step.line - 1 + moved + step.words.count("\n") + 1
                 text[first : first + len(step.shown)] = answered
                 moved += len(answered) - len(step.shown)

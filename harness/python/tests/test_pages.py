@@ -34,10 +34,10 @@ def test_commands_answer_what_the_page_shows(name, tmp_path):
 def test_what_is_not_run_is_listed_and_is_little():
     listed = pages.not_run()
     assert len(listed) <= 10 and all(why for *_, why in listed)
-    unlisted = [(name, words) for name, words in shell_blocks() if (name, words) not in {row[:2] for row in listed} and name not in ELSEWHERE]
-    assert not unlisted, "blocks of a shell that no test runs: make them ```console"
+    unlisted = [(name, words) for name, words in shell_blocks() + indented() if (name, words) not in {row[:2] for row in listed} and name not in ELSEWHERE]
+    assert not unlisted, "commands that no test runs: make them ```console"
     commands = {(name, step.words) for name in RUN for step in pages.steps(ALL[name].read_text(encoding="utf-8")) if isinstance(step, pages.Command)}
-    assert {row[:2] for row in listed} <= commands | set(shell_blocks())
+    assert {row[:2] for row in listed} <= commands | set(shell_blocks()) | set(indented())
     for name, test in ELSEWHERE.items():
         assert name in (ROOT / "harness/python/tests" / test).read_text(encoding="utf-8")
 
@@ -48,10 +48,20 @@ def shell_blocks():
     return [(name, block[2].splitlines()[0]) for name, block in found if block[1] in pages.SHELLS]
 
 
+def indented():
+    """Every command of an indented block: page and words."""
+    return [(name, words) for name, page in ALL.items() for words in pages.indented(page.read_text(encoding="utf-8"))]
+
+
 def test_every_page_is_in_the_summary():
     summary = (pages.DOCS / "SUMMARY.md").read_text(encoding="utf-8")
     missing = [name for name in ALL if f"]({name})" not in summary and name != "SUMMARY.md"]
     assert not missing
+
+
+def test_commands_of_indented_blocks_are_seen():
+    text = "    calibench a --b   # c\n\n    calibench-1.png\n    $ just x\n\n```text\n    calibench in a fence\n```\n"
+    assert pages.indented(text) == ["calibench a --b", "just x"]
 
 
 def test_pages_that_teach_are_short():
@@ -70,12 +80,13 @@ def test_what_is_shown_is_compared():
 def test_faults_on_a_page_are_found(tmp_path):
     page = tmp_path / "page.md"
     sound = "Save it as `a.txt`:\n\n```text\n12\n```\n\n```console\n$ cat a.txt\n12\n$ false\n$ echo $?\n1\n$ cd /; calibench --version\ncalibench ...\n```\n"
-    faults = {"\n12\n$ false": "\n13\n$ false", "$ echo $?\n1\n": "", "\n12\n```\n": "\n14\n```\n", "calibench --version": "calibench --verzion"}
+    sound = "<!-- first: ours CHANGELOG.md; project corners/noise -->\n\n```console\n$ ls\nCHANGELOG.md\nmethods\nreference\nscenarios\n$ calibench show corners/noise -o a.png | head -1\n# corners/noise\n```\n" + sound
+    faults = {"CHANGELOG.md; ": "none.md; ", "project corners": "project corner", "\n12\n$ false": "\n13\n$ false", "$ echo $?\n1\n": "", "\n12\n```\n": "\n14\n```\n", "calibench --version": "calibench --verzion"}
     for number, (right, wrong) in enumerate([("", ""), *faults.items(), ("", "<!-- figure: a.png | words -->\n")]):
         assert right in sound
         page.write_text(sound.replace(right, wrong, 1))
         complaints, _ = pages.run(page, tmp_path / str(number), PROGRAM)
-        assert len(complaints) == (number > 0), (right, wrong, complaints)
+        assert bool(complaints) == (number > 0), (right, wrong, complaints)
 
 
 @needs_program
