@@ -80,7 +80,7 @@ def test_what_is_shown_is_compared():
 def test_faults_on_a_page_are_found(tmp_path):
     page = tmp_path / "page.md"
     sound = "Save it as `a.txt`:\n\n```text\n12\n```\n\n```console\n$ cat a.txt\n12\n$ false\n$ echo $?\n1\n$ cd /; calibench --version\ncalibench ...\n```\n"
-    sound = "<!-- first: ours CHANGELOG.md; project corners/noise -->\n\n```console\n$ ls\nCHANGELOG.md\nmethods\nreference\nscenarios\n$ calibench show corners/noise -o a.png | head -1\n# corners/noise\n```\n" + sound
+    sound = "<!-- first: ours CHANGELOG.md; project corners/noise -->\n\n```console\n$ ls\nCHANGELOG.md\nmethods\nreference\nscenarios\n$ calibench show corners/noise -o b.png | head -1\n# corners/noise\n```\n" + sound
     faults = {"CHANGELOG.md; ": "none.md; ", "project corners": "project corner", "\n12\n$ false": "\n13\n$ false", "$ echo $?\n1\n": "", "\n12\n```\n": "\n14\n```\n", "calibench --version": "calibench --verzion"}
     for number, (right, wrong) in enumerate([("", ""), *faults.items(), ("", "<!-- figure: a.png | words -->\n")]):
         assert right in sound
