@@ -1,8 +1,13 @@
 //! The report of a family of scenarios.
 
+use std::path::Path;
+
+use calibench_records::description::Sweep;
+use calibench_records::names::cell_folder;
 use rayon::prelude::*;
 
 use crate::composed::Composed;
+use crate::load::{adjustments, description};
 use crate::page::Page;
 use crate::places::PAGE;
 use crate::speeds::Speeds;
@@ -14,11 +19,8 @@ use crate::{LoadError, Loaded, Places, ReportError, detectors, load, published, 
 /// Records or tables that cannot be read.
 pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Result<Option<Composed>, ReportError> {
     let of = |name: &String| {
-        if let Some(found) = detectors::Detectors::load(&places.records, name)? {
-            return Ok(Either::Detectors(Box::new(found)));
-        }
-        if let Some(comparison) = targets::Comparison::load(&places.records, name)? {
-            return Ok(Either::Boards(Box::new(comparison)));
+        if let Some(boards) = boards(&places.records, name)? {
+            return Ok(boards);
         }
         Ok::<_, LoadError>(match sweep::load(&places.records, name)? {
             Some(sweep) => Either::Sweep(Box::new(sweep)),
@@ -75,6 +77,22 @@ pub(crate) fn compose(places: &Places, family: &str, scenarios: &[String]) -> Re
         page.beside.push((detectors::FILE, text));
     }
     Ok(Some(page.composed()))
+}
+
+/// The records of `name` if they are a sweep over boards: one of detectors, or of boards and at least one more key.
+fn boards(records: &Path, name: &str) -> Result<Option<Either>, LoadError> {
+    let folder = records.join(name);
+    let of_boards = |sweep: &Sweep| sweep.axes.first().is_some_and(|axis| axis.path == targets::BOARD);
+    let Some(sweep) = description(&folder, name)?.and_then(|scenario| scenario.sweep).filter(of_boards) else { return Ok(None) };
+    let read: Vec<_> = (0..sweep.cells.len()).into_par_iter().map(|cell| adjustments::load(&cell_folder(&folder, cell))).collect();
+    let mut figures = read.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let axes = sweep.axes.len();
+    let detectors = if axes < 3 { detectors::Detectors::load(records, name, &mut figures)? } else { None };
+    if let Some(found) = detectors {
+        return Ok(Some(Either::Detectors(Box::new(found))));
+    }
+    let comparison = if axes > 1 { targets::Comparison::load(records, name, figures)? } else { None };
+    Ok(comparison.map(|comparison| Either::Boards(Box::new(comparison))))
 }
 
 /// What the records of a scenario are.

@@ -110,8 +110,8 @@ impl Page {
                 self.pictures.extend(pictures);
             }
             Subject::Photographs { .. } => {
-                photographs::answer(loaded).into_iter().for_each(|answer| self.answers.say(answer));
-                let (text, pictures) = photographs::section(loaded);
+                let photographs::Said { answer, text, pictures } = photographs::section(loaded);
+                answer.into_iter().for_each(|answer| self.answers.say(answer));
                 self.text.push_str(&text);
                 self.pictures.extend(pictures);
             }

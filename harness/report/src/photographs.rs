@@ -1,6 +1,6 @@
 //! Photographs: how far the operators differ, where they refuse, and pictures of both.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::sync::Arc;
 
@@ -49,25 +49,27 @@ struct Chosen<'a> {
     title: String,
 }
 
-/// The verdict on operator and model in a sentence or two, where there is one.
-pub fn answer(loaded: &Loaded) -> Option<String> {
-    loaded.unavailable().is_none().then_some(())?;
-    judgement_of(loaded)?.ok().and_then(|summary| super::judgement::answer(&summary))
+/// What a section says.
+pub struct Said {
+    /// The verdict on operator and model in a sentence or two, where there is one.
+    pub answer: Option<String>,
+    /// The text of the section.
+    pub text: String,
+    /// Its pictures, with their file names.
+    pub pictures: Vec<(String, Canvas)>,
 }
 
-/// The text of the section, and its pictures with their file names.
-pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
+/// The section of photographs.
+pub fn section(loaded: &Loaded) -> Said {
     if let Some(why) = loaded.unavailable() {
-        return (
-            format!(
-                "**unavailable**: {why}.\n\nThe photographs are not part of this project; the README says where they come from and where to put them.\n"
-            ),
-            Vec::new(),
+        let text = format!(
+            "**unavailable**: {why}.\n\nThe photographs are not part of this project; the README says where they come from and where to put them.\n"
         );
+        return Said { answer: None, text, pictures: Vec::new() };
     }
     let points = compared(loaded);
     let operators: Vec<usize> = (0..loaded.head.methods.len()).filter(|&m| looks(&loaded.head.methods[m].label)).collect();
-    let (mut text, mut pictures) = judged(loaded);
+    let Said { answer, mut text, mut pictures } = judged(loaded);
     text.push_str("### What was measured\n\n");
     text.push_str(&seen(loaded, &points));
     text.push_str(&counts(loaded));
@@ -102,16 +104,20 @@ pub fn section(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
             pictures.push((format!("{name}.png"), picture));
         }
     }
-    (text, pictures)
+    Said { answer, text, pictures }
 }
 
 /// What the photographs say of operators and models, if the scenario asks for it.
-fn judged(loaded: &Loaded) -> (String, Vec<(String, Canvas)>) {
+fn judged(loaded: &Loaded) -> Said {
     match judgement_of(loaded) {
-        None => (String::new(), Vec::new()),
-        Some(Ok(summary)) => super::judgement::section(&summary),
+        None => Said { answer: None, text: String::new(), pictures: Vec::new() },
+        Some(Ok(summary)) => {
+            let (text, pictures) = super::judgement::section(&summary);
+            Said { answer: super::judgement::answer(&summary), text, pictures }
+        }
         Some(Err(why)) => {
-            (format!("**unavailable**: the records of the judgement cannot be read ({why}): run the scenario again.\n\n"), Vec::new())
+            let text = format!("**unavailable**: the records of the judgement cannot be read ({why}): run the scenario again.\n\n");
+            Said { answer: None, text, pictures: Vec::new() }
         }
     }
 }
@@ -221,8 +227,8 @@ fn picture(loaded: &Loaded, chosen: &[Chosen<'_>], operators: &[usize]) -> Optio
     let mut layers = vec![Layer::start()];
     layers.extend(Layer::methods(available.iter().map(|&m| &*loaded.head.methods[m].label)));
     let start = loaded.method("pixel");
-    let images: BTreeMap<&str, Image<'static>> =
-        chosen.iter().filter_map(|c| Some((&*c.point.key.0, loaded.image(&c.point.key.0)?))).collect();
+    let views: BTreeSet<&str> = chosen.iter().map(|chosen| &*chosen.point.key.0).collect();
+    let images: BTreeMap<&str, Image<'static>> = views.into_iter().filter_map(|view| Some((view, loaded.image(view)?))).collect();
     let panel = |Chosen { point, title }: &Chosen<'_>| {
         let started = start.and_then(|m| point.positions[m]);
         let mut marks: Vec<MarkAt> = started.map(|at| MarkAt { layer: 0, at }).into_iter().collect();

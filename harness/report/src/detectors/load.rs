@@ -3,17 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use calibench_records::description::Sweep;
-use calibench_records::names::{DETECTED, DETECTION, cell_folder};
+use calibench_records::names::{DETECTED, DETECTION};
 use calibench_records::results::{Group, Outcome, Trial};
 use calibench_records::statistics::running::Running;
 
 use super::offsets::Offsets;
 use crate::LoadError;
-use crate::load::adjustments::{self, Summaries};
-use crate::load::description;
+use crate::load::adjustments::Summaries;
 use crate::sweep::{LoadedSweep, load_with};
-use crate::targets::BOARD;
 
 /// A sweep over boards, and perhaps one more key, with detectors among its methods.
 pub struct Detectors {
@@ -82,15 +79,11 @@ pub struct Counted {
 }
 
 impl Detectors {
-    /// Reads the records of sweep `name`; `None` if there are none, it is not over boards, or none of its methods finds boards.
+    /// Reads the records of sweep `name`, whose `counts` were read before; `None` if there are none, or none of its methods finds boards.
     ///
     /// # Errors
     /// Records that are not whole or not of this version.
-    pub fn load(records: &Path, name: &str) -> Result<Option<Self>, LoadError> {
-        let folder = records.join(name);
-        let Some(sweep) = description(&folder, name)?.and_then(|scenario| scenario.sweep).filter(is_of_boards) else { return Ok(None) };
-        let counts = (0..sweep.cells.len()).map(|cell| adjustments::load(&cell_folder(&folder, cell)));
-        let counts = counts.collect::<Result<Vec<_>, _>>()?;
+    pub fn load(records: &Path, name: &str, counts: &mut Vec<Option<Summaries>>) -> Result<Option<Self>, LoadError> {
         if !counts.iter().flatten().any(|counts| counts.sets.iter().any(|set| set == DETECTION)) {
             return Ok(None);
         }
@@ -101,7 +94,7 @@ impl Detectors {
                 }
             }
         };
-        Ok(load_with(records, name, watch)?.map(|(sweep, cells)| Self { sweep, cells, counts }))
+        Ok(load_with(records, name, watch)?.map(|(sweep, cells)| Self { sweep, cells, counts: std::mem::take(counts) }))
     }
 
     /// The words of the boards.
@@ -139,9 +132,4 @@ impl Detectors {
         };
         Some(Counted { images: sum("images")?, boards: sum("grids")?, wrong: sum("wrong labels")?, nowhere: sum("off")? })
     }
-}
-
-/// Whether a sweep is one over boards and at most one more key.
-fn is_of_boards(sweep: &Sweep) -> bool {
-    (1..3).contains(&sweep.axes.len()) && sweep.axes[0].path == BOARD
 }

@@ -4,15 +4,11 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::sync::Arc;
 
-use calibench_records::description::Sweep;
-use calibench_records::names::cell_folder;
 use calibench_records::results::{Group, Outcome, Trial};
 use calibench_records::statistics::running::Running;
-use rayon::prelude::*;
 
 use crate::LoadError;
-use crate::load::adjustments::{self, Summaries};
-use crate::load::description;
+use crate::load::adjustments::Summaries;
 use crate::sweep::{LoadedSweep, load_with};
 
 /// The swept key that makes a sweep one over boards.
@@ -117,11 +113,11 @@ impl Camera {
 }
 
 impl Comparison {
-    /// Reads the records of sweep `name`; `None` if there are none, or boards and other keys are not what it sweeps.
+    /// Reads the records of sweep `name`, whose calibrations, `cameras`, were read before; `None` if there are none.
     ///
     /// # Errors
     /// Records that are not whole or not of this version.
-    pub fn load(records: &Path, name: &str) -> Result<Option<Self>, LoadError> {
+    pub fn load(records: &Path, name: &str, cameras: Vec<Option<Summaries>>) -> Result<Option<Self>, LoadError> {
         let watch = |trial: &Trial, names: &[String], cell: &mut BTreeMap<String, Found>| {
             for point in &trial.points {
                 let Some(name) = names.get(point.method) else { continue };
@@ -133,13 +129,7 @@ impl Comparison {
                 }
             }
         };
-        let of_boards =
-            description(&records.join(name), name)?.and_then(|scenario| scenario.sweep).is_some_and(|sweep| is_of_boards(&sweep));
-        let Some((sweep, cells)) = (if of_boards { load_with(records, name, watch)? } else { None }) else { return Ok(None) };
-        let cells_of = (0..sweep.cells.len()).into_par_iter();
-        let cameras: Vec<_> = cells_of.map(|cell| adjustments::load(&cell_folder(&sweep.folder, cell))).collect();
-        let cameras = cameras.into_iter().collect::<Result<_, _>>()?;
-        Ok(Some(Self { sweep, cells, cameras }))
+        Ok(load_with(records, name, watch)?.map(|(sweep, cells)| Self { sweep, cells, cameras }))
     }
 
     /// The words of the boards.
@@ -206,11 +196,6 @@ impl Comparison {
     pub fn is_calibrated(&self) -> bool {
         self.cameras.iter().any(Option::is_some)
     }
-}
-
-/// Whether a sweep is one over boards and at least one more key.
-fn is_of_boards(sweep: &Sweep) -> bool {
-    sweep.axes.len() > 1 && sweep.axes[0].path == BOARD
 }
 
 /// The kind of a board by its word.
