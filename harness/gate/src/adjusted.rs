@@ -41,7 +41,9 @@ pub(super) fn entries(adjusted: &Calibrated) -> Vec<(Arc<str>, Entry)> {
         let sigma0 = sigma0.map(|figure| (format!("sigma0 {}", adjusted.set).into(), measured(figure.value, 0.0)));
         let recognised = recognised(figures).into_iter().map(|(name, [lost, wrong])| (name, measured(lost, wrong)));
         let found: Vec<(Arc<str>, Entry)> = sigma0.into_iter().chain(recognised).collect();
-        return if found.is_empty() && first { vec![("camera".into(), failed)] } else { found };
+        // Figures without any of a camera are no adjustment of one: what is printed, and what follows from it.
+        let camera = first && figures.iter().any(|figure| figure.group == Group::Iop);
+        return if found.is_empty() && camera { vec![("camera".into(), failed)] } else { found };
     };
     if !first {
         return Vec::new();
@@ -111,6 +113,12 @@ mod tests {
             found(&calibrated(1, &[(Group::Network, "sigma0", 0.25)])).is_empty(),
             "a set of which no camera is compared over the frame"
         );
+    }
+
+    #[test]
+    fn a_camera_that_is_not_compared_is_a_failed_one_and_what_is_no_camera_is_none() {
+        assert_eq!(found(&calibrated(0, &[(Group::Iop, "c", 18.0)])), [("camera".to_owned(), Entry::Rejected(Rejection::NotConverged))]);
+        assert_eq!(found(&calibrated(0, &[(Group::Network, "pixel size", 5.38)])), []);
     }
 
     #[test]

@@ -78,3 +78,41 @@ fn adjustments_of(folder: &Path, unit: &'static str) -> Result<ByTrial, StoredEr
     };
     Ok(all.into_iter().map(trial).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_records::adjustments::CalibrationWriter;
+    use calibench_records::points::{RecordWriter, RunInfo};
+    use calibench_records::stored::Compressor;
+
+    use super::*;
+
+    /// What is adjusted alone, as from coordinates that are drawn, has figures and no points.
+    #[test]
+    fn figures_of_methods_without_points_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |table: Stored| Compressor::new(std::fs::File::create(folder.path().join(table.file())).unwrap());
+        let run = RunInfo { scenario: "f/s".into(), seed: 9, revision: "r".into(), detector: None };
+        let methods = ["a", "b"].map(|label| MethodInfo { label: label.into(), version: "3".into(), unavailable: None }).to_vec();
+        let mut records = RecordWriter::new(table(Stored::Points), run.clone(), methods.clone()).unwrap();
+        records.adjusted_alone().unwrap();
+        records.finish().unwrap().finish().unwrap();
+        let mut adjustments = CalibrationWriter::new(table(Stored::Adjustments), run, methods, vec!["held".into()]).unwrap();
+        let calibrated = |method: usize, rms: f64| {
+            let figures = [(Group::Frame, "rms", rms), (Group::Check, "rmse_xy", 0.25), (Group::Check, "rmse_z", 0.5)];
+            let figures = figures.map(|(group, name, value)| Figure::plain(group, name, value, "m"));
+            Calibrated { method, set: 0, outcome: Ok(figures.to_vec()), check_failed: None }
+        };
+        for trial in 0..2 {
+            adjustments.trial(trial, &[calibrated(0, 1.0), calibrated(1, 2.0)]).unwrap();
+        }
+        adjustments.finish().unwrap().finish().unwrap();
+
+        let table = recorded(folder.path(), "f/s", "m").unwrap();
+        assert_eq!((table.seed, table.trials(), table.methods().count()), (9, 2, 2));
+        let b = table.method("b").unwrap();
+        assert_eq!((&*b.version, b.points.len()), ("3", 4), "the camera and the check points of two trials");
+        let rms = &b.figures[&(0, Group::Frame, "rms".into())];
+        assert!(rms.len() == 2 && rms.values().all(|numbers| numbers.value == 2.0));
+    }
+}

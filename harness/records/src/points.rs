@@ -96,6 +96,19 @@ impl<W: Write> RecordWriter<W> {
         Ok(writer)
     }
 
+    /// Says of every available method that it is adjusted and measures no point: a row each, before all trials, so that records name their methods.
+    ///
+    /// # Errors
+    /// What the output refuses.
+    pub fn adjusted_alone(&mut self) -> Result<(), csv::Error> {
+        let methods = std::mem::take(&mut self.methods);
+        for MethodInfo { label, version, .. } in methods.iter().filter(|method| method.unavailable.is_none()) {
+            self.row(["", "", "", label, version], &NONE, "", "adjusted", "measures no point")?;
+        }
+        self.methods = methods;
+        Ok(())
+    }
+
     /// Adds a trial: a row for each point, with its errors where the truth is known, its bound and the method's own standard deviation where there are
     /// such, or with the reason why it was rejected. Coordinates and errors have nine decimals, standard deviations six significant digits.
     ///
@@ -192,6 +205,9 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
         last = method;
         if row.text(STATUS) == "unavailable" {
             head.methods[method].unavailable = Some(row.text(REASON).to_owned());
+            continue;
+        }
+        if row.text(STATUS) == "adjusted" {
             continue;
         }
         let number = row.parse(TRIAL)?;
@@ -316,6 +332,19 @@ mod tests {
         assert_eq!(head, RecordHead { run, methods });
         assert_eq!(again, trials);
         assert!(String::from_utf8(bytes).unwrap().contains(",lost,"), "3.5 px off is lost");
+    }
+
+    #[test]
+    fn methods_without_points_are_named() {
+        let (methods, _) = example();
+        let run = RunInfo { scenario: "f/s".into(), seed: 9, revision: "abc".into(), detector: None };
+        let mut bytes = Vec::new();
+        let mut writer = RecordWriter::new(&mut bytes, run.clone(), methods.clone()).unwrap();
+        writer.adjusted_alone().unwrap();
+        writer.trial(&Trial::default()).unwrap();
+        writer.finish().unwrap();
+        let head = read_records(&bytes[..], |_, _| panic!("there is no point")).unwrap();
+        assert_eq!(head, RecordHead { run, methods });
     }
 
     #[test]

@@ -61,7 +61,7 @@ impl Page {
     /// Records that do not belong together.
     pub fn sweep(&mut self, loaded: &sweep::LoadedSweep, printed: &[(String, f64)]) -> Result<(), LoadError> {
         // The points of adjusted scenarios are those of the first trial: how many there were is in their tables.
-        let without = loaded.scenario.adjusted().is_some() || loaded.methods.is_empty();
+        let without = loaded.scenario.adjusted().is_some() || loaded.has_no_points();
         let deviations = if without { String::new() } else { sweep::deviations(loaded) };
         let stem = self.head(&loaded.name, &loaded.scenario, &deviations);
         if let Some((text, pictures)) = network::sweep(loaded, &stem, printed)? {

@@ -137,12 +137,15 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
     let info = RunInfo { scenario: name.to_owned(), seed: plan.seed, revision: revision.to_owned(), detector: plan.detector_used() };
     let mut records = RecordWriter::new(table(folder, Table::Points)?, info.clone(), plan.method_infos()).map_err(io::Error::other)?;
     let (mut calibrations, mut measured) = (calibrations(folder, name, plan, revision)?, 0);
+    let adjusted_alone = plan.transfer().is_some() || matches!(plan.scenario.subject, Subject::Printed(_));
+    if adjusted_alone {
+        records.adjusted_alone().map_err(io::Error::other)?;
+    }
     plan.run(step, &mut |trial| {
         if let Some(writer) = &mut calibrations {
             writer.trial(trial.number, &trial.calibrations).map_err(io::Error::other)?;
         }
-        let counted = plan.transfer().is_some() || matches!(plan.scenario.subject, Subject::Printed(_));
-        measured += trial.calibrations.iter().filter(|one| counted && one.outcome.is_ok()).count() as u64;
+        measured += trial.calibrations.iter().filter(|one| adjusted_alone && one.outcome.is_ok()).count() as u64;
         measured += trial.points.iter().filter(|point| matches!(point.outcome, Outcome::Measured { .. })).count() as u64;
         records.trial(&trial).map_err(io::Error::other)?;
         write_judgement(folder, plan, &info, &trial)

@@ -79,5 +79,8 @@ fn worst(calibration: &Calibration<'_>) -> String {
     let Some(worst) = used.max_by(|a, b| length(a.v).total_cmp(&length(b.v))) else { return String::new() };
     let sight = calibration.prepared.survey.sight(calibration.prepared.sights[worst.observation] as usize);
     let (image, target) = (&calibration.prepared.survey.images[sight.image], calibration.prepared.survey.target(sight.target));
-    format!("the worst, {target} in {image}, is {:.1} px off; try --snoop", length(worst.v))
+    let off = length(worst.v);
+    // Of accurate points a tenth of a pixel says nothing.
+    let digits = if off < 1.0 { 3 } else { 1 };
+    format!("the worst, {target} in {image}, is {off:.digits$} px off; try --snoop")
 }

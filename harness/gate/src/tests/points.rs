@@ -6,9 +6,9 @@ use crate::few::few;
 use crate::missing::completeness;
 use crate::pairs::Pairs;
 use crate::point_by_point::{exact, worse_status};
-use crate::{Coordinates, Entry, Finding, Found, MethodTable, Place, Table, Verdict};
+use crate::{Coordinates, Entry, Finding, Found, MethodTable, Numbers, Place, Table, Verdict};
 use calibench_model::PixelPoint;
-use calibench_records::results::{Outcome, PointResult};
+use calibench_records::results::{Group, Outcome, PointResult};
 
 fn kept(dx: f64) -> Entry {
     measured([dx, 0.0], None)
@@ -54,6 +54,17 @@ fn a_method_that_has_nothing_is_missing() {
         assert_eq!(said(&found), [(Verdict::Fails, None, message)]);
         assert_eq!((found[0].baseline, found[0].now), (Some(2.0), Some(0.0)));
     }
+}
+
+/// What is adjusted alone has figures, which are compared as such; without them it has nothing.
+#[test]
+fn a_method_of_figures_alone_is_not_missing() {
+    let base = holding(Coordinates::Errors, method([]));
+    let mut now = method([]);
+    assert_eq!(said(&completeness(&base, &base)), [(Verdict::Fails, None, "the method has no points")]);
+    now.figures.insert((0, Group::Network, "sigma0".into()), [(0, Numbers { value: 1.0, sigma: None, error: None })].into());
+    assert!(completeness(&base, &holding(Coordinates::Errors, now.clone())).is_empty());
+    assert_eq!(said(&completeness(&errors([(0, "a", kept(0.1))]), &holding(Coordinates::Errors, now)))[0].2, "the method has no points");
 }
 
 #[test]

@@ -12,6 +12,8 @@ const MOST_STEPS: usize = 300;
 const FEW: usize = 150;
 /// Slope of the sum of squares below which nothing is left to gain, px.
 const FLAT: f64 = 1e-11;
+/// Share of the sum of squares below which a sum over a grid is rounding: a step that promises less gains nothing.
+const ROUNDING: f64 = 1e-15;
 /// Slope, px, above which a fit that ran out of steps has failed.
 const STEEP: f64 = 1e-6;
 
@@ -129,8 +131,11 @@ impl Problem<'_> {
         damping: &mut f64,
     ) -> Option<(State<T>, f64)> {
         while *damping < 1e12 {
-            let step = damped_step(a, v, *damping)?.component_div(norms);
-            let trial = self.moved(state, &step);
+            let scaled = damped_step(a, v, *damping)?;
+            if promised(a, v, &scaled) < ROUNDING * cost {
+                return None;
+            }
+            let trial = self.moved(state, &scaled.component_div(norms));
             if let Some(found) = self.cost(&trial).filter(|&found| found < cost) {
                 *damping = (*damping * 0.1).max(1e-16);
                 return Some((trial, found));
@@ -144,6 +149,12 @@ impl Problem<'_> {
         let lost = |sight: &&Sight| state.camera.project(state.rotation.apply(sight.ray)).is_err();
         ConvertError::NotPictured { share: self.sights.iter().filter(lost).map(|sight| sight.node.weight).sum() }
     }
+}
+
+/// By how much a step lowers the sum of squares, as far as the image is linear.
+fn promised(a: &DMatrix<f64>, v: &DVector<f64>, step: &DVector<f64>) -> f64 {
+    let change = a * step;
+    -change.dot(&(2.0 * v + &change))
 }
 
 /// About [`FEW`] sights, spread evenly over a grid of any width: by multiples of the golden ratio.

@@ -44,8 +44,6 @@ pub struct Summaries {
     pub sets: Vec<String>,
     /// How many trials.
     pub trials: u64,
-    /// The seed of the run.
-    pub seed: u64,
     /// Every figure.
     pub figures: BTreeMap<FigureKey, Summary>,
     /// Residuals of the first trial in the order of the file: method, image, point, axis, px.
@@ -108,7 +106,7 @@ impl Reader {
     fn add(&mut self, row: Row) {
         if self.trial != Some(row.trial) {
             self.trial = Some(row.trial);
-            (self.found.trials, self.found.seed) = (self.found.trials + 1, row.seed);
+            self.found.trials += 1;
         }
         let remember = |list: &mut Vec<String>, name: &str| {
             if !list.iter().any(|known| known == name) {
@@ -248,7 +246,7 @@ mod tests {
         reader.add(row(4, "good", "c", Err("two")));
         reader.add(Row { group: Group::Point, ..row(4, "good", "6/left/3/x", Ok((0.5, 0.0, 0.0))) });
         let found = reader.found();
-        assert_eq!((found.trials, found.seed, found.methods.len(), found.sets.len(), found.scored()), (5, 7, 2, 1, vec!["c", "b1"]));
+        assert_eq!((found.trials, found.methods.len(), found.sets.len(), found.scored()), (5, 2, 1, vec!["c", "b1"]));
         let c = found.get("good", Group::Iop, "c").unwrap();
         assert_eq!(c.first, Some(Numbers { value: 3.0, sigma: Some(1.5), error: Some(3.0) }));
         assert_eq!((c.value.count, c.sigma_ratio.count, c.value_ratio.count), (4, 2, 2));

@@ -7,7 +7,7 @@ use calibench_model::Image;
 use calibench_records::description::Description;
 use calibench_records::names::{SCENARIO, kept_image};
 use calibench_records::points::RecordHead;
-use calibench_records::results::{MethodInfo, Trial};
+use calibench_records::results::Trial;
 use calibench_records::score::Scores;
 use calibench_records::stored::{Table, read_points};
 
@@ -47,18 +47,13 @@ pub fn load(records: &Path, name: &str) -> Result<Loaded, LoadError> {
     let mut scores = Scores { groups: groups(&scenario), ..Scores::default() };
     let mut first = None;
     // The methods of a file are named as they come.
-    let mut head = read_points(&folder, |trial, methods| {
+    let head = read_points(&folder, |trial, methods| {
         scores.limited = limited(methods);
         scores.add(&trial, |method| methods.get(method).is_some_and(|info| scenario.compares(&info.label)));
         first.get_or_insert(trial);
     })?;
     scores.methods.resize_with(head.methods.len(), Default::default);
     let calibrations = adjustments::load(&folder)?;
-    if let Some(found) = calibrations.as_ref().filter(|_| head.methods.is_empty()) {
-        // Records without points say nothing of their run.
-        let info = |label: &String| MethodInfo { label: label.as_str().into(), version: "".into(), unavailable: None };
-        (head.run.seed, head.methods) = (found.seed, found.methods.iter().map(info).collect());
-    }
     Ok(Loaded { name: name.to_owned(), calibrations, scenario, head, scores, first: first.unwrap_or_default(), folder })
 }
 

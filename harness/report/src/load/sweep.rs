@@ -113,6 +113,11 @@ impl LoadedSweep {
         self.methods.iter().all(|method| method.unavailable.is_some())
     }
 
+    /// Whether its methods are adjusted alone and measure no point, or there are none.
+    pub fn has_no_points(&self) -> bool {
+        !self.is_unavailable() && self.cells.iter().flat_map(|cell| &cell.scores).all(|score| score.points() == 0)
+    }
+
     /// The figures of method `method` in cell `cell`, if it measured there.
     pub fn score(&self, cell: usize, method: usize) -> Option<&Score> {
         self.cells.get(cell)?.scores.get(method).filter(|score| score.points() > 0)

@@ -124,21 +124,24 @@ fn verdicts_are_those_of_the_page() {
     assert_eq!(verdicts::verdicts(records, &published).unwrap(), []);
 }
 
-/// Records without a point, as of coordinates that are drawn, say nothing of their run: its adjustments do.
+/// Records without a point, as of coordinates that are drawn, name their methods.
 #[test]
-fn a_run_without_points_is_known_by_its_adjustments() {
+fn a_run_without_points_is_known_by_its_methods() {
     let family = Family::new();
     let text = family.text();
-    family.put(Table::Points, &format!("{}\n", text.lines().next().unwrap()));
-    let header = calibench_records::adjustments::COLUMNS.join(",");
-    let row = |trial: u64, method: &str, seed: u64| format!("small/scene,{trial},{method},c,iop,c,1.0,0.1,0.0,mm,adjusted,,{seed}\n");
-    let rows = |methods: &[&str], seed: u64| -> String { (0..2).flat_map(|t| methods.iter().map(move |m| row(t, m, seed))).collect() };
-    let said = |rows: String| {
-        family.put(Table::Adjustments, &format!("{header}\n{rows}"));
+    let header = text.lines().next().unwrap();
+    let figures = calibench_records::adjustments::COLUMNS.join(",");
+    let said = |methods: &[&str], seed: u64| {
+        let named: String =
+            methods.iter().map(|method| format!("small/scene,,,,{method},1,,,,,,,,adjusted,measures no point,{seed},r\n")).collect();
+        family.put(Table::Points, &format!("{header}\n{named}"));
+        let row = |trial: u64, method: &str| format!("small/scene,{trial},{method},c,iop,c,1.0,0.1,0.0,mm,adjusted,,{seed}\n");
+        let rows: String = (0..2).flat_map(|trial| methods.iter().map(move |method| row(trial, method))).collect();
+        family.put(Table::Adjustments, &format!("{figures}\n{rows}"));
         family.page().lines().find(|line| line.contains("Not the scenario")).map(str::to_owned)
     };
     let methods = ["pixel", "centroid:window=15"];
-    assert_eq!(said(rows(&methods, 5)), None);
-    assert_eq!(said(rows(&methods, 6)).unwrap(), "**Not the scenario as its file says: seed 6 in place of 5.**");
-    assert_eq!(said(rows(&methods[..1], 5)).unwrap(), "**Not the scenario as its file says: other methods.**");
+    assert_eq!(said(&methods, 5), None);
+    assert_eq!(said(&methods, 6).unwrap(), "**Not the scenario as its file says: seed 6 in place of 5.**");
+    assert_eq!(said(&methods[..1], 5).unwrap(), "**Not the scenario as its file says: other methods.**");
 }
