@@ -12,6 +12,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path, PurePosixPath
 from posixpath import normpath
+from tempfile import TemporaryDirectory
 
 import keys
 import pages
@@ -148,8 +149,9 @@ def main(program, mdbook):
     pages.emptied(source)
     for file in ("book.toml", "narrow.css"):
         shutil.copy(pages.DOCS / "book" / file, source / file)
-    complaints, made = run_pages(program, pages.emptied(ROOT / "target/book-work"))
-    collect(program, source / "src", made)
+    with TemporaryDirectory() as work:
+        complaints, made = run_pages(program, Path(work))
+        collect(program, source / "src", made)
     shutil.rmtree(book, ignore_errors=True)
     subprocess.run([mdbook, "build", source, "-d", book], check=True, env={"PATH": "/usr/bin:/bin", "MDBOOK_LOG": "warn"})
     complaints += dead(book)

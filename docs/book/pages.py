@@ -127,7 +127,9 @@ class Shell:
     """A shell in an empty folder that has the program on its path, and keeps its folder and variables from command to command."""
 
     def __init__(self, folder, program):
-        folder = Path(folder)
+        folder = Path(folder).resolve()
+        if ROOT in folder.parents:
+            raise ValueError(f"{folder} lies in the project: the commands would write into its records")
         bin = folder / "bin"
         bin.mkdir(parents=True)
         (bin / "calibench").symlink_to(Path(program).resolve())

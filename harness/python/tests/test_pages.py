@@ -64,6 +64,11 @@ def test_commands_of_indented_blocks_are_seen():
     assert pages.indented(text) == ["calibench a --b", "just x"]
 
 
+def test_no_page_runs_in_the_project():
+    with pytest.raises(ValueError, match="lies in the project"):
+        pages.Shell(ROOT / "target/page", PROGRAM)
+
+
 def test_pages_that_teach_are_short():
     long = {name: count for name, page in ALL.items() if name.startswith("learn/") and (count := len(page.read_text(encoding="utf-8").split())) > 900}
     assert not long, "words of a page: split it"

@@ -57,7 +57,8 @@ pub fn warnings(pair: &Pair) -> Vec<String> {
         warnings.push(format!("{} and {} are hardly told apart: correlation {:.3}", ELEMENTS[j], ELEMENTS[i], pair.correlation(i, j)));
     }
     let parallel = pair.targets.len() - pair.points().count() - found.rejected.len();
-    let without = [(found.rejected.len(), "rejected"), (parallel, "without a part in it")].map(|(count, how)| (count > 0).then(|| format!("{count} {how}")));
+    let without = [(found.rejected.len(), "rejected"), (parallel, "without a part in it")]
+        .map(|(count, how)| (count > 0).then(|| format!("{count} {how}")));
     let without: Vec<String> = without.into_iter().flatten().collect();
     if !without.is_empty() {
         warnings.push(format!("targets {}: the point table says why", without.join(", ")));

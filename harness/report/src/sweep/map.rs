@@ -4,7 +4,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axes::Scale;
-use super::layout::{Dimension, Layout};
+use super::layout::{At, Dimension, Layout};
 use crate::canvas::Canvas;
 use crate::field::{Area, shade, write};
 use crate::load::sweep::LoadedSweep;
@@ -23,10 +23,10 @@ pub fn map(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
     let panels = layout.panels(loaded);
     let (columns, rows) = (layout.shown(loaded, Dimension::Axis(layout.x)), layout.shown(loaded, layout.by));
     let at = |panel: usize, column: usize, row: usize| panels[panel].1.with(Dimension::Axis(layout.x), column).with(layout.by, row);
-    let value = |panel, column, row| layout.estimate(loaded, &at(panel, column, row)).map(|found| found.value);
+    let estimate = |panel, column, row| layout.estimate(loaded, &at(panel, column, row));
     let all: Vec<f64> = (0..panels.len())
         .flat_map(|panel| columns.iter().flat_map(move |&column| rows_of(layout, loaded).into_iter().map(move |row| (panel, column, row))))
-        .filter_map(|(panel, column, row)| value(panel, column, row))
+        .filter_map(|(panel, column, row)| Some(estimate(panel, column, row)?.value))
         .collect();
     let scale = Scale::of(all.iter().copied());
     let inside = (columns.len() as u32 * CELL.0, rows.len() as u32 * CELL.1);
@@ -34,32 +34,57 @@ pub fn map(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
     let across = (1710 / width).clamp(1, panels.len().max(1) as u32);
     let down = (panels.len() as u32).div_ceil(across);
     let mut canvas = Canvas::new(across * width, down * height + 3 * LINE);
+    let facet = layout.facet.map_or_else(String::new, |facet| super::layout::title(loaded, facet));
+    let (across_title, up_title) = (super::units::titled(&loaded.sweep.axes[layout.x]), super::layout::title(loaded, layout.by));
+    canvas.say_as([&*facet, &up_title, &across_title, layout.metric.title(), "95 % from", "to", "trials"]);
     for (index, (title, _)) in panels.iter().enumerate() {
         let (x, y) = (index as u32 % across * width + LEFT, index as u32 / across * height + TOP);
-        canvas.paint(|area: &Area<'_>| {
-            for (i, &column) in columns.iter().enumerate() {
-                for (j, &row) in rows.iter().enumerate() {
-                    let corner = ((x + i as u32 * CELL.0) as i32, (y + (rows.len() - 1 - j) as u32 * CELL.1) as i32);
-                    cell(area, corner, value(index, column, row), &scale);
+        // A panel of a method is hidden with it.
+        let method = (layout.facet == Some(Dimension::Method)).then_some(&**title);
+        canvas.of(method, |canvas| say(canvas, (loaded, layout), &panels[index], (x, y)));
+        canvas.of(method, |canvas| {
+            canvas.paint(|area: &Area<'_>| {
+                for (i, &column) in columns.iter().enumerate() {
+                    for (j, &row) in rows.iter().enumerate() {
+                        let corner = ((x + i as u32 * CELL.0) as i32, (y + (rows.len() - 1 - j) as u32 * CELL.1) as i32);
+                        cell(area, corner, estimate(index, column, row).map(|found| found.value), &scale);
+                    }
                 }
-            }
-            let (right, bottom) = ((x + inside.0) as i32, (y + inside.1) as i32);
-            area.draw(&Rectangle::new([(x as i32, y as i32), (right, bottom)], BLACK)).ok();
-            for (i, &column) in columns.iter().enumerate() {
-                let label = super::layout::value(loaded, Dimension::Axis(layout.x), column);
-                write(area, &label, ((x + i as u32 * CELL.0 + CELL.0 / 2) as i32, bottom + 14), HPos::Center);
-            }
-            for (j, &row) in rows.iter().enumerate() {
-                let middle = bottom - (j as u32 * CELL.1 + CELL.1 / 2) as i32;
-                write(area, &super::layout::value(loaded, layout.by, row), (x as i32 - 8, middle), HPos::Right);
-            }
-            write(area, &super::units::titled(&loaded.sweep.axes[layout.x]), ((x + inside.0 / 2) as i32, bottom + 38), HPos::Center);
-            write(area, &super::layout::title(loaded, layout.by), (x as i32 - 92, y as i32 - 14), HPos::Left);
-            write(area, title, (right, y as i32 - 14), HPos::Right);
+                let (right, bottom) = ((x + inside.0) as i32, (y + inside.1) as i32);
+                area.draw(&Rectangle::new([(x as i32, y as i32), (right, bottom)], BLACK)).ok();
+                for (i, &column) in columns.iter().enumerate() {
+                    let label = super::layout::value(loaded, Dimension::Axis(layout.x), column);
+                    write(area, &label, ((x + i as u32 * CELL.0 + CELL.0 / 2) as i32, bottom + 14), HPos::Center);
+                }
+                for (j, &row) in rows.iter().enumerate() {
+                    let middle = bottom - (j as u32 * CELL.1 + CELL.1 / 2) as i32;
+                    write(area, &super::layout::value(loaded, layout.by, row), (x as i32 - 8, middle), HPos::Right);
+                }
+                write(area, &across_title, ((x + inside.0 / 2) as i32, bottom + 38), HPos::Center);
+                write(area, &up_title, (x as i32 - 92, y as i32 - 14), HPos::Left);
+                write(area, title, (right, y as i32 - 14), HPos::Right);
+            })
         });
     }
     legend(&mut canvas, &scale, &format!("{}{}", layout.metric.title(), layout.held(loaded)), down * height);
     canvas
+}
+
+/// Says the figure of each cell of a panel whose upper left corner is (`x`, `y`).
+fn say(canvas: &mut Canvas, (loaded, layout): (&LoadedSweep, &Layout), (title, start): &(String, At), (x, y): (u32, u32)) {
+    let panel = layout.facet.map_or("", |_| title.rsplit(" = ").next().unwrap_or(title));
+    let (along, rows) = (Dimension::Axis(layout.x), rows_of(layout, loaded));
+    for (i, column) in layout.shown(loaded, along).into_iter().enumerate() {
+        for (j, &row) in rows.iter().enumerate() {
+            let at = start.with(along, column).with(layout.by, row);
+            let Some(found) = layout.estimate(loaded, &at) else { continue };
+            let middle = |corner: u32, place: usize, side: u32| f64::from(corner) + (place as f64 + 0.5) * f64::from(side);
+            let trials = loaded.cells.get(at.cell(loaded)).map_or(0, |cell| cell.trials).to_string();
+            let names = [(layout.by, row), (along, column)].map(|(dimension, place)| super::layout::value(loaded, dimension, place));
+            let middle = (middle(x, i, CELL.0), middle(y, rows.len() - 1 - j, CELL.1));
+            canvas.say_estimate(middle, &[panel, &names[0], &names[1]], (found.value, found.interval), &[&trials]);
+        }
+    }
 }
 
 fn rows_of(layout: &Layout, loaded: &LoadedSweep) -> Vec<usize> {
@@ -94,4 +119,37 @@ fn legend(canvas: &mut Canvas, scale: &Scale, title: &str, top: u32) {
             write(area, &label, (x, top + 60), HPos::Center);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::canvas::Stroke;
+    use crate::sweep::{Choice, Metric};
+    use crate::tests::swept::loaded;
+
+    /// Each cell that has a figure says it where it lies, with its interval and its trials; a panel of a method is hidden with it.
+    #[test]
+    fn a_cell_says_its_figure() {
+        let loaded = loaded();
+        let choice = Choice { by: Some("noise".into()), ..Choice::default() };
+        let canvas = map(&loaded, &Layout::new(&loaded, &choice, Metric::MeanX, true).unwrap());
+        assert_eq!(canvas.series(), ["other", "m"]);
+        assert_eq!(canvas.says(), ["method", "noise", "blur, px", Metric::MeanX.title(), "95 % from", "to", "trials"]);
+        let said: Vec<(&(i32, i32), &Vec<String>)> = canvas
+            .strokes()
+            .iter()
+            .filter_map(|stroke| if let Stroke::Said(at, values) = stroke { Some((at, values)) } else { None })
+            .collect();
+        assert_eq!(said.len(), 4 + 3, "nothing was measured in the last cell of the second method");
+        // The second method's panel: noise upwards, blur to the right; the first column has noise 0 below and 0.1 above it.
+        let [(below, first), (above, second), (aside, third)] = said[4..] else { panic!("{said:?}") };
+        assert_eq!((first[..4].join(" "), &*first[6]), ("m 0 0.5 2.00".to_owned(), "2"));
+        let interval = loaded.cells[0].scores[1].whole.dx.interval(0.95).unwrap();
+        assert_eq!(first[4..6], [plain(interval.0), plain(interval.1)]);
+        assert_eq!((second[..4].join(" "), &*second[4]), ("m 0.1 0.5 0.500".to_owned(), "\u{2013}"), "one error has no interval");
+        assert_eq!(third[..4].join(" "), "m 0 2 0");
+        assert_eq!((below.0 - above.0, below.1 - above.1), (0, CELL.1 as i32));
+        assert_eq!((aside.0 - below.0, aside.1 - below.1), (CELL.0 as i32, 0));
+    }
 }

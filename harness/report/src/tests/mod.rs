@@ -1,6 +1,7 @@
 //! A whole report from records of a few points, whose figures are computed by hand.
 
 pub(crate) mod small;
+pub(crate) mod swept;
 
 use calibench_records::stored::Table;
 use small::{Family, line, row};
