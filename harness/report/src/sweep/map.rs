@@ -37,37 +37,42 @@ pub fn map(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
     let facet = layout.facet.map_or_else(String::new, |facet| super::layout::title(loaded, facet));
     let (across_title, up_title) = (super::units::titled(&loaded.sweep.axes[layout.x]), super::layout::title(loaded, layout.by));
     canvas.say_as([&*facet, &up_title, &across_title, layout.metric.title(), "95 % from", "to", "trials"]);
-    for (index, (title, _)) in panels.iter().enumerate() {
+    for (index, panel) in panels.iter().enumerate() {
         let (x, y) = (index as u32 % across * width + LEFT, index as u32 / across * height + TOP);
         // A panel of a method is hidden with it.
-        let method = (layout.facet == Some(Dimension::Method)).then_some(&**title);
-        canvas.of(method, |canvas| say(canvas, (loaded, layout), &panels[index], (x, y)));
+        let method = (layout.facet == Some(Dimension::Method)).then_some(&*panel.0);
         canvas.of(method, |canvas| {
-            canvas.paint(|area: &Area<'_>| {
-                for (i, &column) in columns.iter().enumerate() {
-                    for (j, &row) in rows.iter().enumerate() {
-                        let corner = ((x + i as u32 * CELL.0) as i32, (y + (rows.len() - 1 - j) as u32 * CELL.1) as i32);
-                        cell(area, corner, estimate(index, column, row).map(|found| found.value), &scale);
-                    }
-                }
-                let (right, bottom) = ((x + inside.0) as i32, (y + inside.1) as i32);
-                area.draw(&Rectangle::new([(x as i32, y as i32), (right, bottom)], BLACK)).ok();
-                for (i, &column) in columns.iter().enumerate() {
-                    let label = super::layout::value(loaded, Dimension::Axis(layout.x), column);
-                    write(area, &label, ((x + i as u32 * CELL.0 + CELL.0 / 2) as i32, bottom + 14), HPos::Center);
-                }
-                for (j, &row) in rows.iter().enumerate() {
-                    let middle = bottom - (j as u32 * CELL.1 + CELL.1 / 2) as i32;
-                    write(area, &super::layout::value(loaded, layout.by, row), (x as i32 - 8, middle), HPos::Right);
-                }
-                write(area, &across_title, ((x + inside.0 / 2) as i32, bottom + 38), HPos::Center);
-                write(area, &up_title, (x as i32 - 92, y as i32 - 14), HPos::Left);
-                write(area, title, (right, y as i32 - 14), HPos::Right);
-            })
+            say(canvas, (loaded, layout), panel, (x, y));
+            canvas.paint(|area: &Area<'_>| draw(area, (loaded, layout), panel, (x, y), &scale));
         });
     }
     legend(&mut canvas, &scale, &format!("{}{}", layout.metric.title(), layout.held(loaded)), down * height);
     canvas
+}
+
+/// A panel whose upper left corner is (`x`, `y`): its cells, its frame, the values along it.
+fn draw(area: &Area<'_>, (loaded, layout): (&LoadedSweep, &Layout), (title, start): &(String, At), (x, y): (u32, u32), scale: &Scale) {
+    let along = Dimension::Axis(layout.x);
+    let (columns, rows) = (layout.shown(loaded, along), rows_of(layout, loaded));
+    for (i, &column) in columns.iter().enumerate() {
+        for (j, &row) in rows.iter().enumerate() {
+            let corner = ((x + i as u32 * CELL.0) as i32, (y + (rows.len() - 1 - j) as u32 * CELL.1) as i32);
+            let found = layout.estimate(loaded, &start.with(along, column).with(layout.by, row));
+            cell(area, corner, found.map(|found| found.value), scale);
+        }
+    }
+    let (right, bottom) = ((x + columns.len() as u32 * CELL.0) as i32, (y + rows.len() as u32 * CELL.1) as i32);
+    area.draw(&Rectangle::new([(x as i32, y as i32), (right, bottom)], BLACK)).ok();
+    for (i, &column) in columns.iter().enumerate() {
+        write(area, &super::layout::value(loaded, along, column), ((x + i as u32 * CELL.0 + CELL.0 / 2) as i32, bottom + 14), HPos::Center);
+    }
+    for (j, &row) in rows.iter().enumerate() {
+        let middle = bottom - (j as u32 * CELL.1 + CELL.1 / 2) as i32;
+        write(area, &super::layout::value(loaded, layout.by, row), (x as i32 - 8, middle), HPos::Right);
+    }
+    write(area, &super::units::titled(&loaded.sweep.axes[layout.x]), ((x as i32 + right) / 2, bottom + 38), HPos::Center);
+    write(area, &super::layout::title(loaded, layout.by), (x as i32 - 92, y as i32 - 14), HPos::Left);
+    write(area, title, (right, y as i32 - 14), HPos::Right);
 }
 
 /// Says the figure of each cell of a panel whose upper left corner is (`x`, `y`).
