@@ -22,14 +22,27 @@ pub fn copy() -> tempfile::TempDir {
 
 /// As [`copy`], with the long scenarios whose names begin with one of `wanted`.
 pub fn copy_with(wanted: &[&str]) -> tempfile::TempDir {
+    without(|name| begins(name, &LONG) && !begins(name, wanted))
+}
+
+/// A temporary project with the real references and the scenarios whose names begin with one of `wanted`.
+pub fn copy_of(wanted: &[&str]) -> tempfile::TempDir {
+    without(|name| !begins(name, wanted))
+}
+
+fn begins(name: &str, starts: &[&str]) -> bool {
+    starts.iter().any(|start| name.starts_with(start))
+}
+
+fn without(is_left_out: impl Fn(&str) -> bool) -> tempfile::TempDir {
     let folder = whole();
-    let long = |name: &str| LONG.iter().any(|start| name.starts_with(start)) && !wanted.iter().any(|start| name.starts_with(start));
     for family in entries(&folder.path().join("scenarios")).into_iter().filter(|path| path.is_dir()) {
-        remove(&family, |file| long(&format!("{}/{file}", name_of(&family))));
+        remove(&family, |file| is_left_out(&format!("{}/{file}", name_of(&family))));
         // Fails where something is left.
         std::fs::remove_dir(&family).ok();
     }
-    remove(&folder.path().join("reference/baselines"), |file| long(&file.replacen("--", "/", 1)));
+    let of = |file: &str| Some(file.replacen("--", "/", 1)).filter(|name| name != file);
+    remove(&folder.path().join("reference/baselines"), |file| of(file).is_some_and(|name| is_left_out(&name)));
     list_baselines(folder.path());
     folder
 }

@@ -5,7 +5,7 @@ mod requirement;
 
 use std::path::Path;
 
-use crate::project::{copy, put_table, run, stderr, stdout, table};
+use crate::project::{copy, copy_of, put_table, run, stderr, stdout, table};
 
 fn change(project: &Path, scenario: &str, old: &str, new: &str) {
     let path = project.join("scenarios").join(scenario);
@@ -14,10 +14,15 @@ fn change(project: &Path, scenario: &str, old: &str, new: &str) {
     std::fs::write(path, text.replacen(old, new, 1)).unwrap();
 }
 
+/// A project whose gate takes a second: scenarios with ceilings, with published tables.
+fn few() -> tempfile::TempDir {
+    copy_of(&["corners/", "galo-2011/corners", "galo-2011/distinct", "zhu-2007/"])
+}
+
 #[test]
 fn the_blessed_accuracy_holds() {
-    // `just check` runs all of them; here those that do not take long, and what `bless` says of them.
-    let project = copy();
+    // `just check` runs all of them; here a few, and what `bless` says of them.
+    let project = few();
     let listed = stdout(&run(project.path(), &["list", "scenarios"]));
     let names: Vec<&str> = listed.lines().filter(|line| !line.starts_with(' ')).collect();
     assert!(names.contains(&"corners/noise") && names.contains(&"zhu-2007/table-1"), "{listed}");
@@ -31,7 +36,7 @@ fn the_blessed_accuracy_holds() {
 
 #[test]
 fn a_regression_exits_with_1_and_a_table_of_names() {
-    let project = copy();
+    let project = few();
     change(project.path(), "corners/noise.toml", "grey_noise = 0.02", "grey_noise = 0.04");
     change(project.path(), "galo-2011/corners.toml", "start = [53, 42]", "start = [53, 43]");
     let output = run(project.path(), &["check", "-q"]);
@@ -46,7 +51,7 @@ fn a_regression_exits_with_1_and_a_table_of_names() {
 
 #[test]
 fn what_is_missing_fails_by_name() {
-    let project = copy();
+    let project = few();
     std::fs::remove_file(project.path().join("scenarios/galo-2011/corners-drawn.toml")).unwrap();
     change(project.path(), "corners/noise.toml", "name = \"harris_paraboloid\"\nwindow = 11", "name = \"harris_paraboloid\"\nwindow = 9");
     let output = run(project.path(), &["check", "-q"]);
@@ -59,7 +64,7 @@ fn what_is_missing_fails_by_name() {
 
 #[test]
 fn bless_lists_what_gets_worse_and_writes_only_when_told() {
-    let project = copy();
+    let project = few();
     change(project.path(), "corners/noise.toml", "grey_noise = 0.02", "grey_noise = 0.03");
     let path = project.path().join("reference/baselines/corners--noise.csv");
     let ceilings = project.path().join("reference/baselines/ceilings.toml");
