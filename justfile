@@ -102,6 +102,10 @@ python: build
 perf-python: python
     target/python/bin/python harness/python/benches/perf.py
 
+# What weighs most in the wheel: its sections, crates and functions
+size-python: python
+    target/python/bin/python harness/python/benches/size.py
+
 # Boards found, how well and how fast, beside OpenCV on the same images
 perf-boards: python
     RAYON_NUM_THREADS=1 target/python/bin/python harness/python/benches/boards.py

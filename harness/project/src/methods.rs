@@ -22,7 +22,7 @@ impl Project<'_> {
     /// # Errors
     /// A text that names none, with the nearest name for a misspelt one.
     pub fn method(&self, text: &str, pictured: Pictured) -> Result<Configured, ProjectError> {
-        let registry = self.registry()?;
+        let registry = self.registry_with(text)?;
         let parsed = match pictured {
             Pictured::Renders => registry.parse(text),
             Pictured::Photographs => registry.parse_for_photographs(text),
