@@ -30,7 +30,7 @@ def told(*words):
 
 def packed(data):
     """Bytes of it in a wheel."""
-    packer = zlib.compressobj(6, zlib.DEFLATED, -15)
+    packer = zlib.compressobj(9, zlib.DEFLATED, -15)
     return len(packer.compress(data)) + len(packer.flush())
 
 
@@ -83,6 +83,8 @@ def main():
                 own = data[place + address - start : place + address - start + size]
                 by_crate[crate(name)] += own
                 by_function[function(name)] += own
+    if not by_crate:
+        sys.exit(f"{LIBRARY}: has no symbols; run `just size-python`")
     sized = lambda of: {name: (packed(bytes(own)), len(own)) for name, own in of.items()}
     for wheel in sorted((ROOT / "target/wheels").glob("calibench-*.whl")):
         inside = {info.filename: (info.compress_size, info.file_size) for info in zipfile.ZipFile(wheel).infolist()}
