@@ -94,13 +94,19 @@ browser:
 
 # The Python package: its wheel in target/wheels, installed in target/python (`./bootstrap python` makes that)
 python: build
-    target/python/bin/maturin build --quiet --manifest-path harness/python/Cargo.toml --out target/wheels
+    target/python/bin/maturin build --quiet --compression-level 9 --manifest-path harness/python/Cargo.toml --out target/wheels
     target/python/bin/python -m pip install --quiet --no-deps --force-reinstall target/wheels/calibench-*.whl
     touch target/python/pyvenv.cfg
 
 # What the Python package costs beyond the program, beside the command line
 perf-python: python
     target/python/bin/python harness/python/benches/perf.py
+
+# What weighs most in the wheel: its sections, crates and functions
+size-python: python
+    # The library once more with the symbols that the wheel is without.
+    cargo build {{everything}} --quiet
+    target/python/bin/python harness/python/benches/size.py
 
 # Boards found, how well and how fast, beside OpenCV on the same images
 perf-boards: python

@@ -1,4 +1,4 @@
-"""A learned refiner: patches in, offsets out. The model is any ONNX file with an input (n, 1, side, side) and an output (n, 2), px."""
+"""A learned refiner: patches in, offsets out. The model is any ONNX file with an input (n, 1, side, side) and an output (n, 2), px, or more columns."""
 import json
 import sys
 
@@ -23,6 +23,6 @@ while line := stream.readline():
     if patches:
         offsets = model.run(None, {name: np.stack(patches)[:, None]})[0]
         for place, centre, offset in zip(np.flatnonzero(inside), at[inside], offsets):
-            xy[place] = (centre + offset).tolist() if np.isfinite(offset).all() else None
+            xy[place] = (centre + offset[:2]).tolist() if np.isfinite(offset[:2]).all() else None
     reasons = [None if found else "no corner in the patch" for found in xy]
     print(json.dumps({"image": asked["image"], "xy": xy, "reasons": reasons}), flush=True)

@@ -1,5 +1,7 @@
 //! The way down a sum of squares after Levenberg and Marquardt: steps that are damped where an undamped one does not descend.
 
+use calibench_model::stop;
+
 /// By how much the diagonal of the normal equations is raised, as a fraction of it.
 pub(crate) struct Damping {
     /// At the start.
@@ -62,6 +64,7 @@ pub(crate) struct Descended {
 pub(crate) fn descend<D: Descent>(place: &mut D, by: &Damping, most: usize) -> Result<Descended, D::Lost> {
     let (mut damping, mut gain) = (by.first, f64::INFINITY);
     for iterations in 1..=most {
+        stop::point();
         let mut lower = false;
         if let Some(promised) = place.step(damping) {
             let before = std::mem::replace(&mut gain, promised);

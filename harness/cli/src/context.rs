@@ -32,7 +32,7 @@ impl<'a> Context<'a> {
     /// The project of `root`, or else around the current folder, with the plug-ins of a folder, or else its own. They are started by this program, which
     /// restricts itself and then becomes the plug-in.
     pub fn new(toolbox: &'a Toolbox, quiet: bool, root: Option<PathBuf>, plugins: Option<PathBuf>) -> Self {
-        let confiner = std::env::current_exe().ok().map(|program| vec![program.into_os_string(), CONFINED.into()]);
+        let confiner = || std::env::current_exe().ok().map(|program| vec![program.into_os_string(), CONFINED.into()]);
         Self { toolbox, quiet, project: Project { root, plugins, confiner, ..Project::new(toolbox) } }
     }
 }

@@ -1,6 +1,6 @@
 //! What is dark and light around each part of an image.
 
-use calibench_model::Image;
+use calibench_model::{Image, stop};
 
 /// The side of a tile, px.
 pub(crate) const TILE: usize = 8;
@@ -72,6 +72,7 @@ impl Tiles {
         let mut extremes = Vec::with_capacity(columns * rows);
         let (mut low, mut high) = (vec![0.0_f32; width], vec![0.0_f32; width]);
         for row in 0..rows {
+            stop::point();
             low.fill(NONE[0]);
             high.fill(NONE[1]);
             for y in row * TILE..height.min((row + 1) * TILE) {

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
+use calibench_model::stop;
+
 use crate::plane::{Point, cross, distance, length, minus, plus, times};
 use crate::round::Round;
 
@@ -111,6 +113,7 @@ impl Iterator for Grids<'_> {
     fn next(&mut self) -> Option<Grid> {
         let before = self.rounds.len().saturating_sub(self.seeds.len());
         for _ in before..SEEDS.max(before) {
+            stop::point();
             let seed = self.seeds.pop_front()?;
             if !self.taken[seed]
                 && let Some(basis) = self.basis(seed)

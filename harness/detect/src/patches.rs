@@ -1,6 +1,6 @@
 //! Dark areas, by runs of dark pixels.
 
-use calibench_model::Image;
+use calibench_model::{Image, stop};
 
 use crate::ground::{Ground, TILE};
 
@@ -98,6 +98,7 @@ fn connected(image: &Image, ground: &Ground, level: f32) -> (Vec<Run>, Vec<u32>)
     let (mut runs, mut parents): (Vec<Run>, Vec<u32>) = (Vec::new(), Vec::new());
     let mut above = 0..0;
     for y in 0..image.height() {
+        stop::point();
         let start = runs.len();
         let tiles = y / TILE * ground.columns..(y / TILE + 1) * ground.columns;
         row_runs(image.row(y), &ground.own[tiles.clone()], &thresholds[tiles], y as u32, &mut runs);

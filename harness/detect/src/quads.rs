@@ -1,6 +1,6 @@
 //! Convex quadrangles around dark areas.
 
-use calibench_model::Image;
+use calibench_model::{Image, stop};
 
 use crate::ground::grey;
 use crate::patches::Run;
@@ -85,6 +85,7 @@ pub(crate) fn largest_quad(hull: &[Point]) -> Option<([Point; 4], f64)> {
 
 /// The quadrangle that an area fills, clockwise, its pixels' centres within; `None` if its shape is another or a side is shorter than `least` px.
 pub(crate) fn quad(runs: &[Run], least: f64) -> Option<[Point; 4]> {
+    stop::point();
     let (quad, share) = largest_quad(&hull(runs))?;
     (share >= LEAST_SHARE && is_square_seen(&quad, least)).then_some(quad)
 }
@@ -107,6 +108,7 @@ struct Line {
 
 /// A dark quadrangle whose sides were adjusted to the edges of the image within `reach` px, twice; `None` where a side shows none along most of it.
 pub(crate) fn adjusted(image: &Image, quad: &[Point; 4], reach: f64) -> Option<[Point; 4]> {
+    stop::point();
     let once = adjusted_once(image, quad, reach, SEEN[0])?;
     adjusted_once(image, &once, reach, SEEN[1])
 }

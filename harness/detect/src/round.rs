@@ -1,6 +1,6 @@
 //! Round dark areas.
 
-use calibench_model::Image;
+use calibench_model::{Image, stop};
 
 use crate::ground::Ground;
 use crate::patches::{Patches, Run};
@@ -39,6 +39,7 @@ pub(crate) fn rounds(image: &Image) -> Vec<Round> {
 
 impl Round {
     fn of(runs: &[Run]) -> Option<Self> {
+        stop::point();
         let filled = filled(runs);
         let [mut area, mut x, mut y] = [0.0; 3];
         for &[row, from, to] in &filled {

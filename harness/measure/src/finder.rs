@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use calibench_model::boards::{Board, BoardError, Layout};
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Told};
 
 use crate::Operator;
 
@@ -76,8 +76,8 @@ impl<F: BoardFinder> Operator for Finds<F> {
         Some(&self.0)
     }
 
-    fn notes(&self) -> Vec<String> {
-        self.0.notes()
+    fn told(&self) -> Told {
+        Told::said(self.0.notes())
     }
 }
 

@@ -1,6 +1,6 @@
 //! What every operator does.
 
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Unknowns};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Told, Unknowns, stop};
 
 use crate::finder::BoardFinder;
 use crate::recorded::Recorded;
@@ -15,7 +15,11 @@ pub trait Operator: Send + Sync {
 
     /// Measures many points of one image, in the order given.
     fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
-        starts.iter().map(|start| self.measure(image, start)).collect()
+        let one = |start| {
+            stop::point();
+            self.measure(image, start)
+        };
+        starts.iter().map(one).collect()
     }
 
     /// Whether each point is measured from its own surroundings, whatever others are measured with it: points of one image may then be shared out among
@@ -50,8 +54,13 @@ pub trait Operator: Send + Sync {
     }
 
     /// What a reader of its results has to know of how they came about; asked for after measuring. Nothing, of operators that are part of this program.
+    fn told(&self) -> Told {
+        Told::default()
+    }
+
+    /// The same in words.
     fn notes(&self) -> Vec<String> {
-        Vec::new()
+        self.told().notes()
     }
 }
 

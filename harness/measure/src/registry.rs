@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_model::TargetKind;
+use calibench_model::{TargetKind, Told};
 
 use crate::error::MethodError;
 use crate::finder::BoardFinder;
@@ -97,18 +97,15 @@ impl Configured {
     }
 }
 
-/// What is to be known of how the results of methods came about, with the method's name: each once, since settings of one program tell the same.
+/// What is to be known of how the results of methods came about, by their names: of each, if it is nothing too.
+pub fn told<'m>(methods: impl IntoIterator<Item = &'m Configured>) -> Vec<(&'m str, Told)> {
+    let of = |method: &'m Configured| method.operator.as_ref().map_or_else(|_| Told::default(), |operator| operator.told());
+    methods.into_iter().map(|method| (method.name(), of(method))).collect()
+}
+
+/// The same in words, each once.
 pub fn notes<'m>(methods: impl IntoIterator<Item = &'m Configured>) -> Vec<(&'m str, String)> {
-    let mut found: Vec<(&str, String)> = Vec::new();
-    for method in methods {
-        let own = method.operator.as_ref().map_or_else(|_| Vec::new(), |operator| operator.notes());
-        for note in own.into_iter().map(|note| (method.name(), note)) {
-            if !found.contains(&note) {
-                found.push(note);
-            }
-        }
-    }
-    found
+    calibench_model::told::notes(told(methods))
 }
 
 /// What the kinds are called among the parameters of a method.
@@ -134,6 +131,13 @@ impl Registry {
     /// All methods.
     pub fn methods(&self) -> &[Method] {
         &self.methods
+    }
+
+    /// Whether the method that `text` names, in the form of [`Self::parse`], is among these.
+    pub fn has(&self, text: &str) -> bool {
+        let (_, method) = before_the_name(text);
+        let name = method.split(':').next().unwrap_or(method).trim();
+        self.methods.iter().any(|method| method.name == name)
     }
 
     /// The method called `name`, with `given` parameters: keys, and values in the unit of the parameter.
@@ -248,6 +252,17 @@ mod tests {
         assert!(matches!(error("forstner:kinds="), MethodError::Kinds { .. }));
         assert!(matches!(error("disc=forstner:kinds=disc"), MethodError::Twice { .. }));
         assert!(matches!(error("disc="), MethodError::UnknownMethod { .. }));
+    }
+
+    #[test]
+    fn a_method_is_known_in_all_forms_of_its_name() {
+        let registry = Registry::builtin();
+        for text in ["forstner", " forstner : window = 15", "cross+corner=forstner:window=15", "forstner:windw=3"] {
+            assert!(registry.has(text), "{text}");
+        }
+        for text in ["", "forster", "forstner=pixel2", "mine:window=15"] {
+            assert!(!registry.has(text), "{text}");
+        }
     }
 
     #[test]

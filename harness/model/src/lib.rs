@@ -12,8 +12,10 @@ pub mod observation;
 pub mod pose;
 pub mod quadrature;
 pub mod scene;
+pub mod stop;
 pub mod target;
 pub mod testfield;
+pub mod told;
 
 pub use frames::{CornerPoint, Covariance, Frame, PixelPoint, SensorPoint};
 pub use image::{Image, level};
@@ -22,6 +24,7 @@ pub use pose::Pose;
 pub use scene::{Polygon, Scene, SceneTarget};
 pub use target::{Affine, TargetKind, UnknownKind};
 pub use testfield::{Area, Bend, Curve, ObjectTarget, Outline, Plate, Testfield};
+pub use told::Told;
 
 /// The example of the README.
 #[cfg(doctest)]

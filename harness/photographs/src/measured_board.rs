@@ -6,7 +6,7 @@ use std::sync::Arc;
 use calibench_exchange::read_photo;
 use calibench_measure::{Configured, ImageId};
 use calibench_model::camera::ImageSize;
-use calibench_model::{Image, PixelPoint, Start};
+use calibench_model::{Image, PixelPoint, Start, stop};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
 use rayon::prelude::*;
 
@@ -36,6 +36,7 @@ pub fn measured_boards(
 ) -> Result<MeasuredBoards, PhotographsError> {
     once(photos)?;
     let one = |(path, name): (&PathBuf, &String)| {
+        stop::point();
         let image = read_photo(path)?.image;
         let found = measured_board(&image, name, finder, methods);
         step();
@@ -79,6 +80,7 @@ pub fn measured_board(image: &Image, view: &str, finder: &Finder, methods: &[Con
     let starts: Vec<Start> = found.rows.iter().map(|row| start(row.start)).collect();
     let names: Vec<String> = found.rows.into_iter().map(|row| row.target).collect();
     for (method, operator) in methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?))) {
+        stop::point();
         let results = match operator.recorded() {
             Some(recorded) => {
                 recorded.recall(ImageId { trial: 0, view: &view }, image, &names.iter().map(String::as_str).collect::<Vec<_>>())

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use calibench_exchange::{Outcome, Points, read_photo};
 use calibench_measure::{Configured, Operator};
-use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Covariance, Image, Measurement, PixelPoint, Rejection, Start, stop};
 use rayon::prelude::*;
 
 use crate::PhotographsError;
@@ -142,12 +142,21 @@ pub fn measure_points(
     Ok(found.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
+/// Whether [`shared_out`] has no work for more than one thread.
+pub fn is_one_share(operator: &dyn Operator, starts: &[Start]) -> bool {
+    operator.is_local() && starts.len() <= SHARE
+}
+
 /// The results at `starts`, in their order. The points of an image are shared out among the threads: the results are the same on any number of them.
 pub fn shared_out(operator: &dyn Operator, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
     if !operator.is_local() {
         return operator.measure_all(image, starts);
     }
-    let shares: Vec<_> = starts.par_chunks(SHARE).map(|share| operator.measure_all(image, share)).collect();
+    let measured = |share| {
+        stop::point();
+        operator.measure_all(image, share)
+    };
+    let shares: Vec<_> = starts.par_chunks(SHARE).map(measured).collect();
     shares.concat()
 }
 

@@ -27,7 +27,7 @@ pub use error::PluginError;
 pub use file::{Declared, load, parse};
 pub use program::{Launcher, method};
 pub use recorded::{Images, Origin, Positions, Recording};
-pub use told::Told;
+pub use told::Teller;
 
 /// The example of the README.
 #[cfg(doctest)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use calibench_measure::{BoardFinder, BoardPointFound, Operator, Settings, Sought};
 use calibench_model::boards::Board;
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Told};
 use calibench_random::{Key, Purpose, stream};
 use rand::seq::SliceRandom;
 
@@ -171,7 +171,7 @@ impl Operator for Asked {
         self.boards().map(|_| self as &dyn BoardFinder)
     }
 
-    fn notes(&self) -> Vec<String> {
+    fn told(&self) -> Told {
         self.program.told.all()
     }
 }

@@ -6,7 +6,7 @@ use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use calibench_model::Rejection;
+use calibench_model::{Rejection, stop};
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::io::{Errno, ioctl_fionbio};
 use rustix::process::{Pid, Signal, kill_process_group};
@@ -20,6 +20,8 @@ const TAIL: usize = 4096;
 const WAIT: Duration = Duration::from_millis(10);
 /// The same of one that has closed it.
 const LOOK: Duration = Duration::from_micros(500);
+/// How often it is asked, while an answer is waited for, whether the user ends it all.
+const ASKED: Duration = Duration::from_millis(50);
 /// How much is read at once.
 const CHUNK: usize = 1 << 16;
 
@@ -84,13 +86,15 @@ impl Process {
             if over {
                 return Err(self.ended());
             }
+            stop::point();
             let wait = deadline.checked_duration_since(Instant::now());
             let Some(wait) = wait else {
                 let said = self.said();
                 return Err(Fault::new(Rejection::TooSlow, format!("no answer within {} s{said}", limit.as_secs_f64())));
             };
             let writes = !left.is_empty() && !closed;
-            let [readable, writable, erring] = self.wait(writes, wait).map_err(|error| Fault::new(Rejection::Ended, error.to_string()))?;
+            let [readable, writable, erring] =
+                self.wait(writes, wait.min(ASKED)).map_err(|error| Fault::new(Rejection::Ended, error.to_string()))?;
             if erring {
                 self.hear();
             }
@@ -126,6 +130,7 @@ impl Process {
         self.stdin = None;
         let mut closed = false;
         loop {
+            stop::point();
             match self.child.try_wait() {
                 Ok(None) => {}
                 Ok(Some(status)) if status.success() => return Ok(()),

@@ -18,7 +18,7 @@ use crate::declaration::{Declaration, Mode, leak};
 use crate::operator::Asked;
 use crate::process::Process;
 use crate::request::greeting;
-use crate::told::{Told, short};
+use crate::told::{Teller, short};
 
 /// After this many images that took too long it is asked no more.
 const PATIENCE: usize = 5;
@@ -56,7 +56,7 @@ pub struct Program {
     launcher: Launcher,
     idle: Mutex<BTreeMap<Vec<u8>, Vec<Started>>>,
     /// What is to be told of it.
-    pub told: Told,
+    pub told: Teller,
     slow: Mutex<usize>,
 }
 
@@ -97,7 +97,7 @@ impl Program {
             folder: folder.to_owned(),
             launcher,
             idle: Mutex::default(),
-            told: Told::default(),
+            told: Teller::default(),
             slow: Mutex::default(),
         }
     }

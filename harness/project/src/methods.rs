@@ -22,7 +22,7 @@ impl Project<'_> {
     /// # Errors
     /// A text that names none, with the nearest name for a misspelt one.
     pub fn method(&self, text: &str, pictured: Pictured) -> Result<Configured, ProjectError> {
-        let registry = self.registry()?;
+        let registry = self.registry_with(text)?;
         let parsed = match pictured {
             Pictured::Renders => registry.parse(text),
             Pictured::Photographs => registry.parse_for_photographs(text),
@@ -92,5 +92,33 @@ impl Project<'_> {
             found.push(method);
         }
         Ok(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use calibench_measure::Registry;
+
+    use super::*;
+    use crate::Toolbox;
+
+    /// What is wrong with a plug-in's file is nothing to whoever does not ask for it.
+    #[test]
+    fn plug_ins_are_looked_for_where_a_name_is_none_of_this_build() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["scenarios", "reference", "methods"] {
+            std::fs::create_dir(folder.path().join(name)).unwrap();
+        }
+        std::fs::write(folder.path().join("methods/bad.toml"), "[[plugin]]\nnome = \"mine\"\n").unwrap();
+        let toolbox = Toolbox { registry: Registry::builtin(), ..Toolbox::default() };
+        let project = || Project { root: Some(folder.path().to_owned()), ..Project::new(&toolbox) };
+        for text in ["forstner", "cross+corner=forstner:window=9", "forstner:window=9,kinds=cross"] {
+            assert!(project().method(text, Pictured::Photographs).is_ok(), "{text}");
+        }
+        let asked = |project: &Project<'_>, text: &str| project.method(text, Pictured::Renders).err().map(|error| error.to_string());
+        assert!(asked(&project(), "mine").unwrap().contains("nome"));
+        // A folder that the user named is looked at.
+        let named = Project { plugins: Some(folder.path().join("methods")), ..project() };
+        assert!(asked(&named, "forstner").unwrap().contains("nome"));
     }
 }

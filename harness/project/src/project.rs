@@ -23,8 +23,8 @@ pub struct Project<'a> {
     pub plugins: Option<PathBuf>,
     /// What this build can do.
     pub toolbox: &'a Toolbox,
-    /// What restricts itself and then becomes a plug-in: a program and its first arguments.
-    pub confiner: Option<Vec<OsString>>,
+    /// What restricts itself and then becomes a plug-in, asked for where there is one: a program and its first arguments.
+    pub confiner: fn() -> Option<Vec<OsString>>,
     /// All methods, once somebody asked for them: empty at first.
     pub methods: OnceLock<Registry>,
 }
@@ -32,7 +32,7 @@ pub struct Project<'a> {
 impl<'a> Project<'a> {
     /// The project around the current folder, with plug-ins started as they are.
     pub const fn new(toolbox: &'a Toolbox) -> Self {
-        Self { root: None, plugins: None, toolbox, confiner: None, methods: OnceLock::new() }
+        Self { root: None, plugins: None, toolbox, confiner: || None, methods: OnceLock::new() }
     }
 }
 
@@ -83,12 +83,22 @@ impl Project<'_> {
         Ok(self.methods.get_or_init(|| methods))
     }
 
+    /// The methods among which the one that `text` names is: those of this build, if it is one of them. Plug-ins are looked for where it is none, and where the user
+    /// named their folder.
+    ///
+    /// # Errors
+    /// As [`Self::registry`].
+    pub(crate) fn registry_with(&self, text: &str) -> Result<&Registry, ProjectError> {
+        let own = &self.toolbox.registry;
+        if self.plugins.is_none() && own.has(text) { Ok(own) } else { self.registry() }
+    }
+
     /// How plug-ins are started.
     ///
     /// # Errors
     /// As [`Self::folder`].
     pub fn launcher(&self) -> Result<Launcher, ProjectError> {
-        Ok(Launcher { confiner: self.confiner.clone(), project: self.folder()? })
+        Ok(Launcher { confiner: (self.confiner)(), project: self.folder()? })
     }
 
     /// Where photographs are.

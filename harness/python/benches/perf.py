@@ -74,6 +74,8 @@ def main():
     print(f"the same of 640 x 480, float32         {1e6 * call(small):8.1f} us (not copied)")
     print(f"the same of 640 x 480, uint8           {1e6 * call((small * 255).astype(np.uint8)):8.1f} us")
     camera = cb.render("testfields/chessboard", root=ROOT)[0].camera
+    ray = np.array([[0.0, 0.0, 1.0]])
+    print(f"a point projected                      {1e6 * median(lambda: [camera.project(ray) for _ in range(calls)], 3) / calls:8.1f} us")
     rays = np.random.default_rng(1).uniform([-0.4, -0.3, 1], [0.4, 0.3, 1], (1_000_000, 3))
     print(f"a million points projected             {1e3 * median(lambda: camera.project(rays)):8.1f} ms")
     with tempfile.TemporaryDirectory() as folder:

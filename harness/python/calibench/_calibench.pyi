@@ -39,6 +39,7 @@ __all__ = [
     "methods",
     "render",
     "report",
+    "restored",
     "run",
     "run_part",
     "scenarios",
@@ -458,6 +459,9 @@ def report(*papers: str, root: Optional[_Path] = None) -> List[Path]:
 
 def shipped(scenario: str, *, root: Optional[_Path] = None) -> Tuple[str, str, Optional[Tuple[Path, Path]], str]:
     """What a part needs on another machine: name, text, its camera's file (from its folder, and where it is), revision."""
+
+def restored(class_: str, version: str, state: Any) -> Any:
+    """What `pickle` calls: the object of a class that was pickled as `state`, by the same version of calibench."""
 
 def methods(*, root: Optional[_Path] = None) -> List[Tuple[str, str]]:
     """All methods: names and what they are."""

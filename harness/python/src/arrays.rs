@@ -12,6 +12,12 @@ use crate::error::input;
 /// # Errors
 /// Anything else, by its type and shape.
 pub fn rows<const N: usize>(array: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[f64; N]>> {
+    // As most are given, nothing is asked of numpy.
+    if let Ok(values) = array.extract::<PyReadonlyArray2<'_, f64>>()
+        && values.as_array().ncols() == N
+    {
+        return Ok(values.as_array().rows().into_iter().map(|row| std::array::from_fn(|i| row[i])).collect());
+    }
     let array = as_numbers(array, what)?;
     let shape = array.cast::<PyUntypedArray>().map_err(PyErr::from)?.shape().to_vec();
     // No point is an array of no row, whatever its shape.
@@ -77,6 +83,16 @@ pub fn of_positions(py: Python<'_>, points: impl IntoIterator<Item = PixelPoint>
 /// A matrix as an array.
 pub fn of_matrix(py: Python<'_>, matrix: &DMatrix<f64>) -> PyResult<Py<PyArray2<f64>>> {
     shaped(py, matrix.transpose().iter().copied().collect(), [matrix.nrows(), matrix.ncols()])
+}
+
+/// What [`of_matrix`] made of a matrix.
+///
+/// # Errors
+/// Anything else.
+pub fn matrix(array: &Bound<'_, PyAny>) -> PyResult<DMatrix<f64>> {
+    let values: PyReadonlyArray2<'_, f64> = array.extract()?;
+    let values = values.as_array();
+    Ok(DMatrix::from_fn(values.nrows(), values.ncols(), |row, column| values[[row, column]]))
 }
 
 /// No position.

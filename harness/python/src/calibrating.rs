@@ -10,16 +10,18 @@ use calibench_model::Pose as Exterior;
 use calibench_report::calibration::summary;
 use nalgebra::DMatrix;
 use numpy::PyArray2;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{of_matrix, table};
+use crate::arrays::{matrix, of_matrix, rows, table};
 use crate::boards::Board;
 use crate::camera::{Camera, size_of};
 use crate::error::{CalibrationError, doubt, in_python, input};
+use crate::pickled::{Pickled, Reduced, reduced};
 use crate::points::{image_names, points};
-use crate::pool::released;
 use crate::pose::Pose;
+use crate::stopped::interruptible;
 
 /// A calibrated camera and its quality: see `calibench.Calibration`.
 #[pyclass(frozen, module = "calibench", name = "Calibration")]
@@ -30,7 +32,6 @@ pub struct Calibration {
 
 /// What is kept of a solution.
 struct Done {
-    named: NamedCamera,
     /// The parameters that were solved for.
     solved: Vec<String>,
     covariance: DMatrix<f64>,
@@ -125,6 +126,10 @@ impl Calibration {
         &self.done.summary
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         let doubts = self.done.doubts.len();
         format!(
@@ -184,15 +189,15 @@ pub fn calibrate(
     if snoop && huber.is_some() {
         return Err(input("huber and snoop: one or the other"));
     }
-    let done = released(py, || {
+    let done = interruptible(py, || {
         let prepared = prepare(points, &board.control, &settings)?;
         self::solve(&prepared, &compare.unwrap_or_default(), |calibration| done(calibration, &names, &board))
     })?;
-    let done = done.map_err(|error| CalibrationError::new_err(in_python(&error.to_string())))?.map_err(input)?;
+    let (named, done) = done.map_err(|error| CalibrationError::new_err(in_python(&error.to_string())))?.map_err(input)?;
     for text in &done.doubts {
         doubt(py, text)?;
     }
-    Ok(Calibration { camera: Py::new(py, Camera::new(done.named.clone()))?, done })
+    Ok(Calibration { camera: Py::new(py, Camera::new(named))?, done })
 }
 
 /// A model as `judge` names it: the lens, and whether the board is bent.
@@ -214,7 +219,7 @@ pub fn positive(value: Option<f64>, what: &str) -> PyResult<Option<f64>> {
     }
 }
 
-fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<Done, String> {
+fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<(NamedCamera, Done), String> {
     let (prepared, solution) = (calibration.prepared, &calibration.solution);
     let image_of: HashMap<&str, usize> = names.iter().enumerate().map(|(index, name)| (name.as_str(), index)).collect();
     let point_of: HashMap<&str, usize> = board.names().enumerate().map(|(index, name)| (name, index)).collect();
@@ -228,8 +233,7 @@ fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<Don
         used[image][point] = residual.used != Use::LeftOut;
     }
     let (solved, covariance) = calibration.covariances.of_camera(0);
-    Ok(Done {
-        named: calibration.named_camera(0)?,
+    let done = Done {
         solved: solved.into_iter().map(str::to_owned).collect(),
         covariance,
         images: prepared.survey.images.clone(),
@@ -240,5 +244,41 @@ fn done(calibration: &Solved<'_>, names: &[String], board: &Board) -> Result<Don
         rms_px: calibration.rms_px(),
         doubts: calibration.doubts().into_iter().map(in_python).collect(),
         summary: summary(calibration),
-    })
+    };
+    Ok((calibration.named_camera(0)?, done))
+}
+
+/// The camera and all fields of [`Done`], in their order.
+type State<'py> = (
+    Py<Camera>,
+    Vec<String>,
+    Bound<'py, PyAny>,
+    Vec<String>,
+    Vec<Py<Pose>>,
+    Vec<Bound<'py, PyAny>>,
+    Vec<Vec<bool>>,
+    Option<f64>,
+    f64,
+    Vec<String>,
+    String,
+);
+
+impl Pickled for Calibration {
+    const CLASS: &'static str = "Calibration";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Done { solved, covariance, images, poses, used, sigma0, rms_px, doubts, summary, .. } = &self.done;
+        let poses = poses.iter().map(|pose| Py::new(py, Pose(*pose))).collect::<PyResult<Vec<_>>>()?;
+        let (covariance, residuals) = (of_matrix(py, covariance)?, self.residuals(py)?);
+        (&self.camera, solved, covariance, images, poses, residuals, used, *sigma0, *rms_px, doubts, summary).into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (camera, solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, summary): State<'_> = state.extract()?;
+        let covariance = matrix(&covariance)?;
+        let residuals = residuals.iter().map(|image| rows(image, "residuals")).collect::<PyResult<_>>()?;
+        let poses = poses.iter().map(|pose| pose.get().0).collect();
+        let done = Done { solved, covariance, images, poses, residuals, used, sigma0, rms_px, doubts, summary };
+        Ok(Self { done, camera })
+    }
 }

@@ -14,11 +14,13 @@ use calibench_model::PixelPoint;
 use calibench_model::camera::{CameraModel, ImageSize, Ray, Verification, fold};
 use calibench_model::convert::{ConvertOptions, Method, Region, Verdict};
 use numpy::PyArray2;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::{NOWHERE, of_matrix, of_positions, positions, rows, table};
 use crate::error::{camera as refused, doubt, input, lost};
+use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
 
 /// A camera: see `calibench.Camera`.
@@ -33,6 +35,14 @@ pub struct Camera {
 
 /// Points that a thread takes at a time.
 const SHARE: usize = 4096;
+
+/// `work` of each point, on all threads where there are many: to wake them takes longer than a few points do.
+fn each<P: Sync, R: Send>(py: Python<'_>, points: &[P], work: impl Fn(&P) -> R + Send + Sync) -> PyResult<Vec<R>> {
+    if points.len() <= SHARE {
+        return Ok(py.detach(|| points.iter().map(work).collect()));
+    }
+    released(py, || points.par_iter().with_min_len(SHARE).map(work).collect())
+}
 
 impl Camera {
     /// One that no file held.
@@ -182,8 +192,7 @@ impl Camera {
     fn project(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<PyArray2<f64>>> {
         let points = rows::<3>(points, "points")?;
         let one = |[x, y, z]: &[f64; 3]| self.named.camera.project(Ray { x: *x, y: -y, z: -z }).unwrap_or(NOWHERE);
-        let found: Vec<PixelPoint> = released(py, || points.par_iter().with_min_len(SHARE).map(one).collect())?;
-        of_positions(py, found)
+        of_positions(py, each(py, &points, one)?)
     }
 
     /// Pixels of (n, 2) to rays of (n, 3) of length 1 in the camera's axes; NaN for what no ray comes to.
@@ -194,8 +203,7 @@ impl Camera {
             let length = (x * x + y * y + z * z).sqrt();
             [x / length, -y / length, -z / length]
         };
-        let found: Vec<[f64; 3]> = released(py, || places.par_iter().with_min_len(SHARE).map(one).collect())?;
-        table(py, &found)
+        table(py, &each(py, &places, one)?)
     }
 
     /// Pixels of (n, 2) to where they would be without distortion, px, with the same focal lengths and principal point; NaN for what has no place there.
@@ -203,8 +211,7 @@ impl Camera {
         let places = positions(px, "px")?;
         let plain = Undistorted::of(&self.named.camera, Overscan::Percent(0.0)).map_err(refused)?;
         let one = |at: &PixelPoint| self.named.camera.unproject(*at).ok().and_then(|ray| plain.image(ray)).unwrap_or(NOWHERE);
-        let found: Vec<PixelPoint> = released(py, || places.par_iter().with_min_len(SHARE).map(one).collect())?;
-        of_positions(py, found)
+        of_positions(py, each(py, &places, one)?)
     }
 
     /// Columns and rows, px.
@@ -268,9 +275,32 @@ impl Camera {
         self.named.notes.clone()
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         let (size, parameters) = (self.named.camera.size(), self.named.camera.parameters());
         let parameters: Vec<String> = parameters.iter().map(|p| format!("{}={}", p.name, p.value)).collect();
         format!("Camera({}, {} x {} px, {})", self.model(), size.width, size.height, parameters.join(", "))
+    }
+}
+
+/// What its file or its calibration said of it, its format, the residuals of its fit.
+type State = (String, Option<String>, Option<(f64, f64)>);
+
+impl Pickled for Camera {
+    const CLASS: &'static str = "Camera";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let named = serde_json::to_string(&self.named).map_err(refused)?;
+        let state: State = (named, self.format.map(|format| format.name.to_owned()), self.fit);
+        state.into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (named, format, fit): State = state.extract()?;
+        let format = format.map(|name| format_named(&name).ok_or_else(|| refused(format!("format: no such format as `{name}`"))));
+        Ok(Self { named: serde_json::from_str(&named).map_err(refused)?, format: format.transpose()?, fit })
     }
 }

@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 
 use crate::error::{doubt, input, project};
 use crate::grey::Grey;
-use crate::pool::released;
 use crate::rendering::{Targets, starts};
 use crate::session::with_project;
+use crate::stopped::interruptible;
 
 /// Finds a board, or the targets of the coded field that a scenario describes; None where it is not seen. As `calibench detect` does.
 #[pyfunction]
@@ -27,12 +27,12 @@ pub fn detect(
 ) -> PyResult<Option<Targets>> {
     let grey = Grey::of(image)?;
     let image = grey.image()?;
-    with_project(py, root, |here| match (board, testfield) {
+    with_project(root, |here| match (board, testfield) {
         (Some(board), None) => {
             // A chessboard with or without the side of a square.
             let with_side = if board.contains(':') || board.contains('.') { board.to_owned() } else { format!("{board}:1") };
             let finder = Finder::new(board_of(&with_side).map_err(input)?).map_err(input)?;
-            let found = released(py, || finder.find(&image, "image"))?;
+            let found = interruptible(py, || finder.find(&image, "image"))?;
             found.doubts.iter().try_for_each(|what| doubt(py, what))?;
             let targets = starts(py, found.rows.iter().map(|row| (row.target.as_str(), row.start)))?;
             Ok(if found.rows.is_empty() { None } else { Some(targets) })
@@ -49,7 +49,7 @@ pub fn detect(
             };
             let recogniser = Recogniser::new(&subject.field, classifier)
                 .map_err(|error| input(format!("testfield: {name}: {error}; its [testfield] must have kind = \"coded\"")))?;
-            match released(py, || coded_of(&subject.field, &recogniser, &image, "image"))? {
+            match interruptible(py, || coded_of(&subject.field, &recogniser, &image, "image"))? {
                 Ok(coded) => {
                     if !coded.lost.is_empty() {
                         doubt(py, &format!("{} targets of {} whole squares recognised, {}", coded.rows.len(), coded.squares, coded.lost))?;

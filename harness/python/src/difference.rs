@@ -3,11 +3,13 @@
 use calibench_model::camera::CameraModel;
 use calibench_model::convert::{DifferenceOptions, Region, difference, difference_at};
 use numpy::PyArray2;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use crate::arrays::{positions, table};
 use crate::camera::Camera;
 use crate::error::{camera as refused, input};
+use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
 
 /// How far two cameras differ over the frame: see `calibench.Difference`.
@@ -31,6 +33,10 @@ pub struct Difference {
 
 #[pymethods]
 impl Difference {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!(
             "Difference({:.6} px RMS, {:.6} px at most, after a rotation of {:.6} degrees)",
@@ -81,4 +87,21 @@ pub fn diff(
         not_comparable: found.not_comparable,
         vectors: table(py, &found.vectors.iter().map(|v| [v.at.x, v.at.y, v.dx, v.dy]).collect::<Vec<_>>())?,
     })
+}
+
+/// All fields, in their order.
+type State<'py> = (f64, f64, (f64, f64), f64, Option<f64>, f64, Bound<'py, PyArray2<f64>>);
+
+impl Pickled for Difference {
+    const CLASS: &'static str = "Difference";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Self { rms_px, max_px, max_at, rotation_deg, compensated_rms_px, not_comparable, vectors } = self;
+        (rms_px, max_px, *max_at, rotation_deg, *compensated_rms_px, not_comparable, vectors.bind(py)).into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (rms_px, max_px, max_at, rotation_deg, compensated_rms_px, not_comparable, vectors): State<'_> = state.extract()?;
+        Ok(Self { rms_px, max_px, max_at, rotation_deg, compensated_rms_px, not_comparable, vectors: vectors.unbind() })
+    }
 }

@@ -11,6 +11,7 @@ use calibench_photographs::{Finder, MeasuredBoards, measured_boards, method_info
 use calibench_records::judgement::{InUse, Row, StillHolds, Summary};
 use calibench_report::judgement::{in_use, section, verdict};
 use numpy::PyArray1;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -19,9 +20,10 @@ use crate::calibrating::positive;
 use crate::camera::{Camera, size_of};
 use crate::error::{doubt, input, project};
 use crate::measuring::Measured;
+use crate::pickled::{Pickled, Reduced, reduced};
 use crate::points::{image_names, points};
-use crate::pool::released;
 use crate::session::with_project;
+use crate::stopped::interruptible;
 
 /// A verdict and the figures behind it: see `calibench.Judgement`.
 #[pyclass(frozen, module = "calibench", name = "Judgement")]
@@ -37,13 +39,13 @@ pub struct Judgement {
     verdict: String,
     /// Why the verdict is in doubt, if so.
     #[pyo3(get)]
-    doubt: Option<&'static str>,
+    doubt: Option<String>,
     /// Below which the camera's error over the frame is in 95 of 100 cases, px RMS; None where that is not known.
     #[pyo3(get)]
     limit_px: Option<f64>,
     /// Of a camera in use: `holds`, `moved` or `cannot tell`.
     #[pyo3(get)]
-    in_use: Option<&'static str>,
+    in_use: Option<String>,
     rows: Vec<Row>,
 }
 
@@ -66,6 +68,10 @@ impl Judgement {
         all.set_item("status", text(|row| &row.status))?;
         all.set_item("reason", text(|row| &row.reason))?;
         Ok(all)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
     }
 
     fn __repr__(&self) -> String {
@@ -131,7 +137,7 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
         published: camera.map(|camera| camera.named.camera),
         published_sigma: camera.and_then(|camera| stated_sigma(&camera.named)),
     };
-    let rows = released(py, || judged(material, &options))?.map_err(input)?;
+    let rows = interruptible(py, || judged(material, &options))?.map_err(input)?;
     let summary = Summary::new(&rows, asked.seed);
     let Some(trusted) = summary.trusted() else { return Err(input(section(&summary).0)) };
     // Where the two cannot be compared over the frame the photographs cannot tell.
@@ -144,15 +150,48 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
         operator: trusted.cell.method.to_string(),
         model: trusted.cell.model.to_string(),
         verdict: format!("{words}{}", verdict(&summary, &trusted)),
-        doubt: trusted.doubt(),
+        doubt: trusted.doubt().map(str::to_owned),
         limit_px: trusted.limit,
-        in_use: found.map(|found| match found.verdict {
-            StillHolds::Holds => "holds",
-            StillHolds::Moved => "moved",
-            StillHolds::CannotTell => "cannot tell",
-        }),
+        in_use: found.map(|found| still_holds(found.verdict).to_owned()),
         rows,
     })
+}
+
+const fn still_holds(verdict: StillHolds) -> &'static str {
+    match verdict {
+        StillHolds::Holds => "holds",
+        StillHolds::Moved => "moved",
+        StillHolds::CannotTell => "cannot tell",
+    }
+}
+
+/// Operator, model, verdict, doubt, limit, whether a camera in use holds, and the rows.
+type State = (String, String, String, Option<String>, Option<f64>, Option<String>, Vec<RowState>);
+
+/// A row: four texts that say what it is of, value, sigma, count, and three texts.
+type RowState = ([String; 4], Option<f64>, Option<f64>, Option<usize>, [String; 3]);
+
+impl Pickled for Judgement {
+    const CLASS: &'static str = "Judgement";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let row = |row: &Row| -> RowState {
+            let Row { method, model, measure, place, value, sigma, count, unit, status, reason } = row;
+            let texts = |text: &Arc<str>| text.to_string();
+            ([method, model, measure, place].map(texts), *value, *sigma, *count, [unit, status, reason].map(texts))
+        };
+        let rows: Vec<RowState> = self.rows.iter().map(row).collect();
+        (&self.operator, &self.model, &self.verdict, &self.doubt, self.limit_px, &self.in_use, rows).into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (operator, model, verdict, doubt, limit_px, in_use, rows): State = state.extract()?;
+        let row = |(of, value, sigma, count, how): RowState| {
+            let ([method, model, measure, place], [unit, status, reason]) = (of.map(Arc::from), how.map(Arc::from));
+            Row { method, model, measure, place, value, sigma, count, unit, status, reason }
+        };
+        Ok(Self { operator, model, verdict, doubt, limit_px, in_use, rows: rows.into_iter().map(row).collect() })
+    }
 }
 
 /// Points by operators: a dict of lists of arrays, or one such list.
@@ -201,11 +240,11 @@ fn lost(arrays: &[Bound<'_, PyAny>], images: &[String], board: &Board) -> LostRo
 /// The corners of photographs in the hands of methods.
 fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Option<Vec<String>>, in_use: bool) -> PyResult<Material> {
     let pictured = board.pictured.ok_or_else(|| input("board: photographs are of a board; expected it in a word, as 9x6:25"))?;
-    with_project(py, None, |here| {
+    with_project(None, |here| {
         let finder = Finder::new(pictured).map_err(input)?;
         let texts = methods.unwrap_or_else(|| usual_methods(finder.kind(), in_use));
         let methods = here.methods_of_boards(&texts, finder.kind()).map_err(project)?;
-        let measured = released(py, || measured_boards(photos, &finder, &methods, &|| ()))?;
+        let measured = interruptible(py, || measured_boards(photos, &finder, &methods, &|| ()))?;
         let MeasuredBoards { trial, size, doubts } = measured.map_err(input)?;
         doubts.iter().try_for_each(|what| doubt(py, what))?;
         for (view, why) in &trial.missed_views {

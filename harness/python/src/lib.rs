@@ -15,6 +15,7 @@ mod judging;
 mod listing;
 mod measuring;
 mod method;
+mod pickled;
 mod points;
 mod pool;
 mod pose;
@@ -51,6 +52,8 @@ mod _calibench {
     use super::measuring::{Measured, measure};
     #[pymodule_export]
     use super::method::add_method;
+    #[pymodule_export]
+    use super::pickled::restored;
     #[pymodule_export]
     use super::pose::Pose;
     #[pymodule_export]

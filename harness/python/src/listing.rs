@@ -12,8 +12,8 @@ use crate::session::with_project;
 /// All methods: names and what they are.
 #[pyfunction]
 #[pyo3(signature = (*, root = None))]
-pub fn methods(py: Python<'_>, root: Option<PathBuf>) -> PyResult<Vec<(String, String)>> {
-    with_project(py, root, |here| {
+pub fn methods(root: Option<PathBuf>) -> PyResult<Vec<(String, String)>> {
+    with_project(root, |here| {
         let all = here.registry().map_err(project)?.methods();
         Ok(all.iter().map(|method| (method.name.to_owned(), method.about.to_owned())).collect())
     })
@@ -22,8 +22,8 @@ pub fn methods(py: Python<'_>, root: Option<PathBuf>) -> PyResult<Vec<(String, S
 /// The names of the project's scenarios; outside of a project there are none.
 #[pyfunction]
 #[pyo3(signature = (*, root = None))]
-pub fn scenarios(py: Python<'_>, root: Option<PathBuf>) -> PyResult<Vec<String>> {
-    with_project(py, root, |here| here.scenario_names().map_err(project))
+pub fn scenarios(root: Option<PathBuf>) -> PyResult<Vec<String>> {
+    with_project(root, |here| here.scenario_names().map_err(project))
 }
 
 /// Restricts this process, then becomes the command; why not, where it cannot.

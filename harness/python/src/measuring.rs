@@ -2,16 +2,18 @@
 
 use calibench_measure::kinds::all_busy;
 use calibench_model::{Affine, Covariance, Measurement, Rejection, Start, TargetKind};
-use calibench_photographs::points::shared_out;
+use calibench_photographs::points::{is_one_share, shared_out};
 use calibench_project::Pictured;
 use numpy::{PyArray2, PyArray3, PyArrayMethods};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use crate::arrays::{NOWHERE, matrices, of_covariances, of_positions, positions};
 use crate::error::{UnavailableError, doubt, input, project};
 use crate::grey::Grey;
-use crate::pool::released;
-use crate::session::with_project;
+use crate::pickled::{Pickled, Reduced, reduced};
+use crate::session::with_project_of;
+use crate::stopped::interruptible;
 
 /// What a method made of points: see `calibench.Measured`.
 #[pyclass(frozen, get_all, module = "calibench", name = "Measured")]
@@ -36,6 +38,10 @@ impl Measured {
         self.status.len()
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         let measured = self.status.iter().filter(|status| **status == MEASURED).count();
         format!("Measured({measured} of {} points by {} {})", self.status.len(), self.method, self.version)
@@ -56,6 +62,10 @@ impl Measured {
 
 const MEASURED: &str = "measured";
 
+const fn status(is_measured: bool) -> &'static str {
+    if is_measured { MEASURED } else { "rejected" }
+}
+
 /// Measures points of an image: as `calibench measure` does.
 #[pyfunction]
 #[pyo3(signature = (image, xy, method = "forstner", *, kind = None, axes = None, cov = None))]
@@ -69,7 +79,7 @@ pub fn measure(
     cov: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Measured> {
     let starts = starts(xy, kind, axes, cov)?;
-    with_project(py, None, |here| {
+    with_project_of(method, |here| {
         let methods = here.methods(&[method.to_owned()], Pictured::Photographs).map_err(project)?;
         let Some(configured) = methods.first() else { return Err(input("method: expected a name")) };
         let operator =
@@ -92,7 +102,9 @@ pub fn measure(
         }
         let grey = Grey::of(image)?;
         let picture = grey.image()?;
-        let found = released(py, || shared_out(operator, &picture, &starts))?;
+        let measured = || shared_out(operator, &picture, &starts);
+        // To wake other threads takes longer than to measure a few points.
+        let found = if is_one_share(operator, &starts) { py.detach(measured) } else { interruptible(py, measured)? };
         for note in operator.notes() {
             doubt(py, &format!("{}: {note}", configured.name()))?;
         }
@@ -104,11 +116,33 @@ fn of_results(py: Python<'_>, found: &[Result<Measurement, Rejection>], method: 
     Ok(Measured {
         xy: of_positions(py, found.iter().map(|result| result.as_ref().map_or(NOWHERE, |found| found.position)))?,
         cov: of_covariances(py, found.iter().map(|result| result.as_ref().ok().and_then(|found| found.covariance)))?,
-        status: found.iter().map(|result| if result.is_ok() { MEASURED } else { "rejected" }).collect(),
+        status: found.iter().map(|result| status(result.is_ok())).collect(),
         reason: found.iter().map(|result| result.as_ref().err().map(|why| why.name())).collect(),
         method,
         version,
     })
+}
+
+/// Positions, covariances, reasons, method, version.
+type State<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>, Vec<Option<String>>, String, String);
+
+impl Pickled for Measured {
+    const CLASS: &'static str = "Measured";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        (self.xy.bind(py), self.cov.bind(py), &self.reason, &self.method, &self.version).into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (xy, cov, reasons, method, version): State<'_> = state.extract()?;
+        let known = |name: String| {
+            let reason = Rejection::ALL.into_iter().map(Rejection::name).find(|known| *known == name);
+            reason.ok_or_else(|| input(format!("`{name}` is no reason for which points are rejected")))
+        };
+        let reason = reasons.into_iter().map(|name| name.map(known).transpose()).collect::<PyResult<Vec<_>>>()?;
+        let status = reason.iter().map(|reason| status(reason.is_none())).collect();
+        Ok(Self { xy: xy.unbind(), cov: cov.unbind(), status, reason, method, version })
+    }
 }
 
 /// Where measuring starts.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use calibench_measure::operator::nearest_detected;
 use calibench_measure::parameter::{Domain, Parameter};
 use calibench_measure::{Build, Method, Operator, Outside, Settings};
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
-use calibench_plugins::Told;
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, Told};
+use calibench_plugins::Teller;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -17,10 +17,10 @@ use crate::session::add;
 
 /// A method as Python declares it.
 struct Declared {
-    callable: Py<PyAny>,
+    callable: Arc<Py<PyAny>>,
     /// The radius within which a detection counts, px, of one that finds by itself; `None` for one that is given starts.
     radius: Option<f64>,
-    told: Told,
+    told: Teller,
 }
 
 /// One whose parameters are set.
@@ -53,23 +53,20 @@ pub fn add_method(
         Parameter { name: leak(&name), about: leak(&about), domain, default, always_shown: name == "window" }
     };
     let parameters: Vec<Parameter> = parameters.into_iter().map(parameter).collect();
-    let declared = Arc::new(Declared { callable, radius, told: Told::default() });
-    let build = move |settings: &Settings| {
-        let asked = Asked { declared: declared.clone(), settings: settings.clone(), whole: whole.clone() };
-        Ok(match Python::attach(|py| version_of(version.bind(py)).map_err(|error| error.to_string())) {
-            Ok(version) => Outside { version, operator: Ok(Box::new(asked)) },
-            Err(why) => Outside { version: UNKNOWN.into(), operator: Err(why) },
-        })
-    };
     // Names live as long as the process: methods are few.
-    let parameters = Box::leak(parameters.into_boxed_slice());
-    add(Method {
-        name: leak(&name),
-        about: leak(&about),
-        source: leak(&source),
-        version: UNKNOWN.into(),
-        parameters,
-        build: Build::Outside(Arc::new(build)),
+    let (name, about, source, parameters) = (leak(&name), leak(&about), leak(&source), &*Box::leak(parameters.into_boxed_slice()));
+    let (version, callable) = (Arc::new(version), Arc::new(callable));
+    add(name, move || {
+        let declared = Arc::new(Declared { callable: callable.clone(), radius, told: Teller::default() });
+        let (version, whole) = (version.clone(), whole.clone());
+        let build = move |settings: &Settings| {
+            let asked = Asked { declared: declared.clone(), settings: settings.clone(), whole: whole.clone() };
+            Ok(match Python::attach(|py| version_of(version.bind(py)).map_err(|error| error.to_string())) {
+                Ok(version) => Outside { version, operator: Ok(Box::new(asked)) },
+                Err(why) => Outside { version: UNKNOWN.into(), operator: Err(why) },
+            })
+        };
+        Method { name, about, source, version: UNKNOWN.into(), parameters, build: Build::Outside(Arc::new(build)) }
     })
 }
 
@@ -193,7 +190,7 @@ impl Operator for Asked {
         false
     }
 
-    fn notes(&self) -> Vec<String> {
+    fn told(&self) -> Told {
         self.declared.told.all()
     }
 }

@@ -1,27 +1,50 @@
 //! The threads of this process.
 
 use std::process;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
+use calibench_model::stop::heed;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::error::input;
 
-/// The threads, and the process whose they are.
-static THREADS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+/// Threads, and the process whose they are.
+type Threads = Mutex<Option<(u32, Arc<ThreadPool>)>>;
+
+static THREADS: Threads = Mutex::new(None);
+
+/// Those of Python's main thread, which alone is told of Ctrl-C: what others do on theirs does not end with it.
+static OF_MAIN: Threads = Mutex::new(None);
+
+/// Whether what the main thread does is to end.
+static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// A process that was forked has none of its parent's threads: it gets its own.
 ///
 /// # Errors
 /// A system that starts no threads.
 pub fn all_threads() -> PyResult<Arc<ThreadPool>> {
-    let mut threads = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    own(&THREADS, || ())
+}
+
+/// The threads of the main thread, and the flag at which they end what they do.
+///
+/// # Errors
+/// A system that starts no threads.
+pub fn threads_of_main() -> PyResult<(Arc<ThreadPool>, &'static AtomicBool)> {
+    Ok((own(&OF_MAIN, || heed(STOP.clone()))?, &STOP))
+}
+
+/// The threads that are kept, if they are this process's, or new ones, each of which begins with `first`.
+fn own(threads: &Threads, first: fn()) -> PyResult<Arc<ThreadPool>> {
+    let mut threads = threads.lock().unwrap_or_else(PoisonError::into_inner);
     let own = process::id();
     if let Some((_, pool)) = threads.as_ref().filter(|(of, _)| *of == own) {
         return Ok(pool.clone());
     }
-    let pool = Arc::new(ThreadPoolBuilder::new().build().map_err(input)?);
+    let pool = Arc::new(ThreadPoolBuilder::new().start_handler(move |_| first()).build().map_err(input)?);
     // The parent's are not ended here: they never began.
     if let Some((_, parents)) = threads.replace((own, pool.clone())) {
         std::mem::forget(parents);

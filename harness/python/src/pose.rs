@@ -1,11 +1,13 @@
 //! `Pose`: where a camera stands.
 
 use calibench_model::Pose as Exterior;
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, Matrix3, Point3};
 use numpy::{PyArray1, PyArray2};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use crate::arrays::of_matrix;
+use crate::pickled::{Pickled, Reduced, reduced};
 
 /// Exterior orientation: see `calibench.Pose`.
 #[pyclass(frozen, module = "calibench", name = "Pose")]
@@ -46,8 +48,30 @@ impl Pose {
         (omega, phi, kappa)
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         let (c, (omega, phi, kappa)) = (self.0.centre, self.angles());
         format!("Pose(centre=({}, {}, {}), omega={omega:.6}, phi={phi:.6}, kappa={kappa:.6} degrees)", c.x, c.y, c.z)
+    }
+}
+
+/// Nine numbers of the rotation, column by column, and the projection centre.
+type State = ([f64; 9], [f64; 3]);
+
+impl Pickled for Pose {
+    const CLASS: &'static str = "Pose";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Exterior { rotation, centre } = &self.0;
+        let state: State = (std::array::from_fn(|i| rotation[i]), centre.coords.into());
+        state.into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (rotation, centre): State = state.extract()?;
+        Ok(Self(Exterior { rotation: Matrix3::from_column_slice(&rotation), centre: Point3::from(centre) }))
     }
 }

@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 
 use calibench_exchange::NamedCamera;
-use calibench_model::{Start, TargetKind};
+use calibench_model::Start;
 use calibench_run::shots::{Shot as Rendered, TrueTarget, shots};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use crate::arrays::{NOWHERE, of_axes, of_positions, table};
 use crate::camera::Camera;
 use crate::error::{input, project};
+use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
 use crate::pose::Pose;
 use crate::session::with_project;
@@ -34,6 +36,10 @@ pub struct Shot {
 
 #[pymethods]
 impl Shot {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!("Shot({}, {} targets)", self.name, self.truth.get().target.len())
     }
@@ -45,7 +51,7 @@ pub struct Targets {
     /// Names.
     pub target: Vec<String>,
     /// Kinds; None where not known.
-    pub kind: Vec<Option<&'static str>>,
+    pub kind: Vec<Option<String>>,
     /// Positions, px; NaN where there is none.
     pub xy: Py<PyArray2<f64>>,
     /// (n, 2, 2): columns are the target's own axes in the image, px; NaN where not known.
@@ -53,13 +59,17 @@ pub struct Targets {
     /// Object coordinates; NaN in a flat scene and where not known.
     pub object: Py<PyArray2<f64>>,
     /// `visible`, `clipped`, `hidden` or `outside`; of starts all are visible.
-    pub visibility: Vec<&'static str>,
+    pub visibility: Vec<String>,
 }
 
 #[pymethods]
 impl Targets {
     fn __len__(&self) -> usize {
         self.target.len()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
     }
 
     fn __repr__(&self) -> String {
@@ -70,11 +80,11 @@ impl Targets {
 fn truth(py: Python<'_>, targets: &[TrueTarget]) -> PyResult<Targets> {
     Ok(Targets {
         target: targets.iter().map(|target| target.id.clone()).collect(),
-        kind: targets.iter().map(|target| Some(target.kind.name())).collect(),
+        kind: targets.iter().map(|target| Some(target.kind.name().to_owned())).collect(),
         xy: of_positions(py, targets.iter().map(|target| target.at.unwrap_or(NOWHERE)))?,
         axes: of_axes(py, targets.iter().map(|target| target.affine))?,
         object: table(py, &targets.iter().map(|target| target.object.map_or([f64::NAN; 3], |p| [p.x, p.y, p.z])).collect::<Vec<_>>())?,
-        visibility: targets.iter().map(|target| target.visibility.name()).collect(),
+        visibility: targets.iter().map(|target| target.visibility.name().to_owned()).collect(),
     })
 }
 
@@ -83,11 +93,11 @@ pub fn starts<'s>(py: Python<'_>, all: impl Iterator<Item = (&'s str, Start)>) -
     let all: Vec<_> = all.collect();
     Ok(Targets {
         target: all.iter().map(|(name, _)| (*name).to_owned()).collect(),
-        kind: all.iter().map(|(_, start)| start.kind.map(TargetKind::name)).collect(),
+        kind: all.iter().map(|(_, start)| start.kind.map(|kind| kind.name().to_owned())).collect(),
         xy: of_positions(py, all.iter().map(|(_, start)| start.position))?,
         axes: of_axes(py, all.iter().map(|(_, start)| start.affine))?,
         object: table(py, &vec![[f64::NAN; 3]; all.len()])?,
-        visibility: vec!["visible"; all.len()],
+        visibility: vec!["visible".to_owned(); all.len()],
     })
 }
 
@@ -116,10 +126,45 @@ pub fn render(
     stations: Option<Vec<String>>,
     root: Option<PathBuf>,
 ) -> PyResult<Vec<Shot>> {
-    with_project(py, root, |here| {
+    with_project(root, |here| {
         let scenario = here.scenario(scenario).map_err(project)?;
         let rendered =
             released(py, || shots(&scenario, seed.unwrap_or(scenario.seed), trial, &stations.unwrap_or_default()))?.map_err(input)?;
         rendered.into_iter().map(|rendered| shot(py, rendered)).collect()
     })
+}
+
+/// All fields of a shot, in their order.
+type ShotState<'py> = (String, Bound<'py, PyArray2<f32>>, Py<Targets>, Py<Targets>, Option<Py<Camera>>, Option<Py<Pose>>);
+
+impl Pickled for Shot {
+    const CLASS: &'static str = "Shot";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Self { name, image, truth, starts, camera, pose } = self;
+        (name, image.bind(py), truth, starts, camera, pose).into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (name, image, truth, starts, camera, pose): ShotState<'_> = state.extract()?;
+        Ok(Self { name, image: image.unbind(), truth, starts, camera, pose })
+    }
+}
+
+/// All fields of targets, in their order.
+type TargetsState<'py> =
+    (Vec<String>, Vec<Option<String>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>, Bound<'py, PyArray2<f64>>, Vec<String>);
+
+impl Pickled for Targets {
+    const CLASS: &'static str = "Targets";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Self { target, kind, xy, axes, object, visibility } = self;
+        (target, kind, xy.bind(py), axes.bind(py), object.bind(py), visibility).into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (target, kind, xy, axes, object, visibility): TargetsState<'_> = state.extract()?;
+        Ok(Self { target, kind, xy: xy.unbind(), axes: axes.unbind(), object: object.unbind(), visibility })
+    }
 }

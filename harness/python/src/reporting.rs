@@ -15,7 +15,7 @@ use crate::session::with_project;
 #[pyfunction]
 #[pyo3(signature = (*papers, root = None))]
 pub fn report(py: Python<'_>, papers: Vec<String>, root: Option<PathBuf>) -> PyResult<Vec<PathBuf>> {
-    with_project(py, root, |here| {
+    with_project(root, |here| {
         let (places, families) = (here.places().map_err(project)?, here.families(&papers).map_err(project)?);
         let families: Vec<(&String, &Vec<String>)> = families.iter().collect();
         let write = |(family, scenarios): &(&String, &Vec<String>)| write_family(&places, family, scenarios);

@@ -1,7 +1,8 @@
 //! `run`, `run_part` and `merge`: scenarios to records.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use std::{fs, io};
 
 use calibench_measure::registry::notes;
 use calibench_project::{Pictured, Project, origin};
@@ -12,13 +13,15 @@ use calibench_run::parts::{Wanted, merge as merged};
 use calibench_run::store::RecordsFolder;
 use calibench_run::{Order, Place, Planned, Ran, RunError};
 use calibench_scenario::{Scenario, Subject, Transfer};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use tempfile::TempDir;
 
 use crate::columns::columns;
 use crate::error::{doubt, input, project};
+use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
 use crate::session::with_project;
 use crate::stopped::stoppable;
@@ -77,9 +80,58 @@ impl Records {
         self.table(py, Table::Adjustments)
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        reduced(py, self)
+    }
+
     fn __repr__(&self) -> String {
         format!("Records({})", self.folder().map_or_else(|| "temporary".to_owned(), |folder| folder.display().to_string()))
     }
+}
+
+/// The folder's name or path, and its files where it goes with the object.
+type State = (PathBuf, Option<Vec<(PathBuf, Vec<u8>)>>);
+
+impl Pickled for Records {
+    const CLASS: &'static str = "Records";
+
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Some(temporary) = &self.temporary else { return (&self.folder, None::<()>).into_bound_py_any(py) };
+        let mut files = Vec::new();
+        files_in(temporary.path(), Path::new(""), &mut files)?;
+        let files: Vec<_> = files.iter().map(|(path, bytes)| (path, PyBytes::new(py, bytes))).collect();
+        let name = self.folder.strip_prefix(temporary.path()).map_err(input)?;
+        (name, files).into_bound_py_any(py)
+    }
+
+    fn of(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (folder, files): State = state.extract()?;
+        let Some(files) = files else { return Self::read(folder) };
+        let temporary = TempDir::new()?;
+        for (path, bytes) in files {
+            if path.components().any(|part| !matches!(part, Component::Normal(_))) {
+                return Err(input(format!("{}: is no file of records", path.display())));
+            }
+            let path = temporary.path().join(path);
+            path.parent().map_or(Ok(()), fs::create_dir_all)?;
+            fs::write(path, bytes)?;
+        }
+        Ok(Self::in_folder(temporary.path().join(folder), Some(temporary)))
+    }
+}
+
+/// All files below `folder` of `root`, by their paths from there.
+fn files_in(root: &Path, folder: &Path, files: &mut Vec<(PathBuf, Vec<u8>)>) -> io::Result<()> {
+    for entry in fs::read_dir(root.join(folder))? {
+        let entry = entry?;
+        let path = folder.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            files_in(root, &path, files)?;
+        } else {
+            files.push((path, fs::read(entry.path())?));
+        }
+    }
+    Ok(())
 }
 
 /// What differs from a scenario's file.
@@ -144,7 +196,7 @@ pub fn run(
     root: Option<PathBuf>,
 ) -> PyResult<Records> {
     let changes = Changes { methods: methods.unwrap_or_default(), trials, seed }.checked()?;
-    with_project(py, root, |here| {
+    with_project(root, |here| {
         let named = here.scenario(scenario).map_err(project)?;
         let temporary = records.is_none().then(TempDir::new).transpose()?;
         let all = records.or_else(|| temporary.as_ref().map(|folder| folder.path().to_owned())).unwrap_or_default();
@@ -177,7 +229,7 @@ pub fn run_part(
 ) -> PyResult<PathBuf> {
     let changes = Changes { methods: methods.unwrap_or_default(), trials, seed }.checked()?;
     let part: Part = part.parse().map_err(|error| input(format!("part: {error}")))?;
-    with_project(py, root, |here| {
+    with_project(root, |here| {
         let named = here.scenario(scenario).map_err(project)?;
         let revision = revision.map_or_else(|| here.revision().map_err(project), Ok)?;
         let wanted = Wanted { folder: &folder, part, origin: origin(scenario, &named), again, revision: &revision };
@@ -201,8 +253,8 @@ type Beside = (PathBuf, PathBuf);
 /// What a part needs on another machine: a scenario's name, its text, its camera's file if it has one, and the revision of the code.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, root = None))]
-pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<Beside>, String)> {
-    with_project(py, root, |here| {
+pub fn shipped(scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<Beside>, String)> {
+    with_project(root, |here| {
         let named = here.scenario(scenario).map_err(project)?;
         let camera = match &named.subject {
             Subject::Views(views) => views.camera_file.clone(),

@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 use calibench_measure::registry::Build;
 use calibench_measure::{Method, Registry, opencv_boards, opencv_chessboard_sb, opencv_subpix};
@@ -15,23 +15,29 @@ use crate::error::input;
 /// Why OpenCV's own methods are none of this build's.
 const WHY: &str = "the Python package is without OpenCV; where `cv2` is installed, cv2_subpix is its cornerSubPix";
 
-/// Methods that Python added.
-static ADDED: Mutex<Vec<Method>> = Mutex::new(Vec::new());
+/// What makes a method that Python added: anew for each call, since it tells what came of it in that call.
+type Declare = Box<dyn Fn() -> Method + Send>;
+
+/// Methods that Python added, by name.
+static ADDED: Mutex<Vec<(&'static str, Declare)>> = Mutex::new(Vec::new());
+
+/// This package's own methods, which no call and no file changes.
+static OWN: LazyLock<Toolbox> = LazyLock::new(|| Toolbox { registry: Registry::builtin(), ..Toolbox::default() });
 
 /// Adds a method for all calls to come, in place of an earlier one of Python's of that name.
 ///
 /// # Errors
 /// A name that is none, or that one of calibench's own methods has.
-pub fn add(method: Method) -> PyResult<()> {
-    if !is_name(method.name) {
-        return Err(input(format!("name: `{}`; expected lower-case letters, digits and _, a letter first", method.name)));
+pub fn add(name: &'static str, declare: impl Fn() -> Method + Send + 'static) -> PyResult<()> {
+    if !is_name(name) {
+        return Err(input(format!("name: `{name}`; expected lower-case letters, digits and _, a letter first")));
     }
-    if Registry::builtin().methods().iter().any(|own| own.name == method.name) {
-        return Err(input(format!("`{}` is a method of calibench itself; expected another name", method.name)));
+    if OWN.registry.has(name) {
+        return Err(input(format!("`{name}` is a method of calibench itself; expected another name")));
     }
     let mut added = ADDED.lock().unwrap_or_else(PoisonError::into_inner);
-    added.retain(|earlier| earlier.name != method.name);
-    added.push(method);
+    added.retain(|(earlier, _)| *earlier != name);
+    added.push((name, Box::new(declare)));
     Ok(())
 }
 
@@ -39,21 +45,32 @@ pub fn add(method: Method) -> PyResult<()> {
 fn toolbox() -> Toolbox {
     let others = [opencv_subpix::method, opencv_chessboard_sb::method].into_iter().chain(opencv_boards::ALL);
     let absent = others.map(|method| method(Build::Unavailable(WHY), "none".into()));
-    let registry = absent.into_iter().fold(Registry::builtin(), Registry::with);
-    let added = ADDED.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    Toolbox { registry: added.into_iter().fold(registry, Registry::with), ..Toolbox::default() }
+    let registry = absent.into_iter().fold(OWN.registry.clone(), Registry::with);
+    let added = ADDED.lock().unwrap_or_else(PoisonError::into_inner);
+    Toolbox { registry: added.iter().map(|(_, declare)| declare()).fold(registry, Registry::with), ..Toolbox::default() }
 }
 
 /// The module that restricts its process and then becomes a plug-in.
 const CONFINED: &str = "calibench.confined";
 
+/// How this Python starts that module.
+fn confiner() -> Option<Vec<OsString>> {
+    let python: Option<OsString> = Python::attach(|py| py.import("sys")?.getattr("executable")?.extract()).ok();
+    python.filter(|python| !python.is_empty()).map(|python| vec![python, "-m".into(), CONFINED.into()])
+}
+
 /// Calls `work` with the project: of `root`, or else around the current folder.
 ///
 /// # Errors
 /// What `work` refuses.
-pub fn with_project<T>(py: Python<'_>, root: Option<PathBuf>, work: impl FnOnce(&Project<'_>) -> PyResult<T>) -> PyResult<T> {
-    let toolbox = toolbox();
-    let python: Option<OsString> = py.import("sys")?.getattr("executable")?.extract().ok();
-    let confiner = python.filter(|python| !python.is_empty()).map(|python| vec![python, "-m".into(), CONFINED.into()]);
-    work(&Project { root, confiner, ..Project::new(&toolbox) })
+pub fn with_project<T>(root: Option<PathBuf>, work: impl FnOnce(&Project<'_>) -> PyResult<T>) -> PyResult<T> {
+    work(&Project { root, confiner, ..Project::new(&toolbox()) })
+}
+
+/// As [`with_project`], for the one method that `method` names: where that is one of this package, nothing else is looked for.
+///
+/// # Errors
+/// What `work` refuses.
+pub fn with_project_of<T>(method: &str, work: impl FnOnce(&Project<'_>) -> PyResult<T>) -> PyResult<T> {
+    if OWN.registry.has(method) { work(&Project::new(&OWN)) } else { with_project(None, work) }
 }

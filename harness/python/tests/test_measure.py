@@ -4,6 +4,8 @@ import subprocess
 import sys
 import threading
 import time
+import timeit
+import warnings
 
 import numpy as np
 import pytest
@@ -15,6 +17,12 @@ OF_DISCS = ("parametric_circle", "ellipse_edges", "centroid", "centroid_binary")
 # They find boards in whole images and measure no point from a start.
 FINDERS = ("detect", "calib_targets")
 OURS = [name for name, _ in cb.methods() if not name.startswith(("opencv_", "cv2_"))]
+
+
+def quiet(call, *words, **keys):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cb.DoubtWarning)
+        return call(*words, **keys)
 
 
 @pytest.fixture(scope="module")
@@ -199,3 +207,47 @@ def test_levels_of_twelve_bits_are_doubted():
     image = (np.random.default_rng(1).uniform(0, 1, (40, 40)) * 4095).astype(np.uint16)
     with pytest.warns(cb.DoubtWarning, match="10 or 12 bits"):
         cb.measure(image, [[20, 20]])
+
+
+def test_a_light_call_costs_microseconds():
+    """Nothing is looked for and no thread is woken for a few points. The bounds are ten times what it takes, and half of what either would cost."""
+    camera = cb.render("testfields/chessboard", root=ROOT)[0].camera
+    image, point, ray = np.full((8, 8), 0.5, np.float32), np.array([[4.0, 4.0]]), np.array([[0.0, 0.0, 1.0]])
+
+    def microseconds(call):
+        return 1e3 * min(timeit.repeat(call, number=1000, repeat=20))
+
+    assert microseconds(lambda: camera.project(ray)) < 6
+    assert microseconds(lambda: camera.unproject(point)) < 6
+    assert microseconds(lambda: camera.undistort(point)) < 8
+    assert microseconds(lambda: cb.measure(image, point, "pixel")) < 14
+
+
+def test_plug_ins_are_looked_for_where_a_name_is_none_of_ours(tmp_path, monkeypatch):
+    image, point = np.full((50, 50), 0.5, np.float32), [[20.0, 21.0]]
+    project = tmp_path / "project"
+    for name in ("scenarios", "reference", "methods"):
+        (project / name).mkdir(parents=True)
+    monkeypatch.chdir(project)
+    with pytest.raises(cb.InputError, match="no method is called `start_sh`"):
+        cb.measure(image, point, "start_sh")
+    # What is new is seen at once, and so is what is gone, and that one is elsewhere.
+    (project / "methods/start.sh").write_text((ROOT / "examples/plugins/start.sh").read_text())
+    declared = '[[plugin]]\nname = "start_sh"\ncommand = ["sh", "start.sh"]\n'
+    (project / "methods/start.toml").write_text(declared)
+    assert quiet(cb.measure, image, point, "start_sh").xy.tolist() == point
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(cb.InputError, match="no method is called"):
+        cb.measure(image, point, "start_sh")
+    monkeypatch.chdir(project)
+    (project / "methods/start.toml").write_text(declared.replace("name", "nome"))
+    with pytest.raises(cb.ScenarioError, match="nome"):
+        cb.measure(image, point, "start_sh")
+    # Ours need nothing of it, nor a folder at all.
+    for method in ("pixel", "corner+cross=forstner:window=9", "chess_corner = pixel"):
+        cb.measure(image, point, method, kind="corner" if "corner+" in method else "chess_corner")
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    assert cb.measure(image, point, "pixel").status == ["measured"]

@@ -142,3 +142,27 @@ def test_parameters_outside_of_their_range_are_refused():
     for wrong in ("mine:window=33", "mine:window=4", "mine:blur=1"):
         with pytest.raises(cb.InputError):
             cb.measure(IMAGE, STARTS, wrong)
+
+
+def test_a_call_tells_what_came_of_it_alone(project):
+    """And so do the records of a run: what was raised in an earlier one is none of theirs."""
+    failing = True
+
+    @cb.method(name="moody", version="1")
+    def moody(image, starts):
+        if failing:
+            raise ValueError("not today")
+        return starts
+
+    image = np.full((30, 30), 0.5, np.float32)
+    with pytest.warns(cb.DoubtWarning, match="not today"):
+        cb.measure(image, [[15.0, 15.0]], "moody")
+    with pytest.warns(cb.DoubtWarning, match="not today"):
+        first = cb.run("operators/targets", methods=["pixel", "moody"], trials=1)
+    failing = False
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cb.measure(image, [[15.0, 15.0]], "moody")
+        second = cb.run("operators/targets", methods=["pixel", "moody"], trials=1)
+    of_moody = lambda records: {status for status, method in zip(records.points["status"], records.points["method"]) if method == "moody"}
+    assert "measured" not in of_moody(first) and "measured" in of_moody(second)

@@ -1,7 +1,7 @@
 //! Drawings of the design's targets, to be held against what is seen.
 
-use calibench_model::TargetKind;
 use calibench_model::target::BAR;
+use calibench_model::{TargetKind, stop};
 
 use crate::design::Design;
 use crate::normal::{Normal, SIDE};
@@ -109,6 +109,7 @@ impl Bank {
 
     /// What is seen around a place, to be compared with the two kinds of a size group.
     pub fn seen(&self, normal: &Normal, centre: [f64; 2], (kind, large): (TargetKind, bool)) -> Patch {
+        stop::point();
         Patch(normalised(self.shapes[index(kind, large)].seen(normal, centre)))
     }
 

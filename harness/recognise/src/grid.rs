@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use calibench_model::stop;
 use nalgebra::Vector2;
 
 use crate::adjust::{Adjusted, adjust, through};
@@ -103,6 +104,7 @@ impl Search<'_> {
 
     fn consider(&mut self, mappings: Vec<Mapping>) {
         for mapping in mappings {
+            stop::point();
             let Some(grid) = Grid::adjusted(&mapping, self.points, self.size) else { continue };
             let score = grid.sides.score() / (1.0 + (grid.adjusted.rms / SCATTER).powi(2));
             if self.best.as_ref().is_none_or(|(least, _)| score > *least) {

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use calibench_model::stop;
+
 use crate::ridge::Ridge;
 
 /// Directions, a degree each.
@@ -66,6 +68,7 @@ pub(crate) fn lines(points: &[Ridge], reach: f64, side: f64) -> Vec<Line> {
     let (mut found, mut best) = (Vec::new(), 0.0_f64);
     let shortest = (SHORTEST * side).max(SHORTEST_PX);
     for _ in 0..4 * MOST {
+        stop::point();
         let (normal, r, count) = votes.best();
         best = best.max(count);
         if found.len() == MOST || count < OF_BEST * best || count < 0.5 * FILLED * shortest {

@@ -1,6 +1,6 @@
 //! Points on narrow dark lines.
 
-use calibench_model::Image;
+use calibench_model::{Image, stop};
 
 use crate::error::NotRecognised;
 use crate::smooth::smooth;
@@ -48,6 +48,7 @@ pub(crate) fn ridges(image: &Image) -> Result<Vec<Ridge>, NotRecognised> {
     let (width, height) = (smoothed.width(), smoothed.height());
     let mut points = Vec::new();
     for y in 1..height - 1 {
+        stop::point();
         for x in 1..width - 1 {
             if laplace[y * width + x] > threshold.least {
                 points.extend(ridge(&smoothed, x, y, &threshold));

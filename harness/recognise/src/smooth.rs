@@ -1,6 +1,6 @@
 //! Gaussian smoothing and reduction.
 
-use calibench_model::Image;
+use calibench_model::{Image, stop};
 
 /// The image smoothed by a Gaussian of `sigma` px; beyond its border it goes on as at its border.
 pub(crate) fn smooth(image: &Image, sigma: f64) -> Image<'static> {
@@ -10,6 +10,7 @@ pub(crate) fn smooth(image: &Image, sigma: f64) -> Image<'static> {
     let mut along = vec![0.0_f32; width * height];
     let mut padded = vec![0.0_f32; width + 2 * reach];
     for y in 0..height {
+        stop::point();
         let row = image.row(y);
         padded[..reach].fill(row[0]);
         padded[reach..reach + width].copy_from_slice(row);
@@ -21,6 +22,7 @@ pub(crate) fn smooth(image: &Image, sigma: f64) -> Image<'static> {
     }
     let mut both = vec![0.0_f32; width * height];
     for y in 0..height {
+        stop::point();
         let sums = &mut both[y * width..(y + 1) * width];
         for (k, &weight) in kernel.iter().enumerate() {
             let from = (y + k).saturating_sub(reach).min(height - 1);

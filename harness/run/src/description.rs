@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use calibench_measure::Configured;
-use calibench_measure::registry::notes;
 use calibench_model::camera::{CameraModel, Photogrammetric};
 use calibench_model::convert::Tool;
 use calibench_model::escape::markdown;
+use calibench_model::told::{Told, notes};
 use calibench_records::description::{
     self, Adjustment, Axis, Cell, CheckPoint, Description, PlacedNetwork, PrintedCamera, Role, Room, Target, Value, Views, operator,
 };
@@ -19,7 +19,12 @@ use calibench_synth::view::View;
 use crate::printed::PRINT;
 use crate::views::is_pointed_at;
 
-/// The description of `scenario`, which `methods` were run on: its own or others.
+/// What methods told, as paragraphs beside a scenario's own notes.
+pub fn told_notes<'m>(told: impl IntoIterator<Item = (&'m str, Told)>) -> impl Iterator<Item = String> {
+    notes(told).into_iter().map(|(name, note)| format!("**`{name}`:** {}", markdown(&note)))
+}
+
+/// The description of `scenario`, which `methods` were run on, its own or others; but for what these tell ([`told_notes`]).
 pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
     let default = |method: &Configured| (operator(&method.label).to_owned(), method.default_label.clone());
     let subject = match &scenario.subject {
@@ -28,12 +33,10 @@ pub fn description(scenario: &Scenario, methods: &[Configured]) -> Description {
         Subject::Printed(printed) => description::Subject::Printed(Box::new(of_print(printed))),
         Subject::Photographs(subject) => description::Subject::Photographs { judged: subject.judgement.is_some() },
     };
-    let told = notes(if methods.is_empty() { &scenario.methods } else { methods });
-    let told = told.into_iter().map(|(name, note)| format!("**`{name}`:** {}", markdown(&note)));
     Description {
         why: scenario.why.clone(),
         source: scenario.source.clone(),
-        notes: scenario.notes.iter().cloned().chain(told).collect(),
+        notes: scenario.notes.clone(),
         seed: scenario.seed,
         trials: scenario.trials,
         bound_window: scenario.bound_window,

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use calibench_exchange::{NewFile, NewFolder, OutputFolder};
 use calibench_measure::Configured;
+use calibench_measure::registry::told;
+use calibench_model::Told;
 use calibench_records::adjustments::CalibrationWriter;
 use calibench_records::description::write as write_description;
 use calibench_records::names::{DESCRIPTION, ORIGIN, PART, SCENARIO, cell_name};
@@ -16,7 +18,7 @@ use calibench_records::stored::{Compressor, Table};
 use calibench_scenario::camera::KEPT;
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
-use crate::description::description;
+use crate::description::{description, told_notes};
 use crate::judgement::write_judgement;
 use crate::theory::write_theory;
 use crate::{Order, Plan, RunError};
@@ -89,10 +91,18 @@ impl RecordsFolder {
         self.output.replace(fill)
     }
 
-    /// Keeps what tells the scenario, which was run with `methods`.
-    fn keep(&self, scenario: &Scenario, methods: &[Configured], folder: &NewFolder) -> Result<(), RunError> {
+    /// Keeps what tells the scenario, which was run with `methods`, and what they told: after measuring, not before.
+    pub(crate) fn keep(
+        &self,
+        scenario: &Scenario,
+        methods: &[Configured],
+        told: Vec<(&str, Told)>,
+        folder: &NewFolder,
+    ) -> Result<(), RunError> {
         folder.write(SCENARIO, |file| file.write_all(scenario.text.as_bytes()))?;
-        folder.write(DESCRIPTION, |file| write_description(file, &description(scenario, methods)))?;
+        let mut description = description(scenario, methods);
+        description.notes.extend(told_notes(told));
+        folder.write(DESCRIPTION, |file| write_description(file, &description))?;
         if let Some(origin) = &self.origin {
             folder.write(ORIGIN, |file| writeln!(file, "{origin}"))?;
         }
@@ -108,28 +118,19 @@ impl RecordsFolder {
 pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
     let mut measured = 0;
     records.replace(|folder| {
-        measured = fill(records, folder, plan, revision, step)?;
-        Ok::<_, RunError>(())
+        measured = fill(folder, plan, revision, step)?;
+        records.keep(plan.scenario, plan.methods, told(plan.methods), folder)
     })?;
     Ok(measured)
 }
 
 /// Runs the trials of `plan` that are wanted and writes what there is of them into `folder`; how many points were measured.
-pub(crate) fn fill(
-    records: &RecordsFolder,
-    folder: &NewFolder,
-    plan: &Plan<'_>,
-    revision: &str,
-    step: &(dyn Fn() + Sync),
-) -> Result<u64, RunError> {
-    let mut measured = 0;
-    if plan.span().count() > 0 {
-        let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
-        measured = write_records(folder, &plan.scenario.name, &plan, revision, step)?;
+pub(crate) fn fill(folder: &NewFolder, plan: &Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
+    if plan.span().count() == 0 {
+        return Ok(0);
     }
-    // What methods tell of themselves they tell after measuring.
-    records.keep(plan.scenario, plan.methods, folder)?;
-    Ok(measured)
+    let plan = Plan { images: Some(folder), data: plan.data.clone(), ..*plan };
+    write_records(folder, &plan.scenario.name, &plan, revision, step)
 }
 
 /// Runs `plan` and writes its records into `folder`, under the name `name`; how many points were measured.
@@ -215,15 +216,14 @@ impl SweepPlan<'_> {
 pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
     let mut measured = 0;
     records.replace(|folder| {
-        measured = fill_sweep(records, folder, plan, (0..plan.sweep.cells()).map(|cell| (cell, None)), revision, step)?;
-        Ok::<_, RunError>(())
+        measured = fill_sweep(folder, plan, (0..plan.sweep.cells()).map(|cell| (cell, None)), revision, step)?;
+        records.keep(plan.order.scenario, plan.order.methods, told(plan.order.measuring()), folder)
     })?;
     Ok(measured)
 }
 
 /// Runs `cells` of `plan`, of each all trials or those that are wanted, and writes what there is of them into `folder`; how many points were measured.
 pub(crate) fn fill_sweep(
-    records: &RecordsFolder,
     folder: &NewFolder,
     plan: &SweepPlan<'_>,
     cells: impl Iterator<Item = (usize, Option<Span>)>,
@@ -238,6 +238,5 @@ pub(crate) fn fill_sweep(
         measured += write_records(&folder, &format!("{}@{label}", plan.order.scenario.name), &run, revision, &|| ())?;
         step();
     }
-    records.keep(plan.order.scenario, plan.order.methods, folder)?;
     Ok(measured)
 }

@@ -2,6 +2,7 @@
 
 mod refused;
 mod resumed;
+mod told;
 
 use std::path::{Path, PathBuf};
 use std::process::Output;

@@ -90,7 +90,7 @@ fn parts_of_other_runs_are_named_by_what_differs() {
         refused(project, &MERGE, &[words]);
     }
     for (key, value, words) in [
-        ("format", 2.into(), "its form is 2, this version reads 1"),
+        ("format", 3.into(), "its form is 3, this version reads 2"),
         ("of", 0.into(), "there is no part 3/0"),
         ("part", 2.into(), "these are not the trials of part 2/3"),
         ("more", 1.into(), "unknown field `more`"),

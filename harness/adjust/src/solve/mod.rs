@@ -11,6 +11,8 @@ mod schur;
 mod small_cholesky;
 mod window;
 
+use calibench_model::stop;
+
 use crate::AdjustError;
 use crate::descent::{Damping, Descended, descend};
 use crate::network::{ImageObservation, Layout, Network, Sight};
@@ -88,6 +90,7 @@ impl<'n> Engine<'n> {
 
     /// Solves the normal equations with their diagonal raised; `None` if they are singular.
     pub(crate) fn decompose(&self, (state, normals): (&State, &Normals), damping: f64) -> Option<Solved> {
+        stop::point();
         let (mut schur, mut reduced) = (Schur::default(), self.blank.clone());
         schur.eliminate(self.ordered(state, normals), damping, &mut reduced).ok()?;
         let factor = Factor::of(reduced, self.scale(normals), self.structure.as_ref())?;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use calibench_model::Image;
+use calibench_model::{Image, stop};
 
 use super::level::Level;
 use crate::ground::grey;
@@ -138,6 +138,7 @@ fn strongest(level: &Level) -> Vec<Saddle> {
     let least = SHARE * greatest(&level.saddle);
     let mut found = Vec::new();
     for y in 2..height.saturating_sub(2) {
+        stop::point();
         let row = &level.saddle[y * width..(y + 1) * width];
         for x in 2..width - 2 {
             let own = row[x];

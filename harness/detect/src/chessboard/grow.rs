@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
+use calibench_model::stop;
+
 use super::candidates::{Saddle, Saddles};
 use super::level::Level;
 use super::side::is_side;
@@ -126,6 +128,7 @@ impl Iterator for Grids<'_> {
     type Item = Grid;
 
     fn next(&mut self) -> Option<Grid> {
+        stop::point();
         while self.next < self.saddles.all.len().min(SEEDS) {
             let seed = self.next;
             self.next += 1;

@@ -1,6 +1,6 @@
 //! An image at one of several scales, and how much of a saddle each of its pixels is.
 
-use calibench_model::{CornerPoint, Image, PixelPoint};
+use calibench_model::{CornerPoint, Image, PixelPoint, stop};
 
 use super::side::Sides;
 use crate::plane::Point;
@@ -84,6 +84,7 @@ fn smoothed(image: &Image) -> Image<'static> {
     let mut line = vec![0.0_f32; width + 4];
     let weigh = |a: f32, b: f32, c: f32, d: f32, e: f32| (a + e) + 4.0 * (b + d) + 6.0 * c;
     for y in 0..height {
+        stop::point();
         let row = |off: usize| &image.row((y + off).saturating_sub(2).min(height - 1))[..width];
         let (a, b, c, d, e) = (row(0), row(1), row(2), row(3), row(4));
         let middle = &mut line[2..width + 2];

@@ -13,6 +13,7 @@
 use std::collections::BTreeMap;
 
 use calibench_model::boards::{Puzzle, PuzzleCodes};
+use calibench_model::stop;
 
 use super::chance::Binomial;
 use super::dots::Dot;
@@ -172,6 +173,7 @@ impl Verdict {
 }
 
 fn judged(sheet: &Sheet, dots: &[Dot], puzzle: &Puzzle, mirrored: bool) -> Verdict {
+    stop::point();
     let ways = [false, true].into_iter().flat_map(|inverted| (0..4).map(move |turn| (turn, inverted)));
     let turns: Vec<Way> = ways.map(|(turn, inverted)| Way::new(sheet, dots, mirrored, turn, inverted)).collect();
     let votes = turns[0].votes;

@@ -2,9 +2,10 @@
 
 use calibench_model::camera::{Camera, CameraModel};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 /// Covariance of a camera's parameters, in their own units. Parameters that are not named were held fixed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterCovariance {
     /// Names, as in `CameraModel::parameters`.
     pub parameters: Vec<String>,

@@ -38,6 +38,7 @@ mod xml;
 use std::path::Path;
 
 use calibench_model::camera::{Camera, CameraModel, ImageSize};
+use serde::{Deserialize, Serialize};
 
 use crate::atomic::write_atomically;
 
@@ -63,7 +64,7 @@ pub struct CameraFile {
 }
 
 /// A camera of a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NamedCamera {
     /// Its name in the file: of a sensor or of an image; empty where the format has none.
     pub name: String,

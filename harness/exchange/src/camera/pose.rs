@@ -1,9 +1,11 @@
 //! Where a camera stood, and the many ways in which files say it.
 
+use serde::{Deserialize, Serialize};
+
 use super::CameraFileError;
 
 /// A camera's position and rotation, with the camera's axes of these tools: x right, y down, z forward.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Rotation from the world's axes to the camera's, 3 x 3, row by row.
     pub camera_from_world: [[f64; 3]; 3],
@@ -12,7 +14,7 @@ pub struct Pose {
 }
 
 /// What the world of a [`Pose`] is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PoseFrame {
     /// That of the object.
     #[default]

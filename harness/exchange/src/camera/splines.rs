@@ -3,12 +3,13 @@
 use calibench_model::PixelPoint;
 use calibench_model::camera::{Camera, CameraModel, Ray, Splined};
 use calibench_model::convert::{Conversion, ConvertError, ConvertOptions, ERROR_PX, Region, Target, fit};
+use serde::{Deserialize, Serialize};
 
 /// Circles about the axis over which other models are fitted where a part of the frame has no ray, as shares of the one that holds the frame.
 const CIRCLES: [f64; 8] = [0.99, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4];
 
 /// The splines of a file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Splines {
     /// As the file has them.
     pub model: Splined,

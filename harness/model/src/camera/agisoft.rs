@@ -1,5 +1,7 @@
 //! The frame cameras of Agisoft: Metashape, PhotoScan, Lens.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Brown, Pinhole};
@@ -7,7 +9,7 @@ use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 use crate::CornerPoint;
 
 /// Whose formulas and origins an [`Agisoft`] camera follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum AgisoftVersion {
     /// PhotoScan from 1.2 and Metashape: f, b1, b2, cx and cy from the centre of the frame, Brown's order of p1 and p2.
     Metashape,
@@ -29,7 +31,7 @@ pub enum AgisoftVersion {
 ///
 /// Source: Agisoft Metashape and PhotoScan 1.2 user manuals, appendix "Camera models"; Lens 0.4 user manual; Agisoft's answer in its forum, topic
 /// 6437, for `f = fy`, `b1 = fx - fy`, `b2 = skew`. What is confirmed by numbers: [`super::Convention::verification`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Agisoft {
     /// Size of its images.
     pub size: ImageSize,

@@ -1,12 +1,14 @@
 //! The fisheye cameras of Agisoft's Metashape.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, TangentialOrder, Verification};
 use super::wide_angle::{self, Axial, Focal, Plane};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, agisoft, named};
 use crate::{CornerPoint, PixelPoint};
 
 /// How Metashape's fisheye pictures an angle before it is distorted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FisheyeProjection {
     /// The radius is the angle: `fisheye` of older files, `equidistant_fisheye`.
     Equidistant,
@@ -21,7 +23,7 @@ pub enum FisheyeProjection {
 /// `y' = y q + p2 (r2 + 2 y^2) + 2 p1 x y`, `u = W/2 + cx + f x' + b1 x' + b2 y'`, `v = H/2 + cy + f y'`. Equidistant and without p1, p2 it is OpenCV's fisheye.
 ///
 /// Source: Agisoft Metashape user manuals, appendix "Camera models", fisheye cameras.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AgisoftFisheye {
     /// Size of its images.
     pub size: ImageSize,

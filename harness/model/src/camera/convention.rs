@@ -1,5 +1,7 @@
 //! What a convention says, as data: for lists, and for messages that ask for the flag that decides an open point.
 
+use serde::{Deserialize, Serialize};
+
 /// Which way the polynomial of a model goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
@@ -30,7 +32,7 @@ pub enum Vertical {
 }
 
 /// Which of the two decentring terms is called p1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TangentialOrder {
     /// p1 multiplies r^2 + 2 x^2 in x: Brown's.
     Brown,

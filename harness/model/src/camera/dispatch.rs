@@ -1,5 +1,7 @@
 //! All models behind one dispatch.
 
+use serde::{Deserialize, Serialize};
+
 use super::{
     Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
     NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, agisoft, agisoft_fisheye,
@@ -9,7 +11,7 @@ use super::{
 use crate::PixelPoint;
 
 /// Any camera. A new model is a variant here, a line in each of the two tables below, and its own file.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Camera {
     /// The canonical interior orientation.
     Photogrammetric(Photogrammetric),

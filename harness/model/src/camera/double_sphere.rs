@@ -1,5 +1,7 @@
 //! The double sphere camera: a ray meets two unit spheres, then a plane.
 
+use serde::{Deserialize, Serialize};
+
 use super::ImageSize;
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::wide_angle::{Axial, Focal, axial_camera};
@@ -10,7 +12,7 @@ use super::wide_angle::{Axial, Focal, axial_camera};
 /// alike. Rays beyond 90 degrees are pictured, as far as the image grows.
 ///
 /// Source: Usenko, Demmel and Cremers 2018, "The Double Sphere Camera Model", Eqs. 40 to 42.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DoubleSphere {
     /// Size of its images.
     pub size: ImageSize,

@@ -1,5 +1,7 @@
 //! The canonical orientation with Ebner's twelve additional parameters.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
@@ -17,7 +19,7 @@ use super::{CameraModel, CameraParameter, DerivativeBuffer, Photogrammetric, nam
 ///
 /// Source: Ebner 1976; Vosselman and Förstner 1988. Whether the origin is the principal point or the centre of the frame is not settled by them; the
 /// principal point is assumed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ebner {
     /// Principal distance, principal point and, usually zero, distortion.
     pub base: Photogrammetric,

@@ -1,5 +1,7 @@
 //! The enhanced unified camera.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Verification};
 use super::wide_angle::{Axial, Focal, axial_camera};
 use super::{ImageSize, double_sphere};
@@ -14,7 +16,7 @@ use super::{ImageSize, double_sphere};
 ///
 /// Source: Khomutenko, Garcia and Martinet 2016, "An Enhanced Unified Camera Model"; Usenko, Demmel and Cremers 2018, Eqs. 22 to 26; Fitzgibbon 2001, Eq. 3
 /// (division model).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Eucm {
     /// Size of its images.
     pub size: ImageSize,

@@ -1,5 +1,7 @@
 //! The field-of-view camera of Devernay and Faugeras.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Verification};
 use super::wide_angle::{Axial, Focal, axial_camera};
 use super::{ImageSize, double_sphere};
@@ -10,7 +12,7 @@ use super::{ImageSize, double_sphere};
 /// distortion. Rays beyond 90 degrees are not pictured.
 ///
 /// Source: Devernay and Faugeras 2001, "Straight lines have to be straight", Eq. 13.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fov {
     /// Size of its images.
     pub size: ImageSize,

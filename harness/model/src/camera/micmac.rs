@@ -1,5 +1,7 @@
 //! MicMac's frame cameras: a polynomial in pixels around a centre of its own.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
@@ -14,7 +16,7 @@ use crate::PixelPoint;
 /// `v = q_y + y s + p2 (r2 + 2 y^2) + 2 p1 x y`. The centre of the distortion is kept here as `CDist - PP`.
 ///
 /// Source: MicMac, Apero and MicMac in a nutshell, section on calibration files; the reader of iTowns.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MicMac {
     /// Size of its images.
     pub size: ImageSize,

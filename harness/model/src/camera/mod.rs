@@ -32,6 +32,8 @@ pub mod splined;
 pub mod tool_conventions;
 mod wide_angle;
 
+use serde::{Deserialize, Serialize};
+
 use thiserror::Error;
 
 use crate::PixelPoint;
@@ -59,7 +61,7 @@ pub use ray::Ray;
 pub use splined::Splined;
 
 /// Columns and rows of a camera's images.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ImageSize {
     /// Columns, px.
     pub width: u32,

@@ -1,5 +1,7 @@
 //! The unified camera of Mei, which is called omnidirectional: one unit sphere, then Brown's distortion of the plane.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, TangentialOrder, Verification};
 use super::wide_angle::{Axial, Focal, Plane, axial_camera};
 use super::{ImageSize, double_sphere};
@@ -11,7 +13,7 @@ use super::{ImageSize, double_sphere};
 /// `v = fy y' + cy`. With `xi = 0` it is OpenCV's camera with four coefficients. Note that fx is not the focal length on the axis, which is fx / (1 + xi).
 ///
 /// Source: Mei and Rives 2007, "Single View Point Omnidirectional Camera Calibration from Planar Grids".
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Omni {
     /// Size of its images.
     pub size: ImageSize,

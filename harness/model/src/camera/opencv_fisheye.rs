@@ -1,5 +1,7 @@
 //! OpenCV's fisheye camera: four coefficients of the angle from the axis.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::fold::corners;
 use super::plane_map::first_fold;
@@ -13,7 +15,7 @@ use crate::PixelPoint;
 /// `u = fx (x' + skew y') + cx`, `v = fy y' + cy`. Rays beyond 90 degrees are pictured, where OpenCV's own functions divide by Z.
 ///
 /// Source: OpenCV 4.6, module calib3d, "Fisheye camera model"; Kannala and Brandt 2006.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OpenCvFisheye {
     /// Size of its images.
     pub size: ImageSize,

@@ -1,5 +1,7 @@
 //! The canonical interior orientation: photogrammetric, a correction of measured coordinates.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
@@ -13,7 +15,7 @@ use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 /// `y = yb - [yb (k1 r2 + k2 r2^2 + k3 r2^3) + 2 p1 xb yb + p2 (r2 + 2 yb^2)]`.
 ///
 /// Source: Brown 1971; Fraser 1997 for `b1`, `b2`; Galo et al. 2011, Eq. 8 and 9.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Photogrammetric {
     /// Size of its images.
     pub size: ImageSize,

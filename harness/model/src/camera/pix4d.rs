@@ -1,5 +1,7 @@
 //! Pix4D's perspective camera.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Brown, Pinhole};
@@ -14,7 +16,7 @@ use crate::CornerPoint;
 ///
 /// Source: Pix4D, "How are the Internal and External Camera Parameters defined?" (text; its formulas are pictures). Camera matrix, .cam file and
 /// P-matrices of one project agree; the order and the signs of T1 and T2 are not confirmed by numbers, so the order is a field.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pix4d {
     /// Size of its images.
     pub size: ImageSize,

@@ -1,5 +1,7 @@
 //! A fisheye with decentring and thin prism: COLMAP's `THIN_PRISM_FISHEYE`.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, TangentialOrder, Verification};
 use super::wide_angle::{Axial, Focal, Plane, axial_camera};
 use super::{ImageSize, opencv_fisheye};
@@ -11,7 +13,7 @@ use super::{ImageSize, opencv_fisheye};
 /// `u = fx x' + cx`, `v = fy y' + cy`. Without p and s it is OpenCV's fisheye.
 ///
 /// Source: COLMAP, `THIN_PRISM_FISHEYE` in its list of camera models; Schöps et al. 2017 (ETH3D).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrismFisheye {
     /// Size of its images.
     pub size: ImageSize,

@@ -1,5 +1,7 @@
 //! A fisheye whose radial polynomial comes before decentring and thin prism: COLMAP's `RAD_TAN_THIN_PRISM_FISHEYE`, Project Aria's Fisheye624.
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, TangentialOrder, Verification};
 use super::plane_map::first_fold;
 use super::wide_angle::{Axial, Focal, Plane, axial_camera};
@@ -14,7 +16,7 @@ use super::{ImageSize, opencv_fisheye};
 /// polynomial has bent already, and its p0 is Brown's first.
 ///
 /// Source: COLMAP 4, `RAD_TAN_THIN_PRISM_FISHEYE` in its list of camera models; Project Aria, camera intrinsic models, Fisheye624.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RadTanPrismFisheye {
     /// Size of its images.
     pub size: ImageSize,

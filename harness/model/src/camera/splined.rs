@@ -1,5 +1,7 @@
 //! mrcal's splined stereographic camera, to be read and fitted by another model.
 
+use serde::{Deserialize, Serialize};
+
 use super::newton::{self, ValueAndDerivatives, determinant};
 use super::plane_map::{PlaneMap, first_fold, is_on_branch};
 use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, named};
@@ -14,7 +16,7 @@ use crate::PixelPoint;
 /// It has hundreds of numbers and is no [`super::Camera`]: other tools cannot hold it. [`crate::convert::fit`] finds a camera that they can.
 ///
 /// Source: mrcal's documentation, "mrcal splined lens models".
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Splined {
     /// Size of its images.
     pub size: ImageSize,

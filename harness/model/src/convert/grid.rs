@@ -1,11 +1,13 @@
 //! The pixels over which cameras are fitted and compared.
 
+use serde::{Deserialize, Serialize};
+
 use super::ConvertError;
 use crate::PixelPoint;
 use crate::camera::{CameraModel, ImageSize, NoCounterpart, Ray, fold};
 
 /// A part of the frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Region {
     /// All of it.
     Frame,

@@ -3,7 +3,6 @@
 mod declaration;
 mod operator;
 mod positions;
-mod told;
 
 use std::fs::File;
 use std::io;

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::{Path, PathBuf};
 
+use calibench_model::Told;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -11,7 +12,7 @@ use super::{Part, Piece, pieces};
 use crate::names::PART;
 
 /// The form of the file, raised when it changes.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// A part of a run: of which run, and what of it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,6 +44,18 @@ pub struct Manifest {
     pub pieces: Vec<Piece>,
     /// How many points were measured in them, or how often a calibration was applied, or sets of printed figures recomputed.
     pub measured: u64,
+    /// What is to be known of how its methods' results came about, as far as the part's own trials tell: it is added up when parts are put together.
+    pub told: Vec<ToldBy>,
+}
+
+/// What a method tells.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ToldBy {
+    /// Its name.
+    pub method: String,
+    /// What it tells, if it is nothing too.
+    pub told: Told,
 }
 
 /// A method.

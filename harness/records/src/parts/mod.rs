@@ -6,4 +6,4 @@ mod manifest;
 
 pub use cut::{MOST_PARTS, Part, PartError, Piece, Span, pieces};
 pub use join::{JoinError, Joiner};
-pub use manifest::{FORMAT, Manifest, ManifestError, Method, write};
+pub use manifest::{FORMAT, Manifest, ManifestError, Method, ToldBy, write};

@@ -1,16 +1,18 @@
 //! Putting parts together.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::NewFolder;
-use calibench_records::names::{ORIGIN, cell_name};
-use calibench_records::parts::{Joiner, Span};
+use calibench_records::description::{read as read_description, write as write_description};
+use calibench_records::names::{DESCRIPTION, ORIGIN, cell_name};
+use calibench_records::parts::{Joiner, Span, ToldBy};
 use calibench_records::stored::{Compressor, Table};
 
 use super::MergeError;
 use super::gathered::{Found, gather};
+use crate::description::told_notes;
 use crate::store::RecordsFolder;
 
 /// A run that was put together.
@@ -53,7 +55,8 @@ fn place(parts: &[Found], records: &Path) -> io::Result<RecordsFolder> {
 fn one(parts: &[Found], place: &RecordsFolder) -> Result<Merged, MergeError> {
     let manifest = &parts[0].manifest;
     place.replace(|folder| {
-        copy(&parts[0], parts[0].common(), folder)?;
+        copy(&parts[0], parts[0].common().filter(|name| *name != DESCRIPTION), folder)?;
+        describe(parts, folder)?;
         (0..manifest.cells.len()).try_for_each(|cell| cell_of(parts, cell, folder))
     })?;
     Ok(Merged {
@@ -63,6 +66,23 @@ fn one(parts: &[Found], place: &RecordsFolder) -> Result<Merged, MergeError> {
         cells: manifest.cells.len(),
         measured: parts.iter().map(|part| part.manifest.measured).sum(),
     })
+}
+
+/// Writes the description that all parts have in common, with what methods told in any of them.
+fn describe(parts: &[Found], folder: &NewFolder) -> io::Result<()> {
+    let path = parts[0].folder.join(DESCRIPTION);
+    let mut description =
+        read_description(BufReader::new(File::open(&path)?)).map_err(|error| io::Error::other(format!("{}: {error}", path.display())))?;
+    let mut all: Vec<ToldBy> = Vec::new();
+    for (place, one) in parts.iter().flat_map(|part| part.manifest.told.iter().enumerate()) {
+        // All parts list the same methods in the same order.
+        match all.get_mut(place).filter(|known| known.method == one.method) {
+            Some(known) => known.told.join(&one.told),
+            None => all.push(one.clone()),
+        }
+    }
+    description.notes.extend(told_notes(all.iter().map(|one| (one.method.as_str(), one.told.clone()))));
+    folder.write(DESCRIPTION, |file| write_description(file, &description))
 }
 
 /// Copies files of `part`, under their names.

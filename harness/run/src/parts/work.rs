@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::NewFolder;
 use calibench_exchange::folder::intact;
+use calibench_measure::Configured;
+use calibench_measure::registry::told;
 use calibench_records::names::PART;
-use calibench_records::parts::{FORMAT, Manifest, Method, Part, Span, pieces, write};
+use calibench_records::parts::{FORMAT, Manifest, Method, Part, Span, ToldBy, pieces, write};
 use calibench_scenario::Scenario;
 
 use crate::store::{RecordsFolder, SweepPlan, fill, fill_sweep};
@@ -47,7 +49,11 @@ pub fn run(wanted: &Wanted<'_>, plan: &Plan<'_>, step: &(dyn Fn() + Sync)) -> Re
     let labels = plan.method_infos().into_iter().map(|info| Method { label: info.label.to_string(), version: info.version.to_string() });
     let manifest = wanted.manifest(plan.scenario, plan.seed, vec![plan.all_trials()], labels.collect());
     let plan = Plan { only: Some(trials(plan, wanted.part)), data: plan.data.clone(), ..*plan };
-    wanted.put(manifest, |records, folder| fill(records, folder, &plan, wanted.revision, step))
+    wanted.put(manifest, plan.methods, |records, folder| {
+        let measured = fill(folder, &plan, wanted.revision, step)?;
+        records.keep(plan.scenario, plan.methods, Vec::new(), folder)?;
+        Ok(measured)
+    })
 }
 
 /// As [`run`], of a sweep: all trials of all cells stand in one row, which is cut. `step` is called after each cell.
@@ -58,7 +64,11 @@ pub fn run_sweep(wanted: &Wanted<'_>, plan: &SweepPlan<'_>, step: &(dyn Fn() + S
     let labels = plan.order.measuring().iter().map(|method| Method { label: method.label.clone(), version: method.version.clone() });
     let manifest = wanted.manifest(plan.order.scenario, plan.order.seed(), plan.trials_of_cells()?, labels.collect());
     let cells: Vec<_> = manifest.pieces.iter().map(|piece| (piece.cell, Some(piece.trials))).collect();
-    wanted.put(manifest, |records, folder| fill_sweep(records, folder, plan, cells.into_iter(), wanted.revision, step))
+    wanted.put(manifest, plan.order.measuring(), |records, folder| {
+        let measured = fill_sweep(folder, plan, cells.into_iter(), wanted.revision, step)?;
+        records.keep(plan.order.scenario, plan.order.methods, Vec::new(), folder)?;
+        Ok(measured)
+    })
 }
 
 /// The trials of `plan` that belong to `part`.
@@ -82,13 +92,16 @@ impl Wanted<'_> {
             pieces: pieces(&cells, self.part),
             cells,
             measured: 0,
+            told: Vec::new(),
         }
     }
 
-    /// Fills the part's folder through `fill`, unless the part is there.
+    /// Fills the part's folder through `fill`, unless the part is there. What `methods` then tell stands beside the part's numbers, and not in its description:
+    /// that is the same in all parts.
     fn put(
         &self,
         mut manifest: Manifest,
+        methods: &[Configured],
         fill: impl FnOnce(&RecordsFolder, &NewFolder) -> Result<u64, RunError>,
     ) -> Result<Done, RunError> {
         let parts = self.folder.join(self.part.folder());
@@ -99,6 +112,7 @@ impl Wanted<'_> {
         }
         records.replace(|new| {
             manifest.measured = fill(&records, new)?;
+            manifest.told = told(methods).into_iter().map(|(method, told)| ToldBy { method: method.to_owned(), told }).collect();
             Ok::<_, RunError>(new.write(PART, |file| write(file, &manifest))?)
         })?;
         Ok(Done { folder, manifest, there: false })

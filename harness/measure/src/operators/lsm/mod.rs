@@ -13,7 +13,7 @@ mod profile;
 mod start;
 mod sweep;
 
-use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind};
+use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start, TargetKind, stop};
 
 use self::beside::Laid;
 use self::fit::{Fitted, Limits, Work};
@@ -208,7 +208,11 @@ impl Operator for Lsm {
 
     fn measure_all(&self, image: &Image, starts: &[Start]) -> Vec<Result<Measurement, Rejection>> {
         let mut work = self.work();
-        starts.iter().map(|start| self.measure_with(&mut work, image, start)).collect()
+        let one = |start| {
+            stop::point();
+            self.measure_with(&mut work, image, start)
+        };
+        starts.iter().map(one).collect()
     }
 
     fn needs_kind(&self) -> bool {

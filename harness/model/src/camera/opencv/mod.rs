@@ -7,6 +7,8 @@ mod region;
 mod tilt;
 mod undistort;
 
+use serde::{Deserialize, Serialize};
+
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::newton::ValueAndDerivatives;
 use super::pinhole::{Affinity, Pinhole};
@@ -27,7 +29,7 @@ pub use project::Prepared;
 /// Note the order of p1 and p2: p2 multiplies r^2 + 2 x^2, unlike Brown's.
 ///
 /// Source: OpenCV 4.6, module calib3d, "Camera Calibration and 3D Reconstruction".
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OpenCv {
     /// Size of its images.
     pub size: ImageSize,
