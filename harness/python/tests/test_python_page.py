@@ -51,6 +51,7 @@ def test_the_page_s_python_runs(tmp_path, monkeypatch, capsys):
     assert known["c"].camera and "px" in capsys.readouterr().out
     # The board of these photographs is bent: their camera is not the true one to the last digit, but near.
     assert cb.diff(known["camera"], known["c"].camera).rms_px < 5
+    assert len(known["cameras"]) == 2 and len(known["found"].xy) == 54
     assert abs(known["pixels"] - [[320.0, 240.0]]).max() < 1e-9
 
 

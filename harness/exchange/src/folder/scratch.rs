@@ -52,18 +52,29 @@ impl Scratch {
     /// What the file system refuses.
     pub fn put(self, place: &Path, old: Option<&Manifest>) -> io::Result<()> {
         let new = self.new_folder();
-        match fs::metadata(place) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return fs::rename(&new, place).map_err(|error| at(place, &error)),
-            about => fs::set_permissions(&new, about.map(|about| about.permissions()).map_err(|error| at(place, &error))?)?,
-        }
+        let about = match fs::metadata(place) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::rename(&new, place) {
+                Err(error) if is_there(&error) => return self.put(place, None),
+                put => return put.map_err(|error| at(place, &error)),
+            },
+            about => about.map_err(|error| at(place, &error))?,
+        };
+        fs::set_permissions(&new, about.permissions())?;
+        // Where none was seen another process of ours came first: what it wrote is the old folder now.
+        let came = if old.is_none() { Manifest::read(place)? } else { None };
         exchange(&new, place, &self.folder.join(OLD)).map_err(|error| at(place, &error))?;
-        remove_listed(&new, old.unwrap_or(&Manifest::default()))?;
+        remove_listed(&new, old.or(came.as_ref()).unwrap_or(&Manifest::default()))?;
         if new.exists() {
             // It came after the last look at the old folder.
             give_back(&new, place)?;
         }
         Ok(())
     }
+}
+
+/// Whether a folder was not renamed because there is one that holds something.
+fn is_there(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::AlreadyExists)
 }
 
 impl Drop for Scratch {
@@ -241,5 +252,32 @@ mod tests {
         names.sort();
         assert_eq!(names, ["cell", "cell/note", "note", "page"]);
         assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1);
+    }
+
+    /// Two that find nothing there at the same moment: one comes first, and the other replaces it.
+    #[test]
+    fn who_comes_second_replaces_the_first() {
+        for round in 0..300 {
+            let parent = tempfile::tempdir().unwrap();
+            let place = parent.path().join("a");
+            let filled = |text: &str| {
+                let scratch = Scratch::new(parent.path(), "a", Path::new("a")).unwrap();
+                fs::write(scratch.new_folder().join("page"), text).unwrap();
+                Manifest::of(&scratch.new_folder()).unwrap().write(&scratch.new_folder()).unwrap();
+                scratch
+            };
+            let (both, start) = ([filled("one"), filled("two")], std::sync::Barrier::new(2));
+            let put = |scratch: Scratch| {
+                start.wait();
+                scratch.put(&place, None)
+            };
+            std::thread::scope(|scope| {
+                let threads = both.map(|scratch| scope.spawn(|| put(scratch)));
+                threads.into_iter().for_each(|thread| thread.join().unwrap().unwrap_or_else(|error| panic!("round {round}: {error}")));
+            });
+            let page = fs::read_to_string(place.join("page")).unwrap();
+            assert!(page == "one" || page == "two");
+            assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1, "nothing is left beside it");
+        }
     }
 }
