@@ -7,10 +7,12 @@ use calibench_records::names::cell_folder;
 use rayon::prelude::*;
 
 use crate::composed::Composed;
+use crate::detectors::Detectors;
 use crate::load::{adjustments, description};
 use crate::page::Page;
 use crate::places::PAGE;
 use crate::speeds::Speeds;
+use crate::targets::Comparison;
 use crate::{LoadError, Loaded, Places, ReportError, detectors, load, published, sweep, targets, zhu};
 
 /// The report of `family` from the records of `scenarios`; `None` where nothing of it could be measured here and one that was measured elsewhere is there.
@@ -85,22 +87,20 @@ fn boards(records: &Path, name: &str) -> Result<Option<Either>, LoadError> {
     let of_boards = |sweep: &Sweep| sweep.axes.first().is_some_and(|axis| axis.path == targets::BOARD);
     let Some(sweep) = description(&folder, name)?.and_then(|scenario| scenario.sweep).filter(of_boards) else { return Ok(None) };
     let read: Vec<_> = (0..sweep.cells.len()).into_par_iter().map(|cell| adjustments::load(&cell_folder(&folder, cell))).collect();
-    let mut figures = read.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let axes = sweep.axes.len();
-    let detectors = if axes < 3 { detectors::Detectors::load(records, name, &mut figures)? } else { None };
-    if let Some(found) = detectors {
-        return Ok(Some(Either::Detectors(Box::new(found))));
-    }
-    let comparison = if axes > 1 { targets::Comparison::load(records, name, figures)? } else { None };
-    Ok(comparison.map(|comparison| Either::Boards(Box::new(comparison))))
+    let figures = read.into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok(match sweep.axes.len() {
+        1 | 2 if Detectors::are_in(&figures) => Detectors::load(records, name, figures)?.map(|found| Either::Detectors(Box::new(found))),
+        1 => None,
+        _ => Comparison::load(records, name, figures)?.map(|comparison| Either::Boards(Box::new(comparison))),
+    })
 }
 
 /// What the records of a scenario are.
 enum Either {
     Plain(Box<Loaded>),
     Sweep(Box<sweep::LoadedSweep>),
-    Boards(Box<targets::Comparison>),
-    Detectors(Box<detectors::Detectors>),
+    Boards(Box<Comparison>),
+    Detectors(Box<Detectors>),
 }
 
 impl Either {

@@ -57,11 +57,11 @@ pub fn warnings(pair: &Pair) -> Vec<String> {
         warnings.push(format!("{} and {} are hardly told apart: correlation {:.3}", ELEMENTS[j], ELEMENTS[i], pair.correlation(i, j)));
     }
     let parallel = pair.targets.len() - pair.points().count() - found.rejected.len();
-    let without = [(found.rejected.len(), "rejected"), (parallel, "without a part in it")]
-        .map(|(count, how)| (count > 0).then(|| format!("{count} {how}")));
-    let without: Vec<String> = without.into_iter().flatten().collect();
+    let without = [(found.rejected.len(), "were rejected"), (parallel, "take no part")];
+    let without: Vec<String> =
+        without.iter().filter(|(count, _)| *count > 0).map(|(count, how)| format!("{count} targets {how}")).collect();
     if !without.is_empty() {
-        warnings.push(format!("targets {}: the point table says why", without.join(", ")));
+        warnings.push(format!("{}: the point table says why", without.join(", ")));
     }
     warnings
 }

@@ -26,7 +26,7 @@ fn links_lead_somewhere() {
     }
 }
 
-/// Every command that stands in an indented block exists, with all its options; those of consoles are run.
+/// Every command that stands in an indented block or a console exists, with all its options.
 #[test]
 fn commands_and_options_exist() {
     let mut tried = 0;
@@ -47,7 +47,7 @@ fn commands_and_options_exist() {
             tried += 1;
         }
     }
-    assert!(tried > 10, "{tried}");
+    assert!(tried > 100, "{tried}");
 }
 
 /// Each figure among the README's findings stands on the page that the finding links to.

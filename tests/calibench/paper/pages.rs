@@ -36,12 +36,15 @@ impl Page {
         self.text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).map(str::to_owned).collect()
     }
 
-    /// The commands of `calibench` in its indented blocks, without comments.
+    /// The commands of `calibench` in its indented blocks and consoles, without comments and what the shell does with them.
     pub fn commands(&self) -> Vec<String> {
-        let indented = self.text.lines().filter(|line| line.starts_with("    "));
-        let commands = indented.filter_map(|line| line.trim().strip_prefix("calibench "));
+        let shown = |line: &&str| line.starts_with("    ") || line.starts_with("$ ");
+        let commands = self.text.lines().filter(shown).filter_map(|line| line.trim_start_matches("$ ").trim().strip_prefix("calibench "));
         // The first of alternatives: `list scenarios | methods`.
-        commands.map(|line| line.split(" # ").next().unwrap().trim().to_owned()).collect()
+        let alone = |line: &str| {
+            [" # ", " | ", " > ", " && ", "; "].iter().fold(line, |line, end| line.split(end).next().unwrap()).trim().to_owned()
+        };
+        commands.map(alone).filter(|line| !line.starts_with('-')).collect()
     }
 
     /// Its fenced blocks, each with the text before it; what is indented as a whole loses that.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::{good, part, same};
-use crate::project::{copy, root, stderr};
+use crate::plugins::with_plugins;
+use crate::project::{root, stderr};
 
 /// Declines some points with words that depend on the image: more in all than are kept.
 const TALKER: &str = r#"import json, sys
@@ -33,11 +34,8 @@ const METHODS: [&str; 6] = ["-m", "talker", "-m", "recorded", "-m", "start_folde
 
 /// A project with methods that tell something, among them a file without an image of trial 1 and without a point of trial 3.
 fn project() -> tempfile::TempDir {
-    let folder = copy();
+    let folder = with_plugins(&[("talker.py", TALKER), ("plugins.toml", PLUGINS)]);
     let methods = folder.path().join("methods");
-    std::fs::create_dir(&methods).unwrap();
-    std::fs::write(methods.join("talker.py"), TALKER).unwrap();
-    std::fs::write(methods.join("plugins.toml"), PLUGINS).unwrap();
     for name in ["recorded.toml", "start_folder.sh"] {
         std::fs::copy(root().join("examples/plugins").join(name), methods.join(name)).unwrap();
     }

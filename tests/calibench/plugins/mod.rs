@@ -36,7 +36,7 @@ fn notes(project: &Path) -> String {
 }
 
 /// The project with a folder of plug-ins.
-fn with_plugins(files: &[(&str, &str)]) -> tempfile::TempDir {
+pub fn with_plugins(files: &[(&str, &str)]) -> tempfile::TempDir {
     let project = copy();
     std::fs::create_dir(project.path().join("methods")).unwrap();
     for (name, text) in files {

@@ -79,14 +79,16 @@ pub struct Counted {
 }
 
 impl Detectors {
-    /// Reads the records of sweep `name`, whose `counts` were read before; `None` if there are none, or none of its methods finds boards.
+    /// Whether any method found boards in cells whose figures are these.
+    pub fn are_in(cells: &[Option<Summaries>]) -> bool {
+        cells.iter().flatten().any(|counts| counts.sets.iter().any(|set| set == DETECTION))
+    }
+
+    /// Reads the records of sweep `name`, whose `counts` were read before; `None` if there are none.
     ///
     /// # Errors
     /// Records that are not whole or not of this version.
-    pub fn load(records: &Path, name: &str, counts: &mut Vec<Option<Summaries>>) -> Result<Option<Self>, LoadError> {
-        if !counts.iter().flatten().any(|counts| counts.sets.iter().any(|set| set == DETECTION)) {
-            return Ok(None);
-        }
+    pub fn load(records: &Path, name: &str, counts: Vec<Option<Summaries>>) -> Result<Option<Self>, LoadError> {
         let watch = |trial: &Trial, names: &[String], cell: &mut BTreeMap<String, Found>| {
             for point in &trial.points {
                 if let Some(name) = names.get(point.method) {
@@ -94,7 +96,7 @@ impl Detectors {
                 }
             }
         };
-        Ok(load_with(records, name, watch)?.map(|(sweep, cells)| Self { sweep, cells, counts: std::mem::take(counts) }))
+        Ok(load_with(records, name, watch)?.map(|(sweep, cells)| Self { sweep, cells, counts }))
     }
 
     /// The words of the boards.

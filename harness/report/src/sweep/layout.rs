@@ -195,6 +195,14 @@ impl At {
         self.places.iter().zip(&loaded.sweep.axes).fold(0, |index, (place, axis)| index * axis.values.len() + place)
     }
 
+    /// Its place along a dimension.
+    pub fn place(&self, dimension: Dimension) -> usize {
+        match dimension {
+            Dimension::Method => self.method,
+            Dimension::Axis(axis) => self.places[axis],
+        }
+    }
+
     /// Its method.
     pub fn method(&self) -> usize {
         self.method

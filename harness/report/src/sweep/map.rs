@@ -5,6 +5,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axes::Scale;
 use super::layout::{At, Dimension, Layout};
+use super::metric::Estimate;
 use crate::canvas::Canvas;
 use crate::field::{Area, shade, write};
 use crate::load::sweep::LoadedSweep;
@@ -22,13 +23,9 @@ const LINE: u32 = 26;
 pub fn map(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
     let panels = layout.panels(loaded);
     let (columns, rows) = (layout.shown(loaded, Dimension::Axis(layout.x)), layout.shown(loaded, layout.by));
-    let at = |panel: usize, column: usize, row: usize| panels[panel].1.with(Dimension::Axis(layout.x), column).with(layout.by, row);
-    let estimate = |panel, column, row| layout.estimate(loaded, &at(panel, column, row));
-    let all: Vec<f64> = (0..panels.len())
-        .flat_map(|panel| columns.iter().flat_map(move |&column| rows_of(layout, loaded).into_iter().map(move |row| (panel, column, row))))
-        .filter_map(|(panel, column, row)| Some(estimate(panel, column, row)?.value))
-        .collect();
-    let scale = Scale::of(all.iter().copied());
+    let values: Vec<f64> =
+        panels.iter().flat_map(|(_, start)| cells(loaded, layout, start)).filter_map(|cell| Some(cell.found?.value)).collect();
+    let scale = Scale::of(values.into_iter());
     let inside = (columns.len() as u32 * CELL.0, rows.len() as u32 * CELL.1);
     let (width, height) = (LEFT + inside.0 + RIGHT, TOP + inside.1 + BOTTOM);
     let across = (1710 / width).clamp(1, panels.len().max(1) as u32);
@@ -53,13 +50,10 @@ pub fn map(loaded: &LoadedSweep, layout: &Layout) -> Canvas {
 /// A panel whose upper left corner is (`x`, `y`): its cells, its frame, the values along it.
 fn draw(area: &Area<'_>, (loaded, layout): (&LoadedSweep, &Layout), (title, start): &(String, At), (x, y): (u32, u32), scale: &Scale) {
     let along = Dimension::Axis(layout.x);
-    let (columns, rows) = (layout.shown(loaded, along), rows_of(layout, loaded));
-    for (i, &column) in columns.iter().enumerate() {
-        for (j, &row) in rows.iter().enumerate() {
-            let corner = ((x + i as u32 * CELL.0) as i32, (y + (rows.len() - 1 - j) as u32 * CELL.1) as i32);
-            let found = layout.estimate(loaded, &start.with(along, column).with(layout.by, row));
-            cell(area, corner, found.map(|found| found.value), scale);
-        }
+    let (columns, rows) = (layout.shown(loaded, along), layout.shown(loaded, layout.by));
+    for Cell { across, down, found, .. } in cells(loaded, layout, start) {
+        let corner = ((x + across * CELL.0) as i32, (y + down * CELL.1) as i32);
+        cell(area, corner, found.map(|found| found.value), scale);
     }
     let (right, bottom) = ((x + columns.len() as u32 * CELL.0) as i32, (y + rows.len() as u32 * CELL.1) as i32);
     area.draw(&Rectangle::new([(x as i32, y as i32), (right, bottom)], BLACK)).ok();
@@ -78,22 +72,37 @@ fn draw(area: &Area<'_>, (loaded, layout): (&LoadedSweep, &Layout), (title, star
 /// Says the figure of each cell of a panel whose upper left corner is (`x`, `y`).
 fn say(canvas: &mut Canvas, (loaded, layout): (&LoadedSweep, &Layout), (title, start): &(String, At), (x, y): (u32, u32)) {
     let panel = layout.facet.map_or("", |_| title.rsplit(" = ").next().unwrap_or(title));
-    let (along, rows) = (Dimension::Axis(layout.x), rows_of(layout, loaded));
-    for (i, column) in layout.shown(loaded, along).into_iter().enumerate() {
-        for (j, &row) in rows.iter().enumerate() {
-            let at = start.with(along, column).with(layout.by, row);
-            let Some(found) = layout.estimate(loaded, &at) else { continue };
-            let middle = |corner: u32, place: usize, side: u32| f64::from(corner) + (place as f64 + 0.5) * f64::from(side);
-            let trials = loaded.cells.get(at.cell(loaded)).map_or(0, |cell| cell.trials).to_string();
-            let names = [(layout.by, row), (along, column)].map(|(dimension, place)| super::layout::value(loaded, dimension, place));
-            let middle = (middle(x, i, CELL.0), middle(y, rows.len() - 1 - j, CELL.1));
-            canvas.say_estimate(middle, &[panel, &names[0], &names[1]], (found.value, found.interval), &[&trials]);
-        }
+    for Cell { across, down, at, found } in cells(loaded, layout, start) {
+        let Some(found) = found else { continue };
+        let middle = |corner: u32, place: u32, side: u32| f64::from(corner) + (f64::from(place) + 0.5) * f64::from(side);
+        let trials = loaded.cells.get(at.cell(loaded)).map_or(0, |cell| cell.trials).to_string();
+        let names = [layout.by, Dimension::Axis(layout.x)].map(|dimension| super::layout::value(loaded, dimension, at.place(dimension)));
+        let middle = (middle(x, across, CELL.0), middle(y, down, CELL.1));
+        canvas.say_estimate(middle, &[panel, &names[0], &names[1]], (found.value, found.interval), &[&trials]);
     }
 }
 
-fn rows_of(layout: &Layout, loaded: &LoadedSweep) -> Vec<usize> {
-    layout.shown(loaded, layout.by)
+/// A cell of a panel: its place from the left and from above, which it is of the sweep, what was found there.
+struct Cell {
+    across: u32,
+    down: u32,
+    at: At,
+    found: Option<Estimate>,
+}
+
+/// The cells of the panel that goes on from `start`.
+fn cells(loaded: &LoadedSweep, layout: &Layout, start: &At) -> Vec<Cell> {
+    let along = Dimension::Axis(layout.x);
+    let (columns, rows) = (layout.shown(loaded, along), layout.shown(loaded, layout.by));
+    let mut cells = Vec::new();
+    for (across, &column) in (0..).zip(&columns) {
+        // Rows are drawn upwards.
+        for (down, &row) in (0..rows.len() as u32).rev().zip(&rows) {
+            let at = start.with(along, column).with(layout.by, row);
+            cells.push(Cell { across, down, found: layout.estimate(loaded, &at), at });
+        }
+    }
+    cells
 }
 
 fn cell(area: &Area<'_>, (x, y): (i32, i32), value: Option<f64>, scale: &Scale) {
