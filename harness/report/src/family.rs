@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 use crate::composed::Composed;
 use crate::detectors::Detectors;
-use crate::load::{adjustments, description};
+use crate::load::adjustments::{self, Summaries};
+use crate::load::description;
 use crate::page::Page;
 use crate::places::PAGE;
 use crate::speeds::Speeds;
@@ -88,11 +89,28 @@ fn boards(records: &Path, name: &str) -> Result<Option<Either>, LoadError> {
     let Some(sweep) = description(&folder, name)?.and_then(|scenario| scenario.sweep).filter(of_boards) else { return Ok(None) };
     let read: Vec<_> = (0..sweep.cells.len()).into_par_iter().map(|cell| adjustments::load(&cell_folder(&folder, cell))).collect();
     let figures = read.into_iter().collect::<Result<Vec<_>, _>>()?;
-    Ok(match sweep.axes.len() {
-        1 | 2 if Detectors::are_in(&figures) => Detectors::load(records, name, figures)?.map(|found| Either::Detectors(Box::new(found))),
-        1 => None,
-        _ => Comparison::load(records, name, figures)?.map(|comparison| Either::Boards(Box::new(comparison))),
+    Ok(match shown_as(sweep.axes.len(), &figures) {
+        Shown::Detectors => Detectors::load(records, name, figures)?.map(|found| Either::Detectors(Box::new(found))),
+        Shown::Comparison => Comparison::load(records, name, figures)?.map(|comparison| Either::Boards(Box::new(comparison))),
+        Shown::Sweep => None,
     })
+}
+
+/// As what a sweep over boards is shown.
+#[derive(Debug, PartialEq)]
+enum Shown {
+    Detectors,
+    Comparison,
+    Sweep,
+}
+
+/// By how many keys are swept, boards among them, and the figures of its cells.
+fn shown_as(keys: usize, figures: &[Option<Summaries>]) -> Shown {
+    match keys {
+        1 | 2 if Detectors::are_in(figures) => Shown::Detectors,
+        1 => Shown::Sweep,
+        _ => Shown::Comparison,
+    }
 }
 
 /// What the records of a scenario are.
@@ -136,4 +154,20 @@ fn printed_factors(tables: &[(String, published::Table)]) -> Vec<(String, f64)> 
         Some((format!("printed, {}: {}", cell.column, cell.printed), printed.value))
     };
     cells.filter_map(factor).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use calibench_records::names::DETECTION;
+
+    use super::*;
+
+    #[test]
+    fn a_sweep_over_boards_is_of_detectors_where_they_are_counted() {
+        let cells = |set: &str| vec![None, Some(Summaries { sets: vec![set.to_owned()], ..Summaries::default() })];
+        let shown = |set: &str| [1, 2, 3].map(|keys| shown_as(keys, &cells(set)));
+        assert_eq!(shown(DETECTION), [Shown::Detectors, Shown::Detectors, Shown::Comparison]);
+        assert_eq!(shown("camera"), [Shown::Sweep, Shown::Comparison, Shown::Comparison]);
+        assert_eq!(shown_as(2, &[None]), Shown::Comparison);
+    }
 }
