@@ -1,7 +1,7 @@
 //! Small symmetric positive definite systems, without allocation.
 
 /// At or below this fraction of its diagonal element a pivot counts as zero.
-const SINGULAR: f64 = 1e-12;
+pub(crate) const SINGULAR: f64 = 1e-12;
 
 /// The triangular factor L of the first rows and columns of a matrix. Sums are worked out by columns, so that none waits for itself.
 pub(crate) struct Factor<const N: usize> {
@@ -12,13 +12,14 @@ pub(crate) struct Factor<const N: usize> {
     count: usize,
 }
 
-/// Factors the first `count` rows and columns of `matrix`; `None` if these are singular or hold a number that is none.
+/// Factors the first `count` rows and columns of `matrix`; `None` if these are singular, with a pivot of no more than `singular` of its diagonal element, or hold
+/// a number that is none.
 #[inline(always)]
-pub(crate) fn factor<const N: usize>(matrix: &[[f64; N]; N], count: usize) -> Option<Factor<N>> {
+pub(crate) fn factor<const N: usize>(matrix: &[[f64; N]; N], count: usize, singular: f64) -> Option<Factor<N>> {
     let (mut both, mut inverse) = (*matrix, [0.0; N]);
     for k in 0..count {
         let pivot = both[k][k];
-        if !(pivot > SINGULAR * matrix[k][k] && pivot.is_finite() && pivot > 0.0) {
+        if !(pivot > singular * matrix[k][k] && pivot.is_finite() && pivot > 0.0) {
             return None;
         }
         inverse[k] = 1.0 / pivot.sqrt();
@@ -48,6 +49,14 @@ impl<const N: usize> Factor<N> {
         x
     }
 
+    /// The first `M` rows and columns of the inverse matrix.
+    #[inline(always)]
+    pub(crate) fn inverse<const M: usize>(&self) -> [[f64; M]; M] {
+        let halves: [[f64; N]; M] = std::array::from_fn(|i| self.halfway(&std::array::from_fn(|k| if k == i { 1.0 } else { 0.0 })));
+        let product = |i: usize, j: usize| halves[i].iter().zip(&halves[j]).map(|(a, b)| a * b).sum();
+        std::array::from_fn(|i| std::array::from_fn(|j| product(i, j)))
+    }
+
     /// `L^-1` times a right-hand side; zero beyond the factored rows. The products of two of them are those with the inverse matrix between.
     #[inline(always)]
     pub(crate) fn halfway(&self, right: &[f64; N]) -> [f64; N] {
@@ -70,18 +79,18 @@ mod tests {
     #[test]
     fn solves_what_it_factored() {
         let matrix = [[4.0, 1.0, -0.5], [1.0, 3.0, 0.2], [-0.5, 0.2, 2.0]];
-        let x = factor(&matrix, 3).unwrap().solve(&[1.0, -2.0, 0.5]);
+        let x = factor(&matrix, 3, SINGULAR).unwrap().solve(&[1.0, -2.0, 0.5]);
         for (row, right) in matrix.iter().zip([1.0, -2.0, 0.5]) {
             assert!((row.iter().zip(&x).map(|(a, x)| a * x).sum::<f64>() - right).abs() < 1e-14);
         }
-        let x = factor(&matrix, 2).unwrap().solve(&[1.0, -2.0, 7.0]);
+        let x = factor(&matrix, 2, SINGULAR).unwrap().solve(&[1.0, -2.0, 7.0]);
         assert!((4.0 * x[0] + x[1] - 1.0).abs() < 1e-14 && x[2] == 0.0);
     }
 
     #[test]
     fn singular_matrices_have_no_factor() {
-        assert!(factor(&[[1.0, 1.0], [1.0, 1.0]], 2).is_none());
-        assert!(factor(&[[0.0, 0.0], [0.0, 1.0]], 2).is_none());
-        assert!(factor(&[[f64::NAN, 0.0], [0.0, 1.0]], 2).is_none());
+        assert!(factor(&[[1.0, 1.0], [1.0, 1.0]], 2, SINGULAR).is_none());
+        assert!(factor(&[[0.0, 0.0], [0.0, 1.0]], 2, SINGULAR).is_none());
+        assert!(factor(&[[f64::NAN, 0.0], [0.0, 1.0]], 2, SINGULAR).is_none());
     }
 }

@@ -17,8 +17,12 @@ pub(crate) const WIDE: usize = 16;
 pub(crate) type Wide = [f32; WIDE];
 
 /// The sum of all, in pairs, so that additions do not wait for each other.
+#[inline(always)]
 pub(crate) fn sum(lanes: &Wide) -> f64 {
-    let mut sums = lanes.map(f64::from);
+    let mut sums = [0.0; WIDE];
+    for i in 0..WIDE {
+        sums[i] = f64::from(lanes[i]);
+    }
     let mut width = WIDE;
     while width > 1 {
         width /= 2;
@@ -35,6 +39,16 @@ pub(crate) fn add_products(sum: &mut Wide, a: &Wide, b: &Wide) {
     for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
         *sum += a * b;
     }
+}
+
+/// Each less `what`. A loop, as everywhere here: what is handed to `map` is not always compiled for the instructions around it, and then called.
+#[inline(always)]
+pub(crate) fn less(lanes: &Wide, what: f32) -> Wide {
+    let mut less = [0.0; WIDE];
+    for i in 0..WIDE {
+        less[i] = lanes[i] - what;
+    }
+    less
 }
 
 /// A number of either precision, and what its exponential is made of.

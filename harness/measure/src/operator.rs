@@ -79,7 +79,8 @@ pub fn window_centre(image: &Image, start: &Start, reach: i64) -> Result<(i64, i
 /// [`Rejection::Border`] when the square leaves the image, [`Rejection::NotFinite`].
 pub fn finite_around(image: &Image, (x, y): (i64, i64), reach: i64) -> Result<(), Rejection> {
     let mut rows = image.rows_around(x, y, reach).ok_or(Rejection::Border)?;
-    if rows.all(|row| row.iter().all(|grey| grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
+    // A row at once: most are finite, and looked at side by side.
+    if rows.all(|row| row.iter().fold(true, |all, grey| all & grey.is_finite())) { Ok(()) } else { Err(Rejection::NotFinite) }
 }
 
 /// What a detector of whole images measures: of each start the nearest detection within `radius` px. `reach` px around a start count; without any start that can be

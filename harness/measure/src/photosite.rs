@@ -44,12 +44,74 @@ impl Square {
         axis().flat_map(move |(y, wy)| axis().map(move |(x, wx)| [*x, *y, wx * wy]))
     }
 
+    /// The square as a straight edge with this unit normal sees it: along the normal, in units of the square's side.
+    ///
+    /// With two and three Gaussians an axis as many along the normal have the same cumulants, up to the same order, as all of them together: oblique edges are off by
+    /// 1.1e-5 of the contrast at a blur of 0.71 px and by 1.3e-5 at 0.41 px. That of order k of a
+    /// unit square along (x, y) is that of its side times `x^k + y^k`: 1/12, -1/120 and 1/252 are those of orders 2, 4 and 6.
+    pub(crate) fn across(&self, [x, y]: [f64; 2]) -> Across {
+        let [fourth, sixth] = [-(x.powi(4) + y.powi(4)) / 120.0, (x.powi(6) + y.powi(6)) / 252.0];
+        let mut across = Across { nodes: [(0.0, 0.0); 16], count: self.offsets.len(), variance: self.variance };
+        match self.offsets.len() {
+            2 => {
+                let between = (-0.5 * fourth).sqrt();
+                across.variance = 1.0 / 12.0 - between;
+                across.set([(-between.sqrt(), 0.5), (between.sqrt(), 0.5)]);
+            }
+            3 => {
+                let between = between_three(fourth, sixth);
+                across.variance = 1.0 / 12.0 - between;
+                let square = fourth / between + 3.0 * between;
+                let (offset, weight) = (square.sqrt(), 0.5 * between / square);
+                across.set([(-offset, weight), (0.0, 1.0 - 2.0 * weight), (offset, weight)]);
+            }
+            _ => {
+                across.count = 0;
+                for [u, v, weight] in self.nodes() {
+                    across.nodes[across.count] = (x * u + y * v, weight);
+                    across.count += 1;
+                }
+            }
+        }
+        across
+    }
+
     /// Distance from an edge from which on it is not seen, px: the outermost Gaussian, and five standard deviations (6e-7 of half the contrast), of a square of
     /// side `width` and Gaussians of standard deviation `blur`.
     pub(crate) fn reach(&self, width: f64, blur: f64) -> f64 {
         let outermost = self.offsets.iter().fold(0.0, |most: f64, x| most.max(x * width));
         std::f64::consts::SQRT_2 * outermost + 5.0 * blur
     }
+}
+
+/// Gaussians of one variance, px^2: offsets, px, and weights.
+pub(crate) struct Across {
+    nodes: [(f64, f64); 16],
+    count: usize,
+    pub(crate) variance: f64,
+}
+
+impl Across {
+    fn set<const N: usize>(&mut self, nodes: [(f64, f64); N]) {
+        self.nodes[..N].copy_from_slice(&nodes);
+    }
+
+    /// Offset and weight of each.
+    pub(crate) fn nodes(&self) -> &[(f64, f64)] {
+        &self.nodes[..self.count]
+    }
+}
+
+/// The variance of the offsets of three Gaussians, one of them in the middle, of which the mixture has these cumulants of orders 4 and 6. With m that variance
+/// and q the square of the outer offsets they are `m (q - 3 m)` and `m (q^2 - 15 q m + 30 m^2)`. From the whole variance on Newton's steps lead down to it.
+fn between_three(fourth: f64, sixth: f64) -> f64 {
+    let mut m: f64 = 1.0 / 12.0;
+    for _ in 0..6 {
+        let value = fourth * fourth - 9.0 * fourth * m * m - 6.0 * m.powi(4) - sixth * m;
+        let slope = -18.0 * fourth * m - 24.0 * m.powi(3) - sixth;
+        m -= value / slope;
+    }
+    m
 }
 
 /// How well the photosite's area is integrated.
@@ -59,4 +121,37 @@ pub(crate) enum Fidelity {
     Rough,
     /// As far as anything can be seen of it.
     Full,
+}
+
+#[cfg(test)]
+mod tests {
+    use calibench_model::quadrature::gauss_legendre;
+    use statrs::function::erf::erf;
+
+    use super::*;
+
+    /// A blurred step, averaged over the square by quadrature.
+    fn averaged([nx, ny]: [f64; 2], blur: f64, distance: f64) -> f64 {
+        let rule = gauss_legendre(12);
+        let step = |x: f64, y: f64| erf((distance + nx * (x - 0.5) + ny * (y - 0.5)) / blur * std::f64::consts::FRAC_1_SQRT_2);
+        rule.iter().map(|(x, u)| rule.iter().map(|(y, v)| u * v * step(*x, *y)).sum::<f64>()).sum()
+    }
+
+    #[test]
+    fn along_its_normal_an_edge_sees_the_square() {
+        // In units of half the contrast.
+        for (blur, bound) in [(0.71, 2.5e-5), (0.41, 3e-5), (0.3, 1e-5), (1.5, 1e-6)] {
+            let square = Square::for_blur(blur * blur, Fidelity::Full);
+            for turn in (0..24).map(|i| f64::from(i) * 0.3) {
+                let normal = [turn.cos(), turn.sin()];
+                let across = square.across(normal);
+                let sigma = (blur * blur + across.variance).sqrt();
+                for distance in (-60..60).map(|i| f64::from(i) * 0.05) {
+                    let step = |(offset, weight): &(f64, f64)| weight * erf((distance + offset) / sigma * std::f64::consts::FRAC_1_SQRT_2);
+                    let off = across.nodes().iter().map(step).sum::<f64>() - averaged(normal, blur, distance);
+                    assert!(off.abs() < bound, "{blur} px, {turn} rad, {distance} px: {off:.1e}");
+                }
+            }
+        }
+    }
 }

@@ -53,6 +53,12 @@ impl Structure {
         of_all(residual, ones, stride)
     }
 
+    /// Of a square of `side` px whose rows of `stride` end with zeros: all its residuals count.
+    pub(crate) fn of_whole(residual: &[f32], (side, stride): (usize, usize)) -> Self {
+        let (product, square) = of_whole(residual, stride);
+        Self { product, square, pairs: (2 * side * (side - 1)) as f64, count: (side * side) as f64 }
+    }
+
     /// Whether there is more than noise has, and than `most`, the root of the covariance of neighbours, in units of half the contrast: a lens, a
     /// print or a light that is not even leave some.
     pub(crate) fn is_no_noise(&self, most: f64) -> bool {
@@ -125,6 +131,11 @@ fn of_all(residual: &[f32], ones: &[f32], stride: usize) -> Structure {
     }
 }
 
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn of_whole(residual: &[f32], stride: usize) -> (f64, f64) {
+    (shifted(residual, 1) + shifted(residual, stride), shifted(residual, 0))
+}
+
 /// The sum of the products of values with those `by` further on.
 #[inline(always)]
 fn shifted(values: &[f32], by: usize) -> f64 {
@@ -155,6 +166,10 @@ mod tests {
                 plane.chunks_exact_mut(stride).for_each(|row| row[..side].fill_with(|| rng.random_range(-0.08..0.08)));
             }
             let [by_x, by_y, residual] = planes;
+            let whole = residual.chunks_exact(stride).flat_map(|row| &row[..side]).copied().collect();
+            let (whole, found) = (Residuals { grey: whole, side }.structure(), Structure::of_whole(&residual, (side, stride)));
+            assert_eq!((found.pairs, found.count), (whole.pairs, whole.count));
+            assert!((found.product - whole.product).abs() < 1e-6 * whole.square && (found.square / whole.square - 1.0).abs() < 1e-6);
             let shows = |at: usize| by_x[at].hypot(by_y[at]) > SHOWS;
             let of = |index: usize| (index / side * stride + index % side, residual[index / side * stride + index % side] * 2.5);
             let grey = (0..side * side).map(of).map(|(at, r)| if shows(at) { r } else { f32::NAN }).collect();

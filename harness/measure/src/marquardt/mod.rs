@@ -4,7 +4,9 @@ pub(crate) mod descent;
 
 use calibench_model::{Covariance, Rejection};
 use descent::{Damping, Descent, Gone, descend};
-use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
+
+use crate::cholesky::{self, Factor};
 
 /// The normal equations at one place, and the sum of the squared residuals there.
 #[derive(Clone)]
@@ -109,20 +111,27 @@ pub(crate) fn decompose<const P: usize>(n: &SMatrix<f64, P, P>) -> Option<Scaled
     if !scale.iter().all(|s| s.is_finite()) {
         return None;
     }
-    let scaled: SMatrix<f64, P, P> = SMatrix::from_fn(|i, j| n[(i, j)] * scale[i] * scale[j]);
-    let factor = scaled.cholesky()?;
-    let smallest = (0..P).map(|i| factor.l_dirty()[(i, i)]).fold(f64::INFINITY, f64::min);
-    (smallest > 1e-7).then_some(Scaled { factor, scale })
+    let mut scaled = n.data.0;
+    for (j, column) in scaled.iter_mut().enumerate() {
+        for (i, product) in column.iter_mut().enumerate() {
+            *product = *product * scale[i] * scale[j];
+        }
+    }
+    Some(Scaled { factor: cholesky::factor(&scaled, P, SINGULAR)?, scale })
 }
 
+/// Pivots of the scaled normal equations that count as zero.
+const SINGULAR: f64 = 1e-14;
+
 pub(crate) struct Scaled<const P: usize> {
-    factor: Cholesky<f64, Const<P>>,
+    factor: Factor<P>,
     scale: SVector<f64, P>,
 }
 
 impl<const P: usize> Scaled<P> {
     pub(crate) fn solve(&self, b: &SVector<f64, P>) -> SVector<f64, P> {
-        self.factor.solve(&b.component_mul(&self.scale)).component_mul(&self.scale)
+        let scaled: [f64; P] = std::array::from_fn(|i| b[i] * self.scale[i]);
+        SVector::from(self.factor.solve(&scaled)).component_mul(&self.scale)
     }
 }
 
@@ -149,14 +158,14 @@ impl<const P: usize> Normal<P> {
 
     /// Whether the step of the position is short against its standard deviation; `square` is the squared fraction times the variance of unit weight.
     pub(crate) fn position_rests(&self, step: &SVector<f64, P>, square: f64) -> bool {
-        self.cofactors().is_some_and(|q| step[0].powi(2) + step[1].powi(2) <= square * (q[(0, 0)] + q[(1, 1)]))
+        self.cofactors().is_some_and(|[[xx, _], [_, yy]]| step[0].powi(2) + step[1].powi(2) <= square * (xx + yy))
     }
 
-    /// The cofactors of the unknowns, `N^-1`; `None` when they are not determined.
-    pub(crate) fn cofactors(&self) -> Option<SMatrix<f64, P, P>> {
+    /// The cofactors of the first `M` unknowns, of `N^-1`; `None` when the unknowns are not determined.
+    pub(crate) fn cofactors<const M: usize>(&self) -> Option<[[f64; M]; M]> {
         let Scaled { factor, scale } = decompose(&self.n)?;
-        let inverse = factor.inverse();
-        Some(SMatrix::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
+        let inverse = factor.inverse::<M>();
+        Some(std::array::from_fn(|i| std::array::from_fn(|j| inverse[i][j] * scale[i] * scale[j])))
     }
 }
 
@@ -165,8 +174,8 @@ const VAGUE: f64 = 1.0;
 
 /// The covariance of the position, px^2, with the variance of unit weight from the residuals; `None` when it is too vague.
 pub(crate) fn covariance<const P: usize>(normal: &Normal<P>, redundancy: f64) -> Option<Covariance> {
-    let cofactors = normal.cofactors()? * (normal.omega / redundancy);
-    let covariance = Covariance { sxx: cofactors[(0, 0)], sxy: cofactors[(0, 1)], syy: cofactors[(1, 1)] };
+    let ([[xx, xy], [_, yy]], variance) = (normal.cofactors()?, normal.omega / redundancy);
+    let covariance = Covariance { sxx: variance * xx, sxy: variance * xy, syy: variance * yy };
     (covariance.sxx + covariance.syy <= VAGUE * VAGUE).then_some(covariance)
 }
 

@@ -3,6 +3,12 @@
 use super::curves::Expansion;
 use super::profile::{LANES, Profile};
 
+/// So many nodes and panels have room from the start: as many as a small target has in a small window. More take more memory when they come.
+const NODES: usize = 128;
+const PANELS: usize = 8;
+/// The most numbers of a node of a line.
+const NUMBERS: usize = 5;
+
 /// Samples at the nodes of a border. Its memory is used again for the next.
 #[derive(Clone, Debug)]
 pub(super) struct Bank {
@@ -40,13 +46,13 @@ impl Bank {
         Self {
             pixels,
             padded: stride,
-            values: Vec::new(),
-            slopes: Vec::new(),
-            across: Vec::new(),
-            first: Vec::new(),
-            end: Vec::new(),
+            values: Vec::with_capacity(NODES * stride),
+            slopes: Vec::with_capacity(NODES * stride),
+            across: Vec::with_capacity(NODES * NUMBERS * stride / LANES),
+            first: Vec::with_capacity(PANELS * stride),
+            end: Vec::with_capacity(PANELS * stride),
             beyond: vec![0.0; stride],
-            panels: Vec::new(),
+            panels: Vec::with_capacity(PANELS),
         }
     }
 
@@ -97,7 +103,7 @@ impl Bank {
             return;
         }
         self.see(low, high);
-        let [dx, dy] = step.map(|d| (d * weight) as f32);
+        let [dx, dy] = [(step[0] * weight) as f32, (step[1] * weight) as f32];
         for start in (0..self.padded).step_by(LANES) {
             let block = down.block(start);
             self.values.extend_from_slice(&block.value());

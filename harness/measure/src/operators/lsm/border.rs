@@ -57,7 +57,7 @@ fn integrate<const LINE: usize, const ARC: usize, const MOVED: bool, const BLURR
             match *curve {
                 Curve::Line { from, to } => {
                     let (begin, along) = (map(a, from), map(a, [to[0] - from[0], to[1] - from[1]]));
-                    let step = along.map(|d| d * sense);
+                    let step = [along[0] * sense, along[1] * sense];
                     bank.begin(Expansion::Line(Line::new(from, to, step)));
                     for (t, weight) in panel.nodes() {
                         let at = [pose.at[0] + begin[0] + t * along[0], pose.at[1] + begin[1] + t * along[1]];

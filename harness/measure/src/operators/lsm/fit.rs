@@ -6,7 +6,7 @@ use super::area::{self, WIDEST};
 use super::mask::{Mask, Rule};
 use super::planes::{BLUR, COVERAGE, Derivatives, GROUND, Planes, Pose, UNKNOWNS};
 use super::profile::Profile;
-use crate::cholesky::{self, Factor};
+use crate::cholesky::{self, Factor, SINGULAR};
 use crate::marquardt::descent::{Damping, Descent, Gone, descend};
 
 /// The blur that is sought, px.
@@ -234,7 +234,7 @@ impl System {
         let mut scale = [at.contrast; UNKNOWNS];
         (scale[GROUND], scale[COVERAGE]) = (1.0, 1.0);
         let (normal, of_residuals) = columns.combine(&scale, products, right);
-        let factor = cholesky::factor(&normal, columns.count)?;
+        let factor = cholesky::factor(&normal, columns.count, SINGULAR)?;
         Some(Self { columns, normal, right: of_residuals, factor })
     }
 
@@ -244,7 +244,7 @@ impl System {
         } else {
             let mut damped = self.normal;
             (0..self.columns.count).for_each(|i| damped[i][i] *= 1.0 + damping);
-            cholesky::factor(&damped, self.columns.count)?.solve(&self.right)
+            cholesky::factor(&damped, self.columns.count, SINGULAR)?.solve(&self.right)
         };
         let mut all = [0.0; UNKNOWNS];
         for (change, column) in solution.iter().zip(self.columns.iter()) {
@@ -254,10 +254,8 @@ impl System {
     }
 
     fn covariance(&self, variance: f64) -> Covariance {
-        let unit = |i: usize| self.factor.halfway(&std::array::from_fn(|k| if k == i { 1.0 } else { 0.0 }));
-        let (x, y) = (unit(0), unit(1));
-        let product = |a: &[f64; UNKNOWNS], b: &[f64; UNKNOWNS]| variance * a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        Covariance { sxx: product(&x, &x), sxy: product(&x, &y), syy: product(&y, &y) }
+        let [[xx, xy], [_, yy]] = self.factor.inverse();
+        Covariance { sxx: variance * xx, sxy: variance * xy, syy: variance * yy }
     }
 }
 

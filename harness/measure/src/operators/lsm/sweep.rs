@@ -71,7 +71,11 @@ fn store<const MOVED: bool, const BLURRED: bool>(window: &mut Window<'_>, sums: 
         }
     }
     if BLURRED {
-        put(&mut window.values[BLUR * area + start..], &sums.blur, &inside.map(|one| one * sigma));
+        let mut scaled = [0.0; LANES];
+        for lane in 0..LANES {
+            scaled[lane] = inside[lane] * sigma;
+        }
+        put(&mut window.values[BLUR * area + start..], &sums.blur, &scaled);
     }
 }
 
@@ -124,5 +128,9 @@ fn add<const B: usize, const NUMBERS: usize, const MOVED: bool, const BLURRED: b
 /// A whole new array: sums that are changed in place get torn into pieces of several lengths.
 #[inline(always)]
 fn plus(sum: &[f32; LANES], factor: f32, lanes: &[f32; LANES]) -> [f32; LANES] {
-    std::array::from_fn(|lane| sum[lane] + factor * lanes[lane])
+    let mut more = [0.0; LANES];
+    for lane in 0..LANES {
+        more[lane] = sum[lane] + factor * lanes[lane];
+    }
+    more
 }

@@ -1,12 +1,13 @@
 //! What the photosite's area does to a grey value beyond widening the blur by its variance.
 
-use super::model::Model;
-use crate::blurred_step::{exp_minus, step};
+use super::model::{Fidelity, Model, Shape};
+use crate::blurred_step::{edge, edges, exp_minus};
 use crate::lanes::{WIDE, Wide};
+use crate::photosite::Square;
 
 /// A chunk of pixels, seen from the two edges, px: the distance from the tangents at the corner, and the way along them.
 pub(super) struct Seen {
-    straight: [Wide; 2],
+    pub(super) straight: [Wide; 2],
     along: [Wide; 2],
 }
 
@@ -50,12 +51,10 @@ impl Model<f32> {
         let mut sum = [0.0; WIDE];
         for node in &self.nodes[..self.count] {
             let [a, b] = [0, 1].map(|which| self.scaled::<CURVED>(which, seen, [node.x, node.y]));
-            let ((edge_a, _), (edge_b, _)) = (step(&a), step(&b));
-            let (mut squares, mut product, mut value) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
+            let (mut squares, mut product, mut value) = ([0.0; WIDE], [0.0; WIDE], edges(&a, &b));
             for i in 0..WIDE {
                 squares[i] = a[i] * a[i] + b[i] * b[i];
                 product[i] = a[i] * b[i];
-                value[i] = edge_a[i] * edge_b[i];
             }
             for (square, mixed, weight) in &self.integral[..self.terms] {
                 let mut exponent = [0.0; WIDE];
@@ -79,9 +78,49 @@ impl Model<f32> {
     pub(super) fn edge_value<const CURVED: bool>(&self, which: usize, seen: &Seen) -> Wide {
         let mut sum = [0.0; WIDE];
         for node in &self.nodes[..self.count] {
-            let (edge, _) = step(&self.scaled::<CURVED>(which, seen, [node.x, node.y]));
+            let edge = edge(&self.scaled::<CURVED>(which, seen, [node.x, node.y]));
             for i in 0..WIDE {
                 sum[i] += node.weight * edge[i];
+            }
+        }
+        sum
+    }
+}
+
+/// What a straight edge sees of the photosite: Gaussians along its normal.
+pub(super) struct Strip {
+    /// How far from the centre, px, and how much of it.
+    nodes: [(f32, f32); 16],
+    count: usize,
+    /// 1 / the root of the variance of each when blurred, 1/px.
+    inverse: f32,
+}
+
+impl Strip {
+    /// For edge `which` of a shape.
+    pub(super) fn of(shape: &Shape, which: usize) -> Self {
+        let (width, (sine, cosine)) = (shape.photosite, shape.normals[which].sin_cos());
+        let across = Square::for_blur(shape.variance / (width * width), Fidelity::Full).across([cosine, sine]);
+        let mut nodes = [(0.0, 0.0); 16];
+        for (slot, (offset, weight)) in nodes.iter_mut().zip(across.nodes()) {
+            *slot = ((offset * width) as f32, *weight as f32);
+        }
+        let inverse = 1.0 / (shape.variance + across.variance * width * width).sqrt();
+        Self { nodes, count: across.nodes().len(), inverse: inverse as f32 }
+    }
+
+    /// As [`Model::edge_value`] with all of the photosite, of a straight edge from which pixels lie `straight` px away.
+    #[inline(always)]
+    pub(super) fn value(&self, straight: &Wide) -> Wide {
+        let mut sum = [0.0; WIDE];
+        for (offset, weight) in &self.nodes[..self.count] {
+            let mut scaled = [0.0; WIDE];
+            for i in 0..WIDE {
+                scaled[i] = (straight[i] + offset) * self.inverse;
+            }
+            let edge = edge(&scaled);
+            for i in 0..WIDE {
+                sum[i] += weight * edge[i];
             }
         }
         sum

@@ -5,6 +5,7 @@ mod levels;
 mod lists;
 mod model;
 mod residuals;
+mod saddle;
 mod start;
 mod sums;
 mod window;
@@ -155,8 +156,8 @@ impl ParametricCorner {
         x.as_mut_slice()[..7].copy_from_slice(&[0.0, 0.0, guess.normals[0], guess.normals[1], VARIANCE, 0.0, 1.0]);
         let Rest { at, x, normal } = follow(&mut window, (image, half), guess.position, x)?;
         let blurred = side < self.window && x[4] > (half as f64 / TOO_SOFT).powi(2);
-        let residuals = window.residuals(&x).filter(|residuals| !blurred && !residuals.are_no_noise(MISFIT)).ok_or(Rejection::Misfit)?;
-        if side < self.window && side < BELIEVED && !residuals.are_white() {
+        let structure = window.structure(&x).filter(|structure| !blurred && !structure.is_no_noise(MISFIT)).ok_or(Rejection::Misfit)?;
+        if side < self.window && side < BELIEVED && !structure.is_white() {
             return Err(Rejection::Misfit);
         }
         let noise = (normal.omega / (side * side) as f64).sqrt();
@@ -165,7 +166,7 @@ impl ParametricCorner {
         }
         let covariance = covariance(&normal, (side * side - P) as f64).ok_or(Rejection::ErrorEllipse)?;
         let found = Measurement { position: PixelPoint::new(at[0], at[1]), covariance: Some(covariance) };
-        Ok(Fitted { found, doubtful: residuals.are_no_noise(DOUBT) })
+        Ok(Fitted { found, doubtful: structure.is_no_noise(DOUBT) })
     }
 }
 
@@ -180,7 +181,7 @@ impl Operator for ParametricCorner {
         let position = if self.search == 0 {
             [start.position.x, start.position.y]
         } else {
-            start::saddle(image, centre, self.search, half as usize).ok_or(Rejection::NoCorner)?
+            saddle::saddle(image, centre, self.search, half as usize).ok_or(Rejection::NoCorner)?
         };
         let at = position.map(|c| c.round() as i64);
         if !image.holds(at[0], at[1], half) {

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use calibench_model::quadrature::gauss_legendre;
 
-use crate::blurred_step::{DENSITY, exp_minus, step};
+use crate::blurred_step::{DENSITY, edge, exp_minus, step};
 use crate::lanes::Real;
 pub(super) use crate::photosite::Fidelity;
 use crate::photosite::Square;
@@ -144,7 +144,7 @@ impl<T: Real> Model<T> {
             along_b[i] = (a[i] - self.rho * b[i]) * self.cosecant;
         }
         let ((edge_a, bell_a), (edge_b, bell_b)) = (step(&a), step(&b));
-        let ((far_a, fade_a), (far_b, _)) = (step(&along_a), step(&along_b));
+        let ((far_a, fade_a), far_b) = (step(&along_a), edge(&along_b));
         let bulge = self.bulge(&a, &b);
         let (mut by_p, mut by_q, mut by_angle) = (zero, zero, zero);
         let slope = T::of(2.0 * DENSITY) * self.inverse * node.weight;
@@ -164,11 +164,15 @@ impl<T: Real> Model<T> {
     /// `E[sign u sign v] - E[sign u] E[sign v]` for two unit normal variables about (a, b) with correlation rho.
     #[inline(always)]
     fn bulge<const N: usize>(&self, a: &[T; N], b: &[T; N]) -> [T; N] {
-        let mut sum = [T::of(0.0); N];
+        let zero = [T::of(0.0); N];
+        let (mut sum, mut squares, mut products) = (zero, zero, zero);
+        for i in 0..N {
+            (squares[i], products[i]) = (a[i] * a[i] + b[i] * b[i], a[i] * b[i]);
+        }
         for (square, product, weight) in &self.integral[..self.terms] {
-            let mut exponent = [T::of(0.0); N];
+            let mut exponent = zero;
             for i in 0..N {
-                exponent[i] = *square * (a[i] * a[i] + b[i] * b[i]) - *product * (a[i] * b[i]);
+                exponent[i] = *square * squares[i] - *product * products[i];
             }
             let term = exp_minus(&exponent);
             for i in 0..N {

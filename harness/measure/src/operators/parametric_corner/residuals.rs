@@ -7,20 +7,21 @@ use super::levels::Levels;
 use super::lists::{AREAS, CORNER, EDGES, Lists};
 use super::model::{Fidelity, Model};
 use super::window::Window;
-use crate::lanes::WIDE;
-use crate::residuals::Residuals;
+use crate::lanes::{WIDE, less};
+use crate::residuals::Structure;
 
 impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'_, P, GRADIENT, CURVED> {
-    /// Those of the corrected grey values at `x`. `None` where the model has no meaning.
-    pub(super) fn residuals(&mut self, x: &SVector<f64, P>) -> Option<Residuals> {
+    /// How the residuals of the corrected grey values at `x` hang together. `None` where the model has no meaning.
+    pub(super) fn structure(&mut self, x: &SVector<f64, P>) -> Option<Structure> {
         let shape = self.shape(x);
         let model = Model::new(&shape, Fidelity::Rough)?;
         let (levels, side, centre) = (self.levels(x), self.setting.side, shape.position.map(|p| p as f32));
-        let mut grey = vec![0.0; side * side];
-        fill::<GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, &mut grey, side), &mut self.pixels);
+        let stride = (side + 1).next_multiple_of(WIDE);
+        let mut residual = vec![0.0; side * stride];
+        fill::<GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, side), &mut self.pixels, (&mut residual, stride));
         let half = x[6].abs() as f32;
-        grey.iter_mut().for_each(|r| *r /= half);
-        Some(Residuals { grey, side })
+        residual.iter_mut().for_each(|r| *r /= half);
+        Some(Structure::of_whole(&residual, (side, stride)))
     }
 }
 
@@ -29,14 +30,15 @@ fn fill<const GRADIENT: u8, const CURVED: bool>(
     model: &Model<f32>,
     levels: &Levels,
     [cx, cy]: [f32; 2],
-    (grey, into, side): (&[f32], &mut [f32], usize),
+    (grey, side): (&[f32], usize),
     lists: &mut Lists,
+    (into, stride): (&mut [f32], usize),
 ) {
     lists.sort(model, (grey, side), [cx, cy]);
     let half = (side / 2) as f32;
     for (kind, only) in [(CORNER, None), (EDGES[0], Some(0)), (EDGES[1], Some(1)), (AREAS, Some(2))] {
         for (chunk, count) in lists.list(kind).chunks() {
-            let (x, y) = (chunk.x.map(|x| x - cx), chunk.y.map(|y| y - cy));
+            let (x, y) = (less(chunk.x, cx), less(chunk.y, cy));
             let seen = model.seen(&x, &y);
             let value = match only {
                 None => model.corner_value::<CURVED>(&seen),
@@ -44,7 +46,7 @@ fn fill<const GRADIENT: u8, const CURVED: bool>(
                 Some(edge) => model.edge_value::<CURVED>(edge, &seen),
             };
             for i in 0..count {
-                let index = (chunk.y[i] + half) as usize * side + (chunk.x[i] + half) as usize;
+                let index = (chunk.y[i] + half) as usize * stride + (chunk.x[i] + half) as usize;
                 let level = levels.at::<GRADIENT>(x[i], y[i]);
                 let side = if only.is_none() { 1.0 } else { chunk.side[i] };
                 into[index] = chunk.grey[i] - (level.mean + level.half * side * value[i]);

@@ -40,11 +40,17 @@ impl<const P: usize> Sums<P> {
         add_products(&mut self.omega, r, r);
     }
 
+    /// Of all lanes together.
+    #[inline(always)]
     pub(super) fn normal(&self) -> Normal<P> {
-        Normal {
-            n: SMatrix::from_fn(|i, j| sum(&self.n[i.min(j)][i.max(j)])),
-            b: SVector::from_fn(|i, _| sum(&self.b[i])),
-            omega: sum(&self.omega),
+        let mut normal = Normal { n: SMatrix::zeros(), b: SVector::zeros(), omega: sum(&self.omega) };
+        for i in 0..P {
+            for j in i..P {
+                let product = sum(&self.n[i][j]);
+                (normal.n[(i, j)], normal.n[(j, i)]) = (product, product);
+            }
+            normal.b[i] = sum(&self.b[i]);
         }
+        normal
     }
 }

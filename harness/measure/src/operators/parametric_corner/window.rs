@@ -7,6 +7,7 @@ use calibench_model::Image;
 use multiversion::multiversion;
 use nalgebra::SVector;
 
+use super::area::Strip;
 use super::levels::Levels;
 use super::lists::{AREAS, CORNER, EDGES, List, Lists};
 use super::model::{BASE, Fidelity, Field, Model, Shape};
@@ -14,7 +15,7 @@ use super::sums::Sums;
 use crate::following::Laid;
 use crate::gradient::{ADDED, EACH, EVEN, LIGHT};
 use crate::grey_window::GreyWindow;
-use crate::lanes::{WIDE, Wide};
+use crate::lanes::{WIDE, Wide, less};
 use crate::marquardt::{Normal, Problem};
 
 /// The widest window, px.
@@ -71,10 +72,8 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Problem<P> for Wind
             return None;
         }
         let model = Model::new(&shape, Fidelity::Rough)?;
-        let (levels, mut sums) = (self.levels(x), Sums::<P>::new());
-        let centre = shape.position.map(|p| p as f32);
-        add::<P, GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, self.setting.side), &mut self.pixels, &mut sums);
-        Some(sums.normal())
+        let (levels, centre) = (self.levels(x), shape.position.map(|p| p as f32));
+        Some(normal::<P, GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, self.setting.side), &mut self.pixels))
     }
 
     fn lowest(&self, unknown: usize) -> f64 {
@@ -102,14 +101,15 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Laid<P> for Window<
         self.greys.read();
         let levels = self.levels(x);
         let centre = shape.position.map(|p| p as f32);
-        correct::<GRADIENT, CURVED>(&models, &levels, centre, (&mut self.greys.grey, self.setting.side), &mut self.pixels);
+        let strips = [Strip::of(&shape, 0), Strip::of(&shape, 1)];
+        correct::<GRADIENT, CURVED>((&models, &strips), &levels, centre, (&mut self.greys.grey, self.setting.side), &mut self.pixels);
         Some(())
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn correct<const GRADIENT: u8, const CURVED: bool>(
-    [rough, full]: &[Model<f32>; 2],
+    ([rough, full], strips): (&[Model<f32>; 2], &[Strip; 2]),
     levels: &Levels,
     [cx, cy]: [f32; 2],
     (grey, side): (&mut [f32], usize),
@@ -119,11 +119,12 @@ fn correct<const GRADIENT: u8, const CURVED: bool>(
     let half = (side / 2) as f32;
     for (kind, only) in [(CORNER, None), (EDGES[0], Some(0)), (EDGES[1], Some(1))] {
         for (chunk, count) in lists.list(kind).chunks() {
-            let (x, y) = (chunk.x.map(|x| x - cx), chunk.y.map(|y| y - cy));
+            let (x, y) = (less(chunk.x, cx), less(chunk.y, cy));
             let (there, here) = (full.seen(&x, &y), rough.seen(&x, &y));
             let [there, here] = match only {
                 None => [full.corner_value::<CURVED>(&there), rough.corner_value::<CURVED>(&here)],
-                Some(edge) => [full.edge_value::<CURVED>(edge, &there), rough.edge_value::<CURVED>(edge, &here)],
+                Some(edge) if CURVED => [full.edge_value::<true>(edge, &there), rough.edge_value::<true>(edge, &here)],
+                Some(edge) => [strips[edge].value(&there.straight[edge]), rough.edge_value::<false>(edge, &here)],
             };
             for i in 0..count {
                 let index = (chunk.y[i] + half) as usize * side + (chunk.x[i] + half) as usize;
@@ -135,24 +136,25 @@ fn correct<const GRADIENT: u8, const CURVED: bool>(
 
 // In this order: where scatters exist the compiler makes use of them for the sums, which takes twice as long.
 #[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
-fn add<const P: usize, const GRADIENT: u8, const CURVED: bool>(
+fn normal<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     model: &Model<f32>,
     levels: &Levels,
     centre: [f32; 2],
     window: (&[f32], usize),
     lists: &mut Lists,
-    sums: &mut Sums<P>,
-) {
+) -> Normal<P> {
     lists.sort(model, window, centre);
+    let mut sums = Sums::<P>::new();
     let rows = Rows::<P, GRADIENT> { levels, centre };
-    rows.add(lists.list(CORNER), sums, |x, y, _| model.corner::<WIDE, CURVED>(x, y));
-    rows.add(lists.list(EDGES[0]), sums, |x, y, side| model.edge::<WIDE, CURVED>(0, side, x, y));
-    rows.add(lists.list(EDGES[1]), sums, |x, y, side| model.edge::<WIDE, CURVED>(1, side, x, y));
+    rows.add(lists.list(CORNER), &mut sums, |x, y, _| model.corner::<WIDE, CURVED>(x, y));
+    rows.add(lists.list(EDGES[0]), &mut sums, |x, y, side| model.edge::<WIDE, CURVED>(0, side, x, y));
+    rows.add(lists.list(EDGES[1]), &mut sums, |x, y, side| model.edge::<WIDE, CURVED>(1, side, x, y));
     if GRADIENT == EVEN {
-        rows.add_areas(lists.list(AREAS), sums);
+        rows.add_areas(lists.list(AREAS), &mut sums);
     } else {
-        rows.add(lists.list(AREAS), sums, |_, _, side| Field::constant(*side));
+        rows.add(lists.list(AREAS), &mut sums, |_, _, side| Field::constant(*side));
     }
+    sums.normal()
 }
 
 /// The observation equations of pixels.
@@ -164,7 +166,7 @@ struct Rows<'a, const P: usize, const GRADIENT: u8> {
 impl<const P: usize, const GRADIENT: u8> Rows<'_, P, GRADIENT> {
     /// Pixels that tell of the two grey values only.
     #[inline(always)]
-    fn add_areas(&self, list: &List, sums: &mut Sums<P>) {
+    fn add_areas(&self, list: List<'_>, sums: &mut Sums<P>) {
         for (chunk, count) in list.chunks() {
             let (mut one, mut side, mut r) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
             for i in 0..WIDE {
@@ -177,14 +179,11 @@ impl<const P: usize, const GRADIENT: u8> Rows<'_, P, GRADIENT> {
     }
 
     #[inline(always)]
-    fn add(&self, list: &List, sums: &mut Sums<P>, field: impl Fn(&Wide, &Wide, &Wide) -> Field<f32, WIDE>) {
+    fn add(&self, list: List<'_>, sums: &mut Sums<P>, field: impl Fn(&Wide, &Wide, &Wide) -> Field<f32, WIDE>) {
         let levels = self.levels;
         for (chunk, count) in list.chunks() {
-            let (mut x, mut y) = ([0.0; WIDE], [0.0; WIDE]);
-            for i in 0..WIDE {
-                (x[i], y[i]) = (chunk.x[i] - self.centre[0], chunk.y[i] - self.centre[1]);
-            }
-            let field = field(&x, &y, &chunk.side);
+            let (x, y) = (less(chunk.x, self.centre[0]), less(chunk.y, self.centre[1]));
+            let field = field(&x, &y, chunk.side);
             let (mut j, mut r) = ([[0.0; WIDE]; P], [0.0; WIDE]);
             for i in 0..WIDE {
                 let weight = if i < count { 1.0 } else { 0.0 };

@@ -56,12 +56,12 @@ pub(super) fn weigh<const P: usize>(
     if noise > DROWNED * 0.5 * contrast {
         return Err(Rejection::NoCorner);
     }
-    let cofactors = rest.normal.cofactors().ok_or(Rejection::ErrorEllipse)?;
+    let cofactors = rest.normal.cofactors::<P>().ok_or(Rejection::ErrorEllipse)?;
     let variance = unknowns.variance();
-    if x[variance] - DOUBT * noise * cofactors[(variance, variance)].sqrt() > (0.5 * side as f64 / TOO_SOFT).powi(2) {
+    if x[variance] - DOUBT * noise * cofactors[variance][variance].sqrt() > (0.5 * side as f64 / TOO_SOFT).powi(2) {
         return Err(Rejection::NoCorner);
     }
-    let difference = |i: usize, j: usize| (cofactors[(i, i)] + cofactors[(j, j)] - 2.0 * cofactors[(i, j)]).sqrt();
+    let difference = |i: usize, j: usize| (cofactors[i][i] + cofactors[j][j] - 2.0 * cofactors[i][j]).sqrt();
     let is_step = |k: usize| {
         let (here, next) = (unknowns.grey(k), unknowns.grey((k + 1) % arms));
         (x[here] - x[next]).abs() > SIGNIFICANT * noise * difference(here, next)
