@@ -185,33 +185,23 @@ fn series([f, f1, f2, f3, f4]: [&[f32; LANES]; 5], d: f32) -> [f32; LANES] {
 fn tabulate(table: &mut [f32], stride: usize, width: usize, half: f64, sigma: f64) {
     // What the pixels' borders give: each pixel is the difference of two.
     let mut borders = [[0.0; (WIDEST + 1).next_multiple_of(lanes::LANES)]; DERIVATIVES];
-    let (fractions, mirrored) = table.split_at_mut(STEPS / 2 * DERIVATIVES * stride);
-    let rows = fractions.chunks_exact_mut(DERIVATIVES * stride).zip(mirrored.chunks_exact_mut(DERIVATIVES * stride).rev());
-    for (step, (row, mirror)) in rows.enumerate() {
-        let begin = (step as f64 + 0.5) / STEPS as f64 + half + 0.5;
+    for (step, row) in table.chunks_exact_mut(DERIVATIVES * stride).enumerate() {
+        let fraction = (step as f64 + 0.5) / STEPS as f64;
         for first in (0..=width).step_by(lanes::LANES) {
-            let (mut u, begin) = ([0.0; lanes::LANES], begin - first as f64);
+            let mut u = [0.0; lanes::LANES];
             for (lane, u) in u.iter_mut().enumerate() {
-                *u = (begin - lane as f64) / sigma;
+                *u = (fraction + half + 0.5 - (first + lane) as f64) / sigma;
             }
             for (border, values) in borders.iter_mut().zip(boundary(&u, sigma)) {
                 border[first..first + lanes::LANES].copy_from_slice(&values);
             }
         }
-        for (derivative, border) in borders.iter().enumerate() {
-            let inside = derivative * stride + LANES..derivative * stride + LANES + width;
-            let line = &mut row[inside.clone()];
-            for pixel in 0..width {
-                line[pixel] = (border[pixel] - border[pixel + 1]) as f32;
-            }
-            // The fraction up to one: seen from the other side.
-            let (sign, whole) = [(-1.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (1.0, 0.0)][derivative];
-            for (to, from) in mirror[inside].iter_mut().zip(line.iter().rev()) {
-                *to = whole + sign * *from;
+        row[..LANES].fill(1.0);
+        for (line, border) in row.chunks_exact_mut(stride).zip(&borders) {
+            for (pixel, to) in line[LANES..LANES + width].iter_mut().enumerate() {
+                *to = (border[pixel] - border[pixel + 1]) as f32;
             }
         }
-        row[..LANES].fill(1.0);
-        mirror[..LANES].fill(1.0);
     }
 }
 
