@@ -25,7 +25,7 @@ while line := stream.readline():
 const TOML: &str = r#"[[plugin]]
 name = "failing"
 command = ["python3", "failing.py"]
-parameters = { way = { default = 0, min = 0, max = 9 } }
+parameters = { way = { default = 9, min = 0, max = 9 } }
 seconds = 1.0
 "#;
 
