@@ -102,6 +102,10 @@ python: build
 perf-python: python
     target/python/bin/python harness/python/benches/perf.py
 
+# Two workers of Dask beside two processes started by hand, at so many minutes of trials: six times that, on a quiet machine
+perf-cluster minutes="5": python
+    target/python/bin/python harness/python/benches/cluster.py {{minutes}}
+
 # What weighs most in the wheel: its sections, crates and functions
 size-python: python
     # The library once more with the symbols that the wheel is without.

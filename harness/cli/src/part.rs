@@ -116,6 +116,9 @@ impl Merge {
             say!("{}: {}, in {}", run.scenario, summary(run), records.join(&run.scenario).display());
         }
         // As a run says it.
+        for (name, note) in merged.iter().flat_map(|run| &run.notes) {
+            say!("{name}: {note}");
+        }
         let nothing: Vec<&str> = merged.iter().filter(|run| run.measured == 0).map(|run| run.scenario.as_str()).collect();
         if nothing.len() < merged.len() { Ok(()) } else { Err(Failure::input(format!("{}: nothing was measured", nothing.join(", ")))) }
     }

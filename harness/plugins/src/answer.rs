@@ -87,15 +87,16 @@ pub fn greeted(line: &str) -> Result<Greeted, String> {
 pub fn read(line: &str, number: u64, asked: Option<usize>, most: usize) -> Result<Answer, Fault> {
     let malformed = |message: String| Fault::new(Rejection::Malformed, message);
     let wire: Wire = serde_json::from_str(&without_nan(line)).map_err(|error| {
-        malformed(format!("expected a line of JSON as {{\"image\": {number}, \"xy\": [[1.5, 2.5], null]}}, found {}: {error}", shown(line)))
+        malformed(format!("expected a line of JSON as {{\"image\": 1, \"xy\": [[1.5, 2.5], null]}}, found {}: {error}", shown(line)))
     })?;
     if let Some(error) = wire.error {
         return Err(Fault::new(Rejection::Raised, error));
     }
     let positions = wire.xy.ok_or_else(|| malformed("the answer has no `xy`".into()))?;
     if wire.image != Some(number) {
-        let found = wire.image.map_or_else(|| "none".to_owned(), |found| found.to_string());
-        return Err(malformed(format!("`image` must be that of the request, {number}, found {found}")));
+        // How many images a process was asked for before is chance, and what is told is none.
+        let found = wire.image.map_or("none", |_| "another");
+        return Err(malformed(format!("`image` must be that of the request, found {found}")));
     }
     let count = positions.len();
     match asked {

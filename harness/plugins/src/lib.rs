@@ -13,6 +13,7 @@ mod error;
 mod file;
 mod folder;
 mod operator;
+mod patience;
 mod process;
 mod program;
 mod recorded;

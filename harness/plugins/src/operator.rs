@@ -12,6 +12,7 @@ use crate::answer::{Answer, Fault, read};
 use crate::boards::points_of;
 use crate::declaration::{Boards, Mode, Starts};
 use crate::folder;
+use crate::patience::{self, Patience};
 use crate::program::Program;
 use crate::request::{Wanted, body, head, rounds};
 
@@ -29,31 +30,31 @@ fn bytes(wanted: Wanted<'_>) -> usize {
 pub struct Asked {
     program: Arc<Program>,
     settings: Settings,
+    patience: Arc<Patience>,
 }
 
 type Measured = Result<Measurement, Rejection>;
 
 impl Asked {
     pub fn new(program: Arc<Program>, settings: Settings) -> Self {
-        Self { program, settings }
+        let patience = program.patience(&settings);
+        Self { program, settings, patience }
     }
 
     /// Asks once and tells what the answer tells; a process that failed is ended, and the next image gets a new one.
     fn ask(&self, image: &Image, wanted: Wanted<'_>) -> Result<Answer, Fault> {
-        if self.program.is_given_up() {
-            return Err(Fault::new(Rejection::TooSlow, "it took too long too often and was asked no more"));
-        }
         let grey = self.program.declaration.grey;
         if rounds(image, grey) {
             self.program.told.tell(&format!("grey values were rounded or clipped for it: its images are `{}`", grey.name()));
+        }
+        if self.patience.is_over() {
+            return Err(Fault::new(Rejection::TooSlow, patience::TOLD));
         }
         let answer = match self.program.declaration.mode {
             Mode::Stream => self.by_stream(image, wanted),
             Mode::Folder { .. } => folder::ask(&self.program, &self.settings, image, wanted, (MOST_DETECTED, bytes(wanted) as u64)),
         };
-        if answer.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow) {
-            self.program.was_slow();
-        }
+        self.patience.image(answer.as_ref().is_err_and(|fault| fault.rejection == Rejection::TooSlow));
         let answer = answer?;
         answer.told.iter().for_each(|what| self.program.told.tell(what));
         Ok(answer)
@@ -87,7 +88,11 @@ impl Asked {
 
     /// Tells what failed.
     fn failed(&self, fault: &Fault) -> Rejection {
-        self.program.told.tell(&format!("{}: {}", fault.rejection.meaning(), fault.message));
+        let tell = |message: &str| self.program.told.tell(&format!("{}: {message}", fault.rejection.meaning()));
+        tell(&fault.message);
+        if fault.rejection == Rejection::TooSlow {
+            tell(patience::TOLD);
+        }
         fault.rejection
     }
 

@@ -16,12 +16,11 @@ use crate::answer::{Fault, greeted};
 use crate::confine::Confinement;
 use crate::declaration::{Declaration, Mode, leak};
 use crate::operator::Asked;
+use crate::patience::Patience;
 use crate::process::Process;
 use crate::request::greeting;
 use crate::told::{Teller, short};
 
-/// After this many images that took too long it is asked no more.
-const PATIENCE: usize = 5;
 /// The longest answer to the greeting, bytes.
 const LONGEST_GREETING: usize = 1 << 16;
 
@@ -57,7 +56,8 @@ pub struct Program {
     idle: Mutex<BTreeMap<Vec<u8>, Vec<Started>>>,
     /// What is to be told of it.
     pub told: Teller,
-    slow: Mutex<usize>,
+    /// How fast it is, by its parameters.
+    patience: Mutex<BTreeMap<Vec<u8>, Arc<Patience>>>,
 }
 
 /// A process that has been greeted, in its own empty folder.
@@ -98,7 +98,7 @@ impl Program {
             launcher,
             idle: Mutex::default(),
             told: Teller::default(),
-            slow: Mutex::default(),
+            patience: Mutex::default(),
         }
     }
 
@@ -197,14 +197,9 @@ impl Program {
         command
     }
 
-    /// Whether it has taken too long too often.
-    pub fn is_given_up(&self) -> bool {
-        *locked(&self.slow) >= PATIENCE
-    }
-
-    /// Counts an image that took too long.
-    pub fn was_slow(&self) {
-        *locked(&self.slow) += 1;
+    /// How long it is borne with: with other parameters it may be faster.
+    pub fn patience(&self, settings: &Settings) -> Arc<Patience> {
+        locked(&self.patience).entry(greeting(settings.iter())).or_default().clone()
     }
 }
 

@@ -8,10 +8,10 @@ use calibench_recognise::{Classifier, Recogniser};
 use calibench_scenario::Subject;
 use pyo3::prelude::*;
 
-use crate::error::{doubt, input, project};
+use crate::error::{doubt, input};
 use crate::grey::Grey;
 use crate::rendering::{Targets, starts};
-use crate::session::with_project;
+use crate::session::{scenario_of, with_project};
 use crate::stopped::interruptible;
 
 /// Finds a board, or the targets of the coded field that a scenario describes; None where it is not seen. As `calibench detect` does.
@@ -38,7 +38,7 @@ pub fn detect(
             Ok(if found.rows.is_empty() { None } else { Some(targets) })
         }
         (None, Some(name)) => {
-            let scenario = here.scenario(name).map_err(project)?;
+            let scenario = scenario_of(py, here, name)?;
             let Subject::Views(subject) = &scenario.subject else {
                 return Err(input(format!("testfield: `{name}` has no testfield; expected a scenario with [testfield] kind = \"coded\"")));
             };

@@ -18,11 +18,11 @@ use pyo3::types::PyDict;
 use crate::boards::Board;
 use crate::calibrating::positive;
 use crate::camera::{Camera, size_of};
-use crate::error::{doubt, input, project};
+use crate::error::{doubt, input};
 use crate::measuring::Measured;
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::points::{image_names, points};
-use crate::session::with_project;
+use crate::session::{methods_of_boards, with_project};
 use crate::stopped::interruptible;
 
 /// A verdict and the figures behind it: see `calibench.Judgement`.
@@ -243,7 +243,7 @@ fn of_photographs(py: Python<'_>, photos: &[PathBuf], board: &Board, methods: Op
     with_project(None, |here| {
         let finder = Finder::new(pictured).map_err(input)?;
         let texts = methods.unwrap_or_else(|| usual_methods(finder.kind(), in_use));
-        let methods = here.methods_of_boards(&texts, finder.kind()).map_err(project)?;
+        let methods = methods_of_boards(py, here, &texts, finder.kind())?;
         let measured = interruptible(py, || measured_boards(photos, &finder, &methods, &|| ()))?;
         let MeasuredBoards { trial, size, doubts } = measured.map_err(input)?;
         doubts.iter().try_for_each(|what| doubt(py, what))?;

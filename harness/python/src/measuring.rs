@@ -9,10 +9,10 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use crate::arrays::{NOWHERE, matrices, of_covariances, of_positions, positions};
-use crate::error::{UnavailableError, doubt, input, project};
+use crate::error::{UnavailableError, doubt, input};
 use crate::grey::Grey;
 use crate::pickled::{Pickled, Reduced, reduced};
-use crate::session::with_project_of;
+use crate::session::{methods_of, with_project_of};
 use crate::stopped::interruptible;
 
 /// What a method made of points: see `calibench.Measured`.
@@ -80,7 +80,7 @@ pub fn measure(
 ) -> PyResult<Measured> {
     let starts = starts(xy, kind, axes, cov)?;
     with_project_of(method, |here| {
-        let methods = here.methods(&[method.to_owned()], Pictured::Photographs).map_err(project)?;
+        let methods = methods_of(py, here, &[method.to_owned()], Pictured::Photographs)?;
         let Some(configured) = methods.first() else { return Err(input("method: expected a name")) };
         let operator =
             configured.operator.as_deref().map_err(|why| UnavailableError::new_err(format!("{}: unavailable: {why}", configured.label)))?;

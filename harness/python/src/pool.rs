@@ -33,8 +33,17 @@ pub fn all_threads() -> PyResult<Arc<ThreadPool>> {
 ///
 /// # Errors
 /// A system that starts no threads.
-pub fn threads_of_main() -> PyResult<(Arc<ThreadPool>, &'static AtomicBool)> {
+pub fn threads_of_main() -> PyResult<(Arc<ThreadPool>, &'static Arc<AtomicBool>)> {
     Ok((own(&OF_MAIN, || heed(STOP.clone()))?, &STOP))
+}
+
+/// So many threads of their own, which end what they do once `stop` is up.
+///
+/// # Errors
+/// A system that starts no threads.
+pub fn heeding(threads: usize, stop: &Arc<AtomicBool>) -> PyResult<ThreadPool> {
+    let stop = stop.clone();
+    ThreadPoolBuilder::new().num_threads(threads).start_handler(move |_| heed(stop.clone())).build().map_err(input)
 }
 
 /// The threads that are kept, if they are this process's, or new ones, each of which begins with `first`.

@@ -11,11 +11,11 @@ use pyo3::prelude::*;
 
 use crate::arrays::{NOWHERE, of_axes, of_positions, table};
 use crate::camera::Camera;
-use crate::error::{input, project};
+use crate::error::input;
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
 use crate::pose::Pose;
-use crate::session::with_project;
+use crate::session::{scenario_of, with_project};
 
 /// An image and all that is known of it: see `calibench.Shot`.
 #[pyclass(frozen, get_all, module = "calibench", name = "Shot")]
@@ -127,7 +127,7 @@ pub fn render(
     root: Option<PathBuf>,
 ) -> PyResult<Vec<Shot>> {
     with_project(root, |here| {
-        let scenario = here.scenario(scenario).map_err(project)?;
+        let scenario = scenario_of(py, here, scenario)?;
         let rendered =
             released(py, || shots(&scenario, seed.unwrap_or(scenario.seed), trial, &stations.unwrap_or_default()))?.map_err(input)?;
         rendered.into_iter().map(|rendered| shot(py, rendered)).collect()

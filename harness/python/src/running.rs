@@ -1,7 +1,6 @@
 //! `run`, `run_part` and `merge`: scenarios to records.
 
 use std::path::{Component, Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use std::{fs, io};
 
 use calibench_measure::registry::notes;
@@ -23,8 +22,8 @@ use crate::columns::columns;
 use crate::error::{doubt, input, project};
 use crate::pickled::{Pickled, Reduced, reduced};
 use crate::pool::released;
-use crate::session::with_project;
-use crate::stopped::stoppable;
+use crate::session::{methods_of, scenario_of, with_project};
+use crate::stopped::Stoppable;
 
 /// What a run left: see `calibench.Records`.
 #[pyclass(frozen, module = "calibench", name = "Records")]
@@ -161,11 +160,11 @@ fn ran(
     place: &Place<'_>,
     revision: &str,
 ) -> PyResult<Ran> {
-    let methods = here.methods(&changes.methods, Pictured::Renders).map_err(project)?;
+    let methods = methods_of(py, here, &changes.methods, Pictured::Renders)?;
     let (registry, data, tools) = (here.registry().map_err(project)?, here.data().map_err(project)?, here.toolbox.tools());
-    let stop = AtomicBool::new(false);
+    let threads = Stoppable::on(py, threads)?;
     let (trials, seed) = (changes.trials, changes.seed);
-    let order = Order { scenario, methods: &methods, trials, seed, tools, data, registry, stop: Some(&stop) };
+    let order = Order { scenario, methods: &methods, trials, seed, tools, data, registry, stop: Some(threads.flag()) };
     let mut planned = order.planned().map_err(input)?;
     if let Planned::One(plan) = &planned {
         plan.transfer().and_then(Transfer::warning).map_or(Ok(()), |warning| doubt(py, &format!("{}: {warning}", scenario.name)))?;
@@ -174,7 +173,7 @@ fn ran(
             info.unavailable.map_or(Ok(()), |why| doubt(py, &format!("{}: {} unavailable: {why}", scenario.name, info.label)))?;
         }
     }
-    let done = stoppable(py, threads, &stop, || planned.run(place, revision, &|| ()).map_err(|error: RunError| input(error)))?;
+    let done = threads.run(py, || planned.run(place, revision, &|| ()).map_err(|error: RunError| input(error)))?;
     for (name, note) in notes(planned.methods()) {
         doubt(py, &format!("{name}: {note}"))?;
     }
@@ -197,7 +196,7 @@ pub fn run(
 ) -> PyResult<Records> {
     let changes = Changes { methods: methods.unwrap_or_default(), trials, seed }.checked()?;
     with_project(root, |here| {
-        let named = here.scenario(scenario).map_err(project)?;
+        let named = scenario_of(py, here, scenario)?;
         let temporary = records.is_none().then(TempDir::new).transpose()?;
         let all = records.or_else(|| temporary.as_ref().map(|folder| folder.path().to_owned())).unwrap_or_default();
         let folder = RecordsFolder::open(&all, &named.name, origin(scenario, &named))?;
@@ -230,7 +229,7 @@ pub fn run_part(
     let changes = Changes { methods: methods.unwrap_or_default(), trials, seed }.checked()?;
     let part: Part = part.parse().map_err(|error| input(format!("part: {error}")))?;
     with_project(root, |here| {
-        let named = here.scenario(scenario).map_err(project)?;
+        let named = scenario_of(py, here, scenario)?;
         let revision = revision.map_or_else(|| here.revision().map_err(project), Ok)?;
         let wanted = Wanted { folder: &folder, part, origin: origin(scenario, &named), again, revision: &revision };
         match ran(py, here, &named, &changes, threads, &Place::Part(wanted), &revision)? {
@@ -244,6 +243,9 @@ pub fn run_part(
 #[pyfunction]
 pub fn merge(py: Python<'_>, folders: Vec<PathBuf>, records: PathBuf) -> PyResult<Vec<Records>> {
     let all = released(py, || merged(&folders, &records))?.map_err(input)?;
+    for (name, note) in all.iter().flat_map(|one| &one.notes) {
+        doubt(py, &format!("{name}: {note}"))?;
+    }
     Ok(all.into_iter().map(|one| Records::in_folder(records.join(one.scenario), None)).collect())
 }
 
@@ -253,9 +255,9 @@ type Beside = (PathBuf, PathBuf);
 /// What a part needs on another machine: a scenario's name, its text, its camera's file if it has one, and the revision of the code.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, root = None))]
-pub fn shipped(scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<Beside>, String)> {
+pub fn shipped(py: Python<'_>, scenario: &str, root: Option<PathBuf>) -> PyResult<(String, String, Option<Beside>, String)> {
     with_project(root, |here| {
-        let named = here.scenario(scenario).map_err(project)?;
+        let named = scenario_of(py, here, scenario)?;
         let camera = match &named.subject {
             Subject::Views(views) => views.camera_file.clone(),
             Subject::Photographs(_) | Subject::Scene(_) | Subject::Printed(_) => None,

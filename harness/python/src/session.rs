@@ -5,12 +5,15 @@ use std::path::PathBuf;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
 use calibench_measure::registry::Build;
-use calibench_measure::{Method, Registry, opencv_boards, opencv_chessboard_sb, opencv_subpix};
+use calibench_measure::{Configured, Method, Registry, opencv_boards, opencv_chessboard_sb, opencv_subpix};
+use calibench_model::TargetKind;
 use calibench_plugins::is_name;
-use calibench_project::{Project, Toolbox};
+use calibench_project::{Pictured, Project, ProjectError, Toolbox};
+use calibench_scenario::Scenario;
 use pyo3::prelude::*;
 
-use crate::error::input;
+use crate::error::{input, project};
+use crate::stopped::interruptible;
 
 /// Why OpenCV's own methods are none of this build's.
 const WHY: &str = "the Python package is without OpenCV; where `cv2` is installed, cv2_subpix is its cornerSubPix";
@@ -73,4 +76,41 @@ pub fn with_project<T>(root: Option<PathBuf>, work: impl FnOnce(&Project<'_>) ->
 /// What `work` refuses.
 pub fn with_project_of<T>(method: &str, work: impl FnOnce(&Project<'_>) -> PyResult<T>) -> PyResult<T> {
     if OWN.registry.has(method) { work(&Project::new(&OWN)) } else { with_project(None, work) }
+}
+
+/// What `look_up` finds in the project. A plug-in that is named is started, and may be long in saying that it is there: Ctrl-C ends that, too.
+///
+/// # Errors
+/// What `look_up` refuses; the interruption.
+fn found<T: Send>(py: Python<'_>, look_up: impl FnOnce() -> Result<T, ProjectError> + Send) -> PyResult<T> {
+    interruptible(py, look_up)?.map_err(project)
+}
+
+/// The scenario called `name`, or of the file `name`.
+///
+/// # Errors
+/// As [`Project::scenario`]; the interruption.
+pub fn scenario_of(py: Python<'_>, here: &Project<'_>, name: &str) -> PyResult<Scenario> {
+    found(py, || here.scenario(name))
+}
+
+/// The methods of these names.
+///
+/// # Errors
+/// As [`Project::methods`]; the interruption.
+pub fn methods_of(py: Python<'_>, here: &Project<'_>, names: &[String], pictured: Pictured) -> PyResult<Vec<Configured>> {
+    by_names(py, names, || here.methods(names, pictured))
+}
+
+/// The methods of these names, which measure the points of boards, of the kind `kind`.
+///
+/// # Errors
+/// As [`Project::methods_of_boards`]; the interruption.
+pub fn methods_of_boards(py: Python<'_>, here: &Project<'_>, names: &[String], kind: TargetKind) -> PyResult<Vec<Configured>> {
+    by_names(py, names, || here.methods_of_boards(names, kind))
+}
+
+/// Nothing is started for this package's own methods, and other threads need not be woken.
+fn by_names<T: Send>(py: Python<'_>, names: &[String], look_up: impl FnOnce() -> Result<T, ProjectError> + Send) -> PyResult<T> {
+    if names.iter().all(|name| OWN.registry.has(name)) { look_up().map_err(project) } else { found(py, look_up) }
 }

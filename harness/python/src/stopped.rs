@@ -8,29 +8,49 @@ use std::time::Duration;
 use calibench_model::stop::is_end;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 
-use crate::error::input;
-use crate::pool::{all_threads, released, threads_of_main};
+use crate::pool::{all_threads, heeding, released, threads_of_main};
 
 /// How often Python is asked whether it was interrupted.
 const ASKED: Duration = Duration::from_millis(50);
 
-/// Does `work` on `threads` threads (all cores where none are given) while Python looks out for signals; `work` is told by the flag that it is to end.
-///
-/// # Errors
-/// What `work` refuses; the interruption, once `work` has ended.
-pub fn stoppable<T: Send>(
-    py: Python<'_>,
-    threads: Option<usize>,
-    stop: &AtomicBool,
-    work: impl FnOnce() -> PyResult<T> + Send,
-) -> PyResult<T> {
-    let pool = match threads {
-        Some(threads) => Arc::new(ThreadPoolBuilder::new().num_threads(threads).build().map_err(input)?),
-        None => all_threads()?,
-    };
-    watched(py, &pool, stop, work)
+/// Threads for long work, and the flag at which it ends.
+pub struct Stoppable {
+    pool: Arc<ThreadPool>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Stoppable {
+    /// `threads` of them, all cores where none are given. Work on them ends at its next [`point`](calibench_model::stop::point) once the flag is up.
+    ///
+    /// # Errors
+    /// A system that starts no threads.
+    pub fn on(py: Python<'_>, threads: Option<usize>) -> PyResult<Self> {
+        if let Some(threads) = threads {
+            let stop = Arc::<AtomicBool>::default();
+            return Ok(Self { pool: Arc::new(heeding(threads, &stop)?), stop });
+        }
+        if !is_main_thread(py)? {
+            return Ok(Self { pool: all_threads()?, stop: Arc::default() });
+        }
+        let (pool, stop) = threads_of_main()?;
+        stop.store(false, Ordering::Relaxed);
+        Ok(Self { pool, stop: stop.clone() })
+    }
+
+    /// The flag, for work that can also end in good order.
+    pub fn flag(&self) -> &AtomicBool {
+        &self.stop
+    }
+
+    /// Does `work` while Python looks out for signals.
+    ///
+    /// # Errors
+    /// What `work` refuses; the interruption, once `work` has ended.
+    pub fn run<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> PyResult<T> + Send) -> PyResult<T> {
+        watched(py, &self.pool, &self.stop, work)
+    }
 }
 
 /// Does `work` on all threads; called by Python's main thread it ends at its next [`point`](calibench_model::stop::point) once Python was interrupted, and leaves
@@ -42,9 +62,7 @@ pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -
     if !is_main_thread(py)? {
         return released(py, work);
     }
-    let (pool, stop) = threads_of_main()?;
-    stop.store(false, Ordering::Relaxed);
-    watched(py, &pool, stop, || Ok(work()))
+    Stoppable::on(py, None)?.run(py, || Ok(work()))
 }
 
 /// Signals are told to the main thread alone.

@@ -2,10 +2,12 @@
 
 import os
 import signal
+import sys
 import time
 import warnings
 
 import pytest
+from conftest import PROGRAM, ROOT
 from test_run import SCENARIO, files
 
 import calibench as cb
@@ -84,3 +86,13 @@ def test_mistakes_are_named(client, tmp_path, project):
         cluster.run("operators/target", client, parts=2, records=tmp_path)
     with pytest.raises(cb.InputError, match="did you mean"):
         cluster.run(SCENARIO, client, parts=2, methods=["forster"], records=tmp_path, retries=0)
+
+
+@pytest.mark.skipif(not PROGRAM.is_file(), reason=f"no program at {PROGRAM}")
+def test_the_benchmark_compares_the_same_records():
+    """Two seconds of trials say nothing of speed."""
+    sys.path.insert(0, str(ROOT / "harness/python/benches"))
+    import cluster as bench
+
+    trials, times, same = bench.measured(2, rounds=1)
+    assert trials >= bench.PARTS and len(times) == 1 and all(seconds > 0 for seconds in times[0]) and same

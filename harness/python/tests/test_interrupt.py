@@ -8,6 +8,7 @@ import time
 
 import pytest
 from conftest import ROOT
+from test_run import SCENARIO
 
 #: After this it is interrupted, and has ended so much later at most; each of the works takes twice as long as both together, most of them a minute.
 BEGUN, SOON = 0.5, 2.0
@@ -52,6 +53,26 @@ WORKS = {
         "import os; os.chdir(sys.argv[1]); image = np.zeros((50, 50), np.float32)",
         'cb.measure(image, [[20.0, 20.0]], "sleeper")',
     ),
+    "measure by a plug-in that does not greet": (
+        "import os; os.chdir(sys.argv[1]); image = np.zeros((50, 50), np.float32)",
+        'cb.measure(image, [[20.0, 20.0]], "silent")',
+    ),
+    "judge by a plug-in that does not greet": (
+        "import os, glob; os.chdir(sys.argv[1]); photos = sorted(glob.glob('*.png'))",
+        'cb.judge(photos, "9x6:25", methods=["silent"])',
+    ),
+    "run a plug-in that does not greet": (
+        "import os; os.chdir(sys.argv[1])",
+        'cb.run("t/few", methods=["pixel", "silent"], records="records")',
+    ),
+    "run a scenario whose plug-in does not greet": ("import os; os.chdir(sys.argv[1])", 'cb.run("t/silent", records="records")'),
+    "run a part by a plug-in that does not greet": (
+        "import os; os.chdir(sys.argv[1])",
+        'cb.run_part("t/few", "1/2", "parts", methods=["silent"])',
+    ),
+    "render a scenario whose plug-in does not greet": ("import os; os.chdir(sys.argv[1])", 'cb.render("t/silent")'),
+    "run a plug-in that does not answer": ("import os; os.chdir(sys.argv[1])", 'cb.run("t/few", methods=["pixel", "sleeper"], records="records")'),
+    "run it on two threads": ("import os; os.chdir(sys.argv[1])", 'cb.run("t/few", methods=["pixel", "sleeper"], threads=2, records="records")'),
     "calibrate": ('xy, size = views(300, "30x20:5")', 'cb.calibrate(xy, "30x20:5", size=size, model="opencv8", snoop=True)'),
     "judge": ('xy, size = views(150, "20x15:5")', 'cb.judge(xy, "20x15:5", size=size, splits=100)'),
     "judge photographs": (
@@ -93,7 +114,7 @@ def interrupted(script, *words):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """A project with a plug-in that answers after a minute, and photographs of a board."""
+    """A project with plug-ins that answer after a minute or do not greet, scenarios, and photographs of a board."""
     import warnings
 
     import numpy as np
@@ -101,12 +122,17 @@ def folder(tmp_path_factory):
     import calibench as cb
 
     folder = tmp_path_factory.mktemp("project")
-    for name in ("scenarios", "reference", "methods"):
-        (folder / name).mkdir()
+    for name in ("scenarios/t", "reference", "methods"):
+        (folder / name).mkdir(parents=True)
     answer = '"""Answers late."""\nimport json, sys, time\nprint(json.dumps({"version": "1"}), flush=True)\ntime.sleep(60)\n'
     (folder / "methods/sleeper.py").write_text(answer)
-    declared = f'[[plugin]]\nname = "sleeper"\ncommand = ["{sys.executable}", "sleeper.py"]\nseconds = 60\n'
-    (folder / "methods/sleeper.toml").write_text(declared)
+    (folder / "methods/silent.py").write_text('"""Never greets."""\nimport time\ntime.sleep(60)\n')
+    for name in ("sleeper", "silent"):
+        declared = f'[[plugin]]\nname = "{name}"\ncommand = ["{sys.executable}", "{name}.py"]\nseconds = 60\n'
+        (folder / f"methods/{name}.toml").write_text(declared)
+    scenario = (ROOT / f"scenarios/{SCENARIO}.toml").read_text()
+    (folder / "scenarios/t/few.toml").write_text(scenario)
+    (folder / "scenarios/t/silent.toml").write_text(scenario + '\n[[method]]\nname = "silent"\n')
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         shots = cb.render("testfields/chessboard", root=ROOT)

@@ -1,7 +1,8 @@
-"""The list of what weighs most in the wheel: whose a function is."""
+"""What the wheel weighs, and the list of what weighs most: whose a function is."""
 
 import sys
 
+import pytest
 from conftest import ROOT
 
 sys.path.insert(0, str(ROOT / "harness/python/benches"))
@@ -28,3 +29,11 @@ def test_what_is_compiled_more_than_once_is_one_function():
 
 def test_what_repeats_weighs_little():
     assert size.packed(b"ab" * 5000) < 100 < size.packed(bytes(range(256)))
+
+
+def test_the_wheel_has_less_than_ten_megabytes():
+    wheels = sorted((ROOT / "target/wheels").glob("calibench-*.whl"), key=lambda wheel: wheel.stat().st_mtime)
+    if not wheels:
+        pytest.skip("no wheel in target/wheels: `just python` builds it")
+    weight = wheels[-1].stat().st_size
+    assert weight < 10_000_000, f"{wheels[-1].name} has {weight / 1e6:.2f} MB; expected less than 10: `just size-python` lists what weighs most"

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibench_exchange::NewFolder;
+use calibench_exchange::{NewFolder, size_of};
 use calibench_judge::{Field, Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
 use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
@@ -56,6 +56,5 @@ fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -
 }
 
 fn size(path: &Path) -> Result<ImageSize, String> {
-    let (width, height) = image::image_dimensions(path).map_err(|error| format!("the size of a photograph cannot be read: {error}"))?;
-    Ok(ImageSize { width, height })
+    size_of(path).map_err(|error| format!("the size of a photograph cannot be read: {error}"))
 }

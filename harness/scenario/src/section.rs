@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use calibench_diagnostics::{Problem, nearest};
-use schemars::{JsonSchema, schema_for};
+use schemars::{JsonSchema, Schema, schema_for};
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
@@ -72,8 +72,17 @@ impl<'i> Section<'i> {
     ///
     /// Unknown keys, missing keys and values of the wrong form are problems.
     pub fn read<T: DeserializeOwned + JsonSchema>(self, taken: &[&str], problems: &mut Vec<Problem>) -> Option<T> {
+        if !self.has_the_keys(&schema_for!(T), taken, problems) {
+            return None;
+        }
+        let span = self.span.clone();
+        let whole = ValueDeserializer::from(Spanned::new(span.clone(), DeValue::Table(self.table)));
+        T::deserialize(whole).map_err(|error| problems.push(Problem::new(error.span().unwrap_or(span), plain(error.message())))).ok()
+    }
+
+    /// Whether the keys are those of `schema`: none that it does not have, all that it requires. Not in [`Self::read`], which is compiled for every type.
+    fn has_the_keys(&self, schema: &Schema, taken: &[&str], problems: &mut Vec<Problem>) -> bool {
         let before = problems.len();
-        let schema = schema_for!(T);
         let properties = schema.get("properties").and_then(|p| p.as_object());
         let known: Vec<&str> = properties.iter().flat_map(|p| p.keys()).map(String::as_str).chain(taken.iter().copied()).collect();
         // A misspelt key is one mistake, not a missing one as well.
@@ -93,12 +102,7 @@ impl<'i> Section<'i> {
                 problems.push(Problem::new(self.span.clone(), format!("{} has no `{key}`", self.name)).help(format!("`{key}`: {about}")));
             }
         }
-        if problems.len() > before {
-            return None;
-        }
-        let span = self.span.clone();
-        let whole = ValueDeserializer::from(Spanned::new(span.clone(), DeValue::Table(self.table)));
-        T::deserialize(whole).map_err(|error| problems.push(Problem::new(error.span().unwrap_or(span), plain(error.message())))).ok()
+        problems.len() == before
     }
 }
 

@@ -1,5 +1,6 @@
 //! Runs in parts: put together they are the bytes of one run, and nothing else passes for one.
 
+mod failing;
 mod refused;
 mod resumed;
 mod told;

@@ -1,14 +1,16 @@
 //! JPEGs that end early: segments are walked up to the end mark; nothing is decoded.
 
-use std::io::{self, BufRead, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, ErrorKind, Read, SeekFrom};
+
+use super::Input;
 
 /// Second byte of the end mark.
 const END_OF_IMAGE: u8 = 0xd9;
 
 /// Whether the end mark of the image that starts here follows. Leaves the input where it was.
-pub(super) fn is_whole(input: &mut (impl BufRead + Seek)) -> io::Result<bool> {
+pub(super) fn is_whole(mut input: &mut dyn Input) -> io::Result<bool> {
     let start = input.stream_position()?;
-    let walked = walk(input);
+    let walked = walk(&mut input);
     input.seek(SeekFrom::Start(start))?;
     match walked {
         Ok(()) => Ok(true),

@@ -9,6 +9,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
+use calibench_model::camera::ImageSize;
 use calibench_model::{Image, level};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader};
@@ -87,7 +88,17 @@ pub struct Photo {
 /// # Errors
 /// A file that is missing, no image, cut short, or too large.
 pub fn read_photo(path: &Path) -> Result<Photo, PhotoError> {
-    decode(path, BufReader::new(open(path)?))
+    decode(path, &mut BufReader::new(open(path)?))
+}
+
+/// What images are read from. Decoders are compiled for every type that they read from, and are large: this one is for all.
+pub(crate) trait Input: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Input for T {}
+
+/// A reader of the image in `input`, whose format its first bytes tell.
+pub(crate) fn reader(input: &mut dyn Input) -> io::Result<ImageReader<&mut dyn Input>> {
+    ImageReader::new(input).with_guessed_format()
 }
 
 fn open(path: &Path) -> Result<File, PhotoError> {
@@ -108,15 +119,15 @@ pub fn turn_of(path: &Path) -> Result<Option<Turn>, PhotoError> {
     let mut head = Vec::new();
     open(path)?.take(HEAD).read_to_end(&mut head).map_err(in_file)?;
     let content = |source| PhotoError::Content { path: path.to_owned(), source };
-    match turn_in(Cursor::new(head)) {
+    match turn_in(&mut Cursor::new(head)) {
         Ok(turn) => Ok(turn),
         // What a TIFF says of itself may stand at its end.
-        Err(_) => turn_in(BufReader::new(open(path)?)).map_err(content),
+        Err(_) => turn_in(&mut BufReader::new(open(path)?)).map_err(content),
     }
 }
 
-fn turn_in(input: impl BufRead + Seek) -> Result<Option<Turn>, ImageError> {
-    let mut reader = ImageReader::new(input).with_guessed_format()?;
+fn turn_in(input: &mut dyn Input) -> Result<Option<Turn>, ImageError> {
+    let mut reader = reader(input)?;
     reader.limits(budget::limits(MOST_BYTES));
     Ok(Turn::of(reader.into_decoder()?.orientation()?))
 }
@@ -126,11 +137,28 @@ fn turn_in(input: impl BufRead + Seek) -> Result<Option<Turn>, ImageError> {
 /// # Errors
 /// A file that is missing or no image.
 pub fn is_deep(path: &Path) -> Result<bool, PhotoError> {
-    let content = |source| PhotoError::Content { path: path.to_owned(), source };
-    let mut reader = ImageReader::new(BufReader::new(open(path)?)).with_guessed_format().map_err(|error| content(error.into()))?;
-    reader.limits(budget::limits(MOST_BYTES));
-    let colour = reader.into_decoder().map_err(content)?.color_type();
+    let colour = in_head(path, |decoder| Ok(decoder.color_type()))?;
     Ok(colour.bytes_per_pixel() > colour.channel_count())
+}
+
+/// Columns and rows of a photograph as [`read_photo`] gives it, from its head alone.
+///
+/// # Errors
+/// A file that is missing or no image.
+pub fn size_of(path: &Path) -> Result<ImageSize, PhotoError> {
+    in_head(path, |decoder| {
+        let ((width, height), turn) = (decoder.dimensions(), Turn::of(decoder.orientation()?));
+        Ok(if turn.is_some_and(Turn::is_on_its_side) { ImageSize { width: height, height: width } } else { ImageSize { width, height } })
+    })
+}
+
+/// What `look` finds in the head of a photograph.
+fn in_head<T>(path: &Path, look: impl FnOnce(&mut dyn ImageDecoder) -> Result<T, ImageError>) -> Result<T, PhotoError> {
+    let content = |source| PhotoError::Content { path: path.to_owned(), source };
+    let mut input = BufReader::new(open(path)?);
+    let mut reader = reader(&mut input).map_err(|error| content(error.into()))?;
+    reader.limits(budget::limits(MOST_BYTES));
+    look(&mut reader.into_decoder().map_err(content)?).map_err(content)
 }
 
 /// As [`read_photo`], from bytes; `path` is the name in errors.
@@ -138,18 +166,18 @@ pub fn is_deep(path: &Path) -> Result<bool, PhotoError> {
 /// # Errors
 /// As [`read_photo`].
 pub fn parse_photo(path: &Path, bytes: &[u8]) -> Result<Photo, PhotoError> {
-    decode(path, Cursor::new(bytes))
+    decode(path, &mut Cursor::new(bytes))
 }
 
-fn decode(path: &Path, mut input: impl BufRead + Seek) -> Result<Photo, PhotoError> {
+fn decode(path: &Path, input: &mut dyn Input) -> Result<Photo, PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
     let content = |source| PhotoError::Content { path: path.to_owned(), source };
-    let format = ImageReader::new(&mut input).with_guessed_format().map_err(in_file)?.format();
-    if format == Some(ImageFormat::Jpeg) && !jpeg::is_whole(&mut input).map_err(in_file)? {
+    let format = reader(input).map_err(in_file)?.format();
+    if format == Some(ImageFormat::Jpeg) && !jpeg::is_whole(input).map_err(in_file)? {
         // The decoder would fill what is missing with grey.
         return Err(PhotoError::Truncated { path: path.to_owned() });
     }
-    let mut reader = ImageReader::new(input).with_guessed_format().map_err(in_file)?;
+    let mut reader = reader(input).map_err(in_file)?;
     reader.limits(budget::limits(MOST_BYTES));
     let mut decoder = reader.into_decoder().map_err(content)?;
     let (width, height) = decoder.dimensions();

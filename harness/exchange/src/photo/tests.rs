@@ -100,6 +100,22 @@ fn the_orientation_is_applied_and_said() {
 }
 
 #[test]
+fn the_head_tells_the_size_as_it_is_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("photo");
+    for orientation in 1..=8 {
+        let values = [1, 2, 3, 4, 5, 6];
+        for file in [png(&values, (3, 2), ExtendedColorType::L8, orientation), jpeg(&values, (3, 2), orientation)] {
+            std::fs::write(&path, file).unwrap();
+            let (size, image) = (size_of(&path).unwrap(), read_photo(&path).unwrap().image);
+            assert_eq!((size.width as usize, size.height as usize), (image.width(), image.height()), "{orientation}");
+        }
+    }
+    std::fs::write(&path, "no image").unwrap();
+    assert!(matches!(size_of(&path), Err(PhotoError::Content { .. })));
+}
+
+#[test]
 fn what_is_cut_short_is_an_error() {
     let values: Vec<u8> = (0..40 * 30).map(|i| (i * 7 % 256) as u8).collect();
     let mut pnm = Vec::new();

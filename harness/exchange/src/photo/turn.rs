@@ -20,6 +20,11 @@ impl Turn {
         self.0.to_exif()
     }
 
+    /// Whether columns become rows.
+    pub(super) const fn is_on_its_side(self) -> bool {
+        matches!(self.0, Orientation::Rotate90FlipH | Orientation::Rotate90 | Orientation::Rotate270FlipH | Orientation::Rotate270)
+    }
+
     /// The image turned: of the file's pixels the image as it is meant to be seen.
     pub(super) fn apply(self, image: &Image) -> Image<'static> {
         let (width, height) = (image.width(), image.height());

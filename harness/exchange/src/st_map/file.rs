@@ -1,16 +1,18 @@
 //! ST-maps as images: EXR, TIFF, PNG.
 
-use std::io::Cursor;
+use std::fs::File;
+use std::io::{BufReader, Cursor};
 use std::path::Path;
 
 use calibench_model::camera::ImageSize;
 use exr::prelude::{Blocks, Compression, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Text, Vec2, WritableImage};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, ImageReader, Limits};
+use image::{ExtendedColorType, ImageEncoder, Limits};
 use tiff::encoder::{TiffEncoder, colortype};
 use tiff::tags::Tag;
 
 use super::{Pixel, StMap, StMapError};
+use crate::photo::reader;
 use crate::photograph::{WRITER, marked};
 
 /// Memory of a map that is read, bytes.
@@ -116,7 +118,8 @@ where
 /// What is no image, or too large.
 pub fn read(path: &Path) -> Result<(ImageSize, Vec<[f32; 2]>), StMapError> {
     let wrong = |error: &dyn std::fmt::Display| StMapError::File(format!("{}: not an ST-map that can be read: {error}", path.display()));
-    let mut reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format).map_err(|error| wrong(&error))?;
+    let mut input = BufReader::new(File::open(path).map_err(|error| wrong(&error))?);
+    let mut reader = reader(&mut input).map_err(|error| wrong(&error))?;
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some(MOST_BYTES);
     reader.limits(limits);

@@ -5,6 +5,7 @@ use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::NewFolder;
+use calibench_model::told::{Told, notes};
 use calibench_records::description::{read as read_description, write as write_description};
 use calibench_records::names::{DESCRIPTION, ORIGIN, cell_name};
 use calibench_records::parts::{Joiner, Span, ToldBy};
@@ -28,6 +29,8 @@ pub struct Merged {
     pub cells: usize,
     /// How many points were measured, or calibrations applied, or sets of printed figures recomputed.
     pub measured: u64,
+    /// What its methods told, in words: of which method, and what.
+    pub notes: Vec<(String, String)>,
 }
 
 /// Puts the parts in and below `folders` together: of every scenario all parts of one run, to what one run would have written, byte for byte, in the folder of
@@ -54,9 +57,10 @@ fn place(parts: &[Found], records: &Path) -> io::Result<RecordsFolder> {
 
 fn one(parts: &[Found], place: &RecordsFolder) -> Result<Merged, MergeError> {
     let manifest = &parts[0].manifest;
+    let told = told(parts);
     place.replace(|folder| {
         copy(&parts[0], parts[0].common().filter(|name| *name != DESCRIPTION), folder)?;
-        describe(parts, folder)?;
+        describe(parts, &told, folder)?;
         (0..manifest.cells.len()).try_for_each(|cell| cell_of(parts, cell, folder))
     })?;
     Ok(Merged {
@@ -65,14 +69,12 @@ fn one(parts: &[Found], place: &RecordsFolder) -> Result<Merged, MergeError> {
         trials: manifest.all_trials(),
         cells: manifest.cells.len(),
         measured: parts.iter().map(|part| part.manifest.measured).sum(),
+        notes: notes(by_method(&told)).into_iter().map(|(method, note)| (method.to_owned(), note)).collect(),
     })
 }
 
-/// Writes the description that all parts have in common, with what methods told in any of them.
-fn describe(parts: &[Found], folder: &NewFolder) -> io::Result<()> {
-    let path = parts[0].folder.join(DESCRIPTION);
-    let mut description =
-        read_description(BufReader::new(File::open(&path)?)).map_err(|error| io::Error::other(format!("{}: {error}", path.display())))?;
+/// What methods told in any of the parts.
+fn told(parts: &[Found]) -> Vec<ToldBy> {
     let mut all: Vec<ToldBy> = Vec::new();
     for (place, one) in parts.iter().flat_map(|part| part.manifest.told.iter().enumerate()) {
         // All parts list the same methods in the same order.
@@ -81,7 +83,19 @@ fn describe(parts: &[Found], folder: &NewFolder) -> io::Result<()> {
             None => all.push(one.clone()),
         }
     }
-    description.notes.extend(told_notes(all.iter().map(|one| (one.method.as_str(), one.told.clone()))));
+    all
+}
+
+fn by_method(told: &[ToldBy]) -> impl Iterator<Item = (&str, Told)> {
+    told.iter().map(|one| (one.method.as_str(), one.told.clone()))
+}
+
+/// Writes the description that all parts have in common, with what methods told.
+fn describe(parts: &[Found], told: &[ToldBy], folder: &NewFolder) -> io::Result<()> {
+    let path = parts[0].folder.join(DESCRIPTION);
+    let mut description =
+        read_description(BufReader::new(File::open(&path)?)).map_err(|error| io::Error::other(format!("{}: {error}", path.display())))?;
+    description.notes.extend(told_notes(by_method(told)));
     folder.write(DESCRIPTION, |file| write_description(file, &description))
 }
 
