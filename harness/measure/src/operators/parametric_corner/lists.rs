@@ -71,8 +71,8 @@ impl Lists {
             for greys in line.chunks(WIDE) {
                 let mut pixels = Row { x: [0.0; 2 * WIDE], y, grey: [0.0; 2 * WIDE], side: [0.0; 2 * WIDE] };
                 pixels.grey[..greys.len()].copy_from_slice(greys);
-                for i in 0..WIDE {
-                    pixels.x[i] = first + NUMBERS[i];
+                for (x, number) in pixels.x.iter_mut().zip(NUMBERS) {
+                    *x = first + number;
                 }
                 first += WIDE as f32;
                 let seen = pixels.seen(model, corner);

@@ -120,7 +120,7 @@ impl Patch {
 fn fill(strengths: &mut Field, patch: &Patch, kernels: &Kernels, side: usize) {
     let [(begin, end), (first, last)] = patch.inside;
     let (taps, seen) = (2 * kernels.reach + 1, (side + 2 * kernels.reach).next_multiple_of(LANES));
-    for row in first..last {
+    for (row, line) in strengths.iter_mut().enumerate().take(last).skip(first) {
         let mut down = [[0.0; PIXELS]; 3];
         for start in (0..seen).step_by(LANES) {
             let mut sums = [[0.0; LANES]; 3];
@@ -148,7 +148,7 @@ fn fill(strengths: &mut Field, patch: &Patch, kernels: &Kernels, side: usize) {
             }
             for i in 0..LANES {
                 let inside = begin <= start + i && start + i < end;
-                strengths[row][start + i] = if inside { xy[i] * xy[i] - xx[i] * yy[i] } else { 0.0 };
+                line[start + i] = if inside { xy[i] * xy[i] - xx[i] * yy[i] } else { 0.0 };
             }
         }
     }
