@@ -162,6 +162,8 @@ mod tests {
             let (alone, (edge, bell)) = (edge(&[x; WIDE]), step(&[x; WIDE]));
             let x = f64::from(x);
             assert!((f64::from(alone[9]) - erf(x * FRAC_1_SQRT_2)).abs() < 5e-7, "{x}");
+            let product = erf(x * FRAC_1_SQRT_2) * erf(0.3 * FRAC_1_SQRT_2);
+            assert!((f64::from(edges(&[x as f32; WIDE], &[0.3; WIDE])[4]) - product).abs() < 5e-7, "{x}");
             assert!((f64::from(edge[3]) - erf(x * FRAC_1_SQRT_2)).abs() < 5e-7, "{x}");
             assert!((f64::from(bell[5]) - (-0.5 * x * x).exp()).abs() < 2e-7, "{x}");
         }

@@ -16,6 +16,12 @@ pub(crate) const WIDE: usize = 16;
 /// [`WIDE`] numbers.
 pub(crate) type Wide = [f32; WIDE];
 
+/// The `N` values from `first` on.
+#[inline(always)]
+pub(crate) fn side_by_side<T, const N: usize>(values: &[T], first: usize) -> &[T; N] {
+    values[first..first + N].try_into().expect("a slice of that length")
+}
+
 /// The sum of all, in pairs, so that additions do not wait for each other.
 #[inline(always)]
 pub(crate) fn sum(lanes: &Wide) -> f64 {

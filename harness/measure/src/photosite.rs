@@ -46,9 +46,9 @@ impl Square {
 
     /// The square as a straight edge with this unit normal sees it: along the normal, in units of the square's side.
     ///
-    /// With two and three Gaussians an axis as many along the normal have the same cumulants, up to the same order, as all of them together: oblique edges are off by
-    /// 1.1e-5 of the contrast at a blur of 0.71 px and by 1.3e-5 at 0.41 px. That of order k of a
-    /// unit square along (x, y) is that of its side times `x^k + y^k`: 1/12, -1/120 and 1/252 are those of orders 2, 4 and 6.
+    /// As many Gaussians along the normal as there are along an axis, if these are two or three, have the same cumulants, up to the same order, as all of them together;
+    /// the cumulant of order k of a unit square along (x, y) is that of its side times `x^k + y^k`, and those of orders 2, 4 and 6 are 1/12, -1/120 and 1/252. Oblique
+    /// edges are off by 1.1e-5 of the contrast at a blur of 0.71 px and by 1.3e-5 at 0.41 px.
     pub(crate) fn across(&self, [x, y]: [f64; 2]) -> Across {
         let [fourth, sixth] = [-(x.powi(4) + y.powi(4)) / 120.0, (x.powi(6) + y.powi(6)) / 252.0];
         let mut across = Across { nodes: [(0.0, 0.0); 16], count: self.offsets.len(), variance: self.variance };
@@ -84,8 +84,9 @@ impl Square {
     }
 }
 
-/// Gaussians of one variance, px^2: offsets, px, and weights.
+/// What an edge sees of the square: Gaussians of one variance, in units of the square's side.
 pub(crate) struct Across {
+    /// Offset and weight.
     nodes: [(f64, f64); 16],
     count: usize,
     pub(crate) variance: f64,

@@ -211,6 +211,20 @@ mod tests {
     }
 
     #[test]
+    fn cofactors_are_those_of_the_inverse_whatever_the_units() {
+        let n = SMatrix::<f64, 3, 3>::new(4.0, 30.0, -2e-3, 30.0, 900.0, 1e-2, -2e-3, 1e-2, 7e-6);
+        let normal = Normal { n, b: SVector::zeros(), omega: 5.0 };
+        let (inverse, found) = (n.try_inverse().unwrap(), normal.cofactors::<3>().unwrap());
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            assert!((found[i][j] - inverse[(i, j)]).abs() < 1e-9 * inverse[(i, j)].abs(), "{i}, {j}");
+        }
+        let of_position = covariance(&Normal { omega: 0.02, ..normal }, 2.0).unwrap();
+        for (found, expected) in [(of_position.sxx, (0, 0)), (of_position.sxy, (0, 1)), (of_position.syy, (1, 1))] {
+            assert!((found - 0.01 * inverse[expected]).abs() < 1e-9 * found.abs(), "{expected:?}");
+        }
+    }
+
+    #[test]
     fn a_far_start_arrives() {
         let solution = minimise(&mut Decay { lowest: 0.0 }, SVector::from([0.2, 4.0]), 1e-3).unwrap();
         assert!((solution.x - SVector::from([3.0, 0.7])).norm() < 1e-8, "{}", solution.x);

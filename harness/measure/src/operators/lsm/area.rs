@@ -4,6 +4,7 @@ use calibench_model::Rejection;
 use multiversion::multiversion;
 
 use super::profile::LANES;
+use crate::lanes::side_by_side;
 
 /// The largest window, px; a row fits into a word.
 pub(super) const WIDEST: usize = 48;
@@ -41,18 +42,12 @@ impl Grey<'_> {
     #[inline(always)]
     fn for_blocks(self, mut each: impl FnMut(usize, usize, &[f32; LANES], &[f32; LANES])) {
         for column in (0..self.stride).step_by(LANES) {
-            let inside = lanes(self.inside, column);
+            let inside = side_by_side(self.inside, column);
             for row in 0..self.side {
-                each(row, column, lanes(self.values, row * self.stride + column), inside);
+                each(row, column, side_by_side(self.values, row * self.stride + column), inside);
             }
         }
     }
-}
-
-/// The `LANES` values from `index` on.
-#[inline(always)]
-fn lanes(values: &[f32], index: usize) -> &[f32; LANES] {
-    values[index..index + LANES].try_into().expect("a slice of that length")
 }
 
 /// The lowest and the highest grey value.
@@ -146,7 +141,8 @@ fn light(grey: Grey<'_>, threshold: f32) -> Words {
     let mut light = [0; WIDEST];
     for (row, bits) in light[..grey.side].iter_mut().enumerate() {
         for column in (0..grey.stride).step_by(LANES) {
-            let (values, inside) = (lanes(grey.values, row * grey.stride + column), lanes(grey.inside, column));
+            let values: &[f32; LANES] = side_by_side(grey.values, row * grey.stride + column);
+            let inside: &[f32; LANES] = side_by_side(grey.inside, column);
             let mut word = 0_u32;
             for lane in 0..LANES {
                 word |= u32::from(inside[lane] > 0.0 && values[lane] > threshold) << lane;

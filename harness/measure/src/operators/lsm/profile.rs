@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use crate::blurred_step::{DENSITY, step};
-use crate::lanes::{self, Lanes};
+use crate::lanes::{self, Lanes, side_by_side};
 
 /// Fractions of a px at which the profile is tabulated; between them it is a Taylor series.
 const STEPS: usize = 16;
@@ -123,7 +123,7 @@ impl<'a> Around<'a> {
     pub(super) fn block(&self, from: usize) -> Block<'a> {
         // Far from the point all lanes come from the table's margins.
         let place = (LANES as i32 + from as i32 - self.first).clamp(0, LANES as i32 + self.width) as usize;
-        let entry = |i: usize| values(self.row, i * self.stride + place);
+        let entry = |i: usize| side_by_side(self.row, i * self.stride + place);
         Block { entries: [entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)], d: self.d }
     }
 }
@@ -161,12 +161,6 @@ impl Block<'_> {
         }
         sums
     }
-}
-
-/// The `LANES` values from `index` on.
-#[inline(always)]
-fn values(row: &[f32], index: usize) -> &[f32; LANES] {
-    row[index..index + LANES].try_into().expect("a slice of that length")
 }
 
 /// Taylor's series of the fourth order, in pairs of terms: side by side they take less time than one in the other.

@@ -1,7 +1,7 @@
 //! The pixels of a window by what can be seen from them.
 
 use super::model::Model;
-use crate::lanes::{WIDE, Wide};
+use crate::lanes::{WIDE, Wide, side_by_side};
 
 /// From a pixel both edges can be seen, ...
 pub(super) const CORNER: usize = 0;
@@ -35,7 +35,7 @@ impl<'a> List<'a> {
     #[inline(always)]
     pub(super) fn chunks(self) -> impl Iterator<Item = (Chunk<'a>, usize)> {
         (0..self.count).step_by(WIDE).map(move |first| {
-            let column = |which: usize| lanes(self.columns[which], first);
+            let column = |which: usize| side_by_side(self.columns[which], first);
             (Chunk { x: column(0), y: column(1), grey: column(2), side: column(3) }, (self.count - first).min(WIDE))
         })
     }
@@ -93,10 +93,10 @@ impl Lists {
             let end = if begins == 0 { count } else { begins.trailing_zeros() as usize };
             let kind = ((past_first >> begin) & 1) as usize + 2 * ((past_second >> begin) & 1) as usize;
             let place = 4 * kind * self.room + self.counts[kind];
-            self.put(place, lanes(&pixels.x, begin));
+            self.put(place, side_by_side(&pixels.x, begin));
             self.put(place + self.room, &[pixels.y; WIDE]);
-            self.put(place + 2 * self.room, lanes(&pixels.grey, begin));
-            self.put(place + 3 * self.room, lanes(&pixels.side, begin));
+            self.put(place + 2 * self.room, side_by_side(&pixels.grey, begin));
+            self.put(place + 3 * self.room, side_by_side(&pixels.side, begin));
             self.counts[kind] += end - begin;
         }
     }
@@ -134,7 +134,50 @@ impl Row {
     }
 }
 
-#[inline(always)]
-fn lanes(values: &[f32], first: usize) -> &Wide {
-    values[first..first + WIDE].try_into().expect("a slice of that length")
+#[cfg(test)]
+mod tests {
+    use super::super::model::{Fidelity, Shape};
+    use super::*;
+
+    /// Kind, column, row and side of every pixel, one by one.
+    fn one_by_one(model: &Model<f32>, side: usize, [cx, cy]: [f32; 2]) -> Vec<(usize, f32, f32, f32)> {
+        let half = (side / 2) as f32;
+        let pixels = (0..side).flat_map(|row| (0..side).map(move |column| (column as f32 - half, row as f32 - half)));
+        let seen = |(x, y): (f32, f32)| {
+            let far = [0, 1].map(|edge| model.edges[edge].distance(x - cx, y - cy)).map(|d| (d.abs() >= model.reach).then_some(d.signum()));
+            let kind = match far {
+                [None, None] => CORNER,
+                [None, Some(_)] => EDGES[0],
+                [Some(_), None] => EDGES[1],
+                [Some(_), Some(_)] => AREAS,
+            };
+            (kind, x, y, far[0].unwrap_or(1.0) * far[1].unwrap_or(1.0))
+        };
+        pixels.map(seen).collect()
+    }
+
+    #[test]
+    fn every_pixel_is_in_the_list_of_what_it_sees() {
+        for (side, variance, photosite) in [(7, 0.1, 1.0), (15, 0.5, 1.0), (41, 0.3, 1.0), (41, 9.0, 1.0), (17, 0.0, 0.1), (33, 0.02, 0.3)]
+        {
+            for turn in (0..9).map(|i| f64::from(i) * 0.7) {
+                let shape = Shape { position: [0.31, -0.24], normals: [turn, turn + 1.3], variance, curvature: [0.0; 2], photosite };
+                let (model, corner) = (Model::<f32>::new(&shape, Fidelity::Rough).unwrap(), shape.position.map(|p| p as f32));
+                let grey: Vec<f32> = (0..side * side).map(|i| i as f32).collect();
+                let mut lists = Lists::new(side);
+                // What an earlier window has left does not count.
+                lists.sort(&model, (&vec![-1.0; side * side], side), [2.0, 1.0]);
+                lists.sort(&model, (&grey, side), corner);
+                let expected = one_by_one(&model, side, corner);
+                for kind in [CORNER, EDGES[0], EDGES[1], AREAS] {
+                    let chunks = lists.list(kind).chunks();
+                    let found: Vec<_> = chunks
+                        .flat_map(|(chunk, count)| (0..count).map(move |i| (chunk.grey[i] as usize, chunk.x[i], chunk.y[i], chunk.side[i])))
+                        .collect();
+                    let wanted = expected.iter().enumerate().filter(|(_, pixel)| pixel.0 == kind).map(|(i, &(_, x, y, s))| (i, x, y, s));
+                    assert_eq!(found, wanted.collect::<Vec<_>>(), "{side} px, {turn} rad, list {kind}");
+                }
+            }
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use calibench_model::Image;
 use multiversion::multiversion;
 
-use crate::lanes::LANES;
+use crate::lanes::{LANES, Lanes, side_by_side};
 
 /// Half the widest kernel, px.
 const WIDEST: usize = 5;
@@ -125,7 +125,7 @@ fn fill(strengths: &mut Field, patch: &Patch, kernels: &Kernels, side: usize) {
         for start in (0..seen).step_by(LANES) {
             let mut sums = [[0.0; LANES]; 3];
             for tap in 0..taps {
-                let grey = lanes(&patch.grey[row + tap], start);
+                let grey: &[f32; LANES] = side_by_side(&patch.grey[row + tap], start);
                 for (sum, kernel) in sums.iter_mut().zip(&kernels.taps) {
                     for i in 0..LANES {
                         sum[i] += kernel[tap] * f64::from(grey[i]);
@@ -139,7 +139,8 @@ fn fill(strengths: &mut Field, patch: &Patch, kernels: &Kernels, side: usize) {
         for start in (0..side).step_by(LANES) {
             let (mut xx, mut xy, mut yy) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
             for tap in 0..taps {
-                let [value, slope, bend] = [lanes(&down[0], start + tap), lanes(&down[1], start + tap), lanes(&down[2], start + tap)];
+                let filtered = |kernel: usize| -> &Lanes { side_by_side(&down[kernel], start + tap) };
+                let [value, slope, bend] = [filtered(0), filtered(1), filtered(2)];
                 for i in 0..LANES {
                     xx[i] += kernels.taps[2][tap] * value[i];
                     xy[i] += kernels.taps[1][tap] * slope[i];
@@ -154,7 +155,38 @@ fn fill(strengths: &mut Field, patch: &Patch, kernels: &Kernels, side: usize) {
     }
 }
 
-#[inline(always)]
-fn lanes<T>(values: &[T], first: usize) -> &[T; LANES] {
-    values[first..first + LANES].try_into().expect("a slice of that length")
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The strength of one place from sums over its pixels, without rows before columns.
+    fn directly(image: &Image, kernels: &Kernels, (x, y): (i64, i64)) -> f64 {
+        let reach = kernels.reach as i64;
+        if !image.holds(x, y, reach) {
+            return 0.0;
+        }
+        let sum = |across: usize, down: usize| -> f64 {
+            let pixels = (-reach..=reach).flat_map(|v| (-reach..=reach).map(move |u| (u, v)));
+            let tap = |order: usize, at: i64| kernels.taps[order][(at + reach) as usize];
+            pixels.map(|(u, v)| tap(across, u) * tap(down, v) * f64::from(image.row((y + v) as usize)[(x + u) as usize])).sum()
+        };
+        sum(1, 1).powi(2) - sum(2, 0) * sum(0, 2)
+    }
+
+    #[test]
+    fn strengths_are_those_of_sums_over_pixels_up_to_the_border() {
+        let image = Image::from_fn(33, 27, |x, y| ((x * 37 + y * 61 + x * y * 13) % 101) as f32 / 100.0);
+        for (x, y, search, reach) in [(16, 13, 5, 5), (5, 5, 5, 5), (27, 21, 5, 5), (5, 21, 12, 5), (29, 3, 7, 3), (16, 13, 12, 4)] {
+            let (kernels, side, [left, top]) = (Kernels::new(reach), 2 * search + 1, [x - search as i64, y - search as i64]);
+            let mut strengths: Field = [[0.0; PLACES]; 2 * FIELD + 1];
+            fill(&mut strengths, &Patch::of(&image, (left, top), side, reach), &kernels, side);
+            let (mut none, mut some) = (0, 0);
+            for (row, column) in (0..side).flat_map(|row| (0..side).map(move |column| (row, column))) {
+                let expected = directly(&image, &kernels, (left + column as i64, top + row as i64));
+                *(if expected == 0.0 { &mut none } else { &mut some }) += 1;
+                assert!((strengths[row][column] - expected).abs() < 1e-9 * (1.0 + expected.abs()), "({x}, {y}): {column}, {row}");
+            }
+            assert!(some > 0 && (none > 0) == !image.holds(x, y, (search + reach) as i64), "({x}, {y}): {none}, {some}");
+        }
+    }
 }
