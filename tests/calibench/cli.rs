@@ -91,7 +91,7 @@ fn methods_trials_and_seed_can_be_changed() {
     assert_eq!(records.lines().count(), 1 + 3 * 8 * 2);
     let numbers = |line: &str| line.split(',').skip(6).take(6).filter(|cell| !cell.is_empty()).count();
     let counts = |method: &str| records.lines().filter(|line| line.contains(method)).map(numbers).collect::<Vec<_>>();
-    assert_eq!(counts(",pixel,"), vec![5; 24], "x, y, dx, dy and the bound");
+    assert_eq!(counts(",pixel,"), vec![5; 24], "x, y, the truth of both and the bound");
     assert_eq!(counts(",forstner:window=7,"), vec![6; 24], "and its own standard deviation");
     assert!(records.contains("forstner:window=7") && !records.contains("harris"));
     let output = run(project.path(), &["run", "corners/noise", "--trials", "2", "--quiet"]);

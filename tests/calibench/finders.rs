@@ -129,11 +129,12 @@ fn opencv_and_ours_number_a_board_with_three_dots_alike() {
     let records = table(&project.path().join("records/mine/board/records.csv.gz"));
     let header: Vec<&str> = records.lines().next().unwrap().split(',').collect();
     let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
-    let (dx, dy, status) = (column("dx"), column("dy"), column("status"));
+    let [x, y, x_true, y_true, status] = ["x", "y", "x_true", "y_true", "status"].map(column);
     let offs = |method: &str| -> Vec<f64> {
         let rows = records.lines().map(|line| line.split(',').collect::<Vec<_>>());
         let measured = rows.filter(|row| row[column("method")].starts_with(method) && row[status] == "measured");
-        measured.map(|row| row[dx].parse::<f64>().unwrap().hypot(row[dy].parse().unwrap())).collect()
+        let off = |row: &[&str], [measured, truth]: [usize; 2]| row[measured].parse::<f64>().unwrap() - row[truth].parse::<f64>().unwrap();
+        measured.map(|row| off(&row, [x, x_true]).hypot(off(&row, [y, y_true]))).collect()
     };
     let (ours, theirs) = (offs("detect"), offs("opencv_find_chessboard"));
     // A wrong name would be a square, some 60 px, off.

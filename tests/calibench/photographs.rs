@@ -69,7 +69,7 @@ fn without_photographs_the_scenario_is_unavailable_visibly() {
     assert!(page.contains("**unavailable**: 13 of 13 photographs are not in `opencv-left`"), "{page}");
     let records = table(&project.path().join("records/photographs/opencv-left/records.csv.gz"));
     assert_eq!(records.matches(",unavailable,").count(), 9, "a row for each method");
-    let judgement = std::fs::read_to_string(project.path().join("records/photographs/opencv-left/judgement.csv")).unwrap();
+    let judgement = table(&project.path().join("records/photographs/opencv-left/judgement.csv.gz"));
     assert_eq!(judgement.matches(",unavailable,").count(), 1, "{judgement}");
     assert!(ends(&["show", "photographs/opencv-left"], 0).contains("no preview, unavailable"));
 }

@@ -83,7 +83,7 @@ fn adjustments_of(folder: &Path, unit: &'static str) -> Result<ByTrial, StoredEr
 mod tests {
     use calibench_records::adjustments::CalibrationWriter;
     use calibench_records::points::{RecordWriter, RunInfo};
-    use calibench_records::stored::Compressor;
+    use calibench_records::compressor::Compressor;
 
     use super::*;
 

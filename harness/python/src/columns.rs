@@ -15,7 +15,7 @@ use crate::error::input;
 use crate::pool::released;
 
 /// Columns of numbers; empty cells are NaN.
-const NUMBERS: [&str; 9] = ["x", "y", "dx", "dy", "bound", "predicted", "value", "sigma", "error"];
+const NUMBERS: [&str; 9] = ["x", "y", "x_true", "y_true", "bound", "predicted", "value", "sigma", "error"];
 /// Columns of whole numbers.
 const WHOLE: [&str; 2] = ["trial", "seed"];
 

@@ -56,7 +56,7 @@ def test_records_are_columns(project):
     points = records.points
     assert records.folder is None and len({len(column) for column in points.values()}) == 1
     assert points["trial"].dtype == np.int64 and sorted(set(points["trial"])) == [0, 1, 2]
-    assert points["dx"].dtype == np.float64 and set(points["method"]) == {"forstner:window=11", "pixel"}
+    assert points["x_true"].dtype == np.float64 and set(points["method"]) == {"forstner:window=11", "pixel"}
     rejected = np.array(points["status"]) == "rejected"
     assert np.isnan(points["x"][rejected]).all() and not np.isnan(points["x"][~rejected]).any()
     assert all(reason for reason, lost in zip(points["reason"], rejected) if lost)
@@ -73,10 +73,10 @@ def test_a_method_of_pythons_is_run_as_any_other(project, tmp_path):
     records = quiet(cb.run, SCENARIO, methods=["pixel", "python_pixel"], trials=2, records=tmp_path)
     points = records.points
     mine, theirs = (np.array(points["method"]) == name for name in ("python_pixel", "pixel"))
-    assert mine.sum() == theirs.sum() > 0 and np.array_equal(points["dx"][mine], points["dx"][theirs])
+    assert mine.sum() == theirs.sum() > 0 and np.array_equal(points["x"][mine], points["x"][theirs])
     assert set(np.array(points["version"])[mine]) == {"3"}
     again = cb.Records.read(tmp_path / SCENARIO)
-    assert np.array_equal(again.points["dx"], points["dx"]) and again.folder == tmp_path / SCENARIO
+    assert np.array_equal(again.points["x"], points["x"]) and again.folder == tmp_path / SCENARIO
 
 
 def test_one_that_fails_does_not_change_the_others(project):

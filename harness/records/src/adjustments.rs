@@ -61,9 +61,9 @@ impl<W: Write> CalibrationWriter<W> {
     }
 
     fn figure(&mut self, trial: &str, one: &Calibrated, figure: &Figure) -> Result<(), csv::Error> {
-        let numbers = [Some(figure.value), figure.sigma, figure.error].map(|number| number.map_or_else(String::new, digits));
-        let [value, sigma, error] = [&numbers[0], &numbers[1], &numbers[2]];
-        self.row(trial, one, figure.group, &figure.name, [value, sigma, error], figure.unit, ["adjusted", ""])
+        let [sigma, error] = [figure.sigma, figure.error].map(|number| number.map_or_else(String::new, |number| format!("{number:.SPREAD$e}")));
+        let value = format!("{:.VALUE$e}", figure.value);
+        self.row(trial, one, figure.group, &figure.name, [&value, &sigma, &error], figure.unit, ["adjusted", ""])
     }
 
     fn failure(&mut self, trial: &str, one: &Calibrated, group: Group, why: &str) -> Result<(), csv::Error> {
@@ -90,10 +90,10 @@ impl<W: Write> CalibrationWriter<W> {
     }
 }
 
-/// Nine significant digits: well below what any of the figures is worth, and files stay small.
-fn digits(value: f64) -> String {
-    format!("{value:.8e}")
-}
+/// Digits of a figure behind its first: well below what any of them is worth, and files stay small.
+const VALUE: usize = 8;
+/// Digits of standard deviations and errors behind their first, as records of points have them.
+const SPREAD: usize = 5;
 
 /// A row of the file.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,10 +2,14 @@
 
 pub mod adjustments;
 mod cells;
+pub mod compressor;
 pub mod description;
+mod digits;
+mod errors;
 mod interned;
 pub mod judgement;
 pub mod names;
+mod order;
 pub mod parts;
 pub mod plain;
 pub mod points;

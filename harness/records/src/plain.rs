@@ -1,11 +1,13 @@
 //! Tables of records as a person reads them: columns side by side, and once above them what is the same in every row.
 
+use std::borrow::Cow;
 use std::io::Read;
 
 use calibench_model::escape;
 use csv::StringRecord;
 
 use crate::cells::RecordError;
+use crate::errors::Errors;
 
 /// The columns of one or more tables that are shown as one.
 #[derive(Debug, Default)]
@@ -54,7 +56,8 @@ impl Layout {
     /// What is no table, or has other columns than those before it.
     pub fn add(&mut self, table: impl Read) -> Result<(), RecordError> {
         let mut csv = csv::Reader::from_reader(table);
-        let header = csv.headers()?;
+        let errors = Errors::of(csv.headers()?);
+        let header = errors.header(csv.headers()?);
         if self.columns.is_empty() {
             self.columns = header.iter().map(Column::new).collect();
         }
@@ -63,8 +66,8 @@ impl Layout {
         }
         let mut record = StringRecord::new();
         while csv.read_record(&mut record)? {
-            for (column, cell) in self.columns.iter_mut().zip(&record) {
-                column.add(cell, self.rows == 0);
+            for (column, cell) in self.columns.iter_mut().zip(errors.cells(&record)) {
+                column.add(&cell, self.rows == 0);
             }
             self.rows += 1;
         }
@@ -86,7 +89,7 @@ impl Layout {
         if !lines.is_empty() {
             lines.push(String::new());
         }
-        lines.push(self.line(self.columns.iter().map(|column| column.name.as_str())));
+        lines.push(self.line(self.columns.iter().map(|column| Cow::Borrowed(column.name.as_str()))));
         lines
     }
 
@@ -95,12 +98,14 @@ impl Layout {
     /// # Errors
     /// What is no table.
     pub fn lines<R: Read>(&self, table: R) -> impl Iterator<Item = Result<String, RecordError>> + use<'_, R> {
-        csv::Reader::from_reader(table).into_records().map(|record| Ok(self.line(&record?)))
+        let mut csv = csv::Reader::from_reader(table);
+        let errors = csv.headers().map(Errors::of).unwrap_or_default();
+        csv.into_records().map(move |record| Ok(self.line(errors.cells(&record?))))
     }
 
-    fn line<'a>(&self, cells: impl IntoIterator<Item = &'a str>) -> String {
+    fn line<'a>(&self, cells: impl IntoIterator<Item = Cow<'a, str>>) -> String {
         let shown = self.columns.iter().zip(cells).filter(|(column, _)| column.same.is_none());
-        let cells: Vec<String> = shown.map(|(column, cell)| column.padded(cell)).collect();
+        let cells: Vec<String> = shown.map(|(column, cell)| column.padded(&cell)).collect();
         cells.join("  ").trim_end().to_owned()
     }
 }
@@ -122,6 +127,18 @@ mod tests {
     fn what_is_the_same_in_every_row_stands_above() {
         let expected = ["scenario: s", "unit: px", "", "trial  target      x", "    0  a        1.25", "    0  b, c    -12.5", "   10  -"];
         assert_eq!(shown(&[FIRST]), expected);
+    }
+
+    #[test]
+    fn a_person_reads_errors_in_place_of_true_positions() {
+        let points = "target,x,y,x_true,y_true,status\na,10.3,20.5,10.1,21.5,measured\nb,1.5,2.5,,,measured\nc,,,,,rejected\n";
+        let expected = [
+            "target     x     y   dx  dy  status",
+            "a       10.3  20.5  0.2  -1  measured",
+            "b        1.5   2.5           measured",
+            "c                            rejected",
+        ];
+        assert_eq!(shown(&[points]), expected);
     }
 
     #[test]

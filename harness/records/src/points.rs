@@ -7,7 +7,9 @@ use calibench_model::{PixelPoint, Rejection};
 use csv::StringRecord;
 
 use crate::cells::{Cells, RecordError, open, write_row};
+use crate::digits::{coordinates, deviation, difference};
 use crate::interned::Names;
+use crate::order::Order;
 use crate::results::{MethodInfo, Outcome, PointResult, Trial};
 
 /// The columns of a records file.
@@ -20,8 +22,8 @@ pub const COLUMNS: [&str; 17] = [
     "version",
     "x",
     "y",
-    "dx",
-    "dy",
+    "x_true",
+    "y_true",
     "bound",
     "predicted",
     "unit",
@@ -39,8 +41,8 @@ const METHOD: usize = 4;
 const VERSION: usize = 5;
 const X: usize = 6;
 const Y: usize = 7;
-const DX: usize = 8;
-const DY: usize = 9;
+const X_TRUE: usize = 8;
+const Y_TRUE: usize = 9;
 const BOUND: usize = 10;
 const PREDICTED: usize = 11;
 const STATUS: usize = 13;
@@ -67,6 +69,7 @@ pub struct RecordWriter<W: Write> {
     run: RunInfo,
     seed: String,
     methods: Vec<MethodInfo>,
+    order: Order,
 }
 
 /// Where and of which method a row is: trial, view, target, method, version.
@@ -83,7 +86,7 @@ impl<W: Write> RecordWriter<W> {
     pub fn new(output: W, run: RunInfo, methods: Vec<MethodInfo>) -> Result<Self, csv::Error> {
         let mut csv = csv::Writer::from_writer(output);
         csv.write_record(COLUMNS)?;
-        let mut writer = Self { csv, seed: run.seed.to_string(), run, methods: Vec::new() };
+        let mut writer = Self { csv, seed: run.seed.to_string(), run, methods: Vec::new(), order: Order::default() };
         if let Some((name, version)) = writer.run.detector.clone() {
             writer.row(["", "", "", &name, &version], &NONE, "", "detector", "gave the approximate positions")?;
         }
@@ -109,8 +112,9 @@ impl<W: Write> RecordWriter<W> {
         Ok(())
     }
 
-    /// Adds a trial: a row for each point, with its errors where the truth is known, its bound and the method's own standard deviation where there are
-    /// such, or with the reason why it was rejected. Coordinates and errors have nine decimals, standard deviations six significant digits.
+    /// Adds a trial: a row for each point, what the methods say of one target one after the other, with its true position where that is known, its bound and
+    /// the method's own standard deviation where there are such, or with the reason why it was rejected. Coordinates have nine decimals, and so has the
+    /// error that is their difference; standard deviations have six significant digits.
     ///
     /// # Errors
     /// What the output refuses.
@@ -122,17 +126,16 @@ impl<W: Write> RecordWriter<W> {
                 self.row([&number, view, "", &method.label, &method.version], &NONE, "", "missed", why)?;
             }
         }
-        for point in &trial.points {
+        for point in self.order.of(&trial.points) {
             let (label, version) = methods.get(point.method).map_or(("", ""), |m| (&*m.label, &*m.version));
             let place = [&*number, &*point.view, &*point.target, label, version];
             match point.outcome {
                 Outcome::Rejected(why) => self.row(place, &NONE, "px", "rejected", why.name())?,
                 Outcome::Measured { position, error } => {
                     let status = if point.outcome.is_lost() { "lost" } else { "measured" };
-                    let [dx, dy] = [error.map(|e| e.0), error.map(|e| e.1)];
-                    let [x, y, dx, dy] = [Some(position.x), Some(position.y), dx, dy].map(|at| at.map_or_else(String::new, coordinate));
+                    let [x, y, x_true, y_true] = coordinates(position, error);
                     let [bound, predicted] = [point.bound, point.predicted].map(|sigma| sigma.map_or_else(String::new, deviation));
-                    self.row(place, &[x, y, dx, dy, bound, predicted], "px", status, "")?;
+                    self.row(place, &[x, y, x_true, y_true, bound, predicted], "px", status, "")?;
                 }
             }
         }
@@ -153,21 +156,6 @@ impl<W: Write> RecordWriter<W> {
         let tail = [unit, status, reason, &self.seed, &self.run.revision];
         write_row(&mut self.csv, head.chain(numbers.iter().map(String::as_str)).chain(tail))
     }
-}
-
-/// To how many parts of a pixel coordinates and errors are written: far more than an operator finds, in files a third smaller than with every digit.
-const PARTS: f64 = 1e9;
-
-/// A coordinate or an error, to nine decimals.
-fn coordinate(px: f64) -> String {
-    // Dividing by a power of ten gives the number nearest to the decimals; adding zero turns -0 into 0.
-    let rounded = (px * PARTS).round() / PARTS + 0.0;
-    (if rounded.is_finite() { rounded } else { px }).to_string()
-}
-
-/// A standard deviation, to six significant digits.
-fn deviation(px: f64) -> String {
-    format!("{px:.5e}").parse().map_or_else(|_| px.to_string(), |rounded: f64| rounded.to_string())
 }
 
 /// What a records file holds besides its trials.
@@ -212,12 +200,18 @@ pub fn read_records(input: impl Read, mut sink: impl FnMut(Trial, &[MethodInfo])
         }
         let number = row.parse(TRIAL)?;
         if trial.as_ref().is_some_and(|trial| trial.number != number) {
-            trial.take().into_iter().for_each(|trial| sink(trial, &head.methods));
+            trial.take().into_iter().for_each(|trial| sink(by_method(trial), &head.methods));
         }
         add(trial.get_or_insert_with(|| Trial { number, ..Trial::default() }), &row, method, &mut names)?;
     }
-    trial.into_iter().for_each(|trial| sink(trial, &head.methods));
+    trial.into_iter().for_each(|trial| sink(by_method(trial), &head.methods));
     Ok(head)
+}
+
+/// A trial whose points are in the order in which they were measured: method by method.
+fn by_method(mut trial: Trial) -> Trial {
+    trial.points.sort_by_key(|point| point.method);
+    trial
 }
 
 /// `last` is the place of the method of the row before: mostly it is the same.
@@ -260,12 +254,13 @@ fn add(trial: &mut Trial, row: &Cells<'_>, method: usize, names: &mut Known) -> 
             Outcome::Rejected(why.ok_or_else(|| row.wrong("unknown reason"))?)
         }
         "measured" | "lost" => {
-            let error = match (row.optional_number(DX)?, row.optional_number(DY)?) {
-                (Some(dx), Some(dy)) => Some((dx, dy)),
+            let position = PixelPoint::new(row.number(X)?, row.number(Y)?);
+            let error = match (row.optional_number(X_TRUE)?, row.optional_number(Y_TRUE)?) {
+                (Some(x), Some(y)) => Some((difference(position.x, x), difference(position.y, y))),
                 (None, None) => None,
-                _ => return Err(row.wrong("one of `dx` and `dy` without the other")),
+                _ => return Err(row.wrong("one of `x_true` and `y_true` without the other")),
             };
-            Outcome::Measured { position: PixelPoint::new(row.number(X)?, row.number(Y)?), error }
+            Outcome::Measured { position, error }
         }
         _ => return Err(row.bad(STATUS)),
     };

@@ -1,16 +1,15 @@
 //! The tables of a run as they lie in its folder: compressed CSV. Every reader of records goes through here.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Write};
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use flate2::Compression;
 use flate2::bufread::MultiGzDecoder;
-use flate2::write::GzEncoder;
 use thiserror::Error;
 
 use crate::adjustments::{self, Row};
 use crate::cells::RecordError;
+use crate::judgement::{self, RECORDED_JUDGEMENT};
 use crate::names::PART;
 use crate::points::{self, RecordHead};
 use crate::results::{MethodInfo, Trial};
@@ -142,34 +141,11 @@ pub fn read_adjustments(folder: &Path, sink: impl FnMut(Row)) -> Result<(), Stor
     adjustments::read(Table::Adjustments.open(folder)?, sink).map_err(Table::Adjustments.wrong(folder))
 }
 
-/// What compresses a table into `output`: the same bytes for the same rows, without a name or a time.
-pub struct Compressor<W: Write>(GzEncoder<W>);
-
-impl<W: Write> Compressor<W> {
-    /// Nothing yet, to go to `output`.
-    pub fn new(output: W) -> Self {
-        Self(GzEncoder::new(output, LEVEL))
-    }
-
-    /// Ends the file.
-    ///
-    /// # Errors
-    /// What the output refuses.
-    pub fn finish(self) -> io::Result<()> {
-        self.0.finish()?.flush()
-    }
+/// Reads the judgement of the run in `folder`: its seed and its rows.
+///
+/// # Errors
+/// As [`open()`]; a file that was not written by this version.
+pub fn read_judgement(folder: &Path) -> Result<(u64, Vec<judgement::Row>), StoredError> {
+    let path = folder.join(RECORDED_JUDGEMENT);
+    judgement::read_rows(open(&path)?).map_err(|source| StoredError::Records { path, source })
 }
-
-impl<W: Write> Write for Compressor<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        // A flush in the middle would cost size; `finish` writes everything.
-        Ok(())
-    }
-}
-
-/// A denser one takes longer and gains nothing: 38 MB of text a second, against 76 at level 3, which is 4 % larger.
-const LEVEL: Compression = Compression::new(6);

@@ -1,12 +1,12 @@
 //! Photographs: how far the operators differ, where they refuse, and pictures of both.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
 use std::sync::Arc;
 
 use calibench_model::{Image, PixelPoint, escape};
 use calibench_records::description::{Subject, looks};
-use calibench_records::judgement::{JUDGEMENT, Summary, read_rows};
+use calibench_records::judgement::Summary;
+use calibench_records::stored::read_judgement;
 
 use super::canvas::Canvas;
 use super::figures::{Layer, MarkAt, Panel, panels};
@@ -125,8 +125,7 @@ fn judged(loaded: &Loaded) -> Said {
 /// The judgement that the scenario asks for, or why its records cannot be read.
 fn judgement_of(loaded: &Loaded) -> Option<Result<Summary, String>> {
     let wanted = matches!(loaded.scenario.subject, Subject::Photographs { judged: true });
-    let rows = || File::open(loaded.folder.join(JUDGEMENT)).map_err(|error| error.to_string());
-    let read = || rows().and_then(|file| read_rows(file).map_err(|error| error.to_string()));
+    let read = || read_judgement(&loaded.folder).map_err(|error| error.to_string());
     wanted.then(|| read().map(|(seed, rows)| Summary::new(&rows, seed)))
 }
 

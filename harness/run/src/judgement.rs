@@ -5,7 +5,8 @@ use std::path::Path;
 use calibench_exchange::{NewFolder, size_of};
 use calibench_judge::{Field, Material, Options, judge, published_camera, stated_sigma};
 use calibench_model::camera::ImageSize;
-use calibench_records::judgement::{JUDGEMENT, Row, measure, write_rows};
+use calibench_records::judgement::{RECORDED_JUDGEMENT, Row, measure, write_rows};
+use calibench_records::compressor::Compressor;
 use calibench_records::names::kept_image;
 use calibench_records::points::RunInfo;
 use calibench_records::results::Trial;
@@ -22,7 +23,11 @@ use crate::{Plan, RunError};
 pub fn write_judgement(folder: &NewFolder, plan: &Plan<'_>, run: &RunInfo, trial: &Trial) -> Result<(), RunError> {
     let Subject::Photographs(PhotographsSubject { judgement: Some(wanted), .. }) = &plan.scenario.subject else { return Ok(()) };
     let rows = rows(folder.path(), plan, wanted, trial).unwrap_or_else(|why| vec![Row::without("", "", "unavailable", &why)]);
-    Ok(folder.write(JUDGEMENT, |file| write_rows(file, run, &rows))?)
+    Ok(folder.write(RECORDED_JUDGEMENT, |file| {
+        let mut table = Compressor::new(file);
+        write_rows(&mut table, run, &rows)?;
+        table.finish()
+    })?)
 }
 
 fn rows(folder: &Path, plan: &Plan<'_>, wanted: &JudgementPlan, trial: &Trial) -> Result<Vec<Row>, String> {

@@ -9,12 +9,13 @@ use calibench_measure::Configured;
 use calibench_measure::registry::told;
 use calibench_model::Told;
 use calibench_records::adjustments::CalibrationWriter;
+use calibench_records::compressor::Compressor;
 use calibench_records::description::write as write_description;
 use calibench_records::names::{DESCRIPTION, ORIGIN, PART, SCENARIO, cell_name};
 use calibench_records::parts::Span;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::Outcome;
-use calibench_records::stored::{Compressor, Table};
+use calibench_records::stored::Table;
 use calibench_scenario::camera::KEPT;
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 

@@ -249,7 +249,9 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
         }
         let is_shown = is_first(&by_method, &view.name) || subject.recognition.as_ref().is_some_and(|plan| shown(plan) == Some(place));
         if let Some(folder) = plan.images.filter(|_| number == 0 && is_shown) {
-            folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, prepared.is_deep()))?;
+            // Pages show 8 bits, and noise below the levels of a sensor, or of an image without any, does not compress.
+            let deep = subject.imaging.has_deep_levels();
+            folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, deep))?;
         }
     }
     let mut trial = Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() };

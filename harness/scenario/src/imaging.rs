@@ -54,6 +54,11 @@ impl Imaging {
         self.sensor.as_ref().is_none_or(|setup| setup.sensor.bits().is_none_or(|bits| bits > 8))
     }
 
+    /// Whether it has levels, more than 8 bits of them.
+    pub fn has_deep_levels(&self) -> bool {
+        self.sensor.as_ref().and_then(|setup| setup.sensor.bits()).is_some_and(|bits| bits > 8)
+    }
+
     /// Whether a sensor's noise, or anything else in it, is random.
     pub fn is_random(&self) -> bool {
         self.sensor.as_ref().is_some_and(|setup| setup.row_jitter > 0.0 || !setup.sensor.is_deterministic())

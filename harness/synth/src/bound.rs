@@ -5,6 +5,7 @@
 //! widens the bound of the position.
 
 use calibench_model::{Covariance, Gradient, Levels, PixelPoint, Unknowns};
+use multiversion::multiversion;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
@@ -115,8 +116,7 @@ impl Window<'_> {
             let columns = self.columns(sets, &grey, &mean)?;
             let groups = columns.each_ref().map(Vec::len);
             let columns: Vec<&Vec<f64>> = columns.iter().flatten().collect();
-            let product = |i: usize, j: usize| columns[i].iter().zip(columns[j]).zip(&weights).map(|((a, b), w)| a * b * w).sum::<f64>();
-            Some((groups, DMatrix::from_fn(columns.len(), columns.len(), product)))
+            Some((groups, normal_equations(&columns, &weights)))
         };
         let Some((groups, normal)) = normal() else { return vec![None; sets.len()] };
         let part = |set| {
@@ -183,6 +183,28 @@ impl Window<'_> {
     fn grey_of(&self, renderer: &Renderer, moved: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
         let move_piece = |piece: &Piece| Piece { points: piece.points.map(&moved), ..*piece };
         renderer.render_window(&self.near, move_piece, self.corner, self.side)
+    }
+}
+
+/// The sums of the products of every two columns, weighted row by row.
+fn normal_equations(columns: &[&Vec<f64>], weights: &[f64]) -> DMatrix<f64> {
+    let n = columns.len();
+    let rows: Vec<f64> = (0..weights.len()).flat_map(|pixel| columns.iter().map(move |column| column[pixel])).collect();
+    let mut sums = vec![0.0; n * n];
+    rows.chunks_exact(n).zip(weights).for_each(|(row, weight)| add_products(&mut sums, row, *weight));
+    DMatrix::from_fn(n, n, |i, j| sums[i.max(j) * n + i.min(j)])
+}
+
+/// Adds the products of a row's values, all of a line side by side.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn add_products(sums: &mut [f64], row: &[f64], weight: f64) {
+    let n = row.len();
+    for i in 0..n {
+        // Beyond the diagonal too: whole lines are faster than those that end at it.
+        let (sums, a) = (&mut sums[i * n..(i + 1) * n], row[i]);
+        for j in 0..n {
+            sums[j] += a * row[j] * weight;
+        }
     }
 }
 

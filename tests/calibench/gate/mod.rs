@@ -164,8 +164,9 @@ fn two_runs_are_compared_point_by_point() {
     let text = table(&records);
     let row = text.lines().find(|line| line.contains(",measured,")).unwrap();
     let cells: Vec<&str> = row.split(',').collect();
-    let dx = cells.len() - 9;
-    let moved = [&cells[..dx], &["1"], &cells[dx + 1..]].concat().join(",");
+    let x = cells.len() - 11;
+    let off = (cells[x].parse::<f64>().unwrap() + 1.0).to_string();
+    let moved = [&cells[..x], &[&*off], &cells[x + 1..]].concat().join(",");
     put_table(&records, &text.replacen(row, &moved, 1));
     let output = run(project.path(), &["check", scenario, "--against", "records", "--strict", "-q"]);
     assert_eq!(output.status.code(), Some(1), "{}{}", stdout(&output), stderr(&output));

@@ -6,8 +6,10 @@ use std::sync::Arc;
 use crate::cells::{Cells, RecordError, open, write_row};
 use crate::points::RunInfo;
 
-/// The file's name in a scenario's folder.
+/// The file's name in a folder that a user asked for.
 pub const JUDGEMENT: &str = "judgement.csv";
+/// The file's name in a scenario's folder of records, where it is compressed as all tables are.
+pub const RECORDED_JUDGEMENT: &str = "judgement.csv.gz";
 
 /// The columns of the file.
 pub const COLUMNS: [&str; 13] =

@@ -9,7 +9,8 @@ use calibench_records::description::{self, Description, Subject};
 use calibench_records::names::DESCRIPTION;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
-use calibench_records::stored::{Compressor, Table, open};
+use calibench_records::compressor::Compressor;
+use calibench_records::stored::{Table, open};
 use tempfile::TempDir;
 
 use crate::{Places, write};

@@ -12,6 +12,8 @@ pub(crate) struct Spread {
     phases: f64,
     /// Weights of one phase, a multiple of [`LANES`], the last ones zero.
     pub taps: usize,
+    /// Those of them that are not zero.
+    pub reached: usize,
     table: Vec<f64>,
 }
 
@@ -30,13 +32,15 @@ impl Spread {
         // Linear interpolation errs by h^2/8 times the second derivative, which is at most 0.25 / sigma^2 for steps of area one: below 4e-8.
         let phases = (900.0 / profile.sigma).ceil().max(512.0);
         let taps = ((2.0 * reach).ceil() as usize).next_multiple_of(LANES);
+        // Where twice the reach is a whole number, both ends of it.
+        let reached = ((2.0 * reach).floor() as usize + 1).min(taps);
         let row = |phase: usize| {
             let start = reach - phase as f64 / phases;
             let weight = &weight;
             (0..taps).map(move |tap| start - tap as f64).map(move |u| if u < -reach { 0.0 } else { weight(u) })
         };
         let table = (0..=phases as usize).flat_map(row).collect();
-        Self { reach, phases, taps, table }
+        Self { reach, phases, taps, reached, table }
     }
 
     /// How far from a coordinate pixels are touched, px.
@@ -76,6 +80,11 @@ mod tests {
                 for (pixel, weight) in weights(&density, u) {
                     let expected = profile.density(u - pixel as f64);
                     assert!((weight - expected).abs() < 2e-6, "{profile:?}: density at {}: {weight} {expected}", u - pixel as f64);
+                }
+                // On the table's first phase too, where the most pixels are reached.
+                for u in [u, u.round() + density.reach] {
+                    let beyond = weights(&density, u).split_off(density.reached);
+                    assert!(beyond.iter().all(|(_, weight)| *weight == 0.0), "{profile:?}: at {u} {beyond:?}");
                 }
                 let mut sum = 0.0;
                 for (pixel, weight) in weights(&steps, u + 0.5) {

@@ -103,7 +103,7 @@ impl Strip {
 fn smooth(strip: &mut Strip, pieces: &[Piece], listed: &[u32], sigma: f64, parts: &[Part], rules: &Rules) {
     let bounds = [strip.top as f64, (strip.top + strip.rows as i64 - 1) as f64];
     for &index in listed {
-        each_node(&pieces[index as usize], sigma, bounds, parts, rules, |part, x, y, weight| mark(strip, part, x, y, weight));
+        each_node(&pieces[index as usize], sigma, bounds, parts, rules, |part, x, y, weight| mark(strip, part, [x, y], weight));
     }
 }
 
@@ -152,7 +152,46 @@ fn each_node(piece: &Piece, sigma: f64, bounds: [f64; 2], parts: &[Part], rules:
 
 /// What a point of an outline changes.
 #[inline(always)]
-fn mark(strip: &mut Strip, part: &Part, x: f64, y: f64, weight: f64) {
+fn mark(strip: &mut Strip, part: &Part, at: [f64; 2], weight: f64) {
+    match part.along.taps {
+        4 => mark_taps::<4>(strip, part, at, weight),
+        8 => mark_taps::<8>(strip, part, at, weight),
+        12 => mark_taps::<12>(strip, part, at, weight),
+        16 => mark_taps::<16>(strip, part, at, weight),
+        20 => mark_taps::<20>(strip, part, at, weight),
+        _ => mark_wide(strip, part, at, weight),
+    }
+}
+
+/// As [`mark_wide`], of a kernel of `TAPS` pixels along the row: their weights stay in registers while row after row is changed.
+#[inline(always)]
+fn mark_taps<const TAPS: usize>(strip: &mut Strip, part: &Part, [x, y]: [f64; 2], weight: f64) {
+    let (column, low, high, share) = part.along.around(x + 0.5);
+    if column >= strip.width as i64 {
+        return;
+    }
+    let (Some(low), Some(high)) = (low.first_chunk::<TAPS>(), high.first_chunk::<TAPS>()) else { return };
+    let mut along = [0.0; TAPS];
+    for tap in 0..TAPS {
+        along[tap] = low[tap] + share * (high[tap] - low[tap]);
+    }
+    let (first, low, high, share) = part.down.around(y);
+    let row = first - strip.top;
+    let rows = (-row).max(0) as usize..((strip.rows as i64 - row).max(0) as usize).min(part.down.reached);
+    let mut at = (row + rows.start as i64) as usize * strip.stride + (column + strip.pad as i64).max(0) as usize;
+    for tap in rows {
+        let down = weight * (low[tap] + share * (high[tap] - low[tap]));
+        let Some(differences) = strip.differences[at..].first_chunk_mut::<TAPS>() else { return };
+        for tap in 0..TAPS {
+            differences[tap] -= down * along[tap];
+        }
+        at += strip.stride;
+    }
+}
+
+/// What a point of an outline changes, under a kernel of any width.
+#[inline(always)]
+fn mark_wide(strip: &mut Strip, part: &Part, [x, y]: [f64; 2], weight: f64) {
     let (column, low, high, share) = part.along.around(x + 0.5);
     if column >= strip.width as i64 {
         return;
