@@ -1,5 +1,6 @@
 //! The two kinds of figure: an overview of an image, and panels that zoom in on points.
 
+use calibench_exchange::photo::Levels;
 use calibench_model::{Image, PixelPoint};
 use plotters::style::{BLACK, RGBColor};
 
@@ -70,15 +71,44 @@ pub struct MarkAt {
 }
 
 /// A panel: what it shows, and the marks on it.
-pub struct Panel<'a> {
+pub struct Panel {
     /// Its title.
     pub title: String,
-    /// Its image.
-    pub image: &'a Image<'a>,
-    /// Its middle.
-    pub centre: PixelPoint,
+    /// The part of an image that it shows.
+    pub window: Option<Window>,
     /// Its marks.
     pub marks: Vec<MarkAt>,
+}
+
+/// A square part of an image, cut out: of the image itself nothing has to be kept.
+pub struct Window {
+    /// What of it is inside the image.
+    inside: Image<'static>,
+    /// The first pixel of that, and of the window, in the image.
+    from: [(i64, i64); 2],
+    side: u32,
+}
+
+impl Window {
+    /// The window of `side` px (odd) around a place; `None` around what is no place of an image.
+    pub fn around(image: &Levels, centre: PixelPoint, side: u32) -> Option<Self> {
+        let (column, row) = centre.nearest_pixel()?;
+        let half = i64::from(side / 2);
+        let first = (column.saturating_sub(half), row.saturating_sub(half));
+        let within = |first: i64, size: usize| {
+            let [from, to] = [first, first.saturating_add(i64::from(side))].map(|end| end.clamp(0, size as i64));
+            (from, (to - from) as usize)
+        };
+        let ((left, columns), (top, rows)) = (within(first.0, image.width()), within(first.1, image.height()));
+        let inside = image.part((left as usize, top as usize), (columns, rows));
+        Some(Self { inside, from: [(left, top), first], side })
+    }
+
+    /// Draws it, each pixel `zoom` px wide.
+    fn draw(&self, canvas: &mut Canvas, zoom: u32, at: (u32, u32)) {
+        let [inside, first] = self.from;
+        canvas.enlarge(&self.inside, (first.0 - inside.0, first.1 - inside.1), (self.side, self.side), zoom, at);
+    }
 }
 
 /// Of larger images the upper left part of this size is shown, px.
@@ -125,8 +155,8 @@ pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], la
     canvas
 }
 
-/// Panels side by side, each showing `side` px (odd) enlarged `zoom` times, `across` in a row, with a legend below.
-pub fn panels(panels: &[Panel<'_>], layers: &[Layer], side: u32, zoom: u32, across: usize) -> Canvas {
+/// Panels side by side, each showing a window of `side` px enlarged `zoom` times, `across` in a row, with a legend below.
+pub fn panels(panels: &[Panel], layers: &[Layer], side: u32, zoom: u32, across: usize) -> Canvas {
     let across = across.min(panels.len().max(1));
     let edge = side * zoom;
     let rows = panels.len().div_ceil(across) as u32;
@@ -137,13 +167,12 @@ pub fn panels(panels: &[Panel<'_>], layers: &[Layer], side: u32, zoom: u32, acro
         let x = GAP + (index % across) as u32 * (edge + GAP);
         let y = GAP + (index / across) as u32 * (edge + LINE + GAP);
         canvas.text(&panel.title, 16, (x, y + LINE / 2 - 4));
-        let Some((column, row)) = panel.centre.nearest_pixel() else { continue };
-        let first = (column - i64::from(side / 2), row - i64::from(side / 2));
-        canvas.enlarge(panel.image, first, (side, side), zoom, (x, y + LINE));
+        let Some(window) = &panel.window else { continue };
+        window.draw(&mut canvas, zoom, (x, y + LINE));
         canvas.frame((x, y + LINE), (edge, edge));
         let (left, right) = (f64::from(x), f64::from(x + edge));
         let (top, bottom) = (f64::from(y + LINE), f64::from(y + LINE + edge));
-        let mut marks = drawn(layers, &panel.marks, |at| place(at, first, zoom, (x, y + LINE)));
+        let mut marks = drawn(layers, &panel.marks, |at| place(at, window.from[1], zoom, (x, y + LINE)));
         marks.retain(|(_, (_, _, at))| at.0 >= left && at.0 <= right && at.1 >= top && at.1 <= bottom);
         canvas.marks_of(&marks);
     }

@@ -21,7 +21,7 @@ pub(super) fn pixels(strokes: &[Stroke], size: (u32, u32)) -> Vec<u8> {
 
 fn draw<B: DrawingBackend>(backend: &mut B, stroke: &Stroke) -> Result<(), plotters_backend::DrawingErrorKind<B::ErrorType>> {
     match stroke {
-        Stroke::Pixel(at, colour) => backend.draw_pixel(*at, *colour),
+        Stroke::Dots((x, y), count, colour) => (*x..x + count).try_for_each(|x| backend.draw_pixel((x, *y), *colour)),
         Stroke::Line([from, to], pen) => backend.draw_line(*from, *to, pen),
         Stroke::Rectangle([from, to], pen, fill) => backend.draw_rect(*from, *to, pen, *fill),
         Stroke::Path(path, pen) => backend.draw_path(path.iter().copied(), pen),
@@ -46,14 +46,27 @@ fn write<B: DrawingBackend>(backend: &mut B, text: &Written) -> Result<(), plott
 
 /// Pixels of an image, each of some px of the picture; outside the image hatched white.
 fn enlarged(pixels: &mut [u8], (width, height): (u32, u32), (x, y): (u32, u32), (columns, zoom): (u32, u32), levels: &[Option<u8>]) {
-    let rows = levels.len() as u32 / columns.max(1);
-    for (row, column) in (0..rows * zoom).flat_map(|row| (0..columns * zoom).map(move |column| (row, column))) {
-        if x + column >= width || y + row >= height {
-            continue;
+    let (width, left, zoom) = (width as usize, width.min(x) as usize, zoom as usize);
+    let shown = (columns as usize * zoom).min(width - left);
+    if shown == 0 {
+        return;
+    }
+    // The rows of the picture that show each row of the image.
+    let lines = pixels.chunks_exact_mut(3 * width).take(height as usize).skip(y as usize).enumerate();
+    for ((row, line), levels) in lines.zip(levels.chunks_exact(columns as usize).flat_map(|levels| std::iter::repeat_n(levels, zoom))) {
+        let line = &mut line[3 * left..3 * (left + shown)];
+        for (place, (pixel, level)) in line.chunks_mut(3 * zoom).zip(levels).enumerate() {
+            match level {
+                Some(level) => pixel.fill(*level),
+                None => hatch(pixel, place * zoom + row),
+            }
         }
-        let hatched = if (column + row).is_multiple_of(8) { 200 } else { 255 };
-        let level = levels[(row / zoom * columns + column / zoom) as usize].unwrap_or(hatched);
-        let at = ((y + row) as usize * width as usize + (x + column) as usize) * 3;
-        pixels[at..at + 3].fill(level);
+    }
+}
+
+/// A part of a row, of which `from` is the number of the first diagonal.
+fn hatch(pixels: &mut [u8], from: usize) {
+    for (place, pixel) in pixels.chunks_exact_mut(3).enumerate() {
+        pixel.fill(if (from + place).is_multiple_of(8) { 200 } else { 255 });
     }
 }
