@@ -198,3 +198,37 @@ fn legend(canvas: &mut Canvas, layers: &[Layer], column: u32, top: u32) {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_exchange::photo::read_levels;
+    use calibench_exchange::write_png;
+
+    use super::*;
+
+    fn png(canvas: &Canvas) -> Vec<u8> {
+        let mut png = Vec::new();
+        canvas.encode(&mut png).unwrap();
+        png
+    }
+
+    /// Inside, across each side, and beyond the image.
+    #[test]
+    fn a_window_shows_what_the_whole_image_does() {
+        let image = Image::from_fn(20, 14, |x, y| ((7 * x + 11 * y) % 256) as f32 / 255.0);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("image.png");
+        write_png(&path, &image, false).unwrap();
+        let levels = read_levels(&path).unwrap();
+        for (x, y) in [(9.4, 6.6), (1.0, 1.0), (19.0, 7.0), (8.0, 13.0), (-2.0, 5.0), (40.0, 40.0)] {
+            let (mut cut, mut whole) = (Canvas::new(40, 40), Canvas::new(40, 40));
+            let window = Window::around(&levels, PixelPoint::new(x, y), 7).unwrap();
+            window.draw(&mut cut, 3, (5, 6));
+            let first = (f64::round(x) as i64 - 3, f64::round(y) as i64 - 3);
+            assert_eq!(window.from[1], first);
+            whole.enlarge(&image, first, (7, 7), 3, (5, 6));
+            assert_eq!(png(&cut), png(&whole), "({x}, {y})");
+        }
+        assert!(Window::around(&levels, PixelPoint::new(f64::NAN, 0.0), 7).is_none());
+    }
+}

@@ -70,3 +70,51 @@ fn hatch(pixels: &mut [u8], from: usize) {
         pixel.fill(if (from + place).is_multiple_of(8) { 200 } else { 255 });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use calibench_model::Image;
+    use plotters::prelude::*;
+
+    use crate::Canvas;
+    use crate::canvas::Stroke;
+
+    /// Pixel by pixel, as a picture says what it shows.
+    fn grey(canvas: &Canvas, (x, y): (u32, u32)) -> [u8; 3] {
+        let at = 3 * (y * canvas.width() + x) as usize;
+        super::pixels(canvas.strokes(), (canvas.width(), canvas.height()))[at..at + 3].try_into().unwrap()
+    }
+
+    /// An image of 3 x 2 px from its pixel (-1, 0) on, each 2 px wide, beyond the right and the lower side of the picture.
+    #[test]
+    fn an_enlarged_part_is_hatched_outside_the_image_and_cut_at_the_sides_of_the_picture() {
+        let image = Image::from_fn(3, 2, |x, y| (10 * (1 + x + 3 * y)) as f32 / 255.0);
+        let mut canvas = Canvas::new(9, 7);
+        canvas.enlarge(&image, (-1, 0), (5, 3), 2, (3, 2));
+        for (x, y) in (0..7_u32).flat_map(|y| (0..9_u32).map(move |x| (x, y))) {
+            let expected = match (x.checked_sub(3), y.checked_sub(2)) {
+                (Some(column), Some(row)) if (2..8).contains(&column) && row < 4 => (10 * (column / 2 + 3 * (row / 2))) as u8,
+                (Some(column), Some(row)) if (column + row) % 8 == 0 => 200,
+                _ => 255,
+            };
+            assert_eq!(grey(&canvas, (x, y)), [expected; 3], "({x}, {y})");
+        }
+        canvas.enlarge(&image, (0, 0), (3, 2), 4, (9, 0));
+        canvas.enlarge(&image, (0, 0), (3, 2), 4, (20, 20));
+    }
+
+    /// Dots of one colour side by side are one stroke: a map of colours has as many as its colours change, not as it has pixels.
+    #[test]
+    fn dots_side_by_side_are_one_stroke_and_stay_where_they_are() {
+        let mut canvas = Canvas::new(8, 3);
+        let dots = [((1, 1), RED), ((2, 1), RED), ((3, 1), BLUE), ((4, 1), BLUE), ((6, 1), BLUE), ((7, 2), BLUE)];
+        canvas.paint(|area| dots.iter().for_each(|(at, colour)| area.draw_pixel(*at, colour).unwrap()));
+        let counts: Vec<i32> =
+            canvas.strokes().iter().filter_map(|one| if let Stroke::Dots(_, n, _) = one { Some(*n) } else { None }).collect();
+        assert_eq!(counts, [2, 2, 1, 1]);
+        for at in (0..3).flat_map(|y| (0..8).map(move |x| (x, y))) {
+            let expected = dots.iter().find(|(dot, _)| *dot == at).map_or(WHITE, |(_, colour)| *colour);
+            assert_eq!(grey(&canvas, (at.0 as u32, at.1 as u32)), [expected.0, expected.1, expected.2], "{at:?}");
+        }
+    }
+}
