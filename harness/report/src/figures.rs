@@ -1,5 +1,6 @@
 //! The two kinds of figure: an overview of an image, and panels that zoom in on points.
 
+use calibench_exchange::photo::Levels;
 use calibench_model::{Image, PixelPoint};
 use plotters::style::{BLACK, RGBColor};
 
@@ -70,15 +71,44 @@ pub struct MarkAt {
 }
 
 /// A panel: what it shows, and the marks on it.
-pub struct Panel<'a> {
+pub struct Panel {
     /// Its title.
     pub title: String,
-    /// Its image.
-    pub image: &'a Image<'a>,
-    /// Its middle.
-    pub centre: PixelPoint,
+    /// The part of an image that it shows.
+    pub window: Option<Window>,
     /// Its marks.
     pub marks: Vec<MarkAt>,
+}
+
+/// A square part of an image, cut out: of the image itself nothing has to be kept.
+pub struct Window {
+    /// What of it is inside the image.
+    inside: Image<'static>,
+    /// The first pixel of that, and of the window, in the image.
+    from: [(i64, i64); 2],
+    side: u32,
+}
+
+impl Window {
+    /// The window of `side` px (odd) around a place; `None` around what is no place of an image.
+    pub fn around(image: &Levels, centre: PixelPoint, side: u32) -> Option<Self> {
+        let (column, row) = centre.nearest_pixel()?;
+        let half = i64::from(side / 2);
+        let first = (column.saturating_sub(half), row.saturating_sub(half));
+        let within = |first: i64, size: usize| {
+            let [from, to] = [first, first.saturating_add(i64::from(side))].map(|end| end.clamp(0, size as i64));
+            (from, (to - from) as usize)
+        };
+        let ((left, columns), (top, rows)) = (within(first.0, image.width()), within(first.1, image.height()));
+        let inside = image.part((left as usize, top as usize), (columns, rows));
+        Some(Self { inside, from: [(left, top), first], side })
+    }
+
+    /// Draws it, each pixel `zoom` px wide.
+    fn draw(&self, canvas: &mut Canvas, zoom: u32, at: (u32, u32)) {
+        let [inside, first] = self.from;
+        canvas.enlarge(&self.inside, (first.0 - inside.0, first.1 - inside.1), (self.side, self.side), zoom, at);
+    }
 }
 
 /// Of larger images the upper left part of this size is shown, px.
@@ -125,8 +155,8 @@ pub fn overview(image: &Image, zoom: u32, layers: &[Layer], marks: &[MarkAt], la
     canvas
 }
 
-/// Panels side by side, each showing `side` px (odd) enlarged `zoom` times, `across` in a row, with a legend below.
-pub fn panels(panels: &[Panel<'_>], layers: &[Layer], side: u32, zoom: u32, across: usize) -> Canvas {
+/// Panels side by side, each showing a window of `side` px enlarged `zoom` times, `across` in a row, with a legend below.
+pub fn panels(panels: &[Panel], layers: &[Layer], side: u32, zoom: u32, across: usize) -> Canvas {
     let across = across.min(panels.len().max(1));
     let edge = side * zoom;
     let rows = panels.len().div_ceil(across) as u32;
@@ -137,13 +167,12 @@ pub fn panels(panels: &[Panel<'_>], layers: &[Layer], side: u32, zoom: u32, acro
         let x = GAP + (index % across) as u32 * (edge + GAP);
         let y = GAP + (index / across) as u32 * (edge + LINE + GAP);
         canvas.text(&panel.title, 16, (x, y + LINE / 2 - 4));
-        let Some((column, row)) = panel.centre.nearest_pixel() else { continue };
-        let first = (column - i64::from(side / 2), row - i64::from(side / 2));
-        canvas.enlarge(panel.image, first, (side, side), zoom, (x, y + LINE));
+        let Some(window) = &panel.window else { continue };
+        window.draw(&mut canvas, zoom, (x, y + LINE));
         canvas.frame((x, y + LINE), (edge, edge));
         let (left, right) = (f64::from(x), f64::from(x + edge));
         let (top, bottom) = (f64::from(y + LINE), f64::from(y + LINE + edge));
-        let mut marks = drawn(layers, &panel.marks, |at| place(at, first, zoom, (x, y + LINE)));
+        let mut marks = drawn(layers, &panel.marks, |at| place(at, window.from[1], zoom, (x, y + LINE)));
         marks.retain(|(_, (_, _, at))| at.0 >= left && at.0 <= right && at.1 >= top && at.1 <= bottom);
         canvas.marks_of(&marks);
     }
@@ -167,5 +196,39 @@ fn legend(canvas: &mut Canvas, layers: &[Layer], column: u32, top: u32) {
             canvas.marks(&[(layer.mark, layer.colour, (f64::from(x) + 14.0, f64::from(y)))]);
             canvas.text(&layer.name, 16, (x + 36, y));
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use calibench_exchange::photo::read_levels;
+    use calibench_exchange::write_png;
+
+    use super::*;
+
+    fn png(canvas: &Canvas) -> Vec<u8> {
+        let mut png = Vec::new();
+        canvas.encode(&mut png).unwrap();
+        png
+    }
+
+    /// Inside, across each side, and beyond the image.
+    #[test]
+    fn a_window_shows_what_the_whole_image_does() {
+        let image = Image::from_fn(20, 14, |x, y| ((7 * x + 11 * y) % 256) as f32 / 255.0);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("image.png");
+        write_png(&path, &image, false).unwrap();
+        let levels = read_levels(&path).unwrap();
+        for (x, y) in [(9.4, 6.6), (1.0, 1.0), (19.0, 7.0), (8.0, 13.0), (-2.0, 5.0), (40.0, 40.0)] {
+            let (mut cut, mut whole) = (Canvas::new(40, 40), Canvas::new(40, 40));
+            let window = Window::around(&levels, PixelPoint::new(x, y), 7).unwrap();
+            window.draw(&mut cut, 3, (5, 6));
+            let first = (f64::round(x) as i64 - 3, f64::round(y) as i64 - 3);
+            assert_eq!(window.from[1], first);
+            whole.enlarge(&image, first, (7, 7), 3, (5, 6));
+            assert_eq!(png(&cut), png(&whole), "({x}, {y})");
+        }
+        assert!(Window::around(&levels, PixelPoint::new(f64::NAN, 0.0), 7).is_none());
     }
 }

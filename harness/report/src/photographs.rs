@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use calibench_model::{Image, PixelPoint, escape};
+use calibench_exchange::photo::Levels;
+use calibench_model::{PixelPoint, escape};
 use calibench_records::description::{Subject, looks};
 use calibench_records::judgement::Summary;
 use calibench_records::stored::read_judgement;
 
 use super::canvas::Canvas;
-use super::figures::{Layer, MarkAt, Panel, panels};
+use super::figures::{Layer, MarkAt, Panel, Window, panels};
 use super::load::Loaded;
 use super::markdown::{MarkdownTable, fixed};
 use super::scores_section::reasons;
@@ -42,6 +43,8 @@ impl Compared {
 
 /// How many points a picture shows of each operator, and how many an operator's refusals are shown by.
 const SHOWN: usize = 5;
+/// Columns and rows of a panel, px of the photograph.
+const SIDE: u32 = 31;
 
 /// A point to be shown: whose, and what is said of it.
 struct Chosen<'a> {
@@ -98,7 +101,7 @@ pub fn section(loaded: &Loaded) -> Said {
     ] {
         if let Some(picture) = picture(loaded, &chosen, &operators) {
             text.push_str(&format!(
-                "### {heading}\n\n{about} The middle is the median of x and of y over all operators. 31 x 31 px, enlarged 8 times; the title gives operator, \
+                "### {heading}\n\n{about} The middle is the median of x and of y over all operators. {SIDE} x {SIDE} px, enlarged 8 times; the title gives operator, \
                  photograph, corner and distance. Distances below a tenth of a pixel cannot be seen here; the table above has them.\n\n![{heading}]({name}.png)\n\n"
             ));
             pictures.push((format!("{name}.png"), picture));
@@ -226,15 +229,21 @@ fn picture(loaded: &Loaded, chosen: &[Chosen<'_>], operators: &[usize]) -> Optio
     let mut layers = vec![Layer::start()];
     layers.extend(Layer::methods(available.iter().map(|&m| &*loaded.head.methods[m].label)));
     let start = loaded.method("pixel");
-    let views: BTreeSet<&str> = chosen.iter().map(|chosen| &*chosen.point.key.0).collect();
-    let images: BTreeMap<&str, Image<'static>> = views.into_iter().filter_map(|view| Some((view, loaded.image(view)?))).collect();
-    let panel = |Chosen { point, title }: &Chosen<'_>| {
+    let panel = |Chosen { point, title }: &Chosen<'_>, image: &Levels| {
         let started = start.and_then(|m| point.positions[m]);
         let mut marks: Vec<MarkAt> = started.map(|at| MarkAt { layer: 0, at }).into_iter().collect();
         marks.extend(available.iter().enumerate().filter_map(|(i, &m)| Some(MarkAt { layer: i + 1, at: point.positions[m]? })));
         let centre = started.or_else(|| point.positions.iter().copied().flatten().next())?;
-        Some(Panel { title: title.clone(), image: images.get(&*point.key.0)?, centre, marks })
+        Some(Panel { title: title.clone(), window: Window::around(image, centre, SIDE), marks })
     };
-    let found: Vec<Panel<'_>> = chosen.iter().filter_map(panel).collect();
-    (!found.is_empty()).then(|| panels(&found, &layers, 31, 8, SHOWN))
+    // One photograph at a time: there may be many, and of each a few pixels are shown.
+    let views: BTreeSet<&str> = chosen.iter().map(|chosen| &*chosen.point.key.0).collect();
+    let mut found: BTreeMap<usize, Panel> = BTreeMap::new();
+    for view in views {
+        let Some(image) = loaded.levels(view) else { continue };
+        let of_view = chosen.iter().enumerate().filter(|(_, chosen)| *chosen.point.key.0 == *view);
+        found.extend(of_view.filter_map(|(place, chosen)| Some((place, panel(chosen, &image)?))));
+    }
+    let found: Vec<Panel> = found.into_values().collect();
+    (!found.is_empty()).then(|| panels(&found, &layers, SIDE, 8, SHOWN))
 }

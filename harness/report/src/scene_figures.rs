@@ -7,7 +7,7 @@ use calibench_records::description::Subject;
 use calibench_records::results::{MethodInfo, Outcome};
 
 use super::canvas::Canvas;
-use super::figures::{Layer, MarkAt, Panel, overview, panels};
+use super::figures::{Layer, MarkAt, Panel, Window, overview, panels};
 use super::load::Loaded;
 
 /// More targets than this are not all labelled.
@@ -38,7 +38,10 @@ pub fn preview(image: &Image, targets: &[(String, PixelPoint)]) -> Canvas {
     let marks: Vec<MarkAt> = targets.iter().map(|(_, at)| MarkAt { layer: 0, at: *at }).collect();
     let mark = if targets.len() > CROWD { Layer::truth_of_a_crowd() } else { Layer::truth() };
     let layer = Layer { name: "target".into(), ..mark };
-    whole(image, &[layer], &marks, &labelled(targets))
+    match factor(image.width(), image.height()) {
+        1 => whole(image, 1, &[layer], &marks, &labelled(targets)),
+        factor => whole(&image.reduced(factor), factor, &[layer], &marks, &labelled(targets)),
+    }
 }
 
 /// The targets that are labelled. Many labels would hide each other: the first and the last say which way the names run.
@@ -60,7 +63,7 @@ pub struct SceneFigures {
 /// The pictures, or `None` where no image was kept or nothing was measured.
 pub fn figures(loaded: &Loaded) -> Option<SceneFigures> {
     let first = loaded.first.points.first()?;
-    let image = loaded.image(&first.view)?;
+    let image = loaded.levels(&first.view)?;
     let targets = targets(loaded, &first.view);
     let (layers, layer_of) = layers(loaded);
     let mut marks = Vec::new();
@@ -77,7 +80,8 @@ pub fn figures(loaded: &Loaded) -> Option<SceneFigures> {
     let of_all = if targets.len() > CROWD { vec![Layer::truth_of_a_crowd()] } else { layers[..OVERVIEW.min(layers.len())].to_vec() };
     let shown = of_all.len();
     let few: Vec<MarkAt> = marks.iter().filter(|(_, mark)| mark.layer < shown).map(|(_, mark)| mark.clone()).collect();
-    let overview = whole(&image, &of_all, &few, &labelled(&targets));
+    let factor = factor(image.width(), image.height());
+    let overview = whole(&image.reduced(factor), factor, &of_all, &few, &labelled(&targets));
     let kinds = kinds(loaded);
     let chosen = chosen(&targets, &kinds);
     let side = window(&targets, &chosen, &kinds);
@@ -88,11 +92,10 @@ pub fn figures(loaded: &Loaded) -> Option<SceneFigures> {
     };
     let panel = |(target, truth): &&(String, PixelPoint)| Panel {
         title: title(target, truth),
-        image: &image,
-        centre: *truth,
+        window: Window::around(&image, *truth, side),
         marks: marks.iter().filter(|(id, _)| id == target).map(|(_, mark)| mark.clone()).collect(),
     };
-    let close: Vec<Panel<'_>> = chosen.iter().map(panel).collect();
+    let close: Vec<Panel> = chosen.iter().map(panel).collect();
     let zoom = (PANEL / side).max(1);
     let which = match (several, close.len() < targets.len()) {
         (true, true) => "a target of each kind",
@@ -142,15 +145,19 @@ fn window(targets: &[(String, PixelPoint)], chosen: &[&(String, PixelPoint)], ki
     (widest.clamp(WINDOW[0], WINDOW[1]) / 2.0).floor() as u32 * 2 + 1
 }
 
-/// The overview; a large image is reduced by whole pixels, and everything on it.
-fn whole(image: &Image, layers: &[Layer], marks: &[MarkAt], labels: &[(String, PixelPoint)]) -> Canvas {
-    let factor = image.width().max(image.height()).div_ceil(LARGE);
+/// How many times an overview is smaller than an image of this size.
+fn factor(width: usize, height: usize) -> usize {
+    width.max(height).div_ceil(LARGE).max(1)
+}
+
+/// The overview of an image that was reduced `factor` times; everything on it is reduced as well.
+fn whole(image: &Image, factor: usize, layers: &[Layer], marks: &[MarkAt], labels: &[(String, PixelPoint)]) -> Canvas {
     if factor == 1 {
         return overview(image, zoom_for(image), layers, marks, labels);
     }
     let marks: Vec<MarkAt> = marks.iter().map(|mark| MarkAt { at: smaller(mark.at, factor), ..mark.clone() }).collect();
     let labels: Vec<(String, PixelPoint)> = labels.iter().map(|(text, place)| (text.clone(), smaller(*place, factor))).collect();
-    overview(&image.reduced(factor), 1, layers, &marks, &labels)
+    overview(image, 1, layers, &marks, &labels)
 }
 
 /// A place in the image that is `factor` times smaller.

@@ -1,24 +1,34 @@
 //! Decoded pixels to grey values. On the thread that decodes: one that waited for others here might begin with the next photograph, and wait for the memory
 //! that this one holds.
 
+use std::ops::Range;
+
 use calibench_model::Image;
 use image::DynamicImage;
 
 /// The grey values of a decoded image, fractions of full scale; colour becomes luma, transparency is ignored.
 pub(super) fn of(decoded: &DynamicImage) -> Image<'static> {
-    let (width, height) = (decoded.width() as usize, decoded.height() as usize);
+    of_rows(decoded, 0..decoded.height() as usize)
+}
+
+/// As [`of`], of some rows.
+pub(super) fn of_rows(decoded: &DynamicImage, rows: Range<usize>) -> Image<'static> {
+    let width = decoded.width() as usize;
+    let part = |channels: usize| rows.start * width * channels..rows.end * width * channels;
     let grey = match decoded {
-        DynamicImage::ImageLuma8(i) => by_table::<1>(i),
-        DynamicImage::ImageLumaA8(i) => by_table::<2>(i),
-        DynamicImage::ImageRgb8(i) => grey_of::<u8, 3>(i, 255.0),
-        DynamicImage::ImageRgba8(i) => grey_of::<u8, 4>(i, 255.0),
-        DynamicImage::ImageLuma16(i) => grey_of::<u16, 1>(i, 65535.0),
-        DynamicImage::ImageLumaA16(i) => grey_of::<u16, 2>(i, 65535.0),
-        DynamicImage::ImageRgb16(i) => grey_of::<u16, 3>(i, 65535.0),
-        DynamicImage::ImageRgba16(i) => grey_of::<u16, 4>(i, 65535.0),
-        other => grey_of::<f32, 3>(&other.to_rgb32f(), 1.0),
+        DynamicImage::ImageLuma8(i) => by_table::<1>(&i.as_raw()[part(1)]),
+        DynamicImage::ImageLumaA8(i) => by_table::<2>(&i.as_raw()[part(2)]),
+        DynamicImage::ImageRgb8(i) => grey_of::<u8, 3>(&i.as_raw()[part(3)], 255.0),
+        DynamicImage::ImageRgba8(i) => grey_of::<u8, 4>(&i.as_raw()[part(4)], 255.0),
+        DynamicImage::ImageLuma16(i) => grey_of::<u16, 1>(&i.as_raw()[part(1)], 65535.0),
+        DynamicImage::ImageLumaA16(i) => grey_of::<u16, 2>(&i.as_raw()[part(2)], 65535.0),
+        DynamicImage::ImageRgb16(i) => grey_of::<u16, 3>(&i.as_raw()[part(3)], 65535.0),
+        DynamicImage::ImageRgba16(i) => grey_of::<u16, 4>(&i.as_raw()[part(4)], 65535.0),
+        DynamicImage::ImageRgb32F(i) => grey_of::<f32, 3>(&i.as_raw()[part(3)], 1.0),
+        DynamicImage::ImageRgba32F(i) => grey_of::<f32, 4>(&i.as_raw()[part(4)], 1.0),
+        other => grey_of::<f32, 3>(&other.to_rgb32f().as_raw()[part(3)], 1.0),
     };
-    Image::new(width, height, grey)
+    Image::new(width, rows.len(), grey)
 }
 
 /// The grey values of `width` x `height` 8-bit levels, row by row; `None` if there are not so many.

@@ -3,6 +3,7 @@
 mod budget;
 pub mod grey;
 mod jpeg;
+mod levels;
 mod turn;
 
 use std::fs::File;
@@ -19,6 +20,7 @@ use tiff::encoder::{TiffEncoder, colortype};
 use crate::atomic::write_atomically;
 
 pub use budget::MOST_BYTES;
+pub use levels::{Levels, read_levels};
 pub use turn::Turn;
 
 /// Bytes of a file in which its orientation usually stands.
@@ -170,6 +172,14 @@ pub fn parse_photo(path: &Path, bytes: &[u8]) -> Result<Photo, PhotoError> {
 }
 
 fn decode(path: &Path, input: &mut dyn Input) -> Result<Photo, PhotoError> {
+    let (image, turn, _share) = decoded(path, input)?;
+    let image = grey::of(&image);
+    let image = if let Some(turn) = turn { turn.apply(&image) } else { image };
+    Ok(Photo { image, turn })
+}
+
+/// The pixels as they stand in the file, how they are to be turned, and the part of the memory that they may take.
+fn decoded(path: &Path, input: &mut dyn Input) -> Result<(DynamicImage, Option<Turn>, budget::Share), PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
     let content = |source| PhotoError::Content { path: path.to_owned(), source };
     let format = reader(input).map_err(in_file)?.format();
@@ -182,12 +192,10 @@ fn decode(path: &Path, input: &mut dyn Input) -> Result<Photo, PhotoError> {
     let mut decoder = reader.into_decoder().map_err(content)?;
     let (width, height) = decoder.dimensions();
     let bytes = budget::needed(&decoder);
-    let _share = budget::share(bytes).ok_or_else(|| PhotoError::TooLarge { path: path.to_owned(), width, height, bytes })?;
+    let share = budget::share(bytes).ok_or_else(|| PhotoError::TooLarge { path: path.to_owned(), width, height, bytes })?;
     decoder.set_limits(budget::limits(bytes)).map_err(content)?;
     let turn = Turn::of(decoder.orientation().map_err(content)?);
-    let image = grey::of(&DynamicImage::from_decoder(decoder).map_err(content)?);
-    let image = if let Some(turn) = turn { turn.apply(&image) } else { image };
-    Ok(Photo { image, turn })
+    Ok((DynamicImage::from_decoder(decoder).map_err(content)?, turn, share))
 }
 
 /// Writes an image as PNG file: [`encode_png`].

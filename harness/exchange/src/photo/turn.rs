@@ -3,6 +3,7 @@
 use std::fmt;
 
 use calibench_model::Image;
+use image::DynamicImage;
 use image::metadata::Orientation;
 
 /// How pixels are turned so that a photograph stands upright; never "not at all".
@@ -23,6 +24,11 @@ impl Turn {
     /// Whether columns become rows.
     pub(super) const fn is_on_its_side(self) -> bool {
         matches!(self.0, Orientation::Rotate90FlipH | Orientation::Rotate90 | Orientation::Rotate270FlipH | Orientation::Rotate270)
+    }
+
+    /// The pixels of a file turned to be upright.
+    pub(super) fn apply_to_levels(self, image: &mut DynamicImage) {
+        image.apply_orientation(self.0);
     }
 
     /// The image turned: of the file's pixels the image as it is meant to be seen.

@@ -6,7 +6,7 @@ use std::path::Path;
 use calibench_records::results::{LOST, Outcome, Trial};
 
 use crate::LoadError;
-use crate::sweep::{LoadedSweep, load_with};
+use crate::sweep::{Gather, LoadedSweep, load_with};
 
 /// The mean squared error of the points of one trial, px^2, with every lost or rejected point as one of [`LOST`] px; by trial.
 pub type Losses = BTreeMap<u64, f64>;
@@ -27,6 +27,19 @@ struct Cell {
     wrong: BTreeMap<String, u64>,
 }
 
+impl Gather for Cell {
+    fn add(&mut self, trial: &Trial, methods: &[String]) {
+        for (method, loss) in losses(trial) {
+            if let Some(name) = methods.get(method) {
+                self.losses.entry(name.clone()).or_default().insert(trial.number, loss);
+            }
+        }
+        for name in trial.points.iter().filter(|point| is_wrong(&point.outcome)).filter_map(|point| methods.get(point.method)) {
+            *self.wrong.entry(name.clone()).or_default() += 1;
+        }
+    }
+}
+
 /// A measured point further off is wrong without a word, px: beyond any noise of the atlas, and near enough that nobody notices.
 pub const WRONG: f64 = 0.25;
 
@@ -36,17 +49,7 @@ impl Part {
     /// # Errors
     /// Records that are not whole or not of this version.
     pub fn load(records: &Path, name: &str) -> Result<Option<Self>, LoadError> {
-        let loaded = load_with(records, name, |trial, names, cell: &mut Cell| {
-            for (method, loss) in losses(trial) {
-                if let Some(name) = names.get(method) {
-                    cell.losses.entry(name.clone()).or_default().insert(trial.number, loss);
-                }
-            }
-            for name in trial.points.iter().filter(|point| is_wrong(&point.outcome)).filter_map(|point| names.get(point.method)) {
-                *cell.wrong.entry(name.clone()).or_default() += 1;
-            }
-        })?;
-        Ok(loaded.map(|(sweep, cells)| Self { sweep, cells }))
+        Ok(load_with(records, name)?.map(|(sweep, cells)| Self { sweep, cells }))
     }
 
     /// How many points of a cell method `method` measured wrong, by more than `is_wrong` allows.

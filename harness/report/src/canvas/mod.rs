@@ -87,12 +87,13 @@ impl Canvas {
 
     /// Puts the part of `image` of `columns` x `rows` px from pixel (`left`, `top`) at (`x`, `y`), each pixel `zoom` px wide. Outside the image: hatched white.
     pub fn enlarge(&mut self, image: &Image, (left, top): (i64, i64), (columns, rows): (u32, u32), zoom: u32, at: (u32, u32)) {
-        let place = |k: u32| (left + i64::from(k % columns), top + i64::from(k / columns));
         // What is not negative is rounded by cutting: the sum is exact.
         let level = |(x, y): (i64, i64)| {
             image.holds(x, y, 0).then(|| (f64::from(image.at(x as usize, y as usize).clamp(0.0, 1.0) * 255.0) + 0.5) as u8)
         };
-        let levels = (0..columns * rows).map(|k| level(place(k))).collect();
+        let row = |y: i64| (left..left + i64::from(columns)).map(move |x| (x, y));
+        let mut levels = Vec::with_capacity(columns as usize * rows as usize);
+        (top..top + i64::from(rows)).for_each(|y| levels.extend(row(y).map(level)));
         self.strokes.push(Stroke::Pixels { at, columns, zoom, levels });
     }
 

@@ -51,7 +51,8 @@ pub(crate) struct Written {
 /// Something that was drawn; places are px of the picture.
 #[derive(Clone)]
 pub(crate) enum Stroke {
-    Pixel(BackendCoord, BackendColor),
+    /// Single pixels of one colour side by side: where the first is, and how many.
+    Dots(BackendCoord, i32, BackendColor),
     Line([BackendCoord; 2], Pen),
     Rectangle([BackendCoord; 2], Pen, bool),
     Path(Vec<BackendCoord>, Pen),
@@ -87,6 +88,10 @@ impl<'a> Recorder<'a> {
     }
 }
 
+fn is_same(a: BackendColor, b: BackendColor) -> bool {
+    a.rgb == b.rgb && a.alpha == b.alpha
+}
+
 type Kept = Result<(), DrawingErrorKind<Infallible>>;
 
 impl DrawingBackend for Recorder<'_> {
@@ -105,7 +110,14 @@ impl DrawingBackend for Recorder<'_> {
     }
 
     fn draw_pixel(&mut self, point: BackendCoord, color: BackendColor) -> Kept {
-        self.keep(Stroke::Pixel(point, color));
+        if let Some(Stroke::Dots((x, y), count, colour)) = self.strokes.last_mut()
+            && (*x + *count, *y) == point
+            && is_same(*colour, color)
+        {
+            *count += 1;
+        } else {
+            self.keep(Stroke::Dots(point, 1, color));
+        }
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use calibench_records::statistics::running::Running;
 use super::offsets::Offsets;
 use crate::LoadError;
 use crate::load::adjustments::Summaries;
-use crate::sweep::{LoadedSweep, load_with};
+use crate::sweep::{Gather, LoadedSweep, load_with};
 
 /// A sweep over boards, and perhaps one more key, with detectors among its methods.
 pub struct Detectors {
@@ -33,6 +33,16 @@ pub struct Found {
     pub errors: [Offsets; 2],
     /// Squared bounds of those in view that have one, px^2.
     pub bounds: Running,
+}
+
+impl Gather for BTreeMap<String, Found> {
+    fn add(&mut self, trial: &Trial, methods: &[String]) {
+        for point in &trial.points {
+            if let Some(name) = methods.get(point.method) {
+                self.entry(name.clone()).or_default().add(&point.outcome, point.bound);
+            }
+        }
+    }
 }
 
 impl Found {
@@ -89,14 +99,7 @@ impl Detectors {
     /// # Errors
     /// Records that are not whole or not of this version.
     pub fn load(records: &Path, name: &str, counts: Vec<Option<Summaries>>) -> Result<Option<Self>, LoadError> {
-        let watch = |trial: &Trial, names: &[String], cell: &mut BTreeMap<String, Found>| {
-            for point in &trial.points {
-                if let Some(name) = names.get(point.method) {
-                    cell.entry(name.clone()).or_default().add(&point.outcome, point.bound);
-                }
-            }
-        };
-        Ok(load_with(records, name, watch)?.map(|(sweep, cells)| Self { sweep, cells, counts }))
+        Ok(load_with(records, name)?.map(|(sweep, cells)| Self { sweep, cells, counts }))
     }
 
     /// The words of the boards.

@@ -42,18 +42,18 @@ pub(super) fn part(at: (u32, u32), (columns, zoom): (u32, u32), levels: &[Option
     Embedded { at: (at.0 as i32, at.1 as i32), size: (columns * zoom, rows * zoom), url }
 }
 
-/// Single pixels, transparent between them.
-pub(super) fn dots(dots: impl Iterator<Item = (BackendCoord, BackendColor)> + Clone) -> Embedded {
-    let ends = |of: fn(&BackendCoord) -> i32| {
-        let along = dots.clone().map(move |(at, _)| of(&at));
-        (along.clone().min().unwrap_or(0), along.max().unwrap_or(0))
-    };
-    let ((left, right), (top, bottom)) = (ends(|at| at.0), ends(|at| at.1));
+/// Single pixels, transparent between them: the first of some side by side, how many they are, and their colour.
+pub(super) fn dots(dots: impl Iterator<Item = (BackendCoord, i32, BackendColor)> + Clone) -> Embedded {
+    let left = dots.clone().map(|((x, _), ..)| x).min().unwrap_or(0);
+    let right = dots.clone().map(|((x, _), count, _)| x + count - 1).max().unwrap_or(0);
+    let rows = dots.clone().map(|((_, y), ..)| y);
+    let (top, bottom) = (rows.clone().min().unwrap_or(0), rows.max().unwrap_or(0));
     let (width, height) = ((right - left + 1) as usize, (bottom - top + 1) as usize);
     let mut pixels = vec![0; 4 * width * height];
-    for ((x, y), BackendColor { alpha, rgb: (r, g, b) }) in dots {
-        let place = 4 * ((y - top) as usize * width + (x - left) as usize);
-        pixels[place..place + 4].copy_from_slice(&[r, g, b, (255.0 * alpha).round() as u8]);
+    for ((x, y), count, BackendColor { alpha, rgb: (r, g, b) }) in dots {
+        let place = (y - top) as usize * width + (x - left) as usize;
+        let pixel = [r, g, b, (255.0 * alpha).round() as u8];
+        pixels.as_chunks_mut().0[place..place + count as usize].fill(pixel);
     }
     let size = (width as u32, height as u32);
     Embedded { at: (left, top), size, url: png(&pixels, size, ExtendedColorType::Rgba8) }
@@ -112,11 +112,11 @@ mod tests {
     #[test]
     fn single_pixels_stand_where_they_were_drawn() {
         let red = BackendColor { alpha: 1.0, rgb: (255, 0, 0) };
-        let found = dots([((10, 20), red), ((12, 21), red)].into_iter());
+        let found = dots([((10, 20), 1, red), ((11, 21), 2, red)].into_iter());
         assert_eq!((found.at, found.size), ((10, 20), (3, 2)));
         let image = decoded(&found.url).to_rgba8();
         let drawn: Vec<(u32, u32)> =
             image.enumerate_pixels().filter(|(.., pixel)| pixel.0 == [255, 0, 0, 255]).map(|(x, y, _)| (x, y)).collect();
-        assert_eq!(drawn, [(0, 0), (2, 1)]);
+        assert_eq!(drawn, [(0, 0), (1, 1), (2, 1)]);
     }
 }

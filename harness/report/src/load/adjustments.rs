@@ -46,7 +46,7 @@ pub struct Summaries {
     pub trials: u64,
     /// Every figure.
     pub figures: BTreeMap<FigureKey, Summary>,
-    /// Residuals of the first trial in the order of the file: method, image, point, axis, px.
+    /// Residuals of the first trial in the order of the file: method, image, point, axis, px. Of a cell of a sweep they are not kept: there are many cells.
     pub residuals: Vec<(String, String, f64)>,
     /// The set of each residual.
     pub sets_of_residuals: Vec<String>,
@@ -59,18 +59,29 @@ pub struct Summaries {
 /// # Errors
 /// A file that is not whole or not of this version.
 pub fn load(folder: &Path) -> Result<Option<Summaries>, LoadError> {
-    load_with(folder, |_| ())
+    read(folder, Reader { keeps_residuals: true, ..Reader::default() }, |_| ())
 }
 
-/// As [`load`]; `watch` is shown every row.
+/// Reads the adjustments in the folder of a cell of a sweep, without their residuals; `None` if it has none.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with(folder: &Path, mut watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
+pub fn load_cell(folder: &Path) -> Result<Option<Summaries>, LoadError> {
+    load_cell_with(folder, |_| ())
+}
+
+/// As [`load_cell`]; `watch` is shown every row.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_cell_with(folder: &Path, watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
+    read(folder, Reader::default(), watch)
+}
+
+fn read(folder: &Path, mut reader: Reader, mut watch: impl FnMut(&Row)) -> Result<Option<Summaries>, LoadError> {
     if !Table::Adjustments.is_in(folder)? {
         return Ok(None);
     }
-    let mut reader = Reader::default();
     read_adjustments(folder, |row| {
         watch(&row);
         reader.add(row);
@@ -94,6 +105,7 @@ type Key = (Arc<str>, Arc<str>, Group, Arc<str>);
 #[derive(Default)]
 struct Reader {
     found: Summaries,
+    keeps_residuals: bool,
     trial: Option<u64>,
     /// In the order in which they came.
     figures: Vec<Kept>,
@@ -118,6 +130,7 @@ impl Reader {
         let text = |name: &Arc<str>| name.to_string();
         match row.figure {
             Err(why) => self.found.failed.entry((text(&row.method), text(&row.set), row.group)).or_insert((0, why)).0 += 1,
+            Ok(_) if row.group == Group::Point && !self.keeps_residuals => {}
             Ok(numbers) if row.group == Group::Point => {
                 self.found.residuals.push((text(&row.method), text(&row.name), numbers.value));
                 self.found.sets_of_residuals.push(text(&row.set));
@@ -223,6 +236,19 @@ impl Summaries {
 mod tests {
     use super::*;
 
+    /// A residual is kept where it is asked for, and is no figure in either case.
+    #[test]
+    fn a_cell_has_no_residuals() {
+        for keeps_residuals in [false, true] {
+            let mut reader = Reader { keeps_residuals, ..Reader::default() };
+            reader.add(row(0, "good", "c", Ok((3.0, 1.0, 1.0))));
+            reader.add(Row { group: Group::Point, ..row(0, "good", "6/left/3/x", Ok((0.5, 0.0, 0.0))) });
+            let found = reader.found();
+            let kept = usize::from(keeps_residuals);
+            assert_eq!((found.figures.len(), found.residuals.len(), found.sets_of_residuals.len()), (1, kept, kept));
+        }
+    }
+
     fn row(trial: u64, method: &str, name: &str, figure: Result<(f64, f64, f64), &str>) -> Row {
         let figure = figure.map(|(value, sigma, error)| Numbers { value, sigma: Some(sigma), error: Some(error) }).map_err(str::to_owned);
         Row { trial, method: method.into(), set: "c,b1".into(), group: Group::Iop, name: name.into(), figure, seed: 7 }
@@ -235,7 +261,7 @@ mod tests {
     /// The reference has no sigma in the second trial, no value in the third, and failed in the fourth.
     #[test]
     fn ratios_leave_out_trials_whose_reference_is_nothing() {
-        let mut reader = Reader::default();
+        let mut reader = Reader { keeps_residuals: true, ..Reader::default() };
         let reference = [Ok((2.0, 0.5, 1.0)), Ok((4.0, 0.0, -2.0)), Ok((0.0, 0.25, 2.0)), Err("no convergence")];
         let own = [(3.0, 1.5, 3.0), (2.0, 7.0, 1.0), (5.0, 0.75, -1.0), (9.0, 9.0, 9.0)];
         for ((trial, reference), own) in (0..).zip(reference).zip(own) {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibench_exchange::read_photo;
+use calibench_exchange::photo::{Levels, read_levels, read_photo};
 use calibench_model::Image;
 use calibench_records::description::Description;
 use calibench_records::names::{SCENARIO, kept_image};
@@ -79,7 +79,12 @@ pub fn recorded(records: &Path) -> Vec<String> {
 }
 
 impl Loaded {
-    /// The image of view `view` in the first trial, if it was kept.
+    /// The image of view `view` in the first trial, if it was kept, in the memory that it takes as a file of whole numbers.
+    pub fn levels(&self, view: &str) -> Option<Levels> {
+        read_levels(&kept_image(&self.folder, view)).ok()
+    }
+
+    /// As [`Self::levels`], as grey values.
     pub fn image(&self, view: &str) -> Option<Image<'static>> {
         Some(read_photo(&kept_image(&self.folder, view)).ok()?.image)
     }

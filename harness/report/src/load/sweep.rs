@@ -57,23 +57,32 @@ pub struct LoadedCell {
 /// # Errors
 /// Records that are not whole or not of this version.
 pub fn load(records: &Path, name: &str) -> Result<Option<LoadedSweep>, LoadError> {
-    Ok(load_with(records, name, |_, _, (): &mut ()| ())?.map(|(loaded, _)| loaded))
+    Ok(load_with::<()>(records, name)?.map(|(loaded, _)| loaded))
 }
 
-/// As [`load`], with what `watch` gathers in each cell: it is shown every trial of the cell, and the names of the methods that its points index.
+/// What is gathered in a cell, beside its figures.
+pub trait Gather: Default + Send {
+    /// Adds a trial, whose points index the names of the methods.
+    fn add(&mut self, trial: &Trial, methods: &[String]);
+
+    /// After the last trial: what was needed on the way alone goes, since all cells are kept.
+    fn end(&mut self) {}
+}
+
+impl Gather for () {
+    fn add(&mut self, _: &Trial, _: &[String]) {}
+}
+
+/// As [`load`], with what is gathered in each cell.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_with<T: Default + Send>(
-    records: &Path,
-    name: &str,
-    watch: impl Fn(&Trial, &[String], &mut T) + Sync,
-) -> Result<Option<(LoadedSweep, Vec<T>)>, LoadError> {
+pub fn load_with<T: Gather>(records: &Path, name: &str) -> Result<Option<(LoadedSweep, Vec<T>)>, LoadError> {
     let folder = records.join(name);
     let Some(mut scenario) = description(&folder, name)? else { return Ok(None) };
     let Some(sweep) = scenario.sweep.take() else { return Ok(None) };
     let read: Vec<_> =
-        (0..sweep.cells.len()).into_par_iter().map(|index| read_cell(&cell_folder(&folder, index), &scenario, &sweep, &watch)).collect();
+        (0..sweep.cells.len()).into_par_iter().map(|index| read_cell(&cell_folder(&folder, index), &scenario, &sweep)).collect();
     let mut loaded = LoadedSweep { name: name.to_owned(), scenario, sweep, methods: Vec::new(), cells: Vec::new(), seed: 0, folder };
     let mut gathered = Vec::new();
     for cell in read {
@@ -85,13 +94,8 @@ pub fn load_with<T: Default + Send>(
     Ok(Some((loaded, gathered)))
 }
 
-/// What a cell's records hold: run and methods, figures, and what `watch` gathers.
-fn read_cell<T: Default>(
-    folder: &Path,
-    scenario: &Description,
-    sweep: &Sweep,
-    watch: &impl Fn(&Trial, &[String], &mut T),
-) -> Result<(RecordHead, Scores, T), LoadError> {
+/// What a cell's records hold: run and methods, figures, and what is gathered.
+fn read_cell<T: Gather>(folder: &Path, scenario: &Description, sweep: &Sweep) -> Result<(RecordHead, Scores, T), LoadError> {
     let mut scores = Scores { groups: groups(scenario), ..Scores::default() };
     let (mut names, mut gathered) = (Vec::new(), T::default());
     let head = read_points(folder, |trial, methods| {
@@ -100,10 +104,11 @@ fn read_cell<T: Default>(
             names = methods.iter().map(|info| sweep.method(&info.label)).collect();
             scores.limited = limited(methods);
         }
-        watch(&trial, &names, &mut gathered);
+        gathered.add(&trial, &names);
         scores.add(&trial, |method| methods.get(method).is_some_and(|info| scenario.compares(&info.label)));
     })?;
     scores.methods.resize_with(head.methods.len(), Score::default);
+    gathered.end();
     Ok((head, scores, gathered))
 }
 
@@ -145,7 +150,7 @@ impl LoadedSweep {
         order.sort_by_key(|&index| known.iter().position(|name| *name == self.methods[index].name).unwrap_or(known.len()));
         self.methods = order.iter().map(|&index| self.methods[index].clone()).collect();
         for cell in &mut self.cells {
-            cell.scores = order.iter().map(|&index| cell.scores.get(index).cloned().unwrap_or_default()).collect();
+            cell.scores = order.iter().map(|&index| cell.scores.get_mut(index).map(std::mem::take).unwrap_or_default()).collect();
         }
     }
 }

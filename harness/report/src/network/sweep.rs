@@ -8,7 +8,7 @@ use super::pictures::floor::{Curve, floor};
 use super::sweep_orientation;
 use crate::LoadError;
 use crate::canvas::Pictures;
-use crate::load::adjustments::{Summaries, Summary, load};
+use crate::load::adjustments::{Summaries, Summary, load_cell};
 use crate::markdown::{MarkdownTable, fixed, with_half};
 use crate::sweep::LoadedSweep;
 
@@ -24,7 +24,7 @@ pub fn section(loaded: &LoadedSweep, stem: &str, printed: &Printed) -> Result<Op
         return Ok(None);
     }
     let mut cells = Vec::new();
-    let read: Vec<_> = (0..loaded.cells.len()).into_par_iter().map(|index| load(&cell_folder(&loaded.folder, index))).collect();
+    let read: Vec<_> = (0..loaded.cells.len()).into_par_iter().map(|index| load_cell(&cell_folder(&loaded.folder, index))).collect();
     for (index, found) in read.into_iter().enumerate() {
         if let Some(found) = found? {
             cells.push((loaded.sweep.values(index)[0].clone(), found));

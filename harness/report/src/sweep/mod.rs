@@ -9,7 +9,7 @@ mod numbers;
 mod section;
 mod units;
 
-pub use crate::load::sweep::{LoadedMethod, LoadedSweep, load, load_with};
+pub use crate::load::sweep::{Gather, LoadedMethod, LoadedSweep, load, load_with};
 pub use curves::curves;
 pub use layout::{Choice, Dimension, Layout, LayoutError, cells};
 pub use map::map;

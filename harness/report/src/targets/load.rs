@@ -9,7 +9,7 @@ use calibench_records::statistics::running::Running;
 
 use crate::LoadError;
 use crate::load::adjustments::Summaries;
-use crate::sweep::{LoadedSweep, load_with};
+use crate::sweep::{Gather, LoadedSweep, load_with};
 
 /// The swept key that makes a sweep one over boards.
 pub const BOARD: &str = "testfield.board";
@@ -37,12 +37,62 @@ pub struct Found {
     squares: f64,
     /// Squared bounds of the measured that have one, px^2.
     bounds: Running,
-    /// Errors of each point over the trials, in the order in which they came.
-    points: Vec<[Running; 2]>,
+    /// Squared deviations from the mean at one point, of all points and both axes together, px^2, and how many of them are free.
+    scatter: (f64, u64),
+    points: Points,
+}
+
+/// Errors of each point over the trials, while they are read.
+#[derive(Clone, Debug, Default)]
+struct Points {
+    /// In the order in which they came.
+    errors: Vec<[Running; 2]>,
     places: HashMap<(Arc<str>, Arc<str>), usize>,
     /// The points by their places, and the place after that of the last: trials have them in the same order.
     keys: Vec<(Arc<str>, Arc<str>)>,
     next: usize,
+}
+
+impl Points {
+    fn of(&mut self, view: &Arc<str>, target: &Arc<str>) -> &mut [Running; 2] {
+        let is_next = self.keys.get(self.next).is_some_and(|(known, of)| *of == *target && *known == *view);
+        let place = if is_next { self.next } else { *self.places.entry((view.clone(), target.clone())).or_insert(self.keys.len()) };
+        if place == self.keys.len() {
+            self.keys.push((view.clone(), target.clone()));
+            self.errors.push(Default::default());
+        }
+        self.next = if place + 1 < self.keys.len() { place + 1 } else { 0 };
+        &mut self.errors[place]
+    }
+
+    fn scatter(&self) -> (f64, u64) {
+        let (mut sum, mut free) = (0.0, 0);
+        for axis in self.errors.iter().flatten() {
+            if let Some(deviation) = axis.deviation() {
+                sum += deviation.powi(2) * (axis.count - 1) as f64;
+                free += axis.count - 1;
+            }
+        }
+        (sum, free)
+    }
+}
+
+impl Gather for BTreeMap<String, Found> {
+    fn add(&mut self, trial: &Trial, methods: &[String]) {
+        for point in &trial.points {
+            let Some(name) = methods.get(point.method) else { continue };
+            if !self.contains_key(name) {
+                self.insert(name.clone(), Found::default());
+            }
+            if let Some(found) = self.get_mut(name) {
+                found.add((&point.view, &point.target), &point.outcome, point.bound);
+            }
+        }
+    }
+
+    fn end(&mut self) {
+        self.values_mut().for_each(Found::end);
+    }
 }
 
 impl Found {
@@ -53,21 +103,14 @@ impl Found {
         self.measured += 1;
         self.squares += dx * dx + dy * dy;
         bound.into_iter().for_each(|bound| self.bounds.add(bound * bound));
-        let place = self.place(view, target);
-        let [x, y] = &mut self.points[place];
+        let [x, y] = self.points.of(view, target);
         x.add(dx);
         y.add(dy);
     }
 
-    fn place(&mut self, view: &Arc<str>, target: &Arc<str>) -> usize {
-        let is_next = self.keys.get(self.next).is_some_and(|(known, of)| *of == *target && *known == *view);
-        let place = if is_next { self.next } else { *self.places.entry((view.clone(), target.clone())).or_insert(self.keys.len()) };
-        if place == self.keys.len() {
-            self.keys.push((view.clone(), target.clone()));
-            self.points.push(Default::default());
-        }
-        self.next = if place + 1 < self.keys.len() { place + 1 } else { 0 };
-        place
+    /// After the last trial: of the points only what they have in common is kept.
+    fn end(&mut self) {
+        self.scatter = std::mem::take(&mut self.points).scatter();
     }
 
     /// Root mean square error of a coordinate, px.
@@ -77,11 +120,7 @@ impl Found {
 
     /// What trials differ by at one point, over the bound: the standard deviation, without what every trial has alike.
     pub fn scatter_to_bound(&self) -> Option<f64> {
-        let (mut sum, mut free) = (0.0, 0);
-        for axis in self.points.iter().flatten().filter(|axis| axis.count > 1) {
-            sum += axis.deviation()?.powi(2) * (axis.count - 1) as f64;
-            free += axis.count - 1;
-        }
+        let (sum, free) = self.scatter;
         let (variance, bound) = (sum / free as f64, 0.5 * self.bounds.mean()?);
         (free > 0).then(|| (variance / bound).sqrt())
     }
@@ -118,18 +157,7 @@ impl Comparison {
     /// # Errors
     /// Records that are not whole or not of this version.
     pub fn load(records: &Path, name: &str, cameras: Vec<Option<Summaries>>) -> Result<Option<Self>, LoadError> {
-        let watch = |trial: &Trial, names: &[String], cell: &mut BTreeMap<String, Found>| {
-            for point in &trial.points {
-                let Some(name) = names.get(point.method) else { continue };
-                if !cell.contains_key(name) {
-                    cell.insert(name.clone(), Found::default());
-                }
-                if let Some(found) = cell.get_mut(name) {
-                    found.add((&point.view, &point.target), &point.outcome, point.bound);
-                }
-            }
-        };
-        Ok(load_with(records, name, watch)?.map(|(sweep, cells)| Self { sweep, cells, cameras }))
+        Ok(load_with(records, name)?.map(|(sweep, cells)| Self { sweep, cells, cameras }))
     }
 
     /// The words of the boards.
@@ -220,6 +248,8 @@ mod tests {
             found.add((&view, &b), &measured(-0.1 + off, 0.1 + off), Some(0.02));
         }
         found.add((&view, &b), &measured(3.0, 0.0), Some(0.02));
+        found.end();
+        assert!(found.points.errors.is_empty());
         assert_eq!((found.asked, found.measured, found.lost), (7, 6, 1));
         assert!((found.share() - 6.0 / 7.0).abs() < 1e-15);
         // A variance of 1e-4 an axis beside a bound of 2e-4.

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::LoadError;
 use crate::canvas::Pictures;
 use crate::load::Loaded;
-use crate::load::adjustments::{Summaries, load_with};
+use crate::load::adjustments::{Summaries, load_cell_with};
 use crate::network::pictures::plan::plan;
 use crate::sweep::LoadedSweep;
 
@@ -51,7 +51,7 @@ pub fn section(loaded: &Loaded, stem: &str) -> Option<(String, Pictures)> {
 pub fn sweep(loaded: &LoadedSweep, stem: &str) -> Result<Option<(String, Pictures)>, LoadError> {
     let read = |index: usize| -> Result<Option<boards::Cell>, LoadError> {
         let mut distances = boards::Distances::default();
-        let Some(found) = load_with(&cell_folder(&loaded.folder, index), |row| distances.add(row))? else { return Ok(None) };
+        let Some(found) = load_cell_with(&cell_folder(&loaded.folder, index), |row| distances.add(row))? else { return Ok(None) };
         let values = loaded.sweep.values(index).iter().map(|value| value.text.clone()).collect();
         Ok(is_transfer(&found).then(|| boards::Cell { values, found, medians: distances.medians() }))
     };

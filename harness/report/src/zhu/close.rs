@@ -4,7 +4,7 @@ use calibench_model::PixelPoint;
 
 use super::part::{OPERATOR, Part};
 use crate::canvas::COLOURS;
-use crate::figures::{Layer, MarkAt, Panel, panels};
+use crate::figures::{Layer, MarkAt, Panel, Window, panels};
 use crate::load::Loaded;
 use crate::scene_figures::targets;
 
@@ -14,7 +14,7 @@ const ZOOM: u32 = 56;
 
 pub(super) fn section(loaded: &Loaded) -> Option<Part> {
     let view = &loaded.first.points.first()?.view;
-    let image = loaded.image(view)?;
+    let image = loaded.levels(view)?;
     let method = loaded.head.methods.iter().position(|info| info.label.starts_with(OPERATOR))?;
     let pixel = loaded.method("pixel");
     let refined = Layer {
@@ -34,10 +34,12 @@ pub(super) fn section(loaded: &Loaded) -> Option<Part> {
         }
         marks
     };
-    let all: Vec<Panel<'_>> = targets(loaded, view)
-        .into_iter()
-        .map(|(id, truth)| Panel { title: format!("({id}), {SIDE} x {SIDE} px"), image: &image, centre: truth, marks: marks(&id, truth) })
-        .collect();
+    let panel = |(id, truth): (String, PixelPoint)| Panel {
+        title: format!("({id}), {SIDE} x {SIDE} px"),
+        window: Window::around(&image, truth, SIDE),
+        marks: marks(&id, truth),
+    };
+    let all: Vec<Panel> = targets(loaded, view).into_iter().map(panel).collect();
     let text = format!(
         "## The eight corners close up\n\n{SIDE} x {SIDE} px of each image of `{}`, {ZOOM} times enlarged: truth, detected pixel, refined position. Without noise; what separates the refined \
          position from the truth is bias.\n\n![Eight corners, each with truth, detection and refined position](close-up.png)\n\n",

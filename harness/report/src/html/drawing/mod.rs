@@ -46,7 +46,7 @@ impl Drawing {
 fn draw(pen: &mut Pencil, strokes: &[Stroke]) {
     let mut rest = strokes;
     while let [stroke, ..] = rest {
-        let (rows, dots) = (scale(rest), rest.iter().take_while(|one| matches!(one, Stroke::Pixel(..))).count());
+        let (rows, dots) = (scale(rest), rest.iter().take_while(|one| matches!(one, Stroke::Dots(..))).count());
         if rows > 1 {
             rest[..rows].chunks(STEP).for_each(|part| pen.band(part));
         } else if dots > 0 {
@@ -200,7 +200,7 @@ impl Pencil {
 
     fn draw(&mut self, stroke: &Stroke) {
         match stroke {
-            Stroke::Pixel(..) => self.dots(std::slice::from_ref(stroke)),
+            Stroke::Dots(..) => self.dots(std::slice::from_ref(stroke)),
             Stroke::Line([from, to], pen) => self.line(pen.colour, pen.width, &Piece::lines(&[*from, *to])),
             Stroke::Path(path, pen) => {
                 let piece = ring(path).map_or_else(|| Piece::lines(path), |(centre, radius)| Piece::circle(centre, radius));
@@ -244,9 +244,8 @@ impl Pencil {
     /// Single pixels, one after the other: an image.
     fn dots(&mut self, strokes: &[Stroke]) {
         self.close();
-        let image =
-            embedded::dots(strokes.iter().filter_map(|one| if let Stroke::Pixel(at, colour) = one { Some((*at, *colour)) } else { None }));
-        self.put(&image);
+        let row = |stroke: &Stroke| if let Stroke::Dots(at, count, colour) = stroke { Some((*at, *count, *colour)) } else { None };
+        self.put(&embedded::dots(strokes.iter().filter_map(row)));
     }
 
     fn image(&mut self, at: (u32, u32), (columns, zoom): (u32, u32), levels: &[Option<u8>]) {
