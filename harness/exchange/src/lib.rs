@@ -23,7 +23,10 @@ pub use control::{ControlDisc, ControlRow, POINT_QUALITY_COLUMNS, read_control, 
 pub use fingerprint::Fingerprint;
 pub use folder::{NewFile, NewFolder, OutputFolder};
 pub use inputs::Inputs;
-pub use photo::{Photo, PhotoError, Turn, encode_float_tiff, encode_png, is_deep, parse_photo, read_photo, size_of, turn_of, write_png};
+pub use photo::{
+    Photo, PhotoError, Turn, encode_float_tiff, encode_png, encode_png_densely, is_deep, parse_photo, read_photo, size_of, turn_of,
+    write_png,
+};
 pub use points::{Groups, LostRow, LostRows, Names, PointFile, PointFileError, PointRef, PointRow, Points, read_points};
 pub use points_write::{MeasuredRow, Outcome, write_measured, write_points};
 pub use rendered::{RENDERED, RenderedImage, read_rendered, write_rendered};

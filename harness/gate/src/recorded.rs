@@ -82,8 +82,8 @@ fn adjustments_of(folder: &Path, unit: &'static str) -> Result<ByTrial, StoredEr
 #[cfg(test)]
 mod tests {
     use calibench_records::adjustments::CalibrationWriter;
-    use calibench_records::points::{RecordWriter, RunInfo};
     use calibench_records::compressor::Compressor;
+    use calibench_records::points::{RecordWriter, RunInfo};
 
     use super::*;
 

@@ -61,7 +61,8 @@ impl<W: Write> CalibrationWriter<W> {
     }
 
     fn figure(&mut self, trial: &str, one: &Calibrated, figure: &Figure) -> Result<(), csv::Error> {
-        let [sigma, error] = [figure.sigma, figure.error].map(|number| number.map_or_else(String::new, |number| format!("{number:.SPREAD$e}")));
+        let [sigma, error] =
+            [figure.sigma, figure.error].map(|number| number.map_or_else(String::new, |number| format!("{number:.SPREAD$e}")));
         let value = format!("{:.VALUE$e}", figure.value);
         self.row(trial, one, figure.group, &figure.name, [&value, &sigma, &error], figure.unit, ["adjusted", ""])
     }

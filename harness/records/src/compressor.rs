@@ -80,7 +80,8 @@ mod tests {
     #[test]
     fn another_reader_finds_every_byte_however_it_was_written() {
         // Digits that look like noise, more than a buffer of them.
-        let text: String = (0..60_000_u64).map(|row| format!("{},{}\n", row, row.wrapping_mul(0x9e37_79b9_7f4a_7c15) % 1_000_000_007)).collect();
+        let text: String =
+            (0..60_000_u64).map(|row| format!("{},{}\n", row, row.wrapping_mul(0x9e37_79b9_7f4a_7c15) % 1_000_000_007)).collect();
         for text in [text.as_bytes(), b"a,b\n", b""] {
             let file = compressed(text, 1 << 13);
             assert_eq!(compressed(text, text.len().max(1)), file, "pieces leave no trace");

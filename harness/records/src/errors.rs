@@ -36,6 +36,9 @@ impl Errors {
 
     /// The pair whose true coordinate stands at `place`, and where its measured one does.
     fn pair(self, place: usize) -> Option<(usize, usize)> {
-        self.0.iter().enumerate().find_map(|(pair, places)| places.filter(|(_, truth)| *truth == place).map(|(measured, _)| (pair, measured)))
+        self.0
+            .iter()
+            .enumerate()
+            .find_map(|(pair, places)| places.filter(|(_, truth)| *truth == place).map(|(measured, _)| (pair, measured)))
     }
 }

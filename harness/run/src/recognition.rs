@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use calibench_exchange::{NewFolder, encode_png};
+use calibench_exchange::{NewFolder, encode_png_densely};
 use calibench_model::{Image, PixelPoint, Start, TargetKind, Testfield};
 use calibench_recognise::{Recognition as Found, SizeGroup, recognise_each};
 use calibench_records::names::{kept_image_name, recognition_step};
@@ -45,7 +45,7 @@ pub fn keep_steps(plan: &Recognition, image: &Image, (view, name): (usize, &str)
     let Ok(steps) = recogniser.steps(image) else { return Ok(()) };
     let pictures = [("normal", &steps.normal), ("enlarged", &steps.enlarged), ("binary", &steps.binary), ("contours", &steps.contours)];
     for (step, picture) in pictures {
-        folder.write(&kept_image_name(&recognition_step(name, step)), |file| encode_png(file, picture, false))?;
+        folder.write(&kept_image_name(&recognition_step(name, step)), |file| encode_png_densely(file, picture, false))?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_exchange::encode_png;
+use calibench_exchange::encode_png_densely;
 use calibench_measure::ImageId;
 use calibench_model::{Image, Scene, Start};
 use calibench_random::{Key, Purpose, stream};
@@ -51,7 +51,7 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     let truth = trial_truth(subject, key);
     let image = trial_picture(subject, renderer, &truth, key)?.image;
     if let Some(folder) = plan.images.filter(|_| number == 0) {
-        folder.write(&kept_image_name(VIEW), |file| encode_png(file, &image, subject.is_deep()))?;
+        folder.write(&kept_image_name(VIEW), |file| encode_png_densely(file, &image, subject.is_deep()))?;
     }
     let starts = starts(subject, &image, &truth, key);
     let view: Arc<str> = VIEW.into();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use calibench_exchange::encode_png;
+use calibench_exchange::encode_png_densely;
 use calibench_measure::{ImageId, Sought};
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, ObjectTarget, PixelPoint, Start, TargetKind};
@@ -251,7 +251,7 @@ fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<T
         if let Some(folder) = plan.images.filter(|_| number == 0 && is_shown) {
             // Pages show 8 bits, and noise below the levels of a sensor, or of an image without any, does not compress.
             let deep = subject.imaging.has_deep_levels();
-            folder.write(&kept_image_name(&view.station.name), |file| encode_png(file, &image, deep))?;
+            folder.write(&kept_image_name(&view.station.name), |file| encode_png_densely(file, &image, deep))?;
         }
     }
     let mut trial = Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() };

@@ -1,6 +1,7 @@
 //! Photographs in, images out.
 
 mod budget;
+mod dense;
 pub mod grey;
 mod jpeg;
 mod levels;
@@ -20,6 +21,7 @@ use tiff::encoder::{TiffEncoder, colortype};
 use crate::atomic::write_atomically;
 
 pub use budget::MOST_BYTES;
+pub use dense::encode_png_densely;
 pub use levels::{Levels, read_levels};
 pub use turn::Turn;
 

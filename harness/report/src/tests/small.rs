@@ -5,11 +5,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use calibench_model::{PixelPoint, Rejection};
+use calibench_records::compressor::Compressor;
 use calibench_records::description::{self, Description, Subject};
 use calibench_records::names::DESCRIPTION;
 use calibench_records::points::{RecordWriter, RunInfo};
 use calibench_records::results::{MethodInfo, Outcome, PointResult, Trial};
-use calibench_records::compressor::Compressor;
 use calibench_records::stored::{Table, open};
 use tempfile::TempDir;
 

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use calibench_exchange::NewFolder;
 use calibench_model::told::{Told, notes};
+use calibench_records::compressor::Compressor;
 use calibench_records::description::{read as read_description, write as write_description};
 use calibench_records::names::{DESCRIPTION, ORIGIN, cell_name};
 use calibench_records::parts::{Joiner, Span, ToldBy};
-use calibench_records::compressor::Compressor;
 use calibench_records::stored::Table;
 
 use super::MergeError;
