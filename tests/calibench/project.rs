@@ -152,7 +152,7 @@ pub fn table(path: &Path) -> String {
 
 /// Puts plain CSV in the place of a compressed table.
 pub fn put_table(path: &Path, text: &str) {
-    let mut file = calibench_records::stored::Compressor::new(std::fs::File::create(path).expect("a file"));
+    let mut file = calibench_records::compressor::Compressor::new(std::fs::File::create(path).expect("a file"));
     std::io::Write::write_all(&mut file, text.as_bytes()).expect("room");
     file.finish().expect("room");
 }

@@ -179,6 +179,10 @@ def commands(folder):
         lambda n: ours("render", "large.toml", "-o", "large-again", threads=n),
         lambda n: theirs(RENDER, "peer.png", threads=n),
     )
+    (folder / "huge.toml").write_text(scenario((11600, 8700)))
+    side_by_side("`render`, the same in 101 megapixels", folder, lambda n: ours("render", "huge.toml", "-o", "huge-again", threads=n))
+    (folder / "stations.toml").write_text(scenario((1600, 1200), tilts=60))
+    side_by_side("`render`, 60 stations of 2 megapixels", folder, lambda n: ours("render", "stations.toml", "-o", "stations-again", threads=n))
     fine = pictures(folder, "fine", scenario((4000, 3000), (112, 84)))
     points = starts(folder, "fine", fine[0], 10_000)
     for method in ("forstner", "parametric_corner:window=15", "lsm:window=15"):

@@ -22,9 +22,14 @@ const BUFFER: usize = 1 << 16;
 impl<W: Write> Compressor<W> {
     /// Nothing yet, to go to `output`.
     pub fn new(output: W) -> Self {
+        Self::in_pieces(output, BUFFER)
+    }
+
+    /// `piece` bytes are handed on at once.
+    fn in_pieces(output: W, piece: usize) -> Self {
         let (level, strategy) = CONFIG;
         let config = DeflateConfig { level, strategy, window_bits: WINDOW_BITS, ..DeflateConfig::default() };
-        Self { output, deflate: Deflate::new_with_config(config), buffer: vec![0; BUFFER] }
+        Self { output, deflate: Deflate::new_with_config(config), buffer: vec![0; piece] }
     }
 
     /// Ends the file.
@@ -69,9 +74,9 @@ mod tests {
 
     use super::*;
 
-    fn compressed(text: &[u8], piece: usize) -> Vec<u8> {
+    fn compressed(text: &[u8], piece: usize, buffer: usize) -> Vec<u8> {
         let mut file = Vec::new();
-        let mut compressor = Compressor::new(&mut file);
+        let mut compressor = Compressor::in_pieces(&mut file, buffer);
         text.chunks(piece).for_each(|piece| compressor.write_all(piece).unwrap());
         compressor.finish().unwrap();
         file
@@ -83,8 +88,10 @@ mod tests {
         let text: String =
             (0..60_000_u64).map(|row| format!("{},{}\n", row, row.wrapping_mul(0x9e37_79b9_7f4a_7c15) % 1_000_000_007)).collect();
         for text in [text.as_bytes(), b"a,b\n", b""] {
-            let file = compressed(text, 1 << 13);
-            assert_eq!(compressed(text, text.len().max(1)), file, "pieces leave no trace");
+            let file = compressed(text, 1 << 13, BUFFER);
+            for (piece, buffer) in [(text.len().max(1), BUFFER), (1 << 13, 50), (text.len().max(1), 50)] {
+                assert!(compressed(text, piece, buffer) == file, "pieces leave no trace");
+            }
             let mut again = Vec::new();
             flate2::read::GzDecoder::new(&file[..]).read_to_end(&mut again).unwrap();
             assert!(again == text);
