@@ -186,7 +186,7 @@ mod tests {
                 *(if expected == 0.0 { &mut none } else { &mut some }) += 1;
                 assert!((strengths[row][column] - expected).abs() < 1e-9 * (1.0 + expected.abs()), "({x}, {y}): {column}, {row}");
             }
-            assert!(some > 0 && (none > 0) == !image.holds(x, y, (search + reach) as i64), "({x}, {y}): {none}, {some}");
+            assert!(some > 0 && (none > 0) != image.holds(x, y, (search + reach) as i64), "({x}, {y}): {none}, {some}");
         }
     }
 }
