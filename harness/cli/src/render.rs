@@ -118,8 +118,12 @@ impl Render {
         folder: &NewFolder,
     ) -> Result<Drawn<'p>, RunError> {
         let name = self.name(&view.station.name, key);
-        let exposure = prepared.image(view, key)?;
-        folder.write(&kept_image_name(&name), |file| encode_png(file, &exposure.image, prepared.is_deep()))?;
+        let (exposure, deep) = (prepared.image(view, key)?, prepared.is_deep());
+        let (written, (starts, listed)) = rayon::join(
+            || folder.write(&kept_image_name(&name), |file| encode_png(file, &exposure.image, deep)),
+            || (views::starts(prepared, view, &exposure.image, key), self.listed(&view.station.name, (&exposure.image, deep), key)),
+        );
+        written?;
         if self.noise_free {
             folder.write(&format!("{name}{NOISE_FREE}.png"), |file| encode_png(file, &prepared.irradiance(view), true))?;
         }
@@ -127,8 +131,8 @@ impl Render {
         let clipped = truth::clipping_note(&name, exposure.clipped, exposure.image.grey().len());
         Ok(Drawn {
             row: truth::StationRow::new(view.station, &name, exposure.clipped),
-            starts: views::starts(prepared, view, &exposure.image, key),
-            listed: self.listed(&view.station.name, (&exposure.image, prepared.is_deep()), key),
+            starts,
+            listed,
             notes: clipped.into_iter().chain(truth::warnings(subject, view, &name)).collect(),
         })
     }

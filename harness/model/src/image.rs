@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use multiversion::multiversion;
+
 /// Grey values, row by row, as fractions of full scale: 0 is black, 1 is white.
 ///
 /// f32 tells all levels of a 16-bit image apart. Pixel (column, row) has its centre at [`crate::PixelPoint`] (column, row). An image owns its grey values,
@@ -107,7 +109,9 @@ impl Image<'_> {
 
     /// 8-bit grey values from 0 (black) to 255 (white), row by row, rounded and clipped. NaN becomes black.
     pub fn to_u8(&self) -> Vec<u8> {
-        self.grey.iter().map(|&grey| level(grey, 255) as u8).collect()
+        let mut levels = vec![0; self.grey.len()];
+        levels_of(&self.grey, &mut levels);
+        levels
     }
 
     /// The image `factor` times smaller: means of whole squares of `factor` px; what is left over at the right and at the bottom is not used.
@@ -123,6 +127,14 @@ impl Image<'_> {
             }
         }
         Image::new(width, height, grey)
+    }
+}
+
+/// As [`Image::to_u8`], of as many grey values as there is room for.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2"))]
+pub fn levels_of(grey: &[f32], levels: &mut [u8]) {
+    for (to, &grey) in levels.iter_mut().zip(grey) {
+        *to = level(grey, 255) as u8;
     }
 }
 

@@ -12,9 +12,11 @@ use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use calibench_model::camera::ImageSize;
+use calibench_model::image::levels_of;
 use calibench_model::{Image, level};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader};
+use rayon::prelude::*;
 use thiserror::Error;
 use tiff::encoder::{TiffEncoder, colortype};
 
@@ -27,6 +29,8 @@ pub use turn::Turn;
 
 /// Bytes of a file in which its orientation usually stands.
 const HEAD: u64 = 1 << 20;
+/// Pixels that a thread takes at once.
+const PART: usize = 1 << 18;
 
 /// A photograph that cannot be read, or an image that cannot be written.
 #[derive(Debug, Error)]
@@ -217,10 +221,17 @@ pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> 
     let (bytes, colour) = if sixteen_bits {
         (image.grey().iter().flat_map(|grey| level(*grey, u16::MAX).to_ne_bytes()).collect(), ExtendedColorType::L16)
     } else {
-        (image.to_u8(), ExtendedColorType::L8)
+        (to_u8(image), ExtendedColorType::L8)
     };
     let encoder = PngEncoder::new_with_quality(output, CompressionType::Fast, FilterType::Adaptive);
     encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
+}
+
+/// [`Image::to_u8`], on all threads.
+fn to_u8(image: &Image) -> Vec<u8> {
+    let mut levels = vec![0; image.grey().len()];
+    levels.par_chunks_mut(PART).zip(image.grey().par_chunks(PART)).for_each(|(levels, grey)| levels_of(grey, levels));
+    levels
 }
 
 /// Encodes the grey values as they are, as TIFF of single precision: 0 is black and 1 is white.

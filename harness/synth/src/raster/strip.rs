@@ -16,6 +16,9 @@ use crate::optics::{Kernel, Part};
 /// Nodes of one stretch of a piece, at most.
 const MOST_NODES: usize = 32;
 
+/// Rows that are summed side by side.
+const TOGETHER: usize = 4;
+
 /// Rules of quadrature for every number of nodes.
 pub(crate) struct Rules(Vec<Vec<(f64, f64)>>);
 
@@ -59,15 +62,17 @@ impl Strip {
 
     /// Sums the differences along each row and hands the grey values, which begin with `background`, to `row`.
     pub fn finish(&mut self, background: f64, mut row: impl FnMut(usize, &[f64])) {
-        for (y, differences) in self.differences.chunks_exact_mut(self.stride).take(self.rows).enumerate() {
-            let (before, after) = differences.split_at_mut(self.pad);
-            let mut sum = background + before.iter().sum::<f64>();
-            let values = &mut after[..self.width];
-            for value in values.iter_mut() {
-                sum += *value;
-                *value = sum;
+        let (pad, width) = (self.pad, self.width);
+        let held = &mut self.differences[..self.stride * self.rows];
+        for (block, rows) in held.chunks_mut(self.stride * TOGETHER).enumerate() {
+            // Each sum waits for the one before: those of other rows fill the time.
+            match <[&mut [f64]; TOGETHER]>::try_from(rows.chunks_exact_mut(self.stride).collect::<Vec<_>>()) {
+                Ok(rows) => sum_along(rows, pad, width, background),
+                Err(rows) => rows.into_iter().for_each(|row| sum_along([row], pad, width, background)),
             }
-            row(y, values);
+            for (y, sums) in rows.chunks_exact(self.stride).enumerate() {
+                row(block * TOGETHER + y, &sums[pad..pad + width]);
+            }
         }
     }
 
@@ -94,6 +99,18 @@ impl Strip {
                 None => smooth(self, pieces, listed, *sigma, parts, rules),
                 Some(jitter) => jittered(self, pieces, listed, *sigma, parts, rules, jitter),
             },
+        }
+    }
+}
+
+/// Running sums of rows of `width` px in place, which begin with `background` and with what stands in the `pad` columns before.
+fn sum_along<const N: usize>(rows: [&mut [f64]; N], pad: usize, width: usize, background: f64) {
+    let mut sums: [f64; N] = std::array::from_fn(|i| background + rows[i][..pad].iter().sum::<f64>());
+    let rows = rows.map(|row| &mut row[pad..pad + width]);
+    for x in 0..width {
+        for i in 0..N {
+            sums[i] += rows[i][x];
+            rows[i][x] = sums[i];
         }
     }
 }
