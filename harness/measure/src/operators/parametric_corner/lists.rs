@@ -1,6 +1,7 @@
 //! The pixels of a window by what can be seen from them.
 
 use super::model::Model;
+use super::places::Places;
 use crate::lanes::{WIDE, Wide, side_by_side};
 
 /// From a pixel both edges can be seen, ...
@@ -9,9 +10,6 @@ pub(super) const CORNER: usize = 0;
 pub(super) const EDGES: [usize; 2] = [2, 1];
 /// ... or neither.
 pub(super) const AREAS: usize = 3;
-
-/// 0, 1, 2, ...
-const NUMBERS: Wide = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
 
 /// Pixels side by side: coordinates from the window's centre, grey value, and the sign of the other edge's side (in an area, that of both).
 #[derive(Clone, Copy)]
@@ -47,12 +45,13 @@ pub(super) struct Lists {
     values: Vec<f32>,
     room: usize,
     counts: [usize; 4],
+    places: &'static Places,
 }
 
 impl Lists {
     pub(super) fn new(side: usize) -> Self {
         let room = side * side + WIDE;
-        Self { values: vec![0.0; 16 * room], room, counts: [0; 4] }
+        Self { values: vec![0.0; 16 * room], room, counts: [0; 4], places: Places::of(side) }
     }
 
     #[inline(always)]
@@ -61,30 +60,29 @@ impl Lists {
         List { columns: [column(0), column(1), column(2), column(3)], count: self.counts[kind] }
     }
 
-    /// Sorts the pixels of a window of `side` px with these grey values; the corner lies at `(cx, cy)` from its centre.
+    /// Sorts the pixels of the window, whose grey values these are; the corner lies at `(cx, cy)` from its centre.
     #[inline(always)]
-    pub(super) fn sort(&mut self, model: &Model<f32>, (grey, side): (&[f32], usize), corner: [f32; 2]) {
+    pub(super) fn sort(&mut self, model: &Model<f32>, grey: &[f32], corner: [f32; 2]) {
         self.counts = [0; 4];
-        let (half, mut y) = ((side / 2) as f32, -((side / 2) as f32));
-        for line in grey.chunks_exact(side) {
-            let mut first = -half;
-            for greys in line.chunks(WIDE) {
-                let mut pixels = Row { x: [0.0; 2 * WIDE], y, grey: [0.0; 2 * WIDE], side: [0.0; 2 * WIDE] };
-                pixels.grey[..greys.len()].copy_from_slice(greys);
-                for (x, number) in pixels.x.iter_mut().zip(NUMBERS) {
-                    *x = first + number;
-                }
-                first += WIDE as f32;
-                let seen = pixels.seen(model, corner);
-                self.append(&pixels, seen, greys.len());
+        let places = self.places;
+        for first in (0..grey.len()).step_by(WIDE) {
+            let count = (grey.len() - first).min(WIDE);
+            let mut pixels = Pixels { x: [0.0; 2 * WIDE], y: [0.0; 2 * WIDE], grey: [0.0; 2 * WIDE], side: [0.0; 2 * WIDE] };
+            pixels.x[..WIDE].copy_from_slice(side_by_side::<_, WIDE>(&places.x, first));
+            pixels.y[..WIDE].copy_from_slice(side_by_side::<_, WIDE>(&places.y, first));
+            if let Some(greys) = grey[first..].first_chunk::<WIDE>() {
+                pixels.grey[..WIDE].copy_from_slice(greys);
+            } else {
+                pixels.grey[..count].copy_from_slice(&grey[first..]);
             }
-            y += 1.0;
+            let seen = pixels.seen(model, corner);
+            self.append(&pixels, seen, count);
         }
     }
 
-    /// The first `count` pixels of a row, from which both edges are as far as these bits say.
+    /// The first `count` pixels, from which both edges are as far as these bits say.
     #[inline(always)]
-    fn append(&mut self, pixels: &Row, [past_first, past_second]: [u32; 2], count: usize) {
+    fn append(&mut self, pixels: &Pixels, [past_first, past_second]: [u32; 2], count: usize) {
         // Those of one kind stand together and are taken at once: what is written beyond the last, the next of that kind replaces.
         let mut begins = ((past_first ^ (past_first << 1)) | (past_second ^ (past_second << 1)) | 1) & ((1 << count) - 1);
         while begins != 0 {
@@ -93,10 +91,9 @@ impl Lists {
             let end = if begins == 0 { count } else { begins.trailing_zeros() as usize };
             let kind = ((past_first >> begin) & 1) as usize + 2 * ((past_second >> begin) & 1) as usize;
             let place = 4 * kind * self.room + self.counts[kind];
-            self.put(place, side_by_side(&pixels.x, begin));
-            self.put(place + self.room, &[pixels.y; WIDE]);
-            self.put(place + 2 * self.room, side_by_side(&pixels.grey, begin));
-            self.put(place + 3 * self.room, side_by_side(&pixels.side, begin));
+            for (column, values) in [&pixels.x, &pixels.y, &pixels.grey, &pixels.side].into_iter().enumerate() {
+                self.put(place + column * self.room, side_by_side(values, begin));
+            }
             self.counts[kind] += end - begin;
         }
     }
@@ -107,22 +104,21 @@ impl Lists {
     }
 }
 
-/// Up to [`WIDE`] pixels of a row, and room for as many behind them.
-struct Row {
+/// Up to [`WIDE`] pixels, and room for as many behind them.
+struct Pixels {
     x: [f32; 2 * WIDE],
-    y: f32,
+    y: [f32; 2 * WIDE],
     grey: [f32; 2 * WIDE],
     side: [f32; 2 * WIDE],
 }
 
-impl Row {
+impl Pixels {
     /// A bit for each pixel from which the first edge cannot be seen, and the second; on which side of these it lies is noted.
     #[inline(always)]
     fn seen(&mut self, model: &Model<f32>, [cx, cy]: [f32; 2]) -> [u32; 2] {
         let (mut past_first, mut past_second) = (0, 0);
-        let y = self.y - cy;
         for i in 0..WIDE {
-            let x = self.x[i] - cx;
+            let (x, y) = (self.x[i] - cx, self.y[i] - cy);
             let [u, v] = [model.edges[0].distance(x, y), model.edges[1].distance(x, y)];
             let past = [u.abs() >= model.reach, v.abs() >= model.reach];
             let sign = if past[0] { u } else { 1.0 } * if past[1] { v } else { 1.0 };
@@ -166,8 +162,8 @@ mod tests {
                 let grey: Vec<f32> = (0..side * side).map(|i| i as f32).collect();
                 let mut lists = Lists::new(side);
                 // What an earlier window has left does not count.
-                lists.sort(&model, (&vec![-1.0; side * side], side), [2.0, 1.0]);
-                lists.sort(&model, (&grey, side), corner);
+                lists.sort(&model, &vec![-1.0; side * side], [2.0, 1.0]);
+                lists.sort(&model, &grey, corner);
                 let expected = one_by_one(&model, side, corner);
                 for kind in [CORNER, EDGES[0], EDGES[1], AREAS] {
                     let chunks = lists.list(kind).chunks();

@@ -4,6 +4,7 @@ mod area;
 mod levels;
 mod lists;
 mod model;
+mod places;
 mod residuals;
 mod saddle;
 mod start;

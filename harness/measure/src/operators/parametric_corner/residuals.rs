@@ -34,7 +34,7 @@ fn fill<const GRADIENT: u8, const CURVED: bool>(
     lists: &mut Lists,
     (into, stride): (&mut [f32], usize),
 ) {
-    lists.sort(model, (grey, side), [cx, cy]);
+    lists.sort(model, grey, [cx, cy]);
     let half = (side / 2) as f32;
     for (kind, only) in [(CORNER, None), (EDGES[0], Some(0)), (EDGES[1], Some(1)), (AREAS, Some(2))] {
         for (chunk, count) in lists.list(kind).chunks() {

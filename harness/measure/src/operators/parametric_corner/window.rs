@@ -73,7 +73,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Problem<P> for Wind
         }
         let model = Model::new(&shape, Fidelity::Rough)?;
         let (levels, centre) = (self.levels(x), shape.position.map(|p| p as f32));
-        Some(normal::<P, GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, self.setting.side), &mut self.pixels))
+        Some(normal::<P, GRADIENT, CURVED>(&model, &levels, centre, &self.greys.grey, &mut self.pixels))
     }
 
     fn lowest(&self, unknown: usize) -> f64 {
@@ -115,7 +115,7 @@ fn correct<const GRADIENT: u8, const CURVED: bool>(
     (grey, side): (&mut [f32], usize),
     lists: &mut Lists,
 ) {
-    lists.sort(rough, (grey, side), [cx, cy]);
+    lists.sort(rough, grey, [cx, cy]);
     let half = (side / 2) as f32;
     for (kind, only) in [(CORNER, None), (EDGES[0], Some(0)), (EDGES[1], Some(1))] {
         for (chunk, count) in lists.list(kind).chunks() {
@@ -140,10 +140,10 @@ fn normal<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     model: &Model<f32>,
     levels: &Levels,
     centre: [f32; 2],
-    window: (&[f32], usize),
+    grey: &[f32],
     lists: &mut Lists,
 ) -> Normal<P> {
-    lists.sort(model, window, centre);
+    lists.sort(model, grey, centre);
     let mut sums = Sums::<P>::new();
     let rows = Rows::<P, GRADIENT> { levels, centre };
     rows.add(lists.list(CORNER), &mut sums, |x, y, _| model.corner::<WIDE, CURVED>(x, y));
