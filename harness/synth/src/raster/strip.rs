@@ -104,6 +104,7 @@ impl Strip {
 }
 
 /// Running sums of rows of `width` px in place, which begin with `background` and with what stands in the `pad` columns before.
+#[expect(clippy::needless_range_loop, reason = "rows side by side")]
 fn sum_along<const N: usize>(rows: [&mut [f64]; N], pad: usize, width: usize, background: f64) {
     let mut sums: [f64; N] = std::array::from_fn(|i| background + rows[i][..pad].iter().sum::<f64>());
     let rows = rows.map(|row| &mut row[pad..pad + width]);
