@@ -62,15 +62,14 @@ impl Strip {
 
     /// Sums the differences along each row and hands the grey values, which begin with `background`, to `row`.
     pub fn finish(&mut self, background: f64, mut row: impl FnMut(usize, &[f64])) {
-        let (pad, width) = (self.pad, self.width);
-        let held = &mut self.differences[..self.stride * self.rows];
-        for (block, rows) in held.chunks_mut(self.stride * TOGETHER).enumerate() {
-            // Each sum waits for the one before: those of other rows fill the time.
-            match <[&mut [f64]; TOGETHER]>::try_from(rows.chunks_exact_mut(self.stride).collect::<Vec<_>>()) {
-                Ok(rows) => sum_along(rows, pad, width, background),
-                Err(rows) => rows.into_iter().for_each(|row| sum_along([row], pad, width, background)),
+        let (pad, width, stride) = (self.pad, self.width, self.stride);
+        for (block, rows) in self.differences[..stride * self.rows].chunks_mut(stride * TOGETHER).enumerate() {
+            if rows.len() == stride * TOGETHER {
+                sum_along::<TOGETHER>(rows, pad, width, background);
+            } else {
+                rows.chunks_exact_mut(stride).for_each(|row| sum_along::<1>(row, pad, width, background));
             }
-            for (y, sums) in rows.chunks_exact(self.stride).enumerate() {
+            for (y, sums) in rows.chunks_exact(stride).enumerate() {
                 row(block * TOGETHER + y, &sums[pad..pad + width]);
             }
         }
@@ -103,15 +102,15 @@ impl Strip {
     }
 }
 
-/// Running sums of rows of `width` px in place, which begin with `background` and with what stands in the `pad` columns before.
-#[expect(clippy::needless_range_loop, reason = "rows side by side")]
-fn sum_along<const N: usize>(rows: [&mut [f64]; N], pad: usize, width: usize, background: f64) {
-    let mut sums: [f64; N] = std::array::from_fn(|i| background + rows[i][..pad].iter().sum::<f64>());
-    let rows = rows.map(|row| &mut row[pad..pad + width]);
-    for x in 0..width {
-        for i in 0..N {
-            sums[i] += rows[i][x];
-            rows[i][x] = sums[i];
+/// Running sums of `N` rows in place, over `width` px from column `pad` on; they begin with `background` and with what stands in the columns before.
+/// Each sum waits for the one before: those of other rows fill the time.
+fn sum_along<const N: usize>(rows: &mut [f64], pad: usize, width: usize, background: f64) {
+    let stride = rows.len() / N;
+    let mut sums: [f64; N] = std::array::from_fn(|i| background + rows[i * stride..][..pad].iter().sum::<f64>());
+    for x in pad..pad + width {
+        for (i, sum) in sums.iter_mut().enumerate() {
+            *sum += rows[i * stride + x];
+            rows[i * stride + x] = *sum;
         }
     }
 }
