@@ -149,6 +149,18 @@ fn sixteen_bits_are_kept() {
     assert!(read_photo(&path).unwrap().image != image);
 }
 
+/// Of more pixels than one thread takes at once.
+#[test]
+fn eight_bits_are_the_nearest_levels_all_over_the_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.png");
+    let image = Image::from_fn(701, 409, |x, y| ((x * 7919 + y * 104_729) % 65_521) as f32 / 64_000.0 - 0.01);
+    assert!(image.grey().len() > super::PART);
+    write_png(&path, &image, false).unwrap();
+    let nearest: Vec<f32> = image.grey().iter().map(|grey| (255.0 * grey.clamp(0.0, 1.0)).round() / 255.0).collect();
+    assert_eq!(read_photo(&path).unwrap().image.grey(), nearest);
+}
+
 #[test]
 fn colour_is_not_rounded_to_levels() {
     let grey = grey_of::<u8, 3>(&[10, 20, 30, 255, 255, 255], 255.0);
