@@ -155,7 +155,7 @@ fn eight_bits_are_the_nearest_levels_all_over_the_image() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("large.png");
     let image = Image::from_fn(701, 409, |x, y| ((x * 7919 + y * 104_729) % 65_521) as f32 / 64_000.0 - 0.01);
-    assert!(image.grey().len() > super::PART);
+    assert!(image.grey().len() > PART);
     write_png(&path, &image, false).unwrap();
     let nearest: Vec<f32> = image.grey().iter().map(|grey| (255.0 * grey.clamp(0.0, 1.0)).round() / 255.0).collect();
     assert_eq!(read_photo(&path).unwrap().image.grey(), nearest);
