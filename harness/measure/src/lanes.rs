@@ -16,6 +16,12 @@ pub(crate) const WIDE: usize = 16;
 /// [`WIDE`] numbers.
 pub(crate) type Wide = [f32; WIDE];
 
+/// Numbers of single precision that go through one calculation together: more than are worked on side by side, so that none waits for what it itself gives.
+pub(crate) const BLOCK: usize = 2 * WIDE;
+
+/// [`BLOCK`] numbers.
+pub(crate) type Block = [f32; BLOCK];
+
 /// The `N` values from `first` on.
 #[inline(always)]
 pub(crate) fn side_by_side<T, const N: usize>(values: &[T], first: usize) -> &[T; N] {
@@ -25,11 +31,13 @@ pub(crate) fn side_by_side<T, const N: usize>(values: &[T], first: usize) -> &[T
 /// The sum of all, in pairs, so that additions do not wait for each other.
 #[inline(always)]
 pub(crate) fn sum(lanes: &Wide) -> f64 {
-    let mut sums = [0.0; WIDE];
-    for i in 0..WIDE {
-        sums[i] = f64::from(lanes[i]);
+    // Sums after each other are not to be worked out side by side, from numbers that are gathered one by one.
+    let lanes = std::hint::black_box(*lanes);
+    let mut sums = [0.0; WIDE / 2];
+    for i in 0..WIDE / 2 {
+        sums[i] = f64::from(lanes[i]) + f64::from(lanes[i + WIDE / 2]);
     }
-    let mut width = WIDE;
+    let mut width = WIDE / 2;
     while width > 1 {
         width /= 2;
         for i in 0..width {
@@ -49,9 +57,9 @@ pub(crate) fn add_products(sum: &mut Wide, a: &Wide, b: &Wide) {
 
 /// Each less `what`. A loop, as everywhere here: what is handed to `map` is not always compiled for the instructions around it, and then called.
 #[inline(always)]
-pub(crate) fn less(lanes: &Wide, what: f32) -> Wide {
-    let mut less = [0.0; WIDE];
-    for i in 0..WIDE {
+pub(crate) fn less<const N: usize>(lanes: &[f32; N], what: f32) -> [f32; N] {
+    let mut less = [0.0; N];
+    for i in 0..N {
         less[i] = lanes[i] - what;
     }
     less

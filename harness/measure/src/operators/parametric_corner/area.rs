@@ -2,22 +2,22 @@
 
 use super::model::{Fidelity, Model, Shape};
 use crate::blurred_step::{edge, edges, exp_minus};
-use crate::lanes::{WIDE, Wide};
+use crate::lanes::{BLOCK, Block};
 use crate::photosite::Square;
 
 /// A chunk of pixels, seen from the two edges, px: the distance from the tangents at the corner, and the way along them.
 pub(super) struct Seen {
-    pub(super) straight: [Wide; 2],
-    along: [Wide; 2],
+    pub(super) straight: [Block; 2],
+    along: [Block; 2],
 }
 
 impl Model<f32> {
     /// `x` and `y` are taken from the corner, px.
     #[inline(always)]
-    pub(super) fn seen(&self, x: &Wide, y: &Wide) -> Seen {
-        let mut seen = Seen { straight: [[0.0; WIDE]; 2], along: [[0.0; WIDE]; 2] };
+    pub(super) fn seen(&self, x: &Block, y: &Block) -> Seen {
+        let mut seen = Seen { straight: [[0.0; BLOCK]; 2], along: [[0.0; BLOCK]; 2] };
         for (which, edge) in self.edges.iter().enumerate() {
-            for i in 0..WIDE {
+            for i in 0..BLOCK {
                 seen.straight[which][i] = edge.nx * x[i] + edge.ny * y[i];
                 seen.along[which][i] = edge.nx * y[i] - edge.ny * x[i];
             }
@@ -28,13 +28,13 @@ impl Model<f32> {
     /// Distances from edge `which` in units of the blur, for the Gaussian of the photosite that lies at `offset`.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "many arrays side by side")]
-    fn scaled<const CURVED: bool>(&self, which: usize, seen: &Seen, offset: [f32; 2]) -> Wide {
+    fn scaled<const CURVED: bool>(&self, which: usize, seen: &Seen, offset: [f32; 2]) -> Block {
         let edge = &self.edges[which];
         let straight = edge.nx * offset[0] + edge.ny * offset[1];
         let along = edge.nx * offset[1] - edge.ny * offset[0];
         let bend = 0.5 * edge.curvature;
-        let mut scaled = [0.0; WIDE];
-        for i in 0..WIDE {
+        let mut scaled = [0.0; BLOCK];
+        for i in 0..BLOCK {
             let mut distance = seen.straight[which][i] + straight;
             if CURVED {
                 let along = seen.along[which][i] + along;
@@ -47,26 +47,26 @@ impl Model<f32> {
 
     /// The grey value where both edges are near, in units of half the contrast: to 1e-6 that of [`Model::corner`].
     #[inline(always)]
-    pub(super) fn corner_value<const CURVED: bool>(&self, seen: &Seen) -> Wide {
-        let mut sum = [0.0; WIDE];
+    pub(super) fn corner_value<const CURVED: bool>(&self, seen: &Seen) -> Block {
+        let mut sum = [0.0; BLOCK];
         for node in &self.nodes[..self.count] {
             let [a, b] = [0, 1].map(|which| self.scaled::<CURVED>(which, seen, [node.x, node.y]));
-            let (mut squares, mut product, mut value) = ([0.0; WIDE], [0.0; WIDE], edges(&a, &b));
-            for i in 0..WIDE {
+            let (mut squares, mut product, mut value) = ([0.0; BLOCK], [0.0; BLOCK], edges(&a, &b));
+            for i in 0..BLOCK {
                 squares[i] = a[i] * a[i] + b[i] * b[i];
                 product[i] = a[i] * b[i];
             }
             for (square, mixed, weight) in &self.integral[..self.terms] {
-                let mut exponent = [0.0; WIDE];
-                for i in 0..WIDE {
+                let mut exponent = [0.0; BLOCK];
+                for i in 0..BLOCK {
                     exponent[i] = square * squares[i] - mixed * product[i];
                 }
                 let term = exp_minus(&exponent);
-                for i in 0..WIDE {
+                for i in 0..BLOCK {
                     value[i] += weight * term[i];
                 }
             }
-            for i in 0..WIDE {
+            for i in 0..BLOCK {
                 sum[i] += node.weight * value[i];
             }
         }
@@ -75,11 +75,11 @@ impl Model<f32> {
 
     /// The grey value where edge `which` alone is near, up to its sign.
     #[inline(always)]
-    pub(super) fn edge_value<const CURVED: bool>(&self, which: usize, seen: &Seen) -> Wide {
-        let mut sum = [0.0; WIDE];
+    pub(super) fn edge_value<const CURVED: bool>(&self, which: usize, seen: &Seen) -> Block {
+        let mut sum = [0.0; BLOCK];
         for node in &self.nodes[..self.count] {
             let edge = edge(&self.scaled::<CURVED>(which, seen, [node.x, node.y]));
-            for i in 0..WIDE {
+            for i in 0..BLOCK {
                 sum[i] += node.weight * edge[i];
             }
         }
@@ -111,15 +111,15 @@ impl Strip {
 
     /// As [`Model::edge_value`] with all of the photosite, of a straight edge from which pixels lie `straight` px away.
     #[inline(always)]
-    pub(super) fn value(&self, straight: &Wide) -> Wide {
-        let mut sum = [0.0; WIDE];
+    pub(super) fn value(&self, straight: &Block) -> Block {
+        let mut sum = [0.0; BLOCK];
         for (offset, weight) in &self.nodes[..self.count] {
-            let mut scaled = [0.0; WIDE];
-            for i in 0..WIDE {
+            let mut scaled = [0.0; BLOCK];
+            for i in 0..BLOCK {
                 scaled[i] = (straight[i] + offset) * self.inverse;
             }
             let edge = edge(&scaled);
-            for i in 0..WIDE {
+            for i in 0..BLOCK {
                 sum[i] += weight * edge[i];
             }
         }

@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use super::places::Places;
-use crate::lanes::{WIDE, Wide, side_by_side};
+use crate::lanes::{BLOCK, Block, WIDE, Wide, side_by_side};
 
 /// From a pixel both edges can be seen, ...
 pub(super) const CORNER: usize = 0;
@@ -11,13 +11,32 @@ pub(super) const EDGES: [usize; 2] = [2, 1];
 /// ... or neither.
 pub(super) const AREAS: usize = 3;
 
+/// Which column of a list holds the grey values.
+const GREY: usize = 2;
+
 /// Pixels side by side: coordinates from the window's centre, grey value, and the sign of the other edge's side (in an area, that of both).
 #[derive(Clone, Copy)]
 pub(super) struct Chunk<'a> {
-    pub(super) x: &'a Wide,
-    pub(super) y: &'a Wide,
-    pub(super) grey: &'a Wide,
-    pub(super) side: &'a Wide,
+    pub(super) x: &'a Block,
+    pub(super) y: &'a Block,
+    pub(super) grey: &'a Block,
+    pub(super) side: &'a Block,
+}
+
+/// The first number in single precision from which on neighbours are 1 apart: adding it leaves a whole number in the lowest bits.
+const WHOLE: f32 = 8_388_608.0;
+
+impl Chunk<'_> {
+    /// Where the pixels stand in the window, `half` px from whose centre its first row and column are, row by row of `stride`.
+    #[inline(always)]
+    pub(super) fn places(&self, (half, stride): (f32, usize)) -> [u32; BLOCK] {
+        let mut places = [0; BLOCK];
+        for i in 0..BLOCK {
+            let place = (self.y[i] + half) * stride as f32 + (self.x[i] + half);
+            places[i] = (place + WHOLE).to_bits().wrapping_sub(WHOLE.to_bits());
+        }
+        places
+    }
 }
 
 /// Pixels of one kind.
@@ -32,16 +51,19 @@ impl<'a> List<'a> {
     /// Every chunk, and how many of its pixels count: beyond the last lies what an earlier, longer list has left.
     #[inline(always)]
     pub(super) fn chunks(self) -> impl Iterator<Item = (Chunk<'a>, usize)> {
-        (0..self.count).step_by(WIDE).map(move |first| {
-            let column = |which: usize| side_by_side(self.columns[which], first);
-            (Chunk { x: column(0), y: column(1), grey: column(2), side: column(3) }, (self.count - first).min(WIDE))
-        })
+        (0..self.count).step_by(BLOCK).map(move |first| self.chunk(first))
+    }
+
+    #[inline(always)]
+    fn chunk(self, first: usize) -> (Chunk<'a>, usize) {
+        let column = |which: usize| side_by_side(self.columns[which], first);
+        (Chunk { x: column(0), y: column(1), grey: column(GREY), side: column(3) }, (self.count - first).min(BLOCK))
     }
 }
 
 /// All pixels of a window, in four lists.
 pub(super) struct Lists {
-    /// List after list the columns of each, with `room` for every pixel of the window and for [`WIDE`] more.
+    /// List after list the columns of each, with `room` for every pixel of the window and for [`BLOCK`] more.
     values: Vec<f32>,
     room: usize,
     counts: [usize; 4],
@@ -50,7 +72,7 @@ pub(super) struct Lists {
 
 impl Lists {
     pub(super) fn new(side: usize) -> Self {
-        let room = side * side + WIDE;
+        let room = side * side + BLOCK;
         Self { values: vec![0.0; 16 * room], room, counts: [0; 4], places: Places::of(side) }
     }
 
@@ -58,6 +80,27 @@ impl Lists {
     pub(super) fn list(&self, kind: usize) -> List<'_> {
         let column = |which: usize| &self.values[(4 * kind + which) * self.room..][..self.room];
         List { columns: [column(0), column(1), column(2), column(3)], count: self.counts[kind] }
+    }
+
+    /// The first pixels of the chunks of one kind.
+    #[inline(always)]
+    pub(super) fn firsts(&self, kind: usize) -> impl Iterator<Item = usize> + use<> {
+        (0..self.counts[kind]).step_by(BLOCK)
+    }
+
+    /// The chunk from a pixel on, and how many of its pixels count.
+    #[inline(always)]
+    pub(super) fn chunk(&self, kind: usize, first: usize) -> (Chunk<'_>, usize) {
+        self.list(kind).chunk(first)
+    }
+
+    /// Takes something from the grey values of a chunk.
+    #[inline(always)]
+    pub(super) fn take(&mut self, kind: usize, first: usize, what: &Block) {
+        let place = (4 * kind + GREY) * self.room + first;
+        for (grey, what) in self.values[place..place + BLOCK].iter_mut().zip(what) {
+            *grey -= what;
+        }
     }
 
     /// Sorts the pixels of the window, whose grey values these are; the corner lies at `(cx, cy)` from its centre.

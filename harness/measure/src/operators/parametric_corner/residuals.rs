@@ -7,7 +7,7 @@ use super::levels::Levels;
 use super::lists::{AREAS, CORNER, EDGES, Lists};
 use super::model::{Fidelity, Model};
 use super::window::Window;
-use crate::lanes::{WIDE, less};
+use crate::lanes::{BLOCK, WIDE, less};
 use crate::residuals::Structure;
 
 impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'_, P, GRADIENT, CURVED> {
@@ -42,14 +42,17 @@ fn fill<const GRADIENT: u8, const CURVED: bool>(
             let seen = model.seen(&x, &y);
             let value = match only {
                 None => model.corner_value::<CURVED>(&seen),
-                Some(2) => [1.0; WIDE],
+                Some(2) => [1.0; BLOCK],
                 Some(edge) => model.edge_value::<CURVED>(edge, &seen),
             };
-            for i in 0..count {
-                let index = (chunk.y[i] + half) as usize * stride + (chunk.x[i] + half) as usize;
+            let (places, mut left) = (chunk.places((half, stride)), [0.0; BLOCK]);
+            for i in 0..BLOCK {
                 let level = levels.at::<GRADIENT>(x[i], y[i]);
                 let side = if only.is_none() { 1.0 } else { chunk.side[i] };
-                into[index] = chunk.grey[i] - (level.mean + level.half * side * value[i]);
+                left[i] = chunk.grey[i] - (level.mean + level.half * side * value[i]);
+            }
+            for i in 0..count {
+                into[places[i] as usize] = left[i];
             }
         }
     }

@@ -17,15 +17,26 @@ impl<const P: usize> Sums<P> {
         Self { n: [[[0.0; WIDE]; P]; P], b: [[0.0; WIDE]; P], omega: [0.0; WIDE] }
     }
 
-    /// Adds the rows of one chunk: `j` the derivatives, `r` the residuals.
+    /// Adds the rows of one chunk: `j` the derivatives, of which those by unknown `NONE`, if there is such a one, are all zero; `r` the residuals.
     #[inline(always)]
-    pub(super) fn add(&mut self, j: &[Wide; P], r: &Wide) {
-        for row in 0..P {
-            for column in row..P {
-                add_products(&mut self.n[row][column], &j[row], &j[column]);
-            }
-            add_products(&mut self.b[row], &j[row], r);
+    pub(super) fn add<const NONE: usize>(&mut self, j: &[Wide; P], r: &Wide) {
+        // Each sum for itself: a loop over columns the compiler would work out side by side, by gathers and scatters, which takes twice as long.
+        macro_rules! column {
+            ($row:literal, $($column:literal)*) => {
+                $(if $row <= $column && $column < P && $column != NONE {
+                    add_products(&mut self.n[$row][$column], &j[$row], &j[$column]);
+                })*
+            };
         }
+        macro_rules! row {
+            ($($row:literal)*) => {
+                $(if $row < P && $row != NONE {
+                    column!($row, 0 1 2 3 4 5 6 7 8 9 10 11 12);
+                    add_products(&mut self.b[$row], &j[$row], r);
+                })*
+            };
+        }
+        row!(0 1 2 3 4 5 6 7 8 9 10 11 12);
         add_products(&mut self.omega, r, r);
     }
 

@@ -15,7 +15,7 @@ use super::sums::Sums;
 use crate::following::Laid;
 use crate::gradient::{ADDED, EACH, EVEN, LIGHT};
 use crate::grey_window::GreyWindow;
-use crate::lanes::{WIDE, Wide, less};
+use crate::lanes::{BLOCK, Block, WIDE, less};
 use crate::marquardt::{Normal, Problem};
 
 /// The widest window, px.
@@ -41,6 +41,8 @@ pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: b
     /// Grey values, corrected.
     pub(super) greys: GreyWindow<'a>,
     pub(super) pixels: Lists,
+    /// The unknowns for which they are sorted.
+    sorted: Option<SVector<f64, P>>,
     /// How often the normal equations may still be set up.
     pub(super) patience: usize,
 }
@@ -48,7 +50,7 @@ pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: b
 impl<'a, const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'a, P, GRADIENT, CURVED> {
     pub(super) fn new(image: &'a Image, setting: Setting) -> Self {
         let Setting { side, mean, half, .. } = setting;
-        Self { setting, greys: GreyWindow::new(image, side, mean, half), pixels: Lists::new(side), patience: EVALUATIONS }
+        Self { setting, greys: GreyWindow::new(image, side, mean, half), pixels: Lists::new(side), sorted: None, patience: EVALUATIONS }
     }
 
     /// The shape among the unknowns.
@@ -73,7 +75,9 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Problem<P> for Wind
         }
         let model = Model::new(&shape, Fidelity::Rough)?;
         let (levels, centre) = (self.levels(x), shape.position.map(|p| p as f32));
-        Some(normal::<P, GRADIENT, CURVED>(&model, &levels, centre, &self.greys.grey, &mut self.pixels))
+        let unsorted = (self.sorted != Some(*x)).then_some(&self.greys.grey[..]);
+        self.sorted = Some(*x);
+        Some(normal::<P, GRADIENT, CURVED>(&model, &levels, centre, unsorted, &mut self.pixels))
     }
 
     fn lowest(&self, unknown: usize) -> f64 {
@@ -93,6 +97,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Problem<P> for Wind
 impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Laid<P> for Window<'_, P, GRADIENT, CURVED> {
     fn centre_on(&mut self, pixel: (i64, i64)) {
         self.greys.centre_on(pixel);
+        self.sorted = None;
     }
 
     fn correct(&mut self, x: &SVector<f64, P>) -> Option<()> {
@@ -103,6 +108,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Laid<P> for Window<
         let centre = shape.position.map(|p| p as f32);
         let strips = [Strip::of(&shape, 0), Strip::of(&shape, 1)];
         correct::<GRADIENT, CURVED>((&models, &strips), &levels, centre, (&mut self.greys.grey, self.setting.side), &mut self.pixels);
+        self.sorted = Some(*x);
         Some(())
     }
 }
@@ -118,7 +124,8 @@ fn correct<const GRADIENT: u8, const CURVED: bool>(
     lists.sort(rough, grey, [cx, cy]);
     let half = (side / 2) as f32;
     for (kind, only) in [(CORNER, None), (EDGES[0], Some(0)), (EDGES[1], Some(1))] {
-        for (chunk, count) in lists.list(kind).chunks() {
+        for first in lists.firsts(kind) {
+            let (chunk, count) = lists.chunk(kind, first);
             let (x, y) = (less(chunk.x, cx), less(chunk.y, cy));
             let (there, here) = (full.seen(&x, &y), rough.seen(&x, &y));
             let [there, here] = match only {
@@ -126,33 +133,38 @@ fn correct<const GRADIENT: u8, const CURVED: bool>(
                 Some(edge) if CURVED => [full.edge_value::<true>(edge, &there), rough.edge_value::<true>(edge, &here)],
                 Some(edge) => [strips[edge].value(&there.straight[edge]), rough.edge_value::<false>(edge, &here)],
             };
-            for i in 0..count {
-                let index = (chunk.y[i] + half) as usize * side + (chunk.x[i] + half) as usize;
-                grey[index] -= levels.at::<GRADIENT>(x[i], y[i]).half * chunk.side[i] * (there[i] - here[i]);
+            let (places, mut left_out) = (chunk.places((half, side)), [0.0; BLOCK]);
+            for i in 0..BLOCK {
+                left_out[i] = levels.at::<GRADIENT>(x[i], y[i]).half * chunk.side[i] * (there[i] - here[i]);
             }
+            for i in 0..count {
+                grey[places[i] as usize] -= left_out[i];
+            }
+            lists.take(kind, first, &left_out);
         }
     }
 }
 
-// In this order: where scatters exist the compiler makes use of them for the sums, which takes twice as long.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn normal<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     model: &Model<f32>,
     levels: &Levels,
     centre: [f32; 2],
-    grey: &[f32],
+    unsorted: Option<&[f32]>,
     lists: &mut Lists,
 ) -> Normal<P> {
-    lists.sort(model, grey, centre);
+    if let Some(grey) = unsorted {
+        lists.sort(model, grey, centre);
+    }
     let mut sums = Sums::<P>::new();
     let rows = Rows::<P, GRADIENT> { levels, centre };
-    rows.add(lists.list(CORNER), &mut sums, |x, y, _| model.corner::<WIDE, CURVED>(x, y));
-    rows.add(lists.list(EDGES[0]), &mut sums, |x, y, side| model.edge::<WIDE, CURVED>(0, side, x, y));
-    rows.add(lists.list(EDGES[1]), &mut sums, |x, y, side| model.edge::<WIDE, CURVED>(1, side, x, y));
+    rows.add::<P>(lists.list(CORNER), &mut sums, |x, y, _| model.corner::<BLOCK, CURVED>(x, y));
+    rows.add::<3>(lists.list(EDGES[0]), &mut sums, |x, y, side| model.edge::<BLOCK, CURVED>(0, side, x, y));
+    rows.add::<2>(lists.list(EDGES[1]), &mut sums, |x, y, side| model.edge::<BLOCK, CURVED>(1, side, x, y));
     if GRADIENT == EVEN {
         rows.add_areas(lists.list(AREAS), &mut sums);
     } else {
-        rows.add(lists.list(AREAS), &mut sums, |_, _, side| Field::constant(*side));
+        rows.add::<P>(lists.list(AREAS), &mut sums, |_, _, side| Field::constant(*side));
     }
     sums.normal()
 }
@@ -168,49 +180,74 @@ impl<const P: usize, const GRADIENT: u8> Rows<'_, P, GRADIENT> {
     #[inline(always)]
     fn add_areas(&self, list: List<'_>, sums: &mut Sums<P>) {
         for (chunk, count) in list.chunks() {
-            let (mut one, mut side, mut r) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
-            for i in 0..WIDE {
-                one[i] = if i < count { 1.0 } else { 0.0 };
-                side[i] = one[i] * chunk.side[i];
-                r[i] = one[i] * (chunk.grey[i] - (self.levels.mean + self.levels.half * chunk.side[i]));
+            self.add_half_area::<0>((chunk.grey, chunk.side, count), sums);
+            if count > WIDE {
+                self.add_half_area::<WIDE>((chunk.grey, chunk.side, count), sums);
             }
-            sums.add_pair([5, 6], &one, &side, &r);
         }
     }
 
     #[inline(always)]
-    fn add(&self, list: List<'_>, sums: &mut Sums<P>, field: impl Fn(&Wide, &Wide, &Wide) -> Field<f32, WIDE>) {
-        let levels = self.levels;
+    fn add_half_area<const BEGIN: usize>(&self, (grey, which, count): (&Block, &Block, usize), sums: &mut Sums<P>) {
+        let (mut one, mut side, mut r) = ([0.0; WIDE], [0.0; WIDE], [0.0; WIDE]);
+        for i in 0..WIDE {
+            one[i] = if BEGIN + i < count { 1.0 } else { 0.0 };
+            side[i] = one[i] * which[BEGIN + i];
+            r[i] = one[i] * (grey[BEGIN + i] - (self.levels.mean + self.levels.half * which[BEGIN + i]));
+        }
+        sums.add_pair([5, 6], &one, &side, &r);
+    }
+
+    /// Pixels of one list, whose grey values do not tell of unknown `NONE`.
+    #[inline(always)]
+    fn add<const NONE: usize>(&self, list: List<'_>, sums: &mut Sums<P>, field: impl Fn(&Block, &Block, &Block) -> Field<f32, BLOCK>) {
         for (chunk, count) in list.chunks() {
-            let (x, y) = (less(chunk.x, self.centre[0]), less(chunk.y, self.centre[1]));
+            let [x, y] = [less(chunk.x, self.centre[0]), less(chunk.y, self.centre[1])];
             let field = field(&x, &y, chunk.side);
-            let (mut j, mut r) = ([[0.0; WIDE]; P], [0.0; WIDE]);
-            for i in 0..WIDE {
-                let weight = if i < count { 1.0 } else { 0.0 };
-                let (value, level) = (field.value[i], levels.at::<GRADIENT>(x[i], y[i]));
-                let scale = weight * level.half;
-                for axis in 0..2 {
-                    j[axis][i] = scale * field.position[axis][i];
-                    j[2 + axis][i] = scale * field.normals[axis][i];
-                    // The curvatures are last; without them this is overwritten.
-                    j[P - 2 + axis][i] = scale * field.curvature[axis][i];
-                }
-                j[4][i] = scale * field.variance[i];
-                j[5][i] = weight * level.gain;
-                j[6][i] = weight * level.gain * value;
-                for (axis, d) in [x[i], y[i]].into_iter().enumerate() {
-                    if matches!(GRADIENT, ADDED | LIGHT | EACH) {
-                        let [first, second] = levels.by_slopes::<GRADIENT>(d, value);
-                        j[axis][i] += weight * levels.by_position::<GRADIENT>(axis, value);
-                        j[BASE + axis][i] = weight * first;
-                        if GRADIENT == EACH {
-                            j[BASE + 2 + axis][i] = weight * second;
-                        }
+            self.add_half::<NONE, 0>((&x, &y), (chunk.grey, count), &field, sums);
+            if count > WIDE {
+                self.add_half::<NONE, WIDE>((&x, &y), (chunk.grey, count), &field, sums);
+            }
+        }
+    }
+
+    /// The pixels from `BEGIN` on, at (`x`, `y`) from the corner.
+    #[inline(always)]
+    fn add_half<const NONE: usize, const BEGIN: usize>(
+        &self,
+        (x, y): (&Block, &Block),
+        (grey, count): (&Block, usize),
+        field: &Field<f32, BLOCK>,
+        sums: &mut Sums<P>,
+    ) {
+        let levels = self.levels;
+        let (mut j, mut r) = ([[0.0; WIDE]; P], [0.0; WIDE]);
+        for i in 0..WIDE {
+            let at = BEGIN + i;
+            let weight = if at < count { 1.0 } else { 0.0 };
+            let (value, level) = (field.value[at], levels.at::<GRADIENT>(x[at], y[at]));
+            let scale = weight * level.half;
+            for axis in 0..2 {
+                j[axis][i] = scale * field.position[axis][at];
+                j[2 + axis][i] = scale * field.normals[axis][at];
+                // The curvatures are last; without them this is overwritten.
+                j[P - 2 + axis][i] = scale * field.curvature[axis][at];
+            }
+            j[4][i] = scale * field.variance[at];
+            j[5][i] = weight * level.gain;
+            j[6][i] = weight * level.gain * value;
+            for (axis, d) in [x[at], y[at]].into_iter().enumerate() {
+                if matches!(GRADIENT, ADDED | LIGHT | EACH) {
+                    let [first, second] = levels.by_slopes::<GRADIENT>(d, value);
+                    j[axis][i] += weight * levels.by_position::<GRADIENT>(axis, value);
+                    j[BASE + axis][i] = weight * first;
+                    if GRADIENT == EACH {
+                        j[BASE + 2 + axis][i] = weight * second;
                     }
                 }
-                r[i] = weight * (chunk.grey[i] - (level.mean + level.half * value));
             }
-            sums.add(&j, &r);
+            r[i] = weight * (grey[at] - (level.mean + level.half * value));
         }
+        sums.add::<NONE>(&j, &r);
     }
 }
