@@ -21,7 +21,7 @@ pub(super) struct Bank {
     pub(super) slopes: Vec<f32>,
     /// For each node, for each `LANES` columns: weighted samples by which the rows' values are multiplied: `W dy`, then `K` times each of the curve's
     /// functions, then for the blur `dK/dx dy` and `K dx`.
-    pub(super) across: Vec<[f32; LANES]>,
+    pub(super) across: Vec<Row>,
     /// For each panel, for each row: the first node that the row sees, and one more than the last.
     pub(super) first: Vec<u8>,
     pub(super) end: Vec<u8>,
@@ -29,6 +29,11 @@ pub(super) struct Bank {
     pub(super) beyond: Vec<f32>,
     pub(super) panels: Vec<Stretch>,
 }
+
+/// Numbers side by side, in one line of the cache: otherwise each is read from two.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Row(pub(super) [f32; LANES]);
 
 /// The nodes of one panel, and how the derivatives come of their functions.
 #[derive(Clone, Copy, Debug)]
@@ -125,7 +130,7 @@ impl Bank {
                     numbers[NUMBERS - 1] = scaled(&value, dx);
                 }
             }
-            self.across.extend_from_slice(&numbers);
+            self.across.extend_from_slice(&numbers.map(Row));
         }
     }
 

@@ -105,18 +105,18 @@ fn add<const B: usize, const NUMBERS: usize, const MOVED: bool, const BLURRED: b
     for node in first..end {
         let (numbers, down) = (&across[node * blocks + column / LANES], (panel.nodes + node) * bank.padded + row);
         let [k, next] = [bank.values[down], bank.values[down + 1]];
-        coverage = plus(&coverage, k, &numbers[0]);
-        below = plus(&below, next, &numbers[0]);
+        coverage = plus(&coverage, k, &numbers[0].0);
+        below = plus(&below, next, &numbers[0].0);
         if MOVED {
             for function in 0..B {
-                upper[function] = plus(&upper[function], k, &numbers[1 + function]);
-                lower[function] = plus(&lower[function], next, &numbers[1 + function]);
+                upper[function] = plus(&upper[function], k, &numbers[1 + function].0);
+                lower[function] = plus(&lower[function], next, &numbers[1 + function].0);
             }
         }
         if BLURRED {
             for (lane, (blur, k)) in blur.iter_mut().zip([k, next]).enumerate() {
-                *blur = plus(blur, k, &numbers[NUMBERS - 2]);
-                *blur = plus(blur, -bank.slopes[down + lane], &numbers[NUMBERS - 1]);
+                *blur = plus(blur, k, &numbers[NUMBERS - 2].0);
+                *blur = plus(blur, -bank.slopes[down + lane], &numbers[NUMBERS - 1].0);
             }
         }
     }
