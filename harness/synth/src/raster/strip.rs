@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use calibench_model::quadrature::gauss_legendre;
 use multiversion::multiversion;
 
-use super::piece::{Piece, at, slope};
+use super::piece::{Piece, Quartic, at, slope};
 use super::sharp;
 use crate::optics::{Kernel, Part};
 
@@ -150,11 +150,17 @@ fn each_node(piece: &Piece, sigma: f64, bounds: [f64; 2], parts: &[Part], rules:
     let stretches = (needed / MOST_NODES as f64).ceil();
     let rule = &rules.0[(needed / stretches).ceil() as usize];
     let step = 1.0 / stretches;
+    let bulge = beyond_chord(y, step);
     for part in parts {
         let reach = part.down.reach();
         let (low, high) = (bounds[0] - reach, bounds[1] + reach);
         for stretch in 0..stretches as usize {
             let start = stretch as f64 * step;
+            // Most of a long piece may lie above or below.
+            let [from, to] = [start, start + step].map(|t| at(y, t) + part.shift[1]);
+            if from.max(to) + bulge <= low || from.min(to) - bulge >= high {
+                continue;
+            }
             for &(t, weight) in rule {
                 let t = start + t * step;
                 let at_y = at(y, t) + part.shift[1];
@@ -165,6 +171,12 @@ fn each_node(piece: &Piece, sigma: f64, bounds: [f64; 2], parts: &[Part], rules:
             }
         }
     }
+}
+
+/// How far the polynomial leaves the range of its values at both ends of any stretch of `step` between 0 and 1, at most.
+#[inline(always)]
+fn beyond_chord([_, _, c2, c3, c4]: Quartic, step: f64) -> f64 {
+    (2.0 * c2.abs() + 6.0 * c3.abs() + 12.0 * c4.abs()) * step * step / 8.0
 }
 
 /// What a point of an outline changes.
@@ -228,4 +240,42 @@ fn mark_wide(strip: &mut Strip, part: &Part, [x, y]: [f64; 2], weight: f64) {
         }
     }
     strip.scratch = scratch;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Optics;
+
+    const WIDTH: usize = 40;
+    const ROWS: usize = 48;
+
+    /// The grey values of a piece in strips of so many rows.
+    fn in_strips(piece: &Piece, rows: usize) -> Vec<f64> {
+        let optics = Optics { aperture: 1.0, ..Optics::default() };
+        let kernel = Kernel::new(&optics, 0.6);
+        let (mut strip, mut grey) = (Strip::new(WIDTH, rows, kernel.reach()[0]), Vec::new());
+        for top in (0..ROWS).step_by(rows) {
+            strip.reset(top as i64, rows);
+            strip.add(std::slice::from_ref(piece), &[0], &kernel, Rules::all(), None);
+            strip.finish(0.0, |_, row| grey.extend_from_slice(row));
+        }
+        grey
+    }
+
+    #[test]
+    fn a_strip_leaves_out_nothing_of_a_long_piece() {
+        // Straight; an arc whose ends lie above all rows that its middle touches; one that swings to both sides.
+        let swings: [fn(f64) -> f64; 3] =
+            [|t| 60.0 * t - 6.0, |t| 160.0 * t * (1.0 - t) - 2.0, |t| 24.0 + 300.0 * t * (t - 0.5) * (t - 1.0)];
+        for (which, y) in swings.into_iter().enumerate() {
+            let at = |i: usize| 0.25 * i as f64;
+            let piece = Piece { points: std::array::from_fn(|i| [4.0 + 30.0 * at(i), y(at(i))]), contrast: 1.0 };
+            let whole = in_strips(&piece, ROWS);
+            assert!(whole.iter().filter(|grey| grey.abs() > 0.01).count() > ROWS, "piece {which}");
+            for rows in [1, 4, 16] {
+                assert_eq!(in_strips(&piece, rows), whole, "piece {which} in strips of {rows}");
+            }
+        }
+    }
 }
