@@ -4,7 +4,7 @@ mod gradients;
 
 use super::model::{Fidelity, Model, Shape};
 use super::*;
-use crate::lanes::{LANES, WIDE};
+use crate::lanes::{BLOCK, LANES};
 use crate::registry::Registry;
 use crate::tests::print_rate;
 use crate::tests::quadrature_images::{self, Chess};
@@ -184,13 +184,13 @@ fn single_precision_gives_the_same_grey_values() {
         let shape = shape_of(&Chess { curvature: [0.03, -0.02], ..chess(0.8, 0.7, blur, [0.1, 0.2]) });
         let (model, double) = (Model::<f32>::new(&shape, fidelity).unwrap(), Model::<f64>::new(&shape, fidelity).unwrap());
         for (x, y) in (-70..70).map(|i| (f64::from(i) * 0.07, f64::from(i * 37 % 61 - 30) * 0.1)) {
-            let (there, seen) = (([x; LANES], [y; LANES]), model.seen(&[x as f32; WIDE], &[y as f32; WIDE]));
+            let (there, seen) = (([x; LANES], [y; LANES]), model.seen(&[x as f32; BLOCK], &[y as f32; BLOCK]));
             let off =
                 |single: f32, double: f64| assert!((f64::from(single) - double).abs() < 2e-6, "{blur}, ({x}, {y}): {single} {double}");
             let full = double.corner::<LANES, true>(&there.0, &there.1);
             off(model.corner_value::<true>(&seen)[3], full.value[3]);
             off(model.corner_value::<false>(&seen)[15], double.corner::<LANES, false>(&there.0, &there.1).value[0]);
-            let single = model.corner::<WIDE, true>(&[x as f32; WIDE], &[y as f32; WIDE]);
+            let single = model.corner::<BLOCK, true>(&[x as f32; BLOCK], &[y as f32; BLOCK]);
             off(single.value[3], full.value[3]);
             // Those by direction and curvature grow with the distance and its square.
             let far = 1.0 + x * x + y * y;
