@@ -4,7 +4,9 @@ mod gradients;
 
 use super::model::{Fidelity, Model, Shape};
 use super::*;
+use crate::following::Laid;
 use crate::lanes::{BLOCK, LANES};
+use crate::marquardt::Problem;
 use crate::registry::Registry;
 use crate::tests::print_rate;
 use crate::tests::quadrature_images::{self, Chess};
@@ -78,6 +80,23 @@ fn conforms() {
     {
         crate::conformance::check_on(&*operator(spec), crate::conformance::chess_corner, 1e-5);
     }
+}
+
+#[test]
+fn a_window_that_is_laid_anew_reads_its_own_pixels() {
+    let image = quadrature_images::image(&chess(0.5, 0.4, 0.7, [0.2, -0.3]).render(SIDE), SIDE);
+    let x = SVector::from([0.2, -0.3, 0.4 - 0.7, 0.4 + 0.7, 0.5, 0.0, 1.0]);
+    let normal = |pixels: &[(i64, i64)]| {
+        let setting = Setting { side: 15, photosite: 1.0, mean: 0.5, half: 0.3 };
+        let mut window = Window::<7, EVEN, false>::new(&image, setting);
+        let laid = pixels.iter().map(|pixel| {
+            window.centre_on(*pixel);
+            window.normal(&x).unwrap().b
+        });
+        laid.last().unwrap()
+    };
+    assert_eq!(normal(&[(15, 15), (16, 14)]), normal(&[(16, 14)]));
+    assert_ne!(normal(&[(15, 15)]), normal(&[(16, 14)]));
 }
 
 #[test]
