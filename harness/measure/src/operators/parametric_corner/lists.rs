@@ -31,9 +31,9 @@ impl Chunk<'_> {
     #[inline(always)]
     pub(super) fn places(&self, (half, stride): (f32, usize)) -> [u32; BLOCK] {
         let mut places = [0; BLOCK];
-        for i in 0..BLOCK {
-            let place = (self.y[i] + half) * stride as f32 + (self.x[i] + half);
-            places[i] = (place + WHOLE).to_bits().wrapping_sub(WHOLE.to_bits());
+        for (i, place) in places.iter_mut().enumerate() {
+            let at = (self.y[i] + half) * stride as f32 + (self.x[i] + half);
+            *place = (at + WHOLE).to_bits().wrapping_sub(WHOLE.to_bits());
         }
         places
     }
