@@ -151,14 +151,17 @@ fn sixteen_bits_are_kept() {
 
 /// Of more pixels than one thread takes at once.
 #[test]
-fn eight_bits_are_the_nearest_levels_all_over_the_image() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("large.png");
+fn levels_are_the_nearest_all_over_the_image() {
     let image = Image::from_fn(701, 409, |x, y| ((x * 7919 + y * 104_729) % 65_521) as f32 / 64_000.0 - 0.01);
     assert!(image.grey().len() > PART);
-    write_png(&path, &image, false).unwrap();
-    let nearest: Vec<f32> = image.grey().iter().map(|grey| (255.0 * grey.clamp(0.0, 1.0)).round() / 255.0).collect();
-    assert_eq!(read_photo(&path).unwrap().image.grey(), nearest);
+    for (top, sixteen_bits) in [(255.0, false), (65_535.0, true)] {
+        let nearest: Vec<f32> = image.grey().iter().map(|grey| (top * grey.clamp(0.0, 1.0)).round() / top).collect();
+        for encode in [encode_png as fn(&mut dyn Write, &Image, bool) -> io::Result<()>, encode_png_densely] {
+            let mut file = Vec::new();
+            encode(&mut file, &image, sixteen_bits).unwrap();
+            assert_eq!(parse(&file).unwrap().image.grey(), nearest, "{sixteen_bits}");
+        }
+    }
 }
 
 #[test]

@@ -20,6 +20,7 @@ impl<const P: usize> Sums<P> {
     /// Adds the rows of one chunk: `j` the derivatives, of which those by unknown `NONE`, if there is such a one, are all zero; `r` the residuals.
     #[inline(always)]
     pub(super) fn add<const NONE: usize>(&mut self, j: &[Wide; P], r: &Wide) {
+        const { assert!(P <= 13, "unknowns that are summed") };
         // Each sum for itself: a loop over columns the compiler would work out side by side, by gathers and scatters, which takes twice as long.
         macro_rules! column {
             ($row:literal, $($column:literal)*) => {
