@@ -264,6 +264,27 @@ mod tests {
     }
 
     #[test]
+    fn no_polynomial_leaves_its_chord_further_than_is_said() {
+        // Between equal values at both ends, of each power alone.
+        for power in 2..=4 {
+            let mut polynomial = [0.0, -1.0, 0.0, 0.0, 0.0];
+            polynomial[power] = 1.0;
+            let lowest = (0..=100).map(|i| at(polynomial, 0.01 * f64::from(i))).fold(0.0, f64::min);
+            let said = beyond_chord(polynomial, 1.0);
+            assert!(lowest < -0.2 && -lowest <= said + 1e-12, "{power}: {lowest}, {said}");
+        }
+        // Of half the length a quarter, wherever the stretch begins.
+        let polynomial = [3.0, -4.0, 7.0, -5.0, 9.0];
+        assert_eq!(beyond_chord(polynomial, 0.5), 0.25 * beyond_chord(polynomial, 1.0));
+        for start in (0..=50).map(|i| 0.01 * f64::from(i)) {
+            let [from, to] = [start, start + 0.5].map(|t| at(polynomial, t));
+            let between = (0..=100).map(|i| at(polynomial, start + 0.005 * f64::from(i)));
+            let said = beyond_chord(polynomial, 0.5);
+            between.for_each(|y| assert!(y >= from.min(to) - said && y <= from.max(to) + said, "from {start}"));
+        }
+    }
+
+    #[test]
     fn a_strip_leaves_out_nothing_of_a_long_piece() {
         // Straight; an arc whose ends lie above all rows that its middle touches; one that swings to both sides.
         let swings: [fn(f64) -> f64; 3] =

@@ -19,6 +19,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'_, P, GRADI
         let stride = (side + 1).next_multiple_of(WIDE);
         let mut residual = vec![0.0; side * stride];
         fill::<GRADIENT, CURVED>(&model, &levels, centre, (&self.greys.grey, side), &mut self.pixels, (&mut residual, stride));
+        self.sorted = Some(*x);
         let half = x[6].abs() as f32;
         residual.iter_mut().for_each(|r| *r /= half);
         Some(Structure::of_whole(&residual, (side, stride)))

@@ -42,7 +42,7 @@ pub(super) struct Window<'a, const P: usize, const GRADIENT: u8, const CURVED: b
     pub(super) greys: GreyWindow<'a>,
     pub(super) pixels: Lists,
     /// The unknowns for which they are sorted.
-    sorted: Option<SVector<f64, P>>,
+    pub(super) sorted: Option<SVector<f64, P>>,
     /// How often the normal equations may still be set up.
     pub(super) patience: usize,
 }

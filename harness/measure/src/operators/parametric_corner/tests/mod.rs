@@ -100,6 +100,20 @@ fn a_window_that_is_laid_anew_reads_its_own_pixels() {
 }
 
 #[test]
+fn residuals_elsewhere_leave_the_normal_equations_as_they_are() {
+    let image = quadrature_images::image(&chess(0.5, 0.4, 0.7, [0.2, -0.3]).render(SIDE), SIDE);
+    let x = SVector::from([0.2, -0.3, 0.4 - 0.7, 0.4 + 0.7, 0.5, 0.0, 1.0]);
+    let setting = Setting { side: 15, photosite: 1.0, mean: 0.5, half: 0.3 };
+    let mut window = Window::<7, EVEN, false>::new(&image, setting);
+    window.centre_on((15, 15));
+    let before = window.normal(&x).unwrap();
+    let elsewhere = x + SVector::from([2.0, 3.0, 0.5, 0.4, 1.0, 0.0, 0.0]);
+    window.structure(&elsewhere).unwrap();
+    let after = window.normal(&x).unwrap();
+    assert_eq!((before.n, before.b, before.omega), (after.n, after.b, after.omega));
+}
+
+#[test]
 fn grey_values_are_exact() {
     // Blur, and how far off the mixture of Gaussians may be, in units of half the contrast.
     for (blur, expected) in [(0.3, 3e-5), (0.4, 2e-5), (0.6, 1e-5), (0.72, 3e-5), (1.0, 5e-6), (2.0, 2e-6)] {
