@@ -1,6 +1,7 @@
 //! `parametric_corner`: a chess corner's grey values, fitted.
 
 mod area;
+mod fields;
 mod levels;
 mod lists;
 mod model;

@@ -8,6 +8,7 @@ use multiversion::multiversion;
 use nalgebra::SVector;
 
 use super::area::Strip;
+use super::fields::{corner, edge};
 use super::levels::Levels;
 use super::lists::{AREAS, CORNER, EDGES, List, Lists};
 use super::model::{BASE, Fidelity, Field, Model, Shape};
@@ -158,9 +159,9 @@ fn normal<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     }
     let mut sums = Sums::<P>::new();
     let rows = Rows::<P, GRADIENT> { levels, centre };
-    rows.add::<P>(lists.list(CORNER), &mut sums, |x, y, _| model.corner::<BLOCK, CURVED>(x, y));
-    rows.add::<3>(lists.list(EDGES[0]), &mut sums, |x, y, side| model.edge::<BLOCK, CURVED>(0, side, x, y));
-    rows.add::<2>(lists.list(EDGES[1]), &mut sums, |x, y, side| model.edge::<BLOCK, CURVED>(1, side, x, y));
+    rows.add::<P>(lists.list(CORNER), &mut sums, |x, y, _| corner::<CURVED>(model, x, y));
+    rows.add::<3>(lists.list(EDGES[0]), &mut sums, |x, y, side| edge::<CURVED>(model, 0, side, x, y));
+    rows.add::<2>(lists.list(EDGES[1]), &mut sums, |x, y, side| edge::<CURVED>(model, 1, side, x, y));
     if GRADIENT == EVEN {
         rows.add_areas(lists.list(AREAS), &mut sums);
     } else {
