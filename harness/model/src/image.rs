@@ -138,15 +138,20 @@ pub fn levels_of(grey: &[f32], levels: &mut [u8]) {
     }
 }
 
+/// From it on numbers of single precision are whole.
+const WHOLE: f32 = 8_388_608.0;
+
 /// The level nearest to a grey value (fraction of full scale), of 0 (black) to `top` (white); halves go up, what lies outside is clipped, NaN becomes black.
 #[inline(always)]
 pub fn level(grey: f32, top: u16) -> u16 {
     // Written so that NaN is black.
     let inside = if grey > 0.0 { grey.min(1.0) } else { 0.0 };
     let scaled = inside * f32::from(top);
-    // The same as `round`, which is a call of the library for each pixel: here the difference is exact.
-    let whole = scaled as i32;
-    (whole + i32::from(scaled - whole as f32 >= 0.5)) as u16
+    // The lowest bits of the sum are the nearest whole number, halves to even; the difference from it is exact. `round` is a call of the library for each
+    // pixel, and a cast is taken apart into those of single numbers.
+    let shifted = scaled + WHOLE;
+    let up = scaled - (shifted - WHOLE) >= 0.5;
+    shifted.to_bits() as u16 + u16::from(up)
 }
 
 #[cfg(test)]

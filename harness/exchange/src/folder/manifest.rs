@@ -67,7 +67,7 @@ pub(super) fn entries(folder: &Path) -> io::Result<Vec<Entry>> {
 /// The digest of a file's content.
 pub(super) fn digest(path: &Path) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
-    File::open(path).and_then(|mut file| io::copy(&mut file, &mut hasher)).map_err(|error| at(path, &error))?;
+    File::open(path).and_then(|file| hasher.update_reader(file).map(drop)).map_err(|error| at(path, &error))?;
     Ok(hasher.finalize().to_hex().to_string())
 }
 

@@ -1,27 +1,27 @@
 //! Photographs in, images out.
 
+mod bands;
 mod budget;
 mod dense;
+mod filters;
 pub mod grey;
 mod jpeg;
 mod levels;
 mod turn;
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use calibench_model::camera::ImageSize;
-use calibench_model::image::levels_of;
-use calibench_model::{Image, level};
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, ImageFormat, ImageReader};
-use rayon::prelude::*;
+use calibench_model::Image;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use thiserror::Error;
 use tiff::encoder::{TiffEncoder, colortype};
 
 use crate::atomic::write_atomically;
 
+pub use bands::encode_png;
 pub use budget::MOST_BYTES;
 pub use dense::encode_png_densely;
 pub use levels::{Levels, read_levels};
@@ -29,8 +29,6 @@ pub use turn::Turn;
 
 /// Bytes of a file in which its orientation usually stands.
 const HEAD: u64 = 1 << 20;
-/// Pixels that a thread takes at once.
-const PART: usize = 1 << 18;
 
 /// A photograph that cannot be read, or an image that cannot be written.
 #[derive(Debug, Error)]
@@ -210,28 +208,6 @@ fn decoded(path: &Path, input: &mut dyn Input) -> Result<(DynamicImage, Option<T
 /// What the file system refuses; an older file is then as it was.
 pub fn write_png(path: &Path, image: &Image, sixteen_bits: bool) -> Result<(), PhotoError> {
     Ok(write_atomically(path, |file| encode_png(file, image, sixteen_bits))?)
-}
-
-/// Encodes an image as PNG of 8 or 16 bits, compressed fast; values outside [0, 1] are clipped, NaN is black.
-///
-/// # Errors
-/// What the output refuses.
-pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
-    let (width, height) = (image.width() as u32, image.height() as u32);
-    let (bytes, colour) = if sixteen_bits {
-        (image.grey().iter().flat_map(|grey| level(*grey, u16::MAX).to_ne_bytes()).collect(), ExtendedColorType::L16)
-    } else {
-        (to_u8(image), ExtendedColorType::L8)
-    };
-    let encoder = PngEncoder::new_with_quality(output, CompressionType::Fast, FilterType::Adaptive);
-    encoder.write_image(&bytes, width, height, colour).map_err(io::Error::other)
-}
-
-/// [`Image::to_u8`], on all threads.
-fn to_u8(image: &Image) -> Vec<u8> {
-    let mut levels = vec![0; image.grey().len()];
-    levels.par_chunks_mut(PART).zip(image.grey().par_chunks(PART)).for_each(|(levels, grey)| levels_of(grey, levels));
-    levels
 }
 
 /// Encodes the grey values as they are, as TIFF of single precision: 0 is black and 1 is white.

@@ -58,7 +58,7 @@ fn share(camera: &dyn CameraModel) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{OpenCv, OpenCvFisheye};
+    use crate::camera::{Ebner, OpenCv, OpenCvFisheye, Photogrammetric};
 
     /// The search alone.
     struct Searched<'a>(&'a dyn CameraModel);
@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn what_is_surely_without_a_fold_has_none() {
         let size = ImageSize { width: 640, height: 480 };
-        let (mut sure, mut folded) = (0, 0);
+        let (mut sure, mut folded) = ([0; 4], [0; 4]);
         for i in 0..400_u32 {
             // Coefficients of every sign and size, principal points beside the middle.
             let part = |shift: u32, scale: f64| {
@@ -102,15 +102,20 @@ mod tests {
             let pinhole = OpenCv { size, fx: 500.0, fy: 480.0, cx, cy, distortion, coefficients: 5 };
             let k = [part(0, 0.4), part(5, 0.2), part(9, 0.1), part(13, 0.02)];
             let fisheye = OpenCvFisheye { size, fx: 260.0, fy: 255.0, cx, cy, skew: part(17, 0.1), k };
-            for camera in [&pinhole as &dyn CameraModel, &fisheye] {
+            // Half a frame has 0.0032 x 0.0024 m: coefficients that fold at its corners, or nearly.
+            let (k, p) = ([part(0, 0.1), part(5, 0.004), part(9, 1e-4)], [part(13, 0.02), part(17, 0.02)]);
+            let measured =
+                Photogrammetric { size, pitch_um: 10.0, c: 5.0, x0: part(21, 2.0), y0: part(25, 2.0), k, p, b: [part(3, 0.1), part(7, 0.1)] };
+            let ebner = Ebner { base: Photogrammetric { k: [0.0; 3], ..measured }, b_mm: 2.0, parameters: std::array::from_fn(|j| part(2 * j as u32, 0.06)) };
+            for (kind, camera) in [&pinhole as &dyn CameraModel, &fisheye, &measured, &ebner].into_iter().enumerate() {
                 let found = fold(&Searched(camera));
                 if camera.has_surely_no_fold() {
-                    sure += 1;
-                    assert_eq!(found, None, "{pinhole:?} {fisheye:?}");
+                    sure[kind] += 1;
+                    assert_eq!(found, None, "{pinhole:?} {fisheye:?} {measured:?} {ebner:?}");
                 }
-                folded += usize::from(found.is_some());
+                folded[kind] += usize::from(found.is_some());
             }
         }
-        assert!(sure > 150 && folded > 150, "{sure} {folded}");
+        assert!(sure.iter().chain(&folded).all(|&count| count > 50), "{sure:?} {folded:?}");
     }
 }

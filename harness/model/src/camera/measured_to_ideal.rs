@@ -79,13 +79,21 @@ pub(super) fn derivatives_into(camera: &impl Correction, ray: Ray, into: &mut De
     Ok(())
 }
 
+/// Distance from the principal point beyond which nothing of the frame lies, mm.
+fn farthest(base: &Photogrammetric) -> f64 {
+    let half = |length: u32, offset: f64| f64::from(length) * base.pitch_um * 5e-4 + offset.abs();
+    half(base.size.width, base.x0).hypot(half(base.size.height, base.y0))
+}
+
+pub(super) fn has_surely_no_fold(camera: &impl Correction) -> bool {
+    camera.is_surely_one_to_one(farthest(camera.base()))
+}
+
 pub(super) fn fold_towards(camera: &impl Correction, angle: f64) -> Option<PixelPoint> {
     let base = camera.base();
-    let half = |length: u32, offset: f64| f64::from(length) * base.pitch_um * 5e-4 + offset.abs();
-    let farthest = half(base.size.width, base.x0).hypot(half(base.size.height, base.y0));
     // Angles are those of the image, y down.
     let (sin, cos) = angle.sin_cos();
-    let s = plane_map::first_fold(|s| determinant(camera.map([s * cos, -s * sin]).1), farthest, PLACES)?;
+    let s = plane_map::first_fold(|s| determinant(camera.map([s * cos, -s * sin]).1), farthest(base), PLACES)?;
     to_pixel(base, [s * cos, -s * sin]).ok()
 }
 
@@ -131,6 +139,10 @@ macro_rules! measured_camera {
 
             fn fold_towards(&self, angle: f64) -> Option<$crate::PixelPoint> {
                 $crate::camera::measured_to_ideal::fold_towards(self, angle)
+            }
+
+            fn has_surely_no_fold(&self) -> bool {
+                $crate::camera::measured_to_ideal::has_surely_no_fold(self)
             }
         }
     };
