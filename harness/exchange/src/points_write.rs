@@ -1,11 +1,11 @@
 //! Measured points, written.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use calibench_model::{Measurement, Rejection, Start, escape};
+use calibench_model::{Measurement, Rejection, Start};
 
 use crate::points::{COVARIANCE, PointRef, REQUIRED, RESULT, SHAPE};
+use crate::table::{Row, write_made_rows};
 
 /// One measured, rejected or unmeasurable point.
 #[derive(Clone, Debug)]
@@ -36,21 +36,19 @@ pub enum Outcome {
 /// # Errors
 /// What the output refuses.
 pub fn write_measured<'a>(output: impl Write, rows: impl IntoIterator<Item = MeasuredRow<'a>>) -> io::Result<()> {
-    let mut writer = Rows::new(output, &[&REQUIRED[..], &COVARIANCE, &SHAPE, &RESULT])?;
-    for row in rows {
+    let columns = [&REQUIRED[..], &COVARIANCE, &SHAPE, &RESULT].concat();
+    write_made_rows(output, &columns, rows, |row, cells| {
         let (position, covariance, status, reason) = match &row.outcome {
             Outcome::Measured(found) => (Some(found.position), found.covariance, "measured", ""),
             Outcome::Rejected(rejection) => (None, None, "rejected", rejection.name()),
             Outcome::Unavailable(why) => (None, None, "unavailable", why.as_str()),
         };
-        writer.names([row.given.image, row.given.target])?;
-        writer.numbers(position.map(|p| [p.x, p.y]))?;
-        writer.numbers(covariance.map(|s| [s.sxx, s.sxy, s.syy]))?;
-        writer.shape(&row.given.start)?;
-        writer.names([row.method, status, reason])?;
-        writer.end()?;
-    }
-    writer.csv.flush()
+        texts(cells, [row.given.image, row.given.target]);
+        numbers(cells, position.map(|p| [p.x, p.y]));
+        numbers(cells, covariance.map(|s| [s.sxx, s.sxy, s.syy]));
+        shape(cells, &row.given.start);
+        texts(cells, [row.method, status, reason]);
+    })
 }
 
 /// Writes a point file without covariances: image, target, x, y and the shape.
@@ -58,57 +56,28 @@ pub fn write_measured<'a>(output: impl Write, rows: impl IntoIterator<Item = Mea
 /// # Errors
 /// What the output refuses.
 pub fn write_points<'a>(output: impl Write, rows: impl IntoIterator<Item = PointRef<'a>>) -> io::Result<()> {
-    let mut writer = Rows::new(output, &[&REQUIRED[..], &SHAPE])?;
-    for row in rows {
-        writer.names([row.image, row.target])?;
-        writer.numbers(Some([row.start.position.x, row.start.position.y]))?;
-        writer.shape(&row.start)?;
-        writer.end()?;
-    }
-    writer.csv.flush()
+    write_made_rows(output, &[&REQUIRED[..], &SHAPE].concat(), rows, |row, cells| {
+        texts(cells, [row.image, row.target]);
+        numbers(cells, Some([row.start.position.x, row.start.position.y]));
+        shape(cells, &row.start);
+    })
 }
 
-/// Rows, cell by cell: a file may have ten million of them.
-struct Rows<W: Write> {
-    csv: csv::Writer<W>,
-    digits: String,
+fn texts<const N: usize>(cells: &mut Row, texts: [&str; N]) {
+    texts.into_iter().for_each(|text| cells.text(text));
 }
 
-impl<W: Write> Rows<W> {
-    fn new(output: W, header: &[&[&str]]) -> io::Result<Self> {
-        let mut csv = csv::Writer::from_writer(output);
-        csv.write_record(header.concat())?;
-        Ok(Self { csv, digits: String::new() })
+/// Empty cells where there are none.
+fn numbers<const N: usize>(cells: &mut Row, values: Option<[f64; N]>) {
+    match values {
+        Some(values) => values.into_iter().for_each(|value| cells.number(value)),
+        None => texts(cells, [""; N]),
     }
+}
 
-    fn names<const N: usize>(&mut self, names: [&str; N]) -> io::Result<()> {
-        Ok(names.into_iter().try_for_each(|name| self.csv.write_field(escape::cell(name).as_bytes()))?)
-    }
-
-    fn numbers<const N: usize>(&mut self, values: Option<[f64; N]>) -> io::Result<()> {
-        for i in 0..N {
-            self.digits.clear();
-            if let Some(values) = values {
-                // Writing to a String cannot fail.
-                let _ = write!(self.digits, "{}", values[i]);
-            }
-            self.csv.write_field(&self.digits)?;
-        }
-        Ok(())
-    }
-
-    fn shape(&mut self, start: &Start) -> io::Result<()> {
-        self.digits.clear();
-        if let Some(kind) = start.kind {
-            let _ = write!(self.digits, "{kind}");
-        }
-        self.csv.write_field(&self.digits)?;
-        self.numbers(start.affine.map(|a| [a.axx, a.axy, a.ayx, a.ayy]))
-    }
-
-    fn end(&mut self) -> io::Result<()> {
-        Ok(self.csv.write_record(None::<&[u8]>)?)
-    }
+fn shape(cells: &mut Row, start: &Start) {
+    cells.text(&start.kind.map_or_else(String::new, |kind| kind.to_string()));
+    numbers(cells, start.affine.map(|a| [a.axx, a.axy, a.ayx, a.ayy]));
 }
 
 #[cfg(test)]

@@ -93,7 +93,8 @@ mod tests {
         for turn in (2..=8).filter_map(|exif| Turn::of(Orientation::from_exif(exif)?)) {
             let mut turned = image.clone();
             turn.apply_to_levels(&mut turned);
-            assert_eq!(grey::of(&turned), turn.apply(&grey::of(&image)), "{turn}");
+            let all = |image: &DynamicImage| grey::of_rows(image, 0..image.height() as usize);
+            assert_eq!(all(&turned), turn.apply(&all(&image)), "{turn}");
         }
     }
 }

@@ -5,6 +5,7 @@ mod budget;
 mod dense;
 mod filters;
 pub mod grey;
+mod helped;
 mod jpeg;
 mod levels;
 mod turn;
@@ -176,8 +177,8 @@ pub fn parse_photo(path: &Path, bytes: &[u8]) -> Result<Photo, PhotoError> {
 }
 
 fn decode(path: &Path, input: &mut dyn Input) -> Result<Photo, PhotoError> {
-    let (image, turn, _share) = decoded(path, input)?;
-    let image = grey::of(&image);
+    let (image, turn, share) = decoded(path, input)?;
+    let image = helped::grey_of(image, share);
     let image = if let Some(turn) = turn { turn.apply(&image) } else { image };
     Ok(Photo { image, turn })
 }

@@ -169,7 +169,8 @@ fn levels_are_the_nearest_all_over_the_image() {
 
 #[test]
 fn colour_is_not_rounded_to_levels() {
-    let grey = grey_of::<u8, 3>(&[10, 20, 30, 255, 255, 255], 255.0);
+    let mut grey = [0.0; 2];
+    grey_of::<u8, 3>(&[10, 20, 30, 255, 255, 255], 255.0, &mut grey);
     assert!((f64::from(grey[0]) - (2.99 + 11.74 + 3.42) / 255.0).abs() < 1e-8 && (grey[1] - 1.0).abs() < 1e-7);
     let deep: Vec<u8> = [1000_u16, 2000, 65535].iter().flat_map(|level| level.to_le_bytes()).collect();
     let expected = ((0.299 * 1000.0 + 0.587 * 2000.0 + 0.114 * 65535.0) / 65535.0) as f32;

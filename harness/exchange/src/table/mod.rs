@@ -10,9 +10,9 @@ pub use csv_row::Row;
 mod csv_row;
 
 /// Rows that one thread writes at a time.
-const PIECE: usize = 1 << 12;
+const PIECE: usize = 1 << 10;
 /// Pieces that wait in memory.
-const BATCH: usize = 16;
+const BATCH: usize = 64;
 
 /// Writes a header and rows, each with as many cells, names as [`escape::cell`] has them.
 ///
@@ -34,16 +34,29 @@ pub(crate) fn write_row<W: Write>(writer: &mut csv::Writer<W>, cells: impl IntoI
     writer.write_record(None::<&[u8]>)
 }
 
-/// Writes a header and `count` rows, made on all threads; the bytes do not depend on how many there are. They are those of [`write_table`], but for
-/// the last digit of a number halfway between two that are equally short, which is even here.
+/// Writes a header and `count` rows: [`write_made_rows`] of their numbers.
+///
+/// # Errors
+/// As [`write_made_rows`].
+pub fn write_rows(output: impl Write, columns: &[&str], count: usize, row: impl Fn(usize, &mut Row) + Sync) -> io::Result<()> {
+    write_made_rows(output, columns, 0..count, |index, cells| row(*index, cells))
+}
+
+/// Writes a header and a row for each of `given`, made by `row` on all threads; the bytes do not depend on how many there are. They are those of
+/// [`write_table`], but for the last digit of a number halfway between two that are equally short, which is even here.
 ///
 /// # Errors
 /// What the output refuses; a row with another number of cells than the header.
-pub fn write_rows(mut output: impl Write, columns: &[&str], count: usize, row: impl Fn(usize, &mut Row) + Sync) -> io::Result<()> {
-    let piece = |first: usize| {
+pub fn write_made_rows<R: Send + Sync>(
+    mut output: impl Write,
+    columns: &[&str],
+    given: impl IntoIterator<Item = R>,
+    row: impl Fn(&R, &mut Row) + Sync,
+) -> io::Result<()> {
+    let piece = |given: &[R]| {
         let mut piece = Row::default();
-        for index in first..(first + PIECE).min(count) {
-            row(index, &mut piece);
+        for one in given {
+            row(one, &mut piece);
             piece.end(columns.len())?;
         }
         Ok(piece)
@@ -52,20 +65,22 @@ pub fn write_rows(mut output: impl Write, columns: &[&str], count: usize, row: i
     columns.iter().for_each(|column| header.text(column));
     header.end(columns.len())?;
     output.write_all(header.bytes())?;
-    let made = |batch: usize| {
-        let firsts = (batch.min(count)..count.min(batch + PIECE * BATCH)).into_par_iter().step_by(PIECE);
-        firsts.map(piece).collect::<io::Result<Vec<_>>>()
-    };
-    let mut next = made(0);
-    for batch in (0..count).step_by(PIECE * BATCH) {
+    let mut given = given.into_iter();
+    let mut batch = || given.by_ref().take(PIECE * BATCH).collect::<Vec<R>>();
+    let made = |batch: &[R]| batch.par_chunks(PIECE).map(piece).collect::<io::Result<Vec<_>>>();
+    let mut next = made(&batch());
+    loop {
         let ready = std::mem::replace(&mut next, Ok(Vec::new()))?;
+        if ready.is_empty() {
+            return output.flush();
+        }
+        let batch = batch();
         // The next rows are made while these are written.
         rayon::in_place_scope(|scope| {
-            scope.spawn(|_| next = made(batch + PIECE * BATCH));
+            scope.spawn(|_| next = made(&batch));
             ready.iter().try_for_each(|piece| output.write_all(piece.bytes()))
         })?;
     }
-    output.flush()
 }
 
 #[cfg(test)]
