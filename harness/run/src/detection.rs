@@ -53,6 +53,14 @@ impl Tally {
         found.iter().for_each(|(name, at)| add(truth.judged(name, *at), 1));
     }
 
+    /// Adds what another one counted.
+    pub fn join(&mut self, other: Self) {
+        for (method, counts) in other.0 {
+            let all = self.0.entry(method).or_default();
+            counts.into_iter().for_each(|(what, count)| *all.entry(what).or_default() += count);
+        }
+    }
+
     /// The figures of a trial, by method, under the set of place `set`.
     pub fn calibrated(self, set: usize) -> Vec<Calibrated> {
         let figure = |(what, count): (&str, u64)| Figure::plain(Group::Network, format!("{DETECTED}{what}/all"), count as f64, "");
@@ -84,6 +92,21 @@ mod tests {
         assert_eq!((all.len(), one.method, one.set), (0, 2, 4));
         let figures = one.outcome.unwrap();
         move |what| figures.iter().find(|figure| *figure.name == format!("board/{what}/all")).map(|figure| figure.value)
+    }
+
+    #[test]
+    fn counts_of_images_are_summed_by_method() {
+        let truth = TruePlaces { all: [("a", (at(10.0), true))].into() };
+        let images = [(2, Ok(vec![("a", at(10.0))])), (5, Err(Rejection::NotDetected)), (2, Ok(vec![("a", at(90.0)), ("b", at(10.0))]))];
+        let (mut together, mut joined) = (Tally::default(), Tally::default());
+        for (method, found) in &images {
+            together.image(*method, found, &truth);
+            let mut one = Tally::default();
+            one.image(*method, found, &truth);
+            joined.join(one);
+        }
+        assert_eq!(joined.0, together.0);
+        assert_eq!([joined.0[&2]["images"], joined.0[&2]["off"], joined.0[&5]["images"]], [2, 1, 1]);
     }
 
     #[test]

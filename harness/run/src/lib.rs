@@ -25,6 +25,7 @@ mod tools;
 pub mod transfer;
 mod trials;
 pub mod truth;
+mod viewed;
 pub mod views;
 
 pub use error::RunError;

@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use calibench_exchange::encode_png_densely;
-use calibench_measure::{ImageId, Sought};
+use calibench_measure::Sought;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, ObjectTarget, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
-use calibench_records::names::kept_image_name;
 use calibench_records::results::{PointResult, Trial};
 use calibench_scenario::{Blocks, Calibration, ViewsSubject};
 use calibench_synth::raster::{Picture, Renderer};
@@ -17,10 +15,8 @@ use calibench_synth::view::{TargetTruth, View, Visibility};
 use rayon::prelude::*;
 
 use super::bounds::{BySet, TargetBounds};
-use super::detection::{Tally, TruePlaces};
-use super::recognition::{Counted, keep_steps, recognise, shown};
+use super::viewed::run_views;
 use super::{Plan, RunError};
-use crate::measured::{Asked, Pictured};
 use crate::network::Job;
 use crate::{blocks, network};
 
@@ -30,10 +26,10 @@ pub struct Prepared<'a> {
     pub subject: &'a ViewsSubject,
     /// The views, in the order of the stations.
     pub views: Vec<PreparedView<'a>>,
-    renderer: Renderer,
-    targets: Vec<Arc<str>>,
+    pub(super) renderer: Renderer,
+    pub(super) targets: Vec<Arc<str>>,
     /// The board that is seen, if it is one.
-    sought: Option<Sought>,
+    pub(super) sought: Option<Sought>,
 }
 
 /// A station's outlines and truth.
@@ -45,8 +41,8 @@ pub struct PreparedView<'a> {
     /// The truth about each target of the field.
     pub truth: Vec<TargetTruth>,
     /// The bound of each target that is measured.
-    bounds: Vec<BySet>,
-    name: Arc<str>,
+    pub(super) bounds: Vec<BySet>,
+    pub(super) name: Arc<str>,
 }
 
 impl<'a> Prepared<'a> {
@@ -211,68 +207,6 @@ fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Optio
     Trial { number: key.trial, points: by_method.into_iter().flatten().collect(), ..Trial::default() }
 }
 
-fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
-    let number = key.trial;
-    let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
-    let (subject, counts) = (prepared.subject, plan.counts_detections());
-    let (mut counted, mut tally) = (Counted::default(), Tally::default());
-    for (place, view) in prepared.views.iter().enumerate() {
-        let image = prepared.image(view, key)?.image;
-        let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
-        let starts = match &subject.recognition {
-            Some(recognition) => {
-                if let Some(folder) = plan.images.filter(|_| number == 0) {
-                    keep_steps(recognition, &image, (place, &view.station.name), folder)?;
-                }
-                let recognised = recognise(recognition, &image, place, &view.truth, &subject.field);
-                counted.join(recognised.counted);
-                seen.iter().map(|point| recognised.starts.get(&point.target).copied()).collect()
-            }
-            None => started(prepared, &image, &seen),
-        };
-        let name = |point: &Pointed| &*prepared.targets[point.target];
-        let asked = seen.iter().zip(starts).map(|(point, start)| Asked { name: name(point), kind: kind_of(prepared, point), start });
-        let which = Some(ImageId { trial: number, view: &view.station.name });
-        let picture = Pictured { which, image: &image, board: prepared.sought.as_ref() };
-        let truth = counts.then(|| true_places(prepared, view));
-        for (method, answers) in plan.measure(picture, &asked.collect::<Vec<_>>()) {
-            if let (Some(found), Some(truth)) = (&answers.found, &truth) {
-                tally.image(method, found, truth);
-            }
-            let unknowns = plan.unknowns(method);
-            let points = seen.iter().zip(answers.results).filter_map(|(point, result)| Some((point, result?))).map(|(point, result)| {
-                let bound = view.bounds[point.target].get(&unknowns).copied().flatten();
-                let target = prepared.targets[point.target].clone();
-                PointResult { bound, ..PointResult::scored(view.name.clone(), target, method, point.truth, result) }
-            });
-            by_method[method].extend(points);
-        }
-        let is_shown = is_first(&by_method, &view.name) || subject.recognition.as_ref().is_some_and(|plan| shown(plan) == Some(place));
-        if let Some(folder) = plan.images.filter(|_| number == 0 && is_shown) {
-            // Pages show 8 bits, and noise below the levels of a sensor, or of an image without any, does not compress.
-            let deep = subject.imaging.has_deep_levels();
-            folder.write(&kept_image_name(&view.station.name), |file| encode_png_densely(file, &image, deep))?;
-        }
-    }
-    let mut trial = Trial { number, points: by_method.into_iter().flatten().collect(), ..Trial::default() };
-    if let Some(recognition) = &subject.recognition {
-        trial.calibrations.push(counted.calibrated(recognition, subject.sets().len() - 1));
-    }
-    trial.calibrations.extend(tally.calibrated(0));
-    Ok(trial)
-}
-
-/// Where the targets are in the image of a view.
-fn true_places<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>) -> TruePlaces<'p> {
-    let place = |(name, truth): (&'p Arc<str>, &TargetTruth)| Some((&**name, (truth.at?, is_pointed_at(prepared.subject, truth))));
-    TruePlaces { all: prepared.targets.iter().zip(&view.truth).filter_map(place).collect() }
-}
-
-/// Whether the first point of all, which decides the image that pages show, lies in `view`. Noisy images do not compress: only this one is kept.
-fn is_first(by_method: &[Vec<PointResult>], view: &str) -> bool {
-    by_method.iter().find_map(|points| points.first()).is_some_and(|point| &*point.view == view)
-}
-
 /// The image of the first view in the first trial, and where measuring starts in it.
 ///
 /// # Errors
@@ -291,14 +225,14 @@ pub fn starts<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>, image: &I
     pointed(prepared, view, image, key).into_iter().filter_map(|(point, start)| Some((&*prepared.targets[point.target], start?))).collect()
 }
 
-fn started(prepared: &Prepared<'_>, image: &Image, seen: &[Pointed]) -> Vec<Option<Start>> {
+pub(super) fn started(prepared: &Prepared<'_>, image: &Image, seen: &[Pointed]) -> Vec<Option<Start>> {
     match &prepared.subject.detector {
         Some(detector) => detector.starts(image, seen.iter().map(|point| (&*prepared.targets[point.target], point.truth))),
         None => seen.iter().map(|point| Some(point.start)).collect(),
     }
 }
 
-fn kind_of(prepared: &Prepared<'_>, point: &Pointed) -> TargetKind {
+pub(super) fn kind_of(prepared: &Prepared<'_>, point: &Pointed) -> TargetKind {
     prepared.subject.field.targets[point.target].kind
 }
 
@@ -324,7 +258,7 @@ pub fn is_pointed_at(subject: &ViewsSubject, truth: &TargetTruth) -> bool {
     truth.visibility == Visibility::Visible || (subject.clipped && truth.visibility == Visibility::Clipped)
 }
 
-fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<Pointed> {
+pub(super) fn seen(prepared: &Prepared<'_>, view: &PreparedView<'_>, key: Key<'_>) -> Vec<Pointed> {
     let targets = &prepared.subject.field.targets;
     let pointed_at = view.truth.iter().enumerate().filter(|(_, truth)| is_pointed_at(prepared.subject, truth));
     let point = |(index, truth): (usize, &TargetTruth)| {

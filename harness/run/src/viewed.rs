@@ -1,0 +1,104 @@
+//! The views of a trial: drawn and measured side by side, put together in their order.
+
+use std::sync::Arc;
+
+use calibench_exchange::encode_png_densely;
+use calibench_measure::ImageId;
+use calibench_model::Image;
+use calibench_random::Key;
+use calibench_records::names::kept_image_name;
+use calibench_records::results::{PointResult, Trial};
+use calibench_synth::view::TargetTruth;
+use rayon::prelude::*;
+
+use super::detection::{Tally, TruePlaces};
+use super::recognition::{Counted, keep_steps, recognise, shown};
+use super::views::{Pointed, Prepared, PreparedView, is_pointed_at, kind_of, seen, started};
+use super::{Plan, RunError};
+use crate::measured::{Asked, Pictured};
+
+/// What was made of one view.
+struct Viewed {
+    image: Image<'static>,
+    /// By method, with its place.
+    points: Vec<(usize, Vec<PointResult>)>,
+    counted: Counted,
+    tally: Tally,
+}
+
+pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
+    let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
+    let (mut counted, mut tally) = (Counted::default(), Tally::default());
+    let views: Vec<(usize, &PreparedView<'_>)> = prepared.views.iter().enumerate().collect();
+    // As many images as threads are in memory.
+    for batch in views.chunks(rayon::current_num_threads()) {
+        let viewed = batch.par_iter().map(|&(place, view)| of_view(plan, prepared, (place, view), key)).collect::<Vec<_>>();
+        for (&(place, view), viewed) in batch.iter().zip(viewed) {
+            let viewed = viewed?;
+            viewed.points.into_iter().for_each(|(method, points)| by_method[method].extend(points));
+            counted.join(viewed.counted);
+            tally.join(viewed.tally);
+            let is_shown =
+                is_first(&by_method, &view.name) || prepared.subject.recognition.as_ref().is_some_and(|plan| shown(plan) == Some(place));
+            if let Some(folder) = plan.images.filter(|_| key.trial == 0 && is_shown) {
+                // Pages show 8 bits, and noise below the levels of a sensor, or of an image without any, does not compress.
+                let deep = prepared.subject.imaging.has_deep_levels();
+                folder.write(&kept_image_name(&view.station.name), |file| encode_png_densely(file, &viewed.image, deep))?;
+            }
+        }
+    }
+    let mut trial = Trial { number: key.trial, points: by_method.into_iter().flatten().collect(), ..Trial::default() };
+    if let Some(recognition) = &prepared.subject.recognition {
+        trial.calibrations.push(counted.calibrated(recognition, prepared.subject.sets().len() - 1));
+    }
+    trial.calibrations.extend(tally.calibrated(0));
+    Ok(trial)
+}
+
+fn of_view(plan: &Plan<'_>, prepared: &Prepared<'_>, (place, view): (usize, &PreparedView<'_>), key: Key<'_>) -> Result<Viewed, RunError> {
+    let image = prepared.image(view, key)?.image;
+    let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
+    let (mut counted, mut tally) = (Counted::default(), Tally::default());
+    let starts = match &prepared.subject.recognition {
+        Some(recognition) => {
+            if let Some(folder) = plan.images.filter(|_| key.trial == 0) {
+                keep_steps(recognition, &image, (place, &view.station.name), folder)?;
+            }
+            let recognised = recognise(recognition, &image, place, &view.truth, &prepared.subject.field);
+            counted.join(recognised.counted);
+            seen.iter().map(|point| recognised.starts.get(&point.target).copied()).collect()
+        }
+        None => started(prepared, &image, &seen),
+    };
+    let name = |point: &Pointed| &*prepared.targets[point.target];
+    let asked = seen.iter().zip(starts).map(|(point, start)| Asked { name: name(point), kind: kind_of(prepared, point), start });
+    let which = Some(ImageId { trial: key.trial, view: &view.station.name });
+    let picture = Pictured { which, image: &image, board: prepared.sought.as_ref() };
+    let truth = plan.counts_detections().then(|| true_places(prepared, view));
+    let of_method = |(method, answers): (usize, crate::measured::Answers<'_>)| {
+        if let (Some(found), Some(truth)) = (&answers.found, &truth) {
+            tally.image(method, found, truth);
+        }
+        let unknowns = plan.unknowns(method);
+        let results = seen.iter().zip(answers.results).filter_map(|(point, result)| Some((point, result?)));
+        let points = results.map(|(point, result)| {
+            let bound = view.bounds[point.target].get(&unknowns).copied().flatten();
+            let target = prepared.targets[point.target].clone();
+            PointResult { bound, ..PointResult::scored(view.name.clone(), target, method, point.truth, result) }
+        });
+        (method, points.collect())
+    };
+    let points = plan.measure(picture, &asked.collect::<Vec<_>>()).into_iter().map(of_method).collect();
+    Ok(Viewed { image, points, counted, tally })
+}
+
+/// Where the targets are in the image of a view.
+fn true_places<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>) -> TruePlaces<'p> {
+    let place = |(name, truth): (&'p Arc<str>, &TargetTruth)| Some((&**name, (truth.at?, is_pointed_at(prepared.subject, truth))));
+    TruePlaces { all: prepared.targets.iter().zip(&view.truth).filter_map(place).collect() }
+}
+
+/// Whether the first point of all, which decides the image that pages show, lies in `view`. Noisy images do not compress: only this one is kept.
+fn is_first(by_method: &[Vec<PointResult>], view: &str) -> bool {
+    by_method.iter().find_map(|points| points.first()).is_some_and(|point| &*point.view == view)
+}
