@@ -211,7 +211,10 @@ mod tests {
                 let file = encoded(&image, sixteen_bits);
                 let read = parse_photo(std::path::Path::new("a.png"), &file).unwrap().image;
                 let nearest = |grey: &f32| (grey * top).round() / top;
-                assert!(read.grey().iter().eq(image.grey().iter().map(nearest).collect::<Vec<_>>().iter()), "{width} x {height}, {sixteen_bits}");
+                assert!(
+                    read.grey().iter().eq(image.grey().iter().map(nearest).collect::<Vec<_>>().iter()),
+                    "{width} x {height}, {sixteen_bits}"
+                );
                 for threads in [1, 3] {
                     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                     assert!(pool.install(|| encoded(&image, sixteen_bits)) == file, "{width} x {height} on {threads}");

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use calibench_model::image::{level, levels_of};
 use calibench_model::Image;
+use calibench_model::image::{level, levels_of};
 use multiversion::multiversion;
 
 /// The numbers of the filters in the PNG standard: less what is left, less what is above, less the mean of the two.
@@ -89,8 +89,8 @@ pub(super) fn size(differences: &[u8]) -> u64 {
     let mut sum = 0_u64;
     for part in differences.chunks(1 << 16) {
         let mut of_part = 0_u32;
-        for i in 0..part.len() {
-            of_part += u32::from(part[i].cast_signed().unsigned_abs());
+        for byte in part {
+            of_part += u32::from(byte.cast_signed().unsigned_abs());
         }
         sum += u64::from(of_part);
     }

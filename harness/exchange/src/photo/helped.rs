@@ -92,6 +92,6 @@ mod tests {
             pool.install(|| (0..200).into_par_iter().for_each(|_| drop(grey_of(image.clone(), Permit::of(&gate)))));
             done.send(()).unwrap();
         });
-        assert!(wait.recv_timeout(Duration::from_secs(120)).is_ok(), "photographs wait for each other");
+        assert!(wait.recv_timeout(Duration::from_mins(2)).is_ok(), "photographs wait for each other");
     }
 }

@@ -14,8 +14,8 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 
-use calibench_model::camera::ImageSize;
 use calibench_model::Image;
+use calibench_model::camera::ImageSize;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use thiserror::Error;
 use tiff::encoder::{TiffEncoder, colortype};

@@ -104,9 +104,21 @@ mod tests {
             let fisheye = OpenCvFisheye { size, fx: 260.0, fy: 255.0, cx, cy, skew: part(17, 0.1), k };
             // Half a frame has 0.0032 x 0.0024 m: coefficients that fold at its corners, or nearly.
             let (k, p) = ([part(0, 0.1), part(5, 0.004), part(9, 1e-4)], [part(13, 0.02), part(17, 0.02)]);
-            let measured =
-                Photogrammetric { size, pitch_um: 10.0, c: 5.0, x0: part(21, 2.0), y0: part(25, 2.0), k, p, b: [part(3, 0.1), part(7, 0.1)] };
-            let ebner = Ebner { base: Photogrammetric { k: [0.0; 3], ..measured }, b_mm: 2.0, parameters: std::array::from_fn(|j| part(2 * j as u32, 0.06)) };
+            let measured = Photogrammetric {
+                size,
+                pitch_um: 10.0,
+                c: 5.0,
+                x0: part(21, 2.0),
+                y0: part(25, 2.0),
+                k,
+                p,
+                b: [part(3, 0.1), part(7, 0.1)],
+            };
+            let ebner = Ebner {
+                base: Photogrammetric { k: [0.0; 3], ..measured },
+                b_mm: 2.0,
+                parameters: std::array::from_fn(|j| part(2 * j as u32, 0.06)),
+            };
             for (kind, camera) in [&pinhole as &dyn CameraModel, &fisheye, &measured, &ebner].into_iter().enumerate() {
                 let found = fold(&Searched(camera));
                 if camera.has_surely_no_fold() {
