@@ -102,24 +102,15 @@ mod tests {
             let pinhole = OpenCv { size, fx: 500.0, fy: 480.0, cx, cy, distortion, coefficients: 5 };
             let k = [part(0, 0.4), part(5, 0.2), part(9, 0.1), part(13, 0.02)];
             let fisheye = OpenCvFisheye { size, fx: 260.0, fy: 255.0, cx, cy, skew: part(17, 0.1), k };
-            // Half a frame has 0.0032 x 0.0024 m: coefficients that fold at its corners, or nearly.
+            // Half a frame has 3.2 x 2.4 mm: coefficients that fold at its corners, or nearly.
             let (k, p) = ([part(0, 0.1), part(5, 0.004), part(9, 1e-4)], [part(13, 0.02), part(17, 0.02)]);
-            let measured = Photogrammetric {
-                size,
-                pitch_um: 10.0,
-                c: 5.0,
-                x0: part(21, 2.0),
-                y0: part(25, 2.0),
-                k,
-                p,
-                b: [part(3, 0.1), part(7, 0.1)],
-            };
-            let ebner = Ebner {
-                base: Photogrammetric { k: [0.0; 3], ..measured },
-                b_mm: 2.0,
-                parameters: std::array::from_fn(|j| part(2 * j as u32, 0.06)),
-            };
-            for (kind, camera) in [&pinhole as &dyn CameraModel, &fisheye, &measured, &ebner].into_iter().enumerate() {
+            let (x0, y0, b) = (part(21, 2.0), part(25, 2.0), [part(3, 0.1), part(7, 0.1)]);
+            let measured = Photogrammetric { size, pitch_um: 10.0, c: 5.0, x0, y0, k, p, b };
+            let parameters = std::array::from_fn(|j| part(2 * j as u32, 0.03 * f64::from(i % 8)));
+            let ebner = Ebner { base: Photogrammetric { k: [0.0; 3], p: [0.0; 2], ..measured }, b_mm: 4.0, parameters };
+            // The search takes its time.
+            let fewer = if i < 100 { 4 } else { 2 };
+            for (kind, camera) in [&pinhole as &dyn CameraModel, &fisheye, &measured, &ebner].into_iter().enumerate().take(fewer) {
                 let found = fold(&Searched(camera));
                 if camera.has_surely_no_fold() {
                     sure[kind] += 1;
@@ -128,6 +119,7 @@ mod tests {
                 folded[kind] += usize::from(found.is_some());
             }
         }
-        assert!(sure.iter().chain(&folded).all(|&count| count > 50), "{sure:?} {folded:?}");
+        assert!(sure[0] + sure[1] > 150 && folded[0] + folded[1] > 150, "{sure:?} {folded:?}");
+        assert!(sure[2..].iter().chain(&folded[2..]).all(|&count| count > 10), "{sure:?} {folded:?}");
     }
 }
