@@ -40,11 +40,9 @@ pub(super) fn grey_of<S: Send + Sync>(decoded: DynamicImage, share: S) -> Image<
 
 #[cfg(test)]
 mod tests {
-    use std::sync::{Arc, Condvar, mpsc};
-    use std::time::Duration;
+    use std::sync::mpsc;
 
     use image::{ImageBuffer, Luma, Rgb};
-    use rayon::prelude::*;
 
     use super::*;
 
@@ -65,33 +63,28 @@ mod tests {
         }
     }
 
-    /// A permission that only one has at a time.
-    struct Permit(Arc<(Mutex<bool>, Condvar)>);
+    /// Says when it is dropped whether its thread had not met the others yet.
+    struct Share(mpsc::Sender<Option<bool>>);
 
-    impl Permit {
-        fn of(gate: &Arc<(Mutex<bool>, Condvar)>) -> Self {
-            *gate.1.wait_while(gate.0.lock().unwrap(), |taken| *taken).unwrap() = true;
-            Self(Arc::clone(gate))
-        }
-    }
-
-    impl Drop for Permit {
+    impl Drop for Share {
         fn drop(&mut self) {
-            *self.0.0.lock().unwrap() = false;
-            self.0.1.notify_all();
+            self.0.send(rayon::current_thread_has_pending_tasks()).unwrap();
         }
     }
 
     #[test]
-    fn who_holds_the_memory_begins_with_no_other_photograph() {
-        let (done, wait) = mpsc::channel();
-        std::thread::spawn(move || {
-            let [image, _] = noisy(2000, 1500);
-            let gate = Arc::default();
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
-            pool.install(|| (0..200).into_par_iter().for_each(|_| drop(grey_of(image.clone(), Permit::of(&gate)))));
-            done.send(()).unwrap();
+    fn the_memory_is_given_back_before_others_are_waited_for() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let ((begun, begins), (end, ends), (said, says)) = (mpsc::channel(), mpsc::channel(), mpsc::channel());
+        // The other thread has something to do, so that the helper is still to begin.
+        pool.spawn(move || {
+            begun.send(()).unwrap();
+            ends.recv().unwrap();
         });
-        assert!(wait.recv_timeout(Duration::from_mins(2)).is_ok(), "photographs wait for each other");
+        begins.recv().unwrap();
+        let [image, _] = noisy(1000, 1000);
+        pool.install(|| grey_of(image, Share(said)));
+        end.send(()).unwrap();
+        assert_eq!(says.recv().unwrap(), Some(true));
     }
 }
