@@ -181,7 +181,12 @@ mod tests {
         for name in ["README.md", "cell/two  spaces.csv", "#1.png"] {
             fs::write(folder.path().join(name), name).unwrap();
         }
+        // Of more than is read at once, to the last byte.
+        let mut large = vec![7; 200_000];
+        large.push(8);
+        fs::write(folder.path().join("large.png"), &large).unwrap();
         let manifest = Manifest::of(folder.path()).unwrap();
+        assert!(manifest.has("large.png", blake3::hash(&large).to_hex().as_str()));
         manifest.write(folder.path()).unwrap();
         assert_eq!(Manifest::read(folder.path()).unwrap(), Some(manifest.clone()));
         assert!(manifest.has("README.md", blake3::hash(b"README.md").to_hex().as_str()) && !manifest.has("README.md", ""));
