@@ -19,7 +19,8 @@ use crate::measured::{Asked, Pictured};
 
 /// What was made of one view.
 struct Viewed {
-    image: Image<'static>,
+    /// Where it may be kept; of thousands of trials nobody looks at it again.
+    image: Option<Image<'static>>,
     /// By method, with its place.
     points: Vec<(usize, Vec<PointResult>)>,
     counted: Counted,
@@ -30,7 +31,7 @@ pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) 
     let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
     let (mut counted, mut tally) = (Counted::default(), Tally::default());
     let views: Vec<(usize, &PreparedView<'_>)> = prepared.views.iter().enumerate().collect();
-    // As many images as threads are in memory.
+    // What may be kept is in memory: as many images as threads.
     for batch in views.chunks(rayon::current_num_threads()) {
         let viewed = batch.par_iter().map(|&(place, view)| of_view(plan, prepared, (place, view), key)).collect::<Vec<_>>();
         for (&(place, view), viewed) in batch.iter().zip(viewed) {
@@ -40,10 +41,10 @@ pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) 
             tally.join(viewed.tally);
             let is_shown =
                 is_first(&by_method, &view.name) || prepared.subject.recognition.as_ref().is_some_and(|plan| shown(plan) == Some(place));
-            if let Some(folder) = plan.images.filter(|_| key.trial == 0 && is_shown) {
+            if let (Some(folder), Some(image)) = (plan.images, viewed.image.filter(|_| is_shown)) {
                 // Pages show 8 bits, and noise below the levels of a sensor, or of an image without any, does not compress.
                 let deep = prepared.subject.imaging.has_deep_levels();
-                folder.write(&kept_image_name(&view.station.name), |file| encode_png_densely(file, &viewed.image, deep))?;
+                folder.write(&kept_image_name(&view.station.name), |file| encode_png_densely(file, &image, deep))?;
             }
         }
     }
@@ -89,6 +90,7 @@ fn of_view(plan: &Plan<'_>, prepared: &Prepared<'_>, (place, view): (usize, &Pre
         (method, points.collect())
     };
     let points = plan.measure(picture, &asked.collect::<Vec<_>>()).into_iter().map(of_method).collect();
+    let image = (plan.images.is_some() && key.trial == 0).then_some(image);
     Ok(Viewed { image, points, counted, tally })
 }
 

@@ -90,7 +90,7 @@ pub struct Photo {
 /// Colour becomes luma with the weights .299, .587, .114 of Rec. 601, in floating point; transparency is ignored. The orientation that EXIF (JPEG, PNG) or
 /// the TIFF tag asks for is applied, as OpenCV's `imread` does: columns and rows are those of the image as it is seen.
 ///
-/// Memory: at most [`MOST_BYTES`] for all photographs that are being decoded at a time, others wait; 4 bytes a pixel once read. The file itself is not counted.
+/// Memory: at most [`MOST_BYTES`] for all photographs that are being decoded at a time, others wait; 4 bytes a pixel once read, 8 while it is turned. The file itself is not counted.
 ///
 /// # Errors
 /// A file that is missing, no image, cut short, or too large.

@@ -65,7 +65,7 @@ pub fn write_made_rows<R: Send + Sync>(
     columns.iter().for_each(|column| header.text(column));
     header.end(columns.len())?;
     output.write_all(header.bytes())?;
-    let mut given = given.into_iter();
+    let mut given = given.into_iter().fuse();
     let mut batch = || given.by_ref().take(PIECE * BATCH).collect::<Vec<R>>();
     let made = |batch: &[R]| batch.par_chunks(PIECE).map(piece).collect::<io::Result<Vec<_>>>();
     let mut next = made(&batch());
