@@ -73,7 +73,7 @@ fn signed_sums(greys: &[f32], first: usize, top: u16) -> [i64; SUMS] {
         for (bit, added) in added.iter_mut().enumerate() {
             let mut sum = 0;
             for i in 0..WIDE {
-                sum += if signs[i] >> bit & 1 == 1 { levels[i] } else { 0 };
+                sum += levels[i] & 0_u32.wrapping_sub(signs[i] >> bit & 1);
             }
             *added += sum;
         }

@@ -9,6 +9,7 @@ pub mod folder;
 pub mod inputs;
 pub mod photo;
 pub mod photograph;
+mod pipelined;
 pub mod points;
 pub mod points_write;
 pub mod print;

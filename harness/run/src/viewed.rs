@@ -12,10 +12,10 @@ use calibench_synth::view::TargetTruth;
 use rayon::prelude::*;
 
 use super::detection::{Tally, TruePlaces};
-use super::recognition::{Counted, keep_steps, recognise, shown};
+use super::recognition::{Counted, Recognised, keep_steps, recognise, shown};
 use super::views::{Pointed, Prepared, PreparedView, is_pointed_at, kind_of, seen, started};
 use super::{Plan, RunError};
-use crate::measured::{Asked, Pictured};
+use crate::measured::{Answers, Asked, Pictured};
 
 /// What was made of one view.
 struct Viewed {
@@ -59,24 +59,23 @@ pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) 
 fn of_view(plan: &Plan<'_>, prepared: &Prepared<'_>, (place, view): (usize, &PreparedView<'_>), key: Key<'_>) -> Result<Viewed, RunError> {
     let image = prepared.image(view, key)?.image;
     let seen = seen(prepared, view, Key { view: &view.station.name, ..key });
-    let (mut counted, mut tally) = (Counted::default(), Tally::default());
-    let starts = match &prepared.subject.recognition {
+    let mut tally = Tally::default();
+    let (starts, counted) = match &prepared.subject.recognition {
         Some(recognition) => {
             if let Some(folder) = plan.images.filter(|_| key.trial == 0) {
                 keep_steps(recognition, &image, (place, &view.station.name), folder)?;
             }
-            let recognised = recognise(recognition, &image, place, &view.truth, &prepared.subject.field);
-            counted.join(recognised.counted);
-            seen.iter().map(|point| recognised.starts.get(&point.target).copied()).collect()
+            let Recognised { starts, counted } = recognise(recognition, &image, place, &view.truth, &prepared.subject.field);
+            (seen.iter().map(|point| starts.get(&point.target).copied()).collect(), counted)
         }
-        None => started(prepared, &image, &seen),
+        None => (started(prepared, &image, &seen), Counted::default()),
     };
     let name = |point: &Pointed| &*prepared.targets[point.target];
     let asked = seen.iter().zip(starts).map(|(point, start)| Asked { name: name(point), kind: kind_of(prepared, point), start });
     let which = Some(ImageId { trial: key.trial, view: &view.station.name });
     let picture = Pictured { which, image: &image, board: prepared.sought.as_ref() };
     let truth = plan.counts_detections().then(|| true_places(prepared, view));
-    let of_method = |(method, answers): (usize, crate::measured::Answers<'_>)| {
+    let of_method = |(method, answers): (usize, Answers<'_>)| {
         if let (Some(found), Some(truth)) = (&answers.found, &truth) {
             tally.image(method, found, truth);
         }

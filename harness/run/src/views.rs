@@ -26,7 +26,7 @@ pub struct Prepared<'a> {
     pub subject: &'a ViewsSubject,
     /// The views, in the order of the stations.
     pub views: Vec<PreparedView<'a>>,
-    pub(super) renderer: Renderer,
+    renderer: Renderer,
     pub(super) targets: Vec<Arc<str>>,
     /// The board that is seen, if it is one.
     pub(super) sought: Option<Sought>,

@@ -5,10 +5,11 @@ use std::ops::Range;
 
 use calibench_model::Image;
 use fdeflate::Compressor;
-use png::{BitDepth, ColorType, Encoder, chunk::IDAT};
-use rayon::prelude::*;
+use png::chunk::IDAT;
 
+use super::begin;
 use super::filters::{ABOVE, AVERAGE, LEFT, Rows, filter, size};
+use crate::pipelined::pipelined;
 
 /// Bytes of levels that a band has, about: with the grey values that they are made from it stays in a processor's own memory.
 const BAND: usize = 1 << 18;
@@ -31,55 +32,35 @@ const ADLER: u64 = 65521;
 /// # Errors
 /// What the output refuses.
 pub fn encode_png(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
-    let mut encoder = Encoder::new(output, image.width() as u32, image.height() as u32);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.set_depth(if sixteen_bits { BitDepth::Sixteen } else { BitDepth::Eight });
-    let mut writer = encoder.write_header().map_err(io::Error::other)?;
     let rows = Rows::of(image, sixteen_bits);
-    let mut stream = Stream::default();
-    each_band(&rows, |band, last| writer.write_chunk(IDAT, stream.next(band, last)).map_err(io::Error::other))?;
+    let (mut writer, mut stream) = (begin(output, image, sixteen_bits)?, Stream::of(&rows));
+    each_band(&rows, |mut band| writer.write_chunk(IDAT, stream.next(&mut band)).map_err(io::Error::other))?;
     writer.finish().map_err(io::Error::other)
 }
 
-/// Hands the bands of an image to `take`, one after the other, and says whether it is the last one.
-fn each_band(rows: &Rows<'_>, mut take: impl FnMut(&mut Band, bool) -> io::Result<()>) -> io::Result<()> {
-    let height = (BAND / (rows.stride() + 1)).max(1);
-    let count = rows.count().div_ceil(height);
-    let batch = |first: usize| -> io::Result<Vec<Band>> {
-        let bands = first..(first + BATCH).min(count);
-        bands.into_par_iter().map(|band| Band::of(rows, band * height..((band + 1) * height).min(rows.count()))).collect()
-    };
-    let mut next = batch(0);
-    for first in (0..count).step_by(BATCH) {
-        let mut bands = next?;
-        next = Ok(Vec::new());
-        rayon::in_place_scope(|scope| {
-            scope.spawn(|_| next = batch(first + BATCH));
-            (first..).zip(&mut bands).try_for_each(|(place, band)| take(band, place + 1 == count))
-        })?;
-    }
-    Ok(())
+/// Hands the bands of an image to `take`, one after the other.
+fn each_band(rows: &Rows<'_>, take: impl FnMut(Band) -> io::Result<()>) -> io::Result<()> {
+    let height = (BAND / rows.filtered_stride()).max(1);
+    let bands = (0..rows.count()).step_by(height).map(|first| first..(first + height).min(rows.count()));
+    pipelined(bands, BATCH, |band| Band::of(rows, band), take)
 }
 
 /// Rows that were compressed.
 struct Band {
+    rows: Range<usize>,
     /// A stream of its own, with head and end.
     stream: Vec<u8>,
-    /// Bytes that are in it.
-    bytes: usize,
 }
 
 impl Band {
     fn of(all: &Rows<'_>, rows: Range<usize>) -> io::Result<Self> {
-        let stride = all.stride();
-        let bytes = (stride + 1) * rows.len();
-        let mut filtered = Filtered::new(stride);
-        let mut compressor = Compressor::new(Vec::with_capacity(bytes))?;
-        all.each(rows, |here, above| compressor.write_data(filtered.best(here, above, all.width)))?;
+        let mut filtered = Filtered::new(all.stride());
+        let mut compressor = Compressor::new(Vec::with_capacity(all.filtered_stride() * rows.len()))?;
+        all.each(rows.clone(), |here, above| compressor.write_data(filtered.best(here, above, all.width)))?;
         let stream = compressor.finish()?;
         // What [`open`] relies on.
         let is_known = stream.get(HEAD).is_some_and(|head| head & 7 == ONLY_BLOCK) && stream[stream.len() - END - 1] != 0;
-        if is_known { Ok(Self { stream, bytes }) } else { Err(io::Error::other("PNG: the compressor writes other blocks than it did")) }
+        if is_known { Ok(Self { rows, stream }) } else { Err(io::Error::other("PNG: the compressor writes other blocks than it did")) }
     }
 }
 
@@ -105,34 +86,34 @@ impl Filtered {
     }
 }
 
-/// What was written of one stream that is made of those of all bands.
-#[derive(Default)]
-struct Stream {
-    /// The two sums of the checksum, and whether anything was written.
-    sums: Option<(u64, u64)>,
+/// One stream that is made of those of all bands.
+struct Stream<'a> {
+    rows: &'a Rows<'a>,
+    /// The two sums of the checksum of what was written.
+    sums: [u64; 2],
 }
 
-impl Stream {
+impl<'a> Stream<'a> {
+    fn of(rows: &'a Rows<'_>) -> Self {
+        Self { rows, sums: [1, 0] }
+    }
+
     /// The bytes with which the stream goes on.
-    fn next<'b>(&mut self, band: &'b mut Band, last: bool) -> &'b [u8] {
-        let stream = &mut band.stream;
+    fn next<'b>(&mut self, Band { rows, stream }: &'b mut Band) -> &'b [u8] {
         let checksum = stream.split_off(stream.len() - END).iter().fold(0, |sum, byte| sum << 8 | u64::from(*byte));
-        let first = self.sums.is_none();
-        let sums = self.add((checksum & 0xffff, checksum >> 16), band.bytes as u64);
-        if last {
-            stream.extend(((sums.1 as u32) << 16 | sums.0 as u32).to_be_bytes());
+        self.add([checksum & 0xffff, checksum >> 16], (self.rows.filtered_stride() * rows.len()) as u64);
+        if rows.end == self.rows.count() {
+            stream.extend(((self.sums[1] << 16 | self.sums[0]) as u32).to_be_bytes());
         } else {
             open(stream);
         }
-        &stream[if first { 0 } else { HEAD }..]
+        &stream[if rows.start == 0 { 0 } else { HEAD }..]
     }
 
-    /// The sums of all bytes, of which `bytes` more have the sums `(a, b)`.
-    fn add(&mut self, (a, b): (u64, u64), bytes: u64) -> (u64, u64) {
-        let sums = self.sums.map_or((a, b), |(before, all)| {
-            ((before + a + ADLER - 1) % ADLER, (all + b + bytes % ADLER * ((before + ADLER - 1) % ADLER)) % ADLER)
-        });
-        *self.sums.insert(sums)
+    /// Adds `bytes` that have the sums `a` and `b` alone.
+    fn add(&mut self, [a, b]: [u64; 2], bytes: u64) {
+        let before = self.sums[0] + ADLER - 1;
+        self.sums = [(before + a) % ADLER, (self.sums[1] + b + bytes % ADLER * (before % ADLER)) % ADLER];
     }
 }
 
@@ -197,7 +178,7 @@ mod tests {
             let mut rows = vec![0; (width + 1) * height];
             let (found, code) = decompress_slice(&mut rows, &stream, InflateConfig::default());
             assert_eq!((code, found.len(), chunks), (ReturnCode::Ok, (width + 1) * height, height.div_ceil(BAND / (width + 1))), "{width}");
-            let end = |band: &mut Band, _| {
+            let end = |band: Band| {
                 ends.extend(band.stream.iter().rev().nth(END).map(|byte| byte.leading_zeros()));
                 Ok(())
             };

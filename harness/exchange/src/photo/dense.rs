@@ -4,9 +4,10 @@ use std::convert::Infallible;
 use std::io::{self, Write};
 
 use calibench_model::Image;
-use png::{BitDepth, ColorType, Encoder, chunk::IDAT};
+use png::chunk::IDAT;
 use zlib_rs::{DeflateConfig, ReturnCode, Strategy, compress_bound, compress_slice};
 
+use super::begin;
 use super::filters::{AVERAGE, Rows, filter};
 
 /// Of the filters for all rows [`AVERAGE`] leaves the least of noise. What it leaves holds short matches by chance, which take more bits than their bytes: this strategy passes them over.
@@ -18,17 +19,14 @@ const CONFIG: (i32, Strategy) = (7, Strategy::Filtered);
 /// What the output refuses; an image of more than 2 GB.
 pub fn encode_png_densely(output: &mut dyn Write, image: &Image, sixteen_bits: bool) -> io::Result<()> {
     let rows = Rows::of(image, sixteen_bits);
-    let mut encoder = Encoder::new(output, image.width() as u32, image.height() as u32);
-    encoder.set_color(ColorType::Grayscale);
-    encoder.set_depth(if sixteen_bits { BitDepth::Sixteen } else { BitDepth::Eight });
-    let mut writer = encoder.write_header().map_err(io::Error::other)?;
+    let mut writer = begin(output, image, sixteen_bits)?;
     writer.write_chunk(IDAT, &deflated(&averaged(&rows))?).map_err(io::Error::other)?;
     writer.finish().map_err(io::Error::other)
 }
 
 /// All rows as [`AVERAGE`] leaves them, each behind its number.
 fn averaged(rows: &Rows<'_>) -> Vec<u8> {
-    let stride = rows.stride() + 1;
+    let stride = rows.filtered_stride();
     let mut filtered = vec![AVERAGE; stride * rows.count()];
     let mut into = filtered.chunks_exact_mut(stride);
     let each = rows.each::<Infallible>(0..rows.count(), |here, above| {

@@ -33,6 +33,11 @@ impl<'a> Rows<'a> {
         self.image.width() * self.width
     }
 
+    /// Bytes of a row behind the number of its filter.
+    pub(super) fn filtered_stride(&self) -> usize {
+        self.stride() + 1
+    }
+
     /// Calls `take` with the levels of each of the `rows` and of the one above it, of zeros above the first.
     pub(super) fn each<E>(&self, rows: Range<usize>, mut take: impl FnMut(&[u8], &[u8]) -> Result<(), E>) -> Result<(), E> {
         let (mut above, mut here) = (vec![0; self.stride()], vec![0; self.stride()]);

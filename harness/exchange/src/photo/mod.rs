@@ -11,7 +11,7 @@ mod levels;
 mod turn;
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use calibench_model::Image;
@@ -209,6 +209,14 @@ fn decoded(path: &Path, input: &mut dyn Input) -> Result<(DynamicImage, Option<T
 /// What the file system refuses; an older file is then as it was.
 pub fn write_png(path: &Path, image: &Image, sixteen_bits: bool) -> Result<(), PhotoError> {
     Ok(write_atomically(path, |file| encode_png(file, image, sixteen_bits))?)
+}
+
+/// Begins a PNG of grey levels with 8 or 16 bits.
+fn begin<W: Write>(output: W, image: &Image, sixteen_bits: bool) -> io::Result<png::Writer<W>> {
+    let mut encoder = png::Encoder::new(output, image.width() as u32, image.height() as u32);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(if sixteen_bits { png::BitDepth::Sixteen } else { png::BitDepth::Eight });
+    encoder.write_header().map_err(io::Error::other)
 }
 
 /// Encodes the grey values as they are, as TIFF of single precision: 0 is black and 1 is white.

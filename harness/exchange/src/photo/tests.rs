@@ -1,7 +1,5 @@
 //! Photographs that are turned, cut short, deep or large.
 
-use std::io::Write;
-
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::PngEncoder;
 use image::codecs::pnm::PnmEncoder;

@@ -2,9 +2,8 @@
 
 use std::io::Read;
 
-use rayon::prelude::*;
-
 use super::{Check, LostRows, PointFile, Points, most_rows, read_rows, reader};
+use crate::pipelined::pipelined;
 
 /// Bytes that one thread reads at a time.
 const PIECE: usize = 1 << 19;
@@ -23,29 +22,16 @@ pub(super) fn parse(file: &str, text: &[u8], check: Check<'_>) -> Option<PointFi
         return None;
     }
     let mut all = PointFile { points: Points::with_capacity(most_rows(text)), lost: LostRows::default() };
-    let one = |piece: &&[u8]| {
+    let one = |piece: &[u8]| {
         let mut found = PointFile { points: Points::with_capacity(most_rows(piece)), lost: LostRows::default() };
-        read_rows(file, header.chain(*piece), text, check, &mut found).ok().map(|()| found)
+        read_rows(file, header.chain(piece), text, check, &mut found).map(|()| found)
     };
-    let pieces = pieces(body);
-    let parsed = |batch: &[&[u8]]| batch.par_iter().map(one).collect::<Option<Vec<_>>>();
-    let mut batches = pieces.chunks(BATCH);
-    let mut ready = parsed(batches.next()?)?;
-    while !ready.is_empty() {
-        let mut next = Some(Vec::new());
-        // The next rows are read while these are joined.
-        rayon::in_place_scope(|scope| {
-            if let Some(batch) = batches.next() {
-                let next = &mut next;
-                scope.spawn(move |_| *next = parsed(batch));
-            }
-            for found in &ready {
-                all.points.append(&found.points);
-                found.lost.iter().for_each(|row| all.lost.push(row));
-            }
-        });
-        ready = next?;
-    }
+    let join = |found: PointFile| {
+        all.points.append(&found.points);
+        found.lost.iter().for_each(|row| all.lost.push(row));
+        Ok(())
+    };
+    pipelined(pieces(body), BATCH, one, join).ok()?;
     all.points.twice().is_none().then_some(all)
 }
 

@@ -3,9 +3,10 @@
 use std::io::{self, Write};
 
 use calibench_model::escape;
-use rayon::prelude::*;
 
 pub use csv_row::Row;
+
+use crate::pipelined::pipelined;
 
 mod csv_row;
 
@@ -47,15 +48,15 @@ pub fn write_rows(output: impl Write, columns: &[&str], count: usize, row: impl 
 ///
 /// # Errors
 /// What the output refuses; a row with another number of cells than the header.
-pub fn write_made_rows<R: Send + Sync>(
+pub fn write_made_rows<R: Send>(
     mut output: impl Write,
     columns: &[&str],
     given: impl IntoIterator<Item = R>,
     row: impl Fn(&R, &mut Row) + Sync,
 ) -> io::Result<()> {
-    let piece = |given: &[R]| {
+    let piece = |given: Vec<R>| {
         let mut piece = Row::default();
-        for one in given {
+        for one in &given {
             row(one, &mut piece);
             piece.end(columns.len())?;
         }
@@ -66,21 +67,9 @@ pub fn write_made_rows<R: Send + Sync>(
     header.end(columns.len())?;
     output.write_all(header.bytes())?;
     let mut given = given.into_iter().fuse();
-    let mut batch = || given.by_ref().take(PIECE * BATCH).collect::<Vec<R>>();
-    let made = |batch: &[R]| batch.par_chunks(PIECE).map(piece).collect::<io::Result<Vec<_>>>();
-    let mut next = made(&batch());
-    loop {
-        let ready = std::mem::replace(&mut next, Ok(Vec::new()))?;
-        if ready.is_empty() {
-            return output.flush();
-        }
-        let batch = batch();
-        // The next rows are made while these are written.
-        rayon::in_place_scope(|scope| {
-            scope.spawn(|_| next = made(&batch));
-            ready.iter().try_for_each(|piece| output.write_all(piece.bytes()))
-        })?;
-    }
+    let pieces = std::iter::from_fn(|| Some(given.by_ref().take(PIECE).collect()).filter(|piece: &Vec<R>| !piece.is_empty()));
+    pipelined(pieces, BATCH, piece, |piece| output.write_all(piece.bytes()))?;
+    output.flush()
 }
 
 #[cfg(test)]
