@@ -33,19 +33,34 @@ pub(crate) fn pipelined<G: Send, P: Send, E: Send>(
 mod tests {
     use super::*;
 
+    /// What was taken of `given`, and how it ended; `last` is refused.
+    fn taken<G: Send>(
+        given: impl IntoIterator<Item = G>,
+        batch: usize,
+        make: impl Fn(G) -> Result<usize, usize> + Sync,
+        last: usize,
+    ) -> (Vec<usize>, Result<(), usize>) {
+        let mut all = Vec::new();
+        let take = |piece| {
+            if piece == last {
+                return Err(piece);
+            }
+            all.push(piece);
+            Ok(())
+        };
+        let end = pipelined(given, batch, make, take);
+        (all, end)
+    }
+
     #[test]
     fn pieces_are_taken_in_their_order_up_to_the_first_failure() {
         for (count, batch) in [(0, 3), (1, 3), (3, 3), (4, 3), (100, 7), (100, 200)] {
-            let mut taken = Vec::new();
-            pipelined(0..count, batch, |i| Ok::<_, ()>(i * i), |piece| Ok(taken.push(piece))).unwrap();
-            assert_eq!(taken, (0..count).map(|i| i * i).collect::<Vec<usize>>(), "{count} by {batch}");
+            let squares = (0..count).map(|i| i * i).collect();
+            assert_eq!(taken(0..count, batch, |i| Ok(i * i), usize::MAX), (squares, Ok(())), "{count} by {batch}");
         }
-        let mut taken = 0;
-        let unmade = pipelined(0..100, 10, |i| if i % 30 == 25 { Err(i) } else { Ok(i) }, |_| Ok(taken += 1));
-        assert_eq!((unmade, taken), (Err(25), 20));
-        let mut taken = 0;
-        let refused = pipelined(0..100, 10, Ok, |i| if i == 47 { Err(i) } else { Ok(taken += 1) });
-        assert_eq!((refused, taken), (Err(47), 47));
+        let some = |i: usize| if i % 30 == 25 { Err(i) } else { Ok(i) };
+        assert_eq!(taken(0..100, 10, some, usize::MAX), ((0..20).collect(), Err(25)));
+        assert_eq!(taken(0..100, 10, Ok, 47), ((0..47).collect(), Err(47)));
     }
 
     /// Whoever ends once has ended: another look would begin again.
@@ -56,8 +71,6 @@ mod tests {
             asked += 1;
             (asked % 4 != 0).then_some(asked)
         });
-        let mut taken = Vec::new();
-        pipelined(given, 2, Ok::<_, ()>, |piece| Ok(taken.push(piece))).unwrap();
-        assert_eq!(taken, [1, 2, 3]);
+        assert_eq!(taken(given, 2, Ok, usize::MAX), (vec![1, 2, 3], Ok(())));
     }
 }
