@@ -9,18 +9,18 @@ use multiversion::multiversion;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
-use crate::raster::{Picture, Piece, Renderer, join_left};
+use crate::raster::{Flow, Picture, Piece, Renderer, Square, join_left};
 
-/// Steps of the differences: px of a shift, and of a deformation at the window's edge.
+/// Steps of the differences where there is no blur, and grey values have kinks: px of a shift, and of a deformation at the window's edge.
 const STEP: f64 = 0.05;
-/// The relative change of the blur.
-const BLUR_STEP: f64 = 0.02;
 /// The group of the grey levels.
 const LEVELS: usize = 3;
 /// The group of the grey values of areas.
 const AREAS: usize = 6;
-/// The relative change of an area's contrast.
-const CONTRAST_STEP: f64 = 0.05;
+/// Products that are added side by side.
+const LANES: usize = 8;
+/// Rows of the derivatives that are multiplied with each other before the next ones.
+const BLOCK: usize = 128;
 /// Combinations of unknowns with less than this share of the information are not determined by the window: a disc's rotation, a straight edge's length. The
 /// differences leave such a combination some 1e-9; what is determined has more than 1e-4.
 const SINGULAR: f64 = 1e-6;
@@ -30,8 +30,10 @@ pub struct Bounds {
     /// Half the width of the window, px.
     half: i64,
     renderer: Renderer,
-    /// A little sharper and a little softer, where there is a blur; and the step between the two, px.
-    blurred: Option<(Renderer, Renderer, f64)>,
+    /// The derivatives, where there is a blur.
+    flow: Option<Flow>,
+    /// Standard deviation of the blur in the middle of the frame, px.
+    blur: f64,
 }
 
 impl Bounds {
@@ -40,18 +42,8 @@ impl Bounds {
     /// # Errors
     /// Optics that are out of range.
     pub fn new(optics: &Optics, width: usize, height: usize, window: usize) -> Result<Self, OpticsError> {
-        let scaled = |factor: f64| {
-            let corner_blur = optics.corner_blur.map(|blur| blur * factor);
-            Renderer::new(&Optics { blur: optics.blur * factor, corner_blur, ..*optics }, width, height)
-        };
-        let blurred = if optics.blur > 0.0 {
-            // Near the least blur that can be rendered the step goes one way.
-            let (low, high) = if scaled(1.0 - BLUR_STEP).is_ok() { (1.0 - BLUR_STEP, 1.0 + BLUR_STEP) } else { (1.0, 1.0 + BLUR_STEP) };
-            Some((scaled(low)?, scaled(high)?, optics.blur * (high - low)))
-        } else {
-            None
-        };
-        Ok(Self { half: (window / 2) as i64, renderer: scaled(1.0)?, blurred })
+        let renderer = Renderer::new(optics, width, height)?;
+        Ok(Self { half: (window / 2) as i64, flow: Flow::new(&renderer), renderer, blur: optics.blur })
     }
 
     /// What the grey values of the window around `at` tell; `None` if it leaves the image.
@@ -60,13 +52,12 @@ impl Bounds {
         let side = 2 * self.half + 1;
         let inside =
             corner.iter().all(|&c| c >= 0) && corner[0] + side <= picture.width as i64 && corner[1] + side <= picture.height as i64;
-        inside.then(|| Window { bounds: self, near: self.near(picture, at, corner), at, corner, side: side as usize })
+        inside.then(|| Window { bounds: self, near: self.near(picture, at, corner), at, square: Square { corner, side: side as usize } })
     }
 
     /// The picture with only those pieces that can matter to a window, moved by a step of any parameter or not.
     fn near(&self, picture: &Picture, at: PixelPoint, [left, top]: [i64; 2]) -> Picture {
-        let reach = [&self.renderer].into_iter().chain(self.blurred.iter().flat_map(|(low, high, _)| [low, high]));
-        let [reach_x, reach_y] = reach.map(Renderer::reach).fold([0.0_f64; 2], |[x, y], [rx, ry]| [x.max(rx), y.max(ry)]);
+        let [reach_x, reach_y] = self.renderer.reach();
         let (low, high) = (top as f64 - reach_y - 2.0, (top + 2 * self.half) as f64 + reach_y + 3.0);
         let right = (left + 2 * self.half) as f64 + reach_x + 3.0;
         // A deformation moves what is further off the further.
@@ -90,9 +81,7 @@ pub struct Window<'a> {
     /// What matters to the window.
     near: Picture,
     at: PixelPoint,
-    /// Left and top pixel.
-    corner: [i64; 2],
-    side: usize,
+    square: Square,
 }
 
 /// The grey values' derivatives by everything that somebody may have to estimate, in groups: position, shape, blur, levels, a gradient that is added, one that
@@ -100,7 +89,7 @@ pub struct Window<'a> {
 type Columns = [Vec<Vec<f64>>; 7];
 
 impl Window<'_> {
-    /// The bounds of the position, px^2, beside each of `sets`. `mean` is what the sensor makes of light (fraction of full scale) and `variance` the
+    /// The bounds of the position, px^2, beside each of `sets`. `mean` is what the sensor makes of light (fraction of full scale), which is linear, and `variance` the
     /// variance of that grey value (fraction of full scale, squared), `None` where the chain has none.
     ///
     /// A bound is `None` also where the window does not determine the position.
@@ -111,9 +100,12 @@ impl Window<'_> {
         variance: impl Fn(f64) -> Option<f64>,
     ) -> Vec<Option<Covariance>> {
         let normal = || {
-            let grey = self.grey_of(&self.bounds.renderer, |p| p).into_iter().map(&mean).collect::<Option<Vec<f64>>>()?;
+            let dark = mean(0.0)?;
+            let gain = mean(1.0)? - dark;
+            let light = self.light(self.near.background, |piece| *piece);
+            let grey: Vec<f64> = light.iter().map(|light| dark + gain * light).collect();
             let weights = grey.iter().map(|&grey| variance(grey).filter(|v| *v > 0.0).map(|v| 1.0 / v)).collect::<Option<Vec<f64>>>()?;
-            let columns = self.columns(sets, &grey, &mean)?;
+            let columns = self.columns(sets, &light, &grey, gain);
             let groups = columns.each_ref().map(Vec::len);
             let columns: Vec<&Vec<f64>> = columns.iter().flatten().collect();
             Some((groups, normal_equations(&columns, &weights)))
@@ -123,94 +115,117 @@ impl Window<'_> {
             let (chosen, shared) = chosen(groups, set);
             let covariance = position(&normal.select_rows(&chosen).select_columns(&chosen), &shared)?;
             // A window that holds no edge tells of the position that it is somewhere about.
-            (covariance.sxx + covariance.syy < (self.side * self.side) as f64).then_some(covariance)
+            (covariance.sxx + covariance.syy < self.square.side.pow(2) as f64).then_some(covariance)
         };
         sets.iter().map(|&set| part(set)).collect()
     }
 
-    /// The derivatives that one of `sets` needs. They are differences of what the sensor makes of light: its curve counts.
-    fn columns(&self, sets: &[Unknowns], grey: &[f64], mean: &impl Fn(f64) -> Option<f64>) -> Option<Columns> {
+    /// The derivatives that one of `sets` needs, of grey values that grow by `gain` with the light.
+    fn columns(&self, sets: &[Unknowns], light: &[f64], grey: &[f64], gain: f64) -> Columns {
         let wanted = |of: fn(&Unknowns) -> bool| sets.iter().any(of);
-        let renderer = &self.bounds.renderer;
-        let moved = |by: &dyn Fn([f64; 2], f64) -> [f64; 2], step: f64| {
-            let [high, low] = [0.5, -0.5].map(|half| self.grey_of(renderer, |p| by(p, half * step)));
-            slope(&high, &low, step, mean)
-        };
-        let (x0, y0) = (self.at.x, self.at.y);
-        let shift = [moved(&|[x, y], h| [x + h, y], STEP)?, moved(&|[x, y], h| [x, y + h], STEP)?];
+        let scaled = |column: Vec<f64>| column.into_iter().map(|derivative| gain * derivative).collect::<Vec<f64>>();
+        let (shape, blur) = (wanted(|set| set.shape), wanted(|set| set.blur));
         let mut columns: Columns = Default::default();
-        columns[0] = shift.into();
-        if wanted(|set| set.shape) {
-            let step = STEP / self.bounds.half.max(1) as f64;
-            let [across, along] = [moved(&|[x, y], h| [x + h * (x - x0), y], step)?, moved(&|[x, y], h| [x + h * (y - y0), y], step)?];
-            let [rising, up] = [moved(&|[x, y], h| [x, y + h * (x - x0)], step)?, moved(&|[x, y], h| [x, y + h * (y - y0)], step)?];
-            columns[1] = vec![across, along, rising, up];
+        [columns[0], columns[1], columns[2]] = match &self.bounds.flow {
+            Some(flow) => self.flow(flow, shape, blur),
+            None => self.differences(shape),
         }
-        if let Some((sharper, softer, step)) = self.bounds.blurred.as_ref().filter(|_| wanted(|set| set.blur)) {
-            columns[2] = vec![slope(&self.grey_of(softer, |p| p), &self.grey_of(sharper, |p| p), *step, mean)?];
-        }
-        columns[3] = vec![vec![1.0; grey.len()], grey.to_vec()];
-        let middle = self.bounds.half as f64;
-        let ramp = |of: fn(usize, usize) -> usize| (0..grey.len()).map(|i| of(i, self.side) as f64 - middle).collect::<Vec<f64>>();
+        .map(|group| group.into_iter().map(scaled).collect());
+        columns[LEVELS] = vec![vec![1.0; grey.len()], grey.to_vec()];
+        let (middle, side) = (self.bounds.half as f64, self.square.side);
+        let ramp = |of: fn(usize, usize) -> usize| (0..grey.len()).map(|i| of(i, side) as f64 - middle).collect::<Vec<f64>>();
         columns[4] = vec![ramp(|i, side| i % side), ramp(|i, side| i / side)];
         // As operators take it: grey values are zero without light. A black level would be one more plane.
         columns[5] = columns[4].iter().map(|ramp| ramp.iter().zip(grey).map(|(d, grey)| d * grey).collect()).collect();
         if wanted(|set| set.levels == Levels::Areas) {
-            columns[AREAS] = self.areas(mean)?;
+            columns[AREAS] = self.areas(light).into_iter().map(scaled).collect();
         }
-        Some(columns)
+        columns
     }
 
-    /// The derivatives by the contrast of each area with what it lies on. Areas of one contrast count as one.
-    fn areas(&self, mean: &impl Fn(f64) -> Option<f64>) -> Option<Vec<Vec<f64>>> {
-        let mut contrasts: Vec<f64> = self.near.pieces.iter().map(|piece| piece.contrast.abs()).collect();
+    /// The light's derivatives by the position, the shape and the blur.
+    fn flow(&self, flow: &Flow, shape: bool, blur: bool) -> [Vec<Vec<f64>>; 3] {
+        let [x, y, across, along, rising, up, softer] = flow.window(&self.bounds.renderer, &self.near, [self.at.x, self.at.y], self.square);
+        let softer = softer.into_iter().map(|derivative| derivative / self.bounds.blur).collect();
+        let group = |wanted: bool, of: Vec<Vec<f64>>| if wanted { of } else { Vec::new() };
+        [vec![x, y], group(shape, vec![across, along, rising, up]), group(blur, vec![softer])]
+    }
+
+    /// The same as differences, without a blur.
+    fn differences(&self, shape: bool) -> [Vec<Vec<f64>>; 3] {
+        let moved = |by: &dyn Fn([f64; 2], f64) -> [f64; 2], step: f64| {
+            let [high, low] = [0.5, -0.5].map(|half| {
+                self.light(self.near.background, |piece| Piece { points: piece.points.map(|point| by(point, half * step)), ..*piece })
+            });
+            high.iter().zip(&low).map(|(high, low)| (high - low) / step).collect::<Vec<f64>>()
+        };
+        let (x0, y0) = (self.at.x, self.at.y);
+        let shift = vec![moved(&|[x, y], h| [x + h, y], STEP), moved(&|[x, y], h| [x, y + h], STEP)];
+        if !shape {
+            return [shift, Vec::new(), Vec::new()];
+        }
+        let step = STEP / self.bounds.half.max(1) as f64;
+        let [across, along] = [moved(&|[x, y], h| [x + h * (x - x0), y], step), moved(&|[x, y], h| [x + h * (y - y0), y], step)];
+        let [rising, up] = [moved(&|[x, y], h| [x, y + h * (x - x0)], step), moved(&|[x, y], h| [x, y + h * (y - y0)], step)];
+        [shift, vec![across, along, rising, up], Vec::new()]
+    }
+
+    /// The light's derivatives by the contrast of each area with what it lies on, relative to it: what the area adds. Areas of one contrast count as one.
+    fn areas(&self, light: &[f64]) -> Vec<Vec<f64>> {
+        let mut contrasts: Vec<f64> =
+            self.near.pieces.iter().map(|piece| piece.contrast.abs()).filter(|contrast| *contrast > 0.0).collect();
         contrasts.sort_by(f64::total_cmp);
         contrasts.dedup();
-        let column = |&area: &f64| {
-            let [high, low] = [0.5, -0.5].map(|half| {
-                let times = 1.0 + half * CONTRAST_STEP;
-                let changed = |piece: &Piece| {
-                    let contrast = if piece.contrast.abs() == area { times * piece.contrast } else { piece.contrast };
-                    Piece { contrast, ..*piece }
-                };
-                self.bounds.renderer.render_window(&self.near, changed, self.corner, self.side)
-            });
-            slope(&high, &low, CONTRAST_STEP, mean)
-        };
-        contrasts.iter().filter(|contrast| **contrast > 0.0).map(column).collect()
+        let Some((_, others)) = contrasts.split_last() else { return Vec::new() };
+        let alone =
+            |area: f64, piece: &Piece| Piece { contrast: if piece.contrast.abs() == area { piece.contrast } else { 0.0 }, ..*piece };
+        let mut columns: Vec<Vec<f64>> = others.iter().map(|&area| self.light(0.0, |piece| alone(area, piece))).collect();
+        // The last has what is left.
+        let rest = |i: usize| light[i] - self.near.background - columns.iter().map(|column| column[i]).sum::<f64>();
+        columns.push((0..light.len()).map(rest).collect());
+        columns
     }
 
-    fn grey_of(&self, renderer: &Renderer, moved: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
-        let move_piece = |piece: &Piece| Piece { points: piece.points.map(&moved), ..*piece };
-        renderer.render_window(&self.near, move_piece, self.corner, self.side)
+    /// The light of the window, with pieces as `changed` makes them.
+    fn light(&self, background: f64, changed: impl Fn(&Piece) -> Piece) -> Vec<f64> {
+        self.bounds.renderer.render_window(&self.near, background, changed, self.square)
     }
 }
 
 /// The sums of the products of every two columns, weighted row by row.
 fn normal_equations(columns: &[&Vec<f64>], weights: &[f64]) -> DMatrix<f64> {
     let n = columns.len();
-    let rows: Vec<f64> = (0..weights.len()).flat_map(|pixel| columns.iter().map(move |column| column[pixel])).collect();
-    let mut sums = vec![0.0; n * n];
-    rows.chunks_exact(n).zip(weights).for_each(|(row, weight)| add_products(&mut sums, row, *weight));
-    DMatrix::from_fn(n, n, |i, j| sums[i.max(j) * n + i.min(j)])
+    let mut sums = vec![[0.0; LANES]; n * n];
+    add_products(&mut sums, columns, weights);
+    DMatrix::from_fn(n, n, |i, j| sums[i.max(j) * n + i.min(j)].iter().sum())
 }
 
-/// Adds the products of a row's values, all of a line side by side.
+/// Adds the products of every column with itself and those before it, a block of rows at a time, which stays at hand.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn add_products(sums: &mut [f64], row: &[f64], weight: f64) {
-    let n = row.len();
-    for i in 0..n {
-        // Beyond the diagonal too: whole lines are faster than those that end at it.
-        let (sums, a) = (&mut sums[i * n..(i + 1) * n], row[i]);
-        for j in 0..n {
-            sums[j] += a * row[j] * weight;
+fn add_products(sums: &mut [[f64; LANES]], columns: &[&Vec<f64>], weights: &[f64]) {
+    let n = columns.len();
+    for (block, weights) in weights.chunks(BLOCK).enumerate() {
+        let rows = block * BLOCK..block * BLOCK + weights.len();
+        for i in 0..n {
+            let mut weighted = [0.0; BLOCK];
+            for ((weighted, value), weight) in weighted.iter_mut().zip(&columns[i][rows.clone()]).zip(weights) {
+                *weighted = value * weight;
+            }
+            for j in 0..=i {
+                let mut sum = sums[i * n + j];
+                let (whole, rest) = columns[j][rows.clone()].as_chunks::<LANES>();
+                for (weighted, other) in weighted.as_chunks::<LANES>().0.iter().zip(whole) {
+                    for lane in 0..LANES {
+                        sum[lane] += weighted[lane] * other[lane];
+                    }
+                }
+                for (lane, other) in rest.iter().enumerate() {
+                    sum[lane] += weighted[whole.len() * LANES + lane] * other;
+                }
+                sums[i * n + j] = sum;
+            }
         }
     }
-}
-
-/// The slope between two windows that lie `step` apart, of what the sensor makes of their light.
-fn slope(high: &[f64], low: &[f64], step: f64, mean: &impl Fn(f64) -> Option<f64>) -> Option<Vec<f64>> {
-    high.iter().zip(low).map(|(&high, &low)| Some((mean(high)? - mean(low)?) / step)).collect()
 }
 
 /// The places of a set's unknowns among all columns, and of each the place in the set from which those of its group are.

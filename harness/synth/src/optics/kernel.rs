@@ -16,6 +16,8 @@ pub(crate) struct Part {
     pub along: Spread,
     /// Its density down a column.
     pub down: Spread,
+    /// What both are of: along a row and down a column.
+    pub profiles: [Profile; 2],
 }
 
 /// The point spread of lens and photosite.
@@ -43,8 +45,9 @@ impl Kernel {
         let part = |&(share, [dx, dy]): &(f64, [f64; 2]), chord: &Chord| {
             let down = Profile { sigma, aperture: optics.aperture, chord: 0.0 };
             let along = Profile { chord: chord.width, ..down };
+            let profiles = [along, down];
             let (along, down) = (Spread::steps(&along), Spread::density(&down));
-            Part { weight: share * chord.weight, shift: [dx, dy + chord.offset], along, down }
+            Part { weight: share * chord.weight, shift: [dx, dy + chord.offset], along, down, profiles }
         };
         let parts = shifts.iter().flat_map(|shift| chords.iter().map(move |chord| part(shift, chord))).collect();
         Self::Smooth { sigma, parts }

@@ -7,6 +7,7 @@ mod spread;
 
 pub(crate) use kernel::{Kernel, Part};
 pub(crate) use levels::{Levels, Place};
+pub(crate) use spread::Spread;
 
 use thiserror::Error;
 

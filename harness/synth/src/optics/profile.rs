@@ -29,6 +29,13 @@ impl Profile {
         if self.chord > 0.0 { difference(once, u, self.aperture, self.chord) } else { centred(cdf, u, self.aperture) }
     }
 
+    /// The slope of the density at `u`, px^-2.
+    pub fn slope(&self, u: f64) -> f64 {
+        let cdf = |u: f64| cumulative(u / self.sigma);
+        let gauss = |u: f64| density(u / self.sigma) / self.sigma;
+        if self.chord > 0.0 { difference(cdf, u, self.aperture, self.chord) } else { centred(gauss, u, self.aperture) }
+    }
+
     /// The integral of the profile from minus infinity to `u`.
     pub fn integral(&self, u: f64) -> f64 {
         let once = |u: f64| self.once(u);
@@ -87,6 +94,8 @@ mod tests {
                 let (u, h) = (reach * f64::from(i) / 50.0, 1e-4);
                 let slope = (profile.integral(u + h) - profile.integral(u - h)) / (2.0 * h);
                 assert!((slope - profile.density(u)).abs() < 1e-6, "{profile:?} at {u}: {slope} {}", profile.density(u));
+                let bend = (profile.density(u + h) - profile.density(u - h)) / (2.0 * h);
+                assert!((bend - profile.slope(u)).abs() < 1e-6, "{profile:?} at {u}: {bend} {}", profile.slope(u));
             }
         }
     }

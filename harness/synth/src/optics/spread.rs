@@ -23,6 +23,11 @@ impl Spread {
         Self::tabulate(profile, profile.reach(), |u| profile.density(u))
     }
 
+    /// The slope of the density around a coordinate: weight `k'(u - pixel)` for each pixel.
+    pub fn slope(profile: &Profile) -> Self {
+        Self::tabulate(profile, profile.reach(), |u| profile.slope(u))
+    }
+
     /// The integral over each pixel's width: weight `S(u - pixel + 1/2) - S(u - pixel - 1/2)`. They add up to one.
     pub fn steps(profile: &Profile) -> Self {
         Self::tabulate(profile, profile.reach() + 0.5, |u| profile.integral(u + 0.5) - profile.integral(u - 0.5))

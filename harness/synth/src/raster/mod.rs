@@ -1,5 +1,7 @@
 //! Outlines in the image to grey values, exact under the kernel of lens and photosite.
 
+mod flow;
+mod nodes;
 mod piece;
 mod sharp;
 mod strip;
@@ -12,8 +14,10 @@ use calibench_model::{Image, Scene};
 use rayon::prelude::*;
 
 use crate::optics::{Levels, Optics, OpticsError, Place};
-use strip::{Rules, Strip};
+use nodes::Rules;
+use strip::Strip;
 
+pub(crate) use flow::{Flow, Square};
 pub use piece::Piece;
 use piece::{at, polygon};
 pub(crate) use piece::{join_left, orient};
@@ -100,25 +104,17 @@ impl Renderer {
         Image::new(self.width, self.height, grey)
     }
 
-    /// The grey values of `side` x `side` px from (`left`, `top`) on, row by row, in f64, of the pieces as `moved` moves them.
-    pub(crate) fn render_window(&self, picture: &Picture, moved: impl Fn(&Piece) -> Piece, [left, top]: [i64; 2], side: usize) -> Vec<f64> {
+    /// The grey values of `square`, row by row, in f64, of the pieces as `moved` moves them on `background`.
+    pub(crate) fn render_window(&self, picture: &Picture, background: f64, moved: impl Fn(&Piece) -> Piece, square: Square) -> Vec<f64> {
+        let Square { corner: [left, top], side } = square;
         let [reach_x, reach_y] = self.levels.reach();
         let (low, high) = (top as f64 - reach_y - 1.0, top as f64 + side as f64 + reach_y + 1.0);
         let right = left as f64 + side as f64 + reach_x + 1.0;
         let shifted = |piece: Piece| Piece { points: piece.points.map(|[x, y]| [x - left as f64, y - top as f64]), ..piece };
-        let near =
-            picture.pieces.iter().map(moved).filter(|piece| piece.rows()[1] > low && piece.rows()[0] < high && piece.columns()[0] < right);
-        let pieces: Vec<Piece> = near.map(shifted).collect();
+        let counts = |piece: &Piece| piece.contrast != 0.0 && piece.rows()[1] > low && piece.rows()[0] < high && piece.columns()[0] < right;
+        let pieces: Vec<Piece> = picture.pieces.iter().map(moved).filter(counts).map(shifted).collect();
         let listed: Vec<u32> = (0..pieces.len() as u32).collect();
-        let band = Band {
-            pieces: &pieces,
-            listed: &listed,
-            background: picture.background,
-            jitter: None,
-            top: 0,
-            rows: side,
-            origin: [left, top],
-        };
+        let band = Band { pieces: &pieces, listed: &listed, background, jitter: None, top: 0, rows: side, origin: [left, top] };
         let mut grey = Vec::with_capacity(side * side);
         self.band(&mut Strip::new(side, side, reach_x), &band, |_, values| grey.extend_from_slice(values));
         grey
