@@ -85,7 +85,7 @@ deny:
 
 # Points per second of every operator, of cameras, milliseconds of the recognition, and seconds of adjustments, beside their peers (`./bootstrap perf` installs mrcal and Ceres)
 perf:
-    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns
+    cargo bench --workspace --bench perf --bench cameras --bench bundles --bench boards --bench recognition --bench campaigns --bench bounds
 
 # What the tests open pages in (`./bootstrap browser` installs it)
 browser:

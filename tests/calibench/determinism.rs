@@ -1,10 +1,10 @@
 //! Same seed, same bytes: on one thread, and again on two.
 //!
-//! Of every scenario a few trials: more would be drawn and adjusted by the same code.
+//! Of every scenario a few trials, and of what it sweeps the ends: more would be drawn and adjusted by the same code.
 
 use std::path::PathBuf;
 
-use crate::project::{copy_of_all, files, program};
+use crate::project::{copy_of_all, files, keep_ends_of_sweeps, program};
 
 /// Trials of each scenario: two threads need two to differ.
 const TRIALS: u64 = 2;
@@ -12,6 +12,7 @@ const TRIALS: u64 = 2;
 /// Records and reports of every scenario, made on `threads` threads.
 fn outputs(threads: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let project = copy_of_all(TRIALS);
+    keep_ends_of_sweeps(project.path());
     for arguments in [&["run", "--all", "--quiet"][..], &["report", "--quiet"]] {
         let status = program(project.path()).args(arguments).args(["--threads", threads]).status().unwrap();
         assert!(status.success(), "{arguments:?}");

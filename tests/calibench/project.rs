@@ -12,8 +12,18 @@ pub fn root() -> PathBuf {
 const NETWORKS: &str = "galo-2011/network";
 
 /// Scenarios whose run takes long, by what their names begin with: only tests of their own copy them.
-const LONG: [&str; 9] =
-    ["atlas/", "canon-t3/", NETWORKS, "operators/", "sweeps/", "targets/budget", "targets/by-", "testfields/", "vosselman-1988/"];
+const LONG: [&str; 10] = [
+    "atlas/",
+    "canon-t3/",
+    NETWORKS,
+    "operators/",
+    "sweeps/",
+    "targets/budget",
+    "targets/by-",
+    "targets/detectors",
+    "testfields/",
+    "vosselman-1988/",
+];
 
 /// A temporary project with the real scenarios and references, but for the long ones, and no records or reports.
 pub fn copy() -> tempfile::TempDir {
@@ -50,16 +60,33 @@ fn without(is_left_out: impl Fn(&str) -> bool) -> tempfile::TempDir {
 /// A temporary project with all scenarios and references, of each scenario `most` trials at most.
 pub fn copy_of_all(most: u64) -> tempfile::TempDir {
     let folder = whole();
-    for (path, bytes) in
-        files(&folder.path().join("scenarios")).into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "toml"))
-    {
-        let text = String::from_utf8(bytes).expect("UTF-8");
-        let trials = |line: &str| line.strip_prefix("trials = ").and_then(|number| number.parse::<u64>().ok());
-        let few =
-            |line: &str| if trials(line).is_some_and(|trials| trials > most) { format!("trials = {most}\n") } else { format!("{line}\n") };
-        std::fs::write(folder.path().join("scenarios").join(path), text.lines().map(few).collect::<String>()).expect("a scenario");
-    }
+    let few = |line: &str| {
+        let trials = line.strip_prefix("trials = ").and_then(|number| number.parse::<u64>().ok());
+        trials.is_some_and(|trials| trials > most).then(|| format!("trials = {most}"))
+    };
+    edit_scenarios(folder.path(), few);
     folder
+}
+
+/// Leaves of each sweep's numbers, and of its lists of numbers, the first and the last; of what is swept by name, as boards, all.
+pub fn keep_ends_of_sweeps(project: &Path) {
+    edit_scenarios(project, |line| {
+        let (key, list) = line.strip_prefix('"')?.split_once("\" = ")?;
+        let table: toml::Table = toml::from_str(&format!("list = {list}")).ok()?;
+        let values = table.get("list")?.as_array()?;
+        let numbers = values.len() > 2 && values.iter().all(|value| !value.is_str() && !value.is_bool());
+        numbers.then(|| format!("\"{key}\" = [{}, {}]", values[0], values[values.len() - 1]))
+    });
+}
+
+/// Puts what `edited` makes of a line of a scenario in its place, if anything.
+fn edit_scenarios(project: &Path, edited: impl Fn(&str) -> Option<String>) {
+    let folder = project.join("scenarios");
+    for (path, bytes) in files(&folder).into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "toml")) {
+        let text = String::from_utf8(bytes).expect("UTF-8");
+        let line = |line: &str| format!("{}\n", edited(line).unwrap_or_else(|| line.to_owned()));
+        std::fs::write(folder.join(path), text.lines().map(line).collect::<String>()).expect("a scenario");
+    }
 }
 
 fn whole() -> tempfile::TempDir {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use calibench_model::{PixelPoint, TargetKind, Unknowns};
 use calibench_scenario::Imaging;
-use calibench_synth::bound::Bounds;
+use calibench_synth::bound::{Bounds, Work};
 use calibench_synth::optics::OpticsError;
 use calibench_synth::raster::Picture;
 
@@ -60,10 +60,10 @@ impl TargetBounds {
     }
 
     /// The bounds of the target of this `kind` at `at`, px.
-    pub fn of(&self, picture: &Picture, kind: TargetKind, at: PixelPoint) -> BySet {
+    pub fn of(&self, picture: &Picture, kind: TargetKind, at: PixelPoint, work: &mut Work) -> BySet {
         let bounds = self.of_discs.as_ref().filter(|_| kind == TargetKind::Disc).unwrap_or(&self.bounds);
         let covariances = match bounds.window(picture, at) {
-            Some(window) => window.bounds(&self.sets, |light| self.chain.mean(light), |grey| self.chain.variance(grey)),
+            Some(window) => window.bounds(&self.sets, |light| self.chain.mean(light), |grey| self.chain.variance(grey), work),
             None => vec![None; self.sets.len()],
         };
         let bounds = covariances.into_iter().map(|covariance| covariance.map(|c| (c.sxx + c.syy).sqrt()));

@@ -8,6 +8,7 @@ use calibench_model::{Image, Measurement, ObjectTarget, PixelPoint, Start, Targe
 use calibench_random::{Key, Purpose, stream};
 use calibench_records::results::{PointResult, Trial};
 use calibench_scenario::{Blocks, Calibration, ViewsSubject};
+use calibench_synth::bound::Work;
 use calibench_synth::raster::{Picture, Renderer};
 use calibench_synth::sensor::Exposure;
 use calibench_synth::stations::Station;
@@ -82,14 +83,14 @@ impl<'a> Prepared<'a> {
             let failed = |source| RunError::View { station: station.name.clone(), source };
             let seen = view.seen(margin).map_err(failed)?;
             let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
-            let bound = |(target, truth): (&ObjectTarget, &TargetTruth)| match (bounds, truth.at) {
+            let bound = |work: &mut Work, (target, truth): (&ObjectTarget, &TargetTruth)| match (bounds, truth.at) {
                 // About the reference point turning a disc would be moving it.
                 (Some(bounds), Some(at)) if is_pointed_at(subject, truth) => {
-                    bounds.of(&picture, target.kind, truth.ellipse.map_or(at, |ellipse| ellipse.centre))
+                    bounds.of(&picture, target.kind, truth.ellipse.map_or(at, |ellipse| ellipse.centre), work)
                 }
                 _ => BySet::new(),
             };
-            let bounds = subject.field.targets.par_iter().zip(&truth).map(bound).collect();
+            let bounds = subject.field.targets.par_iter().zip(&truth).map_init(Work::default, bound).collect();
             Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into() })
         };
         // The first station's error is the one that is said, whichever comes first.

@@ -9,7 +9,7 @@ use multiversion::multiversion;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
-use crate::raster::{Flow, Picture, Piece, Renderer, Square, join_left};
+use crate::raster::{COLUMNS, Derivatives, Flow, LANES, MARGIN, Picture, Piece, Renderer, Square, join_left, stride};
 
 /// Steps of the differences where there is no blur, and grey values have kinks: px of a shift, and of a deformation at the window's edge.
 const STEP: f64 = 0.05;
@@ -17,10 +17,6 @@ const STEP: f64 = 0.05;
 const LEVELS: usize = 3;
 /// The group of the grey values of areas.
 const AREAS: usize = 6;
-/// Products that are added side by side.
-const LANES: usize = 8;
-/// Rows of the derivatives that are multiplied with each other before the next ones.
-const BLOCK: usize = 128;
 /// Combinations of unknowns with less than this share of the information are not determined by the window: a disc's rotation, a straight edge's length. The
 /// differences leave such a combination some 1e-9; what is determined has more than 1e-4.
 const SINGULAR: f64 = 1e-6;
@@ -32,8 +28,6 @@ pub struct Bounds {
     renderer: Renderer,
     /// The derivatives, where there is a blur.
     flow: Option<Flow>,
-    /// Standard deviation of the blur in the middle of the frame, px.
-    blur: f64,
 }
 
 impl Bounds {
@@ -43,7 +37,7 @@ impl Bounds {
     /// Optics that are out of range.
     pub fn new(optics: &Optics, width: usize, height: usize, window: usize) -> Result<Self, OpticsError> {
         let renderer = Renderer::new(optics, width, height)?;
-        Ok(Self { half: (window / 2) as i64, flow: Flow::new(&renderer), renderer, blur: optics.blur })
+        Ok(Self { half: (window / 2) as i64, flow: Flow::new(&renderer), renderer })
     }
 
     /// What the grey values of the window around `at` tell; `None` if it leaves the image.
@@ -84,9 +78,13 @@ pub struct Window<'a> {
     square: Square,
 }
 
-/// The grey values' derivatives by everything that somebody may have to estimate, in groups: position, shape, blur, levels, a gradient that is added, one that
+/// Memory that bounds are computed in, one after the other.
+#[derive(Clone, Debug, Default)]
+pub struct Work(Derivatives);
+
+/// How many columns of the Jacobian there are of everything that somebody may have to estimate: position, shape, blur, levels, a gradient that is added, one that
 /// multiplies, and the grey value of each area.
-type Columns = [Vec<Vec<f64>>; 7];
+type Groups = [usize; 7];
 
 impl Window<'_> {
     /// The bounds of the position, px^2, beside each of `sets`. `mean` is what the sensor makes of light (fraction of full scale), which is linear, and `variance` the
@@ -98,19 +96,9 @@ impl Window<'_> {
         sets: &[Unknowns],
         mean: impl Fn(f64) -> Option<f64>,
         variance: impl Fn(f64) -> Option<f64>,
+        work: &mut Work,
     ) -> Vec<Option<Covariance>> {
-        let normal = || {
-            let dark = mean(0.0)?;
-            let gain = mean(1.0)? - dark;
-            let light = self.light(self.near.background, |piece| *piece);
-            let grey: Vec<f64> = light.iter().map(|light| dark + gain * light).collect();
-            let weights = grey.iter().map(|&grey| variance(grey).filter(|v| *v > 0.0).map(|v| 1.0 / v)).collect::<Option<Vec<f64>>>()?;
-            let columns = self.columns(sets, &light, &grey, gain);
-            let groups = columns.each_ref().map(Vec::len);
-            let columns: Vec<&Vec<f64>> = columns.iter().flatten().collect();
-            Some((groups, normal_equations(&columns, &weights)))
-        };
-        let Some((groups, normal)) = normal() else { return vec![None; sets.len()] };
+        let Some((groups, normal)) = self.normal(sets, mean, variance, work) else { return vec![None; sets.len()] };
         let part = |set| {
             let (chosen, shared) = chosen(groups, set);
             let covariance = position(&normal.select_rows(&chosen).select_columns(&chosen), &shared)?;
@@ -120,54 +108,82 @@ impl Window<'_> {
         sets.iter().map(|&set| part(set)).collect()
     }
 
-    /// The derivatives that one of `sets` needs, of grey values that grow by `gain` with the light.
-    fn columns(&self, sets: &[Unknowns], light: &[f64], grey: &[f64], gain: f64) -> Columns {
+    /// The normal equations of all that one of `sets` needs.
+    fn normal(
+        &self,
+        sets: &[Unknowns],
+        mean: impl Fn(f64) -> Option<f64>,
+        variance: impl Fn(f64) -> Option<f64>,
+        Work(derivatives): &mut Work,
+    ) -> Option<(Groups, DMatrix<f64>)> {
         let wanted = |of: fn(&Unknowns) -> bool| sets.iter().any(of);
-        let scaled = |column: Vec<f64>| column.into_iter().map(|derivative| gain * derivative).collect::<Vec<f64>>();
-        let (shape, blur) = (wanted(|set| set.shape), wanted(|set| set.blur));
-        let mut columns: Columns = Default::default();
-        [columns[0], columns[1], columns[2]] = match &self.bounds.flow {
-            Some(flow) => self.flow(flow, shape, blur),
-            None => self.differences(shape),
+        let (shape, side) = (wanted(|set| set.shape), self.square.side);
+        let dark = mean(0.0)?;
+        let gain = mean(1.0)? - dark;
+        let light = self.light(self.near.background, |piece| *piece);
+        let blur = match &self.bounds.flow {
+            Some(flow) => {
+                flow.window(&self.bounds.renderer, &self.near, [self.at.x, self.at.y], self.square, derivatives);
+                wanted(|set| set.blur)
+            }
+            None => {
+                self.differences(shape, derivatives);
+                false
+            }
+        };
+        let areas = if wanted(|set| set.levels == Levels::Areas) { self.areas(&light) } else { Vec::new() };
+        let groups = [2, if shape { 4 } else { 0 }, usize::from(blur), 2, 2, 2, areas.len()];
+        let moving = (0..COLUMNS).filter(|column| *column < 2 || if *column < COLUMNS - 1 { shape } else { blur }).collect::<Vec<_>>();
+        let mut sums = Sums::new(groups.iter().sum(), side);
+        for (y, light) in light.chunks_exact(side).enumerate() {
+            let mut rows = sums.rows.chunks_exact_mut(stride(side));
+            let mut next = || rows.next().unwrap_or_default();
+            for &column in &moving {
+                next().iter_mut().zip(derivatives.row(y, column)).for_each(|(to, from)| *to = gain * from);
+            }
+            let grey = |x: usize| dark + gain * light[x];
+            let middle = self.bounds.half as f64;
+            let (across, down) = (|x: usize| x as f64 - middle, y as f64 - middle);
+            fill(next(), side, |_| 1.0);
+            fill(next(), side, grey);
+            fill(next(), side, across);
+            fill(next(), side, |_| down);
+            // As operators take it: grey values are zero without light. A black level would be one more plane.
+            fill(next(), side, |x| across(x) * grey(x));
+            fill(next(), side, |x| down * grey(x));
+            for area in &areas {
+                fill(next(), side, |x| gain * area[y * side + x]);
+            }
+            for (weight, x) in sums.weights[MARGIN..].iter_mut().zip(0..side) {
+                *weight = 1.0 / variance(grey(x)).filter(|variance| *variance > 0.0)?;
+            }
+            sums.add();
         }
-        .map(|group| group.into_iter().map(scaled).collect());
-        columns[LEVELS] = vec![vec![1.0; grey.len()], grey.to_vec()];
-        let (middle, side) = (self.bounds.half as f64, self.square.side);
-        let ramp = |of: fn(usize, usize) -> usize| (0..grey.len()).map(|i| of(i, side) as f64 - middle).collect::<Vec<f64>>();
-        columns[4] = vec![ramp(|i, side| i % side), ramp(|i, side| i / side)];
-        // As operators take it: grey values are zero without light. A black level would be one more plane.
-        columns[5] = columns[4].iter().map(|ramp| ramp.iter().zip(grey).map(|(d, grey)| d * grey).collect()).collect();
-        if wanted(|set| set.levels == Levels::Areas) {
-            columns[AREAS] = self.areas(light).into_iter().map(scaled).collect();
-        }
-        columns
+        Some((groups, sums.normal()))
     }
 
-    /// The light's derivatives by the position, the shape and the blur.
-    fn flow(&self, flow: &Flow, shape: bool, blur: bool) -> [Vec<Vec<f64>>; 3] {
-        let [x, y, across, along, rising, up, softer] = flow.window(&self.bounds.renderer, &self.near, [self.at.x, self.at.y], self.square);
-        let softer = softer.into_iter().map(|derivative| derivative / self.bounds.blur).collect();
-        let group = |wanted: bool, of: Vec<Vec<f64>>| if wanted { of } else { Vec::new() };
-        [vec![x, y], group(shape, vec![across, along, rising, up]), group(blur, vec![softer])]
-    }
-
-    /// The same as differences, without a blur.
-    fn differences(&self, shape: bool) -> [Vec<Vec<f64>>; 3] {
-        let moved = |by: &dyn Fn([f64; 2], f64) -> [f64; 2], step: f64| {
+    /// The derivatives by position and shape as differences, without a blur.
+    fn differences(&self, shape: bool, found: &mut Derivatives) {
+        let side = self.square.side;
+        found.clear(side);
+        let mut put = |column: usize, by: &dyn Fn([f64; 2], f64) -> [f64; 2], step: f64| {
             let [high, low] = [0.5, -0.5].map(|half| {
                 self.light(self.near.background, |piece| Piece { points: piece.points.map(|point| by(point, half * step)), ..*piece })
             });
-            high.iter().zip(&low).map(|(high, low)| (high - low) / step).collect::<Vec<f64>>()
+            for (y, (high, low)) in high.chunks_exact(side).zip(low.chunks_exact(side)).enumerate() {
+                fill(found.row_mut(y, column), side, |x| (high[x] - low[x]) / step);
+            }
         };
-        let (x0, y0) = (self.at.x, self.at.y);
-        let shift = vec![moved(&|[x, y], h| [x + h, y], STEP), moved(&|[x, y], h| [x, y + h], STEP)];
-        if !shape {
-            return [shift, Vec::new(), Vec::new()];
+        put(0, &|[x, y], h| [x + h, y], STEP);
+        put(1, &|[x, y], h| [x, y + h], STEP);
+        if shape {
+            let (x0, y0) = (self.at.x, self.at.y);
+            let step = STEP / self.bounds.half.max(1) as f64;
+            put(2, &|[x, y], h| [x + h * (x - x0), y], step);
+            put(3, &|[x, y], h| [x + h * (y - y0), y], step);
+            put(4, &|[x, y], h| [x, y + h * (x - x0)], step);
+            put(5, &|[x, y], h| [x, y + h * (y - y0)], step);
         }
-        let step = STEP / self.bounds.half.max(1) as f64;
-        let [across, along] = [moved(&|[x, y], h| [x + h * (x - x0), y], step), moved(&|[x, y], h| [x + h * (y - y0), y], step)];
-        let [rising, up] = [moved(&|[x, y], h| [x, y + h * (x - x0)], step), moved(&|[x, y], h| [x, y + h * (y - y0)], step)];
-        [shift, vec![across, along, rising, up], Vec::new()]
     }
 
     /// The light's derivatives by the contrast of each area with what it lies on, relative to it: what the area adds. Areas of one contrast count as one.
@@ -192,44 +208,62 @@ impl Window<'_> {
     }
 }
 
-/// The sums of the products of every two columns, weighted row by row.
-fn normal_equations(columns: &[&Vec<f64>], weights: &[f64]) -> DMatrix<f64> {
-    let n = columns.len();
-    let mut sums = vec![[0.0; LANES]; n * n];
-    add_products(&mut sums, columns, weights);
-    DMatrix::from_fn(n, n, |i, j| sums[i.max(j) * n + i.min(j)].iter().sum())
+/// Fills the pixels of a row between its margins.
+fn fill(row: &mut [f64], side: usize, value: impl Fn(usize) -> f64) {
+    row[MARGIN..][..side].iter_mut().enumerate().for_each(|(x, pixel)| *pixel = value(x));
 }
 
-/// Adds the products of every column with itself and those before it, a block of rows at a time, which stays at hand.
+/// The sums of the products of every two columns of the Jacobian, weighted, a row of the window at a time.
+struct Sums {
+    n: usize,
+    /// Of each two columns, in lanes.
+    products: Vec<[f64; LANES]>,
+    /// The row's part of every column, with margins.
+    rows: Vec<f64>,
+    /// Those of the row's pixels; zero in the margins.
+    weights: Vec<f64>,
+}
+
+impl Sums {
+    fn new(n: usize, side: usize) -> Self {
+        let stride = stride(side);
+        Self { n, products: vec![[0.0; LANES]; n * n], rows: vec![0.0; n * stride], weights: vec![0.0; stride] }
+    }
+
+    /// Adds the row.
+    fn add(&mut self) {
+        add_products(&mut self.products, &self.rows, &self.weights);
+    }
+
+    fn normal(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.n, self.n, |i, j| self.products[i.max(j) * self.n + i.min(j)].iter().sum())
+    }
+}
+
+/// Adds the products of every column with itself and those before it.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn add_products(sums: &mut [[f64; LANES]], columns: &[&Vec<f64>], weights: &[f64]) {
-    let n = columns.len();
-    for (block, weights) in weights.chunks(BLOCK).enumerate() {
-        let rows = block * BLOCK..block * BLOCK + weights.len();
-        for i in 0..n {
-            let mut weighted = [0.0; BLOCK];
-            for ((weighted, value), weight) in weighted.iter_mut().zip(&columns[i][rows.clone()]).zip(weights) {
-                *weighted = value * weight;
-            }
-            for j in 0..=i {
-                let mut sum = sums[i * n + j];
-                let (whole, rest) = columns[j][rows.clone()].as_chunks::<LANES>();
-                for (weighted, other) in weighted.as_chunks::<LANES>().0.iter().zip(whole) {
-                    for lane in 0..LANES {
-                        sum[lane] += weighted[lane] * other[lane];
-                    }
+fn add_products(products: &mut [[f64; LANES]], rows: &[f64], weights: &[f64]) {
+    let (n, stride) = (rows.len() / weights.len(), weights.len());
+    let mut weighted = vec![0.0; stride];
+    for i in 0..n {
+        let column = &rows[i * stride..(i + 1) * stride];
+        for ((weighted, value), weight) in weighted.iter_mut().zip(column).zip(weights) {
+            *weighted = value * weight;
+        }
+        for (j, other) in rows.chunks_exact(stride).take(i + 1).enumerate() {
+            let mut sum = products[i * n + j];
+            for (weighted, other) in weighted.as_chunks::<LANES>().0.iter().zip(other.as_chunks::<LANES>().0) {
+                for lane in 0..LANES {
+                    sum[lane] += weighted[lane] * other[lane];
                 }
-                for (lane, other) in rest.iter().enumerate() {
-                    sum[lane] += weighted[whole.len() * LANES + lane] * other;
-                }
-                sums[i * n + j] = sum;
             }
+            products[i * n + j] = sum;
         }
     }
 }
 
 /// The places of a set's unknowns among all columns, and of each the place in the set from which those of its group are.
-fn chosen(groups: [usize; 7], set: Unknowns) -> (Vec<usize>, Vec<usize>) {
+fn chosen(groups: Groups, set: Unknowns) -> (Vec<usize>, Vec<usize>) {
     let added = matches!(set.gradient, Gradient::Added | Gradient::Both);
     let light = matches!(set.gradient, Gradient::Light | Gradient::Both);
     let members = [true, set.shape, set.blur, set.levels != Levels::None, added, light, set.levels == Levels::Areas];

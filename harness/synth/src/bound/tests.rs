@@ -17,7 +17,7 @@ fn scene(polygons: &[&[(f64, f64)]]) -> Picture {
 fn bound(picture: &Picture, blur: f64, window: usize, unknowns: Unknowns) -> Option<Covariance> {
     let bounds = Bounds::new(&Optics { blur, ..Optics::default() }, 41, 41, window).unwrap();
     let window = bounds.window(picture, PixelPoint::new(20.2, 19.9)).unwrap();
-    window.bounds(&[unknowns], Some, |_| Some(SIGMA * SIGMA))[0]
+    window.bounds(&[unknowns], Some, |_| Some(SIGMA * SIGMA), &mut Work::default())[0]
 }
 
 fn chess() -> Picture {
@@ -203,8 +203,11 @@ fn an_edge_or_nothing_has_no_bound() {
     let picture = chess();
     assert!(bounds.window(&picture, PixelPoint::new(3.0, 20.0)).is_none(), "the window leaves the image");
     let window = bounds.window(&picture, PixelPoint::new(20.2, 19.9)).unwrap();
-    assert_eq!(window.bounds(&[Unknowns::default()], Some, |_| None), [None], "a chain without a variance");
-    assert!(window.bounds(&[Unknowns { blur: true, ..Unknowns::default() }], Some, |_| Some(1e-4))[0].is_some(), "no blur to be estimated");
+    assert_eq!(window.bounds(&[Unknowns::default()], Some, |_| None, &mut Work::default()), [None], "a chain without a variance");
+    assert!(
+        window.bounds(&[Unknowns { blur: true, ..Unknowns::default() }], Some, |_| Some(1e-4), &mut Work::default())[0].is_some(),
+        "no blur to be estimated"
+    );
 }
 
 /// A square window holds longer parts of the edges of a corner that is turned by 45 degrees, by 10 degrees hardly. Along its edges an upright corner is deformed without
@@ -231,12 +234,20 @@ fn a_corner_has_about_one_bound_at_any_roll() {
 
 #[test]
 fn normal_equations_are_the_product_of_matrices() {
-    for rows in [1, 7, 8, 127, 128, 129, 441] {
-        let columns: Vec<Vec<f64>> = (0..5).map(|j| (0..rows).map(|i| ((7 * i + 3 * j) as f64).sin() + j as f64).collect()).collect();
-        let weights: Vec<f64> = (0..rows).map(|i| 1.0 + 0.5 * (i as f64).cos()).collect();
-        let found = normal_equations(&columns.iter().collect::<Vec<_>>(), &weights);
-        let design = DMatrix::from_fn(rows, 5, |i, j| columns[j][i]);
-        let expected = design.transpose() * DMatrix::from_diagonal(&weights.into()) * &design;
-        assert!((&found - &expected).amax() < 1e-12 * expected.amax(), "{rows}: {found} {expected}");
+    for side in [1, 7, 8, 9, 15, 21] {
+        let value = |j: usize, y: usize, x: usize| ((7 * x + 3 * j + 5 * y) as f64).sin() + j as f64;
+        let weight = |y: usize, x: usize| 1.0 + 0.5 * ((x + y) as f64).cos();
+        let mut sums = Sums::new(5, side);
+        // Whatever stands in the margins.
+        sums.rows.fill(3.0);
+        for y in 0..side {
+            (0..5).for_each(|j| fill(&mut sums.rows[j * stride(side)..], side, |x| value(j, y, x)));
+            fill(&mut sums.weights, side, |x| weight(y, x));
+            sums.add();
+        }
+        let design = DMatrix::from_fn(side * side, 5, |i, j| value(j, i / side, i % side));
+        let weights = DMatrix::from_fn(side * side, side * side, |i, j| if i == j { weight(i / side, i % side) } else { 0.0 });
+        let expected = design.transpose() * weights * &design;
+        assert!((sums.normal() - &expected).amax() < 1e-12 * expected.amax(), "{side}: {expected}");
     }
 }

@@ -15,7 +15,9 @@ pub(crate) const COLUMNS: usize = 7;
 /// The place of the blur's among them.
 const BLUR: usize = 6;
 /// Pixels that are handled side by side.
-const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
+/// Pixels before the first and behind the last of a row, at least.
+pub(crate) const MARGIN: usize = LANES;
 
 /// Derivatives of windows through one lens that has a blur.
 pub(crate) struct Flow {
@@ -53,34 +55,33 @@ impl Flow {
         Some(Self { levels: renderer.levels.kernels.iter().map(level).collect::<Option<_>>()? })
     }
 
-    /// Derivatives of the grey values of `square`, row by row. Of motions seen from (`x0`, `y0`), by h: x + h; y + h; x + h (x - x0); x + h (y - y0); y + h (x - x0);
-    /// y + h (y - y0), each per px and fraction of full scale. Of the blur by its logarithm.
-    pub fn window(&self, renderer: &Renderer, picture: &Picture, seen_from: [f64; 2], square: Square) -> [Vec<f64>; COLUMNS] {
+    /// Derivatives of the grey values of `square`, into `found`. Of motions seen from (`x0`, `y0`), by h: x + h; y + h; x + h (x - x0); x + h (y - y0);
+    /// y + h (x - x0); y + h (y - y0), each per px and fraction of full scale. Of the blur by its logarithm.
+    pub fn window(&self, renderer: &Renderer, picture: &Picture, seen_from: [f64; 2], square: Square, found: &mut Derivatives) {
         let Square { corner: [left, top], side } = square;
         let moved = |point: [f64; 2]| [point[0] - left as f64, point[1] - top as f64];
-        let pieces: Vec<Piece> = picture
-            .pieces
-            .iter()
-            .map(|piece| Piece { points: piece.points.map(moved), ..*piece })
-            .filter(|piece| reaches(piece, side, renderer.reach()))
-            .collect();
-        let of_level = |level: usize| {
-            let mut sums = Sums::new(side);
-            add(&mut sums, &pieces, (&renderer.levels.kernels[level], &self.levels[level]), moved(seen_from), renderer.rules);
-            sums.columns()
+        let moved_piece = |piece: &Piece| Piece { points: piece.points.map(moved), ..*piece };
+        let reach = renderer.reach();
+        let pieces: Vec<Piece> = picture.pieces.iter().map(moved_piece).filter(|piece| reaches(piece, side, reach)).collect();
+        let add = |level: usize, sums: &mut Derivatives| {
+            sums.clear(side);
+            add(sums, &pieces, (&renderer.levels.kernels[level], &self.levels[level]), moved(seen_from), renderer.rules);
         };
         if self.levels.len() == 1 {
-            return of_level(0);
+            return add(0, found);
         }
-        let place = |i: usize| renderer.levels.place((left + (i % side) as i64) as f64, (top + (i / side) as i64) as f64);
-        let places: Vec<_> = (0..side * side).map(place).collect();
-        let mut blended = std::array::from_fn(|_| vec![0.0; side * side]);
+        found.clear(side);
+        let mut sums = Derivatives::default();
         for level in 0..self.levels.len() {
-            for (sums, values) in blended.iter_mut().zip(of_level(level)) {
-                renderer.levels.add(level, &places, &values, sums);
+            add(level, &mut sums);
+            for y in 0..side {
+                let place = |x: usize| renderer.levels.place((left + x as i64) as f64, (top + y as i64) as f64);
+                let places: Vec<_> = (0..side).map(place).collect();
+                for column in 0..COLUMNS {
+                    renderer.levels.add(level, &places, &sums.row(y, column)[MARGIN..], &mut found.row_mut(y, column)[MARGIN..]);
+                }
             }
         }
-        blended
     }
 }
 
@@ -89,34 +90,42 @@ fn reaches(piece: &Piece, side: usize, reach: [f64; 2]) -> bool {
     [piece.columns(), piece.rows()].iter().zip(reach).all(|([low, high], reach)| *high > -reach - 1.0 && *low < side as f64 + reach)
 }
 
-/// The derivatives of a window while they are added up: of each row every column of the Jacobian in turn, with room on both sides for groups of pixels that are
-/// partly inside.
-struct Sums {
+/// The derivatives of a window: of each row every column of the Jacobian in turn, with a margin on both sides, in which anything may stand: pixels are handled in
+/// groups, some of which are partly inside.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Derivatives {
     side: usize,
     stride: usize,
     values: Vec<f64>,
 }
 
-impl Sums {
-    fn new(side: usize) -> Self {
-        let stride = side.next_multiple_of(LANES) + 2 * LANES;
-        Self { side, stride, values: vec![0.0; side * COLUMNS * stride] }
+impl Derivatives {
+    /// Makes them those of a window of `side` x `side` px, all zero; memory is used again.
+    pub fn clear(&mut self, side: usize) {
+        (self.side, self.stride) = (side, stride(side));
+        self.values.clear();
+        self.values.resize(side * COLUMNS * self.stride, 0.0);
     }
 
-    fn columns(&self) -> [Vec<f64>; COLUMNS] {
-        let mut columns = std::array::from_fn(|_| Vec::with_capacity(self.side * self.side));
-        for rows in self.values.chunks_exact(COLUMNS * self.stride) {
-            for (column, row) in columns.iter_mut().zip(rows.chunks_exact(self.stride)) {
-                column.extend_from_slice(&row[LANES..LANES + self.side]);
-            }
-        }
-        columns
+    /// Row `y` of a column, with its margins.
+    pub fn row(&self, y: usize, column: usize) -> &[f64] {
+        &self.values[(y * COLUMNS + column) * self.stride..][..self.stride]
     }
+
+    /// The same, to be filled.
+    pub fn row_mut(&mut self, y: usize, column: usize) -> &mut [f64] {
+        &mut self.values[(y * COLUMNS + column) * self.stride..][..self.stride]
+    }
+}
+
+/// The length of a row of `side` px with its margins: whole groups.
+pub(crate) fn stride(side: usize) -> usize {
+    side.next_multiple_of(LANES) + 2 * MARGIN
 }
 
 /// Adds what `pieces` give to each pixel of the window.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn add(sums: &mut Sums, pieces: &[Piece], (kernel, level): (&Kernel, &Level), [x0, y0]: [f64; 2], rules: &Rules) {
+fn add(sums: &mut Derivatives, pieces: &[Piece], (kernel, level): (&Kernel, &Level), [x0, y0]: [f64; 2], rules: &Rules) {
     let Kernel::Smooth { sigma, parts } = kernel else { return };
     let variance = sigma * sigma;
     let rows = [0.0, sums.side as f64 - 1.0];
@@ -160,7 +169,7 @@ impl Along {
         if left >= end {
             return false;
         }
-        (self.start, self.groups) = ((first + (left * LANES + LANES) as i64) as usize, end - left);
+        (self.start, self.groups) = ((first + (left * LANES + MARGIN) as i64) as usize, end - left);
         let taps = left * LANES..(end * LANES).min(density.taps);
         let (densities, slopes) = (self.density.as_flattened_mut(), self.slope.as_flattened_mut());
         for (i, tap) in taps.clone().enumerate() {
@@ -175,7 +184,7 @@ impl Along {
 
 /// Adds what a point of an outline gives: `motions` times the kernel, and `softer` times its slopes along a row and down a column.
 #[inline(always)]
-fn spread(sums: &mut Sums, along: &Along, y: f64, [density, slope]: [&Spread; 2], motions: [f64; BLUR], softer: [f64; 2]) {
+fn spread(sums: &mut Derivatives, along: &Along, y: f64, [density, slope]: [&Spread; 2], motions: [f64; BLUR], softer: [f64; 2]) {
     let (first, low, high, share) = density.around(y);
     let (_, steep_low, steep_high, _) = slope.around(y);
     let taps = (-first).max(0) as usize..((sums.side as i64 - first).max(0) as usize).min(density.reached);
@@ -255,8 +264,10 @@ mod tests {
                     if [0, 2, 3].contains(&column) { [x + by, y] } else { [x, y + by] }
                 })
             };
-            let found = Flow::new(&renderer).unwrap().window(&renderer, &picture, from, SQUARE);
-            for (column, found) in found.iter().enumerate() {
+            let mut all = Derivatives::default();
+            Flow::new(&renderer).unwrap().window(&renderer, &picture, from, SQUARE, &mut all);
+            for column in 0..COLUMNS {
+                let found = (0..SQUARE.side).flat_map(|y| all.row(y, column)[MARGIN..][..SQUARE.side].to_vec());
                 // What is far moves the further; much smaller steps show the kernel's table.
                 let step = if (2..BLUR).contains(&column) { 3e-4 } else { 1e-3 };
                 let [high, low] = [1.0, -1.0].map(|sign| {

@@ -17,7 +17,7 @@ use crate::optics::{Levels, Optics, OpticsError, Place};
 use nodes::Rules;
 use strip::Strip;
 
-pub(crate) use flow::{Flow, Square};
+pub(crate) use flow::{COLUMNS, Derivatives, Flow, LANES, MARGIN, Square, stride};
 pub use piece::Piece;
 use piece::{at, polygon};
 pub(crate) use piece::{join_left, orient};
