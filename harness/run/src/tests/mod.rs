@@ -8,6 +8,7 @@ mod recordings;
 mod second_solver;
 mod store;
 mod truth;
+mod views;
 
 use std::path::PathBuf;
 
