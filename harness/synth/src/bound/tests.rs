@@ -251,3 +251,19 @@ fn normal_equations_are_the_product_of_matrices() {
         assert!((sums.normal() - &expected).amax() < 1e-12 * expected.amax(), "{side}: {expected}");
     }
 }
+
+/// Half the light over a black level, with half the noise, tells as much.
+#[test]
+fn what_the_sensor_makes_of_light_counts() {
+    let bounds = Bounds::new(&Optics { blur: 0.8, ..Optics::default() }, 41, 41, 15).unwrap();
+    let picture = chess();
+    let window = bounds.window(&picture, PixelPoint::new(20.2, 19.9)).unwrap();
+    let all = Unknowns { shape: true, levels: Levels::Areas, blur: true, gradient: Gradient::Added };
+    let trace = |dark: f64, gain: f64, sigma: f64| {
+        let found = window.bounds(&[all], |light| Some(dark + gain * light), |_| Some(sigma * sigma), &mut Work::default())[0].unwrap();
+        found.sxx + found.syy
+    };
+    let [plain, half] = [trace(0.0, 1.0, SIGMA), trace(0.1, 0.5, 0.5 * SIGMA)];
+    assert!((half / plain - 1.0).abs() < 1e-9, "{half} {plain}");
+    assert!((trace(0.0, 0.5, SIGMA) / plain - 4.0).abs() < 1e-9);
+}
