@@ -112,9 +112,9 @@ fn kept_are_the_image_of_the_first_point_and_the_one_with_its_steps() {
         let folder = RecordsFolder::open(parent.path(), &scenario.name, None).unwrap();
         let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| run(&folder, &mut Plan::new(&scenario, Tools::default(), ".".into()), "r", &|| ())).unwrap();
-        let names =
-            std::fs::read_dir(parent.path().join(&scenario.name)).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-        let kept: Vec<String> = names.filter(|name| name.ends_with(".png")).collect();
+        let paths = std::fs::read_dir(parent.path().join(&scenario.name)).unwrap().map(|entry| entry.unwrap().path());
+        let images = paths.filter(|path| path.extension().is_some_and(|extension| extension == "png"));
+        let kept: Vec<String> = images.map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect();
         let of = |view: &str| kept.iter().filter(|name| name.contains(view)).count();
         // Four steps beside the image.
         assert_eq!(VIEWS.map(of), [1, 0, 5, 0], "{threads} threads: {kept:?}");

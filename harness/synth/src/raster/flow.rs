@@ -63,17 +63,17 @@ impl Flow {
         let moved_piece = |piece: &Piece| Piece { points: piece.points.map(moved), ..*piece };
         let reach = renderer.reach();
         let pieces: Vec<Piece> = picture.pieces.iter().map(moved_piece).filter(|piece| reaches(piece, side, reach)).collect();
-        let add = |level: usize, sums: &mut Derivatives| {
+        let at_level = |level: usize, sums: &mut Derivatives| {
             sums.clear(side);
             add(sums, &pieces, (&renderer.levels.kernels[level], &self.levels[level]), moved(seen_from), renderer.rules);
         };
         if self.levels.len() == 1 {
-            return add(0, found);
+            return at_level(0, found);
         }
         found.clear(side);
         let mut sums = Derivatives::default();
         for level in 0..self.levels.len() {
-            add(level, &mut sums);
+            at_level(level, &mut sums);
             for y in 0..side {
                 let place = |x: usize| renderer.levels.place((left + x as i64) as f64, (top + y as i64) as f64);
                 let places: Vec<_> = (0..side).map(place).collect();
