@@ -133,7 +133,8 @@ impl Window<'_> {
         };
         let areas = if wanted(|set| set.levels == Levels::Areas) { self.areas(&light) } else { Vec::new() };
         let groups = [2, if shape { 4 } else { 0 }, usize::from(blur), 2, 2, 2, areas.len()];
-        let moving = (0..COLUMNS).filter(|column| *column < 2 || if *column < COLUMNS - 1 { shape } else { blur }).collect::<Vec<_>>();
+        let is_wanted = [true, true, shape, shape, shape, shape, blur];
+        let moving: Vec<usize> = (0..COLUMNS).filter(|column| is_wanted[*column]).collect();
         let mut sums = Sums::new(groups.iter().sum(), side);
         for (y, light) in light.chunks_exact(side).enumerate() {
             let mut rows = sums.rows.chunks_exact_mut(stride(side));

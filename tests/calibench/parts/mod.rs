@@ -14,65 +14,7 @@ use crate::project::{copy, copy_of_all, files, run, stderr};
 const TRIALS: u64 = 4;
 
 /// Recognised images, their blocks, a local distortion that is drawn in each trial.
-const BLOCKS: &str = r#"why = "To see blocks in parts."
-source = "a test"
-seed = 3
-trials = 4
-
-[camera]
-size = [240, 240]
-pitch = 27.0
-c = 57.5
-
-[camera.local]
-sigma = 0.033
-correlation = 15
-
-[testfield]
-kind = "coded"
-unit = "mm"
-bend = 0
-
-[stations]
-kind = "stand"
-phis = [0, 30]
-turns = [0, 90]
-rolls = [0]
-distance = 4700
-bend = 0.8
-bend_reach = 250
-
-[optics]
-blur = 0.6
-fill_factor_linear = 0.8
-
-[sensor]
-snr_contrast_db = 27.5
-adc_bits = 8
-
-[pointing]
-sigma = 0
-whole_pixels = false
-
-[recognition]
-classifiers = ["modern"]
-
-[[recognition.images]]
-name = "all"
-images = ["1???"]
-
-[blocks]
-c = 57.5
-sigma_px = 0.04
-
-[[block]]
-name = "discs"
-targets = ["*-large-disc-*"]
-
-[[method]]
-name = "centroid_binary"
-window = 13
-"#;
+const BLOCKS: &str = include_str!("../../../harness/run/src/tests/coded.toml");
 
 /// Photographs, if the folder of data holds them.
 const PHOTOGRAPHS: &str = r#"why = "To see photographs in parts."

@@ -104,7 +104,12 @@ window = 9
 const EXACT: usize = 1;
 
 fn scenario(changes: &[(&str, &str)]) -> Scenario {
-    let mut text = SCENARIO.to_owned();
+    changed(SCENARIO, changes)
+}
+
+/// The scenario that `text` describes with each of `changes`.
+fn changed(text: &str, changes: &[(&str, &str)]) -> Scenario {
+    let mut text = text.to_owned();
     for (old, new) in changes {
         assert!(text.contains(old), "{old}");
         text = text.replacen(old, new, 1);

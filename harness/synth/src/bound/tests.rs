@@ -267,3 +267,16 @@ fn what_the_sensor_makes_of_light_counts() {
     assert!((half / plain - 1.0).abs() < 1e-9, "{half} {plain}");
     assert!((trace(0.0, 0.5, SIGMA) / plain - 4.0).abs() < 1e-9);
 }
+
+/// Without a blur derivatives are differences; with the least that there is, integrals along the outlines.
+#[test]
+fn without_a_blur_the_bound_is_nearly_that_of_a_small_one() {
+    let triangle = scene(&[&[(20.2, 12.9), (27.3, 23.1), (14.1, 25.6)]]);
+    for shape in [false, true] {
+        let trace =
+            |blur| bound(&triangle, blur, 21, Unknowns { shape, levels: Levels::Areas, ..Unknowns::default() }).map(|c| c.sxx + c.syy);
+        let [none, small] = [0.0, 0.02].map(|blur| trace(blur).unwrap());
+        println!("shape {shape}: {}", none / small);
+        assert!((none / small - 1.0).abs() < 0.01, "shape {shape}: {none} {small}");
+    }
+}

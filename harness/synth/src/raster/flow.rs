@@ -221,7 +221,7 @@ mod tests {
 
     const SQUARE: Square = Square { corner: [9, 12], side: 21 };
 
-    /// An ellipse, a triangle that leaves the window, a bar that runs through all of it; of three contrasts.
+    /// An ellipse, a triangle that leaves the window, a bar that runs through all of it, and squares a pixel left of it and above; of three contrasts.
     fn picture() -> Picture {
         let ellipse = |i: usize, t: f64| {
             let (sin, cos) = ((i as f64 + t) * TAU / 12.0).sin_cos();
@@ -234,6 +234,8 @@ mod tests {
         let mut pieces: Vec<Piece> = (0..12).map(arc).collect();
         pieces.extend(straight(&[[24.0, 14.0], [70.0, 18.0], [27.0, 60.0]], 0.3));
         pieces.extend(straight(&[[-30.0, 28.0], [90.0, 31.0], [90.0, 33.5], [-30.0, 30.5]], -0.2));
+        pieces.extend(straight(&[[5.0, 16.0], [8.0, 16.0], [8.0, 19.0], [5.0, 19.0]], 0.3));
+        pieces.extend(straight(&[[12.0, 8.0], [15.0, 8.0], [15.0, 11.0], [12.0, 11.0]], 0.3));
         Picture { width: 41, height: 41, background: 0.8, pieces }
     }
 
