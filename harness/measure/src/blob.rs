@@ -2,6 +2,8 @@
 
 use calibench_model::{Image, PixelPoint, Rejection};
 
+use crate::otsu::otsu;
+
 /// Whether the target is darker or lighter than its surroundings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Polarity {
@@ -40,8 +42,9 @@ struct Raster {
     side: usize,
     grey: Vec<f64>,
     scale: f64,
-    /// The window's first pixel.
-    first: (f64, f64),
+    /// Position of each column and of each row, px.
+    columns: Vec<f64>,
+    rows: Vec<f64>,
 }
 
 impl Segmentation {
@@ -60,7 +63,7 @@ impl Segmentation {
         let light = match self.polarity {
             Polarity::Dark => false,
             Polarity::Light => true,
-            Polarity::FromWindow => raster.border().filter(|&i| raster.grey[i] > threshold).count() * 2 <= raster.border().count(),
+            Polarity::FromWindow => raster.border().filter(|&grey| grey > threshold).count() * 2 <= raster.border().count(),
         };
         let inside: Vec<bool> = raster.grey.iter().map(|&grey| if light { grey > threshold } else { grey < threshold }).collect();
         let seed = raster.nearest(&inside, start).ok_or(Rejection::NoCorner)?;
@@ -79,28 +82,33 @@ impl Segmentation {
         }
         let scale = self.enlarge as f64;
         let side = (2 * half + 1) as usize * self.enlarge;
-        let place = |index: usize| {
-            let at = (index as f64 + 0.5) / scale - 0.5 + ring as f64;
-            let low = at.floor();
-            (low as usize, at - low)
-        };
-        let value = |i: usize| {
-            let ((x, fx), (y, fy)) = (place(i % side), place(i / side));
-            let at = |x: usize, y: usize| f64::from(rows[y][x]);
-            if self.enlarge == 1 {
-                return at(x, y);
-            }
-            (at(x, y) * (1.0 - fx) + at(x + 1, y) * fx) * (1.0 - fy) + (at(x, y + 1) * (1.0 - fx) + at(x + 1, y + 1) * fx) * fy
-        };
-        let first = ((centre.0 - half) as f64, (centre.1 - half) as f64);
-        Ok(Raster { side, grey: (0..side * side).map(value).collect(), scale, first })
+        let along = |first: i64| (0..side).map(|i| first as f64 + (i as f64 + 0.5) / scale - 0.5).collect();
+        let (columns, lines) = (along(centre.0 - half), along(centre.1 - half));
+        let grey = if self.enlarge == 1 { rows.concat().into_iter().map(f64::from).collect() } else { enlarged(&rows, side, scale) };
+        Ok(Raster { side, grey, scale, columns, rows: lines })
     }
+}
+
+/// The grey values between those of `rows`, which reach one px farther on each side.
+fn enlarged(rows: &[&[f32]], side: usize, scale: f64) -> Vec<f64> {
+    let place = |index: usize| {
+        let at = (index as f64 + 0.5) / scale - 0.5 + 1.0;
+        let low = at.floor();
+        (low as usize, at - low)
+    };
+    let places: Vec<(usize, f64)> = (0..side).map(place).collect();
+    let mut grey = Vec::with_capacity(side * side);
+    for &(y, fy) in &places {
+        let (upper, lower) = (rows[y], rows[y + 1]);
+        let between = |row: &[f32], x: usize, fx: f64| f64::from(row[x]) * (1.0 - fx) + f64::from(row[x + 1]) * fx;
+        grey.extend(places.iter().map(|&(x, fx)| between(upper, x, fx) * (1.0 - fy) + between(lower, x, fx) * fy));
+    }
+    grey
 }
 
 impl Raster {
     fn position(&self, index: usize) -> (f64, f64) {
-        let along = |i: usize, first: f64| first + (i as f64 + 0.5) / self.scale - 0.5;
-        (along(index % self.side, self.first.0), along(index / self.side, self.first.1))
+        (self.columns[index % self.side], self.rows[index / self.side])
     }
 
     fn is_border(&self, index: usize) -> bool {
@@ -108,16 +116,31 @@ impl Raster {
         x == 0 || y == 0 || x == last || y == last
     }
 
-    fn border(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.side * self.side).filter(|&index| self.is_border(index))
+    /// The grey values of its border.
+    fn border(&self) -> impl Iterator<Item = f64> + '_ {
+        let last = self.side - 1;
+        self.grey.chunks_exact(self.side).enumerate().flat_map(move |(y, row)| {
+            let step = if y == 0 || y == last { 1 } else { last };
+            row.iter().copied().step_by(step)
+        })
     }
 
+    /// The pixel of `inside` that is nearest to `start`, the first of several.
     fn nearest(&self, inside: &[bool], start: PixelPoint) -> Option<usize> {
-        let distance = |index: &usize| {
-            let (x, y) = self.position(*index);
-            (x - start.x) * (x - start.x) + (y - start.y) * (y - start.y)
-        };
-        (0..inside.len()).filter(|&index| inside[index]).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        let mut best: Option<(f64, usize)> = None;
+        for (row, (y, line)) in self.rows.iter().zip(inside.chunks_exact(self.side)).enumerate() {
+            let up = (y - start.y) * (y - start.y);
+            if best.is_some_and(|(least, _)| up >= least) {
+                continue;
+            }
+            for (column, x) in self.columns.iter().enumerate().filter(|(column, _)| line[*column]) {
+                let square = (x - start.x) * (x - start.x) + up;
+                if best.is_none_or(|(least, _)| square < least) {
+                    best = Some((square, row * self.side + column));
+                }
+            }
+        }
+        best.map(|(_, index)| index)
     }
 
     fn blob(&self, members: &[usize], threshold: f64) -> Blob {
@@ -147,24 +170,6 @@ fn connected(inside: &[bool], side: usize, seed: usize) -> Vec<usize> {
         }
     }
     (0..inside.len()).filter(|&index| taken[index]).collect()
-}
-
-/// Otsu's threshold: between the two sorted values whose separation makes the variance between the classes largest; `None` if all values are equal.
-fn otsu(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let (n, total) = (sorted.len() as f64, sorted.iter().sum::<f64>());
-    let (mut sum, mut best, mut threshold) = (0.0, 0.0, None);
-    for (index, pair) in sorted.windows(2).enumerate() {
-        sum += pair[0];
-        let below = index as f64 + 1.0;
-        let difference = sum / below - (total - sum) / (n - below);
-        let between = below * (n - below) * difference * difference;
-        if pair[1] > pair[0] && between > best {
-            (best, threshold) = (between, Some((pair[0] + pair[1]) / 2.0));
-        }
-    }
-    threshold
 }
 
 impl Blob {
@@ -211,14 +216,6 @@ mod tests {
     use super::*;
 
     const OTSU: Segmentation = Segmentation { threshold: None, polarity: Polarity::FromWindow, enlarge: 1 };
-
-    #[test]
-    fn otsu_separates_two_heaps() {
-        let values: Vec<f64> = (0..20).map(|i| 0.1 + 0.001 * f64::from(i)).chain((0..5).map(|i| 0.8 + 0.001 * f64::from(i))).collect();
-        let threshold = otsu(&values).unwrap();
-        assert!((threshold - (0.119 + 0.8) / 2.0).abs() < 1e-12);
-        assert_eq!(otsu(&[0.4; 9]), None);
-    }
 
     #[test]
     fn only_the_pixels_at_the_start_are_taken() {

@@ -22,6 +22,7 @@ mod lanes;
 mod marquardt;
 pub mod operator;
 pub mod operators;
+mod otsu;
 mod owen;
 pub mod paraboloid;
 pub mod paraboloid_precision;

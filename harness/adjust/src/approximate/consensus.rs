@@ -57,7 +57,7 @@ pub(super) fn search<M: Clone>(
 ) -> Result<(M, Vec<usize>), ApproximateError> {
     let judge = Judge { count, size, freedom, tolerance: options.tolerance };
     let squares = |model: &M| (0..count).map(|i| square(model, i)).collect::<Vec<f64>>();
-    let (mut model, mut agreeing) = best_trial(&judge, options.seed, propose, squares).ok_or(ApproximateError::NoSolution)?;
+    let (mut model, mut agreeing) = best_trial(&judge, options.seed, propose, &square).ok_or(ApproximateError::NoSolution)?;
     for _ in 0..ROUNDS {
         if agreeing.len() <= size {
             break;
@@ -87,7 +87,7 @@ fn best_trial<M>(
     judge: &Judge,
     seed: u64,
     propose: impl Fn(&[usize]) -> Vec<M>,
-    squares: impl Fn(&M) -> Vec<f64>,
+    square: impl Fn(&M, usize) -> f64,
 ) -> Option<(M, Vec<usize>)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut best: Option<(f64, M, Vec<usize>)> = None;
@@ -95,13 +95,11 @@ fn best_trial<M>(
     while trial < trials {
         trial += 1;
         for model in propose(&sample(&mut random, judge.count, judge.size).into_vec()) {
-            let found = squares(&model);
-            let cost = judge.cost(&found);
-            if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-                let agreeing = judge.agreeing(&found);
-                trials = judge.trials(agreeing.len());
-                best = Some((cost, model, agreeing));
-            }
+            let least = best.as_ref().map(|(least, ..)| *least);
+            let Some((cost, found)) = judge.better(least, |index| square(&model, index)) else { continue };
+            let agreeing = judge.agreeing(&found);
+            trials = judge.trials(agreeing.len());
+            best = Some((cost, model, agreeing));
         }
     }
     best.map(|(_, model, agreeing)| (model, agreeing))
@@ -147,7 +145,42 @@ impl Judge {
     fn median(&self, squares: &[f64]) -> f64 {
         let mut sorted = squares.to_vec();
         sorted.sort_by(f64::total_cmp);
-        sorted.get((self.count + self.size) / 2).or(sorted.last()).copied().unwrap_or(f64::INFINITY)
+        sorted.get(self.middle()).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The place of the median in order.
+    fn middle(&self) -> usize {
+        ((self.count + self.size) / 2).min(self.count.saturating_sub(1))
+    }
+
+    /// The cost of a model and its squares, where it is below `least`. As soon as it cannot be, no further point is looked at: most models are wrong, and a
+    /// picture of a point takes longer than all else.
+    fn better(&self, least: Option<f64>, square: impl Fn(usize) -> f64) -> Option<(f64, Vec<f64>)> {
+        let mut squares = Vec::with_capacity(self.count);
+        let Some(least) = least else {
+            squares.extend((0..self.count).map(square));
+            return Some((self.cost(&squares), squares));
+        };
+        let (mut larger, mut sum) = (0, 0.0);
+        for index in 0..self.count {
+            let square = square(index);
+            let lost = match self.tolerance {
+                Tolerance::Unknown => {
+                    larger += usize::from(square.is_nan() || square >= least);
+                    larger >= self.count - self.middle()
+                }
+                Tolerance::Pixels(_) => {
+                    sum += square.min(self.limit(&[]));
+                    sum >= least
+                }
+            };
+            if lost {
+                return None;
+            }
+            squares.push(square);
+        }
+        let cost = self.cost(&squares);
+        (cost < least).then_some((cost, squares))
     }
 
     fn cost(&self, squares: &[f64]) -> f64 {

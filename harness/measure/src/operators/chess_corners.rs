@@ -1,5 +1,7 @@
 //! `chess_corners`: the detector of the crate of that name, unchanged.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use calibench_model::{Image, Measurement, PixelPoint, Rejection, Start};
 use chess_corners::{Detector, DetectorConfig, ImageRefiner};
 
@@ -11,6 +13,8 @@ use crate::registry::{Build, Method};
 const VERSION: &str = "2.1.0";
 /// How far the detector's ring of samples reaches, and one px more.
 const RING: i64 = 6;
+/// Pixels of an image up to which the memory of its detection is kept for the next: about 30 bytes each.
+const KEPT: usize = 1 << 20;
 
 /// The crate `chess-corners` (V. Vorobyev; MIT): corners are detected on the whole image, as 8-bit grey values, with the crate's own presets; a start is given the
 /// nearest detection within `radius` px.
@@ -21,6 +25,8 @@ const RING: i64 = 6;
 pub struct ChessCorners {
     config: DetectorConfig,
     radius: f64,
+    /// Detectors that nobody uses now: their memory is asked for once a thread, not once an image.
+    idle: Mutex<Vec<Detector>>,
 }
 
 const PARAMETERS: &[Parameter] = &[
@@ -64,13 +70,21 @@ impl ChessCorners {
         let preset = if settings.get("detector") > 0.0 { DetectorConfig::radon() } else { DetectorConfig::chess() };
         let refined = settings.get("refiner") > 0.0;
         let config = if refined { preset.with_refiner(ImageRefiner::saddle_point()) } else { preset.without_refiner() };
-        Self { config: config.without_orientation(), radius: settings.get("radius") }
+        Self { config: config.without_orientation(), radius: settings.get("radius"), idle: Mutex::default() }
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<Detector>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// All detections, px.
     fn detect(&self, image: &Image) -> Option<Vec<PixelPoint>> {
-        let mut detector = Detector::new(self.config).ok()?;
+        let waiting = self.idle().pop();
+        let mut detector = waiting.map_or_else(|| Detector::new(self.config), Ok).ok()?;
         let found = detector.detect_u8(&image.to_u8(), image.width() as u32, image.height() as u32).ok()?;
+        if image.width() * image.height() <= KEPT {
+            self.idle().push(detector);
+        }
         Some(found.iter().map(|corner| PixelPoint::new(f64::from(corner.x), f64::from(corner.y))).filter(|p| p.is_finite()).collect())
     }
 }

@@ -9,6 +9,8 @@ pub(super) type ValueAndDerivatives = ([f64; 2], [[f64; 2]; 2]);
 const MOST_STEPS: usize = 60;
 /// A misclosure that counts as none, relative to the coordinates (at least 1): below 1e-9 px for any real camera.
 const CLOSED: f64 = 1e-13;
+/// A misclosure and a step after which one more step ends at the last bits, relative to the coordinates: its error is about the square of this.
+const NEAR: f64 = 1e-8;
 
 pub(super) fn determinant(d: [[f64; 2]; 2]) -> f64 {
     d[0][0] * d[1][1] - d[0][1] * d[1][0]
@@ -19,7 +21,8 @@ pub(super) fn determinant(d: [[f64; 2]; 2]) -> f64 {
 pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> ValueAndDerivatives) -> Result<[f64; 2], NoCounterpart> {
     // Squares, which order as the lengths do: `hypot` takes as long as a model's polynomial.
     let misclosure = |value: [f64; 2]| (goal[0] - value[0]).powi(2) + (goal[1] - value[1]).powi(2);
-    let closed = (CLOSED * goal[0].abs().max(goal[1].abs()).max(1.0)).powi(2);
+    let extent = goal[0].abs().max(goal[1].abs()).max(1.0);
+    let (closed, near) = ((CLOSED * extent).powi(2), (NEAR * extent).powi(2));
     let mut x = start;
     let (mut value, mut slope) = f(x);
     let mut residual = misclosure(value);
@@ -33,6 +36,9 @@ pub(super) fn solve(goal: [f64; 2], start: [f64; 2], f: impl Fn([f64; 2]) -> Val
         }
         let (rx, ry) = (goal[0] - value[0], goal[1] - value[1]);
         let step = [(slope[1][1] * rx - slope[0][1] * ry) / det, (slope[0][0] * ry - slope[1][0] * rx) / det];
+        if residual <= near && step[0] * step[0] + step[1] * step[1] <= near {
+            return Ok([x[0] + step[0], x[1] + step[1]]);
+        }
         let mut share = 1.0;
         let better = loop {
             let next = [x[0] + share * step[0], x[1] + share * step[1]];

@@ -188,11 +188,12 @@ impl Pinhole for OpenCv {
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         let d = &self.distortion;
         let (above, below) = ([d[0], d[1], d[4]], [d[5], d[6], d[7]]);
+        let prism = 2.0 * radius * d[8].hypot(d[10]) + 4.0 * radius.powi(3) * d[9].hypot(d[11]);
         let by_polynomials = || match below {
-            [0.0, 0.0, 0.0] => is_one_to_one(radius, &above, &d[2..4], 0.0),
-            _ => is_quotient_one_to_one(radius, [above, below], &d[2..4]),
+            [0.0, 0.0, 0.0] => is_one_to_one(radius, &above, &d[2..4], prism),
+            _ => is_quotient_one_to_one(radius, [above, below], &d[2..4], prism),
         };
-        d[8..].iter().all(|&more| more == 0.0) && by_polynomials()
+        !self.is_tilted() && by_polynomials()
     }
 }
 
