@@ -130,13 +130,22 @@ impl Tiles {
 
 /// The grey value at a point between pixels, by bilinear interpolation; beyond the image that of its border.
 pub(crate) fn grey(image: &Image, [x, y]: [f64; 2]) -> f64 {
+    let (width, height) = (image.width(), image.height());
     let inside = |at: f64, size: usize| at.clamp(0.0, (size - 1) as f64);
-    let (x, y) = (inside(x, image.width()), inside(y, image.height()));
+    let (x, y) = (inside(x, width), inside(y, height));
     let (column, row) = (x as usize, y as usize);
     let (s, t) = (x - column as f64, y - row as f64);
-    let next = (column + 1).min(image.width() - 1);
-    let along = |row: &[f32]| (1.0 - s) * f64::from(row[column]) + s * f64::from(row[next]);
-    (1.0 - t) * along(image.row(row)) + t * along(image.row((row + 1).min(image.height() - 1)))
+    let along = |[a, b]: [f32; 2]| (1.0 - s) * f64::from(a) + s * f64::from(b);
+    let between = |upper: [f32; 2], lower: [f32; 2]| (1.0 - t) * along(upper) + t * along(lower);
+    let pair = |row: usize| image.grey().get(row * width + column..)?.first_chunk().copied();
+    if column + 1 < width
+        && let (Some(upper), Some(lower)) = (pair(row), pair(row + 1))
+    {
+        return between(upper, lower);
+    }
+    let next = (column + 1).min(width - 1);
+    let [upper, lower] = [row, (row + 1).min(height - 1)].map(|row| [image.at(column, row), image.at(next, row)]);
+    between(upper, lower)
 }
 
 #[cfg(test)]
