@@ -150,7 +150,7 @@ pub(super) fn is_quotient_one_to_one(radius: f64, [above, below]: [[f64; 3]; 2],
 /// Whether `1 + sum weight(i) k_i s^(i+1)` is above `bound` for all s from 0 to `end`; `false` where it is so close to the bound that this is in doubt.
 ///
 /// A polynomial lies between the least and the largest of its coefficients in Bernstein's form, and closer to them on either half.
-fn stays_above(bound: f64, end: f64, radial: &[f64], weight: impl Fn(usize) -> f64) -> bool {
+pub(super) fn stays_above(bound: f64, end: f64, radial: &[f64], weight: impl Fn(usize) -> f64) -> bool {
     let degree = radial.len();
     let mut coefficients = [0.0; HIGHEST + 1];
     let mut power = 1.0;
