@@ -60,14 +60,12 @@ impl Bounds {
             let far = |[low, high]: [f64; 2], middle: f64| (low - middle).abs().max((high - middle).abs());
             STEP + rate * far(piece.rows(), at.y).max(far(piece.columns(), at.x))
         };
-        let kept = |piece: &&Piece| {
+        let is_left = |piece: &Piece| piece.columns()[1] + moved(piece) < left as f64 - reach_x - 2.0;
+        let kept = |piece: &Piece| {
             let (moved, rows) = (moved(piece), piece.rows());
             rows[1] + moved > low && rows[0] - moved < high && piece.columns()[0] - moved < right
         };
-        // Chosen before they are joined: of a whole picture few are near any window.
-        let pieces: Vec<Piece> = picture.pieces.iter().filter(kept).copied().collect();
-        let pieces = join_left(&pieces, |piece| piece.columns()[1] + moved(piece) < left as f64 - reach_x - 2.0);
-        Picture { pieces, ..*picture }
+        Picture { pieces: join_left(&picture.pieces, is_left, kept), ..*picture }
     }
 }
 

@@ -175,6 +175,26 @@ fn what_is_far_left_of_the_window_takes_nothing() {
     assert!((barred.syy / alone.syy - 1.0).abs() > 1e-3, "{barred:?} {alone:?}");
 }
 
+/// A wall of its own grey value, all of it left of the window and higher than it: it adds nothing there, whose amount would be one more unknown.
+#[test]
+fn an_area_that_is_not_seen_is_no_unknown() {
+    let wall = [(1.0, -30.0), (3.0, -30.0), (3.0, 70.0), (1.0, 70.0)];
+    let square = [(18.2, 18.4), (20.2, 18.4), (20.2, 20.9), (18.2, 20.9)];
+    let picture = |of: &[(&[(f64, f64)], f64)]| {
+        let polygon = |(vertices, grey): &(&[(f64, f64)], f64)| {
+            let vertices = vertices.iter().map(|&(x, y)| PixelPoint::new(x, y)).collect();
+            Polygon { id: String::new(), grey: *grey, vertices }
+        };
+        Picture::from(&Scene { width: 41, height: 41, background: 0.9, polygons: of.iter().map(polygon).collect(), targets: Vec::new() })
+    };
+    let unknowns = Unknowns { shape: true, levels: Levels::Areas, blur: true, ..Unknowns::default() };
+    let trace = |of: &[(&[(f64, f64)], f64)]| bound(&picture(of), 0.6, 11, unknowns).map(|c| c.sxx + c.syy).unwrap();
+    for grey in [0.2, 0.1 + 1e-3, 1.0] {
+        let (alone, beside) = (trace(&[(&square, 0.1)]), trace(&[(&wall, grey), (&square, 0.1)]));
+        assert!((beside / alone - 1.0).abs() < 1e-9, "{grey}: {beside} {alone}");
+    }
+}
+
 /// In a window within a disc there is no edge, but for what the blur leaves of it.
 #[test]
 fn what_leaves_a_position_anywhere_in_the_window_is_no_bound() {
