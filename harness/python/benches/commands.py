@@ -205,6 +205,8 @@ def commands(folder):
                 lambda n, photographs=photographs: ours("calibrate", *photographs, "--board", "9x6:25", "-o", "camera.xml", threads=n),
                 lambda n, pattern=pattern, detector=detector: theirs(CALIBRATE, pattern, "peer.xml", 9, 6, detector, threads=n),
             )
+    if left:
+        side_by_side("`judge` of 13 photographs", folder, lambda n: ours("judge", *left, "--chessboard", "9x6:25", "--report", "judged", threads=n))
     for words in (["list", "scenarios"], ["show", "testfields/chessboard"], ["--help"]):
         side_by_side(f"`{' '.join(words)}`", folder, lambda n, words=words: [PROGRAM, "--root", ROOT, *words])
 
