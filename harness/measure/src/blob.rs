@@ -217,6 +217,25 @@ mod tests {
 
     const OTSU: Segmentation = Segmentation { threshold: None, polarity: Polarity::FromWindow, enlarge: 1 };
 
+    /// Beside a look at every pixel, of any pixels inside and starts beside them.
+    #[test]
+    fn the_border_and_the_nearest_pixel_are_those_of_all() {
+        let image = Image::from_fn(21, 21, |x, y| (x * 31 + y * 17) as f32 / 1000.0);
+        for half in [0, 1, 4] {
+            let raster = OTSU.raster(&image, (10, 9), half).unwrap();
+            let all = raster.side * raster.side;
+            let border: Vec<f64> = (0..all).filter(|&i| raster.is_border(i)).map(|i| raster.grey[i]).collect();
+            assert_eq!(raster.border().collect::<Vec<_>>(), border);
+            for round in 0..200_usize {
+                let inside: Vec<bool> = (0..all).map(|i| (i * 7919 + round * 104_729) % 97 < 9 * (round % 4)).collect();
+                let start = PixelPoint::new(4.0 + (round as f64 * 0.618).fract() * 12.0, 4.0 + (round as f64 * 0.755).fract() * 12.0);
+                let square = |&i: &usize| (raster.position(i).0 - start.x).powi(2) + (raster.position(i).1 - start.y).powi(2);
+                let nearest = (0..all).filter(|&i| inside[i]).min_by(|a, b| square(a).total_cmp(&square(b)));
+                assert_eq!(raster.nearest(&inside, start), nearest);
+            }
+        }
+    }
+
     #[test]
     fn only_the_pixels_at_the_start_are_taken() {
         let image = Image::from_fn(31, 31, |x, y| {

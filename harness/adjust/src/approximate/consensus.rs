@@ -235,6 +235,41 @@ mod tests {
         }
     }
 
+    /// A model is given up at no point if it costs less, and always if it does not.
+    #[test]
+    fn what_is_given_up_early_could_not_be_better() {
+        let mut state = 3_u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1_u32 << 31)
+        };
+        let (mut better, mut spared) = (0, 0);
+        for round in 0..2000 {
+            let count = 3 + round % 12;
+            let tolerance = [Tolerance::Unknown, Tolerance::Pixels(0.7), Tolerance::Pixels(f64::INFINITY)][round % 3];
+            let judge = Judge { count, size: 3.min(count), freedom: 2, tolerance };
+            let of = |draw: &mut dyn FnMut() -> f64| match (8.0 * draw()) as u32 {
+                0 => f64::INFINITY,
+                1 => 0.25,
+                _ => draw(),
+            };
+            let squares: Vec<f64> = (0..count).map(|_| of(&mut draw)).collect();
+            // Some are as good, not better.
+            let least = if draw() < 0.3 { judge.cost(&squares) } else { draw() * [1.0, count as f64][usize::from(round % 3 > 0)] };
+            let looked = std::cell::Cell::new(0);
+            let found = judge.better(Some(least), |index| {
+                looked.set(looked.get() + 1);
+                squares[index]
+            });
+            let cost = judge.cost(&squares);
+            assert_eq!(found, (cost < least).then(|| (cost, squares.clone())), "{tolerance:?} {least} {squares:?}");
+            assert_eq!(judge.better(None, |index| squares[index]), Some((cost, squares.clone())));
+            better += usize::from(found.is_some());
+            spared += usize::from(looked.get() < count);
+        }
+        assert!(better > 300 && spared > 300, "{better} {spared}");
+    }
+
     #[test]
     fn others_are_all_that_do_not_agree() {
         assert_eq!(others(6, &[1, 2, 5]), [0, 3, 4]);

@@ -79,14 +79,17 @@ mod tests {
     use super::*;
     use crate::camera::ImageSize;
 
-    /// Coefficients of every sign and size, that of twelve numbers among them.
+    /// Coefficients of every sign and size; of five, of eight, of a thin prism without decentring, and of a sensor that is tilted so far that it ends the image.
     fn cameras() -> impl Iterator<Item = OpenCv> {
         (0..600_u32).map(|i| {
             let part = |shift: u32, scale: f64| {
                 scale * (f64::from(i.wrapping_mul(2_654_435_761).rotate_left(shift) >> 8) / f64::from(1 << 24) - 0.5)
             };
-            let all = [1.2, 0.8, 0.1, 0.1, 0.6, 0.8, 0.4, 0.2, 0.05, 0.05, 0.05, 0.05];
-            let coefficients = [5, 8, 12][i as usize % 3];
+            let all = match i % 4 {
+                2 => [1.2, 0.8, 0.0, 0.0, 0.6, 0.8, 0.4, 0.2, 0.8, 0.8, 0.8, 0.8, 0.0, 0.0],
+                _ => [1.2, 0.8, 0.1, 0.1, 0.6, 0.8, 0.4, 0.2, 0.05, 0.05, 0.05, 0.05, 2.4, 2.4],
+            };
+            let coefficients = [5, 8, 12, 14][i as usize % 4];
             let mut distortion = [0.0; 14];
             (0..coefficients).for_each(|k| distortion[k] = part(2 * k as u32 + i % 2, all[k]));
             let size = ImageSize { width: 640, height: 480 };
@@ -111,6 +114,6 @@ mod tests {
             assert!(safe <= searched / clear * (1.0 + 1e-9), "{safe} {searched} {camera:?}");
             assert!(safe >= 0.8 * searched, "{safe} {searched} {camera:?}");
         }
-        assert!(told > 200 && in_doubt > 50 && whole > 30 && whole < told - 100, "{told} {in_doubt} {whole}");
+        assert!(told > 200 && in_doubt > 200 && whole > 50 && whole < told - 50, "{told} {in_doubt} {whole}");
     }
 }

@@ -41,6 +41,19 @@ fn what_lies_beyond_a_fold_is_refused() {
 }
 
 #[test]
+fn a_solution_beyond_a_fold_is_none() {
+    // The radius r (1 - r^2 + 0.4 r^4) turns round at 0.707, where it is 0.424, and rises again from r = 1 on, where it is 0.4.
+    let mut distortion = [0.0; 14];
+    (distortion[0], distortion[1]) = (-1.0, 0.4);
+    let camera = OpenCv { distortion, ..camera(4) };
+    for radius in [0.43, 0.7, 1.2, 2.0] {
+        assert!(camera.unproject(PixelPoint::new(2010.3 + 3100.0 * radius, 1490.8)).is_err(), "{radius}");
+    }
+    let (x, _) = camera.unproject(PixelPoint::new(2010.3 + 3100.0 * 0.41, 1490.8)).unwrap().tangent().unwrap();
+    assert!(x < 0.707, "{x}");
+}
+
+#[test]
 fn a_dip_between_samples_is_found() {
     // A polynomial that turns back on a very short way only.
     let (a, width) = (0.3337_f64, 1e-6);
