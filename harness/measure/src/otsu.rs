@@ -158,7 +158,7 @@ mod tests {
     fn heaps(mut draw: impl FnMut() -> f64) -> Vec<f64> {
         let levels = if draw() < 0.5 { 0.0 } else { (300.0 * draw()).ceil() };
         let mut values = Vec::new();
-        for _ in 0..1 + (4.0 * draw()) as usize {
+        for _ in 0..=(4.0 * draw()) as usize {
             let (middle, width, count) = (5.0 * draw() - 2.0, 0.6 * draw(), 1 + (120.0 * draw()) as usize);
             values.extend((0..count).map(|_| middle + width * (draw() + draw())));
         }

@@ -184,8 +184,8 @@ fn is_positive(bernstein: &[f64], halvings: usize) -> bool {
     }
     let (mut left, mut right) = ([0.0; HIGHEST + 1], [0.0; HIGHEST + 1]);
     right[..=degree].copy_from_slice(bernstein);
-    for step in 0..=degree {
-        left[step] = right[0];
+    for (step, first) in left[..=degree].iter_mut().enumerate() {
+        *first = right[0];
         (0..degree - step).for_each(|i| right[i] = 0.5 * (right[i] + right[i + 1]));
     }
     is_positive(&left[..=degree], halvings - 1) && is_positive(&right[..=degree], halvings - 1)
