@@ -5,7 +5,7 @@ const BINS: usize = 256;
 /// What rounding may take from a bound.
 const ROUNDING: f64 = 1e-9;
 
-/// Values of one bin, and what lies below it.
+/// The values of one bin.
 #[derive(Clone, Copy)]
 struct Bin {
     count: usize,

@@ -13,7 +13,7 @@ use crate::registry::{Build, Method};
 const VERSION: &str = "2.1.0";
 /// How far the detector's ring of samples reaches, and one px more.
 const RING: i64 = 6;
-/// Pixels of an image up to which the memory of its detection is kept for the next: about 30 bytes each.
+/// Pixels of an image up to which the memory of its detection is kept for the next: with the Radon detector some 150 bytes each.
 const KEPT: usize = 1 << 20;
 
 /// The crate `chess-corners` (V. Vorobyev; MIT): corners are detected on the whole image, as 8-bit grey values, with the crate's own presets; a start is given the

@@ -41,22 +41,19 @@ pub(super) fn of(camera: &OpenCv) -> Region {
 
 /// The region by bounds alone; `None` if they see much less of it than there is.
 fn bounded(camera: &OpenCv, reach: f64) -> Option<f64> {
-    if camera.is_surely_one_to_one(reach) {
-        return Some(reach);
-    }
     let safe = largest(camera, reach);
     let mut radial = *camera;
     radial.distortion[2..4].fill(0.0);
     radial.distortion[8..].fill(0.0);
-    (safe > NEARLY * largest(&radial, reach)).then_some(safe)
+    (safe == reach || safe > NEARLY * largest(&radial, reach)).then_some(safe)
 }
 
 /// The largest radius up to `reach` that is found to be surely one to one.
 fn largest(camera: &OpenCv, reach: f64) -> f64 {
-    let (mut safe, mut step) = (0.0, reach);
     if camera.is_surely_one_to_one(reach) {
         return reach;
     }
+    let (mut safe, mut step) = (0.0, reach);
     for _ in 0..HALVINGS {
         step *= 0.5;
         if camera.is_surely_one_to_one(safe + step) {
