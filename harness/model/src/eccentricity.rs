@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 
 use crate::Pose;
-use crate::camera::{CameraModel, DerivativeBuffer, Ray};
+use crate::camera::{CameraModel, Ray};
 
 /// A disc in camera axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,10 +58,9 @@ pub fn in_image(camera: &impl CameraModel, disc: &Disc) -> Option<[f64; 2]> {
     let at = camera.project(ray(&disc.centre)).ok()?;
     let [a, b] = axes(&disc.normal);
     let (mut area, mut first) = (0.0, [0.0; 2]);
-    let mut seen = DerivativeBuffer::default();
     for place in 0..PLACES {
         let (sine, cosine) = (f64::from(place) * (std::f64::consts::TAU / f64::from(PLACES))).sin_cos();
-        camera.derivatives_into(ray(&(disc.centre + (a * cosine + b * sine) * disc.radius)), &mut seen).ok()?;
+        let seen = camera.slopes(ray(&(disc.centre + (a * cosine + b * sine) * disc.radius))).ok()?;
         let along = b * cosine - a * sine;
         let [dx, dy] = seen.by_ray.map(|by| by[0] * along.x + by[1] * along.y + by[2] * along.z);
         let (x, y) = (seen.point.x - at.x, seen.point.y - at.y);

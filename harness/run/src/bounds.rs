@@ -6,7 +6,7 @@ use calibench_model::{PixelPoint, TargetKind, Unknowns};
 use calibench_scenario::Imaging;
 use calibench_synth::bound::{Bounds, Work};
 use calibench_synth::optics::OpticsError;
-use calibench_synth::raster::Picture;
+use calibench_synth::raster::Outlined;
 
 /// Computes bounds for the images of one lens and sensor.
 pub struct TargetBounds {
@@ -60,9 +60,9 @@ impl TargetBounds {
     }
 
     /// The bounds of the target of this `kind` at `at`, px.
-    pub fn of(&self, picture: &Picture, kind: TargetKind, at: PixelPoint, work: &mut Work) -> BySet {
+    pub fn of(&self, outlined: &Outlined<'_>, kind: TargetKind, at: PixelPoint, work: &mut Work) -> BySet {
         let bounds = self.of_discs.as_ref().filter(|_| kind == TargetKind::Disc).unwrap_or(&self.bounds);
-        let covariances = match bounds.window(picture, at) {
+        let covariances = match bounds.window(outlined, at) {
             Some(window) => window.bounds(&self.sets, |light| self.chain.mean(light), |grey| self.chain.variance(grey), work),
             None => vec![None; self.sets.len()],
         };

@@ -12,7 +12,7 @@ use calibench_scenario::{Phase, Pixels, SceneSubject, Starts};
 use calibench_synth::bound::Work;
 use calibench_synth::draw;
 use calibench_synth::noise::{add_grey_noise, quantise};
-use calibench_synth::raster::{Picture, Renderer};
+use calibench_synth::raster::{Outlined, Picture, Renderer};
 use calibench_synth::sensor::{Clipped, Exposure};
 use rand::RngExt;
 
@@ -58,9 +58,9 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
     let view: Arc<str> = VIEW.into();
     let targets: Vec<Arc<str>> = truth.targets.iter().map(|target| target.id.as_str().into()).collect();
     let picture = Picture::from(&truth);
-    let mut work = Work::default();
+    let (outlined, mut work) = (Outlined::of(&picture), Work::default());
     let by_target: Vec<BySet> =
-        truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&picture, target.kind, target.at, &mut work))).collect();
+        truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&outlined, target.kind, target.at, &mut work))).collect();
     let mut points = Vec::new();
     let asked = truth.targets.iter().zip(starts).map(|(target, start)| Asked { name: &target.id, kind: target.kind, start });
     let which = Some(ImageId { trial: number, view: VIEW });

@@ -51,7 +51,7 @@ impl Plan<'_> {
                 // What is drawn anew in each trial has its bounds there.
                 let fixed = bounds.as_ref().filter(|_| !subject.changes());
                 let key = Key { seed: self.seed, scenario: &self.scenario.name, trial: 0, view: "", target: "" };
-                let prepared = views::Prepared::with(subject, &subject.stations, key, fixed)?;
+                let prepared = views::Prepared::with(subject, &subject.stations, key, fixed, views::renderer(subject)?)?;
                 self.trials(step, sink, &|number| views::run_trial(self, &prepared, bounds.as_ref(), number))
             }
         }

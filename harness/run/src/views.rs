@@ -9,7 +9,7 @@ use calibench_random::{Key, Purpose, stream};
 use calibench_records::results::{PointResult, Trial};
 use calibench_scenario::{Blocks, Calibration, ViewsSubject};
 use calibench_synth::bound::Work;
-use calibench_synth::raster::{Picture, Renderer};
+use calibench_synth::raster::{Outlined, Picture, Renderer};
 use calibench_synth::sensor::Exposure;
 use calibench_synth::stations::Station;
 use calibench_synth::view::{TargetTruth, View, Visibility};
@@ -27,7 +27,7 @@ pub struct Prepared<'a> {
     pub subject: &'a ViewsSubject,
     /// The views, in the order of the stations.
     pub views: Vec<PreparedView<'a>>,
-    renderer: Renderer,
+    renderer: Arc<Renderer>,
     pub(super) targets: Vec<Arc<str>>,
     /// The board that is seen, if it is one.
     pub(super) sought: Option<Sought>,
@@ -52,7 +52,7 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// A view that cannot be pictured, by the name of its station.
     pub fn new(subject: &'a ViewsSubject, key: Key<'_>) -> Result<Self, RunError> {
-        Self::with(subject, &subject.stations, key, None)
+        Self::of(subject, &subject.stations, key)
     }
 
     /// As [`Self::new`], for other stations.
@@ -60,10 +60,10 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// As [`Self::new`].
     pub fn of(subject: &'a ViewsSubject, stations: &'a [Station], key: Key<'_>) -> Result<Self, RunError> {
-        Self::with(subject, stations, key, None)
+        Self::with(subject, stations, key, None, renderer(subject)?)
     }
 
-    /// As [`Self::of`], with the bounds of methods.
+    /// As [`Self::of`], with the bounds of methods, by the `renderer` of the subject.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -72,9 +72,8 @@ impl<'a> Prepared<'a> {
         stations: &'a [Station],
         key: Key<'_>,
         bounds: Option<&TargetBounds>,
+        renderer: Arc<Renderer>,
     ) -> Result<Self, RunError> {
-        let size = subject.camera.size();
-        let renderer = subject.imaging.renderer(size.width as usize, size.height as usize)?;
         let margin = subject.imaging.optics.reach();
         let local = subject.local_of(key)?;
         let view = |station: &'a Station| {
@@ -83,10 +82,11 @@ impl<'a> Prepared<'a> {
             let failed = |source| RunError::View { station: station.name.clone(), source };
             let seen = view.seen(margin).map_err(failed)?;
             let (picture, truth) = (seen.picture().map_err(failed)?, seen.truth());
-            let bound = |work: &mut Work, (target, truth): (&ObjectTarget, &TargetTruth)| match (bounds, truth.at) {
+            let bounds = bounds.map(|bounds| (bounds, Outlined::of(&picture)));
+            let bound = |work: &mut Work, (target, truth): (&ObjectTarget, &TargetTruth)| match (&bounds, truth.at) {
                 // About the reference point turning a disc would be moving it.
-                (Some(bounds), Some(at)) if is_pointed_at(subject, truth) => {
-                    bounds.of(&picture, target.kind, truth.ellipse.map_or(at, |ellipse| ellipse.centre), work)
+                (Some((bounds, outlined)), Some(at)) if is_pointed_at(subject, truth) => {
+                    bounds.of(outlined, target.kind, truth.ellipse.map_or(at, |ellipse| ellipse.centre), work)
                 }
                 _ => BySet::new(),
             };
@@ -119,6 +119,12 @@ impl<'a> Prepared<'a> {
     }
 }
 
+/// Renders the images of `subject`, in all trials.
+pub(super) fn renderer(subject: &ViewsSubject) -> Result<Arc<Renderer>, RunError> {
+    let size = subject.camera.size();
+    Ok(Arc::new(subject.imaging.renderer(size.width as usize, size.height as usize)?))
+}
+
 /// What bounds the methods of `plan` in the images of `subject`.
 pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<TargetBounds>, RunError> {
     let size = subject.camera.size();
@@ -134,7 +140,7 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option
     }
     // Of points that are not kept nobody asks for the bound.
     let bounds = bounds.filter(|_| number == 0 || subject.blocks.as_ref().is_none_or(|blocks| blocks.keep_points));
-    run_prepared(plan, &Prepared::with(subject, &subject.stations_of(key)?, key, bounds)?, key)
+    run_prepared(plan, &Prepared::with(subject, &subject.stations_of(key)?, key, bounds, prepared.renderer.clone())?, key)
 }
 
 fn run_prepared(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {

@@ -7,7 +7,7 @@ use std::time::Instant;
 use calibench_model::{Gradient, Levels, PixelPoint, Unknowns};
 use calibench_synth::bound::{Bounds, Work};
 use calibench_synth::optics::Optics;
-use calibench_synth::raster::{Picture, Piece, Renderer};
+use calibench_synth::raster::{Outlined, Picture, Piece, Renderer};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
@@ -36,8 +36,8 @@ fn bounds(picture: &Picture, window: usize, optics: &Optics, threads: usize) -> 
     let bounds = Bounds::new(optics, FRAME, FRAME, window)?;
     let all = [Unknowns { shape: true, blur: true, levels: Levels::Areas, gradient: Gradient::None }];
     let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let at = PixelPoint::new(200.3, 199.8);
-    let one = |work: &mut Work, _| bounds.window(picture, at).map(|window| window.bounds(&all, Some, |_| Some(1e-4), work));
+    let (at, outlined) = (PixelPoint::new(200.3, 199.8), Outlined::of(picture));
+    let one = |work: &mut Work, _| bounds.window(&outlined, at).map(|window| window.bounds(&all, Some, |_| Some(1e-4), work));
     let round = |_| {
         let start = Instant::now();
         let found: Vec<_> = pool.install(|| (0..TARGETS).into_par_iter().map_init(Work::default, one).collect());

@@ -9,7 +9,7 @@ use multiversion::multiversion;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
-use crate::raster::{COLUMNS, Derivatives, Flow, LANES, MARGIN, Picture, Piece, Renderer, Square, join_left, stride};
+use crate::raster::{COLUMNS, Derivatives, Extent, Flow, LANES, MARGIN, Outlined, Picture, Piece, Renderer, Square, join_left, stride};
 
 /// Steps of the differences where there is no blur, and grey values have kinks: px of a shift, and of a deformation at the window's edge.
 const STEP: f64 = 0.05;
@@ -41,31 +41,31 @@ impl Bounds {
     }
 
     /// What the grey values of the window around `at` tell; `None` if it leaves the image.
-    pub fn window<'a>(&'a self, picture: &'a Picture, at: PixelPoint) -> Option<Window<'a>> {
+    pub fn window(&self, outlined: &Outlined<'_>, at: PixelPoint) -> Option<Window<'_>> {
+        let picture = outlined.picture;
         let corner = [at.x.round() as i64 - self.half, at.y.round() as i64 - self.half];
         let side = 2 * self.half + 1;
         let inside =
             corner.iter().all(|&c| c >= 0) && corner[0] + side <= picture.width as i64 && corner[1] + side <= picture.height as i64;
-        inside.then(|| Window { bounds: self, near: self.near(picture, at, corner), at, square: Square { corner, side: side as usize } })
+        inside.then(|| Window { bounds: self, near: self.near(outlined, at, corner), at, square: Square { corner, side: side as usize } })
     }
 
     /// The picture with only those pieces that can matter to a window, moved by a step of any parameter or not.
-    fn near(&self, picture: &Picture, at: PixelPoint, [left, top]: [i64; 2]) -> Picture {
+    fn near(&self, outlined: &Outlined<'_>, at: PixelPoint, [left, top]: [i64; 2]) -> Picture {
         let [reach_x, reach_y] = self.renderer.reach();
         let (low, high) = (top as f64 - reach_y - 2.0, (top + 2 * self.half) as f64 + reach_y + 3.0);
         let right = (left + 2 * self.half) as f64 + reach_x + 3.0;
         // A deformation moves what is further off the further.
         let rate = STEP / self.half.max(1) as f64;
-        let moved = |piece: &Piece| {
-            let far = |[low, high]: [f64; 2], middle: f64| (low - middle).abs().max((high - middle).abs());
-            STEP + rate * far(piece.rows(), at.y).max(far(piece.columns(), at.x))
+        let moved = |extent: &Extent| STEP + rate * extent.farthest([at.x, at.y]);
+        let is_left = |extent: &Extent| extent.columns[1] + moved(extent) < left as f64 - reach_x - 2.0;
+        let kept = |extent: &Extent| {
+            let (moved, rows) = (moved(extent), extent.rows);
+            rows[1] + moved > low && rows[0] - moved < high && extent.columns[0] - moved < right
         };
-        let is_left = |piece: &Piece| piece.columns()[1] + moved(piece) < left as f64 - reach_x - 2.0;
-        let kept = |piece: &Piece| {
-            let (moved, rows) = (moved(piece), piece.rows());
-            rows[1] + moved > low && rows[0] - moved < high && piece.columns()[0] - moved < right
-        };
-        Picture { pieces: join_left(&picture.pieces, is_left, kept), ..*picture }
+        // What is true of an outline is so of each of its pieces, which move no further.
+        let pieces = join_left(outlined.pieces(is_left, kept), |piece| is_left(&Extent::of(piece)), |piece| kept(&Extent::of(piece)));
+        Picture { pieces, ..*outlined.picture }
     }
 }
 

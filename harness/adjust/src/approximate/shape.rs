@@ -83,8 +83,9 @@ fn rotate<const N: usize>(matrix: &mut SMatrix<f64, N, N>, vectors: &mut SMatrix
         return;
     }
     let half = (matrix[(j, j)] - matrix[(i, i)]) / (2.0 * off);
-    let tangent = if half < 0.0 { -1.0 } else { 1.0 } / (half.abs() + half.hypot(1.0));
-    let cosine = 1.0 / tangent.hypot(1.0);
+    // Not `hypot`, which takes longer than the rest: a square that overflows belongs to an angle of zero.
+    let tangent = if half < 0.0 { -1.0 } else { 1.0 } / (half.abs() + (half * half + 1.0).sqrt());
+    let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
     let sine = tangent * cosine;
     for k in 0..N {
         let (a, b) = (matrix[(k, i)], matrix[(k, j)]);

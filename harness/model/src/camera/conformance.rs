@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use super::{CameraModel, Ray};
+use super::{CameraModel, Ray, Slopes};
 use crate::PixelPoint;
 
 /// Places along each side of the frame.
@@ -118,6 +118,7 @@ fn difference(at: impl Fn(f64) -> PixelPoint, h: f64) -> [f64; 2] {
 
 fn by_ray(camera: &(impl CameraModel + Debug), ray: Ray) {
     let found = camera.derivatives(ray).unwrap_or_else(|error| panic!("{ray:?}: {error}"));
+    assert_eq!(camera.slopes(ray), Ok(Slopes { point: found.point, by_ray: found.by_ray }));
     assert!(found.point.distance(project(camera, ray)) < 1e-9, "derivatives and project disagree on {ray:?}");
     for axis in 0..3 {
         let at = |h: f64| {

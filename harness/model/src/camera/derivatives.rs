@@ -17,6 +17,15 @@ pub struct Derivatives {
     pub by_parameters: Vec<[f64; 2]>,
 }
 
+/// A projection with its derivatives by the ray alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slopes {
+    /// The projected point.
+    pub point: PixelPoint,
+    /// d(x, y) / d(ray), px per unit of the ray's components: rows x, y.
+    pub by_ray: [[f64; 3]; 2],
+}
+
 /// [`Derivatives`] of a fixed size, to be filled again and again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DerivativeBuffer {

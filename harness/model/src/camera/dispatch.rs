@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
-    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, agisoft, agisoft_fisheye,
+    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, Slopes, agisoft, agisoft_fisheye,
     double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye,
     rad_tan_prism_fisheye, tool_conventions,
 };
@@ -152,6 +152,10 @@ impl CameraModel for Camera {
 
     fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
         each!(self, camera => camera.derivatives_into(ray, into))
+    }
+
+    fn slopes(&self, ray: Ray) -> Result<Slopes, NoCounterpart> {
+        each!(self, camera => camera.slopes(ray))
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -126,6 +126,10 @@ impl PlaneMap for Ebner {
         (value, by)
     }
 
+    fn start(&self, goal: [f64; 2]) -> Option<[f64; 2]> {
+        self.base.start(goal)
+    }
+
     fn is_surely_one_to_one(&self, radius: f64) -> bool {
         let Photogrammetric { k, p, b, .. } = self.base;
         let rest: f64 = self.parameters.iter().zip(self.steepest(radius)).map(|(parameter, slope)| parameter.abs() * slope).sum();

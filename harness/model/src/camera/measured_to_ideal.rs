@@ -2,7 +2,7 @@
 
 use super::newton::{self, determinant};
 use super::plane_map::{self, PlaneMap};
-use super::{DerivativeBuffer, NoCounterpart, Photogrammetric, Ray};
+use super::{DerivativeBuffer, NoCounterpart, Photogrammetric, Ray, Slopes};
 use crate::{Frame, PixelPoint, SensorPoint};
 
 /// Places between the principal point and the farthest corner where a fold is looked for.
@@ -60,22 +60,53 @@ pub(super) fn unproject(camera: &impl Correction, point: PixelPoint) -> Result<R
     Ok(Ray::from_tangent(x / base.c, y / base.c))
 }
 
+/// A measured place, and what becomes of a change of the ideal one.
+struct Place {
+    /// Measured coordinates from the principal point, mm.
+    at: [f64; 2],
+    /// d(ideal) / d(measured).
+    by: [[f64; 2]; 2],
+    /// Pixels to a mm over the determinant of `by`.
+    scale: f64,
+}
+
+impl Place {
+    fn of(camera: &impl Correction, ray: Ray) -> Result<Self, NoCounterpart> {
+        let at = measured(camera, ray)?;
+        let (_, by) = camera.map(at);
+        Ok(Self { at, by, scale: 1e3 / camera.base().pitch_um / determinant(by) })
+    }
+
+    /// The change of the pixel, px, where c times the tangent minus the ideal place changes by `g`, mm.
+    ///
+    /// F(measured, parameters) = c tangent: d(measured) = F_m^-1 (d(c tangent) - F_parameters), then mm upwards to px downwards.
+    fn pixel(&self, g: [f64; 2]) -> [f64; 2] {
+        let Self { by, scale, .. } = self;
+        [scale * (by[1][1] * g[0] - by[0][1] * g[1]), -scale * (by[0][0] * g[1] - by[1][0] * g[0])]
+    }
+
+    fn slopes(&self, base: &Photogrammetric, ray: Ray) -> Result<Slopes, NoCounterpart> {
+        let (by_u, by_v) = (self.pixel([base.c, 0.0]), self.pixel([0.0, base.c]));
+        let tangent = ray.tangent_derivatives();
+        let by = |row: usize, axis: usize| by_u[row] * tangent[0][axis] + by_v[row] * tangent[1][axis];
+        let by_ray = std::array::from_fn(|row| std::array::from_fn(|axis| by(row, axis)));
+        Ok(Slopes { point: to_pixel(base, self.at)?, by_ray })
+    }
+}
+
+pub(super) fn slopes(camera: &impl Correction, ray: Ray) -> Result<Slopes, NoCounterpart> {
+    Place::of(camera, ray)?.slopes(camera.base(), ray)
+}
+
 pub(super) fn derivatives_into(camera: &impl Correction, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
-    let base = camera.base();
-    let (u, v) = ray.tangent().ok_or(NoCounterpart::Behind)?;
-    let at = measured(camera, ray)?;
-    let (_, by) = camera.map(at);
-    let (det, per_mm) = (determinant(by), 1e3 / base.pitch_um);
-    // F(measured, parameters) = c tangent: d(measured) = F_m^-1 (d(c tangent) - F_parameters), then mm upwards to px downwards.
-    let pixel = |g: [f64; 2]| [per_mm * (by[1][1] * g[0] - by[0][1] * g[1]) / det, -per_mm * (by[0][0] * g[1] - by[1][0] * g[0]) / det];
+    let (base, (u, v)) = (camera.base(), ray.tangent().ok_or(NoCounterpart::Behind)?);
+    let place = Place::of(camera, ray)?;
+    let per_mm = 1e3 / base.pitch_um;
     into.clear();
-    into.extend([pixel([u, v]), [per_mm, 0.0], [0.0, -per_mm]]);
-    camera.by_coefficients(at, into);
-    into.change_from(3, |[x, y]| pixel([-x, -y]));
-    let (by_u, by_v) = (pixel([base.c, 0.0]), pixel([0.0, base.c]));
-    let tangent = ray.tangent_derivatives();
-    into.by_ray = std::array::from_fn(|row| std::array::from_fn(|axis| by_u[row] * tangent[0][axis] + by_v[row] * tangent[1][axis]));
-    into.point = to_pixel(base, at)?;
+    into.extend([place.pixel([u, v]), [per_mm, 0.0], [0.0, -per_mm]]);
+    camera.by_coefficients(place.at, into);
+    into.change_from(3, |[x, y]| place.pixel([-x, -y]));
+    Slopes { point: into.point, by_ray: into.by_ray } = place.slopes(base, ray)?;
     Ok(())
 }
 
@@ -135,6 +166,10 @@ macro_rules! measured_camera {
                 into: &mut $crate::camera::DerivativeBuffer,
             ) -> Result<(), $crate::camera::NoCounterpart> {
                 $crate::camera::measured_to_ideal::derivatives_into(self, ray, into)
+            }
+
+            fn slopes(&self, ray: $crate::camera::Ray) -> Result<$crate::camera::Slopes, $crate::camera::NoCounterpart> {
+                $crate::camera::measured_to_ideal::slopes(self, ray)
             }
 
             fn fold_towards(&self, angle: f64) -> Option<$crate::PixelPoint> {

@@ -41,7 +41,7 @@ use crate::PixelPoint;
 pub use agisoft::{Agisoft, AgisoftVersion};
 pub use agisoft_fisheye::{AgisoftFisheye, FisheyeProjection};
 pub use convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
-pub use derivatives::{DerivativeBuffer, Derivatives, MOST_PARAMETERS};
+pub use derivatives::{DerivativeBuffer, Derivatives, MOST_PARAMETERS, Slopes};
 pub use dispatch::{Camera, conventions};
 pub use double_sphere::DoubleSphere;
 pub use ebner::Ebner;
@@ -142,6 +142,16 @@ pub trait CameraModel {
     /// As [`Self::project`].
     fn derivatives(&self, ray: Ray) -> Result<Derivatives, NoCounterpart> {
         DerivativeBuffer::owned(|buffer| self.derivatives_into(ray, buffer))
+    }
+
+    /// [`Self::project`] with its derivatives by the ray alone: of a camera that is held fixed those by its parameters are computed in vain.
+    ///
+    /// # Errors
+    /// As [`Self::project`].
+    fn slopes(&self, ray: Ray) -> Result<Slopes, NoCounterpart> {
+        let mut buffer = DerivativeBuffer::default();
+        self.derivatives_into(ray, &mut buffer)?;
+        Ok(Slopes { point: buffer.point, by_ray: buffer.by_ray })
     }
 
     /// The image of the first fold on the way from the axis, where the mapping stops being one to one, inside or outside the frame; `angle` is that in

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::convention::{Convention, Direction, PixelOrigin, TangentialOrder, Verification, Vertical};
 use super::measured_to_ideal::{Correction, measured_camera};
 use super::newton::ValueAndDerivatives;
-use super::plane_map::{PlaneMap, is_one_to_one};
+use super::plane_map::{PlaneMap, is_one_to_one, radial_start};
 use super::{CameraParameter, DerivativeBuffer, ImageSize, named};
 
 /// Interior orientation in mm, y up, from the centre of the frame. Direction: **measured to ideal**.
@@ -91,6 +91,10 @@ impl PlaneMap for Photogrammetric {
             [-cross, 1.0 - (radial + 2.0 * y * y * slope + 2.0 * p1 * x + 6.0 * p2 * y)],
         ];
         (value, by)
+    }
+
+    fn start(&self, goal: [f64; 2]) -> Option<[f64; 2]> {
+        radial_start(&self.k.map(|k| -k), goal)
     }
 
     fn is_surely_one_to_one(&self, radius: f64) -> bool {

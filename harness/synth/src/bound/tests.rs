@@ -16,7 +16,7 @@ fn scene(polygons: &[&[(f64, f64)]]) -> Picture {
 
 fn bound(picture: &Picture, blur: f64, window: usize, unknowns: Unknowns) -> Option<Covariance> {
     let bounds = Bounds::new(&Optics { blur, ..Optics::default() }, 41, 41, window).unwrap();
-    let window = bounds.window(picture, PixelPoint::new(20.2, 19.9)).unwrap();
+    let window = bounds.window(&Outlined::of(picture), PixelPoint::new(20.2, 19.9)).unwrap();
     window.bounds(&[unknowns], Some, |_| Some(SIGMA * SIGMA), &mut Work::default())[0]
 }
 
@@ -221,8 +221,8 @@ fn an_edge_or_nothing_has_no_bound() {
     assert_eq!(bound(&scene(&[]), 0.7, 15, Unknowns::default()), None);
     let bounds = Bounds::new(&Optics::default(), 41, 41, 15).unwrap();
     let picture = chess();
-    assert!(bounds.window(&picture, PixelPoint::new(3.0, 20.0)).is_none(), "the window leaves the image");
-    let window = bounds.window(&picture, PixelPoint::new(20.2, 19.9)).unwrap();
+    assert!(bounds.window(&Outlined::of(&picture), PixelPoint::new(3.0, 20.0)).is_none(), "the window leaves the image");
+    let window = bounds.window(&Outlined::of(&picture), PixelPoint::new(20.2, 19.9)).unwrap();
     assert_eq!(window.bounds(&[Unknowns::default()], Some, |_| None, &mut Work::default()), [None], "a chain without a variance");
     assert!(
         window.bounds(&[Unknowns { blur: true, ..Unknowns::default() }], Some, |_| Some(1e-4), &mut Work::default())[0].is_some(),
@@ -277,7 +277,7 @@ fn normal_equations_are_the_product_of_matrices() {
 fn what_the_sensor_makes_of_light_counts() {
     let bounds = Bounds::new(&Optics { blur: 0.8, ..Optics::default() }, 41, 41, 15).unwrap();
     let picture = chess();
-    let window = bounds.window(&picture, PixelPoint::new(20.2, 19.9)).unwrap();
+    let window = bounds.window(&Outlined::of(&picture), PixelPoint::new(20.2, 19.9)).unwrap();
     let all = Unknowns { shape: true, levels: Levels::Areas, blur: true, gradient: Gradient::Added };
     let trace = |dark: f64, gain: f64, sigma: f64| {
         let found = window.bounds(&[all], |light| Some(dark + gain * light), |_| Some(sigma * sigma), &mut Work::default())[0].unwrap();
@@ -299,4 +299,36 @@ fn without_a_blur_the_bound_is_nearly_that_of_a_small_one() {
         println!("shape {shape}: {}", none / small);
         assert!((none / small - 1.0).abs() < 0.01, "shape {shape}: {none} {small}");
     }
+}
+
+/// Outlines on all sides of a window, touching it or not, one of them around it: what is passed over tells nothing.
+#[test]
+fn what_is_passed_over_does_not_matter() {
+    let mut state = 5_u64;
+    let mut draw = |from: f64, to: f64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        from + (to - from) * (state >> 33) as f64 / f64::from(1_u32 << 31)
+    };
+    let all = Unknowns { shape: true, levels: Levels::Two, blur: true, gradient: Gradient::Added };
+    let mut left_out = 0;
+    for round in 0..60 {
+        let mut triangle = |size: f64| {
+            let (x, y) = (draw(-15.0, 56.0), draw(-15.0, 56.0));
+            [0, 1, 2].map(|_| (x + draw(-size, size), y + draw(-size, size)))
+        };
+        let triangles: Vec<_> = [4.0, 4.0, 4.0, 4.0, 9.0, 9.0, 30.0].map(&mut triangle).to_vec();
+        let mut areas: Vec<&[(f64, f64)]> = triangles.iter().map(|vertices| &vertices[..]).collect();
+        areas.push(&[(-60.0, -60.0), (90.0, -60.0), (90.0, 90.0), (-60.0, 90.0)]);
+        let picture = scene(&areas);
+        let bounds = Bounds::new(&Optics { blur: [0.0, 0.7, 1.5][round % 3], ..Optics::default() }, 41, 41, 11).unwrap();
+        let window = bounds.window(&Outlined::of(&picture), PixelPoint::new(20.2, 19.9)).unwrap();
+        let whole = Window { near: picture.clone(), ..bounds.window(&Outlined::of(&picture), window.at).unwrap() };
+        let [some, every] = [&window, &whole].map(|window| {
+            let normal = window.normal(&[all], Some, |_| Some(SIGMA * SIGMA), &mut Work::default());
+            normal.expect("a variance").1
+        });
+        assert!((&some - &every).amax() < 1e-9 * every.amax(), "round {round}: {some} {every}");
+        left_out += picture.pieces.len() - window.near.pieces.len();
+    }
+    assert!(left_out > 60 * 8, "{left_out}");
 }

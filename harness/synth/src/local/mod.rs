@@ -3,9 +3,12 @@
 //! The field is white noise on a lattice under a Gaussian, so that its covariance is `sigma^2 exp(-d^2 / (2 correlation^2))` for each component, and the
 //! components are independent. The lattice leaves the variance uneven by 3e-5 of itself; values outside the frame fall to zero smoothly.
 
+use std::sync::LazyLock;
+
 use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
 use calibench_random::{Key, Purpose, stream};
+use multiversion::multiversion;
 use rand_distr::{Distribution, StandardNormal};
 use thiserror::Error;
 
@@ -15,6 +18,8 @@ const STEP: f64 = 2.0 / 3.0;
 const CUT: f64 = 5.0;
 /// Nodes within the cut along an axis: `2 CUT / STEP`, and one.
 const NEAR: usize = 16;
+/// `exp(-(k STEP)^2)`: of two nodes k apart.
+static GAUSSIANS: LazyLock<[f64; NEAR]> = LazyLock::new(|| std::array::from_fn(|k| (-(k as f64 * STEP).powi(2)).exp()));
 /// Nodes at most: 64 MB.
 const MOST_NODES: f64 = 4e6;
 /// Most of sigma in lengths of correlation. A fold takes a gradient of ten standard deviations then, which has a chance below 1e-15 at any place.
@@ -108,7 +113,7 @@ pub struct LocalDistortion {
     columns: usize,
     rows: usize,
     /// Of each node, row by row: x, y, px.
-    weights: Vec<[f64; 2]>,
+    weights: Vec<Weight>,
 }
 
 /// What the field does at a place.
@@ -120,13 +125,15 @@ pub struct Shift {
     pub slope: [[f64; 2]; 2],
 }
 
-/// The nodes near a coordinate, with their Gaussians and the derivatives.
+/// The nodes near a coordinate, with their Gaussians and the derivatives; zero beyond the cut.
 struct Near {
     from: usize,
-    count: usize,
     values: [f64; NEAR],
     slopes: [f64; NEAR],
 }
+
+/// What stands at a node: x, y, px.
+type Weight = [f64; 2];
 
 impl LocalDistortion {
     /// The field of `design` over a frame of `size`. Of `key` seed and trial count: it is the camera's own, and the same in all of a trial's images.
@@ -174,28 +181,16 @@ impl LocalDistortion {
         PixelPoint::new(at.x + dx, at.y + dy)
     }
 
-    /// The shift at `at`; without `SLOPES` its derivatives are left zero, in half the time.
+    /// The shift at `at`; without `SLOPES` its derivatives are left zero.
     fn shift<const SLOPES: bool>(&self, at: PixelPoint) -> Shift {
-        let (x, y) = (self.near(at.x, self.columns), self.near(at.y, self.rows));
+        let (x, y) = (self.near::<SLOPES>(at.x, self.columns), self.near::<SLOPES>(at.y, self.rows));
+        let nodes = &self.weights[y.from * self.columns + x.from..];
         let mut shift = Shift::default();
-        for j in 0..y.count {
-            let start = (y.from + j) * self.columns + x.from;
-            let (mut values, mut slopes) = ([0.0; 2], [0.0; 2]);
-            for (i, weight) in self.weights[start..start + x.count].iter().enumerate() {
-                for axis in 0..2 {
-                    values[axis] += x.values[i] * weight[axis];
-                    if SLOPES {
-                        slopes[axis] += x.slopes[i] * weight[axis];
-                    }
-                }
-            }
-            for axis in 0..2 {
-                shift.by[axis] += y.values[j] * values[axis];
-                if SLOPES {
-                    shift.slope[axis][0] += y.values[j] * slopes[axis];
-                    shift.slope[axis][1] += y.slopes[j] * values[axis];
-                }
-            }
+        let columns = sum_columns(nodes, self.columns, &y.values);
+        shift.by = sum_row(&columns, &x.values);
+        if SLOPES {
+            let (by_x, by_y) = (sum_row(&columns, &x.slopes), sum_row(&sum_columns(nodes, self.columns, &y.slopes), &x.values));
+            shift.slope = [0, 1].map(|axis| [by_x[axis], by_y[axis]]);
         }
         shift
     }
@@ -218,21 +213,63 @@ impl LocalDistortion {
         found
     }
 
-    fn near(&self, x: f64, nodes: usize) -> Near {
+    fn near<const SLOPES: bool>(&self, x: f64, nodes: usize) -> Near {
         let LocalDesign { correlation, .. } = self.design;
-        // In lengths of correlation from the first node.
-        let place = (x + 0.5) / correlation + CUT;
-        let from = ((place - CUT) / STEP).ceil().max(0.0) as usize;
-        let end = (((place + CUT) / STEP).floor() + 1.0).clamp(0.0, nodes as f64) as usize;
-        let count = end.saturating_sub(from).min(NEAR);
-        let mut near = Near { from: if count == 0 { 0 } else { from }, count, values: [0.0; NEAR], slopes: [0.0; NEAR] };
-        for i in 0..count {
-            let t = place - (from + i) as f64 * STEP;
-            near.values[i] = (-t * t).exp();
-            near.slopes[i] = -2.0 * t * near.values[i] / correlation;
+        let mut near = Near { from: 0, values: [0.0; NEAR], slopes: [0.0; NEAR] };
+        // In steps from the first node.
+        let place = ((x + 0.5) / correlation + CUT) / STEP;
+        let (first, last) = ((place - CUT / STEP).ceil().max(0.0), (place + CUT / STEP).floor().min(nodes as f64 - 1.0));
+        if !place.is_finite() || first > last {
+            return near;
+        }
+        near.from = (first as usize).min(nodes - NEAR);
+        let within = first as usize - near.from..last as usize + 1 - near.from;
+        let middle = (place.round().clamp(first, last) as usize) - near.from;
+        let t = (place - (near.from + middle) as f64) * STEP;
+        // exp(-(t - k STEP)^2) = exp(-t^2) exp(2 t STEP)^k exp(-(k STEP)^2): exponentials are dear, and two will do.
+        let top = (-t * t).exp();
+        let ratio = (2.0 * t * STEP).exp();
+        outward(near.values[within.start..=middle].iter_mut().rev(), top, 1.0 / ratio);
+        outward(near.values[middle..within.end].iter_mut(), top, ratio);
+        if SLOPES {
+            for (node, (slope, value)) in near.slopes.iter_mut().zip(near.values).enumerate() {
+                *slope = -2.0 * (place - (near.from + node) as f64) * STEP * value / correlation;
+            }
         }
         near
     }
+}
+
+/// Gaussians of nodes one after the other, away from the one whose own is `top`.
+fn outward<'a>(values: impl Iterator<Item = &'a mut f64>, top: f64, ratio: f64) {
+    let mut power = top;
+    for (value, gaussian) in values.zip(GAUSSIANS.iter()) {
+        *value = power * gaussian;
+        power *= ratio;
+    }
+}
+
+/// Of the nodes within `NEAR` rows and columns from the first on: each column's sum down the rows with `factors`, as x, y, x, y.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn sum_columns(nodes: &[Weight], columns: usize, factors: &[f64; NEAR]) -> [f64; 2 * NEAR] {
+    let mut sums = [0.0; 2 * NEAR];
+    for (row, factor) in nodes.chunks(columns).zip(factors) {
+        let Some(row) = row.as_flattened().first_chunk::<{ 2 * NEAR }>() else { return sums };
+        for (sum, weight) in sums.iter_mut().zip(row) {
+            *sum += factor * weight;
+        }
+    }
+    sums
+}
+
+/// The sum of columns, x, y, x, y, with `factors`.
+fn sum_row(columns: &[f64; 2 * NEAR], factors: &[f64; NEAR]) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    for (column, factor) in columns.chunks_exact(2).zip(factors) {
+        sums[0] += factor * column[0];
+        sums[1] += factor * column[1];
+    }
+    sums
 }
 
 #[cfg(test)]

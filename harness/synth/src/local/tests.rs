@@ -56,12 +56,35 @@ fn sigma_and_correlation_are_those_that_were_asked_for() {
 fn the_variance_is_even() {
     let field = field(DESIGN, 1);
     let variance = |at: PixelPoint| {
-        let (x, y) = (field.near(at.x, field.columns), field.near(at.y, field.rows));
-        let sum = |near: &Near| near.values[..near.count].iter().map(|value| value * value).sum::<f64>();
+        let (x, y) = (field.near::<false>(at.x, field.columns), field.near::<false>(at.y, field.rows));
+        let sum = |near: &Near| near.values.iter().map(|value| value * value).sum::<f64>();
         sum(&x) * sum(&y) * STEP * STEP / std::f64::consts::FRAC_PI_2
     };
     let worst = (0..1000).map(|i| (variance(place(i)) - 1.0).abs()).fold(0.0, f64::max);
     assert!(worst < 1e-4, "{worst:e}");
+}
+
+/// Inside, at the edges of the lattice, and beyond: as the sum over every node within the cut says it.
+#[test]
+fn the_field_is_the_sum_over_its_nodes() {
+    let field = field(DESIGN, 5);
+    let at_node = |node: usize| (node as f64 * STEP - CUT) * DESIGN.correlation - 0.5;
+    let gaussian = |x: f64, node: usize| {
+        let t = (x - at_node(node)) / DESIGN.correlation;
+        if t.abs() <= CUT { (-t * t).exp() } else { 0.0 }
+    };
+    let wide = |at: PixelPoint| PixelPoint::new(2.5 * at.x - 90.0, 3.0 * at.y - 90.0);
+    for at in (0..500).map(place).chain((0..500).map(place).map(wide)) {
+        let mut sums = [0.0; 2];
+        for (i, weight) in field.weights.iter().enumerate() {
+            let factor = gaussian(at.x, i % field.columns) * gaussian(at.y, i / field.columns);
+            (0..2).for_each(|axis| sums[axis] += factor * weight[axis]);
+        }
+        let found = field.displaced(at);
+        assert!((found.x - at.x - sums[0]).hypot(found.y - at.y - sums[1]) < 1e-13, "{at:?}: {found:?}, by all nodes {sums:?}");
+        let [dx, dy] = field.at(at).by;
+        assert_eq!(PixelPoint::new(at.x + dx, at.y + dy), found);
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod flow;
 mod nodes;
+mod outlined;
 mod piece;
 mod sharp;
 mod strip;
@@ -13,11 +14,13 @@ use std::ops::Range;
 use calibench_model::{Image, Scene};
 use rayon::prelude::*;
 
-use crate::optics::{Levels, Optics, OpticsError, Place};
+use crate::optics::{Kernel, Levels, Optics, OpticsError, Place};
 use nodes::Rules;
 use strip::Strip;
 
 pub(crate) use flow::{COLUMNS, Derivatives, Flow, LANES, MARGIN, Square, stride};
+pub(crate) use outlined::Extent;
+pub use outlined::Outlined;
 pub use piece::Piece;
 use piece::{at, polygon};
 pub(crate) use piece::{join_left, orient};
@@ -94,11 +97,16 @@ impl Renderer {
             let listed = listed.of(number);
             let band =
                 Band { pieces: &pieces, listed, background: picture.background, jitter, top: top as i64, rows: count, origin: [0, 0] };
-            self.band(strip, &band, |y, values| {
-                for (grey, value) in rows[y * self.width..].iter_mut().zip(values) {
-                    *grey = *value as f32;
-                }
-            });
+            if let [kernel] = &*self.levels.kernels {
+                self.mark(strip, &band, kernel);
+                strip.finish_into(band.background, rows);
+            } else {
+                self.band(strip, &band, |y, values| {
+                    for (grey, value) in rows[y * self.width..].iter_mut().zip(values) {
+                        *grey = *value as f32;
+                    }
+                });
+            }
             finish(top, rows);
         });
         Image::new(self.width, self.height, grey)
@@ -123,8 +131,7 @@ impl Renderer {
     /// Renders a band and hands on its rows, counted from its first.
     fn band(&self, strip: &mut Strip, band: &Band<'_>, mut row: impl FnMut(usize, &[f64])) {
         if let [kernel] = &*self.levels.kernels {
-            strip.reset(band.top, band.rows);
-            strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
+            self.mark(strip, band, kernel);
             return strip.finish(band.background, row);
         }
         // At every level of blur, blended at each pixel that a piece reaches; the others are alike at all of them.
@@ -136,8 +143,7 @@ impl Renderer {
             (0..band.rows).flat_map(|y| columns.clone().map(move |column| (y, column))).map(|(y, x)| place(y, x)).collect();
         let mut blended = vec![0.0; band.rows * strip.width()];
         for (level, kernel) in self.levels.kernels.iter().enumerate() {
-            strip.reset(band.top, band.rows);
-            strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
+            self.mark(strip, band, kernel);
             strip.finish(band.background, |y, values| {
                 let sums = &mut blended[y * values.len()..(y + 1) * values.len()];
                 if level == 0 {
@@ -152,6 +158,12 @@ impl Renderer {
             }
         }
         blended.chunks_exact(strip.width()).enumerate().for_each(|(y, values)| row(y, values));
+    }
+
+    /// What the pieces of a band change through one kernel.
+    fn mark(&self, strip: &mut Strip, band: &Band<'_>, kernel: &Kernel) {
+        strip.reset(band.top, band.rows);
+        strip.add(band.pieces, band.listed, kernel, self.rules, band.jitter);
     }
 
     /// The columns of a band, which has `width` of them, that any of its pieces reaches.

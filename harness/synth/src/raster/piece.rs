@@ -92,7 +92,7 @@ pub(crate) fn orient(pieces: &mut [Piece], contrast: f64) {
 ///
 /// Of an outline that lies left of all pixels that are asked for, beyond the kernel's reach, only where it begins and ends counts: its integral of k(y) dy.
 /// Runs are joined whole: of a part of a closed one that is left out, the rest would stay, add up to nothing, and yet count as an area that is seen.
-pub(crate) fn join_left(pieces: &[Piece], is_left: impl Fn(&Piece) -> bool, kept: impl Fn(&Piece) -> bool) -> Vec<Piece> {
+pub(crate) fn join_left<'a>(pieces: impl Iterator<Item = &'a Piece>, is_left: impl Fn(&Piece) -> bool, kept: impl Fn(&Piece) -> bool) -> Vec<Piece> {
     let mut joined: Vec<Piece> = Vec::new();
     let mut run: Option<Piece> = None;
     let ends = |run: Option<Piece>| run.filter(|run| run.points[0] != run.points[4] && kept(run));
@@ -134,19 +134,19 @@ mod tests {
             (0..4).map(move |i| Piece::straight(corners[i], corners[(i + 1) % 4], contrast))
         };
         let all: Vec<Piece> = square(0.0, 0.5).chain(square(3.0, 0.5)).chain(square(9.0, -0.5)).collect();
-        let found = join_left(&all, |piece| piece.columns()[1] < 4.0, |_| true);
+        let found = join_left(all.iter(), |piece| piece.columns()[1] < 4.0, |_| true);
         // Of the second square one edge is left of 4, and stays as it is.
         assert_eq!(found, all[4..].to_vec());
-        let found = join_left(&all, |piece| piece.columns()[1] < 10.0 && piece.points[0] != [9.0, 0.0], |_| true);
+        let found = join_left(all.iter(), |piece| piece.columns()[1] < 10.0 && piece.points[0] != [9.0, 0.0], |_| true);
         assert_eq!(found, [all[8], all[9], all[10], all[11]]);
-        let found = join_left(&all[..3], |_| true, |_| true);
+        let found = join_left(all[..3].iter(), |_| true, |_| true);
         assert_eq!(found, [Piece::straight([0.0, 0.0], [0.0, 2.0], 0.5)]);
         // Another contrast is another outline.
         let other = [Piece::straight([0.0, 0.0], [1.0, 1.0], 0.5), Piece::straight([1.0, 1.0], [0.0, 0.0], 0.25)];
-        assert_eq!(join_left(&other, |_| true, |_| true), other);
+        assert_eq!(join_left(other.iter(), |_| true, |_| true), other);
         // What is closed is gone, whatever of it would be kept; of the others what is kept stays.
         let upper = |piece: &Piece| piece.rows()[1] < 1.0;
-        assert_eq!(join_left(&all, |piece| piece.columns()[1] < 6.0, upper), [all[8]]);
+        assert_eq!(join_left(all.iter(), |piece| piece.columns()[1] < 6.0, upper), [all[8]]);
     }
 
     #[test]

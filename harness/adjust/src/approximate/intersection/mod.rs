@@ -1,6 +1,6 @@
 //! Forward intersection: an object point from oriented pictures.
 
-use calibench_model::camera::{Camera, CameraModel, DerivativeBuffer};
+use calibench_model::camera::{Camera, CameraModel};
 use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix3, Point3, SVector, Vector3};
 
@@ -122,9 +122,9 @@ fn largest_angle(directions: &[Vector3<f64>]) -> f64 {
 /// Least squares in the images of the chosen sights.
 fn fit(sights: &[Sight<'_>], start: &Point3<f64>, chosen: &[usize]) -> Option<(Point3<f64>, Normal<3>)> {
     let normal = |point: &Point3<f64>| {
-        let (mut normal, mut found) = (Normal::new(), DerivativeBuffer::default());
+        let mut normal = Normal::new();
         for sight in chosen.iter().map(|&i| &sights[i]) {
-            sight.camera.derivatives_into(sight.pose.ray(point), &mut found).ok()?;
+            let found = sight.camera.slopes(sight.pose.ray(point)).ok()?;
             let misclosure = [found.point.x - sight.image.x, found.point.y - sight.image.y];
             for (by_ray, misclosure) in found.by_ray.into_iter().zip(misclosure) {
                 normal.add(&(sight.pose.rotation.transpose() * Vector3::from(by_ray)), misclosure);

@@ -105,18 +105,25 @@ impl Triangle {
         let mut d = start;
         let mut misclosure = self.misclosure(&d);
         for _ in 0..POLISHES {
-            let mut slopes = Matrix3::zeros();
-            for (row, (i, j)) in PAIRS.into_iter().enumerate() {
-                slopes[(row, i)] = 2.0 * (d[i] - d[j] * self.cosines[row]);
-                slopes[(row, j)] = 2.0 * (d[j] - d[i] * self.cosines[row]);
-            }
-            let Some(step) = slopes.lu().solve(&misclosure) else { break };
+            let Some(step) = self.step(&d, &misclosure) else { break };
             // Near a double solution a whole step may overshoot.
-            let trials = [1.0, 0.5, 0.25, 0.125].map(|share| d - step * share);
-            let Some(next) = trials.into_iter().find(|next| self.misclosure(next).amax() < misclosure.amax()) else { break };
-            (d, misclosure) = (next, self.misclosure(&next));
+            let trials = [1.0, 0.5, 0.25, 0.125].into_iter().map(|share| d - step * share).map(|next| (next, self.misclosure(&next)));
+            let mut closer = trials.filter(|(_, left)| left.amax() < misclosure.amax());
+            let Some(next) = closer.next() else { break };
+            (d, misclosure) = next;
         }
         (d.min() > 0.0 && misclosure.amax() <= CLOSED * d.norm_squared().max(1.0)).then(|| d * self.size)
+    }
+
+    /// The change of the distances that closes the linearised sides, by Cramer's rule: each side depends on two of them.
+    fn step(&self, d: &Vector3<f64>, misclosure: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let slope = |of: usize, by: usize, pair: usize| 2.0 * (d[of] - d[by] * self.cosines[pair]);
+        // Rows (a, b, 0), (c, 0, e), (0, f, g).
+        let ([a, b], [c, e], [f, g]) = ([slope(0, 1, 0), slope(1, 0, 0)], [slope(0, 2, 1), slope(2, 0, 1)], [slope(1, 2, 2), slope(2, 1, 2)]);
+        let [u, v, w] = [misclosure.x, misclosure.y, misclosure.z];
+        let (determinant, rest) = (-a * e * f - b * c * g, g * v - e * w);
+        let step = Vector3::new(-e * f * u - b * rest, a * rest - c * g * u, c * f * u - a * f * v - b * c * w) / determinant;
+        (determinant != 0.0 && step.iter().all(|value| value.is_finite())).then_some(step)
     }
 
     fn misclosure(&self, d: &Vector3<f64>) -> Vector3<f64> {

@@ -1,6 +1,6 @@
 //! The pose of least squares in the image.
 
-use calibench_model::camera::{Camera, CameraModel, DerivativeBuffer, Ray};
+use calibench_model::camera::{Camera, CameraModel, Ray};
 use calibench_model::{PixelPoint, Pose};
 use nalgebra::{Matrix6, Point3, Rotation3, SVector, Vector3};
 
@@ -51,10 +51,10 @@ pub fn fit_pose(camera: &Camera, start: &Pose, control: &[Control]) -> Result<Fi
 
 /// The rows of `control` for rotation and projection centre; `None` if a point is not pictured.
 pub(super) fn pose_normal<'a>(camera: &Camera, pose: &Pose, control: impl Iterator<Item = &'a Control>) -> Option<Normal<6>> {
-    let (mut normal, mut found) = (Normal::new(), DerivativeBuffer::default());
+    let mut normal = Normal::new();
     for point in control {
         let n = pose.camera_from_world(&point.object);
-        camera.derivatives_into(Ray { x: n.x, y: n.y, z: n.z }, &mut found).ok()?;
+        let found = camera.slopes(Ray { x: n.x, y: n.y, z: n.z }).ok()?;
         let misclosure = [found.point.x - point.image.x, found.point.y - point.image.y];
         for (by_ray, misclosure) in found.by_ray.into_iter().zip(misclosure) {
             normal.add(&pose_row(pose, &n, by_ray), misclosure);

@@ -15,13 +15,18 @@ impl Gradients {
     /// The window of `half` px around pixel (`x`, `y`), weighted by a Gaussian of `sigma` px about (`dx`, `dy`) from there; 0 for equal weights.
     pub(super) fn new(image: &Image, (x, y): (i64, i64), half: i64, sigma: f64, (dx, dy): (f64, f64)) -> Self {
         let at = |x: i64, y: i64| f64::from(image.at(x as usize, y as usize));
-        let mut values = Vec::with_capacity(((2 * half + 1) * (2 * half + 1)) as usize);
+        // The Gaussian of a distance is the product of those along a row and a column: exponentials of all pixels take half of the time.
+        let weigh = |d: f64| -> Vec<f64> {
+            let weight = |u: i64| if sigma > 0.0 { (-(u as f64 - d).powi(2) / (2.0 * sigma * sigma)).exp() } else { 1.0 };
+            (-half..=half).map(weight).collect()
+        };
+        let (along, down) = (weigh(dx), weigh(dy));
+        let mut values = Vec::with_capacity(along.len() * down.len());
         for (v, u) in (-half..=half).flat_map(|v| (-half..=half).map(move |u| (v, u))) {
             let (cx, cy) = (x + u, y + v);
             let column = |x: i64| at(x, cy - 1) + 2.0 * at(x, cy) + at(x, cy + 1);
             let row = |y: i64| at(cx - 1, y) + 2.0 * at(cx, y) + at(cx + 1, y);
-            let (rx, ry) = (u as f64 - dx, v as f64 - dy);
-            let weight = if sigma > 0.0 { (-(rx * rx + ry * ry) / (2.0 * sigma * sigma)).exp() } else { 1.0 };
+            let weight = along[(u + half) as usize] * down[(v + half) as usize];
             values.push([column(cx + 1) - column(cx - 1), row(cy + 1) - row(cy - 1), weight]);
         }
         Self { half, values }

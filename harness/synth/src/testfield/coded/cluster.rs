@@ -46,15 +46,16 @@ impl Cluster {
     /// A random arrangement with this code, in which nothing that tells targets apart is a close call. `None` if none was found.
     pub fn arranged(field: &Coded, wanted: u8, rng: &mut impl Rng) -> Option<Self> {
         let cell = field.cell();
+        // Anywhere in its cell from where no turn brings it near the border, or in the middle.
+        let slacks: [f64; PAIRS] =
+            std::array::from_fn(|pair| (0.5 * cell - SHAPES[pair % 4].reach(field.size(pair)) - APART * cell).max(0.0));
         let mut slots: Vec<usize> = (0..2 * PAIRS).collect();
         for _ in 0..TRIES {
             slots.shuffle(rng);
             let mut places = [[[0.0; 2]; 2]; PAIRS];
             for (i, &slot) in slots.iter().enumerate() {
-                // Anywhere in its cell from where no turn brings it near the border, or in the middle.
                 let (pair, which) = (i / 2, i % 2);
-                let slack = (0.5 * cell - SHAPES[pair % 4].reach(field.size(pair)) - APART * cell).max(0.0);
-                let mut place = |k: usize| (k as f64 - 1.5) * cell + (2.0 * rng.random::<f64>() - 1.0) * slack;
+                let mut place = |k: usize| (k as f64 - 1.5) * cell + (2.0 * rng.random::<f64>() - 1.0) * slacks[pair];
                 places[pair][which] = [place(slot % 4), place(slot / 4)];
             }
             let large = [places[4], places[5], places[6], places[7]];
