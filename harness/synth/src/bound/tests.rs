@@ -327,7 +327,11 @@ fn what_is_passed_over_does_not_matter() {
             let normal = window.normal(&[all], Some, |_| Some(SIGMA * SIGMA), &mut Work::default());
             normal.expect("a variance").1
         });
-        assert!((&some - &every).amax() < 1e-9 * every.amax(), "round {round}: {some} {every}");
+        // What a closed outline on the left adds up to is zero but for the kernel's table, which is interpolated to 4e-8.
+        for (i, j) in (0..every.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+            let off = (some[(i, j)] - every[(i, j)]).abs() / (every[(i, i)] * every[(j, j)]).sqrt().max(1e-3);
+            assert!(off < 1e-6, "round {round}, {i} and {j}: {} {}", some[(i, j)], every[(i, j)]);
+        }
         left_out += picture.pieces.len() - window.near.pieces.len();
     }
     assert!(left_out > 60 * 8, "{left_out}");
