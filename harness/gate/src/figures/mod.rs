@@ -14,6 +14,8 @@ use super::table::MethodTable;
 const SAME: f64 = 1e-4;
 /// What is no change of a figure, as a fraction of its value, whatever its standard deviation.
 const DIGITS: f64 = 1e-8;
+/// What is no error, as a fraction of the largest of its set and group: those that are zero but for rounding stand beside such that are not.
+const NOTHING: f64 = 1e-12;
 /// By how much, as a fraction, a root mean square error may grow without being worse.
 pub const FIGURE_GROWTH: f64 = 0.02;
 /// By how much, as a fraction, errors may move away from the reported standard deviations.
@@ -63,6 +65,11 @@ impl FigureSum {
             && agree_within(DIGITS * self.mean.abs(), self.scatter, other.scatter)
             && optional(self.error, other.error)
             && optional(self.sigma, other.sigma)
+    }
+
+    /// Whether nothing is beyond `limit`.
+    fn is_within(&self, limit: f64) -> bool {
+        self.mean.abs() + self.scatter <= limit
     }
 
     /// How far errors are from the reported standard deviations: the logarithm of their ratio.
@@ -120,13 +127,20 @@ impl Kept for FigureSums {
 
     fn compare(&self, now: &Self, finding: &dyn Fn(Verdict, &'static str, String) -> Finding) -> Vec<Finding> {
         let mut findings = Vec::new();
+        let mut largest: BTreeMap<(usize, Group), f64> = BTreeMap::new();
+        for ((set, group, _), sum) in self.0.iter().filter(|((_, group, _), _)| is_error(*group)) {
+            let largest = largest.entry((*set, *group)).or_default();
+            *largest = largest.max(sum.mean.abs());
+        }
         for (key, old) in &self.0 {
             let name = format!("set {} {} {}", key.0 + 1, key.1.name(), key.2);
             let Some(new) = now.0.get(key) else {
                 findings.push(finding(Verdict::Fails, "figure", "the figure is missing".into()).at(name));
                 continue;
             };
-            if !old.same(new) {
+            let rounding = largest.get(&(key.0, key.1)).map_or(0.0, |largest| NOTHING * largest);
+            let both_nothing = old.count == new.count && old.is_within(rounding) && new.is_within(rounding);
+            if !both_nothing && !old.same(new) {
                 findings.extend(judged(key.1, old, new, finding).map(|found| found.at(name.as_str())));
             }
         }
@@ -142,6 +156,11 @@ impl Kept for FigureSums {
     }
 }
 
+/// The distance of cameras over the frame and the errors of check points are errors themselves, in one unit.
+fn is_error(group: Group) -> bool {
+    matches!(group, Group::Frame | Group::Check)
+}
+
 /// What changed of a figure, and what of it is worse.
 fn judged(
     group: Group,
@@ -154,8 +173,7 @@ fn judged(
         let message = "fewer adjustments give this figure".to_owned();
         findings.push(finding(Verdict::Fails, "adjusted", message).figures(old.count as f64, new.count as f64));
     }
-    // The distance of cameras over the frame and the errors of check points are errors themselves.
-    let error = |sum: &FigureSum| if matches!(group, Group::Frame | Group::Check) { Some(sum.mean) } else { sum.error };
+    let error = |sum: &FigureSum| if is_error(group) { Some(sum.mean) } else { sum.error };
     if let (Some(a), Some(b)) = (error(old), error(new))
         && (b.is_nan() || b > a * (1.0 + FIGURE_GROWTH))
     {

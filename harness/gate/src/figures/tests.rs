@@ -68,6 +68,30 @@ fn distances_of_cameras_are_errors() {
     assert_eq!(verdicts(&with(0.1), &with(0.09)), [(Verdict::Changed, "figure")]);
 }
 
+/// Beside an error of 0.2 one of 1e-15 is nothing, and so is five times as much; what grows out of that is an error, and what is large by itself.
+#[test]
+fn what_is_zero_but_for_rounding_is_not_worse() {
+    let with = |group: Group, small: f64, count: usize| {
+        let of = |value: f64| Numbers { value, sigma: None, error: None };
+        let mut sums = sums(group, &vec![of(small); count]);
+        let largest = FigureSum::of([of(0.2)].iter());
+        sums.0.insert((0, group, "largest".into()), largest);
+        sums
+    };
+    for group in [Group::Frame, Group::Check] {
+        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 5e-15, 3)), []);
+        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, -1e-13, 3)), []);
+        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 3e-13, 3)), [(Verdict::Fails, "error")]);
+        assert_eq!(verdicts(&with(group, 3e-13, 3), &with(group, 4e-13, 3)), [(Verdict::Fails, "error")]);
+        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 1e-15, 2)), [(Verdict::Fails, "adjusted")]);
+    }
+    // Alone there is nothing to compare it with; parameters have units of their own.
+    let alone = |value: f64| sums(Group::Check, &[Numbers { value, sigma: None, error: None }]);
+    assert_eq!(verdicts(&alone(1e-15), &alone(5e-15)), [(Verdict::Fails, "error")]);
+    let parameter = |value: f64| with(Group::Iop, value, 3);
+    assert_eq!(verdicts(&parameter(1e-15), &parameter(5e-15)), [(Verdict::Changed, "figure")]);
+}
+
 fn sum(mean: f64, scatter: f64, error: Option<f64>, sigma: Option<f64>) -> FigureSum {
     FigureSum { count: 10, mean, scatter, error, sigma }
 }
