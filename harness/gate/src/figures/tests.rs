@@ -83,6 +83,7 @@ fn what_is_zero_but_for_rounding_is_not_worse() {
         assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, -1e-13, 3)), []);
         assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 3e-13, 3)), [(Verdict::Fails, "error")]);
         assert_eq!(verdicts(&with(group, 3e-13, 3), &with(group, 4e-13, 3)), [(Verdict::Fails, "error")]);
+        assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, -0.1, 3)), [(Verdict::Changed, "figure")]);
         assert_eq!(verdicts(&with(group, 1e-15, 3), &with(group, 1e-15, 2)), [(Verdict::Fails, "adjusted")]);
     }
     // Alone there is nothing to compare it with; parameters have units of their own.

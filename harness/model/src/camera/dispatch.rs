@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Agisoft, AgisoftFisheye, CameraModel, CameraParameter, Convention, DerivativeBuffer, DoubleSphere, Ebner, Eucm, Fov, ImageSize, MicMac,
-    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, Slopes, agisoft, agisoft_fisheye,
-    double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye,
+    NoCounterpart, Omni, OpenCv, OpenCvFisheye, Photogrammetric, Pix4d, PrismFisheye, RadTanPrismFisheye, Ray, Slopes, agisoft,
+    agisoft_fisheye, double_sphere, ebner, eucm, fov, micmac, moniwa, omni, opencv, opencv_fisheye, photogrammetric, pix4d, prism_fisheye,
     rad_tan_prism_fisheye, tool_conventions,
 };
 use crate::PixelPoint;

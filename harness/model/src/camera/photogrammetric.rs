@@ -157,6 +157,18 @@ mod tests {
     }
 
     #[test]
+    fn the_inverse_starts_nearer_than_where_it_goes() {
+        for goal in [[9.0, 6.0], [-3.0, 5.0], [0.0, -7.0]] {
+            let away = |at: [f64; 2]| {
+                let [x, y] = camera().corrected(at);
+                (x - goal[0]).hypot(y - goal[1])
+            };
+            let start = camera().start(goal).unwrap();
+            assert!(away(start) < 0.1 * away(goal), "{goal:?}: {start:?}");
+        }
+    }
+
+    #[test]
     fn a_correction_is_subtracted_from_what_was_measured() {
         // 1000 px right of the centre: x' = 5.15 mm, corrected by -k1 r^3 outwards.
         let camera = Photogrammetric { k: [-4.61e-4, 0.0, 0.0], p: [0.0; 2], b: [0.0; 2], x0: 0.0, y0: 0.0, ..camera() };

@@ -97,6 +97,9 @@ mod tests {
         let Extent { columns, rows } = outlined.outlines[2].extent;
         assert!((columns[0] - 10.0 + 2.0 * third).abs() < 1e-12 && (columns[1] - 12.0 - 2.0 * third).abs() < 1e-12, "{columns:?}");
         assert!((rows[0] + 1.0).abs() < 1e-12 && (rows[1] - 4.0).abs() < 1e-12, "{rows:?}");
+        // All of it counts, with whichever piece it begins.
+        let upright = Picture { pieces: [&picture.pieces[9..12], &picture.pieces[8..9]].concat(), ..picture.clone() };
+        assert_eq!(Outlined::of(&upright).outlines[0].extent, outlined.outlines[2].extent);
         assert_eq!(outlined.outlines[2].extent.farthest([11.0, 3.0]), 4.0);
         assert_eq!(outlined.outlines[2].extent.farthest([20.0, 3.0]), 10.0 + 2.0 * third);
         let of = |left: f64, kept: f64| -> Vec<Piece> {

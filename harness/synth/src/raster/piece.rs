@@ -92,7 +92,11 @@ pub(crate) fn orient(pieces: &mut [Piece], contrast: f64) {
 ///
 /// Of an outline that lies left of all pixels that are asked for, beyond the kernel's reach, only where it begins and ends counts: its integral of k(y) dy.
 /// Runs are joined whole: of a part of a closed one that is left out, the rest would stay, add up to nothing, and yet count as an area that is seen.
-pub(crate) fn join_left<'a>(pieces: impl Iterator<Item = &'a Piece>, is_left: impl Fn(&Piece) -> bool, kept: impl Fn(&Piece) -> bool) -> Vec<Piece> {
+pub(crate) fn join_left<'a>(
+    pieces: impl Iterator<Item = &'a Piece>,
+    is_left: impl Fn(&Piece) -> bool,
+    kept: impl Fn(&Piece) -> bool,
+) -> Vec<Piece> {
     let mut joined: Vec<Piece> = Vec::new();
     let mut run: Option<Piece> = None;
     let ends = |run: Option<Piece>| run.filter(|run| run.points[0] != run.points[4] && kept(run));

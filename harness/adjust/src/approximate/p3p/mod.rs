@@ -119,7 +119,8 @@ impl Triangle {
     fn step(&self, d: &Vector3<f64>, misclosure: &Vector3<f64>) -> Option<Vector3<f64>> {
         let slope = |of: usize, by: usize, pair: usize| 2.0 * (d[of] - d[by] * self.cosines[pair]);
         // Rows (a, b, 0), (c, 0, e), (0, f, g).
-        let ([a, b], [c, e], [f, g]) = ([slope(0, 1, 0), slope(1, 0, 0)], [slope(0, 2, 1), slope(2, 0, 1)], [slope(1, 2, 2), slope(2, 1, 2)]);
+        let ([a, b], [c, e], [f, g]) =
+            ([slope(0, 1, 0), slope(1, 0, 0)], [slope(0, 2, 1), slope(2, 0, 1)], [slope(1, 2, 2), slope(2, 1, 2)]);
         let [u, v, w] = [misclosure.x, misclosure.y, misclosure.z];
         let (determinant, rest) = (-a * e * f - b * c * g, g * v - e * w);
         let step = Vector3::new(-e * f * u - b * rest, a * rest - c * g * u, c * f * u - a * f * v - b * c * w) / determinant;
