@@ -156,7 +156,7 @@ impl Kept for FigureSums {
     }
 }
 
-/// The distance of cameras over the frame and the errors of check points are errors themselves, in one unit.
+/// The distance of cameras over the frame and the errors of check points are errors themselves. Of the other figures each has a unit of its own.
 fn is_error(group: Group) -> bool {
     matches!(group, Group::Frame | Group::Check)
 }

@@ -3,7 +3,7 @@
 use super::fold::{corners, is_inside};
 use super::newton::{ValueAndDerivatives, determinant};
 use super::plane_map::{PlaneMap, first_fold, invert, is_on_branch};
-use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray};
+use super::{CameraModel, CameraParameter, DerivativeBuffer, ImageSize, NoCounterpart, Ray, Slopes};
 use crate::PixelPoint;
 
 /// The widest angle from the axis at which folds are looked for, radians, and the places on the way.
@@ -71,6 +71,17 @@ fn ideal<P: Pinhole>(camera: &P, ray: Ray) -> Result<[f64; 2], NoCounterpart> {
     if is_on_branch(&Distortion(camera), at) { Ok(at) } else { Err(NoCounterpart::Fold) }
 }
 
+/// The projection of a ray whose tangents are distorted so.
+fn slopes_of(affinity: Affinity, (distorted, slope): ValueAndDerivatives, ray: Ray) -> Slopes {
+    let by_ideal = [
+        [affinity.a * slope[0][0] + affinity.b * slope[1][0], affinity.a * slope[0][1] + affinity.b * slope[1][1]],
+        [affinity.d * slope[1][0], affinity.d * slope[1][1]],
+    ];
+    let tangent = ray.tangent_derivatives();
+    let by_ray = by_ideal.map(|[x, y]| std::array::from_fn(|axis| x * tangent[0][axis] - y * tangent[1][axis]));
+    Slopes { point: affinity.to_pixel(distorted), by_ray }
+}
+
 impl<P: Pinhole> CameraModel for P {
     fn size(&self) -> ImageSize {
         self.image_size()
@@ -96,18 +107,15 @@ impl<P: Pinhole> CameraModel for P {
 
     fn derivatives_into(&self, ray: Ray, into: &mut DerivativeBuffer) -> Result<(), NoCounterpart> {
         let at = ideal(self, ray)?;
-        let (distorted, slope) = self.distort(at);
-        let affinity = self.affinity();
-        let by_ideal = [
-            [affinity.a * slope[0][0] + affinity.b * slope[1][0], affinity.a * slope[0][1] + affinity.b * slope[1][1]],
-            [affinity.d * slope[1][0], affinity.d * slope[1][1]],
-        ];
-        let tangent = ray.tangent_derivatives();
+        let distorted = self.distort(at);
         into.clear();
-        into.point = affinity.to_pixel(distorted);
-        into.by_ray = by_ideal.map(|[x, y]| std::array::from_fn(|axis| x * tangent[0][axis] - y * tangent[1][axis]));
-        self.by_parameters(at, distorted, into);
+        Slopes { point: into.point, by_ray: into.by_ray } = slopes_of(self.affinity(), distorted, ray);
+        self.by_parameters(at, distorted.0, into);
         Ok(())
+    }
+
+    fn slopes(&self, ray: Ray) -> Result<Slopes, NoCounterpart> {
+        Ok(slopes_of(self.affinity(), self.distort(ideal(self, ray)?), ray))
     }
 
     fn fold_towards(&self, angle: f64) -> Option<PixelPoint> {

@@ -50,10 +50,7 @@ impl<'a> Outlined<'a> {
         let mut outlines: Vec<Outline> = Vec::new();
         for (index, piece) in picture.pieces.iter().enumerate() {
             let extent = Extent::of(piece);
-            let goes_on = |outline: &Outline| {
-                let last = &picture.pieces[outline.pieces.end - 1];
-                last.points[4] == piece.points[0] && last.contrast == piece.contrast
-            };
+            let goes_on = |outline: &Outline| picture.pieces[outline.pieces.end - 1].goes_on_in(piece);
             match outlines.last_mut().filter(|outline| goes_on(outline)) {
                 Some(outline) => {
                     outline.pieces.end = index + 1;
@@ -79,13 +76,11 @@ impl<'a> Outlined<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raster::piece::rectangle;
 
     #[test]
     fn outlines_are_told_by_their_contrast_and_their_ends() {
-        let square = |x: f64, contrast: f64| {
-            let corners = [[x, 0.0], [x + 2.0, 0.0], [x + 2.0, 3.0], [x, 3.0]];
-            (0..4).map(move |i| Piece::straight(corners[i], corners[(i + 1) % 4], contrast))
-        };
+        let square = |x: f64, contrast: f64| rectangle(x, 3.0, contrast);
         let open = Piece::straight([30.0, 1.0], [40.0, 5.0], 0.5);
         let pieces: Vec<Piece> = square(0.0, 0.5).chain(square(0.0, 0.25)).chain(square(10.0, 0.25)).chain([open]).collect();
         let picture = Picture { width: 50, height: 9, background: 0.1, pieces };

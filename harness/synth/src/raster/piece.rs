@@ -21,6 +21,11 @@ impl Piece {
         Self { points: [start, at(0.25), at(0.5), at(0.75), end], contrast }
     }
 
+    /// Whether `next` is of the same outline and begins where this one ends.
+    pub(crate) fn goes_on_in(&self, next: &Piece) -> bool {
+        self.points[4] == next.points[0] && self.contrast == next.contrast
+    }
+
     /// Its polynomials in x and y.
     #[inline(always)]
     pub(crate) fn polynomial(&self) -> [Quartic; 2] {
@@ -106,9 +111,8 @@ pub(crate) fn join_left<'a>(
             joined.extend(kept(piece).then_some(*piece));
             continue;
         }
-        let goes_on = |run: &Piece| run.points[4] == piece.points[0] && run.contrast == piece.contrast;
         let start = match run.take() {
-            Some(run) if goes_on(&run) => run.points[0],
+            Some(run) if run.goes_on_in(piece) => run.points[0],
             other => {
                 joined.extend(ends(other));
                 piece.points[0]
@@ -127,16 +131,20 @@ pub(crate) fn polygon(polygon: &Polygon, ground: f64) -> Vec<Piece> {
     pieces
 }
 
+/// The pieces of a rectangle that is 2 px wide and begins at (`x`, 0).
+#[cfg(test)]
+pub(crate) fn rectangle(x: f64, height: f64, contrast: f64) -> impl Iterator<Item = Piece> {
+    let corners = [[x, 0.0], [x + 2.0, 0.0], [x + 2.0, height], [x, height]];
+    (0..4).map(move |i| Piece::straight(corners[i], corners[(i + 1) % 4], contrast))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn runs_on_the_left_are_joined_and_closed_ones_are_gone() {
-        let square = |x: f64, contrast: f64| {
-            let corners = [[x, 0.0], [x + 2.0, 0.0], [x + 2.0, 2.0], [x, 2.0]];
-            (0..4).map(move |i| Piece::straight(corners[i], corners[(i + 1) % 4], contrast))
-        };
+        let square = |x: f64, contrast: f64| rectangle(x, 2.0, contrast);
         let all: Vec<Piece> = square(0.0, 0.5).chain(square(3.0, 0.5)).chain(square(9.0, -0.5)).collect();
         let found = join_left(all.iter(), |piece| piece.columns()[1] < 4.0, |_| true);
         // Of the second square one edge is left of 4, and stays as it is.

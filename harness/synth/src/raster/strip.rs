@@ -59,7 +59,7 @@ impl Strip {
         }
     }
 
-    /// As [`Self::finish`], all rows as they are kept: in one pass, half of which conversion by itself would take.
+    /// As [`Self::finish`], into rows of single precision, in the same pass.
     pub fn finish_into(&self, background: f64, grey: &mut [f32]) {
         let (pad, width, stride) = (self.pad, self.width, self.stride);
         let blocks = self.differences[..stride * self.rows].chunks(stride * TOGETHER).zip(grey.chunks_mut(width * TOGETHER));
