@@ -151,6 +151,8 @@ fn refusals(camera: &impl CameraModel) {
         assert!(camera.project(Ray { x: bad, y: 0.0, z: -1.0 }).is_err(), "a ray with x = {bad}");
         assert!(camera.project(Ray { x: 0.0, y: 0.0, z: f64::NAN }).is_err(), "a ray that is none");
     }
-    assert!(camera.project(Ray { x: 0.0, y: 0.0, z: 1.0 }).is_err(), "a ray straight backwards");
-    assert!(camera.project(Ray { x: 0.0, y: 0.0, z: 0.0 }).is_err(), "a ray of no length");
+    for (z, what) in [(1.0, "a ray straight backwards"), (0.0, "a ray of no length")] {
+        let ray = Ray { x: 0.0, y: 0.0, z };
+        assert!(camera.project(ray).is_err() && camera.slopes(ray).is_err(), "{what}");
+    }
 }

@@ -183,6 +183,7 @@ mod tests {
         let camera = Photogrammetric { k: [0.01, 0.0, 0.0], p: [0.0; 2], b: [0.0; 2], x0: 0.0, y0: 0.0, ..camera() };
         assert_eq!(camera.unproject(PixelPoint::new(0.0, 1423.5)), Err(NoCounterpart::Fold));
         assert_eq!(camera.project(Ray::from_tangent(0.5, 0.0)), Err(NoCounterpart::Fold));
+        assert_eq!(camera.slopes(Ray::from_tangent(0.5, 0.0)), Err(NoCounterpart::Fold));
         assert!(camera.project(Ray::from_tangent(0.1, 0.0)).is_ok());
         assert_eq!(camera.project(Ray { x: 0.0, y: 0.0, z: 1.0 }), Err(NoCounterpart::Behind));
     }

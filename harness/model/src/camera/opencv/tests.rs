@@ -35,6 +35,7 @@ fn what_lies_beyond_a_fold_is_refused() {
     let camera = OpenCv { distortion, ..camera(4) };
     assert_eq!(camera.project(Ray::from_tangent(0.6, 0.0)), Err(NoCounterpart::Fold));
     assert_eq!(camera.project(Ray::from_tangent(5.0, 3.0)), Err(NoCounterpart::Fold));
+    assert_eq!(camera.slopes(Ray::from_tangent(0.6, 0.0)), Err(NoCounterpart::Fold));
     assert_eq!(camera.unproject(PixelPoint::new(2010.3 + 3100.0 * 0.39, 1490.8)), Err(NoCounterpart::Fold));
     let found = fold(&camera).unwrap();
     assert!((found.radius_px - 3100.0 * 2.0 / 3.0 / 3_f64.sqrt()).abs() < 1e-6, "{found:?}");
