@@ -4,7 +4,8 @@ use std::sync::{Condvar, Mutex, PoisonError};
 
 use image::{ColorType, ImageDecoder, Limits};
 
-/// Memory for all photographs that are being decoded at a time, bytes: one of 268 megapixels in RGB with 16 bits, or two of 134.
+/// Memory for all photographs that are being decoded at a time, bytes: one of 268 megapixels in RGB with 16 bits, or two of 134; a PNG that comes row by row
+/// takes that of its grey values alone, 4 bytes a pixel.
 pub const MOST_BYTES: u64 = 4 << 30;
 
 /// What is in use.
@@ -33,12 +34,18 @@ pub(super) fn share(bytes: u64) -> Option<Share> {
 }
 
 /// What decoding takes, bytes: the pixels, the decoder's own copy (of a progressive JPEG its coefficients, twice as large), and the grey values.
-pub(super) fn needed(decoder: &impl ImageDecoder) -> u64 {
+pub(super) fn needed(decoder: &dyn ImageDecoder) -> u64 {
     let (width, height) = decoder.dimensions();
     let pixels = u64::from(width) * u64::from(height);
     let copies = if matches!(decoder.color_type(), ColorType::L8 | ColorType::Rgb8) { 3 } else { 2 };
     let decoded = pixels.saturating_mul(u64::from(decoder.color_type().bytes_per_pixel()));
     decoded.saturating_mul(copies).saturating_add(pixels.saturating_mul(size_of::<f32>() as u64))
+}
+
+/// What decoding takes where only grey values are ever there as a whole, bytes.
+pub(super) fn needed_in_rows(decoder: &dyn ImageDecoder) -> u64 {
+    let (width, height) = decoder.dimensions();
+    (u64::from(width) * u64::from(height)).saturating_mul(size_of::<f32>() as u64)
 }
 
 /// Limits of a decoder.

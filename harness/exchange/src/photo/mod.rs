@@ -8,6 +8,7 @@ pub mod grey;
 mod helped;
 mod jpeg;
 mod levels;
+mod rows;
 mod turn;
 
 use std::fs::File;
@@ -91,6 +92,7 @@ pub struct Photo {
 /// the TIFF tag asks for is applied, as OpenCV's `imread` does: columns and rows are those of the image as it is seen.
 ///
 /// Memory: at most [`MOST_BYTES`] for all photographs that are being decoded at a time, others wait; 4 bytes a pixel once read, 8 while it is turned. The file itself is not counted.
+/// Of a PNG that is not interlaced the pixels are never there as a whole.
 ///
 /// # Errors
 /// A file that is missing, no image, cut short, or too large.
@@ -177,14 +179,34 @@ pub fn parse_photo(path: &Path, bytes: &[u8]) -> Result<Photo, PhotoError> {
 }
 
 fn decode(path: &Path, input: &mut dyn Input) -> Result<Photo, PhotoError> {
-    let (image, turn, share) = decoded(path, input)?;
-    let image = helped::grey_of(image, share);
+    let in_rows = rows::is_in_rows(input).map_err(|source| PhotoError::File { path: path.to_owned(), source })?;
+    let (image, turn) = if in_rows {
+        let (decoder, turn, share) = begun(path, input, budget::needed_in_rows)?;
+        let head = (decoder.dimensions(), decoder.color_type());
+        drop(decoder);
+        let image = rows::grey_of(input, head, share).map_err(|source| PhotoError::Content { path: path.to_owned(), source })?;
+        (image, turn)
+    } else {
+        let (image, turn, share) = decoded(path, input)?;
+        (helped::grey_of(image, share), turn)
+    };
     let image = if let Some(turn) = turn { turn.apply(&image) } else { image };
     Ok(Photo { image, turn })
 }
 
 /// The pixels as they stand in the file, how they are to be turned, and the part of the memory that they may take.
 fn decoded(path: &Path, input: &mut dyn Input) -> Result<(DynamicImage, Option<Turn>, budget::Share), PhotoError> {
+    let (decoder, turn, share) = begun(path, input, budget::needed)?;
+    let image = DynamicImage::from_decoder(decoder).map_err(|source| PhotoError::Content { path: path.to_owned(), source })?;
+    Ok((image, turn, share))
+}
+
+/// A decoder that has read the file's head, how the pixels are to be turned, and the part of the memory that they may take: what is `needed`.
+fn begun<'i>(
+    path: &Path,
+    input: &'i mut dyn Input,
+    needed: fn(&dyn ImageDecoder) -> u64,
+) -> Result<(impl ImageDecoder + use<'i>, Option<Turn>, budget::Share), PhotoError> {
     let in_file = |source| PhotoError::File { path: path.to_owned(), source };
     let content = |source| PhotoError::Content { path: path.to_owned(), source };
     let format = reader(input).map_err(in_file)?.format();
@@ -196,11 +218,11 @@ fn decoded(path: &Path, input: &mut dyn Input) -> Result<(DynamicImage, Option<T
     reader.limits(budget::limits(MOST_BYTES));
     let mut decoder = reader.into_decoder().map_err(content)?;
     let (width, height) = decoder.dimensions();
-    let bytes = budget::needed(&decoder);
+    let bytes = needed(&decoder);
     let share = budget::share(bytes).ok_or_else(|| PhotoError::TooLarge { path: path.to_owned(), width, height, bytes })?;
     decoder.set_limits(budget::limits(bytes)).map_err(content)?;
     let turn = Turn::of(decoder.orientation().map_err(content)?);
-    Ok((DynamicImage::from_decoder(decoder).map_err(content)?, turn, share))
+    Ok((decoder, turn, share))
 }
 
 /// Writes an image as PNG file: [`encode_png`].
