@@ -174,35 +174,70 @@ fn series([f, f1, f2, f3, f4]: [&[f32; LANES]; 5], d: f32) -> [f32; LANES] {
     sums
 }
 
+/// What borders of pixels give to `W`, `k` and its derivatives, with room for whole lanes on both sides.
+type Borders = [[f64; lanes::LANES + (WIDEST + 1).next_multiple_of(lanes::LANES) + lanes::LANES]; DERIVATIVES];
+
 /// Fills a table whose rows of derivatives are `stride` apart, for `width` pixels.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn tabulate(table: &mut [f32], stride: usize, width: usize, half: f64, sigma: f64) {
-    // What the pixels' borders give: each pixel is the difference of two.
-    let mut borders = [[0.0; (WIDEST + 1).next_multiple_of(lanes::LANES)]; DERIVATIVES];
-    for (step, row) in table.chunks_exact_mut(DERIVATIVES * stride).enumerate() {
-        let fraction = (step as f64 + 0.5) / STEPS as f64;
+    let [mut borders, mut mirrored]: [Borders; 2] = [[[0.0; _]; DERIVATIVES]; 2];
+    let (lower, upper) = table.split_at_mut(STEPS / 2 * DERIVATIVES * stride);
+    let rows = lower.chunks_exact_mut(DERIVATIVES * stride).zip(upper.rchunks_exact_mut(DERIVATIVES * stride));
+    for (step_index, (row, opposite)) in rows.enumerate() {
+        let fraction = (step_index as f64 + 0.5) / STEPS as f64;
         for first in (0..=width).step_by(lanes::LANES) {
             let mut u = [0.0; lanes::LANES];
             for (lane, u) in u.iter_mut().enumerate() {
                 *u = (fraction + half + 0.5 - (first + lane) as f64) / sigma;
             }
-            for (border, values) in borders.iter_mut().zip(boundary(&u, sigma)) {
-                border[first..first + lanes::LANES].copy_from_slice(&values);
-            }
+            let (edge, bell) = step(&u);
+            put(&mut borders, lanes::LANES + first, &boundary(&u, &edge, &bell, sigma));
+            // At one less this fraction all lies the other way round, to the last bit: the Gaussian is even, its integral odd.
+            let (u, edge, bell) = (reversed(&u, -1.0), reversed(&edge, -1.0), reversed(&bell, 1.0));
+            put(&mut mirrored, width + 1 - first, &boundary(&u, &edge, &bell, sigma));
         }
-        row[..LANES].fill(1.0);
-        for (line, border) in row.chunks_exact_mut(stride).zip(&borders) {
-            for (pixel, to) in line[LANES..LANES + width].iter_mut().enumerate() {
-                *to = (border[pixel] - border[pixel + 1]) as f32;
-            }
-        }
+        fill(row, stride, width, &borders);
+        fill(opposite, stride, width, &mirrored);
     }
 }
 
-/// What borders of pixels give to `W`, `k` and the derivatives of `k`, at `u` standard deviations.
 #[inline(always)]
-fn boundary(u: &Lanes, sigma: f64) -> [Lanes; DERIVATIVES] {
-    let (edge, bell) = step(u);
+fn put(borders: &mut Borders, first: usize, values: &[Lanes; DERIVATIVES]) {
+    for (border, values) in borders.iter_mut().zip(values) {
+        border[first..first + lanes::LANES].copy_from_slice(values);
+    }
+}
+
+/// Times `sign`, the last first.
+#[inline(always)]
+fn reversed(values: &Lanes, sign: f64) -> Lanes {
+    let mut reversed = [0.0; lanes::LANES];
+    for lane in 0..lanes::LANES {
+        reversed[lane] = sign * values[lanes::LANES - 1 - lane];
+    }
+    reversed
+}
+
+/// The rows of a fraction: each pixel is the difference of its two borders. Whole lanes at a time, of which the last may reach into the margin.
+#[inline(always)]
+fn fill(row: &mut [f32], stride: usize, width: usize, borders: &Borders) {
+    row[..LANES].fill(1.0);
+    for (line, border) in row.chunks_exact_mut(stride).zip(borders) {
+        for first in (0..width).step_by(lanes::LANES) {
+            let [from, to]: [&Lanes; 2] = [side_by_side(border, lanes::LANES + first), side_by_side(border, lanes::LANES + first + 1)];
+            let mut pixels = [0.0; lanes::LANES];
+            for lane in 0..lanes::LANES {
+                pixels[lane] = (from[lane] - to[lane]) as f32;
+            }
+            line[LANES + first..LANES + first + lanes::LANES].copy_from_slice(&pixels);
+        }
+        line[LANES + width..LANES + width + lanes::LANES].fill(0.0);
+    }
+}
+
+/// What borders of pixels give to `W`, `k` and the derivatives of `k`, at `u` standard deviations, where the step and the Gaussian are `edge` and `bell`.
+#[inline(always)]
+fn boundary(u: &Lanes, edge: &Lanes, bell: &Lanes, sigma: f64) -> [Lanes; DERIVATIVES] {
     let mut values = [[0.0; lanes::LANES]; DERIVATIVES];
     let s = 1.0 / sigma;
     for i in 0..lanes::LANES {
@@ -248,7 +283,7 @@ mod tests {
     fn samples_are_those_of_a_pixel_under_a_gaussian() {
         for sigma in [0.3, 0.7, 2.0] {
             let profile = Profile::new(sigma);
-            for at in [13.0, 13.031, 23.49, -2.77, 0.999, 38.2, 70.0] {
+            for at in [13.0, 13.031, 23.49, -2.77, 0.999, 7.55, 20.81, 38.2, 70.0] {
                 let axis = samples(&profile, at);
                 for (pixel, value) in axis.value[..40].iter().enumerate() {
                     let t = at - pixel as f64;
