@@ -41,12 +41,13 @@ pub(super) fn grey_while<E>(
     rayon::in_place_scope(|scope| {
         let helpers = (width * height / PIECE).min(rayon::current_num_threads() - 1);
         (0..helpers).for_each(|_| scope.spawn(|_| line.help()));
+        let ending = Ending(&line);
         let given = grey.chunks_mut((rows * width).max(1)).enumerate().try_for_each(|(place, into)| {
             let first = place * rows;
             line.give(Piece { pixels: next(first..first + into.len() / width)?, into });
             Ok(())
         });
-        line.end();
+        drop(ending);
         drop((next, share));
         given
     })?;
@@ -135,6 +136,15 @@ impl<'g> Line<'g> {
     }
 }
 
+/// Ends the line when it is dropped: also where `next` went wrong, as helpers would wait for ever.
+struct Ending<'l, 'g>(&'l Line<'g>);
+
+impl Drop for Ending<'_, '_> {
+    fn drop(&mut self) {
+        self.0.end();
+    }
+}
+
 /// Says that a piece is filled when it is dropped: also where that went wrong, as whoever waits would wait for ever.
 struct Filled<'l, 'g>(&'l Line<'g>);
 
@@ -148,6 +158,7 @@ impl Drop for Filled<'_, '_> {
 #[cfg(test)]
 mod tests {
     use std::sync::mpsc;
+    use std::time::Duration;
 
     use image::{ImageBuffer, Luma, Rgb};
 
@@ -186,6 +197,17 @@ mod tests {
         says.recv().unwrap();
     }
 
+    #[test]
+    fn a_panic_ends_it() {
+        let (said, says) = mpsc::channel::<()>();
+        std::thread::spawn(move || {
+            let _said = said;
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+            pool.install(|| grey_while((PIECE, 9), (), |_| -> Result<Pixels, Infallible> { panic!("a decoder's own fault") }))
+        });
+        assert_eq!(says.recv_timeout(Duration::from_secs(60)), Err(mpsc::RecvTimeoutError::Disconnected));
+    }
+
     /// Says when it is dropped whether its thread has met the others: no helper is left to begin.
     struct Share(mpsc::Sender<bool>);
 
@@ -193,6 +215,31 @@ mod tests {
         fn drop(&mut self) {
             let met = rayon::yield_local() != Some(rayon::Yield::Executed);
             self.0.send(met).unwrap();
+        }
+    }
+
+    /// Says when it is dropped how many still hold the pixels.
+    struct Held(Arc<DynamicImage>, mpsc::Sender<usize>);
+
+    impl Drop for Held {
+        fn drop(&mut self) {
+            self.1.send(Arc::strong_count(&self.0)).unwrap();
+        }
+    }
+
+    #[test]
+    fn the_memory_is_given_back_when_nobody_reads_the_pixels() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let [_, image] = noisy(PIECE as u32, 1);
+        let decoded = Arc::new(image);
+        let (said, says) = mpsc::channel();
+        // A helper may have ended by chance.
+        for _ in 0..50 {
+            let given = decoded.clone();
+            let next = move |_| Ok::<_, Infallible>(Pixels { decoded: given.clone(), first: 0 });
+            pool.install(|| grey_while((PIECE, 9), Held(decoded.clone(), said.clone()), next)).unwrap();
+            // The test's own and that of the share.
+            assert_eq!(says.recv(), Ok(2));
         }
     }
 
