@@ -205,7 +205,7 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
             pool.install(|| grey_while((PIECE, 9), (), |_| -> Result<Pixels, Infallible> { panic!("a decoder's own fault") }))
         });
-        assert_eq!(says.recv_timeout(Duration::from_secs(60)), Err(mpsc::RecvTimeoutError::Disconnected));
+        assert_eq!(says.recv_timeout(Duration::from_mins(1)), Err(mpsc::RecvTimeoutError::Disconnected));
     }
 
     /// Says when it is dropped whether its thread has met the others: no helper is left to begin.
