@@ -47,7 +47,7 @@ pub use compared::{Compared, ComparedSet, SetResult};
 pub use datum::{DatumChoice, NoDatum};
 pub use discs::{Offset, offsets};
 pub use eccentricity::{Discs, Eccentricity, NoDiscs};
-pub use error::CalibrationError;
+pub use error::{CalibrationError, few};
 pub use model::{MODELS, parameters};
 pub use next::{Next, Photograph};
 pub use optics::Optics;

@@ -64,13 +64,16 @@ impl Intersect {
                 say!("residuals of all targets together: {} px for an image coordinate", plain(pooled));
             }
         }
-        if self.sigma.is_some_and(|sigma| !points.agrees_with(sigma)) {
-            say!("warning: the residuals do not agree with --sigma (chi squared at 0.001)");
+        let agree = self.sigma.is_none_or(|sigma| points.agrees_with(sigma));
+        if !agree {
+            say!("in doubt: the residuals do not agree with --sigma (chi squared at 0.001)");
         }
-        let misfits = points.misfits();
+        let (misfits, no_chance) = (points.misfits(), points.misfits_are_no_chance());
         if misfits > 0 {
-            say!("warning: {misfits} of {} targets do not fit (chi squared at 0.001 of each; the table's notes say which)", points.len());
+            let how = if no_chance { "in doubt" } else { "warning" };
+            say!("{how}: {misfits} of {} targets do not fit (chi squared at 0.001 of each; the table's notes say which)", points.len());
         }
-        deliver(output.as_ref(), |file| points.write(&survey, file))
+        deliver(output.as_ref(), |file| points.write(&survey, file))?;
+        if agree && !no_chance { Ok(()) } else { Err(Failure::Doubt) }
     }
 }

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use calibench_calibrate::Survey;
-use calibench_calibrate::orientation::{resect_images, write_orientations};
+use calibench_calibrate::orientation::{Orientations, resect_images};
+use calibench_calibrate::{Survey, few};
 use calibench_exchange::{Inputs, read_control};
+use calibench_report::plain;
 use clap::Args;
 
 use super::camera_files::CameraFiles;
@@ -27,6 +28,9 @@ pub struct Resect {
     /// Search for gross errors: residuals longer than this are left out, px
     #[arg(long, value_name = "PX", value_parser = super::convert::positive, allow_negative_numbers = true)]
     tolerance: Option<f64>,
+    /// Standard deviation of an image coordinate, px: residuals are held against it [default: against those of the other images]
+    #[arg(long, value_name = "PX", value_parser = super::convert::positive, allow_negative_numbers = true)]
+    sigma: Option<f64>,
     /// The poses, as a station file [default: standard output]
     #[arg(short, long, value_name = "CSV")]
     output: Option<PathBuf>,
@@ -38,21 +42,51 @@ impl Resect {
         let output = output::table("-o", self.output.as_deref(), &inputs)?;
         let survey = Survey::new(read_measured(&self.points)?, &read_control(&self.control)?)?;
         let cameras = self.cameras.of(&survey.images)?;
-        let (mut oriented, mut failed) = (Vec::new(), Vec::new());
-        for (image, result) in survey.images.iter().zip(resect_images(&survey, &cameras, self.tolerance)) {
-            match result {
-                Ok(found) => oriented.push(found),
-                Err(error) => failed.push(format!("image {image}: {error}")),
-            }
-        }
+        let found = resect_images(&survey, &cameras, (self.tolerance, self.sigma));
+        let failed: Vec<String> = found.failed.iter().map(|(image, error)| format!("image {}: {error}", survey.images[*image])).collect();
         failed.iter().for_each(|failed| say!("{failed}"));
-        if oriented.is_empty() {
+        if found.found.is_empty() {
             return Err(Failure::input(format!("no image could be oriented: {}", failed.join("; "))));
         }
         if !context.quiet {
-            say!("resect: {} of {} images oriented", oriented.len(), survey.images.len());
+            say!("resect: {} of {} images oriented", found.found.len(), survey.images.len());
+            if let Some(pooled) = found.pooled() {
+                say!("residuals of all images together: {} px for an image coordinate", plain(pooled));
+            }
         }
-        deliver(output.as_ref(), |file| write_orientations(file, &survey, &oriented))?;
-        if failed.is_empty() { Ok(()) } else { Err(Failure::input(format!("{} images could not be oriented", failed.len()))) }
+        say_left_out(&found, &survey);
+        let is_doubtful = say_doubts(&found, &survey);
+        deliver(output.as_ref(), |file| found.write(&survey, file))?;
+        match (failed.is_empty(), is_doubtful) {
+            (false, _) => Err(Failure::input(format!("{} images could not be oriented", failed.len()))),
+            (true, true) => Err(Failure::Doubt),
+            (true, false) => Ok(()),
+        }
     }
+}
+
+/// Says which points took no part.
+fn say_left_out(found: &Orientations, survey: &Survey) {
+    let unknown: Vec<String> =
+        (0..survey.targets()).filter(|&target| survey.known(target).is_none()).map(|target| survey.target(target).to_owned()).collect();
+    if !unknown.is_empty() {
+        say!("warning: {} of {} targets are no control points: {}", unknown.len(), survey.targets(), few(&unknown));
+    }
+    for one in found.found.iter().filter(|one| !one.rejected.is_empty()) {
+        let names: Vec<String> = one.rejected.iter().map(|&target| survey.target(target).to_owned()).collect();
+        say!("warning: image {}: {} of {} points left out: {}", survey.images[one.image], names.len(), one.points, few(&names));
+    }
+}
+
+/// Says what is in doubt, if anything is.
+fn say_doubts(found: &Orientations, survey: &Survey) -> bool {
+    let each = found.doubts(survey);
+    for (one, doubts) in found.found.iter().zip(&each) {
+        doubts.iter().for_each(|doubt| say!("image {}: in doubt: {doubt}", survey.images[one.image]));
+    }
+    let agree = found.agree_with_stated();
+    if !agree {
+        say!("in doubt: the residuals do not agree with --sigma (chi squared at 0.001)");
+    }
+    !agree || each.iter().any(|doubts| !doubts.is_empty())
 }

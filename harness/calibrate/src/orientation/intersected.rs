@@ -8,16 +8,16 @@ use calibench_exchange::{POINT_QUALITY_COLUMNS, Row, StationRow, write_rows};
 use calibench_model::Pose;
 use calibench_model::camera::Camera;
 use rayon::prelude::*;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{Binomial, DiscreteCDF};
 
+use super::misfit::ALPHA;
+use super::precision::{MISFIT, Residuals};
 use crate::{CalibrationError, Survey};
 
 const COLUMNS: [&str; 7] = ["target", "X", "Y", "Z", "sX", "sY", "sZ"];
 
 /// Targets whose failure is kept one by one.
 pub const TOLD: usize = 100;
-/// Probability below which residuals do not fit.
-const MISFIT: f64 = 1e-3;
 /// Targets that are intersected before their rows are kept.
 const BATCH: usize = 1 << 14;
 
@@ -89,22 +89,28 @@ impl ObjectPoints {
 
     /// The standard deviation of an image coordinate from the residuals of all targets, px; `None` without redundancy.
     pub fn pooled(&self) -> Option<f64> {
-        let squares: f64 = self.found.iter().map(|found| found.sigma0 * found.sigma0 * f64::from(found.redundancy)).sum();
-        let redundancy: f64 = self.found.iter().map(|found| f64::from(found.redundancy)).sum();
-        (redundancy > 0.0).then(|| (squares / redundancy).sqrt())
+        self.residuals().sigma0()
     }
 
     /// Whether residuals say of image coordinates what `sigma_px` does: chi squared, both sides, at a thousandth.
     pub fn agrees_with(&self, sigma_px: f64) -> bool {
-        let freedom: f64 = self.found.iter().map(|found| f64::from(found.redundancy)).sum();
-        let (Some(pooled), Ok(chi)) = (self.pooled(), ChiSquared::new(freedom)) else { return true };
-        let p = chi.cdf(freedom * (pooled / sigma_px).powi(2));
-        (0.5 * MISFIT..=1.0 - 0.5 * MISFIT).contains(&p)
+        self.residuals().agree_with(sigma_px)
+    }
+
+    fn residuals(&self) -> Residuals {
+        Residuals::pooled(self.found.iter().map(Found::residuals))
     }
 
     /// Targets whose residuals are larger than the common standard deviation lets expect once in a thousand.
     pub fn misfits(&self) -> usize {
         self.found.iter().filter(|found| found.misfits(self.sigma_px)).count()
+    }
+
+    /// As many do not fit as chance makes once in 10,000.
+    pub fn misfits_are_no_chance(&self) -> bool {
+        let misfits = self.misfits() as u64;
+        let checked = self.found.iter().filter(|found| found.redundancy > 0).count() as u64;
+        misfits > 0 && Binomial::new(MISFIT, checked).is_ok_and(|chance| chance.sf(misfits - 1) < ALPHA)
     }
 
     /// How many points there are.
@@ -159,12 +165,13 @@ impl Found {
         }
     }
 
+    fn residuals(&self) -> Residuals {
+        Residuals::new(self.sigma0, f64::from(self.redundancy))
+    }
+
     /// Whether its residuals are too large for a standard deviation of image coordinates: chi squared at a thousandth.
     fn misfits(&self, sigma_px: Option<f64>) -> bool {
-        // Chi squared below its mean is never that rare: most of a million targets need no distribution.
-        let Some(sigma) = sigma_px.filter(|sigma| *sigma > 0.0 && self.redundancy > 0 && self.sigma0 > *sigma) else { return false };
-        let freedom = f64::from(self.redundancy);
-        ChiSquared::new(freedom).is_ok_and(|chi| chi.sf(freedom * (self.sigma0 / sigma).powi(2)) < MISFIT)
+        sigma_px.is_some_and(|sigma| self.residuals().exceed(sigma, MISFIT))
     }
 
     /// A point with standard deviations from the common one of image coordinates; where there is none, without.

@@ -5,7 +5,10 @@ use std::io;
 use calibench_adjust::approximate::{ApproximateError, Resection, Search, Tolerance, resect};
 use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_table};
 use calibench_model::camera::Camera;
+use rayon::prelude::*;
 
+use super::misfit::{Misfit, ROUNDING};
+use super::precision::Residuals;
 use crate::{Survey, control_of};
 
 /// A second minimum whose sum of squares is less than this many times the first one's makes a pose doubtful.
@@ -22,27 +25,86 @@ pub struct ImageOrientation {
     pub points: usize,
     /// The pose and its cofactors.
     pub found: Resection,
-    /// Indices of the targets whose points did not fit.
+    /// Indices of the targets whose points were left out.
     pub rejected: Vec<usize>,
+    /// Of those that were not left out, the ones that do not fit.
+    pub misfit: Option<Misfit>,
+}
+
+/// The exterior orientations of a survey's images.
+#[derive(Clone, Debug, Default)]
+pub struct Orientations {
+    /// Of the images that have one, in their order.
+    pub found: Vec<ImageOrientation>,
+    /// Indices of the others, and why they have none.
+    pub failed: Vec<(usize, ApproximateError)>,
+    /// The standard deviation of an image coordinate that was stated, px.
+    pub sigma_px: Option<f64>,
 }
 
 /// Resects every image of `survey` from its control points; `cameras` holds that of each image, `tolerance_px` is the residual beyond which a point is
-/// left out (`None`: all are kept). In the order of the images.
-///
-/// # Errors
-/// For an image: why it has no orientation, in which case the others still have theirs.
-pub fn resect_images(survey: &Survey, cameras: &[Camera], tolerance_px: Option<f64>) -> Vec<Result<ImageOrientation, ApproximateError>> {
+/// left out (`None`: all are kept), and `sigma_px` the standard deviation of an image coordinate, if it is known.
+pub fn resect_images(survey: &Survey, cameras: &[Camera], (tolerance_px, sigma_px): (Option<f64>, Option<f64>)) -> Orientations {
     let known: Vec<_> = (0..survey.targets()).map(|target| survey.known(target)).collect();
     let against = tolerance_px.map(|px| Search { seed: 1, tolerance: Tolerance::Pixels(px) });
     let one = |image: usize| {
         let control = control_of(survey, &known, image);
-        let found = resect(&cameras[image], &control, against.as_ref())?;
-        let targets: Vec<usize> =
-            survey.of_image(image).map(|sight| survey.sight(sight).target).filter(|&target| known[target].is_some()).collect();
-        let rejected = found.rejected.iter().map(|&place| targets[place]).collect();
-        Ok(ImageOrientation { image, points: control.len(), found, rejected })
+        let found = resect(&cameras[image], &control, against.as_ref()).map_err(|error| (image, error))?;
+        let seen = survey.of_image(image).map(|sight| survey.sight(sight).target).filter(|&target| known[target].is_some());
+        let (mut rejected, mut kept) = (found.rejected.iter().copied().peekable(), Vec::with_capacity(control.len()));
+        let (mut left_out, mut targets) = (Vec::new(), Vec::with_capacity(control.len()));
+        for (place, target) in seen.enumerate() {
+            if rejected.next_if_eq(&place).is_some() {
+                left_out.push(target);
+            } else {
+                kept.push(control[place]);
+                targets.push(target);
+            }
+        }
+        let misfit = Misfit::of(&cameras[image], &kept, &targets, &found);
+        Ok(ImageOrientation { image, points: control.len(), found, rejected: left_out, misfit })
     };
-    (0..survey.images.len()).map(one).collect()
+    let (mut all, images) = (Orientations { sigma_px, ..Orientations::default() }, 0..survey.images.len());
+    for result in images.into_par_iter().map(one).collect::<Vec<_>>() {
+        match result {
+            Ok(found) => all.found.push(found),
+            Err(failed) => all.failed.push(failed),
+        }
+    }
+    all
+}
+
+impl Orientations {
+    /// The standard deviation of an image coordinate from the residuals of all images, px; `None` without redundancy.
+    pub fn pooled(&self) -> Option<f64> {
+        self.residuals().sigma0()
+    }
+
+    /// Whether residuals say of image coordinates what was stated, if anything was: chi squared, both sides, at a thousandth.
+    pub fn agree_with_stated(&self) -> bool {
+        self.sigma_px.is_none_or(|sigma| self.residuals().agree_with(sigma))
+    }
+
+    fn residuals(&self) -> Residuals {
+        Residuals::pooled(self.found.iter().map(ImageOrientation::residuals))
+    }
+
+    /// The standard deviation of an image coordinate that half of the images do not exceed, px.
+    pub(super) fn middle(&self) -> Option<f64> {
+        let mut each: Vec<f64> = self.found.iter().filter_map(|one| one.residuals().sigma0()).collect();
+        each.sort_by(f64::total_cmp);
+        each.get(each.len().checked_sub(1)? / 2).copied().filter(|sigma0| *sigma0 > ROUNDING)
+    }
+
+    /// Writes a station file: poses in object units and degrees with standard deviations, sigma0 in px, and as a note what is in doubt.
+    ///
+    /// # Errors
+    /// What `file` returns.
+    pub fn write(&self, survey: &Survey, file: impl io::Write) -> io::Result<()> {
+        let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &FURTHER_COLUMNS].concat();
+        let doubts = self.doubts(survey);
+        write_table(file, &columns, self.found.iter().zip(doubts).map(|(row, doubts)| row.cells(survey, &doubts)))
+    }
 }
 
 impl ImageOrientation {
@@ -53,16 +115,19 @@ impl ImageOrientation {
 
     /// How close another minimum comes: the ratio of its sum of squared residuals to this one's.
     pub fn rival(&self) -> Option<f64> {
-        let squares = self.found.sigma0 * self.found.sigma0 * self.found.redundancy as f64;
-        self.found.rival.map(|rival| rival.squares / squares.max(f64::MIN_POSITIVE))
+        self.found.rival.map(|rival| rival.squares / self.residuals().squares.max(f64::MIN_POSITIVE))
     }
 
     /// Another pose fits nearly as well.
-    pub fn is_doubtful(&self) -> bool {
+    pub fn has_rival(&self) -> bool {
         self.rival().is_some_and(|ratio| ratio < RIVAL)
     }
 
-    fn cells(&self, survey: &Survey) -> Vec<String> {
+    pub(super) fn residuals(&self) -> Residuals {
+        Residuals::new(self.found.sigma0, self.found.redundancy as f64)
+    }
+
+    fn cells(&self, survey: &Survey, doubts: &[String]) -> Vec<String> {
         let [sx, sy, sz, turns @ ..] = self.sigmas();
         let numbers = station_numbers(&self.found.pose).into_iter().chain([sx, sy, sz]).chain(turns.map(f64::to_degrees));
         let mut row = vec![survey.images[self.image].clone()];
@@ -70,16 +135,7 @@ impl ImageOrientation {
         let rejected: Vec<&str> = self.rejected.iter().map(|&target| survey.target(target)).collect();
         row.extend([self.points.to_string(), self.found.sigma0.to_string(), self.found.redundancy.to_string(), rejected.join(" ")]);
         row.push(self.rival().map_or(String::new(), |ratio| ratio.to_string()));
-        row.push(if self.is_doubtful() { "another pose fits nearly as well" } else { "" }.to_owned());
+        row.push(doubts.join("; "));
         row
     }
-}
-
-/// Writes a station file: poses in object units and degrees with standard deviations, sigma0 in px.
-///
-/// # Errors
-/// What `file` returns.
-pub fn write_orientations(file: impl io::Write, survey: &Survey, rows: &[ImageOrientation]) -> io::Result<()> {
-    let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &FURTHER_COLUMNS].concat();
-    write_table(file, &columns, rows.iter().map(|row| row.cells(survey)))
 }

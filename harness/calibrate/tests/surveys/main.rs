@@ -3,6 +3,7 @@
 mod doubts;
 mod network;
 mod next;
+mod orientations;
 mod pairs;
 mod points;
 mod resampled;

@@ -72,10 +72,10 @@ impl Orient {
         }
         orientation::warnings(&pair).iter().for_each(|warning| say!("warning: {warning}"));
         deliver(output.as_ref(), |file| pair.write_points(file))?;
-        match &poses {
-            Some(poses) => deliver(Some(poses), |file| pair.write_poses(file, [&self.left, &self.right])),
-            None => Ok(()),
+        if let Some(poses) = &poses {
+            deliver(Some(poses), |file| pair.write_poses(file, [&self.left, &self.right]))?;
         }
+        if pair.found.rival.is_none() { Ok(()) } else { Err(Failure::Doubt) }
     }
 
     fn orient(&self, cameras: [&Camera; 2], seen: Vec<Seen>) -> Result<Pair, Failure> {
