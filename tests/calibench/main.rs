@@ -47,6 +47,7 @@ mod priors;
 mod project;
 mod records;
 mod render;
+mod resect;
 mod schema;
 mod several;
 mod sweeps;

@@ -64,6 +64,9 @@ impl Intersect {
                 say!("residuals of all targets together: {} px for an image coordinate", plain(pooled));
             }
         }
+        if points.left_out() > 0 {
+            say!("warning: {} image points left out; the table says of which images", points.left_out());
+        }
         let agree = self.sigma.is_none_or(|sigma| points.agrees_with(sigma));
         if !agree {
             say!("in doubt: the residuals do not agree with --sigma (chi squared at 0.001)");

@@ -2,7 +2,7 @@
 
 mod control;
 mod gross;
-mod impossible;
+pub(crate) mod impossible;
 mod lens;
 mod motion;
 mod overlap;

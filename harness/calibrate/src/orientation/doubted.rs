@@ -5,6 +5,7 @@ use calibench_adjust::approximate::Resection;
 use super::misfit::{ALPHA, Misfit};
 use super::{ImageOrientation, Orientations};
 use crate::Survey;
+use crate::doubt::impossible::half_of;
 use crate::error::few;
 
 /// How many times as large as in the middle of all images residuals are that are said.
@@ -13,17 +14,30 @@ const LARGER: f64 = 3.0;
 const LEFT_OUT: f64 = 0.4;
 
 impl Orientations {
-    /// What is in doubt of each image that has an orientation, in words: another pose, points that do not fit or were left out, residuals that are larger
+    /// What is in doubt of each image that has an orientation, in words: points outside the image, another
+    /// pose, points that do not fit or were left out, residuals that no operator leaves, or that are larger
     /// than the standard deviation that was stated, or else than those of the other images.
     pub fn doubts(&self, survey: &Survey) -> Vec<Vec<String>> {
         let middle = self.middle();
         let of = |one: &ImageOrientation| {
             let misfit = one.misfit.as_ref().map(|misfit| words(misfit, one, survey));
             let size = self.sigma_px.map_or_else(|| beside(one, middle), |sigma| stated(one, sigma));
-            [rival(one), misfit, left_out(one), size].into_iter().flatten().collect()
+            [outside(one), rival(one), misfit.or_else(|| far(one)), left_out(one), size].into_iter().flatten().collect()
         };
         self.found.iter().map(of).collect()
     }
+}
+
+fn outside(one: &ImageOrientation) -> Option<String> {
+    let count = one.outside;
+    (count > 0).then(|| format!("{count} points lie outside the image: is the camera's size that of the image, and are x and y right?"))
+}
+
+fn far(one: &ImageOrientation) -> Option<String> {
+    let half = half_of(one.found.residuals.iter().copied().flatten())?;
+    Some(format!(
+        "residuals of {half:.1} px and more at half of the points are no operator's: are names, object coordinates and the camera right?"
+    ))
 }
 
 fn rival(one: &ImageOrientation) -> Option<String> {

@@ -101,6 +101,11 @@ impl ObjectPoints {
         Residuals::pooled(self.found.iter().map(Found::residuals))
     }
 
+    /// Image points that did not fit and were left out.
+    pub fn left_out(&self) -> usize {
+        self.found.iter().map(|found| found.rejected.len()).sum()
+    }
+
     /// Targets whose residuals are larger than the common standard deviation lets expect once in a thousand.
     pub fn misfits(&self) -> usize {
         self.found.iter().filter(|found| found.misfits(self.sigma_px)).count()

@@ -4,11 +4,12 @@ use std::io;
 
 use calibench_adjust::approximate::{ApproximateError, Resection, Search, Tolerance, resect};
 use calibench_exchange::{POSE_COLUMNS, POSE_SIGMA_COLUMNS, station_numbers, write_table};
-use calibench_model::camera::Camera;
+use calibench_model::camera::{Camera, CameraModel};
 use rayon::prelude::*;
 
 use super::misfit::{Misfit, ROUNDING};
 use super::precision::Residuals;
+use crate::doubt::impossible::is_outside;
 use crate::{Survey, control_of};
 
 /// A second minimum whose sum of squares is less than this many times the first one's makes a pose doubtful.
@@ -25,6 +26,8 @@ pub struct ImageOrientation {
     pub points: usize,
     /// The pose and its cofactors.
     pub found: Resection,
+    /// How many of them lie outside of the image.
+    pub outside: usize,
     /// Indices of the targets whose points were left out.
     pub rejected: Vec<usize>,
     /// Of those that were not left out, the ones that do not fit.
@@ -62,7 +65,8 @@ pub fn resect_images(survey: &Survey, cameras: &[Camera], (tolerance_px, sigma_p
             }
         }
         let misfit = Misfit::of(&cameras[image], &kept, &targets, &found);
-        Ok(ImageOrientation { image, points: control.len(), found, rejected: left_out, misfit })
+        let outside = control.iter().filter(|point| is_outside(cameras[image].size(), point.image)).count();
+        Ok(ImageOrientation { image, points: control.len(), outside, found, rejected: left_out, misfit })
     };
     let (mut all, images) = (Orientations { sigma_px, ..Orientations::default() }, 0..survey.images.len());
     for result in images.into_par_iter().map(one).collect::<Vec<_>>() {

@@ -50,7 +50,7 @@ fn points_that_are_right_are_not_in_doubt() {
             }
         }
     }
-    assert!(images == 60 * 3 * 12 && doubts <= 1, "{doubts} of {images}");
+    assert!(images == 60 * 3 * 12 && doubts <= 2, "{doubts} of {images}");
 }
 
 #[test]
@@ -115,11 +115,24 @@ fn an_image_whose_points_are_all_wrong_stands_out() {
     let alone: Rows = shifted.into_iter().filter(|row| row.0 == "image_3.png").collect();
     let (survey, found) = oriented(&scene, &alone, None, Some(0.2));
     assert!(found.doubts(&survey)[0].iter().any(|doubt| doubt.ends_with("--sigma 0.2")) && !found.agree_with_stated());
+    let (survey, found) = oriented(&scene, &alone, None, None);
+    assert!(found.doubts(&survey)[0].iter().any(|doubt| doubt.contains("at half of the points are no operator's")));
     // Where nearly all were left out what is left is no proof.
     let (survey, found) = oriented(&scene, &alone, Some(20.0), None);
     let left_out = found.found[0].rejected.len();
     let expected = format!("{left_out} of {} points were left out, and what is left need not be the right part", alone.len());
     assert!(left_out > alone.len() / 2 && found.doubts(&survey)[0].contains(&expected), "{:?}", found.doubts(&survey));
+}
+
+/// x and y exchanged, as they are in some files, of a frame that is wider than high.
+#[test]
+fn points_outside_of_the_image_are_told() {
+    let scene = Scene { sigma: 0.2, ..wall(lens()) };
+    let exchanged: Rows = rows(&scene).into_iter().map(|(image, target, x, y)| (image, target, y, x)).collect();
+    let count = exchanged.iter().filter(|row| row.0 == "image_0.png" && row.3 > 1199.5).count();
+    let (survey, found) = oriented(&scene, &exchanged, None, None);
+    let expected = format!("{count} points lie outside the image: ");
+    assert!(count > 0 && found.doubts(&survey)[0][0].starts_with(&expected), "{:?}", found.doubts(&survey)[0]);
 }
 
 #[test]
