@@ -100,6 +100,20 @@ fn one_point_of_few_is_told() {
     assert_eq!(told, 6);
 }
 
+/// What a generous tolerance leaves in is told all the same.
+#[test]
+fn what_is_left_in_is_looked_at() {
+    let scene = Scene { sigma: 0.1, ..wall(lens()) };
+    let mut few: Rows = rows(&scene).into_iter().filter(|row| row.0 == "image_2.png").collect();
+    few[3].3 += 300.0;
+    few[9].2 -= 30.0;
+    let (survey, found) = oriented(&scene, &few, Some(60.0), None);
+    let left_out: Vec<&str> = found.found[0].rejected.iter().map(|&target| survey.target(target)).collect();
+    assert_eq!((left_out, misfits(&survey, &found).concat()), (vec![few[3].1.as_str()], vec![few[9].1.clone()]));
+    let expected = format!("1 of {} points do not fit: {} (the first is ", few.len() - 1, few[9].1);
+    assert!(found.doubts(&survey)[0][0].starts_with(&expected), "{:?}", found.doubts(&survey));
+}
+
 #[test]
 fn an_image_whose_points_are_all_wrong_stands_out() {
     let scene = Scene { sigma: 0.2, ..wall(lens()) };
