@@ -12,6 +12,8 @@ use super::table::MethodTable;
 
 /// What is no change of a figure, as a fraction of its standard deviation or scatter: last bits, carried through an adjustment.
 const SAME: f64 = 1e-4;
+/// The least standard deviation of a root mean square error, as a fraction of it: `1 / sqrt(2 n)`, of 5000 coordinates.
+const ERROR_SIGMA: f64 = 0.01;
 /// What is no change of a figure, as a fraction of its value, whatever its standard deviation.
 const DIGITS: f64 = 1e-8;
 /// What is no error, as a fraction of the largest of its set and group: those that are zero but for rounding stand beside such that are not.
@@ -49,9 +51,10 @@ impl FigureSum {
         Self { count: all.len() as u64, mean, scatter, error: rms(|x| x.error), sigma: rms(|x| x.sigma) }
     }
 
-    /// Whether both are the same but for last bits.
-    fn same(&self, other: &Self) -> bool {
-        let scale = self.sigma.unwrap_or(0.0).max(self.scatter).max(self.error.unwrap_or(0.0));
+    /// Whether both, of a group, are the same but for last bits.
+    fn same(&self, other: &Self, group: Group) -> bool {
+        let own = if is_error(group) { ERROR_SIGMA * self.mean.abs() } else { 0.0 };
+        let scale = self.sigma.unwrap_or(own).max(self.scatter).max(self.error.unwrap_or(0.0));
         let agree_within = |digits: f64, a: f64, b: f64| (a - b).abs() <= SAME * scale + digits || (a.is_nan() && b.is_nan());
         let agree = |a: f64, b: f64| agree_within(DIGITS * a.abs(), a, b);
         let optional = |a: Option<f64>, b: Option<f64>| match (a, b) {
@@ -140,7 +143,7 @@ impl Kept for FigureSums {
             };
             let rounding = largest.get(&(key.0, key.1)).map_or(0.0, |largest| NOTHING * largest);
             let both_nothing = old.count == new.count && old.is_within(rounding) && new.is_within(rounding);
-            if !both_nothing && !old.same(new) {
+            if !both_nothing && !old.same(new, key.1) {
                 findings.extend(judged(key.1, old, new, finding).map(|found| found.at(name.as_str())));
             }
         }

@@ -44,10 +44,22 @@ fn what_is_worse_fails_and_what_is_other_changed() {
 fn digits_of_a_value_that_stays_the_same_are_no_change() {
     let with = |value: f64| {
         let numbers = [Numbers { value, sigma: None, error: None }, Numbers { value: value + 1e-14, sigma: None, error: None }];
-        sums(Group::Check, &numbers)
+        sums(Group::Network, &numbers)
     };
     assert_eq!(verdicts(&with(6.163_170_733), &with(6.163_170_73)), []);
     assert_eq!(verdicts(&with(6.163_170_733), &with(6.163_171)), [(Verdict::Changed, "figure")]);
+}
+
+/// The same adjustment of OpenCV 4.6 on processors with and without AVX-512: 7e-8 of an error of check points, which is known to a hundredth at best.
+#[test]
+fn errors_are_known_no_better_than_their_number_allows() {
+    for (group, is_error) in Group::ALL.map(|(group, _)| (group, matches!(group, Group::Check | Group::Frame))) {
+        let with = |value: f64| sums(group, &[Numbers { value, sigma: None, error: None }]);
+        let said = |change: f64| verdicts(&with(7.67e-4), &with(7.67e-4 * (1.0 + change)));
+        assert_eq!(said(0.99e-8), []);
+        assert_eq!((said(1.1e-8).is_empty(), said(-0.99e-6).is_empty()), (is_error, is_error), "{}", group.name());
+        assert_eq!(said(1.02e-6), [(Verdict::Changed, "figure")]);
+    }
 }
 
 #[test]
@@ -110,8 +122,8 @@ fn sums_of_figures_with_gaps() {
 #[test]
 fn last_bits_of_figures_are_a_ten_thousandth_of_their_scale() {
     let same = |old: FigureSum, new: FigureSum| {
-        assert_eq!(old.same(&new), new.same(&old), "{old:?} {new:?}");
-        old.same(&new)
+        assert_eq!(old.same(&new, Group::Iop), new.same(&old, Group::Iop), "{old:?} {new:?}");
+        old.same(&new, Group::Iop)
     };
     // The scale is the largest of scatter, error and standard deviation; the value itself has its digits.
     for (scatter, error, sigma) in
@@ -127,7 +139,7 @@ fn last_bits_of_figures_are_a_ten_thousandth_of_their_scale() {
     assert!(same(bare(-100.0, 0.0), bare(-100.0, 0.99e-6)) && !same(bare(-100.0, 0.0), bare(-100.0, 1.01e-6)), "its own rounding");
     // Digits of an error and of a standard deviation: a hundred-millionth of themselves beside the ten-thousandth of the scale.
     let nan = bare(f64::NAN, f64::NAN);
-    assert!(nan.same(&nan) && !nan.same(&bare(1.0, 0.0)) && !bare(1.0, 0.0).same(&nan));
+    assert!(nan.same(&nan, Group::Iop) && !nan.same(&bare(1.0, 0.0), Group::Iop) && !bare(1.0, 0.0).same(&nan, Group::Iop));
     let both = sum(1.0, 1.0, Some(1.0), Some(1.0));
     for other in [
         FigureSum { count: 11, ..both },
@@ -138,9 +150,9 @@ fn last_bits_of_figures_are_a_ten_thousandth_of_their_scale() {
         FigureSum { scatter: 1.001, ..both },
         FigureSum { mean: 1.001, ..both },
     ] {
-        assert!(!both.same(&other) && !other.same(&both), "{other:?}");
+        assert!(!both.same(&other, Group::Iop) && !other.same(&both, Group::Iop), "{other:?}");
     }
-    assert!(both.same(&both));
+    assert!(both.same(&both, Group::Iop));
 }
 
 #[test]
