@@ -108,7 +108,7 @@ pub(super) fn spread_control_of(survey: &Survey, known: &[Option<Point3<f64>>], 
 
 /// `most` places of `count`, one in each of as many parts, at a different place within each: the points of a grid, whose order has a period, are not
 /// taken from one of its lines.
-pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     (0..most).map(move |part| {
         let (first, next) = (part * count / most, (part + 1) * count / most);

@@ -1,16 +1,22 @@
 //! Points of an image that do not fit its pose.
 
-use calibench_adjust::approximate::{Control, Resection, Search, Tolerance, resect};
-use calibench_model::camera::Camera;
+use calibench_adjust::approximate::{Control, Resection, Search, Tolerance, fit_pose, resect};
+use calibench_model::Pose;
+use calibench_model::camera::{Camera, CameraModel};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use statrs::function::factorial::ln_binomial;
 
 use super::precision::Residuals;
+use crate::start::spread;
 
 /// Probability below which it is no chance that points do not fit.
 pub(super) const ALPHA: f64 = 1e-4;
 /// A standard deviation of image coordinates below which residuals are rounding, px.
 pub(super) const ROUNDING: f64 = 1e-5;
+/// Points among which a search against gross errors is made.
+const SEARCHED: usize = 300;
+/// Times that all points are asked which fit.
+const ROUNDS: usize = 20;
 
 /// Points without which the others fit better than chance makes them.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,16 +34,71 @@ impl Misfit {
         if all.sigma0 < ROUNDING {
             return None;
         }
-        let rest = resect(camera, control, Some(&Search { seed: 1, tolerance: Tolerance::Unknown })).ok()?;
-        if rest.rejected.is_empty() || ln_chance(control.len(), residuals(all), residuals(&rest)) >= ALPHA.ln() {
+        let rest = Rest::of(camera, control)?;
+        if rest.left_out.is_empty() || ln_chance(control.len(), residuals(all), rest.residuals) >= ALPHA.ln() {
             return None;
         }
-        let off = |place: usize| rest.residuals[place].map_or(f64::INFINITY, |[x, y]| x.hypot(y));
-        let mut places = rest.rejected.clone();
-        places.sort_by(|&a, &b| off(b).total_cmp(&off(a)));
-        let worst = places.first().map(|&place| off(place)).filter(|off| off.is_finite());
+        let mut places = rest.left_out;
+        places.sort_by(|&a, &b| rest.off[b].total_cmp(&rest.off[a]));
+        let worst = places.first().map(|&place| rest.off[place]).filter(|off| off.is_finite());
         Some(Self { targets: places.into_iter().map(|place| targets[place]).collect(), worst })
     }
+}
+
+/// What is left by a pose that few points do not turn aside.
+struct Rest {
+    /// How far each point is off, px.
+    off: Vec<f64>,
+    /// Places of those that are too far off, in their order.
+    left_out: Vec<usize>,
+    /// Of the others.
+    residuals: Residuals,
+}
+
+impl Rest {
+    /// The search is among some of many points; which fit is asked of all of them, until these stay the same.
+    fn of(camera: &Camera, control: &[Control]) -> Option<Self> {
+        let some: Vec<Control> = if control.len() <= SEARCHED {
+            control.to_vec()
+        } else {
+            spread(control.len(), SEARCHED).map(|place| control[place]).collect()
+        };
+        let found = resect(camera, &some, Some(&Search { seed: 1, tolerance: Tolerance::Unknown })).ok()?;
+        let (mut pose, mut before) = (found.pose, Vec::new());
+        if some.len() == control.len() {
+            return Some(Self { off: off(camera, &pose, control), left_out: found.rejected.clone(), residuals: residuals(&found) });
+        }
+        for _ in 0..ROUNDS {
+            let off = off(camera, &pose, control);
+            let limit = limit(&off);
+            let (kept, left_out): (Vec<usize>, Vec<usize>) = (0..control.len()).partition(|&place| off[place] <= limit);
+            let fitted = fit_pose(camera, &pose, &kept.iter().map(|&place| control[place]).collect::<Vec<_>>()).ok()?;
+            if left_out == before {
+                return Some(Self {
+                    off,
+                    left_out,
+                    residuals: Residuals { squares: fitted.squares, redundancy: fitted.redundancy as f64 },
+                });
+            }
+            (pose, before) = (fitted.pose, left_out);
+        }
+        None
+    }
+}
+
+/// How far points are off, px; what the camera does not picture is infinitely far.
+fn off(camera: &Camera, pose: &Pose, control: &[Control]) -> Vec<f64> {
+    let of = |point: &Control| {
+        camera.project(pose.ray(&point.object)).map_or(f64::INFINITY, |at| (at.x - point.image.x).hypot(at.y - point.image.y))
+    };
+    control.iter().map(of).collect()
+}
+
+/// The length that one right residual in a thousand exceeds, from the median, whose square is 1.386 times the variance of a coordinate.
+fn limit(off: &[f64]) -> f64 {
+    let mut sorted = off.to_vec();
+    let middle = sorted.len() / 2;
+    *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 * (13.82_f64 / 1.386).sqrt()
 }
 
 fn residuals(of: &Resection) -> Residuals {

@@ -3,6 +3,7 @@
 use calibench_calibrate::Survey;
 use calibench_calibrate::orientation::{Orientations, resect_images};
 use calibench_exchange::points::parse_points;
+use nalgebra::Point3;
 
 use crate::network::{Scene, board, lens, wall};
 
@@ -98,6 +99,27 @@ fn one_point_of_few_is_told() {
         assert!(worst.is_none_or(|worst| (worst - 12.0).abs() < 1.5), "{worst:?}");
     }
     assert_eq!(told, 6);
+}
+
+/// Of 2000 targets 300 are searched, and all are asked.
+#[test]
+fn the_few_of_many_are_told_by_name() {
+    let target = |i: u32| Point3::new(60.0 * f64::from(i % 50), 60.0 * f64::from(i / 50), 300.0 * f64::from(i * 7 % 5));
+    let few = wall(lens());
+    let scene = Scene { targets: (0..2000).map(target).collect(), poses: vec![few.poses[2]], control: 2000, sigma: 0.2, ..few };
+    let mut many = rows(&scene);
+    let (survey, found) = oriented(&scene, &many, None, None);
+    assert!(many.len() > 1000 && found.found[0].misfit.is_none(), "{:?}", misfits(&survey, &found));
+    let mut wrong: Vec<String> = Vec::new();
+    for place in (3..many.len()).step_by(177) {
+        many[place].2 += 3.0;
+        wrong.push(many[place].1.clone());
+    }
+    wrong.sort();
+    let (survey, found) = oriented(&scene, &many, None, None);
+    let told = misfits(&survey, &found).concat();
+    // One right point in a thousand is left out with them.
+    assert!(wrong.len() >= 6 && wrong.iter().all(|name| told.contains(name)) && told.len() <= wrong.len() + 6, "{told:?}");
 }
 
 /// What a generous tolerance leaves in is told all the same.
