@@ -3,7 +3,8 @@
 use calibench_calibrate::Survey;
 use calibench_calibrate::orientation::{Orientations, resect_images};
 use calibench_exchange::points::parse_points;
-use nalgebra::Point3;
+use calibench_model::Pose;
+use nalgebra::{Point3, Vector3};
 
 use crate::network::{Scene, board, lens, wall};
 
@@ -115,8 +116,13 @@ fn the_few_of_many_are_told_by_name() {
         many[place].2 += 3.0;
         wrong.push(many[place].1.clone());
     }
+    let worst = 3 + 4 * 177;
+    many[worst].2 += 6.0;
     wrong.sort();
     let (survey, found) = oriented(&scene, &many, None, None);
+    // The worst comes first.
+    let first = found.found[0].misfit.as_ref().map(|misfit| (survey.target(misfit.targets[0]), misfit.worst.unwrap().round()));
+    assert_eq!(first, Some((many[worst].1.as_str(), 9.0)));
     let told = misfits(&survey, &found).concat();
     // One right point in a thousand is left out with them.
     assert!(wrong.len() >= 6 && wrong.iter().all(|name| told.contains(name)) && told.len() <= wrong.len() + 6, "{told:?}");
@@ -158,6 +164,21 @@ fn an_image_whose_points_are_all_wrong_stands_out() {
     let left_out = found.found[0].rejected.len();
     let expected = format!("{left_out} of {} points were left out, and what is left need not be the right part", alone.len());
     assert!(left_out > alone.len() / 2 && found.doubts(&survey)[0].contains(&expected), "{:?}", found.doubts(&survey));
+}
+
+/// A small plane far away, seen somewhat from aside, has two poses; near by it has one.
+#[test]
+fn a_pose_that_has_a_rival_is_told() {
+    let scene = Scene { sigma: 0.3, ..board(lens()) };
+    let small: Vec<Point3<f64>> = scene.targets.iter().map(|point| point * 0.1).collect();
+    let station = |away: [f64; 3]| Pose::looking_at(small[31] + Vector3::from(away), small[31], Vector3::y(), 0.3).unwrap();
+    let scene = Scene { poses: vec![station([300.0, 120.0, 1000.0]), station([20.0, 0.0, 25.0])], targets: small.clone(), ..scene };
+    let (survey, found) = oriented(&scene, &rows(&scene), None, Some(0.3));
+    assert_eq!(found.doubts(&survey), [vec!["another pose fits nearly as well".to_owned()], vec![]]);
+    let mut table = Vec::new();
+    found.write(&survey, &mut table).unwrap();
+    let notes: Vec<String> = String::from_utf8(table).unwrap().lines().map(|line| line.rsplit(',').next().unwrap().to_owned()).collect();
+    assert_eq!(notes, ["note", "another pose fits nearly as well", ""]);
 }
 
 /// x and y exchanged, as they are in some files, of a frame that is wider than high.
