@@ -55,8 +55,9 @@ impl Resect {
             }
         }
         say_left_out(&found, &survey);
-        let is_doubtful = say_doubts(&found, &survey);
-        deliver(output.as_ref(), |file| found.write(&survey, file))?;
+        let doubts = found.doubts(&survey);
+        let is_doubtful = say_doubts(&found, &survey, &doubts);
+        deliver(output.as_ref(), |file| found.write(&survey, &doubts, file))?;
         match (failed.is_empty(), is_doubtful) {
             (false, _) => Err(Failure::input(format!("{} images could not be oriented", failed.len()))),
             (true, true) => Err(Failure::Doubt),
@@ -79,9 +80,8 @@ fn say_left_out(found: &Orientations, survey: &Survey) {
 }
 
 /// Says what is in doubt, if anything is.
-fn say_doubts(found: &Orientations, survey: &Survey) -> bool {
-    let each = found.doubts(survey);
-    for (one, doubts) in found.found.iter().zip(&each) {
+fn say_doubts(found: &Orientations, survey: &Survey, each: &[Vec<String>]) -> bool {
+    for (one, doubts) in found.found.iter().zip(each) {
         doubts.iter().for_each(|doubt| say!("image {}: in doubt: {doubt}", survey.images[one.image]));
     }
     let agree = found.agree_with_stated();

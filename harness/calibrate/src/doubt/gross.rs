@@ -15,7 +15,7 @@ const BOUND: f64 = 2.0;
 const MOST: f64 = 0.2;
 
 /// Share of the image points that may be left out.
-const LEFT_OUT: f64 = 0.4;
+pub(crate) const LEFT_OUT: f64 = 0.4;
 
 /// Image points whose residuals are too long.
 struct Found {

@@ -1,7 +1,7 @@
 //! Whether the residuals hold what the model does not: a structure that is no chance, and that moves the camera by more than its standard deviations say.
 
 mod control;
-mod gross;
+pub(crate) mod gross;
 pub(crate) mod impossible;
 mod lens;
 mod motion;
@@ -21,7 +21,7 @@ use crate::resampled::MOST;
 use crate::{Calibration, Checked, Finding, Resampled, SHARE, Verdict};
 
 /// Probability below which a structure is no chance. Five tests together: once in 2000 sound calibrations, if residuals are independent.
-const ALPHA: f64 = 1e-4;
+pub(crate) const ALPHA: f64 = 1e-4;
 /// Places of the grid over the frame.
 const GRID: (usize, usize) = (15, 11);
 

@@ -2,16 +2,16 @@
 
 use calibench_adjust::approximate::Resection;
 
-use super::misfit::{ALPHA, Misfit};
+use super::misfit::Misfit;
 use super::{ImageOrientation, Orientations};
 use crate::Survey;
+use crate::doubt::ALPHA;
+use crate::doubt::gross::LEFT_OUT;
 use crate::doubt::impossible::half_of;
 use crate::error::few;
 
 /// How many times as large as in the middle of all images residuals are that are said.
 const LARGER: f64 = 3.0;
-/// Share of an image's points that may be left out.
-const LEFT_OUT: f64 = 0.4;
 
 impl Orientations {
     /// What is in doubt of each image that has an orientation, in words: points outside the image, another

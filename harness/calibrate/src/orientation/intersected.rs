@@ -10,8 +10,8 @@ use calibench_model::camera::Camera;
 use rayon::prelude::*;
 use statrs::distribution::{Binomial, DiscreteCDF};
 
-use super::misfit::ALPHA;
 use super::precision::{MISFIT, Residuals};
+use crate::doubt::ALPHA;
 use crate::{CalibrationError, Survey};
 
 const COLUMNS: [&str; 7] = ["target", "X", "Y", "Z", "sX", "sY", "sZ"];
@@ -200,5 +200,34 @@ impl Found {
             (true, true) => "does not fit",
             (true, false) => "",
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a thousand that are checked one misfits by chance; Poisson's distribution of mean 1 has 5.9e-4 from six on and 8.3e-5 from seven on.
+    #[test]
+    fn six_misfits_of_a_thousand_may_be_chance_and_seven_not() {
+        let found = |sigma0: f64, redundancy: u32| Found {
+            target: 0,
+            images: 2,
+            point: [0.0; 3],
+            spread: [1.0; 3],
+            angle: 1.0,
+            sigma0,
+            redundancy,
+            rejected: Vec::new(),
+        };
+        // Ten thousand that nothing checks are no trials.
+        let of = |misfits: usize| {
+            let checked = (0..1000).map(|place| found(if place < misfits { 5.0 } else { 1.0 }, 1));
+            let found: Vec<Found> = checked.chain((0..10_000).map(|_| found(0.0, 0))).collect();
+            ObjectPoints { found, sigma_px: Some(1.0), ..ObjectPoints::default() }
+        };
+        for (misfits, no_chance) in [(0, false), (6, false), (7, true)] {
+            assert_eq!((of(misfits).misfits(), of(misfits).misfits_are_no_chance()), (misfits, no_chance));
+        }
     }
 }

@@ -7,10 +7,9 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use statrs::function::factorial::ln_binomial;
 
 use super::precision::Residuals;
+use crate::doubt::ALPHA;
 use crate::start::spread;
 
-/// Probability below which it is no chance that points do not fit.
-pub(super) const ALPHA: f64 = 1e-4;
 /// A standard deviation of image coordinates below which residuals are rounding, px.
 pub(super) const ROUNDING: f64 = 1e-5;
 /// Points among which a search against gross errors is made.

@@ -53,20 +53,14 @@ pub fn resect_images(survey: &Survey, cameras: &[Camera], (tolerance_px, sigma_p
     let one = |image: usize| {
         let control = control_of(survey, &known, image);
         let found = resect(&cameras[image], &control, against.as_ref()).map_err(|error| (image, error))?;
-        let seen = survey.of_image(image).map(|sight| survey.sight(sight).target).filter(|&target| known[target].is_some());
-        let (mut rejected, mut kept) = (found.rejected.iter().copied().peekable(), Vec::with_capacity(control.len()));
-        let (mut left_out, mut targets) = (Vec::new(), Vec::with_capacity(control.len()));
-        for (place, target) in seen.enumerate() {
-            if rejected.next_if_eq(&place).is_some() {
-                left_out.push(target);
-            } else {
-                kept.push(control[place]);
-                targets.push(target);
-            }
-        }
-        let misfit = Misfit::of(&cameras[image], &kept, &targets, &found);
+        let targets: Vec<usize> =
+            survey.of_image(image).map(|sight| survey.sight(sight).target).filter(|&target| known[target].is_some()).collect();
+        let kept: Vec<usize> = (0..control.len()).filter(|place| found.rejected.binary_search(place).is_err()).collect();
+        let of = |places: &[usize]| places.iter().map(|&place| targets[place]).collect::<Vec<usize>>();
+        let controls: Vec<_> = kept.iter().map(|&place| control[place]).collect();
+        let misfit = Misfit::of(&cameras[image], &controls, &of(&kept), &found);
         let outside = control.iter().filter(|point| is_outside(cameras[image].size(), point.image)).count();
-        Ok(ImageOrientation { image, points: control.len(), outside, found, rejected: left_out, misfit })
+        Ok(ImageOrientation { image, points: control.len(), outside, rejected: of(&found.rejected), found, misfit })
     };
     let (mut all, images) = (Orientations { sigma_px, ..Orientations::default() }, 0..survey.images.len());
     for result in images.into_par_iter().map(one).collect::<Vec<_>>() {
@@ -100,14 +94,13 @@ impl Orientations {
         each.get(each.len().checked_sub(1)? / 2).copied().filter(|sigma0| *sigma0 > ROUNDING)
     }
 
-    /// Writes a station file: poses in object units and degrees with standard deviations, sigma0 in px, and as a note what is in doubt.
+    /// Writes a station file: poses in object units and degrees with standard deviations, sigma0 in px, and as a note what is in doubt ([`Self::doubts`]).
     ///
     /// # Errors
     /// What `file` returns.
-    pub fn write(&self, survey: &Survey, file: impl io::Write) -> io::Result<()> {
+    pub fn write(&self, survey: &Survey, doubts: &[Vec<String>], file: impl io::Write) -> io::Result<()> {
         let columns = [&["image"], &POSE_COLUMNS[..], &POSE_SIGMA_COLUMNS, &FURTHER_COLUMNS].concat();
-        let doubts = self.doubts(survey);
-        write_table(file, &columns, self.found.iter().zip(doubts).map(|(row, doubts)| row.cells(survey, &doubts)))
+        write_table(file, &columns, self.found.iter().zip(doubts).map(|(row, doubts)| row.cells(survey, doubts)))
     }
 }
 

@@ -176,7 +176,7 @@ fn a_pose_that_has_a_rival_is_told() {
     let (survey, found) = oriented(&scene, &rows(&scene), None, Some(0.3));
     assert_eq!(found.doubts(&survey), [vec!["another pose fits nearly as well".to_owned()], vec![]]);
     let mut table = Vec::new();
-    found.write(&survey, &mut table).unwrap();
+    found.write(&survey, &found.doubts(&survey), &mut table).unwrap();
     let notes: Vec<String> = String::from_utf8(table).unwrap().lines().map(|line| line.rsplit(',').next().unwrap().to_owned()).collect();
     assert_eq!(notes, ["note", "another pose fits nearly as well", ""]);
 }
