@@ -1,12 +1,20 @@
-//! Says whether the photographs that some tests need are there, `cfg(photographs)`, and whether OpenCV's markers are where we know them, `cfg(aruco_contrib)`.
+//! Says whether the photographs that some tests need are there, `cfg(photographs)`, and whether OpenCV's markers are where we know them, `cfg(aruco_contrib)`. Takes a digest of
+//! the code here, `CALIBENCH_OPENCV_CODE`.
 
+use std::path::Path;
 use std::process::Command;
+
+#[path = "../code.rs"]
+mod code;
 
 #[path = "../test_data.rs"]
 mod test_data;
 
 fn main() {
     test_data::announce(&[("photographs", "opencv-left")]);
+    println!("cargo::rerun-if-changed=src");
+    let own = code::sources(Path::new(""), Path::new("src"));
+    println!("cargo::rustc-env=CALIBENCH_OPENCV_CODE={}", code::digest(&[code::compiler()], &[&own]));
     println!("cargo::rustc-check-cfg=cfg(aruco_contrib)");
     if has_aruco() {
         println!("cargo::rustc-cfg=aruco_contrib");

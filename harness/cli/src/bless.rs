@@ -8,6 +8,7 @@ use clap::Args;
 
 use super::context::Context;
 use super::gated::{Keep, Source, cell_verdicts, gated};
+use super::stored::Reusing;
 use crate::deliver::print;
 use crate::failure::Failure;
 
@@ -19,18 +20,21 @@ pub struct Bless {
     /// Accept without asking
     #[arg(long)]
     yes: bool,
+    #[command(flatten)]
+    reusing: Reusing,
 }
 
 impl Bless {
     /// Everything, without asking.
-    pub const fn all() -> Self {
-        Self { scenarios: Vec::new(), yes: true }
+    pub fn all() -> Self {
+        Self { scenarios: Vec::new(), yes: true, reusing: Reusing::default() }
     }
 
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let baselines = Baselines::open_or_new(&context.root()?.join("reference/baselines"))?;
         let mut available = |scenario: &Scenario, _: Option<usize>, table: &Table| all_available(&scenario.name, table);
-        let mut source = Source { records: None, kept: Some(Keep::new(context)?), each: &mut available };
+        let stored = self.reusing.open(context)?;
+        let mut source = Source { records: None, kept: Some(Keep::new(context)?), each: &mut available, stored: &stored };
         let all = gated(context, &self.scenarios, &mut source)?;
         let mut verdicts = cell_verdicts(context, &source)?;
         let whole = self.scenarios.is_empty();

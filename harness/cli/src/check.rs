@@ -3,13 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use calibench_exchange::OutputFile;
-use calibench_gate::{Baselines, Ceilings, Cells, Check as Gate, FigureSums, Results, Rules, Table, json, junit, recorded, render};
+use calibench_gate::{
+    Baselines, Ceilings, Cells, Check as Gate, FigureSums, Results, Rules, Table, json, junit, not_tested, recorded, render,
+};
 use calibench_scenario::Scenario;
 use clap::Args;
 
 use super::context::Context;
 use super::gated::{Keep, Source, cell_verdicts, folder_of, gated, unit};
 use super::output;
+use super::stored::Reusing;
 use crate::deliver::print;
 use crate::failure::Failure;
 
@@ -18,6 +21,9 @@ pub struct Check {
     /// Names of scenarios [default: all]
     #[arg(value_name = "SCENARIO")]
     scenarios: Vec<String>,
+    /// Test also what is large only to be large, which is otherwise named as not tested
+    #[arg(long, conflicts_with = "scenarios")]
+    nightly: bool,
     /// Fail on every number that changed without a bless, not only on what is worse
     #[arg(long)]
     strict: bool,
@@ -36,6 +42,8 @@ pub struct Check {
     /// Write all findings as JUnit XML, a test case for each method of each scenario
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+    #[command(flatten)]
+    reusing: Reusing,
 }
 
 impl Check {
@@ -47,14 +55,17 @@ impl Check {
         let folder = context.root()?.join("reference/baselines");
         // What is missing is said before anything is run.
         let (baselines, mut ceilings) = (Baselines::open(&folder)?, Ceilings::read(&folder.join("ceilings.toml"))?);
-        let mut source = Source { records: self.records.clone(), kept: Some(Keep::new(context)?), each: &mut |_, _, _| Ok(()) };
-        let all = gated(context, &self.scenarios, &mut source)?;
+        let stored = self.reusing.open(context)?;
+        let mut source =
+            Source { records: self.records.clone(), kept: Some(Keep::new(context)?), each: &mut |_, _, _| Ok(()), stored: &stored };
+        let (names, left) = self.wanted(context)?;
+        let all = gated(context, &names, &mut source)?;
         let mut gate = Gate::new();
         for one in &all {
             baselines.compare(one, &mut gate);
         }
         if self.scenarios.is_empty() {
-            baselines.vanished(&all, &mut gate)?;
+            baselines.vanished(&all, &left, &mut gate)?;
         } else {
             ceilings.list.retain(|ceiling| all.iter().any(|one| one.scenario == ceiling.scenario));
         }
@@ -62,7 +73,7 @@ impl Check {
         let tables: Vec<&Table> = all.iter().filter_map(Results::table).collect();
         gate.ceilings(&ceilings, &tables);
         let of = |table: &&Table| table.methods().map(|(label, _)| (table.scenario.clone(), label.to_string())).collect::<Vec<_>>();
-        self.report(gate, &tables.iter().flat_map(of).collect::<Vec<_>>(), junit.as_ref())
+        self.report(gate, &tables.iter().flat_map(of).collect::<Vec<_>>(), &left, junit.as_ref())
     }
 
     /// Compares with records instead of baselines.
@@ -78,11 +89,32 @@ impl Check {
             compared.extend(table.methods().map(|(label, _)| (table.scenario.clone(), label.to_string())));
             Ok(())
         };
-        gated(context, &self.scenarios, &mut Source { records: self.records.clone(), kept: None, each: &mut each })?;
-        self.report(gate, &compared, junit)
+        let stored = self.reusing.open(context)?;
+        let (names, left) = self.wanted(context)?;
+        gated(context, &names, &mut Source { records: self.records.clone(), kept: None, each: &mut each, stored: &stored })?;
+        self.report(gate, &compared, &left, junit)
     }
 
-    fn report(&self, gate: Gate, compared: &[(String, String)], findings_file: Option<&OutputFile>) -> Result<(), Failure> {
+    /// The scenarios that are compared, and those that are left to a check with --nightly.
+    fn wanted(&self, context: &Context<'_>) -> Result<(Vec<String>, Vec<String>), Failure> {
+        if self.nightly || !self.scenarios.is_empty() {
+            return Ok((self.scenarios.clone(), Vec::new()));
+        }
+        let names = context.catalogue()?.names()?;
+        let nightly = context.scenarios(&names)?.iter().map(|scenario| scenario.nightly).collect::<Vec<_>>();
+        let (left, now): (Vec<_>, Vec<_>) = names.into_iter().zip(nightly).partition(|(_, nightly)| *nightly);
+        let [now, left] = [now, left].map(|list| list.into_iter().map(|(name, _)| name).collect::<Vec<String>>());
+        // Where all are left they are what is asked for.
+        Ok(if now.is_empty() { (left, now) } else { (now, left) })
+    }
+
+    fn report(
+        &self,
+        gate: Gate,
+        compared: &[(String, String)],
+        left: &[String],
+        findings_file: Option<&OutputFile>,
+    ) -> Result<(), Failure> {
         let rules = Rules { strict: self.strict, locked: self.locked };
         let tally = gate.tally();
         let findings = gate.conclude();
@@ -90,7 +122,7 @@ impl Check {
             let text = junit(&findings, compared, rules);
             file.write(|file| file.write_all(text.as_bytes()))?;
         }
-        print(&if self.json { json(&findings, rules, tally) } else { render(&findings, rules, tally) })?;
+        print(&if self.json { json(&findings, rules, tally, left) } else { render(&findings, rules, tally) + &not_tested(left) })?;
         if findings.iter().any(|finding| finding.fails_by(rules)) {
             return Err(Failure::Gate);
         }

@@ -44,6 +44,11 @@ pub fn finder(board: Board) -> Result<Finder, Failure> {
 
 /// As the project's own.
 impl Context<'_> {
+    /// The project's folder, if there is one.
+    pub fn folder(&self) -> Result<Option<PathBuf>, Failure> {
+        self.project.folder().map_err(project_failure)
+    }
+
     pub fn root(&self) -> Result<PathBuf, Failure> {
         self.project.root().map_err(project_failure)
     }

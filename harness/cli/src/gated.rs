@@ -7,12 +7,14 @@ use calibench_measure::Configured;
 use calibench_measure::registry::KINDS;
 use calibench_project::ProjectError;
 use calibench_report::verdicts;
+use calibench_run::reuse::{Reuse, Tally};
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
 use calibench_run::{Order, Plan};
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
 use super::context::Context;
 use super::progress::Progress;
+use super::stored::{Stored, is_current};
 use crate::failure::{Failure, project_failure};
 
 /// Gets a table with its scenario and the cell of its sweep.
@@ -26,6 +28,8 @@ pub struct Source<'a> {
     pub kept: Option<Keep>,
     /// Gets every table with the scenario and the cell of its sweep.
     pub each: &'a mut Seen<'a>,
+    /// The store of results.
+    pub stored: &'a Stored,
 }
 
 /// A temporary folder of records, and whose.
@@ -64,11 +68,17 @@ pub fn gated(context: &Context<'_>, names: &[String], source: &mut Source<'_>) -
         return Err(Failure::input(format!("{}: there is no scenario, so there is nothing to check", folder.display())));
     }
     let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
-    scenarios.iter().map(|scenario| one(context, scenario, source)).collect()
+    let tallies: Vec<Tally> = scenarios.iter().map(|_| Tally::default()).collect();
+    let all = scenarios.iter().zip(&tallies).map(|(scenario, tally)| one(context, scenario, source, tally)).collect();
+    if source.records.is_none() {
+        source.stored.close(context.quiet, &tallies);
+    }
+    all
 }
 
-fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>) -> Result<Results, Failure> {
-    let plan = plan(context, scenario)?;
+fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>, tally: &Tally) -> Result<Results, Failure> {
+    let reuse = source.stored.reuse(tally);
+    let plan = plan(context, scenario, reuse)?;
     let results = |measured: Measured, figures: Option<Cells<FigureSums>>| Results {
         scenario: scenario.name.clone(),
         deterministic: scenario.is_deterministic(),
@@ -82,13 +92,13 @@ fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>) -> R
     let keep = source.kept.as_ref().filter(|keep| source.records.is_none() && keep.scenarios.contains(&scenario.name));
     let records = match keep {
         Some(keep) => {
-            run_into(context, scenario, keep.folder.path())?;
+            run_into(context, scenario, keep.folder.path(), reuse)?;
             Some(keep.folder.path().to_owned())
         }
         None => source.records.clone(),
     };
     if let Some(sweep) = &scenario.sweep {
-        let (sums, figures) = swept(context, scenario, sweep, (records.as_deref(), source))?;
+        let (sums, figures) = swept(context, scenario, sweep, (records.as_deref(), source), tally)?;
         return Ok(results(Measured::Sums(sums), figures));
     }
     let table = match &records {
@@ -96,7 +106,7 @@ fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>) -> R
         None => {
             let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
             let table = run(&plan, &scenario.name, &|| progress.step())?;
-            progress.finish("measured");
+            progress.finish(done(tally));
             table
         }
     };
@@ -112,6 +122,7 @@ fn swept(
     scenario: &Scenario,
     sweep: &Sweep,
     (records, source): (Option<&Path>, &mut Source<'_>),
+    tally: &Tally,
 ) -> Result<(Cells<PointSums>, Option<Cells<FigureSums>>), Failure> {
     let (mut sums, mut figures) = (empty(scenario), empty(scenario));
     let progress = Progress::start(&scenario.name, sweep.cells() as u64, context.quiet);
@@ -120,7 +131,7 @@ fn swept(
         let name = format!("{}@{label}", scenario.name);
         let cell = parse_cell(scenario, sweep, index, context.registry()?)
             .map_err(|problems| project_failure(ProjectError::Problems(problems)))?;
-        let plan = plan(context, &cell)?;
+        let plan = plan(context, &cell, source.stored.reuse(tally))?;
         let table = match records {
             Some(records) => {
                 described(recorded(&folder_of(records, scenario, Some(index)), &name, unit(scenario))?, &plan, source.records.is_none())
@@ -132,13 +143,18 @@ fn swept(
         figures.add(&label, &table);
         progress.step();
     }
-    progress.finish("measured");
+    progress.finish(done(tally));
     Ok((sums, kept(figures)))
 }
 
-fn plan<'a>(context: &'a Context<'_>, scenario: &'a Scenario) -> Result<Plan<'a>, Failure> {
+/// What was done.
+fn done(tally: &Tally) -> &'static str {
+    if is_current(tally) { "up to date" } else { "measured" }
+}
+
+fn plan<'a>(context: &'a Context<'_>, scenario: &'a Scenario, reuse: Option<Reuse<'a>>) -> Result<Plan<'a>, Failure> {
     // The gate compares errors with errors.
-    Ok(Plan { bounds: false, ..Plan::new(scenario, context.toolbox.tools(), context.data()?) })
+    Ok(Plan { bounds: false, reuse, ..Plan::new(scenario, context.toolbox.tools(), context.data()?) })
 }
 
 fn empty<T: Kept>(scenario: &Scenario) -> Cells<T> {
@@ -162,17 +178,17 @@ fn run(plan: &Plan<'_>, name: &str, step: &(dyn Fn() + Sync)) -> Result<Table, F
 }
 
 /// Runs a scenario into `records`: its figures are then those of the records, as reports have them.
-fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path) -> Result<(), Failure> {
+fn run_into(context: &Context<'_>, scenario: &Scenario, records: &Path, reuse: Option<Reuse<'_>>) -> Result<(), Failure> {
     let (output, revision) = (RecordsFolder::open(records, &scenario.name, None)?, context.revision()?);
     let Some(sweep) = &scenario.sweep else {
-        let mut plan = plan(context, scenario)?;
+        let mut plan = plan(context, scenario, reuse)?;
         let progress = Progress::start(&scenario.name, plan.steps(), context.quiet);
         store::run(&output, &mut plan, &revision, &|| progress.step())?;
-        progress.finish("measured");
+        progress.finish(reuse.map_or("measured", |reuse| done(reuse.tally)));
         return Ok(());
     };
     let (registry, tools) = (context.registry()?, context.toolbox.tools());
-    let order = Order { scenario, methods: &[], seed: None, trials: None, tools, data: context.data()?, registry, stop: None };
+    let order = Order { scenario, methods: &[], seed: None, trials: None, tools, data: context.data()?, reuse, registry, stop: None };
     let plan = SweepPlan { order, sweep };
     store::run_sweep(&output, &plan, &revision, &|| ())?;
     Ok(())

@@ -46,6 +46,7 @@ mod schema;
 mod show;
 mod speed;
 mod stmap;
+mod stored;
 
 use std::ffi::OsString;
 use std::path::PathBuf;

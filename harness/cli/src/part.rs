@@ -61,6 +61,11 @@ impl PartPlace {
 }
 
 impl Parts {
+    /// Whether a part is wanted, and not the whole.
+    pub fn are_asked_for(&self) -> bool {
+        self.part.is_some()
+    }
+
     /// Where `scenario`, which was asked for as `name`, goes.
     pub fn place(&self, context: &Context<'_>, name: &str, scenario: &Scenario) -> Result<Place, Failure> {
         let (origin, inputs) = (origin(name, scenario), context.inputs(name, scenario));

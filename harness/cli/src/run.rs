@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use calibench_measure::Configured;
+use calibench_run::reuse::Tally;
 use calibench_run::{Order, Plan, Planned, Ran};
 use calibench_scenario::{Scenario, Subject, Transfer};
 use clap::Args;
@@ -13,6 +14,7 @@ use super::notes::say_notes;
 use super::part::{Parts, Place, told};
 use super::photos::say_turns;
 use super::progress::Progress;
+use super::stored::{self, Reusing, Stored};
 use crate::failure::Failure;
 
 #[derive(Args)]
@@ -27,6 +29,8 @@ pub struct Run {
     changes: Changes,
     #[command(flatten)]
     parts: Parts,
+    #[command(flatten)]
+    reusing: Reusing,
 }
 
 /// What differs from the scenario's file.
@@ -59,6 +63,8 @@ struct Task<'a> {
     revision: &'a str,
     /// Whether another one is run beside it.
     beside: bool,
+    stored: &'a Stored,
+    tally: &'a Tally,
 }
 
 impl Task<'_> {
@@ -79,9 +85,15 @@ impl Run {
         let places = names.iter().zip(&scenarios).map(place).collect::<Result<Vec<_>, Failure>>()?;
         let revision = context.revision()?;
         let beside = scenarios.len() > 1 && lanes() > 1;
-        let task = |(scenario, place)| Task { scenario, place, methods: &methods, revision: &revision, beside };
-        let tasks: Vec<Task<'_>> = scenarios.iter().zip(&places).map(task).collect();
-        let measured = side_by_side(&tasks, lanes(), |task| self.one(context, task))?;
+        // Parts are put together elsewhere: what they take from a store would be of one machine.
+        let stored = if self.parts.are_asked_for() { Stored::none() } else { self.reusing.open(context)? };
+        let tallies: Vec<Tally> = scenarios.iter().map(|_| Tally::default()).collect();
+        let task =
+            |((scenario, place), tally)| Task { scenario, place, methods: &methods, revision: &revision, beside, stored: &stored, tally };
+        let tasks: Vec<Task<'_>> = scenarios.iter().zip(&places).zip(&tallies).map(task).collect();
+        let measured = side_by_side(&tasks, lanes(), |task| self.one(context, task));
+        stored.close(context.quiet, &tallies);
+        let measured = measured?;
         let nothing: Vec<&str> =
             scenarios.iter().zip(measured).filter(|(_, points)| *points == Some(0)).map(|(s, _)| s.name.as_str()).collect();
         // Of all that there is, some may be unavailable here; what was asked for by name may not.
@@ -93,10 +105,11 @@ impl Run {
 
     /// How many points were measured, of all trials; of a part nothing is said here.
     fn one(&self, context: &Context<'_>, task: &Task<'_>) -> Result<Option<u64>, Failure> {
-        let Task { scenario, place, methods, revision, .. } = *task;
+        let Task { scenario, place, methods, revision, stored, tally, .. } = *task;
         let Changes { seed, trials, .. } = self.changes;
         let (registry, tools, data) = (context.registry()?, context.toolbox.tools(), context.data()?);
-        let mut planned = Order { scenario, methods, trials, seed, tools, data, registry, stop: None }.planned()?;
+        let mut planned =
+            Order { scenario, methods, trials, seed, tools, data, reuse: stored.reuse(tally), registry, stop: None }.planned()?;
         if let Planned::One(plan) = &planned {
             say_before(plan)?;
         }
@@ -104,7 +117,11 @@ impl Run {
         let started = Instant::now();
         let progress = Progress::start(&scenario.name, planned.steps(&place), context.quiet);
         let ran = planned.run(&place, revision, &|| progress.step())?;
-        progress.finish(&self.told(&planned, &ran, &task.time(started)));
+        progress.finish(&match stored::told(tally) {
+            Some(kept) if stored::is_current(tally) => kept,
+            Some(kept) => format!("{}; {kept}", self.told(&planned, &ran, &task.time(started))),
+            None => self.told(&planned, &ran, &task.time(started)),
+        });
         say_notes(planned.methods());
         Ok(match ran {
             Ran::Whole(measured) => Some(measured),

@@ -5,7 +5,6 @@ use std::str::FromStr;
 
 use calibench_model::Image;
 use calibench_model::image::level;
-use multiversion::multiversion;
 use rayon::prelude::*;
 
 /// How many sums are kept.
@@ -56,7 +55,7 @@ impl Fingerprint {
 }
 
 /// The sums of the levels of a part of an image that begins with pixel `first`, of at most [`PART`] pixels.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2")))]
 #[expect(clippy::needless_range_loop, reason = "arrays side by side, in loops that every instruction set compiles for itself")]
 fn signed_sums(greys: &[f32], first: usize, top: u16) -> [i64; SUMS] {
     let (mut added, mut all) = ([0_u32; SUMS], 0_u32);

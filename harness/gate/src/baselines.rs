@@ -47,8 +47,13 @@ impl Results {
 
     /// The files that keep it: of its points and of its figures.
     pub(super) fn paths(&self, folder: &Path) -> [PathBuf; 2] {
-        [baseline_path(folder, &self.scenario), figures_path(folder, &self.scenario)]
+        paths(folder, &self.scenario)
     }
+}
+
+/// The files that keep the baseline of `scenario`: of its points and of its figures.
+fn paths(folder: &Path, scenario: &str) -> [PathBuf; 2] {
+    [baseline_path(folder, scenario), figures_path(folder, scenario)]
 }
 
 /// The folder of what was blessed, with its list.
@@ -115,12 +120,13 @@ impl Baselines {
         check.verdicts(&baseline, now);
     }
 
-    /// Notes every file of the folder, and of its list, that none of `all` scenarios makes.
+    /// Notes every file of the folder, and of its list, that none of `all` scenarios makes, nor of those that are `left` to another check.
     ///
     /// # Errors
     /// A folder that cannot be read.
-    pub fn vanished(&self, all: &[Results], check: &mut Check) -> io::Result<()> {
-        let known: Vec<PathBuf> = all.iter().flat_map(|one| one.paths(&self.folder)).chain([Verdicts::path(&self.folder)]).collect();
+    pub fn vanished(&self, all: &[Results], left: &[String], check: &mut Check) -> io::Result<()> {
+        let mut known: Vec<PathBuf> = all.iter().flat_map(|one| one.paths(&self.folder)).chain([Verdicts::path(&self.folder)]).collect();
+        known.extend(left.iter().flat_map(|name| paths(&self.folder, name)));
         let mut files: Vec<PathBuf> = std::fs::read_dir(&self.folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
         files.extend(self.index.files.keys().map(|file| self.folder.join(file)));
         files.sort();

@@ -61,7 +61,7 @@ pub use limits::{ALPHA, BOUND, LEAST_PAIRS, TOLERANCE};
 pub use moments::PointSums;
 pub use point_entry::{Coordinates, DECIMALS, Entry, Found, Place};
 pub use recorded::recorded;
-pub use render::{Tally, json, render};
+pub use render::{Tally, json, not_tested, render};
 pub use sums_judged::{CELL_GROWTH, FAILURES, SIGMA_DRIFT, TARGET_GROWTH};
 pub use table::{MethodTable, Table, fingerprint};
 pub use verdicts::Verdicts;

@@ -78,12 +78,22 @@ fn summary(findings: &[Finding], rules: Rules) -> String {
     format!("The gate fails: {count} findings ({methods}); {rest}; family-wise error rate {ALPHA}.\n")
 }
 
-/// All findings, rules and the tally as one JSON object.
-pub fn json(findings: &[Finding], rules: Rules, tally: Tally) -> String {
+/// Says which scenarios were `left` to another check; nothing where none were.
+pub fn not_tested(left: &[String]) -> String {
+    let names = left.iter().map(|name| escaped(name)).collect::<Vec<_>>().join(", ");
+    match left.len() {
+        0 => String::new(),
+        1 => format!("Not tested: {names}, which is left to `calibench check --nightly`.\n"),
+        count => format!("Not tested: {count} scenarios that are left to `calibench check --nightly`: {names}.\n"),
+    }
+}
+
+/// All findings, rules, the tally and what was `left` to another check as one JSON object.
+pub fn json(findings: &[Finding], rules: Rules, tally: Tally, left: &[String]) -> String {
     let list: Vec<serde_json::Value> = findings.iter().map(|finding| entry(finding, rules)).collect();
     let holds = !findings.iter().any(|finding| finding.fails_by(rules));
     let all = serde_json::json!({
-        "holds": holds, "strict": rules.strict, "locked": rules.locked, "family_wise_error_rate": ALPHA, "compared": tally, "findings": list,
+        "holds": holds, "strict": rules.strict, "locked": rules.locked, "family_wise_error_rate": ALPHA, "compared": tally, "not_tested": left, "findings": list,
     });
     format!("{all:#}\n")
 }

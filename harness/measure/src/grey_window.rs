@@ -1,7 +1,6 @@
 //! A square of an image's grey values in single precision.
 
 use calibench_model::Image;
-use multiversion::multiversion;
 
 /// The grey values of a window. Their unit is `half`, their zero `mean`: so single precision is enough.
 pub(crate) struct GreyWindow<'a> {
@@ -37,7 +36,7 @@ impl<'a> GreyWindow<'a> {
 }
 
 /// As many rows in units of `half` about `mean`.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn scale<'i>(rows: impl ExactSizeIterator<Item = &'i [f32]>, to: &mut [f32], (mean, half): (f64, f64)) {
     let side = rows.len();
     for (to, from) in to.chunks_exact_mut(side).zip(rows) {

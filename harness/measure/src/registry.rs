@@ -64,6 +64,8 @@ pub struct Configured {
     pub settings: Settings,
     /// The kinds of target that it is limited to, if it is.
     pub kinds: Option<Kinds>,
+    /// Whether it is no part of this program: its answers may change with nothing here telling.
+    pub outside: bool,
     /// The operator, or why there is none.
     pub operator: Result<Box<dyn Operator>, String>,
 }
@@ -161,7 +163,8 @@ impl Registry {
         };
         let default_label = label(method, &Settings::resolve(name, method.parameters, &[])?);
         let label = label(method, &settings);
-        Ok(Configured { unlimited_label: label.clone(), label, default_label, version, settings, kinds: None, operator })
+        let outside = matches!(method.build, Build::Outside(_));
+        Ok(Configured { unlimited_label: label.clone(), label, default_label, version, settings, kinds: None, outside, operator })
     }
 
     /// The method that `text` names, as in `forstner:window=15`. One that is limited to kinds of targets is written `corner+cross=forstner:window=15`, or

@@ -1,7 +1,5 @@
 //! What a fit leaves: noise, or something that the model does not picture.
 
-use multiversion::multiversion;
-
 use crate::lanes::{WIDE, sum};
 use crate::parameter::{Domain, Parameter};
 
@@ -107,7 +105,7 @@ impl Residuals {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn of_outline([by_x, by_y]: [&[f32]; 2], residual: &mut [f32], shows: &mut [f32], (stride, inverse): (usize, f32)) -> Structure {
     for (((r, shows), by_x), by_y) in residual.iter_mut().zip(&mut *shows).zip(by_x).zip(by_y) {
         *shows = if by_x * by_x + by_y * by_y > SHOWS * SHOWS { 1.0 } else { 0.0 };
@@ -121,7 +119,7 @@ fn of_outline([by_x, by_y]: [&[f32]; 2], residual: &mut [f32], shows: &mut [f32]
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn of_all(residual: &[f32], ones: &[f32], stride: usize) -> Structure {
     Structure {
         product: shifted(residual, 1) + shifted(residual, stride),
@@ -131,7 +129,7 @@ fn of_all(residual: &[f32], ones: &[f32], stride: usize) -> Structure {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn of_whole(residual: &[f32], stride: usize) -> (f64, f64) {
     (shifted(residual, 1) + shifted(residual, stride), shifted(residual, 0))
 }

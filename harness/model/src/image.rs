@@ -2,8 +2,6 @@
 
 use std::borrow::Cow;
 
-use multiversion::multiversion;
-
 /// Grey values, row by row, as fractions of full scale: 0 is black, 1 is white.
 ///
 /// f32 tells all levels of a 16-bit image apart. Pixel (column, row) has its centre at [`crate::PixelPoint`] (column, row). An image owns its grey values,
@@ -131,7 +129,7 @@ impl Image<'_> {
 }
 
 /// As [`Image::to_u8`], of as many grey values as there is room for.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2")))]
 pub fn levels_of(grey: &[f32], levels: &mut [u8]) {
     for (to, &grey) in levels.iter_mut().zip(grey) {
         *to = level(grey, 255) as u8;

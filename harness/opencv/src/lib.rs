@@ -38,6 +38,7 @@ pub fn main() -> std::process::ExitCode {
         detector: Some(Box::new(detector())),
         solver: Some(Box::new(calibrate_camera::CalibrateCamera)),
         bind_threads: Some(bind_threads),
+        code: option_env!("CALIBENCH_OPENCV_CODE"),
     })
 }
 

@@ -38,7 +38,7 @@ pub fn measured_boards(
     let one = |(path, name): (&PathBuf, &String)| {
         stop::point();
         let image = read_photo(path)?.image;
-        let found = measured_board(&image, name, finder, methods);
+        let found = measured_board(&image, name, finder, methods.iter().enumerate());
         step();
         Ok((found, ImageSize { width: image.width() as u32, height: image.height() as u32 }))
     };
@@ -62,8 +62,13 @@ pub fn method_info(method: &Configured) -> MethodInfo {
     }
 }
 
-/// A board's points in an image called `view`, in the hands of every available method, from the same whole pixels; and what is in doubt.
-pub fn measured_board(image: &Image, view: &str, finder: &Finder, methods: &[Configured]) -> (Trial, Vec<String>) {
+/// A board's points in an image called `view`, in the hands of every available method of these, with their places, from the same whole pixels; and what is in doubt.
+pub fn measured_board<'m>(
+    image: &Image,
+    view: &str,
+    finder: &Finder,
+    methods: impl IntoIterator<Item = (usize, &'m Configured)>,
+) -> (Trial, Vec<String>) {
     let found = finder.find(image, view);
     let doubts = found.doubts.iter().map(|doubt| format!("{view}: {doubt}")).collect();
     let (mut trial, view): (Trial, Arc<str>) = (Trial::default(), view.into());
@@ -79,7 +84,7 @@ pub fn measured_board(image: &Image, view: &str, finder: &Finder, methods: &[Con
     };
     let starts: Vec<Start> = found.rows.iter().map(|row| start(row.start)).collect();
     let names: Vec<String> = found.rows.into_iter().map(|row| row.target).collect();
-    for (method, operator) in methods.iter().enumerate().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?))) {
+    for (method, operator) in methods.into_iter().filter_map(|(i, method)| Some((i, method.operator.as_deref().ok()?))) {
         stop::point();
         let results = match operator.recorded() {
             Some(recorded) => {

@@ -15,6 +15,8 @@ pub struct Toolbox {
     pub solver: Option<Box<dyn BoardSolver>>,
     /// Binds the threads that its libraries start by themselves to a number, if any do.
     pub bind_threads: Option<fn(usize)>,
+    /// A digest of the code of all that it has beside calibench's own methods, if there is one: without it that of the whole program stands for it.
+    pub code: Option<&'static str>,
 }
 
 impl Toolbox {

@@ -164,7 +164,7 @@ fn ran(
     let (registry, data, tools) = (here.registry().map_err(project)?, here.data().map_err(project)?, here.toolbox.tools());
     let threads = Stoppable::on(py, threads)?;
     let (trials, seed) = (changes.trials, changes.seed);
-    let order = Order { scenario, methods: &methods, trials, seed, tools, data, registry, stop: Some(threads.flag()) };
+    let order = Order { scenario, methods: &methods, trials, seed, tools, data, reuse: None, registry, stop: Some(threads.flag()) };
     let mut planned = order.planned().map_err(input)?;
     if let Planned::One(plan) = &planned {
         plan.transfer().and_then(Transfer::warning).map_or(Ok(()), |warning| doubt(py, &format!("{}: {warning}", scenario.name)))?;

@@ -1,6 +1,7 @@
 //! Scenarios to results: truth-blind measuring, scored against the truth at the end.
 
 pub mod blocks;
+mod bounded;
 mod bounds;
 pub mod description;
 mod detection;
@@ -16,6 +17,7 @@ mod plan;
 mod planned;
 pub mod printed;
 pub mod recognition;
+pub mod reuse;
 mod rmse;
 mod scene;
 pub mod shots;

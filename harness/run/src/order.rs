@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use calibench_measure::{Configured, Registry};
 use calibench_scenario::Scenario;
 
+use crate::reuse::Reuse;
 use crate::{Plan, Tools};
 
 /// What is asked for.
@@ -22,6 +23,8 @@ pub struct Order<'a> {
     pub tools: Tools<'a>,
     /// Where photographs are.
     pub data: PathBuf,
+    /// The store of results, if there is one.
+    pub reuse: Option<Reuse<'a>>,
     /// All methods that there are.
     pub registry: &'a Registry,
     /// Ends the run before its next trial, once it is true.
@@ -44,7 +47,7 @@ impl<'a> Order<'a> {
     where
         'a: 'p,
     {
-        let mut plan = Plan { stop: self.stop, ..Plan::new(scenario, self.tools, self.data.clone()) };
+        let mut plan = Plan { stop: self.stop, reuse: self.reuse, ..Plan::new(scenario, self.tools, self.data.clone()) };
         if !self.methods.is_empty() {
             plan.methods = self.methods;
         }

@@ -40,5 +40,6 @@ fn view(plan: &Plan<'_>, subject: &PhotographsSubject, path: &Path, file: &str) 
     // The side of its squares is for the judgement alone.
     let board = Chessboard { board: subject.board, side: 1.0 };
     let finder = Finder::new(board.into()).map_err(|error| RunError::Asked(error.to_string()))?;
-    Ok(measured_board(&image, &view, &finder, plan.methods).0)
+    let asked = plan.available().into_iter().map(|method| (method, &plan.methods[method]));
+    Ok(measured_board(&image, &view, &finder, asked).0)
 }

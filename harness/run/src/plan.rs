@@ -16,6 +16,7 @@ use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 use crate::RunError;
 use crate::measured::{Answers, Asked, Pictured, of_its_kinds};
 use crate::printed::PRINT;
+use crate::reuse::Reuse;
 use crate::tools::Tools;
 
 /// The version of calibration methods: raised when their numbers change on purpose.
@@ -33,6 +34,10 @@ pub struct Plan<'a> {
     pub trials: u64,
     /// Which of them, where not all are run: a trial is the same whichever others are run.
     pub only: Option<Span>,
+    /// The places of the methods that are asked for, where not all are: what one of them gives is the same whichever others are.
+    pub asked: Option<&'a [usize]>,
+    /// The store of results, if there is one.
+    pub reuse: Option<Reuse<'a>>,
     /// What this build has beside its methods.
     pub tools: Tools<'a>,
     /// Where photographs are.
@@ -49,7 +54,20 @@ impl<'a> Plan<'a> {
     /// The scenario as its file says, with no images kept.
     pub fn new(scenario: &'a Scenario, tools: Tools<'a>, data: PathBuf) -> Self {
         let Scenario { methods, seed, trials, .. } = scenario;
-        Self { scenario, methods, seed: *seed, trials: *trials, only: None, tools, data, bounds: true, stop: None, images: None }
+        Self {
+            scenario,
+            methods,
+            seed: *seed,
+            trials: *trials,
+            only: None,
+            asked: None,
+            reuse: None,
+            tools,
+            data,
+            bounds: true,
+            stop: None,
+            images: None,
+        }
     }
 
     /// How many trials there are, whichever of them are run: one where nothing is drawn.
@@ -140,9 +158,9 @@ impl<'a> Plan<'a> {
         [self.scenario.bound_window, self.scenario.bound_window_discs]
     }
 
-    /// What each method estimates.
+    /// What each method that is asked for estimates.
     pub(crate) fn all_unknowns(&self) -> impl Iterator<Item = Unknowns> {
-        (0..self.methods.len()).map(|index| self.unknowns(index))
+        (0..self.methods.len()).filter(|index| self.asks_for(*index)).map(|index| self.unknowns(index))
     }
 
     /// Why a method cannot measure, if so.
@@ -157,8 +175,18 @@ impl<'a> Plan<'a> {
         self.unavailable(&self.methods[index]).is_none()
     }
 
-    /// The places of the methods that can measure.
+    /// Whether method `index` is asked for.
+    pub(crate) fn asks_for(&self, index: usize) -> bool {
+        self.asked.is_none_or(|asked| asked.contains(&index))
+    }
+
+    /// The places of the methods that can measure, of those that are asked for.
     pub(crate) fn available(&self) -> Vec<usize> {
+        (0..self.methods.len()).filter(|&index| self.asks_for(index) && self.is_available(index)).collect()
+    }
+
+    /// The places of all methods that can measure, asked for or not.
+    pub(crate) fn all_available(&self) -> Vec<usize> {
         (0..self.methods.len()).filter(|&index| self.is_available(index)).collect()
     }
 

@@ -16,6 +16,7 @@ use calibench_synth::raster::{Outlined, Picture, Renderer};
 use calibench_synth::sensor::{Clipped, Exposure};
 use rand::RngExt;
 
+use super::bounded::TrialBounds;
 use super::bounds::{BySet, TargetBounds};
 use super::{Plan, RunError};
 use crate::measured::{Asked, Pictured};
@@ -28,6 +29,8 @@ pub(super) struct Prepared<'a> {
     subject: &'a SceneSubject,
     renderer: Renderer,
     bounds: Option<TargetBounds>,
+    /// The light of the image, where it is the same in several trials.
+    light: Option<Image<'static>>,
 }
 
 impl<'a> Prepared<'a> {
@@ -41,26 +44,30 @@ impl<'a> Prepared<'a> {
             Pixels::Area if plan.bounds => TargetBounds::new(&subject.imaging, variance, size, plan.bound_windows(), plan.all_unknowns())?,
             _ => None,
         };
-        Ok(Self { subject, renderer: subject.renderer()?, bounds })
+        let renderer = subject.renderer()?;
+        let still = subject.phase == Phase::Fixed && subject.pixels == Pixels::Area && subject.imaging.has_steady_light();
+        let light = (plan.span().count() > 1 && still).then(|| renderer.render(&Picture::from(scene), &[]));
+        Ok(Self { subject, renderer, bounds, light })
     }
 }
 
 pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> Result<Trial, RunError> {
-    let Prepared { subject, renderer, bounds } = prepared;
+    let Prepared { subject, renderer, bounds, light } = prepared;
     let (subject, bounds) = (*subject, bounds.as_ref());
     let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: VIEW, target: "" };
     let truth = trial_truth(subject, key);
-    let image = trial_picture(subject, renderer, &truth, key)?.image;
+    let image = match light {
+        Some(light) => spoiled(subject, subject.imaging.expose_light(light, key)?, key),
+        None => trial_picture(subject, renderer, &truth, key)?,
+    };
+    let image = image.image;
     if let Some(folder) = plan.images.filter(|_| number == 0) {
         folder.write(&kept_image_name(VIEW), |file| encode_png_densely(file, &image, subject.is_deep()))?;
     }
     let starts = starts(subject, &image, &truth, key);
     let view: Arc<str> = VIEW.into();
     let targets: Vec<Arc<str>> = truth.targets.iter().map(|target| target.id.as_str().into()).collect();
-    let picture = Picture::from(&truth);
-    let (outlined, mut work) = (Outlined::of(&picture), Work::default());
-    let by_target: Vec<BySet> =
-        truth.targets.iter().map(|target| bounds.map_or_else(BySet::new, |b| b.of(&outlined, target.kind, target.at, &mut work))).collect();
+    let by_target = by_target(bounds, &truth);
     let mut points = Vec::new();
     let asked = truth.targets.iter().zip(starts).map(|(target, start)| Asked { name: &target.id, kind: target.kind, start });
     let which = Some(ImageId { trial: number, view: VIEW });
@@ -74,6 +81,21 @@ pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -
         }
     }
     Ok(Trial { number, points, ..Trial::default() })
+}
+
+/// The bounds of trial `number`.
+pub(super) fn bounds(plan: &Plan<'_>, prepared: &Prepared<'_>, number: u64) -> TrialBounds {
+    let truth = trial_truth(prepared.subject, Key { view: VIEW, ..plan.key(number) });
+    let all = truth.targets.iter().zip(by_target(prepared.bounds.as_ref(), &truth));
+    all.map(|(target, bounds)| (VIEW.into(), target.id.as_str().into(), bounds)).collect()
+}
+
+/// The bounds of each target.
+fn by_target(bounds: Option<&TargetBounds>, truth: &Scene) -> Vec<BySet> {
+    let Some(bounds) = bounds else { return vec![BySet::new(); truth.targets.len()] };
+    let picture = Picture::from(truth);
+    let (outlined, mut work) = (Outlined::of(&picture), Work::default());
+    truth.targets.iter().map(|target| bounds.of(&outlined, target.kind, target.at, &mut work)).collect()
 }
 
 /// The scene of a trial, where its phase put it.
@@ -93,15 +115,20 @@ pub fn trial_truth(subject: &SceneSubject, key: Key<'_>) -> Scene {
 /// # Errors
 /// A size that the image's format cannot hold.
 pub fn trial_picture(subject: &SceneSubject, renderer: &Renderer, truth: &Scene, key: Key<'_>) -> Result<Exposure, RunError> {
-    let mut exposure = match subject.pixels {
+    let exposure = match subject.pixels {
         Pixels::Area => subject.imaging.expose(renderer, &Picture::from(truth), key)?,
         Pixels::Centre => Exposure { image: draw(truth), clipped: Clipped::default() },
     };
+    Ok(spoiled(subject, exposure, key))
+}
+
+/// What the noise and the levels of the scene make of an image.
+fn spoiled(subject: &SceneSubject, mut exposure: Exposure, key: Key<'_>) -> Exposure {
     add_grey_noise(&mut exposure.image, subject.grey_noise, &mut stream(key, Purpose::GreyNoise));
     if let Some(bits) = subject.bits {
         quantise(&mut exposure.image, bits);
     }
-    Ok(exposure)
+    exposure
 }
 
 /// Where measuring starts in the image of a trial: of each target of `truth`, `None` where the scenario's detector misses it.

@@ -21,6 +21,7 @@ use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
 use crate::description::{description, told_notes};
 use crate::judgement::write_judgement;
+use crate::reuse::{Reuse, Stamp};
 use crate::theory::write_theory;
 use crate::{Order, Plan, RunError};
 
@@ -87,6 +88,36 @@ impl RecordsFolder {
         Err(io::Error::new(io::ErrorKind::AlreadyExists, format!("{}: holds the records of {other}, {why}", path.display())))
     }
 
+    /// What the records of a run of `plans` depend on.
+    fn stamp<'a>(&self, scenario: &Scenario, reuse: Option<Reuse<'a>>, plans: &[Plan<'_>]) -> Option<Stamp<'a>> {
+        Stamp::of(self.output.path(), (&scenario.text, self.origin.as_deref()), reuse, plans)
+    }
+
+    /// Puts what `fill` writes in the place of what is there, unless that is the same already; how many points were measured.
+    fn unless_unchanged(
+        &self,
+        stamp: Option<Stamp<'_>>,
+        reuse: Option<Reuse<'_>>,
+        fill: impl FnOnce(&NewFolder) -> Result<u64, RunError>,
+    ) -> Result<u64, RunError> {
+        let folder = self.output.path();
+        if let (Some(stamp), Some(reuse)) = (&stamp, reuse)
+            && let Some(measured) = stamp.measured(folder)
+        {
+            reuse.tally.leave();
+            return Ok(measured);
+        }
+        let mut measured = 0;
+        self.replace(|folder| {
+            measured = fill(folder)?;
+            Ok::<_, RunError>(())
+        })?;
+        if let Some(stamp) = stamp {
+            stamp.put(folder, measured);
+        }
+        Ok(measured)
+    }
+
     /// Puts what `fill` writes in the place of what is there, at once.
     pub(crate) fn replace<E: From<io::Error>>(&self, fill: impl FnOnce(&NewFolder) -> Result<(), E>) -> Result<(), E> {
         self.output.replace(fill)
@@ -117,12 +148,12 @@ impl RecordsFolder {
 /// # Errors
 /// What the run or the file system refuses; older records are then as they were.
 pub fn run(records: &RecordsFolder, plan: &mut Plan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
-    let mut measured = 0;
-    records.replace(|folder| {
-        measured = fill(folder, plan, revision, step)?;
-        records.keep(plan.scenario, plan.methods, told(plan.methods), folder)
-    })?;
-    Ok(measured)
+    let stamp = records.stamp(plan.scenario, plan.reuse, std::slice::from_ref(plan));
+    records.unless_unchanged(stamp, plan.reuse, |folder| {
+        let measured = fill(folder, plan, revision, step)?;
+        records.keep(plan.scenario, plan.methods, told(plan.methods), folder)?;
+        Ok(measured)
+    })
 }
 
 /// Runs the trials of `plan` that are wanted and writes what there is of them into `folder`; how many points were measured.
@@ -215,12 +246,18 @@ impl SweepPlan<'_> {
 /// # Errors
 /// What a run or the file system refuses; older records are then as they were.
 pub fn run_sweep(records: &RecordsFolder, plan: &SweepPlan<'_>, revision: &str, step: &(dyn Fn() + Sync)) -> Result<u64, RunError> {
-    let mut measured = 0;
-    records.replace(|folder| {
-        measured = fill_sweep(folder, plan, (0..plan.sweep.cells()).map(|cell| (cell, None)), revision, step)?;
-        records.keep(plan.order.scenario, plan.order.methods, told(plan.order.measuring()), folder)
-    })?;
-    Ok(measured)
+    let (scenario, reuse) = (plan.order.scenario, plan.order.reuse);
+    let stamp = if reuse.is_some() {
+        let cells = (0..plan.sweep.cells()).map(|index| plan.cell(index)).collect::<Result<Vec<_>, RunError>>()?;
+        records.stamp(scenario, reuse, &cells.iter().map(|cell| plan.plan(cell)).collect::<Vec<_>>())
+    } else {
+        None
+    };
+    records.unless_unchanged(stamp, reuse, |folder| {
+        let measured = fill_sweep(folder, plan, (0..plan.sweep.cells()).map(|cell| (cell, None)), revision, step)?;
+        records.keep(scenario, plan.order.methods, told(plan.order.measuring()), folder)?;
+        Ok(measured)
+    })
 }
 
 /// Runs `cells` of `plan`, of each all trials or those that are wanted, and writes what there is of them into `folder`; how many points were measured.

@@ -3,15 +3,71 @@
 use calibench_measure::kinds::cover;
 use calibench_random::Key;
 use calibench_records::parts::Span;
-use calibench_records::results::Trial;
-use calibench_scenario::{Subject, ViewsSubject};
+use calibench_records::results::{Calibrated, Trial};
+use calibench_scenario::{PhotographsSubject, Printed, Subject};
 use rayon::prelude::*;
 
+use super::bounded::Bounding;
 use super::transfer::Campaign;
-use super::{Plan, RunError, photographs, printed, scene, views};
+use super::{Plan, RunError, photographs, printed, reuse, scene, views};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
-const BATCH: u64 = 32;
+pub(crate) const BATCH: u64 = 32;
+
+/// What makes the trials of a plan, with what is the same in all of them.
+pub(crate) enum Work<'a> {
+    /// Nothing: all is there.
+    Nothing,
+    /// Photographs.
+    Photographs(&'a PhotographsSubject),
+    /// Printed figures.
+    Printed(&'a Printed),
+    /// A rendered scene.
+    Scene(Box<scene::Prepared<'a>>),
+    /// Views of a testfield.
+    Views(Box<views::Trials<'a>>),
+    /// Calibrations that are applied.
+    Transfer(Box<Campaign<'a>>),
+}
+
+/// What was made of a trial.
+#[derive(Default)]
+pub(crate) struct Made {
+    /// Its points, and what was adjusted from them.
+    pub trial: Trial,
+    /// What was counted beside the points.
+    pub counted: Vec<Calibrated>,
+}
+
+impl Made {
+    /// The trial with everything.
+    pub fn into_trial(mut self) -> Trial {
+        self.trial.calibrations.extend(self.counted);
+        self.trial
+    }
+}
+
+impl From<Trial> for Made {
+    fn from(trial: Trial) -> Self {
+        Self { trial, counted: Vec::new() }
+    }
+}
+
+impl Work<'_> {
+    /// Measures trial `number` with the methods that `plan` asks for, and adjusts what is not adjusted apart; `step` is called after each step, on any thread.
+    pub fn measured(&self, plan: &Plan<'_>, number: u64, step: &(dyn Fn() + Sync)) -> Result<Made, RunError> {
+        let made = match self {
+            Self::Photographs(subject) => return Ok(photographs::run(plan, subject, step)?.into()),
+            Self::Nothing => Made::default(),
+            Self::Printed(printed) => printed::run(printed).into(),
+            Self::Scene(prepared) => scene::run_trial(plan, prepared, number)?.into(),
+            Self::Views(trials) => trials.measured(plan, number)?,
+            Self::Transfer(campaign) => campaign.trial(plan.key(number))?.into(),
+        };
+        step();
+        Ok(made)
+    }
+}
 
 impl Plan<'_> {
     /// How many steps [`Plan::run`] reports.
@@ -22,7 +78,8 @@ impl Plan<'_> {
         }
     }
 
-    /// Runs all trials, or those that are wanted, and hands them to `sink` in their order; `step` is called after each step, on any thread.
+    /// Runs all trials, or those that are wanted, and hands them to `sink` in their order; `step` is called after each step, on any thread. What is in the plan's store is
+    /// read, and what is not is put there.
     ///
     /// # Errors
     /// Targets of a kind that no method measures, a method without targets of its kinds; a recorded one with names of others; photographs that cannot be read; what `sink` returns.
@@ -32,64 +89,70 @@ impl Plan<'_> {
             return Ok(());
         }
         self.check_recorded()?;
-        match &self.scenario.subject {
-            Subject::Photographs(subject) => sink(photographs::run(self, subject, step)?),
-            Subject::Printed(printed) => {
-                let trial = printed::run(printed);
-                step();
-                sink(trial)
-            }
-            Subject::Scene(subject) => {
-                let prepared = scene::Prepared::new(self, subject)?;
-                self.trials(step, sink, &|number| scene::run_trial(self, &prepared, number))
-            }
-            Subject::Views(subject) if subject.transfer.is_some() => self.transferred(subject, step, sink),
-            Subject::Views(subject) => {
-                // Drawn coordinates are those of no image.
-                let drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
-                let bounds = if self.bounds && !drawn { views::bounds(self, subject)? } else { None };
-                // What is drawn anew in each trial has its bounds there.
-                let fixed = bounds.as_ref().filter(|_| !subject.changes());
-                let key = Key { seed: self.seed, scenario: &self.scenario.name, trial: 0, view: "", target: "" };
-                let prepared = views::Prepared::with(subject, &subject.stations, key, fixed, views::renderer(subject)?)?;
-                self.trials(step, sink, &|number| views::run_trial(self, &prepared, bounds.as_ref(), number))
-            }
+        match self.reuse {
+            Some(reuse) => reuse::run(self, reuse, step, sink),
+            None => self.compute(step, sink),
         }
     }
 
-    /// Calibrations that are applied.
-    fn transferred(
-        &self,
-        subject: &ViewsSubject,
-        step: &(dyn Fn() + Sync),
-        sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
-    ) -> Result<(), RunError> {
-        let Some(transfer) = &subject.transfer else { return Ok(()) };
-        let campaign = Campaign::new(subject, transfer, self.tools)?;
-        let key = |trial| Key { seed: self.seed, scenario: &self.scenario.name, trial, view: "", target: "" };
-        self.trials(step, sink, &|number| campaign.trial(key(number)))
-    }
-
-    /// Runs trials in batches and hands them on in their order.
-    fn trials(
-        &self,
-        step: &(dyn Fn() + Sync),
-        sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
-        trial: &(dyn Fn(u64) -> Result<Trial, RunError> + Sync),
-    ) -> Result<(), RunError> {
+    /// The same without a store.
+    pub(crate) fn compute(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
+        let work = self.work()?;
+        let trial = |number| {
+            self.go_on()?;
+            let mut made = work.measured(self, number, step)?;
+            if self.is_adjusted_apart() {
+                made.trial.calibrations = self.adjust(&made.trial, number);
+            }
+            Ok(made.into_trial())
+        };
         let Span { from, to } = self.span();
         for first in (from..to).step_by(BATCH as usize) {
             let batch = first..(first + BATCH).min(to);
-            let counted = |number| {
-                self.go_on()?;
-                let trial = trial(number);
-                step();
-                trial
-            };
-            for trial in batch.into_par_iter().map(counted).collect::<Result<Vec<_>, _>>()? {
+            for trial in batch.into_par_iter().map(trial).collect::<Result<Vec<_>, RunError>>()? {
                 sink(trial)?;
             }
         }
         Ok(())
+    }
+
+    /// What makes the trials.
+    pub(crate) fn work(&self) -> Result<Work<'_>, RunError> {
+        Ok(match &self.scenario.subject {
+            Subject::Photographs(subject) => Work::Photographs(subject),
+            Subject::Printed(printed) => Work::Printed(printed),
+            Subject::Scene(subject) => Work::Scene(Box::new(scene::Prepared::new(self, subject)?)),
+            Subject::Views(subject) => match &subject.transfer {
+                Some(transfer) => Work::Transfer(Box::new(Campaign::new(subject, transfer, self.tools)?)),
+                None => Work::Views(Box::new(views::Trials::new(self, subject)?)),
+            },
+        })
+    }
+
+    /// What computes the bounds of the methods that are asked for, apart from measuring.
+    pub(crate) fn bounding(&self) -> Result<Bounding<'_>, RunError> {
+        Ok(match &self.scenario.subject {
+            Subject::Scene(subject) => Bounding::Scene(Box::new(scene::Prepared::new(self, subject)?)),
+            Subject::Views(subject) => Bounding::views(views::Trials::new(self, subject)?),
+            Subject::Photographs(_) | Subject::Printed(_) => Bounding::Nothing,
+        })
+    }
+
+    /// The key of a trial's random numbers.
+    pub(crate) fn key(&self, trial: u64) -> Key<'_> {
+        Key { seed: self.seed, scenario: &self.scenario.name, trial, view: "", target: "" }
+    }
+
+    /// Whether what is made of points is made apart from them: where all of them are kept, so that they can be adjusted again.
+    pub(crate) fn is_adjusted_apart(&self) -> bool {
+        matches!(&self.scenario.subject, Subject::Views(subject) if views::is_adjusted_apart(subject))
+    }
+
+    /// What is made of the points of trial `number`, apart, of the methods that are asked for.
+    pub(crate) fn adjust(&self, trial: &Trial, number: u64) -> Vec<Calibrated> {
+        match &self.scenario.subject {
+            Subject::Views(subject) => views::adjusted(self, subject, &trial.points, self.key(number)),
+            Subject::Scene(_) | Subject::Photographs(_) | Subject::Printed(_) => Vec::new(),
+        }
     }
 }

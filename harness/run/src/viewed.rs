@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use calibench_exchange::encode_png_densely;
-use calibench_measure::ImageId;
-use calibench_model::Image;
+use calibench_measure::{Configured, ImageId};
+use calibench_model::{Image, TargetKind};
 use calibench_random::Key;
 use calibench_records::names::kept_image_name;
 use calibench_records::results::{PointResult, Trial};
@@ -16,6 +16,7 @@ use super::recognition::{Counted, Recognised, keep_steps, recognise, shown};
 use super::views::{Pointed, Prepared, PreparedView, is_pointed_at, kind_of, seen, started};
 use super::{Plan, RunError};
 use crate::measured::{Answers, Asked, Pictured};
+use crate::trials::Made;
 
 /// What was made of one view.
 struct Viewed {
@@ -23,11 +24,14 @@ struct Viewed {
     image: Option<Image<'static>>,
     /// By method, with its place.
     points: Vec<(usize, Vec<PointResult>)>,
+    /// The kinds of the targets that are pointed at.
+    kinds: Vec<TargetKind>,
     counted: Counted,
     tally: Tally,
 }
 
-pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
+pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Made, RunError> {
+    let mut first = FirstViews::of(plan, prepared);
     let mut by_method: Vec<Vec<PointResult>> = vec![Vec::new(); plan.methods.len()];
     let (mut counted, mut tally) = (Counted::default(), Tally::default());
     let views: Vec<(usize, &PreparedView<'_>)> = prepared.views.iter().enumerate().collect();
@@ -40,7 +44,7 @@ pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) 
             counted.join(viewed.counted);
             tally.join(viewed.tally);
             let is_shown =
-                is_first(&by_method, &view.name) || prepared.subject.recognition.as_ref().is_some_and(|plan| shown(plan) == Some(place));
+                first.is_in(place, &viewed.kinds) || prepared.subject.recognition.as_ref().is_some_and(|plan| shown(plan) == Some(place));
             if let (Some(folder), Some(image)) = (plan.images, viewed.image.filter(|_| is_shown)) {
                 // Pages show 8 bits, and noise below the levels of a sensor, or of an image without any, does not compress.
                 let deep = prepared.subject.imaging.has_deep_levels();
@@ -48,12 +52,9 @@ pub(super) fn run_views(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) 
             }
         }
     }
-    let mut trial = Trial { number: key.trial, points: by_method.into_iter().flatten().collect(), ..Trial::default() };
-    if let Some(recognition) = &prepared.subject.recognition {
-        trial.calibrations.push(counted.calibrated(recognition, prepared.subject.sets().len() - 1));
-    }
-    trial.calibrations.extend(tally.calibrated(0));
-    Ok(trial)
+    let trial = Trial { number: key.trial, points: by_method.into_iter().flatten().collect(), ..Trial::default() };
+    let recognised = prepared.subject.recognition.as_ref().map(|plan| counted.calibrated(plan, prepared.subject.sets().len() - 1));
+    Ok(Made { trial, counted: recognised.into_iter().chain(tally.calibrated(0)).collect() })
 }
 
 fn of_view(plan: &Plan<'_>, prepared: &Prepared<'_>, (place, view): (usize, &PreparedView<'_>), key: Key<'_>) -> Result<Viewed, RunError> {
@@ -90,7 +91,8 @@ fn of_view(plan: &Plan<'_>, prepared: &Prepared<'_>, (place, view): (usize, &Pre
     };
     let points = plan.measure(picture, &asked.collect::<Vec<_>>()).into_iter().map(of_method).collect();
     let image = (plan.images.is_some() && key.trial == 0).then_some(image);
-    Ok(Viewed { image, points, counted, tally })
+    let kinds = seen.iter().map(|point| kind_of(prepared, point)).collect();
+    Ok(Viewed { image, points, kinds, counted, tally })
 }
 
 /// Where the targets are in the image of a view.
@@ -99,7 +101,28 @@ fn true_places<'p>(prepared: &'p Prepared<'_>, view: &PreparedView<'_>) -> TrueP
     TruePlaces { all: prepared.targets.iter().zip(&view.truth).filter_map(place).collect() }
 }
 
-/// Whether the first point of all, which decides the image that pages show, lies in `view`. Noisy images do not compress: only this one is kept.
-fn is_first(by_method: &[Vec<PointResult>], view: &str) -> bool {
-    by_method.iter().find_map(|points| points.first()).is_some_and(|point| &*point.view == view)
+/// In which view each method has its first point. Noisy images do not compress: only that of the first point of all, which pages show, is kept. Methods that are not asked for
+/// count, so that the image is the same whichever are.
+struct FirstViews<'p> {
+    methods: Vec<&'p Configured>,
+    first: Vec<Option<usize>>,
+}
+
+impl<'p> FirstViews<'p> {
+    fn of(plan: &Plan<'p>, prepared: &Prepared<'_>) -> Self {
+        let knows = |method: &&Configured| {
+            let finder = method.board_finder();
+            finder.is_none_or(|finder| prepared.sought.as_ref().is_some_and(|sought| finder.unfit(&sought.board).is_none()))
+        };
+        let methods: Vec<_> = plan.all_available().into_iter().map(|index| &plan.methods[index]).filter(knows).collect();
+        Self { first: vec![None; methods.len()], methods }
+    }
+
+    /// Whether the first point of all, as far as views were looked at, lies in view `place`, where targets of `kinds` are pointed at.
+    fn is_in(&mut self, place: usize, kinds: &[TargetKind]) -> bool {
+        for (method, first) in self.methods.iter().zip(&mut self.first).filter(|(_, first)| first.is_none()) {
+            *first = kinds.iter().any(|kind| method.measures(Some(*kind))).then_some(place);
+        }
+        self.first.iter().find_map(|first| *first) == Some(place)
+    }
 }

@@ -1,13 +1,13 @@
 //! Trials of a testfield that is seen from several stations.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use calibench_measure::Sought;
 use calibench_model::camera::CameraModel;
 use calibench_model::{Image, Measurement, ObjectTarget, PixelPoint, Start, TargetKind};
 use calibench_random::{Key, Purpose, stream};
-use calibench_records::results::{PointResult, Trial};
-use calibench_scenario::{Blocks, Calibration, ViewsSubject};
+use calibench_records::results::{Calibrated, PointResult, Trial};
+use calibench_scenario::ViewsSubject;
 use calibench_synth::bound::Work;
 use calibench_synth::raster::{Outlined, Picture, Renderer};
 use calibench_synth::sensor::Exposure;
@@ -15,11 +15,16 @@ use calibench_synth::stations::Station;
 use calibench_synth::view::{TargetTruth, View, Visibility};
 use rayon::prelude::*;
 
+use super::bounded::TrialBounds;
 use super::bounds::{BySet, TargetBounds};
 use super::viewed::run_views;
 use super::{Plan, RunError};
 use crate::network::Job;
+use crate::trials::Made;
 use crate::{blocks, network};
+
+/// Pixels of light that are kept at most, 4 bytes each.
+const MOST_LIGHT: usize = 50_000_000;
 
 /// What is the same in all trials.
 pub struct Prepared<'a> {
@@ -28,6 +33,8 @@ pub struct Prepared<'a> {
     /// The views, in the order of the stations.
     pub views: Vec<PreparedView<'a>>,
     renderer: Arc<Renderer>,
+    /// Whether the light of views is kept: where it is the same in several trials.
+    keeps_light: bool,
     pub(super) targets: Vec<Arc<str>>,
     /// The board that is seen, if it is one.
     pub(super) sought: Option<Sought>,
@@ -44,6 +51,7 @@ pub struct PreparedView<'a> {
     /// The bound of each target that is measured.
     pub(super) bounds: Vec<BySet>,
     pub(super) name: Arc<str>,
+    light: OnceLock<Image<'static>>,
 }
 
 impl<'a> Prepared<'a> {
@@ -91,13 +99,13 @@ impl<'a> Prepared<'a> {
                 _ => BySet::new(),
             };
             let bounds = subject.field.targets.par_iter().zip(&truth).map_init(Work::default, bound).collect();
-            Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into() })
+            Ok(PreparedView { station, picture, truth, bounds, name: station.name.as_str().into(), light: OnceLock::new() })
         };
         // The first station's error is the one that is said, whichever comes first.
         let views = stations.par_iter().map(view).collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, RunError>>()?;
         let targets = subject.field.targets.iter().map(|target| target.id.as_str().into()).collect();
         let sought = subject.sheet.and_then(|board| Sought::new(board).ok());
-        Ok(Self { subject, views, renderer, targets, sought })
+        Ok(Self { subject, views, renderer, keeps_light: false, targets, sought })
     }
 
     /// The image of a view.
@@ -105,12 +113,25 @@ impl<'a> Prepared<'a> {
     /// # Errors
     /// A size that the image's format cannot hold.
     pub fn image(&self, view: &PreparedView<'_>, key: Key<'_>) -> Result<Exposure, RunError> {
-        Ok(self.subject.imaging.expose(&self.renderer, &view.picture, Key { view: &view.station.name, ..key })?)
+        let (imaging, key) = (&self.subject.imaging, Key { view: &view.station.name, ..key });
+        if self.keeps_light {
+            return Ok(imaging.expose_light(view.light.get_or_init(|| self.irradiance(view)), key)?);
+        }
+        Ok(imaging.expose(&self.renderer, &view.picture, key)?)
     }
 
     /// The image of a view before the sensor, without noise and without row jitter.
     pub fn irradiance(&self, view: &PreparedView<'_>) -> Image<'static> {
         self.renderer.render(&view.picture, &[])
+    }
+
+    /// The bounds of what is seen in each view.
+    fn bounds(&self) -> TrialBounds {
+        let of = |view: &PreparedView<'_>| {
+            let all = self.targets.iter().zip(&view.bounds).filter(|(_, bounds)| !bounds.is_empty());
+            all.map(|(target, bounds)| (view.name.clone(), target.clone(), bounds.clone())).collect::<Vec<_>>()
+        };
+        self.views.iter().flat_map(of).collect()
     }
 
     /// Whether the image is kept with 16 bits.
@@ -132,62 +153,104 @@ pub(super) fn bounds(plan: &Plan<'_>, subject: &ViewsSubject) -> Result<Option<T
     Ok(TargetBounds::new(&subject.imaging, 0.0, size, plan.bound_windows(), plan.all_unknowns())?)
 }
 
-pub(super) fn run_trial(plan: &Plan<'_>, prepared: &Prepared<'_>, bounds: Option<&TargetBounds>, number: u64) -> Result<Trial, RunError> {
-    let key = Key { seed: plan.seed, scenario: &plan.scenario.name, trial: number, view: "", target: "" };
-    let subject = prepared.subject;
-    if !subject.changes() {
-        return run_prepared(plan, prepared, key);
-    }
-    // Of points that are not kept nobody asks for the bound.
-    let bounds = bounds.filter(|_| number == 0 || subject.blocks.as_ref().is_none_or(|blocks| blocks.keep_points));
-    run_prepared(plan, &Prepared::with(subject, &subject.stations_of(key)?, key, bounds, prepared.renderer.clone())?, key)
+/// What makes the trials of views, with what is the same in all of them.
+pub(crate) struct Trials<'a> {
+    prepared: Prepared<'a>,
+    bounds: Option<TargetBounds>,
 }
 
-fn run_prepared(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Trial, RunError> {
-    let subject = prepared.subject;
-    match (&subject.calibration, &subject.blocks) {
-        (Some(calibration), _) => calibrated(plan, prepared, calibration, key),
-        (None, Some(blocks)) => in_blocks(plan, prepared, blocks, key),
-        (None, None) => {
-            let mut trial = run_views(plan, prepared, key)?;
-            if key.trial > 0 && subject.recognition.is_some() {
-                // What is counted of all trials is in their figures.
-                trial.points.clear();
-            }
-            Ok(trial)
+impl<'a> Trials<'a> {
+    /// Those of `plan`.
+    pub fn new(plan: &Plan<'_>, subject: &'a ViewsSubject) -> Result<Self, RunError> {
+        // Drawn coordinates are those of no image.
+        let drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
+        let bounds = if plan.bounds && !drawn { bounds(plan, subject)? } else { None };
+        // What is drawn anew in each trial has its bounds there.
+        let fixed = bounds.as_ref().filter(|_| !subject.changes());
+        let mut prepared = Prepared::with(subject, &subject.stations, plan.key(0), fixed, renderer(subject)?)?;
+        let pixels = subject.camera.size().width as usize * subject.camera.size().height as usize;
+        let fits = subject.stations.len().saturating_mul(pixels) <= MOST_LIGHT;
+        prepared.keeps_light = plan.span().count() > 1 && fits && !drawn && !subject.changes() && subject.imaging.has_steady_light();
+        Ok(Self { prepared, bounds })
+    }
+
+    /// The bounds of all trials, where they are the same in all.
+    pub fn fixed_bounds(&self) -> Option<TrialBounds> {
+        (!self.prepared.subject.changes()).then(|| self.prepared.bounds())
+    }
+
+    /// The bounds of trial `number`.
+    pub fn bounds(&self, plan: &Plan<'_>, number: u64) -> Result<TrialBounds, RunError> {
+        self.changed(plan, number, |prepared| Ok(prepared.bounds()))
+    }
+
+    /// What `made` makes of what is to be seen in trial `number`, where that is another in each.
+    fn changed<T>(&self, plan: &Plan<'_>, number: u64, made: impl FnOnce(&Prepared<'_>) -> Result<T, RunError>) -> Result<T, RunError> {
+        let (key, subject) = (plan.key(number), self.prepared.subject);
+        // Of points that are not kept nobody asks for the bound.
+        let kept = number == 0 || subject.blocks.as_ref().is_none_or(|blocks| blocks.keep_points);
+        let bounds = self.bounds.as_ref().filter(|_| kept);
+        made(&Prepared::with(subject, &subject.stations_of(key)?, key, bounds, self.prepared.renderer.clone())?)
+    }
+
+    /// Measures trial `number`, and adjusts what is not adjusted apart.
+    pub fn measured(&self, plan: &Plan<'_>, number: u64) -> Result<Made, RunError> {
+        let (key, subject) = (plan.key(number), self.prepared.subject);
+        if !subject.changes() {
+            return measured(plan, &self.prepared, key);
         }
+        self.changed(plan, number, |prepared| measured(plan, prepared, key))
     }
 }
 
-/// A trial whose points go through the adjustment. Stations are the same in all of them.
-fn calibrated(plan: &Plan<'_>, prepared: &Prepared<'_>, calibration: &Calibration, key: Key<'_>) -> Result<Trial, RunError> {
+fn measured(plan: &Plan<'_>, prepared: &Prepared<'_>, key: Key<'_>) -> Result<Made, RunError> {
     let subject = prepared.subject;
-    let mut trial = match &calibration.drawn {
-        Some(sigmas) => draw_views(plan, prepared, sigmas, key),
+    let drawn = subject.calibration.as_ref().and_then(|calibration| calibration.drawn.as_ref());
+    let mut made = match drawn {
+        Some(sigmas) => draw_views(plan, prepared, sigmas, key).into(),
         None => run_views(plan, prepared, key)?,
     };
-    let ViewsSubject { camera, field, unit, stations, .. } = subject;
-    let available = plan.available();
-    let job = Job { calibration, field, unit: *unit, camera, stations };
-    trial.calibrations = network::calibrate(&job, &trial.points, &available, key);
-    if key.trial > 0 && !calibration.keep_points {
-        trial.points.clear();
+    if subject.calibration.is_some() {
+        made.counted.clear();
     }
-    Ok(trial)
+    if !is_adjusted_apart(subject) {
+        made.trial.calibrations = adjusted(plan, subject, &made.trial.points, key);
+    }
+    if key.trial > 0 && !keeps_points(subject) {
+        made.trial.points.clear();
+    }
+    Ok(made)
 }
 
-/// A trial whose points go through free networks.
-fn in_blocks(plan: &Plan<'_>, prepared: &Prepared<'_>, blocks: &Blocks, key: Key<'_>) -> Result<Trial, RunError> {
-    let subject = prepared.subject;
-    let mut trial = run_views(plan, prepared, key)?;
-    let available = plan.available();
-    let job = blocks::Job { blocks, field: &subject.field, unit: subject.unit, stations: &subject.stations, key };
-    let recognised = std::mem::replace(&mut trial.calibrations, blocks::adjust_blocks(&job, &trial.points, &available, key.trial == 0));
-    trial.calibrations.extend(recognised);
-    if key.trial > 0 && !blocks.keep_points {
-        trial.points.clear();
+/// Whether the points of all trials are kept, and not those of the first alone.
+fn keeps_points(subject: &ViewsSubject) -> bool {
+    match (&subject.calibration, &subject.blocks) {
+        (Some(calibration), _) => calibration.keep_points,
+        (None, Some(blocks)) => blocks.keep_points,
+        // What is counted of all trials is in their figures.
+        (None, None) => subject.recognition.is_none(),
     }
-    Ok(trial)
+}
+
+/// Whether what is made of points is made apart from them: where all of them are kept.
+pub(super) fn is_adjusted_apart(subject: &ViewsSubject) -> bool {
+    let is_drawn = subject.calibration.as_ref().is_some_and(|calibration| calibration.drawn.is_some());
+    (subject.calibration.is_some() || subject.blocks.is_some()) && keeps_points(subject) && !is_drawn
+}
+
+/// What is made of the points of the trial of `key`: what is adjusted for the methods that `plan` asks for. Stations are the same in all trials.
+pub(super) fn adjusted(plan: &Plan<'_>, subject: &ViewsSubject, points: &[PointResult], key: Key<'_>) -> Vec<Calibrated> {
+    let ViewsSubject { camera, field, unit, stations, .. } = subject;
+    match (&subject.calibration, &subject.blocks) {
+        (Some(calibration), _) => {
+            network::calibrate(&Job { calibration, field, unit: *unit, camera, stations }, points, &plan.available(), key)
+        }
+        (None, Some(blocks)) => {
+            let job = blocks::Job { blocks, field, unit: *unit, stations, key };
+            blocks::adjust_blocks(&job, points, &plan.available(), key.trial == 0)
+        }
+        (None, None) => Vec::new(),
+    }
 }
 
 /// Coordinates that are drawn from the truth: by the hand, or with the standard deviation that the scenario gives.
@@ -199,7 +262,7 @@ fn draw_views(plan: &Plan<'_>, prepared: &Prepared<'_>, sigmas: &[(String, Optio
             let target = &prepared.targets[point.target];
             let kind = Some(kind_of(prepared, &point));
             let methods =
-                plan.methods.iter().enumerate().filter(|(_, configured)| configured.operator.is_ok() && configured.measures(kind));
+                plan.methods.iter().enumerate().filter(|(index, one)| one.operator.is_ok() && one.measures(kind) && plan.asks_for(*index));
             for (method, configured) in methods {
                 let measured = match sigmas.iter().find(|(label, _)| *label == configured.label) {
                     Some((label, Some(sigma))) => network::draw(point.truth, *sigma, label, Key { target, ..key }),

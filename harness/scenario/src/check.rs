@@ -19,7 +19,7 @@ use super::site::Surroundings;
 use super::sweep::{self, Sweep};
 use super::views::{ImagingTables, ViewTables};
 use super::wire::Head;
-use super::{Scenario, Subject, ViewsSubject, figure, photographs, printed, scene};
+use super::{Resolved, Scenario, Subject, ViewsSubject, figure, photographs, printed, scene};
 
 /// Side of the bound's window where the file gives none, px.
 const BOUND_WINDOW: usize = 15;
@@ -146,6 +146,7 @@ const MOST_PROBLEMS: usize = 10;
 fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Problem>) -> Option<(Scenario, Vec<Range<usize>>)> {
     let File { name, text, registry, .. } = file;
     let folder = Path::new(file.path).parent().unwrap_or(Path::new(""));
+    let mut resolved = Resolved::of(&root);
     let mut root = Section { name: "the scenario", span: 0..text.lines().next().map_or(0, str::len), table: root };
     let listed = root.take_tables("method", "[[method]]", problems);
     let methods_missing = listed.as_ref().is_none_or(Vec::is_empty);
@@ -197,7 +198,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
             views.and_then(|views| adjusted.read(views, &methods, problems)).map(|views| Subject::Views(Box::new(views)))
         }
         (None, None, None, None) if transfer.is_some() => transfer
-            .and_then(|section| Surroundings { name, folder, registry, parse }.read(section, problems))
+            .and_then(|section| Surroundings { name, folder, registry, parse }.read(section, &mut resolved, problems))
             .map(|views| Subject::Views(Box::new(views))),
         (None, None, None, None) if print.is_some() => {
             print.and_then(|section| printed::read(section, problems)).map(|read| Subject::Printed(Box::new(read)))
@@ -214,6 +215,11 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         }
     };
     let (head, subject) = (head?, subject?);
+    if let Subject::Views(views) = &subject
+        && views.camera_file.is_some()
+    {
+        resolved = resolved.with_camera(&views.camera);
+    }
     let kinds = once(&subject.kinds());
     if methods.len() == listed_at.len() {
         check_kinds(&methods, &listed_at, &kinds, in_sweep, problems);
@@ -230,6 +236,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         why,
         source,
         notes,
+        nightly: head.nightly.unwrap_or(false),
         seed: head.seed.0,
         trials,
         methods,
@@ -239,6 +246,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         kinds,
         sweep: None,
         text: text.to_owned(),
+        resolved,
     };
     Some((sensible_trials(scenario, &trials_span, in_sweep, problems), listed_at))
 }

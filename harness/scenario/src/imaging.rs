@@ -1,5 +1,6 @@
 //! From outlines in the image to the image that is read.
 
+use calibench_model::Image;
 use calibench_random::Key;
 use calibench_synth::optics::{Optics, OpticsError};
 use calibench_synth::raster::{Picture, Renderer};
@@ -47,6 +48,22 @@ impl Imaging {
             }
         });
         Ok(Exposure { image, clipped: clipped.into_inner().unwrap_or_default() })
+    }
+
+    /// As [`Self::expose`], of the `light` that [`Renderer::render`] made of the picture before: where it is the same in many images.
+    ///
+    /// # Errors
+    /// As [`Self::expose`].
+    pub fn expose_light(&self, light: &Image<'static>, key: Key<'_>) -> Result<Exposure, SensorError> {
+        match &self.sensor {
+            Some(setup) => setup.sensor.expose(light.clone(), key),
+            None => Ok(Exposure { image: light.clone(), clipped: Clipped::default() }),
+        }
+    }
+
+    /// Whether the light of an image is the same whenever the picture is: rows do not move by themselves.
+    pub fn has_steady_light(&self) -> bool {
+        self.sensor.as_ref().is_none_or(|setup| setup.row_jitter == 0.0)
     }
 
     /// Whether the image has more than 8 bits.

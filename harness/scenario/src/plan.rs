@@ -3,7 +3,7 @@
 use calibench_measure::Configured;
 use calibench_model::TargetKind;
 
-use crate::{Phase, Subject, Sweep};
+use crate::{Phase, Resolved, Subject, Sweep};
 
 /// A checked scenario.
 pub struct Scenario {
@@ -15,6 +15,8 @@ pub struct Scenario {
     pub source: String,
     /// What is to be known when its figures are read.
     pub notes: Vec<String>,
+    /// Whether `check` leaves it to `check --nightly`.
+    pub nightly: bool,
     /// The seed of all its random numbers.
     pub seed: u64,
     /// How many trials.
@@ -33,6 +35,8 @@ pub struct Scenario {
     pub sweep: Option<Sweep>,
     /// The text of its file.
     pub text: String,
+    /// What it says, of a sweep its first cell.
+    pub resolved: Resolved,
 }
 
 impl Scenario {

@@ -10,7 +10,7 @@ use toml::de::DeTable;
 
 use super::section::Section;
 use super::transfer::{self, Site};
-use super::{Scenario, Subject, ViewsSubject};
+use super::{Resolved, Scenario, Subject, ViewsSubject};
 
 /// Where other scenarios are found, and how they are read.
 #[derive(Clone, Copy)]
@@ -26,11 +26,12 @@ pub struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// The field where calibrations are applied, with the `[transfer]` of `section`.
-    pub fn read(&self, section: Section<'_>, problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
+    /// The field where calibrations are applied, with the `[transfer]` of `section`; what was read for it is added to what is `resolved`.
+    pub fn read(&self, section: Section<'_>, resolved: &mut Resolved, problems: &mut Vec<Problem>) -> Option<ViewsSubject> {
         let mut found = Vec::new();
         let mut site = |file: &Spanned<String>| {
-            let views = self.views(file.get_ref())?;
+            let (views, other) = self.views(file.get_ref())?;
+            *resolved = std::mem::take(resolved).with_scenario(&self.name_of(file.get_ref()), &other);
             let site = Site { camera: views.camera, field: views.field.clone(), stations: views.stations.clone() };
             found.push(views);
             Ok(site)
@@ -44,7 +45,7 @@ impl Surroundings<'_> {
     }
 
     /// The views of the scenario in `file`, or what is wrong with it.
-    fn views(&self, file: &str) -> Result<ViewsSubject, String> {
+    fn views(&self, file: &str) -> Result<(ViewsSubject, Resolved), String> {
         let path = self.folder.join(file);
         let text = fs::read_to_string(&path).map_err(|error| format!("`{file}` cannot be read: {error}"))?;
         // Before anything else: two files could name each other.
@@ -55,7 +56,7 @@ impl Surroundings<'_> {
         let scenario = (self.parse)(&self.name_of(file), &path.display().to_string(), &text, self.registry)
             .map_err(|problems| format!("`{file}` has mistakes of its own: {}", problems.to_string().replace('\n', "; ")))?;
         match scenario.subject {
-            Subject::Views(views) if scenario.sweep.is_none() => Ok(*views),
+            Subject::Views(views) if scenario.sweep.is_none() => Ok((*views, scenario.resolved)),
             _ => Err(format!("`{file}` is another kind of scenario: expected one with [camera], [testfield] and stations, not swept")),
         }
     }

@@ -147,6 +147,8 @@ pub struct Head {
     /// Where it comes from: paper, figure, table, data set.
     #[schemars(with = "String")]
     pub source: Spanned<String>,
+    /// Whether `check` leaves it to `check --nightly`, and says so: what is large only to be large, beside a smaller twin. Default false.
+    pub nightly: Option<bool>,
     /// What is to be known when its figures are read: paragraphs of Markdown for its report.
     pub notes: Option<Vec<String>>,
     /// Seed of all random numbers, chosen before looking at results and never changed to pass.

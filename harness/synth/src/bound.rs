@@ -5,7 +5,6 @@
 //! widens the bound of the position.
 
 use calibench_model::{Covariance, Gradient, Levels, PixelPoint, Unknowns};
-use multiversion::multiversion;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use crate::optics::{Optics, OpticsError};
@@ -242,7 +241,7 @@ impl Sums {
 }
 
 /// Adds the products of every column with itself and those before it.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add_products(products: &mut [[f64; LANES]], rows: &[f64], weights: &[f64]) {
     let (n, stride) = (rows.len() / weights.len(), weights.len());
     let mut weighted = vec![0.0; stride];

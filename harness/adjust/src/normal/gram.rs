@@ -1,7 +1,5 @@
 //! Sums of products of columns, over many observations at once.
 
-use multiversion::multiversion;
-
 /// Points side by side in a block of rows; a column of a block holds as many x, then as many y.
 pub(crate) const LANES: usize = 8;
 /// Numbers of a column in a block.
@@ -21,7 +19,7 @@ pub(crate) fn gram(rows: &[f64], columns: usize, tiles: &mut Vec<Tile>, products
     across_lanes(tiles, columns, products);
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn by_lanes(rows: &[f64], across: usize, tiles: &mut [Tile]) {
     let (pairs, _) = rows.as_chunks::<{ 2 * BLOCK }>();
     let mut tiles = tiles.iter_mut();
@@ -46,7 +44,7 @@ fn by_lanes(rows: &[f64], across: usize, tiles: &mut [Tile]) {
 }
 
 /// Apart, so that the loops above keep their lanes in order: compiled together, sums were shuffled at every step.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn across_lanes(tiles: &[Tile], columns: usize, products: &mut [f64]) {
     let mut tiles = tiles.iter();
     for (i, rows) in products.chunks_exact_mut(2 * columns).enumerate() {

@@ -1,7 +1,6 @@
 //! The observation equations of one image.
 
 use calibench_model::{PixelPoint, Pose};
-use multiversion::multiversion;
 use nalgebra::Matrix3;
 
 use super::gram::{BLOCK, LANES, Tile, gram};
@@ -156,7 +155,7 @@ fn misclosures(
 }
 
 /// Copies the columns `places` of a block, made white, then misclosures and, where the number of columns wants one, zeros.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn whiten(misclosed: &Misclosed, places: &[usize], from: &[f64], into: &mut [f64]) {
     let ((from, _), (into, _)) = (from.as_chunks::<BLOCK>(), into.as_chunks_mut::<BLOCK>());
     let [a, b, c] = &misclosed.white;

@@ -3,8 +3,6 @@
 //! With `Q_kk = S^-1`, of which only the blocks of the reduced matrix's own pattern are kept if it is sparse: `Q_ee = L^-T (1 + Z Y^T) L^-1` and
 //! `Q_ek = -L^-T Z` with `Z = Y Q_kk`.
 
-use multiversion::multiversion;
-
 use super::Solved;
 use super::elimination_order::{Coupled, Ordered, Plan};
 use super::kernel::{Run, runs};
@@ -135,7 +133,7 @@ struct Own {
 
 macro_rules! multiply {
     ($($name:ident: $depth:expr;)*) => {
-        $(#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+        $(#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
         fn $name(y: &[f64], columns: usize, own: Own, runs: &[Run], stride: usize, values: &[f64], z: &mut [f64]) {
             multiply::<$depth>(y, columns, own, runs, stride, values, z);
         })*

@@ -1,7 +1,5 @@
 //! The loops of the elimination, for several instruction sets. No fused operations: any machine gives the same bits.
 
-use multiversion::multiversion;
-
 use super::elimination_order::Coupled;
 use super::reduced::Reduced;
 
@@ -33,7 +31,7 @@ pub(crate) fn runs(coupled: &[Coupled], i: usize, mut from: usize, into: &Reduce
 
 macro_rules! subtract {
     ($($name:ident: $depth:expr;)*) => {
-        $(#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+        $(#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
         pub(super) fn $name(y: &[f64], columns: usize, own: (usize, usize), runs: &[Run], stride: usize, values: &mut [f64]) {
             subtract_columns::<$depth>(y, columns, own, runs, stride, values);
         })*

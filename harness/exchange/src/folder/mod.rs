@@ -40,6 +40,11 @@ impl OutputFolder {
         Ok(Self { path: path.to_owned() })
     }
 
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Fills a new folder through `fill` and puts it in the place of the old one at once; if `fill` fails, or the process is killed, the old one
     /// stays as it was. The folder above is made if it is not there.
     ///

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use calibench_model::Image;
 use calibench_model::image::{level, levels_of};
-use multiversion::multiversion;
 
 /// The numbers of the filters in the PNG standard: less what is left, less what is above, less the mean of the two.
 pub(super) const LEFT: u8 = 1;
@@ -64,7 +63,7 @@ impl<'a> Rows<'a> {
 }
 
 /// Filters a row of bytes, of which `width` are a pixel, into as many.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2")))]
 pub(super) fn filter<const FILTER: u8>(here: &[u8], above: &[u8], width: usize, into: &mut [u8]) {
     let count = here.len();
     let (above, into) = (&above[..count], &mut into[..count]);
@@ -89,7 +88,7 @@ fn less<const FILTER: u8>(byte: u8, left: u8, above: u8) -> u8 {
 }
 
 /// How large the differences are in all, taken as numbers from -128 to 127.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2")))]
 pub(super) fn size(differences: &[u8]) -> u64 {
     let mut sum = 0_u64;
     for part in differences.chunks(1 << 16) {

@@ -53,7 +53,7 @@ fn found(folder: &Path, all: &[Results], verdicts: &Verdicts, whole: bool) -> Ve
     let (baselines, mut check) = (Baselines::open(folder).unwrap(), Check::new());
     all.iter().for_each(|one| baselines.compare(one, &mut check));
     baselines.compare_verdicts(verdicts, whole, &mut check);
-    baselines.vanished(all, &mut check).unwrap();
+    baselines.vanished(all, &[], &mut check).unwrap();
     check.conclude().into_iter().map(|finding| format!("{}: {}", finding.scenario, finding.message)).collect()
 }
 

@@ -1,7 +1,5 @@
 //! What all nodes give, row by row.
 
-use multiversion::multiversion;
-
 use super::outline::Node;
 use super::{COVERED, Exact, Fineness, PLANES, Picture, Planes, Quick, lanes};
 use crate::ellipse::Ellipse;
@@ -27,12 +25,12 @@ impl Picture for Quick {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn exact(to: &mut Exact, ellipse: &Ellipse, blur: f64, fineness: Fineness, all: bool) {
     if all { fill::<f64, true>(to, ellipse, blur, fineness) } else { fill::<f64, false>(to, ellipse, blur, fineness) }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn quick(to: &mut Quick, ellipse: &Ellipse, blur: f64, fineness: Fineness, all: bool) {
     if all { fill::<f32, true>(to, ellipse, blur, fineness) } else { fill::<f32, false>(to, ellipse, blur, fineness) }
 }

@@ -1,6 +1,5 @@
 //! The sums of the normal equations over all pixels of a window.
 
-use multiversion::multiversion;
 use nalgebra::SMatrix;
 
 use super::{UNKNOWNS, Unknowns};
@@ -78,22 +77,22 @@ impl Summed<f32> for Quick {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn exact(planes: &Exact, greys: &mut Greys<f64>, levels: Levels) -> Normal<UNKNOWNS> {
     normal::<f64, LANES>(planes, greys, levels)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn quick(planes: &Quick, greys: &mut Greys<f32>, levels: Levels) -> Normal<UNKNOWNS> {
     normal::<f32, WIDE>(planes, greys, levels)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn exact_gradient(planes: &Exact, slopes: &Quick, greys: &mut Greys<f64>, levels: Levels) -> (Unknowns, f64) {
     gradient::<f64, LANES>(planes, slopes, greys, levels)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn quick_gradient(planes: &Quick, slopes: &Quick, greys: &mut Greys<f32>, levels: Levels) -> (Unknowns, f64) {
     gradient::<f32, WIDE>(planes, slopes, greys, levels)
 }

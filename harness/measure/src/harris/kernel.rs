@@ -2,8 +2,6 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use multiversion::multiversion;
-
 /// Output columns of one strip: its buffers stay in the second-level cache, and rows are read in long runs.
 const STRIP: usize = 4096;
 
@@ -69,13 +67,13 @@ pub(super) struct Source<'a> {
 }
 
 /// Strengths in double precision.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 pub(super) fn double(source: Source<'_>, recipe: Recipe<'_>, out: &mut [f64]) {
     if source.columns < 8 { strips::<f64, 1>(source, recipe, out) } else { strips::<f64, 8>(source, recipe, out) }
 }
 
 /// Strengths in single precision.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 pub(super) fn single(source: Source<'_>, recipe: Recipe<'_>, out: &mut [f32]) {
     if source.columns < 16 { strips::<f32, 1>(source, recipe, out) } else { strips::<f32, 16>(source, recipe, out) }
 }

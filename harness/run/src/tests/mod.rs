@@ -5,6 +5,7 @@ mod boards;
 mod kinds;
 mod network;
 mod recordings;
+mod reuse;
 mod second_solver;
 mod store;
 mod truth;

@@ -118,6 +118,7 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
         trials: None,
         tools: crate::Tools::default(),
         data: PathBuf::new(),
+        reuse: None,
         registry: &registry,
         stop: None,
     };
@@ -141,4 +142,40 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
     assert!(first.starts_with("small/wall@") && first != second, "{first} {second}");
     assert_eq!(a, b, "the floor concerns the adjustment, the points are the same");
     assert_ne!(stored["cell-0001/calibrations.csv.gz"], stored["cell-0002/calibrations.csv.gz"]);
+}
+
+/// Records that a run with a store writes, whatever of it is there, are those of one without, images and all; and a second run leaves them.
+#[test]
+fn records_are_the_same_with_a_store_and_left_where_they_are_right() {
+    let scenario = super::views::coded();
+    let place = |parent: &Path| RecordsFolder::open(parent, NAME, None).unwrap();
+    let plain = tempfile::tempdir().unwrap();
+    run(&place(plain.path()), &mut Plan::new(&scenario, crate::Tools::default(), PathBuf::new()), "r1", &|| ()).unwrap();
+    let expected = files(plain.path());
+    assert!(expected.keys().filter(|name| name.ends_with(".png")).count() > 1, "{:?}", expected.keys());
+    let (kept, parent) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let again = |asked: Option<&[usize]>| {
+        let (store, tally) = (calibench_store::Store::open(kept.path(), 1 << 30, false), crate::reuse::Tally::default());
+        let reuse = Some(crate::reuse::Reuse { store: &store, program: "p", tally: &tally });
+        let mut plan = Plan { reuse, asked, ..Plan::new(&scenario, crate::Tools::default(), PathBuf::new()) };
+        if asked.is_some() {
+            // For its entries alone.
+            plan.run(&|| (), &mut |_| Ok(())).unwrap();
+        } else {
+            run(&place(parent.path()), &mut plan, "r1", &|| ()).unwrap();
+            assert!(files(parent.path()) == expected);
+        }
+        [tally.found(), tally.computed(), tally.unchanged()]
+    };
+    assert_eq!(again(Some(&[1])), [0, 1, 0]);
+    assert_eq!(again(None), [1, 1, 0], "one method, and the images");
+    assert_eq!(again(None), [0, 0, 1], "nothing at all");
+    // Another's hand in them: written anew, from what is there.
+    let image = parent
+        .path()
+        .join(NAME)
+        .join(expected.keys().find(|name| name.ends_with(".png")).map(|name| name.rsplit('/').next().unwrap()).unwrap());
+    std::fs::remove_file(&image).unwrap();
+    assert_eq!(again(None), [2, 0, 0]);
+    assert!(image.is_file());
 }

@@ -19,13 +19,13 @@ const FOUR: [(&str, &str); 4] = [
 ];
 
 /// Four images of a coded field: more than threads. Two are counted together, and the first of them is shown with its steps.
-fn coded() -> Scenario {
+pub(super) fn coded() -> Scenario {
     let tilted = ("[blocks]", "[[recognition.images]]\nname = \"tilted\"\nimages = [\"12??\"]\n\n[blocks]");
     changed(CODED, &[&FOUR[..], &[tilted]].concat())
 }
 
 /// The same images, in which a hand points.
-fn pointed() -> Scenario {
+pub(super) fn pointed() -> Scenario {
     let [recognition, methods] = ["[recognition]", "[[method]]"].map(|header| CODED.find(header).unwrap());
     changed(CODED, &[&[(&CODED[recognition..methods], ""), ("sigma = 0\n", "sigma = 0.4\n")], &FOUR[..]].concat())
 }

@@ -8,7 +8,6 @@ use std::sync::LazyLock;
 use calibench_model::PixelPoint;
 use calibench_model::camera::ImageSize;
 use calibench_random::{Key, Purpose, stream};
-use multiversion::multiversion;
 use rand_distr::{Distribution, StandardNormal};
 use thiserror::Error;
 
@@ -250,7 +249,7 @@ fn outward<'a>(values: impl Iterator<Item = &'a mut f64>, top: f64, ratio: f64) 
 }
 
 /// Of the nodes within `NEAR` rows and columns from the first on: each column's sum down the rows with `factors`, as x, y, x, y.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn sum_columns(nodes: &[Weight], columns: usize, factors: &[f64; NEAR]) -> [f64; 2 * NEAR] {
     let mut sums = [0.0; 2 * NEAR];
     for (row, factor) in nodes.chunks(columns).zip(factors) {

@@ -4,8 +4,6 @@
 //! in what lies behind it. A softer lens changes a pixel by the Laplacian of its grey value (the equation of heat), which is such an integral, too: that of K's
 //! slope. Outlines that no kernel reaches give nothing, wherever they lie.
 
-use multiversion::multiversion;
-
 use super::nodes::{Node, Rules, each_node};
 use super::{Picture, Piece, Renderer};
 use crate::optics::{Kernel, Part, Spread};
@@ -124,7 +122,7 @@ pub(crate) fn stride(side: usize) -> usize {
 }
 
 /// Adds what `pieces` give to each pixel of the window.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add(sums: &mut Derivatives, pieces: &[Piece], (kernel, level): (&Kernel, &Level), [x0, y0]: [f64; 2], rules: &Rules) {
     let Kernel::Smooth { sigma, parts } = kernel else { return };
     let variance = sigma * sigma;

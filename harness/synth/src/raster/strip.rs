@@ -4,8 +4,6 @@
 //! k. A point of the outline therefore changes the pixels within the kernel's reach, and, where S has become one, all that lie left of it. Written as
 //! differences along the row the second part costs nothing: a running sum makes it.
 
-use multiversion::multiversion;
-
 use super::nodes::{Node, Rules, each_node};
 use super::piece::Piece;
 use super::sharp;
@@ -135,7 +133,7 @@ fn beginnings<const N: usize>(rows: &[f64], pad: usize, background: f64) -> [f64
 }
 
 // The first target that the machine has is taken.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn smooth(strip: &mut Strip, pieces: &[Piece], listed: &[u32], sigma: f64, parts: &[Part], rules: &Rules) {
     let bounds = [strip.top as f64, (strip.top + strip.rows as i64 - 1) as f64];
     for &index in listed {

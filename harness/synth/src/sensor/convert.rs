@@ -1,7 +1,5 @@
 //! The analogue-digital converter, and rounding to levels.
 
-use multiversion::multiversion;
-
 use super::Clipped;
 use super::electrons::top;
 
@@ -33,7 +31,7 @@ impl Converter {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn levels(converter: Converter, row: &mut [f32], full: &[u8]) -> (u32, u32) {
     // Adding and taking away 1.5 * 2^23 rounds to the nearest whole number, ties to even, of all up to 2^22.
     const ROUND: f32 = 12_582_912.0;

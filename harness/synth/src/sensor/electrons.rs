@@ -7,7 +7,6 @@
 //!
 //! Source: EMVA Standard 1288, release 4.0, section 2; Cornish & Fisher 1938, Moments and cumulants in the specification of distributions.
 
-use multiversion::multiversion;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -142,7 +141,7 @@ fn bent(expected: f32, read2: f32, z: f32) -> f32 {
 }
 
 /// Shot and read noise as one number in each pixel; returns whether there are pixels to be counted instead.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn draw(wells: Wells, expected: &[f32], normals: &[f32], full: &mut [u8], read_out: &mut [f32]) -> bool {
     let n = expected.len();
     let (normals, full, read_out) = (&normals[..n], &mut full[..n], &mut read_out[..n]);

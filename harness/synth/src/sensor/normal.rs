@@ -7,7 +7,6 @@
 
 use std::f32::consts::{FRAC_PI_4, LN_2};
 
-use multiversion::multiversion;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::Rng;
 
@@ -30,7 +29,7 @@ pub(super) fn fill_normal(rng: &mut ChaCha8Rng, normals: &mut [f32]) {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn transform(bytes: &[u8; 4 * CHUNK], normals: &mut [f32; CHUNK]) {
     box_muller(bytes, normals);
 }

@@ -1,6 +1,5 @@
 //! Where the outline of a disc is, sector by sector.
 
-use multiversion::multiversion;
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::conic::UNKNOWNS;
@@ -200,32 +199,32 @@ impl Sectored for Window<f64> {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn sort_quick(window: &mut Window<f32>, ellipse: &Ellipse) {
     sort(window, ellipse);
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn sort_exact(window: &mut Window<f64>, ellipse: &Ellipse) {
     sort(window, ellipse);
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add_up_quick(window: &mut Window<f32>, disc: &Disc) -> Common {
     add_up(window, disc)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn shift_quick(window: &mut Window<f32>, disc: &Disc) -> (Vector3<f64>, f64) {
     shift(window, disc)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add_up_exact(window: &mut Window<f64>, disc: &Disc) -> Common {
     add_up(window, disc)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn shift_exact(window: &mut Window<f64>, disc: &Disc) -> (Vector3<f64>, f64) {
     shift(window, disc)
 }

@@ -1,7 +1,6 @@
 //! The sums of Förstner's normal equations over one window.
 
 use calibench_model::Image;
-use multiversion::multiversion;
 
 /// Columns that are summed side by side. Fixed, so that every instruction set adds in the same order and gives the same bits.
 const LANES: usize = 4;
@@ -25,7 +24,7 @@ pub(super) struct Sums {
 
 /// Sums over the window of `window` px whose ring of one pixel starts at (`left`, `top`); window and ring are inside the image.
 // The first target that the machine has is taken. AVX2 first: compiled for AVX-512 this was measured a tenth slower.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl")))]
 pub(super) fn sums(image: &Image, left: usize, top: usize, window: usize) -> Sums {
     // A plain slice: a call into another crate for every row would cost more than the row.
     let ring = Ring { grey: &image.grey()[top * image.width() + left..], stride: image.width() };

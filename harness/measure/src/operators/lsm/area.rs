@@ -1,7 +1,6 @@
 //! The pixels of a target, for a fit that only wants to begin near by: a row of pixels is a word of bits.
 
 use calibench_model::Rejection;
-use multiversion::multiversion;
 
 use super::profile::LANES;
 use crate::lanes::side_by_side;
@@ -54,7 +53,7 @@ impl Grey<'_> {
 ///
 /// # Errors
 /// [`Rejection::NotFinite`]; [`Rejection::NoCorner`] if all values are the same.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 pub(super) fn range(grey: Grey<'_>) -> Result<(f32, f32), Rejection> {
     let (mut low, mut high, mut sum) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES], [0.0_f32; LANES]);
     grey.for_blocks(|_, _, values, inside| {
@@ -81,7 +80,7 @@ pub(super) fn range(grey: Grey<'_>) -> Result<(f32, f32), Rejection> {
 /// reach the window's border.
 ///
 /// Source: Ridler & Calvard 1978 (threshold).
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 pub(super) fn of(grey: Grey<'_>, range: (f32, f32), start: [f64; 2], fewest: usize) -> Option<Area> {
     let side = grey.side;
     if side > WIDEST {

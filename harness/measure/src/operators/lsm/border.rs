@@ -8,7 +8,6 @@
 //! and their products. The integrals of K times these are added up in registers, a row of pixels at a time over the whole border, and combined there.
 
 use calibench_model::Curve;
-use multiversion::multiversion;
 
 use super::bank::Bank;
 use super::curves::{Arc, Expansion, Line};
@@ -34,7 +33,7 @@ pub(super) fn draw(
 }
 
 /// `LINE` and `ARC` are how many numbers a node of a line and of an arc has for each pixel of a row.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn integrate<const LINE: usize, const ARC: usize, const MOVED: bool, const BLURRED: bool>(
     window: Window<'_>,
     bank: &mut Bank,

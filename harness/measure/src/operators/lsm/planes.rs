@@ -1,7 +1,6 @@
 //! Coverage of every pixel by the mask, and its derivatives, by line integrals along the mask's border.
 
 use calibench_model::Affine;
-use multiversion::multiversion;
 
 use super::area::Grey;
 use super::bank::Bank;
@@ -215,7 +214,7 @@ fn copy(to: &mut [f32], row: &[f32]) {
 }
 
 /// Residuals, and the sum of their squares.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, contrast]: [f32; 2]) -> f64 {
     for (((to, grey), one), c) in residual.iter_mut().zip(grey).zip(ones).zip(coverage) {
         *to = (grey - ground) * one - contrast * c;
@@ -223,7 +222,7 @@ fn subtract(residual: &mut [f32], [grey, ones, coverage]: [&[f32]; 3], [ground, 
     dot(residual, residual)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn products(planes: &Planes, unknowns: usize) -> ([[f64; UNKNOWNS]; UNKNOWNS], [f64; UNKNOWNS]) {
     let (mut products, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
     // By tiles whose sums stay in registers: one sum alone would wait for each of its additions.

@@ -1,7 +1,5 @@
 //! What a blurred pixel sees of a point and of a half-plane, along one axis.
 
-use multiversion::multiversion;
-
 use crate::blurred_step::{DENSITY, step};
 use crate::lanes::{self, Lanes, side_by_side};
 
@@ -178,7 +176,7 @@ fn series([f, f1, f2, f3, f4]: [&[f32; LANES]; 5], d: f32) -> [f32; LANES] {
 type Borders = [[f64; lanes::LANES + (WIDEST + 1).next_multiple_of(lanes::LANES) + lanes::LANES]; DERIVATIVES];
 
 /// Fills a table whose rows of derivatives are `stride` apart, for `width` pixels.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn tabulate(table: &mut [f32], stride: usize, width: usize, half: f64, sigma: f64) {
     let [mut borders, mut mirrored]: [Borders; 2] = [[[0.0; _]; DERIVATIVES]; 2];
     let (lower, upper) = table.split_at_mut(STEPS / 2 * DERIVATIVES * stride);

@@ -1,6 +1,5 @@
 //! What a fit leaves: noise, or something that the model does not picture.
 
-use multiversion::multiversion;
 use nalgebra::SVector;
 
 use super::levels::Levels;
@@ -26,7 +25,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Window<'_, P, GRADI
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn fill<const GRADIENT: u8, const CURVED: bool>(
     model: &Model<f32>,
     levels: &Levels,

@@ -1,7 +1,6 @@
 //! Where a chess corner is, to begin with: the saddle of the smoothed grey values.
 
 use calibench_model::Image;
-use multiversion::multiversion;
 
 use crate::lanes::{LANES, Lanes, side_by_side};
 
@@ -116,7 +115,7 @@ impl Patch {
 }
 
 /// The strengths of all places inside: rows are filtered downwards by each kernel, then across.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn fill(strengths: &mut Field, patch: &Patch, kernels: &Kernels, side: usize) {
     let [(begin, end), (first, last)] = patch.inside;
     let (taps, seen) = (2 * kernels.reach + 1, (side + 2 * kernels.reach).next_multiple_of(LANES));

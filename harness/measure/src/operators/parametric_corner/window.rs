@@ -4,7 +4,6 @@
 //! values: see [`Laid::correct`].
 
 use calibench_model::Image;
-use multiversion::multiversion;
 use nalgebra::SVector;
 
 use super::area::Strip;
@@ -114,7 +113,7 @@ impl<const P: usize, const GRADIENT: u8, const CURVED: bool> Laid<P> for Window<
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn correct<const GRADIENT: u8, const CURVED: bool>(
     ([rough, full], strips): (&[Model<f32>; 2], &[Strip; 2]),
     levels: &Levels,
@@ -146,7 +145,7 @@ fn correct<const GRADIENT: u8, const CURVED: bool>(
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn normal<const P: usize, const GRADIENT: u8, const CURVED: bool>(
     model: &Model<f32>,
     levels: &Levels,

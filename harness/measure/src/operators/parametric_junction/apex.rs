@@ -1,7 +1,6 @@
 //! Where edges meet, to begin with: from the gradient of the grey values alone.
 
 use calibench_model::Image;
-use multiversion::multiversion;
 
 /// Half the kernel and half the window of a place, px.
 const KERNEL: i64 = 2;
@@ -67,7 +66,7 @@ impl Field {
 }
 
 /// Smooths along columns, and differentiates.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn smooth_down(lines: [&[f32]; TAPS], taps: &Taps, [smooth, slope]: [&mut [f64]; 2]) {
     smooth.fill(0.0);
     slope.fill(0.0);
@@ -80,7 +79,7 @@ fn smooth_down(lines: [&[f32]; TAPS], taps: &Taps, [smooth, slope]: [&mut [f64];
 }
 
 /// The products of a row: of what is smoothed along columns and what is differentiated, from the `first` column to before the `last`.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn multiply(
     [smooth, slope]: [&[f64]; 2],
     taps: &Taps,
@@ -100,7 +99,7 @@ fn multiply(
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add_squares(products: &[f64], (side, inner): (usize, usize), (across, sums): (&mut [f64], &mut [f64])) {
     let width = 2 * REACH + 1;
     across.fill(0.0);

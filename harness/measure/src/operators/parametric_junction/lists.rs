@@ -1,7 +1,5 @@
 //! The pixels of a window by what can be seen from them.
 
-use multiversion::multiversion;
-
 use super::arms::{MOST, Model};
 use crate::lanes::{WIDE, Wide};
 
@@ -106,7 +104,7 @@ impl Lists {
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn sort(lists: &mut Lists, (model, reach): (&Model<f32>, f32), (grey, side): (&[f32], usize), [cx, cy]: [f32; 2]) {
     let mut arms = [[0.0; 2]; MOST];
     arms.iter_mut().zip(model.arms()).for_each(|(to, arm)| *to = [arm.x, arm.y]);

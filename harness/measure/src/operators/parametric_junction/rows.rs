@@ -1,7 +1,5 @@
 //! The observation equations of a junction's pixels, chunk by chunk.
 
-use multiversion::multiversion;
-
 use super::arms::{Field, MOST, Model, OneArm};
 use super::gram::{Columns, Gram};
 use super::lists::{ALONG, AREAS, Chunk, Lists, NEAR};
@@ -26,14 +24,14 @@ pub(super) fn correct(place: Place<'_>, full: &Model<f32>, lists: &mut Lists, gr
     if place.levels.unknowns == CORNER { correct_corner(place, full, lists, grey) } else { correct_any(place, full, lists, grey) }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn correct_corner(place: Place<'_>, full: &Model<f32>, lists: &mut Lists, grey: &mut [f32]) {
     // What is known when this is compiled is done side by side.
     let levels = Levels { unknowns: CORNER, ..*place.levels };
     correct_all(Place { levels: &levels, ..place }, (full, CORNER.arms), lists, grey);
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn correct_any(place: Place<'_>, full: &Model<f32>, lists: &mut Lists, grey: &mut [f32]) {
     correct_all(place, (full, place.model.count), lists, grey);
 }
@@ -68,7 +66,7 @@ fn correct_all(place: Place<'_>, (full, arms): (&Model<f32>, usize), lists: &mut
 }
 
 /// The grey values that a place leaves, row by row.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 pub(super) fn leave(place: Place<'_>, lists: &Lists, into: &mut [f32]) {
     let Place { model, levels, centre } = place;
     for kind in [NEAR, ALONG, AREAS] {
@@ -92,13 +90,13 @@ pub(super) fn add(place: Place<'_>, lists: &Lists, gram: &mut Gram) {
     if place.levels.unknowns == CORNER { add_corner(place, lists, gram) } else { add_any(place, lists, gram) }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add_corner(place: Place<'_>, lists: &Lists, gram: &mut Gram) {
     let levels = Levels { unknowns: CORNER, ..*place.levels };
     add_all(Place { levels: &levels, ..place }, CORNER, lists, gram);
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn add_any(place: Place<'_>, lists: &Lists, gram: &mut Gram) {
     add_all(place, place.levels.unknowns, lists, gram);
 }

@@ -3,7 +3,6 @@
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 use calibench_model::Image;
-use multiversion::multiversion;
 
 use super::arms::MOST;
 
@@ -74,7 +73,7 @@ impl Circle {
 /// What the mean of a sector takes of the sum of squares, by how many directions it holds, and its first.
 type Taken = [[f32; BINS]; BINS];
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn fill_taken(count: &[f32; 2 * BINS + 1], sum: &[f32; 2 * BINS + 1], taken: &mut Taken) {
     for (width, taken) in taken.iter_mut().enumerate() {
         for (first, taken) in taken.iter_mut().enumerate() {
@@ -85,7 +84,7 @@ fn fill_taken(count: &[f32; 2 * BINS + 1], sum: &[f32; 2 * BINS + 1], taken: &mu
 }
 
 /// The directions of the pixels of a row, the first of which lies at (`left`, `y`), in bins; those of pixels that are too near are beyond the last.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn bins_of_row(left: f32, y: f32, into: &mut [f32]) {
     for (column, into) in into.iter_mut().enumerate() {
         let x = left + column as f32;
@@ -106,7 +105,7 @@ fn bins_of_row(left: f32, y: f32, into: &mut [f32]) {
 /// The two cuts that leave least, and what they take of the sum of squares.
 ///
 /// Both sectors are told by the narrower: of every width all first directions are seen side by side.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn cut_in_two(count: &[f32; 2 * BINS + 1], sum: &[f32; 2 * BINS + 1]) -> ([usize; 2], f32) {
     let (of_all, sum_of_all) = (count[BINS], sum[BINS]);
     let (mut most, mut widths) = ([f32::NEG_INFINITY; BINS], [0.0; BINS]);

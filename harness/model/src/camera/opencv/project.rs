@@ -1,7 +1,5 @@
 //! Many object points to pixels at once, with or without derivatives.
 
-use multiversion::multiversion;
-
 use super::jacobian::{CameraFromWorld, Jacobian, LANES};
 use super::lens::{Five, Lens, Twelve};
 use super::{OpenCv, region, tilt};
@@ -108,12 +106,12 @@ fn job<L: Lens>(camera: &OpenCv, pose: &CameraFromWorld, safe: f64) -> Job<L> {
     Job { lens: L::of(camera), pose: *pose, focal, centre, tilt, safe: safe * safe }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn pixels_five(job: &Job<Five>, camera: &OpenCv, points: &[[f64; 3]], pixels: &mut [PixelPoint]) {
     all_pixels(job, camera, points, pixels);
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn pixels_twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[[f64; 3]], pixels: &mut [PixelPoint]) {
     all_pixels(job, camera, points, pixels);
 }
@@ -121,7 +119,7 @@ fn pixels_twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[[f64; 3]], pixels
 macro_rules! slopes {
     ($($name:ident: $lens:ty, $coefficients:expr;)*) => {
         // AVX2 first: compiled for AVX-512 the derivatives were measured at half the speed, the plain projection at 1.4 times.
-        $(#[multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl"))]
+        $(#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx2", "x86_64+avx512f+avx512vl")))]
         fn $name(job: &Job<$lens>, camera: &OpenCv, points: &[[f64; 3]], pixels: &mut [PixelPoint], values: &mut [f64]) {
             all_slopes::<$lens, $coefficients, { 2 * (POSE + MATRIX + $coefficients) }>(job, camera, points, pixels, values);
         })*

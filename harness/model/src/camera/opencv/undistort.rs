@@ -1,6 +1,5 @@
 //! Many pixels to ideal tangents at once.
 
-use multiversion::multiversion;
 use nalgebra::{SMatrix, SVector};
 
 use super::jacobian::LANES;
@@ -79,12 +78,12 @@ fn guess<L: Lens>(lens: &L, widest: f64) -> [f64; GUESS] {
 }
 
 // The first target that the machine has is taken: the widest comes first.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn five(job: &Job<Five>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
     all(job, camera, points, tangents);
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[cfg_attr(not(any(test, debug_assertions)), multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2")))]
 fn twelve(job: &Job<Twelve>, camera: &OpenCv, points: &[PixelPoint], tangents: &mut [[f64; 2]]) {
     all(job, camera, points, tangents);
 }

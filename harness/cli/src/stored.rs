@@ -1,0 +1,99 @@
+//! The store of results: what of a run is up to date.
+
+use std::path::PathBuf;
+
+use calibench_run::reuse::{Reuse, Tally, is_code_known};
+use calibench_store::Store;
+use clap::Args;
+
+use super::context::Context;
+use crate::failure::Failure;
+
+/// The store holds this much at most, bytes.
+const MOST: u64 = 2 << 30;
+
+/// Whether what was computed before is taken.
+#[derive(Args, Default)]
+pub struct Reusing {
+    /// Compute everything, whatever the store of earlier results holds
+    #[arg(long)]
+    fresh: bool,
+    /// The store of earlier results [default: target/store of the project; outside of one there is none]
+    #[arg(long, value_name = "DIR", env = "CALIBENCH_STORE")]
+    store: Option<PathBuf>,
+}
+
+/// An open store, if there is one.
+pub struct Stored {
+    store: Option<Store>,
+    program: String,
+}
+
+impl Reusing {
+    /// Opens the store: that which is named, or the project's.
+    pub fn open(&self, context: &Context<'_>) -> Result<Stored, Failure> {
+        let named = self.store.clone().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = match named {
+            Some(folder) if folder.exists() && !folder.is_dir() => {
+                return Err(Failure::input(format!("--store {}: is no folder; expected one, or a place for a new one", folder.display())));
+            }
+            Some(folder) => Some(folder),
+            None => context.folder()?.map(|root| root.join("target/store")),
+        };
+        let Some(program) = program(context) else { return Ok(Stored { store: None, program: String::new() }) };
+        Ok(Stored { store: folder.map(|folder| Store::open(&folder, MOST, self.fresh)), program })
+    }
+}
+
+/// What stands for all code that has no digest of its own: that of OpenCV's methods, or of whoever made this program of calibench's crates.
+fn program(context: &Context<'_>) -> Option<String> {
+    if let Some(code) = context.toolbox.code.filter(|_| is_code_known()) {
+        return Some(code.to_owned());
+    }
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(std::env::current_exe().ok()?).ok()?).ok()?;
+    Some(hasher.finalize().to_hex().to_string())
+}
+
+impl Stored {
+    /// None at all.
+    pub const fn none() -> Self {
+        Self { store: None, program: String::new() }
+    }
+
+    /// The store for a run whose results are counted in `tally`.
+    pub fn reuse<'a>(&'a self, tally: &'a Tally) -> Option<Reuse<'a>> {
+        Some(Reuse { store: self.store.as_ref()?, program: &self.program, tally })
+    }
+
+    /// Says how many of the scenarios counted in `tallies` were up to date, and leaves the store no larger than it may be.
+    pub fn close(&self, quiet: bool, tallies: &[Tally]) {
+        let Some(store) = &self.store else { return };
+        let current = tallies.iter().filter(|tally| is_current(tally)).count();
+        if !quiet && tallies.len() > 1 {
+            say!("{current} of {} up to date ({})", tallies.len(), store.folder().display());
+        }
+        if store.broken() > 0 {
+            say!("{}: {} results were not as they had been written, and were computed anew", store.folder().display(), store.broken());
+        }
+        let refused = tallies.iter().find_map(Tally::refused).or_else(|| store.trim().err().map(|error| error.to_string()));
+        if let Some(why) = refused {
+            say!("{}: not everything could be kept for later runs: {why}", store.folder().display());
+        }
+    }
+}
+
+/// Whether nothing was computed.
+pub fn is_current(tally: &Tally) -> bool {
+    tally.computed() == 0 && tally.found() + tally.unchanged() > 0
+}
+
+/// What of a scenario was taken from the store, for the line that says what was done.
+pub fn told(tally: &Tally) -> Option<String> {
+    match (tally.unchanged() > 0 || tally.computed() == 0, tally.found(), tally.computed()) {
+        (true, 0, 0) if tally.unchanged() == 0 => None,
+        (true, ..) => Some("up to date".to_owned()),
+        (false, 0, _) => None,
+        (false, found, computed) => Some(format!("{found} of {} results up to date", found + computed)),
+    }
+}

@@ -1,0 +1,134 @@
+//! What results are stored under.
+
+use calibench_measure::Configured;
+use calibench_scenario::Subject;
+use calibench_store::Key;
+
+use super::arithmetic::arithmetic;
+use super::{Reuse, code};
+use crate::Plan;
+
+/// Raised when entries are written otherwise, or when what they hold means something else.
+const FORMAT: &str = "1";
+
+/// The keys of a plan.
+pub struct Keys {
+    /// Of what each method makes, or of all together.
+    pub methods: Vec<MethodKeys>,
+    /// Of the images of the first trial.
+    pub images: Key,
+    /// Whether what is adjusted from points has entries of its own.
+    pub apart: bool,
+}
+
+/// The keys of what a method makes.
+pub struct MethodKeys {
+    /// Its place; `None` of all together.
+    pub method: Option<usize>,
+    /// Of its points, with what is adjusted from them where that is not apart. `None` of a method that nobody knows the code of.
+    pub points: Option<Key>,
+    /// Of the bounds of its points, where they are asked for.
+    pub bounds: Option<Key>,
+    /// Of what is adjusted, apart.
+    pub adjusted: Option<Key>,
+}
+
+/// The keys of `plan`, unless it measures nothing that could be kept.
+pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
+    let data = match &plan.scenario.subject {
+        Subject::Photographs(subject) => {
+            if plan.missing().is_some() {
+                return None;
+            }
+            let folder = plan.folder_of(subject);
+            let mut digests = String::new();
+            for file in &subject.files {
+                digests.push_str(&digest_of(&folder.join(file))?);
+            }
+            digests
+        }
+        Subject::Scene(_) | Subject::Views(_) | Subject::Printed(_) => String::new(),
+    };
+    let (seed, span) = (plan.seed.to_string(), plan.span());
+    let trials = format!("{} {}", span.from, span.to);
+    let points = code::digest(code::POINTS, reuse.program);
+    let common = vec![
+        ("format", FORMAT),
+        ("scenario", &*plan.scenario.name),
+        ("resolved", &*plan.scenario.resolved.points),
+        ("data", &*data),
+        ("seed", &*seed),
+        ("code", points),
+        ("arithmetic", arithmetic()),
+    ];
+    let apart = plan.is_adjusted_apart();
+    let whole = plan.transfer().is_some() || matches!(plan.scenario.subject, Subject::Printed(_));
+    let methods = if whole {
+        vec![together(plan, reuse, &common, &trials)]
+    } else {
+        plan.available().into_iter().map(|method| of_method(plan, reuse, &common, (&trials, apart), method)).collect()
+    };
+    // Which image is shown depends on what is measured in which.
+    let labels: Vec<&str> = plan.methods.iter().map(|method| method.label.as_str()).collect();
+    let images = Key::of("images", common.iter().copied().chain(labels.iter().map(|label| ("method", *label))));
+    Some(Keys { methods, images, apart })
+}
+
+fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trials, apart): (&str, bool), index: usize) -> MethodKeys {
+    let method = &plan.methods[index];
+    if method.outside || method.recorded().is_some() {
+        return MethodKeys { method: Some(index), points: None, bounds: None, adjusted: None };
+    }
+    let (settings, kinds) = (settings(method), method.kinds.as_ref().map_or_else(String::new, ToString::to_string));
+    let own = [
+        ("trials", trials),
+        ("method", method.label.as_str()),
+        ("version", &method.version),
+        ("settings", &settings),
+        ("kinds", &kinds),
+        ("operator", code::digest(method.name(), reuse.program)),
+    ];
+    let adjusted = [("adjusted", plan.scenario.resolved.adjusted.as_str()), ("adjustment", code::digest(code::ADJUSTED, reuse.program))];
+    let has_adjusted = !plan.scenario.resolved.adjusted.is_empty();
+    let parts = |with: bool| common.iter().copied().chain(own).chain(adjusted.into_iter().filter(move |_| with));
+    MethodKeys {
+        method: Some(index),
+        points: Some(Key::of("points", parts(has_adjusted && !apart))),
+        bounds: (plan.bounds && may_be_bounded(&plan.scenario.subject)).then(|| Key::of("bounds", parts(has_adjusted && !apart))),
+        adjusted: apart.then(|| Key::of("adjusted", parts(true))),
+    }
+}
+
+/// Whether its points are of images that were rendered.
+fn may_be_bounded(subject: &Subject) -> bool {
+    match subject {
+        Subject::Scene(_) => true,
+        Subject::Views(views) => views.calibration.as_ref().is_none_or(|calibration| calibration.drawn.is_none()),
+        Subject::Photographs(_) | Subject::Printed(_) => false,
+    }
+}
+
+/// Of calibrations that are applied, and of printed figures: all of it is one result.
+fn together(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], trials: &str) -> MethodKeys {
+    let versions: Vec<String> =
+        plan.method_infos().iter().map(|info| format!("{} {} {:?}", info.label, info.version, info.unavailable)).collect();
+    let more = [
+        ("trials", trials),
+        ("adjusted", &plan.scenario.resolved.adjusted),
+        ("all", code::digest(code::ALL, reuse.program)),
+        ("program", reuse.program),
+    ];
+    let key = Key::of("together", common.iter().copied().chain(more).chain(versions.iter().map(|version| ("method", version.as_str()))));
+    MethodKeys { method: None, points: Some(key), bounds: None, adjusted: None }
+}
+
+/// All parameters, those at their defaults among them.
+fn settings(method: &Configured) -> String {
+    method.settings.iter().map(|(name, value)| format!("{name}={value:?}")).collect::<Vec<_>>().join(",")
+}
+
+fn digest_of(path: &std::path::Path) -> Option<String> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
+    Some(hasher.finalize().to_hex().to_string())
+}
