@@ -1,10 +1,11 @@
 //! Same seed, same bytes: on one thread, and again on two.
 //!
-//! Of every scenario a few trials, and of what it sweeps the ends: more would be drawn and adjusted by the same code.
+//! Of every scenario a few trials, and of what it sweeps the ends: more would be drawn and adjusted by the same code. What is large only to be large is compared by night, with
+//! `CALIBENCH_NIGHTLY` set; its smaller twin here.
 
 use std::path::PathBuf;
 
-use crate::project::{copy_of_all, files, keep_ends_of_sweeps, program};
+use crate::project::{copy_of_all, files, fresh, keep_ends_of_sweeps, leave_nightly};
 
 /// Trials of each scenario: two threads need two to differ.
 const TRIALS: u64 = 2;
@@ -12,9 +13,12 @@ const TRIALS: u64 = 2;
 /// Records and reports of every scenario, made on `threads` threads.
 fn outputs(threads: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let project = copy_of_all(TRIALS);
+    if std::env::var_os("CALIBENCH_NIGHTLY").is_none() {
+        leave_nightly(project.path());
+    }
     keep_ends_of_sweeps(project.path());
     for arguments in [&["run", "--all", "--quiet"][..], &["report", "--quiet"]] {
-        let status = program(project.path()).args(arguments).args(["--threads", threads]).status().unwrap();
+        let status = fresh(project.path()).args(arguments).args(["--threads", threads]).status().unwrap();
         assert!(status.success(), "{arguments:?}");
     }
     let mut all = files(&project.path().join("records"));

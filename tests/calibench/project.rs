@@ -68,6 +68,15 @@ pub fn copy_of_all(most: u64) -> tempfile::TempDir {
     folder
 }
 
+/// Takes out what is checked by night.
+pub fn leave_nightly(project: &Path) {
+    for (path, bytes) in files(&project.join("scenarios")) {
+        if String::from_utf8_lossy(&bytes).lines().any(|line| line == "nightly = true") {
+            std::fs::remove_file(project.join("scenarios").join(path)).expect("a scenario");
+        }
+    }
+}
+
 /// Leaves of each sweep's numbers, and of its lists of numbers, the first and the last; of what is swept by name, as boards, all.
 pub fn keep_ends_of_sweeps(project: &Path) {
     edit_scenarios(project, |line| {
@@ -135,6 +144,15 @@ pub fn program(folder: &Path) -> Command {
     command.current_dir(folder).env_remove("CALIBENCH_ROOT");
     let data = std::env::var_os("CALIBENCH_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from);
     command.env("CALIBENCH_DATA", data);
+    // One store for all tests and for the gate: of scenarios that several copy each is computed once.
+    command.env("CALIBENCH_STORE", root().join("target/store"));
+    command
+}
+
+/// As [`program`], with nothing that was computed before.
+pub fn fresh(folder: &Path) -> Command {
+    let mut command = program(folder);
+    command.env("CALIBENCH_STORE", "");
     command
 }
 

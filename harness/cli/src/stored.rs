@@ -18,7 +18,7 @@ pub struct Reusing {
     /// Compute everything, whatever the store of earlier results holds
     #[arg(long)]
     fresh: bool,
-    /// The store of earlier results [default: target/store of the project; outside of one there is none]
+    /// The store of earlier results; none where DIR is empty [default: target/store of the project]
     #[arg(long, value_name = "DIR", env = "CALIBENCH_STORE")]
     store: Option<PathBuf>,
 }
@@ -32,8 +32,9 @@ pub struct Stored {
 impl Reusing {
     /// Opens the store: that which is named, or the project's.
     pub fn open(&self, context: &Context<'_>) -> Result<Stored, Failure> {
-        let named = self.store.clone().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = match named {
+        let folder = match self.store.clone() {
+            // The variable set to nothing.
+            Some(folder) if folder.as_os_str().is_empty() => None,
             Some(folder) if folder.exists() && !folder.is_dir() => {
                 return Err(Failure::input(format!("--store {}: is no folder; expected one, or a place for a new one", folder.display())));
             }
