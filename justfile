@@ -39,9 +39,32 @@ test:
     just summary
     exit "$status"
 
+# Words in the names of tests that take seconds each: `just quick` leaves these tests to `just test`.
+long := "efficiency bare_edges in_every_cell crowded the_bound_is_reached noise_and_bare_edges light_costs_no_more what_stands_beside without_noise_the_bias pooled_errors spots_are_no_far gradients a_method_that_is_added rendered_images_are points_serve_with have_the_origin"
+
+# The tests of CRATE (as `measure`) and of the crates that call it, without OpenCV and without what takes long: below a minute after a change of one line
+quick CRATE:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    callers=$(cargo tree --quiet --invert calibench-{{CRATE}} --depth 1 --prefix none --edges normal | cut -d' ' -f1 | grep '^calibench-' | sort -u)
+    packages=(--package calibench-{{CRATE}})
+    for package in $callers; do
+        case $package in calibench-cli | calibench-judge | calibench-opencv | calibench-point | calibench-python | calibench-tests) ;; *) packages+=(--package "$package") ;; esac
+    done
+    skips=()
+    for name in {{long}}; do skips+=(--skip "$name"); done
+    cargo test --profile quick --lib --quiet "${packages[@]}" -- "${skips[@]}"
+    echo "not tested: cli, judge, point, OpenCV, Python, what crosses crates, and tests that take long (\`just --evaluate long\`): \`just test\` does"
+
 # The sum of the last test run
 summary:
     @awk '/^test result:/ { passed += $4; failed += $6; skipped += $8 } END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' target/test.log
+
+# What every change leaves out because it is large only to be large: before each release
+nightly: build wheel
+    {{calibench}} check --strict --locked --nightly
+    CALIBENCH_NIGHTLY=1 cargo test {{everything}} --test calibench determinism
+    target/python/bin/python -m pytest -q -p no:cacheprovider harness/python/tests/test_size.py
 
 # Compare all numbers with reference/baselines; exit 1 and a table if any is worse, changed without a bless, or not blessed
 check: build
@@ -92,11 +115,14 @@ browser:
     @chromium --version
     @chromedriver --version
 
-# The Python package: its wheel in target/wheels, installed in target/python (`./bootstrap python` makes that)
+# The Python package, installed in target/python from the one build that serves all (`./bootstrap python` makes that environment)
 python: build
-    target/python/bin/maturin build --quiet --compression-level 9 --manifest-path harness/python/Cargo.toml --out target/wheels
-    target/python/bin/python -m pip install --quiet --no-deps --force-reinstall target/wheels/calibench-*.whl
+    target/python/bin/python harness/python/install.py
     touch target/python/pyvenv.cfg
+
+# The Python package to be given away: its wheel in target/wheels, in a build of its own
+wheel:
+    target/python/bin/maturin build --quiet --compression-level 9 --manifest-path harness/python/Cargo.toml --out target/wheels
 
 # What the Python package costs beyond the program, beside the command line
 perf-python: python
@@ -107,9 +133,9 @@ perf-cluster minutes="5": python
     target/python/bin/python harness/python/benches/cluster.py {{minutes}}
 
 # What weighs most in the wheel: its sections, crates and functions
-size-python: python
+size-python: wheel
     # The library once more with the symbols that the wheel is without.
-    cargo build {{everything}} --quiet
+    cargo build --profile wheel --quiet --package calibench-python
     target/python/bin/python harness/python/benches/size.py
 
 # Boards found, how well and how fast, beside OpenCV on the same images

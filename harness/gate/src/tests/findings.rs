@@ -100,8 +100,9 @@ fn names_cannot_speak_to_the_terminal() {
 #[test]
 fn json_says_what_fails_by_which_rules() {
     let findings = [Finding::new(Verdict::Changed, "f/s", "m", "position", "moved").figures(1.0, f64::NAN)];
-    let of =
-        |strict| serde_json::from_str::<serde_json::Value>(&json(&findings, Rules { strict, locked: false }, Tally::default(), &[])).unwrap();
+    let of = |strict| {
+        serde_json::from_str::<serde_json::Value>(&json(&findings, Rules { strict, locked: false }, Tally::default(), &[])).unwrap()
+    };
     assert_eq!((&of(false)["holds"], &of(true)["holds"]), (&true.into(), &false.into()));
     assert_eq!(of(true)["findings"][0]["fails"], true);
     assert_eq!(of(true)["findings"][0]["verdict"], "changed");
