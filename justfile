@@ -26,7 +26,7 @@ build:
 
 # Run every scenario and write reports/
 bench: build
-    {{calibench}} run --all
+    {{calibench}} run --all --pages
     {{calibench}} report
 
 # Run all tests; the last line is their sum

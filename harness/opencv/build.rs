@@ -31,6 +31,6 @@ fn has_aruco() -> bool {
     let mut parts = version.trim().split('.').map(str::parse::<u32>);
     let known = matches!((parts.next(), parts.next()), (Some(Ok(4)), Some(Ok(5 | 6))));
     let folders = asked("--cflags-only-I").unwrap_or_default();
-    let has = |folder: &str| std::path::Path::new(folder).join("opencv2/aruco/charuco.hpp").is_file();
+    let has = |folder: &str| Path::new(folder).join("opencv2/aruco/charuco.hpp").is_file();
     known && folders.split_whitespace().filter_map(|flag| flag.strip_prefix("-I")).any(has)
 }

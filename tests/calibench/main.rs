@@ -50,5 +50,6 @@ mod render;
 mod resect;
 mod schema;
 mod several;
+mod store;
 mod sweeps;
 mod zhu;

@@ -7,7 +7,7 @@ use calibench_measure::Configured;
 use calibench_measure::registry::KINDS;
 use calibench_project::ProjectError;
 use calibench_report::verdicts;
-use calibench_run::reuse::{Reuse, Tally};
+use calibench_run::reuse::{self, Reuse, Tally};
 use calibench_run::store::{self, RecordsFolder, SweepPlan};
 use calibench_run::{Order, Plan};
 use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
@@ -170,7 +170,7 @@ fn run(plan: &Plan<'_>, name: &str, step: &(dyn Fn() + Sync)) -> Result<Table, F
     let scenario = plan.scenario;
     let mut table = Table::new(name, plan.seed, Coordinates::of(scenario.has_truth()), &plan.method_infos());
     table = described(table, plan, true);
-    plan.run(step, &mut |trial| {
+    reuse::run(plan, step, &mut |trial| {
         table.add(&trial);
         Ok(())
     })?;

@@ -28,6 +28,7 @@ mod measure;
 mod notes;
 mod orient;
 mod output;
+mod pages;
 mod part;
 mod photos;
 mod plot;

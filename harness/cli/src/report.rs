@@ -18,6 +18,11 @@ pub struct Report {
 }
 
 impl Report {
+    /// The pages of one family.
+    pub fn of_family(family: &str) -> Self {
+        Self { papers: vec![family.to_owned()], html: false }
+    }
+
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
         let (places, families) = (context.places()?, context.families(&self.papers)?);
         if self.html {

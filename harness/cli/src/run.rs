@@ -11,6 +11,7 @@ use clap::Args;
 use super::context::{Context, Pictured};
 use super::lanes::{lanes, side_by_side};
 use super::notes::say_notes;
+use super::pages::Pages;
 use super::part::{Parts, Place, told};
 use super::photos::say_turns;
 use super::progress::Progress;
@@ -25,6 +26,9 @@ pub struct Run {
     /// Every scenario that `list scenarios` lists
     #[arg(long, conflicts_with = "scenarios")]
     all: bool,
+    /// Write each family's pages as soon as its scenarios are done, those of short families first, and say how long the rest takes
+    #[arg(long, requires = "all", conflicts_with = "part")]
+    pages: bool,
     #[command(flatten)]
     changes: Changes,
     #[command(flatten)]
@@ -77,7 +81,8 @@ impl Task<'_> {
 
 impl Run {
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {
-        let names = if self.all { context.catalogue()?.names()? } else { self.scenarios.clone() };
+        let mut names = if self.all { context.catalogue()?.names()? } else { self.scenarios.clone() };
+        let pages = if self.pages { Some(Pages::of(context, &mut names)?) } else { None };
         // All are checked before the first is run.
         let scenarios = context.scenarios(&names)?;
         let methods = self.changes.methods(context)?;
@@ -91,7 +96,11 @@ impl Run {
         let task =
             |((scenario, place), tally)| Task { scenario, place, methods: &methods, revision: &revision, beside, stored: &stored, tally };
         let tasks: Vec<Task<'_>> = scenarios.iter().zip(&places).zip(&tallies).map(task).collect();
-        let measured = side_by_side(&tasks, lanes(), |task| self.one(context, task));
+        let measured = side_by_side(&tasks, lanes(), |task| {
+            let measured = self.one(context, task)?;
+            pages.as_ref().map_or(Ok(()), |pages| pages.done(context, &task.scenario.name))?;
+            Ok::<_, Failure>(measured)
+        });
         stored.close(context.quiet, &tallies);
         let measured = measured?;
         let nothing: Vec<&str> =

@@ -22,6 +22,7 @@ mod rmse;
 mod scene;
 pub mod shots;
 pub mod store;
+mod tally;
 mod theory;
 mod tools;
 pub mod transfer;

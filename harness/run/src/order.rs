@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use calibench_measure::{Configured, Registry};
 use calibench_scenario::Scenario;
 
-use crate::reuse::Reuse;
+use crate::tally::Reuse;
 use crate::{Plan, Tools};
 
 /// What is asked for.

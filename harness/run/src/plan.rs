@@ -16,7 +16,7 @@ use calibench_scenario::{PhotographsSubject, Scenario, Subject, Transfer};
 use crate::RunError;
 use crate::measured::{Answers, Asked, Pictured, of_its_kinds};
 use crate::printed::PRINT;
-use crate::reuse::Reuse;
+use crate::tally::Reuse;
 use crate::tools::Tools;
 
 /// The version of calibration methods: raised when their numbers change on purpose.

@@ -21,7 +21,7 @@ use calibench_scenario::{Scenario, Subject, Sweep, parse_cell};
 
 use crate::description::{description, told_notes};
 use crate::judgement::write_judgement;
-use crate::reuse::{Reuse, Stamp};
+use crate::reuse::{self, Reuse, Stamp};
 use crate::theory::write_theory;
 use crate::{Order, Plan, RunError};
 
@@ -174,7 +174,7 @@ fn write_records(folder: &NewFolder, name: &str, plan: &Plan<'_>, revision: &str
     if adjusted_alone {
         records.adjusted_alone().map_err(io::Error::other)?;
     }
-    plan.run(step, &mut |trial| {
+    reuse::run(plan, step, &mut |trial| {
         if let Some(writer) = &mut calibrations {
             writer.trial(trial.number, &trial.calibrations).map_err(io::Error::other)?;
         }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::bounded::Bounding;
 use super::transfer::Campaign;
-use super::{Plan, RunError, photographs, printed, reuse, scene, views};
+use super::{Plan, RunError, photographs, printed, scene, views};
 
 /// Trials that are computed side by side before they are handed on: bounds the memory, whatever the number of trials.
 pub(crate) const BATCH: u64 = 32;
@@ -78,25 +78,15 @@ impl Plan<'_> {
         }
     }
 
-    /// Runs all trials, or those that are wanted, and hands them to `sink` in their order; `step` is called after each step, on any thread. What is in the plan's store is
-    /// read, and what is not is put there.
+    /// Runs all trials, or those that are wanted, and hands them to `sink` in their order; `step` is called after each step, on any thread.
     ///
     /// # Errors
     /// Targets of a kind that no method measures, a method without targets of its kinds; a recorded one with names of others; photographs that cannot be read; what `sink` returns.
     pub fn run(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
-        cover(self.methods, &self.scenario.subject.kinds(), &self.scenario.kinds)?;
+        self.check()?;
         if self.span().count() == 0 {
             return Ok(());
         }
-        self.check_recorded()?;
-        match self.reuse {
-            Some(reuse) => reuse::run(self, reuse, step, sink),
-            None => self.compute(step, sink),
-        }
-    }
-
-    /// The same without a store.
-    pub(crate) fn compute(&self, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
         let work = self.work()?;
         let trial = |number| {
             self.go_on()?;
@@ -114,6 +104,12 @@ impl Plan<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether its methods are those of its targets.
+    pub(crate) fn check(&self) -> Result<(), RunError> {
+        cover(self.methods, &self.scenario.subject.kinds(), &self.scenario.kinds)?;
+        if self.span().count() == 0 { Ok(()) } else { self.check_recorded() }
     }
 
     /// What makes the trials.

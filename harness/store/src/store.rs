@@ -67,6 +67,11 @@ impl Store {
     pub fn create(&self, key: Key) -> io::Result<NewEntry> {
         let path = self.place(key);
         let folder = path.parent().unwrap_or(&self.folder);
+        if !self.folder.exists() {
+            fs::create_dir_all(&self.folder)?;
+            // What is in it belongs into no repository.
+            fs::write(self.folder.join(".gitignore"), "*\n")?;
+        }
         fs::create_dir_all(folder)?;
         // Of this process and no other, of this entry and no other.
         let number = self.written.fetch_add(1, Ordering::Relaxed);

@@ -53,7 +53,7 @@ fn what_was_put_is_found_and_nothing_else() {
     let store = Store::open(&folder.path().join("deep/store"), 1 << 20, false);
     assert_eq!(get(&store, "a"), None);
     store.trim().unwrap();
-    let large: Vec<u8> = (0..300_000_u32).map(|i| (i * i >> 3) as u8).collect();
+    let large: Vec<u8> = (0..300_000_u32).map(|i| (i.wrapping_mul(i) >> 3) as u8).collect();
     put(&store, "a", b"one");
     put(&store, "b", &large);
     put(&store, "empty", b"");
@@ -63,6 +63,7 @@ fn what_was_put_is_found_and_nothing_else() {
     put(&store, "a", b"another");
     assert_eq!(get(&store, "a").unwrap(), b"another");
     assert_eq!((get(&store, "c"), store.broken()), (None, 0));
+    assert_eq!(fs::read_to_string(folder.path().join("deep/store/.gitignore")).unwrap(), "*\n");
 }
 
 #[test]

@@ -10,13 +10,15 @@ use super::{crates, sources};
 use crate::project::root;
 
 /// The categories that our crates are listed in, of those that a registry knows.
-const CATEGORIES: [&str; 15] = [
+const CATEGORIES: [&str; 17] = [
     "algorithms",
+    "caching",
     "command-line-utilities",
     "computer-vision",
     "data-structures",
     "development-tools",
     "development-tools::testing",
+    "filesystem",
     "mathematics",
     "multimedia::images",
     "parser-implementations",

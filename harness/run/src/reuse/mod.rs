@@ -12,92 +12,29 @@ mod keys;
 mod stamp;
 
 use std::io;
-use std::sync::Mutex;
-use std::sync::PoisonError;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use calibench_records::parts::Span;
 use calibench_records::results::Trial;
-use calibench_store::Store;
 use rayon::prelude::*;
 
+pub use crate::tally::{Reuse, Tally};
 use crate::trials::{BATCH, Work};
 use crate::{Plan, RunError};
 pub use code::is_known as is_code_known;
 use kept::{Kept, Unit, merged};
 pub(crate) use stamp::Stamp;
 
-/// A store, and what is to be known of it.
-#[derive(Clone, Copy)]
-pub struct Reuse<'a> {
-    /// Where results are.
-    pub store: &'a Store,
-    /// A digest of all code that has none of its own: of the program, or of what it has beside calibench's crates.
-    pub program: &'a str,
-    /// What was found there, and what was not.
-    pub tally: &'a Tally,
-}
-
-/// Results of methods in scenarios and cells: how many were in the store, and how many were computed.
-#[derive(Debug, Default)]
-pub struct Tally {
-    found: AtomicUsize,
-    computed: AtomicUsize,
-    unchanged: AtomicUsize,
-    refused: Mutex<Option<String>>,
-}
-
-impl Tally {
-    /// How many were in the store.
-    pub fn found(&self) -> usize {
-        self.found.load(Ordering::Relaxed)
+/// As [`Plan::run`]; what is in the plan's store is read, and what is not is put there.
+///
+/// # Errors
+/// As [`Plan::run`].
+pub fn run(plan: &Plan<'_>, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial) -> Result<(), RunError>) -> Result<(), RunError> {
+    let Some(reuse) = plan.reuse else { return plan.run(step, sink) };
+    let Some(keys) = keys::of(plan, &reuse) else { return plan.run(step, sink) };
+    plan.check()?;
+    if plan.span().count() == 0 {
+        return Ok(());
     }
-
-    /// How many were computed.
-    pub fn computed(&self) -> usize {
-        self.computed.load(Ordering::Relaxed)
-    }
-
-    /// Why something was computed and could not be put into the store, if so.
-    pub fn refused(&self) -> Option<String> {
-        self.refused.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// How many runs had nothing to do: their records are as they would write them.
-    pub fn unchanged(&self) -> usize {
-        self.unchanged.load(Ordering::Relaxed)
-    }
-
-    /// Counts a run that has nothing to do.
-    pub(crate) fn leave(&self) {
-        self.unchanged.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// Counts one of each that is computed, or found.
-    fn count(&self, computed: usize, found: usize) {
-        self.computed.fetch_add(computed, Ordering::Relaxed);
-        self.found.fetch_add(found, Ordering::Relaxed);
-    }
-
-    /// What `result` gives; what stands in the way is kept, and costs no more than the entry.
-    fn unless_refused<T>(&self, result: io::Result<T>) -> Option<T> {
-        let why = match result {
-            Ok(value) => return Some(value),
-            Err(why) => why,
-        };
-        self.refused.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(why.to_string());
-        None
-    }
-}
-
-/// As [`Plan::run`] without a store.
-pub(crate) fn run(
-    plan: &Plan<'_>,
-    reuse: Reuse<'_>,
-    step: &(dyn Fn() + Sync),
-    sink: &mut dyn FnMut(Trial) -> Result<(), RunError>,
-) -> Result<(), RunError> {
-    let Some(keys) = keys::of(plan, &reuse) else { return plan.compute(step, sink) };
     let mut units: Vec<Unit> = keys.methods.iter().map(|method| Unit::find(reuse.store, method)).collect();
     let images = plan.images.filter(|_| plan.span().holds(0));
     let pictured = match images {

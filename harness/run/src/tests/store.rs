@@ -160,7 +160,7 @@ fn records_are_the_same_with_a_store_and_left_where_they_are_right() {
         let mut plan = Plan { reuse, asked, ..Plan::new(&scenario, crate::Tools::default(), PathBuf::new()) };
         if asked.is_some() {
             // For its entries alone.
-            plan.run(&|| (), &mut |_| Ok(())).unwrap();
+            crate::reuse::run(&plan, &|| (), &mut |_| Ok(())).unwrap();
         } else {
             run(&place(parent.path()), &mut plan, "r1", &|| ()).unwrap();
             assert!(files(parent.path()) == expected);

@@ -1,0 +1,147 @@
+//! The store as commands use it: what is up to date is left, what is not is done, and the gate says the same either way.
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use crate::project::{copy_of, files, program, stderr, stdout};
+
+/// A project of a few scenarios: a scene in noise, drawn ones, one with published tables.
+fn few() -> tempfile::TempDir {
+    copy_of(&["corners/", "galo-2011/corners", "zhu-2007/table-1"])
+}
+
+/// With a store of its own.
+fn run(project: &Path, arguments: &[&str]) -> Output {
+    program(project).env("CALIBENCH_STORE", project.join("kept")).args(arguments).output().expect("the program starts")
+}
+
+/// The entries of the store.
+fn entries(project: &Path) -> Vec<PathBuf> {
+    files(&project.join("kept")).into_iter().map(|(path, _)| project.join("kept").join(path)).collect()
+}
+
+#[test]
+fn what_is_up_to_date_is_left_and_said() {
+    let project = few();
+    let first = run(project.path(), &["run", "--all"]);
+    assert!(first.status.success() && stderr(&first).contains("0 of 5 up to date"), "{}", stderr(&first));
+    let records = files(&project.path().join("records"));
+    let written = |name: &str| std::fs::metadata(project.path().join("records").join(name)).unwrap().modified().unwrap();
+    let before = written("corners/noise/records.csv.gz");
+    let again = run(project.path(), &["run", "--all"]);
+    assert!(again.status.success() && stderr(&again).contains("5 of 5 up to date"), "{}", stderr(&again));
+    assert!(stderr(&again).contains("corners/noise: up to date"), "{}", stderr(&again));
+    assert!(files(&project.path().join("records")) == records && written("corners/noise/records.csv.gz") == before);
+    // Anew, whatever is there: the same bytes.
+    let fresh = run(project.path(), &["run", "--all", "--fresh"]);
+    assert!(fresh.status.success() && stderr(&fresh).contains("0 of 5 up to date"), "{}", stderr(&fresh));
+    assert!(files(&project.path().join("records")) == records && written("corners/noise/records.csv.gz") > before);
+    // A file of the records that went is written again, from the store.
+    std::fs::remove_file(project.path().join("records/corners/noise/records.csv.gz")).unwrap();
+    let mended = run(project.path(), &["run", "corners/noise"]);
+    assert!(mended.status.success() && stderr(&mended).contains("corners/noise: up to date"), "{}", stderr(&mended));
+    assert!(files(&project.path().join("records")) == records);
+}
+
+#[test]
+fn a_method_that_is_new_is_run_alone() {
+    let project = few();
+    assert!(run(project.path(), &["run", "corners/noise", "-q"]).status.success());
+    let path = project.path().join("scenarios/corners/noise.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let methods = text.matches("[[method]]").count();
+    std::fs::write(&path, format!("{text}\n[[method]]\nname = \"saddle\"\nkinds = [\"corner\"]\nwindow = 17\n")).unwrap();
+    let output = run(project.path(), &["run", "corners/noise"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stderr(&output).contains(&format!("{methods} of {} results up to date", methods + 1)), "{}", stderr(&output));
+}
+
+#[test]
+fn the_gate_says_the_same_with_and_without_a_store() {
+    let project = few();
+    let check = ["check", "--strict", "--json"];
+    let without = program(project.path()).env("CALIBENCH_STORE", "").args(check).output().unwrap();
+    assert_eq!(without.status.code(), Some(0), "{}{}", stdout(&without), stderr(&without));
+    for filled in [false, true] {
+        let with = run(project.path(), &check);
+        assert!(with.stdout == without.stdout && with.status == without.status, "{}", stdout(&with));
+        assert_eq!(stderr(&with).contains("5 of 5 up to date"), filled, "{}", stderr(&with));
+    }
+    // More noise is worse, whatever was right before.
+    let path = project.path().join("scenarios/corners/noise.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replacen("grey_noise = 0.02", "grey_noise = 0.04", 1)).unwrap();
+    let without = program(project.path()).env("CALIBENCH_STORE", "").args(check).output().unwrap();
+    for _ in 0..2 {
+        let with = run(project.path(), &check);
+        assert_eq!((with.status.code(), with.stdout == without.stdout), (Some(1), true), "{}", stdout(&with));
+    }
+}
+
+#[test]
+fn a_corrupted_result_is_told_and_done_anew() {
+    let project = few();
+    assert!(run(project.path(), &["check", "-q"]).status.success());
+    let mut broken = 0;
+    for path in entries(project.path()) {
+        let mut bytes = std::fs::read(&path).unwrap();
+        let last = bytes.len() - 1;
+        bytes[last / 2] ^= 16;
+        std::fs::write(&path, bytes).unwrap();
+        broken += 1;
+    }
+    let output = run(project.path(), &["check", "--strict", "-q"]);
+    assert!(output.status.success() && broken > 10, "{}{}", stdout(&output), stderr(&output));
+    assert!(stderr(&output).contains("were not as they had been written, and were computed anew"), "{}", stderr(&output));
+    let output = run(project.path(), &["check", "--strict"]);
+    assert!(output.status.success() && stderr(&output).contains("5 of 5 up to date"), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("computed anew"), "{}", stderr(&output));
+}
+
+#[test]
+fn two_commands_at_once_share_a_store() {
+    let project = few();
+    let other = few();
+    let start = |folder: &Path| {
+        program(folder).env("CALIBENCH_STORE", project.path().join("kept")).args(["check", "--strict", "-q"]).spawn().unwrap()
+    };
+    for mut child in [start(project.path()), start(other.path()), start(project.path())] {
+        assert!(child.wait().unwrap().success());
+    }
+    assert!(entries(project.path()).iter().all(|path| !path.to_string_lossy().contains("new-")), "nothing half written is left");
+    let output = run(other.path(), &["check", "--strict"]);
+    assert!(output.status.success() && stderr(&output).contains("5 of 5 up to date"), "{}", stderr(&output));
+}
+
+#[test]
+fn what_is_left_to_the_night_is_named_and_tested_when_asked_for() {
+    let project = few();
+    let path = project.path().join("scenarios/corners/noise.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let worse = text.replacen("grey_noise = 0.02", "grey_noise = 0.04", 1);
+    std::fs::write(&path, worse.replacen("\nseed = ", "\nnightly = true\nseed = ", 1)).unwrap();
+    let day = run(project.path(), &["check"]);
+    assert_eq!(day.status.code(), Some(0), "{}{}", stdout(&day), stderr(&day));
+    assert!(stdout(&day).contains("Not tested: corners/noise, which is left to `calibench check --nightly`."), "{}", stdout(&day));
+    let json: serde_json::Value = serde_json::from_slice(&run(project.path(), &["check", "--json", "-q"]).stdout).unwrap();
+    assert_eq!(json["not_tested"], serde_json::json!(["corners/noise"]));
+    for arguments in [&["check", "--nightly"][..], &["check", "corners/noise"]] {
+        let night = run(project.path(), arguments);
+        assert_eq!(night.status.code(), Some(1), "{}{}", stdout(&night), stderr(&night));
+        assert!(stdout(&night).contains("corners/noise") && !stdout(&night).contains("Not tested"), "{}", stdout(&night));
+    }
+}
+
+#[test]
+fn a_store_that_is_no_folder_is_refused_and_none_is_wanted_where_it_has_no_name() {
+    let project = few();
+    std::fs::write(project.path().join("file"), "mine").unwrap();
+    let output = run(project.path(), &["run", "corners/noise", "--store", "file"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--store file: is no folder; expected one, or a place for a new one"), "{}", stderr(&output));
+    let output = program(project.path()).env("CALIBENCH_STORE", "").args(["run", "corners/noise"]).output().unwrap();
+    assert!(output.status.success() && !stderr(&output).contains("up to date"), "{}", stderr(&output));
+    assert!(!project.path().join("target").exists() && !project.path().join("kept").exists());
+    let output = program(project.path()).env_remove("CALIBENCH_STORE").args(["run", "corners/noise"]).output().unwrap();
+    assert!(output.status.success() && project.path().join("target/store").is_dir(), "{}", stderr(&output));
+}
