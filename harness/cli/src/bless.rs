@@ -25,9 +25,9 @@ pub struct Bless {
 }
 
 impl Bless {
-    /// Everything, without asking.
+    /// Everything, without asking, and without leaving a store.
     pub fn all() -> Self {
-        Self { scenarios: Vec::new(), yes: true, reusing: Reusing::default() }
+        Self { scenarios: Vec::new(), yes: true, reusing: Reusing::nothing() }
     }
 
     pub fn run(&self, context: &Context<'_>) -> Result<(), Failure> {

@@ -1,5 +1,6 @@
 //! The store of results: what of a run is up to date.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use calibench_run::reuse::{Reuse, Tally, is_code_known};
@@ -13,14 +14,14 @@ use crate::failure::Failure;
 const MOST: u64 = 2 << 30;
 
 /// Whether what was computed before is taken.
-#[derive(Args, Default)]
+#[derive(Args)]
 pub struct Reusing {
     /// Compute everything, whatever the store of earlier results holds
     #[arg(long)]
     fresh: bool,
     /// The store of earlier results; none where DIR is empty [default: target/store of the project]
     #[arg(long, value_name = "DIR", env = "CALIBENCH_STORE")]
-    store: Option<PathBuf>,
+    store: Option<OsString>,
 }
 
 /// An open store, if there is one.
@@ -30,9 +31,14 @@ pub struct Stored {
 }
 
 impl Reusing {
+    /// No store at all.
+    pub fn nothing() -> Self {
+        Self { fresh: false, store: Some(OsString::new()) }
+    }
+
     /// Opens the store: that which is named, or the project's.
     pub fn open(&self, context: &Context<'_>) -> Result<Stored, Failure> {
-        let folder = match self.store.clone() {
+        let folder = match self.store.clone().map(PathBuf::from) {
             // The variable set to nothing.
             Some(folder) if folder.as_os_str().is_empty() => None,
             Some(folder) if folder.exists() && !folder.is_dir() => {

@@ -7,6 +7,7 @@ pub mod description;
 mod detection;
 mod error;
 pub mod judgement;
+mod made;
 mod measured;
 pub mod network;
 mod order;

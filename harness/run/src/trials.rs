@@ -8,6 +8,7 @@ use calibench_scenario::{PhotographsSubject, Printed, Subject};
 use rayon::prelude::*;
 
 use super::bounded::Bounding;
+use super::made::Made;
 use super::transfer::Campaign;
 use super::{Plan, RunError, photographs, printed, scene, views};
 
@@ -28,29 +29,6 @@ pub(crate) enum Work<'a> {
     Views(Box<views::Trials<'a>>),
     /// Calibrations that are applied.
     Transfer(Box<Campaign<'a>>),
-}
-
-/// What was made of a trial.
-#[derive(Default)]
-pub(crate) struct Made {
-    /// Its points, and what was adjusted from them.
-    pub trial: Trial,
-    /// What was counted beside the points.
-    pub counted: Vec<Calibrated>,
-}
-
-impl Made {
-    /// The trial with everything.
-    pub fn into_trial(mut self) -> Trial {
-        self.trial.calibrations.extend(self.counted);
-        self.trial
-    }
-}
-
-impl From<Trial> for Made {
-    fn from(trial: Trial) -> Self {
-        Self { trial, counted: Vec::new() }
-    }
 }
 
 impl Work<'_> {

@@ -15,8 +15,8 @@ use super::detection::{Tally, TruePlaces};
 use super::recognition::{Counted, Recognised, keep_steps, recognise, shown};
 use super::views::{Pointed, Prepared, PreparedView, is_pointed_at, kind_of, seen, started};
 use super::{Plan, RunError};
+use crate::made::Made;
 use crate::measured::{Answers, Asked, Pictured};
-use crate::trials::Made;
 
 /// What was made of one view.
 struct Viewed {

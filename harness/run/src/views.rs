@@ -19,8 +19,8 @@ use super::bounded::TrialBounds;
 use super::bounds::{BySet, TargetBounds};
 use super::viewed::run_views;
 use super::{Plan, RunError};
+use crate::made::Made;
 use crate::network::Job;
-use crate::trials::Made;
 use crate::{blocks, network};
 
 /// Pixels of light that are kept at most, 4 bytes each.

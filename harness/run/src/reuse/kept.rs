@@ -11,7 +11,7 @@ use super::frames::{Frame, FrameReader, FrameWriter};
 use super::keys::MethodKeys;
 use super::{Reuse, Tally};
 use crate::Plan;
-use crate::trials::Made;
+use crate::made::Made;
 
 /// What one method makes, or all together: read from the store, or computed and put there.
 pub struct Unit<'k> {
@@ -66,7 +66,7 @@ impl<'k> Unit<'k> {
     /// What is in the store of it.
     pub fn find(store: &Store, keys: &'k MethodKeys) -> Self {
         let find = |key: Option<Key>| Source::of(key.and_then(|key| store.find(key)).map(FrameReader::new));
-        let [bounds, adjusted] = [keys.bounds, keys.adjusted].map(|key| key.map(|key| find(Some(key))));
+        let [bounds, adjusted] = [keys.bounds, keys.adjusted].map(|key| key.map(find));
         Self { keys, points: find(keys.points), bounds, adjusted }
     }
 
@@ -106,7 +106,7 @@ impl<'k> Unit<'k> {
         }
         for (source, key) in [(&mut self.bounds, self.keys.bounds), (&mut self.adjusted, self.keys.adjusted)] {
             if let Some(source) = source.as_mut().filter(|source| source.lacks()) {
-                *source = begin(key).unwrap_or(Source::Lacking);
+                *source = begin(key.flatten()).unwrap_or(Source::Lacking);
             }
         }
     }

@@ -27,10 +27,10 @@ pub struct MethodKeys {
     pub method: Option<usize>,
     /// Of its points, with what is adjusted from them where that is not apart. `None` of a method that nobody knows the code of.
     pub points: Option<Key>,
-    /// Of the bounds of its points, where they are asked for.
-    pub bounds: Option<Key>,
-    /// Of what is adjusted, apart.
-    pub adjusted: Option<Key>,
+    /// Of the bounds of its points, where they are asked for; without a key they are computed whenever they are.
+    pub bounds: Option<Option<Key>>,
+    /// Of what is adjusted, where that is apart, alike.
+    pub adjusted: Option<Option<Key>>,
 }
 
 /// The keys of `plan`, unless it measures nothing that could be kept.
@@ -76,8 +76,9 @@ pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
 
 fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trials, apart): (&str, bool), index: usize) -> MethodKeys {
     let method = &plan.methods[index];
+    let bounded = plan.bounds && may_be_bounded(&plan.scenario.subject);
     if method.outside || method.recorded().is_some() {
-        return MethodKeys { method: Some(index), points: None, bounds: None, adjusted: None };
+        return MethodKeys { method: Some(index), points: None, bounds: bounded.then_some(None), adjusted: apart.then_some(None) };
     }
     let (settings, kinds) = (settings(method), method.kinds.as_ref().map_or_else(String::new, ToString::to_string));
     let own = [
@@ -94,8 +95,8 @@ fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trial
     MethodKeys {
         method: Some(index),
         points: Some(Key::of("points", parts(has_adjusted && !apart))),
-        bounds: (plan.bounds && may_be_bounded(&plan.scenario.subject)).then(|| Key::of("bounds", parts(has_adjusted && !apart))),
-        adjusted: apart.then(|| Key::of("adjusted", parts(true))),
+        bounds: bounded.then(|| Some(Key::of("bounds", parts(has_adjusted && !apart)))),
+        adjusted: apart.then(|| Some(Key::of("adjusted", parts(true)))),
     }
 }
 

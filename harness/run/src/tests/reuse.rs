@@ -1,8 +1,9 @@
 //! With a store every run hands on the trials of a run without one, to the last bit, and computes nothing that is there.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use calibench_measure::Registry;
+use calibench_measure::{Build, Method, Outside, Registry};
 use calibench_records::results::Trial;
 use calibench_scenario::{Scenario, parse};
 use calibench_store::Store;
@@ -262,4 +263,33 @@ fn a_store_that_refuses_is_told() {
     let (store, tally) = (Store::open(&place, 1 << 20, false), Tally::default());
     let trials = all(&Plan { reuse: Some(Reuse { store: &store, program: "p", tally: &tally }), ..plan(&scenario) });
     assert!(trials == all(&plan(&scenario)) && tally.refused().is_some());
+}
+
+/// Of a program of others nobody knows when it changes: it is run whenever it is asked for, and everything is made of its points that is made of others.
+#[test]
+fn a_method_from_outside_is_always_computed() {
+    let outside = || {
+        let operator = Registry::builtin().parse("pixel").unwrap().operator;
+        Ok(Outside { version: "9".into(), operator })
+    };
+    let method = Method {
+        name: "theirs",
+        about: "As pixel.",
+        source: "a test",
+        version: String::new(),
+        parameters: &[],
+        build: Build::Outside(Arc::new(move |_| outside())),
+    };
+    let registry = Registry::builtin().with(method);
+    let keeps = SCENARIO.replacen("drawn = { \"forstner:window=9\" = 0 }", "keep_points = true", 1);
+    for text in [format!("{keeps}\n[[method]]\nname = \"theirs\"\n"), format!("{SCENE}\n[[method]]\nname = \"theirs\"\n")] {
+        let scenario = parse("small/theirs", "theirs.toml", &text, &registry).unwrap_or_else(|problems| panic!("{problems}"));
+        let (kept, own) = (Kept::new(), scenario.methods.len() - 1);
+        let without = all(&plan(&scenario));
+        for counts in [[0, own + 1], [own, 1], [own, 1]] {
+            let (trials, counted) = kept.run(plan(&scenario));
+            assert!(trials == without, "{}", scenario.name);
+            assert_eq!(counted, counts);
+        }
+    }
 }
