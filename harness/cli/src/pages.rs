@@ -63,7 +63,7 @@ impl Pages {
             left.done += seconds;
             let count = left.families.entry(family(name).to_owned()).or_default();
             *count = count.saturating_sub(1);
-            (*count == 0, rest(&left, self.started.elapsed()))
+            (*count == 0, rest(&left, self.started.elapsed(), rayon::current_num_threads()))
         };
         if !complete {
             return Ok(());
@@ -76,13 +76,16 @@ impl Pages {
     }
 }
 
+/// Of so many seconds of the table it is taken that they take as long here, shared by the threads: what was done first is too little to tell.
+const BEFORE: f64 = 20.0;
+
 /// How much is left, and how long that takes if it goes on as it went.
-fn rest(left: &Left, elapsed: Duration) -> String {
+fn rest(left: &Left, elapsed: Duration, threads: usize) -> String {
     let families = left.families.values().filter(|count| **count > 0).count();
     if left.scenarios == 0 {
         return "all scenarios are done".into();
     }
-    let seconds = elapsed.as_secs_f64() * left.seconds / left.done;
+    let seconds = left.seconds * (elapsed.as_secs_f64() + BEFORE / threads as f64) / (left.done + BEFORE);
     let time = if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
     format!("left: {} scenarios of {families} families, about {time}", left.scenarios)
 }
@@ -110,9 +113,9 @@ mod tests {
             seconds,
             done,
         };
-        let after = |left: &Left| rest(left, Duration::from_secs(10));
-        assert_eq!(after(&left(3, 30.0, 10.0)), "left: 3 scenarios of 1 families, about 30 s");
-        assert_eq!(after(&left(3, 300.0, 10.0)), "left: 3 scenarios of 1 families, about 5 min");
+        let after = |left: &Left| rest(left, Duration::from_secs(5), 2);
+        assert_eq!(after(&left(3, 30.0, 10.0)), "left: 3 scenarios of 1 families, about 15 s");
+        assert_eq!(after(&left(3, 360.0, 10.0)), "left: 3 scenarios of 1 families, about 3 min");
         assert_eq!(after(&left(0, 0.0, 10.0)), "all scenarios are done");
     }
 }
