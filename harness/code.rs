@@ -9,7 +9,7 @@ use std::{env, fs};
 /// Texts by their paths below the folder of crates, tests left out.
 pub type Sources = BTreeMap<String, String>;
 
-/// The sources below `folder`, by their paths below `harness`.
+/// The sources below `folder` and what is compiled in beside them, by their paths below `harness`.
 pub fn sources(harness: &Path, folder: &Path) -> Sources {
     let mut found = Sources::new();
     for entry in fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok) {
@@ -19,9 +19,9 @@ pub fn sources(harness: &Path, folder: &Path) -> Sources {
         }
         if path.is_dir() {
             found.extend(sources(harness, &path));
-        } else if name.ends_with(".rs") {
+        } else {
             let below = path.strip_prefix(harness).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-            found.insert(below, fs::read_to_string(&path).unwrap_or_default());
+            found.insert(below, String::from_utf8_lossy(&fs::read(&path).unwrap_or_default()).into_owned());
         }
     }
     found

@@ -1,7 +1,7 @@
 //! Takes digests of the code on which results depend, where it lies beside this crate: `CALIBENCH_CODE`, of which `reuse::code` says what it is.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 #[path = "../code.rs"]
@@ -26,11 +26,13 @@ fn main() {
     let Some(harness) = manifest.parent().filter(|harness| harness.join(OPERATORS).is_dir()) else { return };
     println!("cargo::rerun-if-changed=build.rs");
     let lock = harness.join("../Cargo.lock");
-    for place in POINTS.iter().chain(&ADJUSTED).chain(&WRITTEN).map(|name| harness.join(name).join("src")).chain([lock.clone()]) {
+    for place in POINTS.iter().chain(&ADJUSTED).chain(&WRITTEN).flat_map(|name| folders(harness, name)).chain([lock.clone()]) {
         println!("cargo::rerun-if-changed={}", place.display());
     }
     let common = [compiler(), fs::read_to_string(lock).unwrap_or_default()];
-    let of = |crates: &[&str]| crates.iter().flat_map(|name| sources(harness, &harness.join(name).join("src"))).collect::<Sources>();
+    let of = |crates: &[&str]| {
+        crates.iter().flat_map(|name| folders(harness, name)).flat_map(|folder| sources(harness, &folder)).collect::<Sources>()
+    };
     let points = of(&POINTS);
     let adjusted = of(&ADJUSTED);
     let (operators, shared): (Sources, Sources) = points.into_iter().partition(|(path, _)| operator_of(path).is_some());
@@ -51,6 +53,11 @@ fn main() {
         code.push(format!("{method}={}", digest(&common, &[&text(&reached(&operators, &modules))])));
     }
     println!("cargo::rustc-env=CALIBENCH_CODE={}", code.join(";"));
+}
+
+/// Where the code of a crate lies, and the tables that are compiled in.
+fn folders(harness: &Path, name: &str) -> impl Iterator<Item = PathBuf> {
+    ["src", "data"].map(|part| harness.join(name).join(part)).into_iter().filter(|folder| folder.is_dir())
 }
 
 fn cloned((path, text): (&String, &String)) -> (String, String) {

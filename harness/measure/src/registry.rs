@@ -64,6 +64,8 @@ pub struct Configured {
     pub settings: Settings,
     /// The kinds of target that it is limited to, if it is.
     pub kinds: Option<Kinds>,
+    /// Whether it is one of this crate's own, and none that took its name.
+    pub own: bool,
     /// Whether it is no part of this program: its answers may change with nothing here telling.
     pub outside: bool,
     /// The operator, or why there is none.
@@ -117,16 +119,25 @@ pub const KINDS: &str = "kinds";
 #[derive(Clone, Default)]
 pub struct Registry {
     methods: Vec<Method>,
+    /// The names of those that are this crate's own.
+    own: Vec<&'static str>,
 }
 
 impl Registry {
     /// Adds a method, in place of one of the same name if there is one.
     #[must_use]
     pub fn with(mut self, method: Method) -> Self {
+        self.own.retain(|name| *name != method.name);
         match self.methods.iter_mut().find(|m| m.name == method.name) {
             Some(old) => *old = method,
             None => self.methods.push(method),
         }
+        self
+    }
+
+    /// The same methods, all of them this crate's own.
+    pub(crate) fn all_own(mut self) -> Self {
+        self.own = self.methods.iter().map(|method| method.name).collect();
         self
     }
 
@@ -163,8 +174,8 @@ impl Registry {
         };
         let default_label = label(method, &Settings::resolve(name, method.parameters, &[])?);
         let label = label(method, &settings);
-        let outside = matches!(method.build, Build::Outside(_));
-        Ok(Configured { unlimited_label: label.clone(), label, default_label, version, settings, kinds: None, outside, operator })
+        let (own, outside) = (self.own.contains(&method.name), matches!(method.build, Build::Outside(_)));
+        Ok(Configured { unlimited_label: label.clone(), label, default_label, version, settings, kinds: None, own, outside, operator })
     }
 
     /// The method that `text` names, as in `forstner:window=15`. One that is limited to kinds of targets is written `corner+cross=forstner:window=15`, or

@@ -43,6 +43,6 @@ impl Registry {
             detect::method(),
             calib_targets::method(),
         ];
-        methods.into_iter().fold(Self::default(), Self::with)
+        methods.into_iter().fold(Self::default(), Self::with).all_own()
     }
 }

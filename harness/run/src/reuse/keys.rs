@@ -81,6 +81,8 @@ fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trial
         return MethodKeys { method: Some(index), points: None, bounds: bounded.then_some(None), adjusted: apart.then_some(None) };
     }
     let (settings, kinds) = (settings(method), method.kinds.as_ref().map_or_else(String::new, ToString::to_string));
+    // Of the crates' own operators alone the whole code is known by their names.
+    let program = if method.own { "" } else { reuse.program };
     let own = [
         ("trials", trials),
         ("method", method.label.as_str()),
@@ -88,6 +90,7 @@ fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trial
         ("settings", &settings),
         ("kinds", &kinds),
         ("operator", code::digest(method.name(), reuse.program)),
+        ("program", program),
     ];
     let adjusted = [("adjusted", plan.scenario.resolved.adjusted.as_str()), ("adjustment", code::digest(code::ADJUSTED, reuse.program))];
     let has_adjusted = !plan.scenario.resolved.adjusted.is_empty();
@@ -128,7 +131,8 @@ fn settings(method: &Configured) -> String {
     method.settings.iter().map(|(name, value)| format!("{name}={value:?}")).collect::<Vec<_>>().join(",")
 }
 
-fn digest_of(path: &std::path::Path) -> Option<String> {
+/// The digest of a file's content.
+pub(super) fn digest_of(path: &std::path::Path) -> Option<String> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
     Some(hasher.finalize().to_hex().to_string())

@@ -58,6 +58,7 @@ pub fn run(plan: &Plan<'_>, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial
     let bounding = Plan { asked: Some(&bounded), images: None, data: plan.data.clone(), ..*plan };
     let bounds = if bounded.is_empty() { None } else { Some(bounding.bounding()?) };
     let adjusting = Plan { asked: Some(&adjusted), images: None, data: plan.data.clone(), ..*plan };
+    let mut images_kept = pictured;
     let Span { from, to } = plan.span();
     for first in (from..to).step_by(BATCH as usize) {
         let kept = (first..(first + BATCH).min(to)).map(|number| Kept::read(number, &mut units)).collect::<io::Result<Vec<_>>>()?;
@@ -75,7 +76,6 @@ pub fn run(plan: &Plan<'_>, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial
             }
             Ok(trial)
         };
-        let mut images_kept = pictured;
         for trial in kept.into_par_iter().map(done).collect::<Result<Vec<_>, RunError>>()? {
             for unit in &mut units {
                 unit.write(&trial, reuse.tally);

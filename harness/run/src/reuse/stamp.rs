@@ -5,6 +5,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 use calibench_exchange::folder::{MANIFEST, intact};
+use calibench_scenario::Subject;
 use calibench_store::Key;
 
 use super::{Reuse, keys};
@@ -15,6 +16,20 @@ use crate::Plan;
 pub struct Stamp<'a> {
     reuse: Reuse<'a>,
     key: Key,
+}
+
+/// Digests of files that are kept with the records, or that a judgement reads.
+fn files(plan: &Plan<'_>) -> String {
+    let file = match &plan.scenario.subject {
+        Subject::Views(views) => views.camera_file.clone(),
+        Subject::Photographs(subject) => {
+            let published = subject.judgement.as_ref().and_then(|judgement| judgement.published.as_ref());
+            published.map(|file| plan.folder_of(subject).join(file))
+        }
+        Subject::Scene(_) | Subject::Printed(_) => None,
+    };
+    // One that is not there is told by the judgement, and may come.
+    file.map_or_else(String::new, |file| keys::digest_of(&file).unwrap_or_else(|| "none".into()))
 }
 
 impl<'a> Stamp<'a> {
@@ -32,6 +47,7 @@ impl<'a> Stamp<'a> {
         for plan in plans {
             let keys = keys::of(plan, &reuse)?;
             parts.push(("images", keys.images.to_string()));
+            parts.push(("files", files(plan)));
             parts.push(("methods", format!("{:?}", plan.method_infos())));
             for method in &keys.methods {
                 parts.push(("points", method.points?.to_string()));

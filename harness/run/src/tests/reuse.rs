@@ -265,6 +265,30 @@ fn a_store_that_refuses_is_told() {
     assert!(trials == all(&plan(&scenario)) && tally.refused().is_some());
 }
 
+/// Of a method that took the name of one of the crates' own, or that is beside them, the program is the code.
+#[test]
+fn a_method_of_another_program_is_another_result() {
+    let taken = |name: &'static str| {
+        let method = Registry::builtin().methods().iter().find(|method| method.name == "pixel").unwrap().clone();
+        Registry::builtin().with(Method { name, ..method })
+    };
+    for (registry, computed) in [(Registry::builtin(), 0), (taken("forstner_of_mine"), 1), (taken("pixel"), 1)] {
+        let text = if computed == 1 && registry.has("forstner_of_mine") {
+            SCENE.replacen("name = \"pixel\"", "name = \"forstner_of_mine\"", 1)
+        } else {
+            SCENE.to_owned()
+        };
+        let scenario = parse("small/scene", "scene.toml", &text, &registry).unwrap_or_else(|problems| panic!("{problems}"));
+        let kept = Kept::new();
+        let run = |program: &str| {
+            let (store, tally) = (kept.open(false), Tally::default());
+            all(&Plan { reuse: Some(Reuse { store: &store, program, tally: &tally }), ..plan(&scenario) });
+            tally.computed()
+        };
+        assert_eq!([run("one"), run("one"), run("other")], [3, 0, computed]);
+    }
+}
+
 /// Of a program of others nobody knows when it changes: it is run whenever it is asked for, and everything is made of its points that is made of others.
 #[test]
 fn a_method_from_outside_is_always_computed() {
