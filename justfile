@@ -70,8 +70,9 @@ quick CRATE:
     cargo test --profile quick --lib --quiet "${packages[@]}" -- "${skips[@]}"
     echo "not tested: cli, judge, point, OpenCV, Python, what crosses crates, and tests that take long (\`just --evaluate long\`): \`just test\` does"
 
-# The sum of the last test run
+# What is left to the night, and the sum of the last test run
 summary:
+    @echo "not tested, left to 'just nightly': $(grep -l '^nightly = true' scenarios/*/*.toml | sed 's|^scenarios/||; s|[.]toml$||' | paste -sd ' ')"
     @awk '/^test result:/ { passed += $4; failed += $6; skipped += $8 } END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' target/test.log
 
 # What every change leaves out because it is large only to be large: before each release
