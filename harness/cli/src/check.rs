@@ -17,6 +17,7 @@ use crate::deliver::print;
 use crate::failure::Failure;
 
 #[derive(Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub struct Check {
     /// Names of scenarios [default: all]
     #[arg(value_name = "SCENARIO")]

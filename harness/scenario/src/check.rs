@@ -215,11 +215,7 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
         }
     };
     let (head, subject) = (head?, subject?);
-    if let Subject::Views(views) = &subject
-        && views.camera_file.is_some()
-    {
-        resolved = resolved.with_camera(&views.camera);
-    }
+    let resolved = resolved.with_camera_of(&subject);
     let kinds = once(&subject.kinds());
     if methods.len() == listed_at.len() {
         check_kinds(&methods, &listed_at, &kinds, in_sweep, problems);
@@ -229,13 +225,12 @@ fn read(file: File<'_>, root: DeTable<'_>, in_sweep: bool, problems: &mut Vec<Pr
     }
     let (trials, trials_span) = head.trials.map_or((1, 0..0), |trials| (trials.get_ref().0, trials.span()));
     let [why, source] = [("why", head.why), ("source", head.source)].map(|(key, value)| stated(key, value, problems));
-    let notes = head.notes.unwrap_or_default();
     let bound_window = head.bound_window.map_or(BOUND_WINDOW, |window| window.0);
     let scenario = Scenario {
         name: name.to_owned(),
         why,
         source,
-        notes,
+        notes: head.notes.unwrap_or_default(),
         nightly: head.nightly.unwrap_or(false),
         seed: head.seed.0,
         trials,

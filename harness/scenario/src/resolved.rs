@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use calibench_model::camera::Camera;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+use crate::Subject;
 
 /// Keys of the top level on which no result of a method depends: words, the list of methods, how many trials there are, when it is checked.
 const ASIDE: [&str; 7] = ["why", "source", "notes", "method", "nightly", "trials", "sweep"];
@@ -36,9 +37,13 @@ impl Resolved {
         resolved
     }
 
-    /// With the camera that was read from a file.
-    pub(crate) fn with_camera(mut self, camera: &Camera) -> Self {
-        _ = writeln!(self.points, "camera {camera:?}");
+    /// With the camera that was read from a file, if one was.
+    pub(crate) fn with_camera_of(mut self, subject: &Subject) -> Self {
+        if let Subject::Views(views) = subject
+            && views.camera_file.is_some()
+        {
+            _ = writeln!(self.points, "camera {:?}", views.camera);
+        }
         self
     }
 

@@ -13,7 +13,7 @@ use crate::key::Key;
 /// What names of entries that are being written begin with.
 const BESIDE: &str = "new-";
 /// An entry that nobody has finished for so long nobody will.
-const GIVEN_UP: Duration = Duration::from_secs(24 * 60 * 60);
+const GIVEN_UP: Duration = Duration::from_hours(24);
 
 /// A folder of results.
 #[derive(Debug)]

@@ -110,7 +110,7 @@ fn what_is_not_finished_is_not_there() {
     let left = store.files().unwrap();
     assert_eq!(left.len(), 1);
     let file = fs::File::options().append(true).open(&left[0]).unwrap();
-    file.set_modified(SystemTime::now() - Duration::from_secs(25 * 60 * 60)).unwrap();
+    file.set_modified(SystemTime::now() - Duration::from_hours(25)).unwrap();
     store.trim().unwrap();
     assert_eq!(store.files().unwrap().len(), 0);
 }

@@ -8,7 +8,7 @@ use calibench_scenario::Subject;
 use calibench_store::{Key, Store};
 
 use super::frames::{Frame, FrameReader, FrameWriter};
-use super::keys::MethodKeys;
+use super::keys::{MethodKeys, Wanted};
 use super::{Reuse, Tally};
 use crate::Plan;
 use crate::made::Made;
@@ -66,7 +66,7 @@ impl<'k> Unit<'k> {
     /// What is in the store of it.
     pub fn find(store: &Store, keys: &'k MethodKeys) -> Self {
         let find = |key: Option<Key>| Source::of(key.and_then(|key| store.find(key)).map(FrameReader::new));
-        let [bounds, adjusted] = [keys.bounds, keys.adjusted].map(|key| key.map(find));
+        let [bounds, adjusted] = [keys.bounds, keys.adjusted].map(|wanted| (wanted != Wanted::No).then(|| find(wanted.key())));
         Self { keys, points: find(keys.points), bounds, adjusted }
     }
 
@@ -104,9 +104,9 @@ impl<'k> Unit<'k> {
         if self.points.lacks() {
             self.points = begin(self.keys.points).unwrap_or(Source::Lacking);
         }
-        for (source, key) in [(&mut self.bounds, self.keys.bounds), (&mut self.adjusted, self.keys.adjusted)] {
+        for (source, wanted) in [(&mut self.bounds, self.keys.bounds), (&mut self.adjusted, self.keys.adjusted)] {
             if let Some(source) = source.as_mut().filter(|source| source.lacks()) {
-                *source = begin(key.flatten()).unwrap_or(Source::Lacking);
+                *source = begin(wanted.key()).unwrap_or(Source::Lacking);
             }
         }
     }

@@ -21,6 +21,32 @@ pub struct Keys {
     pub apart: bool,
 }
 
+/// Whether something is wanted, and where it is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// Nobody asks for it.
+    No,
+    /// It is computed whenever it is asked for.
+    Unkept,
+    /// Under this key.
+    Under(Key),
+}
+
+impl Wanted {
+    /// Under a key, if it is wanted at all.
+    fn under(is_wanted: bool, key: impl FnOnce() -> Key) -> Self {
+        if is_wanted { Self::Under(key()) } else { Self::No }
+    }
+
+    /// Where it is kept, if it is.
+    pub fn key(self) -> Option<Key> {
+        match self {
+            Self::Under(key) => Some(key),
+            Self::No | Self::Unkept => None,
+        }
+    }
+}
+
 /// The keys of what a method makes.
 pub struct MethodKeys {
     /// Its place; `None` of all together.
@@ -28,9 +54,9 @@ pub struct MethodKeys {
     /// Of its points, with what is adjusted from them where that is not apart. `None` of a method that nobody knows the code of.
     pub points: Option<Key>,
     /// Of the bounds of its points, where they are asked for; without a key they are computed whenever they are.
-    pub bounds: Option<Option<Key>>,
+    pub bounds: Wanted,
     /// Of what is adjusted, where that is apart, alike.
-    pub adjusted: Option<Option<Key>>,
+    pub adjusted: Wanted,
 }
 
 /// The keys of `plan`, unless it measures nothing that could be kept.
@@ -77,8 +103,9 @@ pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
 fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trials, apart): (&str, bool), index: usize) -> MethodKeys {
     let method = &plan.methods[index];
     let bounded = plan.bounds && may_be_bounded(&plan.scenario.subject);
+    let unkept = |is_wanted| if is_wanted { Wanted::Unkept } else { Wanted::No };
     if method.outside || method.recorded().is_some() {
-        return MethodKeys { method: Some(index), points: None, bounds: bounded.then_some(None), adjusted: apart.then_some(None) };
+        return MethodKeys { method: Some(index), points: None, bounds: unkept(bounded), adjusted: unkept(apart) };
     }
     let (settings, kinds) = (settings(method), method.kinds.as_ref().map_or_else(String::new, ToString::to_string));
     // Of the crates' own operators alone the whole code is known by their names.
@@ -98,8 +125,8 @@ fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trial
     MethodKeys {
         method: Some(index),
         points: Some(Key::of("points", parts(has_adjusted && !apart))),
-        bounds: bounded.then(|| Some(Key::of("bounds", parts(has_adjusted && !apart)))),
-        adjusted: apart.then(|| Some(Key::of("adjusted", parts(true)))),
+        bounds: Wanted::under(bounded, || Key::of("bounds", parts(has_adjusted && !apart))),
+        adjusted: Wanted::under(apart, || Key::of("adjusted", parts(true))),
     }
 }
 
@@ -123,7 +150,7 @@ fn together(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], trials:
         ("program", reuse.program),
     ];
     let key = Key::of("together", common.iter().copied().chain(more).chain(versions.iter().map(|version| ("method", version.as_str()))));
-    MethodKeys { method: None, points: Some(key), bounds: None, adjusted: None }
+    MethodKeys { method: None, points: Some(key), bounds: Wanted::No, adjusted: Wanted::No }
 }
 
 /// All parameters, those at their defaults among them.

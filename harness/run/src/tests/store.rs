@@ -144,6 +144,10 @@ fn a_sweep_s_cells_have_a_folder_each_and_share_their_noise() {
     assert_ne!(stored["cell-0001/calibrations.csv.gz"], stored["cell-0002/calibrations.csv.gz"]);
 }
 
+fn is_image(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension == "png")
+}
+
 /// Records that a run with a store writes, whatever of it is there, are those of one without, images and all; and a second run leaves them.
 #[test]
 fn records_are_the_same_with_a_store_and_left_where_they_are_right() {
@@ -152,12 +156,12 @@ fn records_are_the_same_with_a_store_and_left_where_they_are_right() {
     let plain = tempfile::tempdir().unwrap();
     run(&place(plain.path()), &mut Plan::new(&scenario, crate::Tools::default(), PathBuf::new()), "r1", &|| ()).unwrap();
     let expected = files(plain.path());
-    assert!(expected.keys().filter(|name| name.ends_with(".png")).count() > 1, "{:?}", expected.keys());
+    assert!(expected.keys().filter(|name| is_image(name)).count() > 1, "{:?}", expected.keys());
     let (kept, parent) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let again = |asked: Option<&[usize]>| {
         let (store, tally) = (calibench_store::Store::open(kept.path(), 1 << 30, false), crate::reuse::Tally::default());
         let reuse = Some(crate::reuse::Reuse { store: &store, program: "p", tally: &tally });
-        let mut plan = Plan { reuse, asked, ..Plan::new(&scenario, crate::Tools::default(), PathBuf::new()) };
+        let mut plan = Plan { asked, reuse, ..Plan::new(&scenario, crate::Tools::default(), PathBuf::new()) };
         if asked.is_some() {
             // For its entries alone.
             crate::reuse::run(&plan, &|| (), &mut |_| Ok(())).unwrap();
@@ -171,10 +175,8 @@ fn records_are_the_same_with_a_store_and_left_where_they_are_right() {
     assert_eq!(again(None), [1, 1, 0], "one method, and the images");
     assert_eq!(again(None), [0, 0, 1], "nothing at all");
     // Another's hand in them: written anew, from what is there.
-    let image = parent
-        .path()
-        .join(NAME)
-        .join(expected.keys().find(|name| name.ends_with(".png")).map(|name| name.rsplit('/').next().unwrap()).unwrap());
+    let image =
+        parent.path().join(NAME).join(expected.keys().find(|name| is_image(name)).map(|name| name.rsplit('/').next().unwrap()).unwrap());
     std::fs::remove_file(&image).unwrap();
     assert_eq!(again(None), [2, 0, 0]);
     assert!(image.is_file());
