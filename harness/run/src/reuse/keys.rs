@@ -17,8 +17,6 @@ pub struct Keys {
     pub methods: Vec<MethodKeys>,
     /// Of the images of the first trial.
     pub images: Key,
-    /// Whether what is adjusted from points has entries of its own.
-    pub apart: bool,
 }
 
 /// Whether something is wanted, and where it is kept.
@@ -94,10 +92,10 @@ pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
     } else {
         plan.available().into_iter().map(|method| of_method(plan, reuse, &common, (&trials, apart), method)).collect()
     };
-    // Which image is shown depends on what is measured in which.
-    let labels: Vec<&str> = plan.methods.iter().map(|method| method.label.as_str()).collect();
-    let images = Key::of("images", common.iter().copied().chain(labels.iter().map(|label| ("method", *label))));
-    Some(Keys { methods, images, apart })
+    // Which image is shown depends on what is measured in which, and on what can measure.
+    let labels = plan.all_available().into_iter().map(|method| ("method", plan.methods[method].label.as_str()));
+    let images = Key::of("images", common.iter().copied().chain(labels));
+    Some(Keys { methods, images })
 }
 
 fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trials, apart): (&str, bool), index: usize) -> MethodKeys {

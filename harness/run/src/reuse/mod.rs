@@ -70,7 +70,7 @@ pub fn run(plan: &Plan<'_>, step: &(dyn Fn() + Sync), sink: &mut dyn FnMut(Trial
             if let Some(bounds) = &bounds {
                 bounds.of(&bounding, number)?.add_to(&mut trial.whole.points, &bounding);
             }
-            if keys.apart {
+            if !adjusted.is_empty() {
                 let more = adjusting.adjust(&trial.whole, number);
                 trial.add_adjusted(more);
             }
