@@ -39,18 +39,14 @@ fn main() {
     let modules: BTreeSet<&str> = operators.keys().filter_map(|path| operator_of(path)).collect();
     // An operator that the code of all methods calls is part of it.
     let called: BTreeSet<&str> = modules.iter().copied().filter(|module| is_named(&shared, module)).collect();
-    let text = |modules: &BTreeSet<&str>| -> Sources {
-        operators.iter().filter(|(path, _)| operator_of(path).is_some_and(|module| modules.contains(module))).map(cloned).collect()
-    };
-    let with_called: Sources =
-        shared.iter().map(cloned).chain(reached(&operators, &called).iter().flat_map(|module| text(&[*module].into()))).collect();
+    let with_called: Sources = shared.iter().map(cloned).chain(of_modules(&operators, &reached(&operators, &called))).collect();
     let mut code = vec![
         format!("points={}", digest(&common, &[&with_called])),
         format!("adjusted={}", digest(&common, &[&adjusted])),
         format!("all={}", digest(&common, &[&shared, &operators, &adjusted, &of(&WRITTEN)])),
     ];
     for (method, modules) in methods(&operators) {
-        code.push(format!("{method}={}", digest(&common, &[&text(&reached(&operators, &modules))])));
+        code.push(format!("{method}={}", digest(&common, &[&of_modules(&operators, &reached(&operators, &modules))])));
     }
     println!("cargo::rustc-env=CALIBENCH_CODE={}", code.join(";"));
 }
@@ -68,6 +64,11 @@ fn cloned((path, text): (&String, &String)) -> (String, String) {
 fn operator_of(path: &str) -> Option<&str> {
     let name = path.strip_prefix(OPERATORS)?.strip_prefix('/')?.split('/').next()?;
     (name != LIST).then(|| name.trim_end_matches(".rs"))
+}
+
+/// The code of these operators.
+fn of_modules(operators: &Sources, modules: &BTreeSet<&str>) -> Sources {
+    operators.iter().filter(|(path, _)| operator_of(path).is_some_and(|module| modules.contains(module))).map(cloned).collect()
 }
 
 /// Whether code of `sources` names the module: in a path, or in a line that uses it. Comments do not count.
@@ -98,8 +99,7 @@ fn reached<'m>(operators: &'m Sources, modules: &BTreeSet<&'m str>) -> BTreeSet<
     let all: BTreeSet<&str> = operators.keys().filter_map(|path| operator_of(path)).collect();
     let mut reached = modules.clone();
     loop {
-        let own: Sources =
-            operators.iter().filter(|(path, _)| operator_of(path).is_some_and(|module| reached.contains(module))).map(cloned).collect();
+        let own = of_modules(operators, &reached);
         let more: Vec<&str> =
             all.iter().copied().filter(|module| !reached.contains(module) && own.values().any(|text| names(text, module))).collect();
         if more.is_empty() {

@@ -87,7 +87,8 @@ fn rest(left: &Left, elapsed: Duration, threads: usize) -> String {
     }
     let seconds = left.seconds * (elapsed.as_secs_f64() + BEFORE / threads as f64) / (left.done + BEFORE);
     let time = if seconds < 90.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) };
-    format!("left: {} scenarios of {families} families, about {time}", left.scenarios)
+    let of = |count: usize, one: &str, many: &str| if count == 1 { format!("1 {one}") } else { format!("{count} {many}") };
+    format!("left: {} of {}, about {time}", of(left.scenarios, "scenario", "scenarios"), of(families, "family", "families"))
 }
 
 /// Lines of `scenario,seconds`; others are passed over, for nothing but an estimate depends on them.
@@ -114,8 +115,8 @@ mod tests {
             done,
         };
         let after = |left: &Left| rest(left, Duration::from_secs(5), 2);
-        assert_eq!(after(&left(3, 30.0, 10.0)), "left: 3 scenarios of 1 families, about 15 s");
-        assert_eq!(after(&left(3, 360.0, 10.0)), "left: 3 scenarios of 1 families, about 3 min");
+        assert_eq!(after(&left(3, 30.0, 10.0)), "left: 3 scenarios of 1 family, about 15 s");
+        assert_eq!(after(&left(3, 360.0, 10.0)), "left: 3 scenarios of 1 family, about 3 min");
         assert_eq!(after(&left(0, 0.0, 10.0)), "all scenarios are done");
     }
 }

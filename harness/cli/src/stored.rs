@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use calibench_exchange::folder::digest;
 use calibench_run::reuse::{Reuse, Tally, is_code_known};
 use calibench_store::Store;
 use clap::Args;
@@ -47,8 +48,9 @@ impl Reusing {
             Some(folder) => Some(folder),
             None => context.folder()?.map(|root| root.join("target/store")),
         };
-        let Some(program) = program(context) else { return Ok(Stored { store: None, program: String::new() }) };
-        Ok(Stored { store: folder.map(|folder| Store::open(&folder, MOST, self.fresh)), program })
+        // Where nothing stands for the program nothing can be kept of it.
+        let opened = folder.and_then(|folder| Some((Store::open(&folder, MOST, self.fresh), program(context)?)));
+        Ok(opened.map_or_else(Stored::none, |(store, program)| Stored { store: Some(store), program }))
     }
 }
 
@@ -57,9 +59,7 @@ fn program(context: &Context<'_>) -> Option<String> {
     if let Some(code) = context.toolbox.code.filter(|_| is_code_known()) {
         return Some(code.to_owned());
     }
-    let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(std::fs::File::open(std::env::current_exe().ok()?).ok()?).ok()?;
-    Some(hasher.finalize().to_hex().to_string())
+    digest(&std::env::current_exe().ok()?).ok()
 }
 
 impl Stored {
@@ -97,10 +97,9 @@ pub fn is_current(tally: &Tally) -> bool {
 
 /// What of a scenario was taken from the store, for the line that says what was done.
 pub fn told(tally: &Tally) -> Option<String> {
-    match (tally.unchanged() > 0 || tally.computed() == 0, tally.found(), tally.computed()) {
-        (true, 0, 0) if tally.unchanged() == 0 => None,
-        (true, ..) => Some("up to date".to_owned()),
-        (false, 0, _) => None,
-        (false, found, computed) => Some(format!("{found} of {} results up to date", found + computed)),
+    if is_current(tally) {
+        return Some("up to date".to_owned());
     }
+    let (found, computed) = (tally.found(), tally.computed());
+    (found > 0).then(|| format!("{found} of {} results up to date", found + computed))
 }

@@ -64,8 +64,11 @@ pub(super) fn entries(folder: &Path) -> io::Result<Vec<Entry>> {
     Ok(found)
 }
 
-/// The digest of a file's content.
-pub(super) fn digest(path: &Path) -> io::Result<String> {
+/// The BLAKE3 digest of a file's content, in hexadecimal.
+///
+/// # Errors
+/// A file that cannot be read, with its path.
+pub fn digest(path: &Path) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     File::open(path).and_then(|file| hasher.update_reader(file).map(drop)).map_err(|error| at(path, &error))?;
     Ok(hasher.finalize().to_hex().to_string())

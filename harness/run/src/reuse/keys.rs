@@ -1,5 +1,6 @@
 //! What results are stored under.
 
+use calibench_exchange::folder::digest;
 use calibench_measure::Configured;
 use calibench_scenario::Subject;
 use calibench_store::Key;
@@ -67,7 +68,7 @@ pub fn of(plan: &Plan<'_>, reuse: &Reuse<'_>) -> Option<Keys> {
             let folder = plan.folder_of(subject);
             let mut digests = String::new();
             for file in &subject.files {
-                digests.push_str(&digest_of(&folder.join(file))?);
+                digests.push_str(&digest(&folder.join(file)).ok()?);
             }
             digests
         }
@@ -154,11 +155,4 @@ fn together(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], trials:
 /// All parameters, those at their defaults among them.
 fn settings(method: &Configured) -> String {
     method.settings.iter().map(|(name, value)| format!("{name}={value:?}")).collect::<Vec<_>>().join(",")
-}
-
-/// The digest of a file's content.
-pub(super) fn digest_of(path: &std::path::Path) -> Option<String> {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
-    Some(hasher.finalize().to_hex().to_string())
 }

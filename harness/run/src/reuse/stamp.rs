@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{Read, Write};
 use std::path::Path;
 
-use calibench_exchange::folder::{MANIFEST, intact};
+use calibench_exchange::folder::{MANIFEST, digest, intact};
 use calibench_scenario::Subject;
 use calibench_store::Key;
 
@@ -29,7 +29,7 @@ fn files(plan: &Plan<'_>) -> String {
         Subject::Scene(_) | Subject::Printed(_) => None,
     };
     // One that is not there is told by the judgement, and may come.
-    file.map_or_else(String::new, |file| keys::digest_of(&file).unwrap_or_else(|| "none".into()))
+    file.map_or_else(String::new, |file| digest(&file).unwrap_or_else(|_| "none".into()))
 }
 
 impl<'a> Stamp<'a> {
