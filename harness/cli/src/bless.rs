@@ -7,7 +7,7 @@ use calibench_scenario::Scenario;
 use clap::Args;
 
 use super::context::Context;
-use super::gated::{Keep, Source, cell_verdicts, gated};
+use super::gated::{Keep, Source, cell_verdicts, gated, scenarios};
 use super::stored::Reusing;
 use crate::deliver::print;
 use crate::failure::Failure;
@@ -35,7 +35,7 @@ impl Bless {
         let mut available = |scenario: &Scenario, _: Option<usize>, table: &Table| all_available(&scenario.name, table);
         let stored = self.reusing.open(context)?;
         let mut source = Source { records: None, kept: Some(Keep::new(context)?), each: &mut available, stored: &stored };
-        let all = gated(context, &self.scenarios, &mut source)?;
+        let all = gated(context, &scenarios(context, &self.scenarios)?, &mut source)?;
         let mut verdicts = cell_verdicts(context, &source)?;
         let whole = self.scenarios.is_empty();
         let mut changed: Vec<Change<'_>> = all.iter().flat_map(|one| baselines.changes(one)).collect();

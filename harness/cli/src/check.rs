@@ -10,7 +10,7 @@ use calibench_scenario::Scenario;
 use clap::Args;
 
 use super::context::Context;
-use super::gated::{Keep, Source, cell_verdicts, folder_of, gated, unit};
+use super::gated::{Keep, Source, cell_verdicts, folder_of, gated, scenarios, unit};
 use super::output;
 use super::stored::Reusing;
 use crate::deliver::print;
@@ -56,17 +56,17 @@ impl Check {
         let folder = context.root()?.join("reference/baselines");
         // What is missing is said before anything is run.
         let (baselines, mut ceilings) = (Baselines::open(&folder)?, Ceilings::read(&folder.join("ceilings.toml"))?);
-        let stored = self.reusing.open(context)?;
-        let mut source =
-            Source { records: self.records.clone(), kept: Some(Keep::new(context)?), each: &mut |_, _, _| Ok(()), stored: &stored };
-        let (names, left) = self.wanted(context)?;
-        let all = gated(context, &names, &mut source)?;
+        let (stored, keep) = (self.reusing.open(context)?, Keep::new(context)?);
+        let (wanted, left) = self.wanted(context, &keep)?;
+        let mut source = Source { records: self.records.clone(), kept: Some(keep), each: &mut |_, _, _| Ok(()), stored: &stored };
+        let all = gated(context, &wanted, &mut source)?;
         let mut gate = Gate::new();
         for one in &all {
             baselines.compare(one, &mut gate);
         }
         if self.scenarios.is_empty() {
             baselines.vanished(&all, &left, &mut gate)?;
+            ceilings.list.retain(|ceiling| !left.contains(&ceiling.scenario));
         } else {
             ceilings.list.retain(|ceiling| all.iter().any(|one| one.scenario == ceiling.scenario));
         }
@@ -91,22 +91,21 @@ impl Check {
             Ok(())
         };
         let stored = self.reusing.open(context)?;
-        let (names, left) = self.wanted(context)?;
-        gated(context, &names, &mut Source { records: self.records.clone(), kept: None, each: &mut each, stored: &stored })?;
+        let (wanted, left) = self.wanted(context, &Keep::new(context)?)?;
+        gated(context, &wanted, &mut Source { records: self.records.clone(), kept: None, each: &mut each, stored: &stored })?;
         self.report(gate, &compared, &left, junit)
     }
 
-    /// The scenarios that are compared, and those that are left to a check with --nightly.
-    fn wanted(&self, context: &Context<'_>) -> Result<(Vec<String>, Vec<String>), Failure> {
+    /// The scenarios that are compared, and the names of those that are left to a check with --nightly. What published tables stand on is never left: their verdicts
+    /// are compared as a whole.
+    fn wanted(&self, context: &Context<'_>, keep: &Keep) -> Result<(Vec<Scenario>, Vec<String>), Failure> {
+        let all = scenarios(context, &self.scenarios)?;
         if self.nightly || !self.scenarios.is_empty() {
-            return Ok((self.scenarios.clone(), Vec::new()));
+            return Ok((all, Vec::new()));
         }
-        let names = context.catalogue()?.names()?;
-        let nightly = context.scenarios(&names)?.iter().map(|scenario| scenario.nightly).collect::<Vec<_>>();
-        let (left, now): (Vec<_>, Vec<_>) = names.into_iter().zip(nightly).partition(|(_, nightly)| *nightly);
-        let [now, left] = [now, left].map(|list| list.into_iter().map(|(name, _)| name).collect::<Vec<String>>());
+        let (left, now): (Vec<_>, Vec<_>) = all.into_iter().partition(|scenario| scenario.nightly && !keep.has(&scenario.name));
         // Where all are left they are what is asked for.
-        Ok(if now.is_empty() { (left, now) } else { (now, left) })
+        Ok(if now.is_empty() { (left, Vec::new()) } else { (now, left.into_iter().map(|scenario| scenario.name).collect()) })
     }
 
     fn report(

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use calibench_gate::{Cells, Coordinates, FigureSums, Kept, Measured, PointSums, Results, Table, Verdicts, fingerprint, recorded};
 use calibench_measure::Configured;
-use calibench_measure::registry::KINDS;
 use calibench_project::ProjectError;
 use calibench_report::verdicts;
 use calibench_run::reuse::{self, Reuse, Tally};
@@ -44,6 +43,11 @@ impl Keep {
         let scenarios = verdicts::scenarios(&context.root()?.join(PUBLISHED))?;
         Ok(Self { folder: tempfile::tempdir()?, scenarios })
     }
+
+    /// Whether published tables stand on this scenario.
+    pub fn has(&self, scenario: &str) -> bool {
+        self.scenarios.iter().any(|name| name == scenario)
+    }
 }
 
 /// The folder of published tables in a project.
@@ -57,17 +61,24 @@ pub fn cell_verdicts(context: &Context<'_>, source: &Source<'_>) -> Result<Verdi
     Ok(Verdicts(all.into_iter().collect()))
 }
 
-/// Results of the named scenarios, or all.
+/// The named scenarios, or all.
 ///
 /// # Errors
-/// A scenario that cannot be loaded or run, and none at all.
-pub fn gated(context: &Context<'_>, names: &[String], source: &mut Source<'_>) -> Result<Vec<Results>, Failure> {
+/// A scenario that cannot be loaded, and none at all.
+pub fn scenarios(context: &Context<'_>, names: &[String]) -> Result<Vec<Scenario>, Failure> {
     let names = if names.is_empty() { context.catalogue()?.names()? } else { names.to_vec() };
     if names.is_empty() {
         let folder = context.root()?.join("scenarios");
         return Err(Failure::input(format!("{}: there is no scenario, so there is nothing to check", folder.display())));
     }
-    let scenarios = names.iter().map(|name| context.scenario(name)).collect::<Result<Vec<_>, _>>()?;
+    names.iter().map(|name| context.scenario(name)).collect()
+}
+
+/// Results of scenarios.
+///
+/// # Errors
+/// A scenario that cannot be run.
+pub fn gated(context: &Context<'_>, scenarios: &[Scenario], source: &mut Source<'_>) -> Result<Vec<Results>, Failure> {
     let tallies: Vec<Tally> = scenarios.iter().map(|_| Tally::default()).collect();
     let all = scenarios.iter().zip(&tallies).map(|(scenario, tally)| one(context, scenario, source, tally)).collect();
     if source.records.is_none() {
@@ -89,7 +100,7 @@ fn one(context: &Context<'_>, scenario: &Scenario, source: &mut Source<'_>, tall
     if let Some(why) = missing.filter(|_| source.records.is_none()) {
         return Ok(results(Measured::NotCompared(format!("unavailable: {why}")), None));
     }
-    let keep = source.kept.as_ref().filter(|keep| source.records.is_none() && keep.scenarios.contains(&scenario.name));
+    let keep = source.kept.as_ref().filter(|keep| source.records.is_none() && keep.has(&scenario.name));
     let records = match keep {
         Some(keep) => {
             run_into(context, scenario, keep.folder.path(), reuse)?;
@@ -202,15 +213,9 @@ fn described(mut table: Table, plan: &Plan<'_>, now: bool) -> Table {
     table.text = fingerprint(&plan.scenario.text);
     let detector = plan.detector_used().map(|(name, version)| format!("{name} {version}"));
     for method in plan.methods {
-        table.describe(&method.label, settings(method), library(method, detector.as_deref()));
+        table.describe(&method.label, method.all_settings(), library(method, detector.as_deref()));
     }
     table
-}
-
-/// All parameters, those at their defaults among them.
-fn settings(method: &Configured) -> String {
-    let kinds = method.kinds.as_ref().map(|kinds| format!("{KINDS}={kinds}"));
-    method.settings.iter().map(|(name, value)| format!("{name}={value}")).chain(kinds).collect::<Vec<_>>().join(",")
 }
 
 /// The libraries of this machine on which a method's numbers depend.

@@ -85,6 +85,12 @@ impl Configured {
         self.label.split(':').next().unwrap_or(&self.label)
     }
 
+    /// All parameters with their values, those at their defaults among them, and the kinds if it is limited.
+    pub fn all_settings(&self) -> String {
+        let kinds = self.kinds.as_ref().map(|kinds| format!("{KINDS}={kinds}"));
+        self.settings.iter().map(|(name, value)| format!("{name}={value}")).chain(kinds).collect::<Vec<_>>().join(",")
+    }
+
     /// What it was recorded as, if it was.
     pub fn recorded(&self) -> Option<&dyn Recorded> {
         self.operator.as_ref().ok()?.recorded()

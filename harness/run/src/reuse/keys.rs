@@ -1,7 +1,6 @@
 //! What results are stored under.
 
 use calibench_exchange::folder::digest;
-use calibench_measure::Configured;
 use calibench_scenario::Subject;
 use calibench_store::Key;
 
@@ -106,7 +105,7 @@ fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trial
     if method.outside || method.recorded().is_some() {
         return MethodKeys { method: Some(index), points: None, bounds: unkept(bounded), adjusted: unkept(apart) };
     }
-    let (settings, kinds) = (settings(method), method.kinds.as_ref().map_or_else(String::new, ToString::to_string));
+    let settings = method.all_settings();
     // Of the crates' own operators alone the whole code is known by their names.
     let program = if method.own { "" } else { reuse.program };
     let own = [
@@ -114,7 +113,6 @@ fn of_method(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], (trial
         ("method", method.label.as_str()),
         ("version", &method.version),
         ("settings", &settings),
-        ("kinds", &kinds),
         ("operator", code::digest(method.name(), reuse.program)),
         ("program", program),
     ];
@@ -150,9 +148,4 @@ fn together(plan: &Plan<'_>, reuse: &Reuse<'_>, common: &[(&str, &str)], trials:
     ];
     let key = Key::of("together", common.iter().copied().chain(more).chain(versions.iter().map(|version| ("method", version.as_str()))));
     MethodKeys { method: None, points: Some(key), bounds: Wanted::No, adjusted: Wanted::No }
-}
-
-/// All parameters, those at their defaults among them.
-fn settings(method: &Configured) -> String {
-    method.settings.iter().map(|(name, value)| format!("{name}={value:?}")).collect::<Vec<_>>().join(",")
 }
