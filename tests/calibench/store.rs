@@ -67,6 +67,27 @@ fn what_is_up_to_date_is_left_and_said() {
     assert!(files(&project.path().join("records")) == records);
 }
 
+/// What is kept beside the points is as it is now, though no point changes.
+#[test]
+fn a_file_that_records_keep_is_kept_as_it_is() {
+    let project = copy_of(&["canon-t3/jpeg", "canon-t3/camera"]);
+    assert!(run(project.path(), &["run", "canon-t3/jpeg", "-q"]).status.success());
+    let camera = project.path().join("scenarios/canon-t3/camera.xml");
+    let text = std::fs::read_to_string(&camera).unwrap() + "<!-- looked at -->\n";
+    std::fs::write(&camera, &text).unwrap();
+    let again = run(project.path(), &["run", "canon-t3/jpeg"]);
+    assert!(again.status.success() && stderr(&again).contains("canon-t3/jpeg: up to date"), "{}", stderr(&again));
+    let kept = project.path().join("records/canon-t3/jpeg/camera-of-the-run/camera.xml");
+    assert_eq!(std::fs::read_to_string(kept).unwrap(), text);
+    // Another camera is another result.
+    let number = text.find("<f>").or_else(|| text.find("<fx>")).unwrap_or_else(|| panic!("{text}"));
+    let digit = number + text[number..].find(|c: char| c.is_ascii_digit()).unwrap();
+    let other = format!("{}{}{}", &text[..digit], if &text[digit..=digit] == "9" { "8" } else { "9" }, &text[digit + 1..]);
+    std::fs::write(&camera, other).unwrap();
+    let anew = run(project.path(), &["run", "canon-t3/jpeg"]);
+    assert!(!stderr(&anew).contains("up to date"), "{}", stderr(&anew));
+}
+
 #[test]
 fn a_method_that_is_new_is_run_alone() {
     let project = few();

@@ -50,9 +50,12 @@ pub(crate) fn sum(lanes: &Wide) -> f64 {
 /// Adds the products of two, each to its own.
 #[inline(always)]
 pub(crate) fn add_products(sum: &mut Wide, a: &Wide, b: &Wide) {
-    for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
-        *sum += a * b;
+    // On a copy: in place, it would be asked each time whether the three overlap.
+    let mut sums = *sum;
+    for i in 0..WIDE {
+        sums[i] += a[i] * b[i];
     }
+    *sum = sums;
 }
 
 /// Each less `what`. A loop, as everywhere here: what is handed to `map` is not always compiled for the instructions around it, and then called.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use calibench_measure::{Build, Method, Outside, Registry};
+use calibench_records::parts::Span;
 use calibench_records::results::Trial;
 use calibench_scenario::{Scenario, parse};
 use calibench_store::Store;
@@ -286,6 +287,34 @@ fn a_method_of_another_program_is_another_result() {
             tally.computed()
         };
         assert_eq!([run("one"), run("one"), run("other")], [3, 0, computed]);
+    }
+}
+
+#[test]
+fn another_version_of_a_method_is_another_result() {
+    let (kept, pixel) = (Kept::new(), Registry::builtin().methods().iter().find(|method| method.name == "pixel").unwrap().clone());
+    let computed = |version: &str| {
+        let registry = Registry::builtin().with(Method { version: version.into(), ..pixel.clone() });
+        kept.run(plan(&parse("small/scene", "scene.toml", SCENE, &registry).unwrap_or_else(|problems| panic!("{problems}")))).1[1]
+    };
+    assert_eq!(["1", "1", "2", "1"].map(computed), [3, 0, 1, 0]);
+}
+
+/// The light of a still scene is rendered once, and noise is drawn in every trial; where rows move by themselves there is no such light.
+#[test]
+fn still_scenes_and_views_give_the_images_that_one_trial_alone_gives() {
+    let still = SCENE.replacen("phase = \"uniform\"", "phase = \"fixed\"", 1);
+    let jitter = still.replacen("grey_noise = 0.02\n", "", 1) + "\n[sensor]\ngrey_noise = 0.02\nrow_jitter = 0.3\n";
+    let wall = SCENARIO.replacen("drawn = { \"forstner:window=9\" = 0 }", "keep_points = true", 1) + "\n[sensor]\ngrey_noise = 0.01\n";
+    let moved = format!("{wall}row_jitter = 0.3\n");
+    for text in [still, jitter, wall, moved] {
+        let scenario =
+            parse("small/still", "still.toml", &text, &Registry::builtin()).unwrap_or_else(|problems| panic!("{problems}\n{text}"));
+        let together = all(&plan(&scenario));
+        let alone = |number: u64| all(&Plan { only: Some(Span { from: number, to: number + 1 }), ..plan(&scenario) }).swap_remove(0);
+        let one = alone(1);
+        assert!(together[1] == one && together[0].points != one.points, "{text}");
+        assert!(one.points.iter().any(|point| point.outcome.position().is_some()), "{text}");
     }
 }
 
