@@ -85,10 +85,11 @@ pub(crate) fn adjust_from<'n>(network: &'n Network, options: &Options, start: St
 /// The normal equations at the end, solved.
 fn determined(engine: &Engine, end: &mut End) -> Result<Solved, AdjustError> {
     let solved = end.solved.take().or_else(|| engine.decompose((&end.state, &end.normals), 0.0));
-    let suspect = solved.as_ref().is_none_or(|solved| solved.factor.smallest_pivot < SUSPECT);
-    if suspect || !end.converged {
-        let redundancy = engine.layout.counts.redundancy().max(1);
-        let sigma0 = (end.normals.cost / redundancy as f64).sqrt();
+    let redundancy = engine.layout.counts.redundancy().max(1);
+    let sigma0 = (end.normals.cost / redundancy as f64).sqrt();
+    // The pivots depend on the order of the unknowns; the standard deviations do not.
+    let suspect = |solved: &Solved| solved.factor.smallest_pivot < SUSPECT || engine.has_senseless_distance(solved, &end.state, sigma0);
+    if solved.as_ref().is_none_or(suspect) || !end.converged {
         if let Some(defect) = directions(engine, &end.state, &end.normals, sigma0) {
             return Err(AdjustError::Undetermined(Box::new(defect)));
         }

@@ -7,6 +7,7 @@ use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
+use crate::doubt::impossible::{fold_of, folds};
 use crate::ended::{ITERATIONS, ended};
 use crate::{CalibrationError, Checked, Compared, Prepared, Resampled};
 
@@ -31,6 +32,8 @@ pub struct Calibration<'n> {
     pub resampled: Option<Result<Resampled, String>>,
     /// What the model may leave out; empty until [`Calibration::examine`].
     pub checked: Vec<Checked>,
+    /// Cameras that are hardly known; empty until [`Calibration::examine`].
+    pub uncertain: Vec<String>,
     /// What cannot be as it is said to be, whatever the model; empty until [`Calibration::examine`].
     pub impossible: Vec<String>,
 }
@@ -56,6 +59,7 @@ impl Prepared {
             compared: None,
             resampled: None,
             checked: Vec::new(),
+            uncertain: Vec::new(),
             impossible: Vec::new(),
         })
     }
@@ -111,6 +115,11 @@ impl Calibration<'_> {
         &self.prepared.settings.cameras[camera].name
     }
 
+    /// ` of NAME`, if there are several cameras.
+    pub fn of(&self, camera: usize) -> String {
+        if self.cameras() > 1 { format!(" of {}", self.name_of(camera)) } else { String::new() }
+    }
+
     /// A parameter's name; with its camera's if there are several.
     pub fn parameter_name(&self, &(camera, name): &(usize, &'static str)) -> String {
         if self.cameras() > 1 { format!("{}.{name}", self.name_of(camera)) } else { name.to_owned() }
@@ -140,6 +149,12 @@ impl Calibration<'_> {
         } else {
             Resampled::of(&self.ended(), &self.options(), &self.covariances.parameters)
         });
+    }
+
+    /// A fold inside the frame of a camera, in words, where it is no doubt: where a fisheye sees nothing more.
+    pub fn fold_words(&self, camera: usize) -> Option<String> {
+        let (fold, angle) = fold_of(self.camera(camera))?;
+        Some(folds(fold, angle, &self.of(camera))).filter(|words| !self.impossible.contains(words))
     }
 
     /// The same network with the end of the adjustment as its start.

@@ -18,6 +18,7 @@ mod network;
 mod next;
 mod optics;
 pub mod orientation;
+mod over_frame;
 mod prepared;
 mod prior;
 mod resampled;
@@ -29,6 +30,7 @@ mod shape;
 mod stages;
 mod start;
 mod survey;
+mod suspect;
 mod weak;
 mod whole;
 
@@ -51,6 +53,7 @@ pub use error::{CalibrationError, few};
 pub use model::{MODELS, parameters};
 pub use next::{Next, Photograph};
 pub use optics::Optics;
+pub use over_frame::{OverFrame, usual_limit_px};
 pub use prepared::{Prepared, prepare};
 pub use prior::{NoPrior, Prior};
 pub use resampled::Resampled;
@@ -60,6 +63,7 @@ pub use settings::{Settings, USUAL_SIGMA};
 pub use shape::{Bend, Board, Shape};
 pub use start::{control_of, pose_of, robust_pose_of};
 pub use survey::{Known, LeftOut, Sight, Survey};
+pub use suspect::{MOST_TRIED, Suspected, suspected};
 pub use whole::calibrate;
 
 /// The example of the README.

@@ -20,9 +20,25 @@ pub struct Resampled {
     pub groups: usize,
     /// Of each unknown parameter, in its unit, in the order of [`calibench_adjust::Covariances::parameters`].
     pub sigmas: Vec<f64>,
+    /// Of each group: the unknown parameters without it, in the same order.
+    pub without: Vec<Vec<f64>>,
 }
 
 impl Resampled {
+    /// From the unknown parameters as they are when one group after the other is left out: their standard deviations are the jackknife's.
+    ///
+    /// Source: Efron & Tibshirani 1993, chapter 11.
+    pub(crate) fn from_groups(without: Vec<Vec<f64>>) -> Self {
+        let groups = without.len() as f64;
+        let sigma = |k: usize| {
+            let mean = without.iter().map(|values| values[k]).sum::<f64>() / groups;
+            let squares: f64 = without.iter().map(|values| (values[k] - mean).powi(2)).sum();
+            (squares * (groups - 1.0) / groups).sqrt()
+        };
+        let sigmas = (0..without.first().map_or(0, Vec::len)).map(sigma).collect();
+        Self { groups: without.len(), sigmas, without }
+    }
+
     /// The median of their ratio to `formal` standard deviations, a number: 1 if residuals are as independent as the adjustment takes them.
     pub fn ratio(&self, formal: impl IntoIterator<Item = f64>) -> Option<f64> {
         let mut ratios: Vec<f64> =
@@ -46,21 +62,8 @@ impl Resampled {
         let groups = images.min(GROUPS);
         let found = (0..groups).into_par_iter().map(|group| without(network, options, names, (group, groups))).collect::<Option<Vec<_>>>();
         let found = found.ok_or("without some of the images the camera is not determined")?;
-        Ok(Self { groups, sigmas: jackknife(&found) })
+        Ok(Self::from_groups(found))
     }
-}
-
-/// Standard deviations of estimates from what they are when one group after the other is left out.
-///
-/// Source: Efron & Tibshirani 1993, chapter 11.
-pub(crate) fn jackknife(without: &[Vec<f64>]) -> Vec<f64> {
-    let groups = without.len() as f64;
-    let sigma = |k: usize| {
-        let mean = without.iter().map(|values| values[k]).sum::<f64>() / groups;
-        let squares: f64 = without.iter().map(|values| (values[k] - mean).powi(2)).sum();
-        (squares * (groups - 1.0) / groups).sqrt()
-    };
-    (0..without.first().map_or(0, Vec::len)).map(sigma).collect()
 }
 
 /// The unknown parameters without one of `groups` of images; `None` if they are not determined.
@@ -105,7 +108,8 @@ mod tests {
         let sample = [1.0, 2.0, 4.0, 7.0, 11.0];
         let sum: f64 = sample.iter().sum();
         let without: Vec<Vec<f64>> = sample.iter().map(|left_out| vec![(sum - left_out) / 4.0, 3.0]).collect();
-        let sigmas = jackknife(&without);
+        let Resampled { groups, sigmas, .. } = Resampled::from_groups(without);
+        assert_eq!(groups, 5);
         let squares: f64 = sample.iter().map(|value| (value - sum / 5.0).powi(2)).sum();
         assert!((sigmas[0] - (squares / 4.0 / 5.0).sqrt()).abs() < 1e-12, "{sigmas:?}");
         assert_eq!(sigmas[1], 0.0);

@@ -20,6 +20,8 @@ pub struct Settings {
     pub snoop: bool,
     /// A-priori standard deviation of an image coordinate, px; `None` for [`USUAL_SIGMA`], about which nothing is known but its order of magnitude.
     pub sigma_px: Option<f64>,
+    /// How well a camera must be known over its frame, px ([`crate::OverFrame`]); `None` for [`crate::usual_limit_px`].
+    pub limit_px: Option<f64>,
     /// Whether image points are weighted by their own covariances, where they have them.
     pub covariances: bool,
     /// Discs whose eccentricity is taken from the centres of their pictures; `None` to take image points as they are.
@@ -44,6 +46,7 @@ impl Settings {
             huber: None,
             snoop: false,
             sigma_px: None,
+            limit_px: None,
             covariances: false,
             discs: None,
             stations: Vec::new(),

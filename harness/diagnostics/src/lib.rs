@@ -132,6 +132,15 @@ impl Diagnostic for Picture<'_> {
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+/// Three digits, without an exponent where that is readable.
+pub fn plain(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if (-4..6).contains(&magnitude) { format!("{value:.*}", (2 - magnitude).max(0) as usize) } else { format!("{value:.2e}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

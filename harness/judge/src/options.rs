@@ -21,7 +21,7 @@ pub const METHODS: [&str; 9] = [
 pub const OF_CAMERA: &str = "parametric_corner:window=15";
 
 /// The camera models that are compared unless others are asked for: from too poor to too rich, on a flat board and on one that may be bent.
-pub const MODELS: [&str; 13] = [
+pub const MODELS: [&str; 14] = [
     "opencv4:fx,fy,cx,cy",
     "opencv4:fx,fy,cx,cy,k1",
     "opencv4:fx,fy,cx,cy,k1,k2",
@@ -31,6 +31,7 @@ pub const MODELS: [&str; 13] = [
     "opencv8",
     "opencv-fisheye",
     "photogrammetric",
+    "photogrammetric+bent",
     "opencv4+bent",
     "opencv5+bent",
     "opencv8+bent",

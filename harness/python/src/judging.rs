@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use calibench_calibrate::choice::ModelChoice;
+use calibench_calibrate::usual_limit_px;
 use calibench_exchange::{LostRow, LostRows, PointFile};
 use calibench_judge::{CornerFile, Expected, Material, Options, judge as judged, stated_sigma, usual_methods, usual_models};
 use calibench_model::camera::CameraModel;
@@ -138,19 +139,19 @@ fn verdict_of(py: Python<'_>, material: &Material, asked: Asked, camera: Option<
         published_sigma: camera.and_then(|camera| stated_sigma(&camera.named)),
     };
     let rows = interruptible(py, || judged(material, &options))?.map_err(input)?;
-    let summary = Summary::new(&rows, asked.seed);
+    let summary = Summary { limit_px: Some(usual_limit_px(material.size)), ..Summary::new(&rows, asked.seed) };
     let Some(trusted) = summary.trusted() else { return Err(input(section(&summary).0)) };
     // Where the two cannot be compared over the frame the photographs cannot tell.
     let found = camera.map(|_| trusted.in_use(asked.margin).unwrap_or(InUse::unknown(asked.margin)));
     let words = found.as_ref().map_or_else(String::new, |found| format!("- {}\n", in_use(found)));
     if let Some(why) = trusted.doubt() {
-        doubt(py, why)?;
+        doubt(py, &why)?;
     }
     Ok(Judgement {
         operator: trusted.cell.method.to_string(),
         model: trusted.cell.model.to_string(),
         verdict: format!("{words}{}", verdict(&summary, &trusted)),
-        doubt: trusted.doubt().map(str::to_owned),
+        doubt: trusted.doubt(),
         limit_px: trusted.limit,
         in_use: found.map(|found| still_holds(found.verdict).to_owned()),
         rows,

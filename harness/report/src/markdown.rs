@@ -1,5 +1,6 @@
 //! Markdown pieces.
 
+pub use calibench_diagnostics::plain;
 use std::fmt::Write;
 
 /// A table; the first column is left-aligned, the others as their content asks.
@@ -112,15 +113,6 @@ pub fn fraction(px: f64) -> String {
 /// A value, and where it is known half of its interval.
 pub fn with_half(value: f64, half: Option<f64>, digits: usize) -> String {
     half.map_or_else(|| fixed(value, digits), |half| format!("{} ± {}", fixed(value, digits), fixed(half, digits)))
-}
-
-/// Three digits, without an exponent where that is readable.
-pub fn plain(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if (-4..6).contains(&magnitude) { format!("{value:.*}", (2 - magnitude).max(0) as usize) } else { format!("{value:.2e}") }
 }
 
 #[cfg(test)]

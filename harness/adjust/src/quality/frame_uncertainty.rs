@@ -43,11 +43,11 @@ pub fn frame_uncertainty(
     (columns, rows): (usize, usize),
     distance: Distance,
 ) -> Result<Vec<Uncertainty>, AdjustError> {
-    let (seen, left) = effects(camera, names, (columns, rows), distance)?;
+    let (seen, left) = effects(camera, names, (columns, rows), distance, |_| 1.0)?;
     if covariance.shape() != (names.len(), names.len()) {
         return Err(AdjustError::NotAvailable(NEEDS));
     }
-    let of = |(k, (at, _)): (usize, &(PixelPoint, Ray))| {
+    let of = |(k, (_, at, _)): (usize, &Seen)| {
         let e = left.rows(2 * k, 2);
         let q = e * covariance * e.transpose();
         Uncertainty { at: *at, covariance: Covariance { sxx: q[(0, 0)], sxy: q[(0, 1)], syy: q[(1, 1)] } }
@@ -55,24 +55,30 @@ pub fn frame_uncertainty(
     Ok(seen.iter().enumerate().map(of).collect())
 }
 
-/// The matrix `A` that makes of a covariance `C` of the parameters `names` the mean square of [`frame_uncertainty`] over the frame, px^2: `trace(A C)`.
+/// The matrix `A` that makes of a covariance `C` of the parameters `names` the mean square over the area of the frame (trapezoidal rule), px^2: `trace(A C)`. What
+/// a motion of the camera makes up for is taken off as by [`frame_uncertainty`], with the same weights.
 ///
 /// # Errors
 /// As [`frame_uncertainty`].
 pub fn frame_weight(camera: &Camera, names: &[&str], grid: (usize, usize), distance: Distance) -> Result<DMatrix<f64>, AdjustError> {
-    let (seen, left) = effects(camera, names, grid, distance)?;
-    Ok(left.tr_mul(&left) / seen.len() as f64)
+    let (columns, rows) = grid;
+    let along = |i: usize, n: usize| if i == 0 || i + 1 == n { 0.5 } else { 1.0 };
+    let weight = |place: usize| along(place % columns, columns) * along(place / columns, rows);
+    let (seen, left) = effects(camera, names, grid, distance, weight)?;
+    Ok(left.tr_mul(&left) / seen.iter().map(|seen| weight(seen.0)).sum::<f64>())
 }
 
-/// A place with its ray.
-type Seen = (PixelPoint, Ray);
+/// A place of the grid, row by row, where it is, and its ray.
+type Seen = (usize, PixelPoint, Ray);
 
-/// Places of the grid with their rays, and what the parameters do there that no motion of the camera does: two rows a place, a column a parameter.
+/// Places of the grid with their rays, and what the parameters do there that no motion of the camera does, times the root of the place's weight: two rows a place,
+/// a column a parameter.
 fn effects(
     camera: &Camera,
     names: &[&str],
     (columns, rows): (usize, usize),
     distance: Distance,
+    weight: impl Fn(usize) -> f64,
 ) -> Result<(Vec<Seen>, DMatrix<f64>), AdjustError> {
     let parameters = camera.parameters();
     let places: Vec<usize> = names.iter().filter_map(|name| parameters.iter().position(|parameter| parameter.name == *name)).collect();
@@ -87,8 +93,13 @@ fn effects(
     let size = camera.size();
     let along = |i: usize, n: usize, length: u32| f64::from(length - 1) * i as f64 / (n - 1) as f64;
     let grid = (0..columns * rows).map(|k| PixelPoint::new(along(k % columns, columns, size.width), along(k / columns, rows, size.height)));
-    let seen: Vec<Seen> = grid.filter_map(|at| Some((at, camera.unproject(at).ok()?))).collect();
-    let (interior, exterior) = slopes(camera, &seen, &places, shift);
+    let seen: Vec<Seen> = grid.enumerate().filter_map(|(place, at)| Some((place, at, camera.unproject(at).ok()?))).collect();
+    let (mut interior, mut exterior) = slopes(camera, &seen, &places, shift);
+    for (k, seen) in seen.iter().enumerate() {
+        let root = weight(seen.0).sqrt();
+        interior.rows_mut(2 * k, 2).scale_mut(root);
+        exterior.rows_mut(2 * k, 2).scale_mut(root);
+    }
     // What is left of the parameters' effects: (1 - R R^+) J.
     let svd = exterior.svd(true, false);
     let Some(u) = svd.u else { return Err(AdjustError::NotAvailable("the frame has too few rays")) };
@@ -101,7 +112,7 @@ fn slopes(camera: &Camera, seen: &[Seen], places: &[usize], shift: Option<f64>) 
     let mut interior = DMatrix::zeros(2 * seen.len(), places.len());
     let mut exterior = DMatrix::zeros(2 * seen.len(), if shift.is_some() { 6 } else { 3 });
     let mut buffer = DerivativeBuffer::default();
-    for (k, (_, ray)) in seen.iter().enumerate() {
+    for (k, (_, _, ray)) in seen.iter().enumerate() {
         let ray = at_depth(*ray, shift);
         if camera.derivatives_into(ray, &mut buffer).is_err() {
             continue;
@@ -163,15 +174,18 @@ mod tests {
         assert!(x0 > 0.05 && x0 < 0.7 * 1.25, "{x0}");
     }
 
+    /// Of a finer and finer grid the unweighted mean and the mean over the area are one.
     #[test]
-    fn the_weight_makes_the_mean_square_of_the_map() {
+    fn the_weight_makes_the_mean_square_over_the_frame() {
         let names = ["c", "x0", "k1"];
         let covariance = DMatrix::from_row_slice(3, 3, &[4e-4, 1e-4, -2e-8, 1e-4, 9e-4, 1e-8, -2e-8, 1e-8, 1e-11]);
         for distance in [Distance::Far, Distance::Near(3.0)] {
-            let map = frame_uncertainty(&camera(), (&names, &covariance), (15, 11), distance).unwrap();
-            let mean = map.iter().map(|found| found.covariance.sxx + found.covariance.syy).sum::<f64>() / 165.0;
-            let weighed = (frame_weight(&camera(), &names, (15, 11), distance).unwrap() * &covariance).trace();
-            assert!((weighed - mean).abs() < 1e-9 * mean, "{weighed} {mean}");
+            let weighed = |grid| (frame_weight(&camera(), &names, grid, distance).unwrap() * &covariance).trace();
+            let map = frame_uncertainty(&camera(), (&names, &covariance), (121, 81), distance).unwrap();
+            let mean = map.iter().map(|found| found.covariance.sxx + found.covariance.syy).sum::<f64>() / map.len() as f64;
+            let [fine, coarse] = [(121, 81), (15, 11)].map(weighed);
+            assert!((fine - mean).abs() < 0.06 * mean && fine < mean, "{fine} {mean}");
+            assert!((coarse - fine).abs() < 0.03 * fine, "{coarse} {fine}");
         }
     }
 

@@ -7,7 +7,7 @@ use super::geometry::reasons;
 use super::names::{cameras, participants};
 use crate::defect::{Defect, Direction};
 use crate::normal::Normals;
-use crate::solve::{Eliminated, Engine, Schur};
+use crate::solve::{Eliminated, Engine, Schur, Solved};
 use crate::state::{State, Step};
 
 /// An eigenvalue of the scaled normal equations that is rounding.
@@ -132,19 +132,33 @@ fn whole(engine: &Engine, (state, normals): (&State, &Normals), schur: &Schur, k
     step
 }
 
+/// The principal distances that are unknown: place among the unknowns of cameras, and value.
+fn distances<'a>(engine: &'a Engine, state: &'a State) -> impl Iterator<Item = (usize, f64)> + 'a {
+    engine.layout.cameras.iter().zip(&state.cameras).flat_map(|(place, camera)| {
+        let parameters = camera.parameters();
+        let distance = move |(k, &parameter): (usize, &usize)| {
+            let parameter = &parameters[parameter];
+            matches!(parameter.name, "c" | "f" | "F" | "fx" | "fy").then(|| (place.offset + k, parameter.value.abs()))
+        };
+        place.free.iter().enumerate().filter_map(distance)
+    })
+}
+
+impl Engine<'_> {
+    /// Whether a principal distance has a standard deviation of which linear theory says nothing.
+    pub(crate) fn has_senseless_distance(&self, solved: &Solved, state: &State, sigma0: f64) -> bool {
+        distances(self, state).any(|(unknown, c)| {
+            let mut column = vec![0.0; self.plan.size()];
+            column[unknown] = 1.0;
+            solved.factor.solve(&mut column);
+            sigma0 * column[unknown].max(0.0).sqrt() > SENSELESS * c
+        })
+    }
+}
+
 /// Whether `step`, times a standard deviation, leaves the range in which a linear estimate of precision holds.
 fn senseless(engine: &Engine, state: &State, step: &Step, deviation: f64) -> bool {
-    let distance = |camera: usize, parameter: usize| {
-        let parameters = state.cameras[camera].parameters();
-        matches!(parameters[parameter].name, "c" | "f" | "F" | "fx" | "fy").then(|| parameters[parameter].value.abs())
-    };
-    let camera =
-        engine.layout.cameras.iter().enumerate().any(|(i, place)| {
-            place.free.iter().enumerate().any(|(k, &parameter)| {
-                distance(i, parameter).is_some_and(|c| step.cameras[place.offset + k].abs() * deviation > SENSELESS * c)
-            })
-        });
-    camera
+    distances(engine, state).any(|(unknown, c)| step.cameras[unknown].abs() * deviation > SENSELESS * c)
         || engine.layout.of_image.iter().enumerate().any(|(i, range)| {
             let Some(sight) = engine.layout.sights.get(range.start).filter(|_| !range.is_empty()) else { return false };
             let reach = (state.points[sight.point()] - state.poses[i].centre).norm();

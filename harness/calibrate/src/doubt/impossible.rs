@@ -1,24 +1,71 @@
-//! What cannot be as it is said to be: points outside of their images, residuals that no operator leaves.
+//! What cannot be as it is said to be: points outside of their images, cameras that no lens makes, residuals that no operator leaves.
+
+use std::collections::HashSet;
+use std::f64::consts::{PI, TAU};
 
 use calibench_adjust::ImageObservation;
 use calibench_model::PixelPoint;
-use calibench_model::camera::{CameraModel, ImageSize};
+use calibench_model::camera::{Camera, CameraModel, Fold, ImageSize, Ray, fold};
 
 use crate::Calibration;
 
 /// Residuals beyond this, px, at half of the points are no operator's: names, counts, sizes or the model are wrong.
 const MOST_PX: f64 = 5.0;
 
+/// Beyond this angle from its axis a lens that pictures angles may see nothing more, degrees.
+const CIRCLE: f64 = 75.0;
+/// Directions in which that angle is asked for, and the share of the fold's radius at which.
+const DIRECTIONS: u32 = 16;
+const INSIDE: f64 = 0.98;
+
 /// What is wrong for sure, in words. Of large residuals only where no check has found their cause.
 pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
     let explained = calibration.checked.iter().any(|checked| checked.doubt().is_some());
-    outside(calibration).into_iter().chain(far(calibration).filter(|_| !explained)).collect()
+    let cameras = (0..calibration.cameras()).flat_map(|camera| [folded(calibration, camera), away(calibration, camera)]);
+    cameras.flatten().chain(outside(calibration)).chain(far(calibration).filter(|_| !explained)).collect()
 }
 
-/// Image points outside the frame: of another size, or swapped coordinates.
+/// A camera that folds over inside its own frame, nearer to its axis than the circle that a fisheye pictures ends.
+fn folded(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+    let (found, angle) = fold_of(calibration.camera(camera))?;
+    (angle < CIRCLE.to_radians()).then(|| folds(found, angle, &calibration.of(camera)))
+}
+
+/// The fold of a camera and the angle from its axis at which it is, radians.
+pub(crate) fn fold_of(camera: &Camera) -> Option<(Fold, f64)> {
+    let (found, axis) = (fold(camera)?, camera.project(Ray::from_tangent(0.0, 0.0)).ok()?);
+    let angle = |k: u32| {
+        let (sin, cos) = (f64::from(k) * TAU / f64::from(DIRECTIONS)).sin_cos();
+        let inside = INSIDE * found.radius_px;
+        let ray = camera.unproject(PixelPoint::new(axis.x + inside * cos, axis.y + inside * sin)).ok()?;
+        Some(ray.x.hypot(ray.y).atan2(-ray.z))
+    };
+    Some((found, (0..DIRECTIONS).filter_map(angle).fold(PI, f64::min)))
+}
+
+/// A fold in words.
+pub(crate) fn folds(fold: Fold, angle: f64, of: &str) -> String {
+    format!(
+        "the camera{of} folds over {:.0} px from the image of its axis ({:.0} degrees): {:.1} % of the frame have no ray; fewer parameters, or points near the borders, decide",
+        fold.radius_px,
+        angle.to_degrees(),
+        100.0 * fold.share
+    )
+}
+
+/// A principal point outside the frame.
+fn away(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+    let at = calibration.camera(camera).project(Ray::from_tangent(0.0, 0.0)).ok()?;
+    is_outside(calibration.camera(camera).size(), at)
+        .then(|| format!("the principal point{} lies outside the image, at {:.0}, {:.0}", calibration.of(camera), at.x, at.y))
+}
+
+/// Image points in use outside the frame: of another size, or swapped coordinates.
 fn outside(calibration: &Calibration<'_>) -> Option<String> {
-    let is_outside = |o: &&ImageObservation| is_outside(calibration.camera(calibration.owner(o.image)).size(), o.position);
-    let count = calibration.prepared.network.observations.iter().filter(is_outside).count();
+    let left_out: HashSet<usize> = calibration.options().left_out.into_iter().collect();
+    let is_outside = |o: &ImageObservation| is_outside(calibration.camera(calibration.owner(o.image)).size(), o.position);
+    let observations = calibration.prepared.network.observations.iter().enumerate();
+    let count = observations.filter(|(index, o)| is_outside(o) && !left_out.contains(index)).count();
     (count > 0).then(|| format!("{count} image points lie outside the images: is their size right (--size), and are x and y?"))
 }
 

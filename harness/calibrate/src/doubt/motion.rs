@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector, SMatrix, SymmetricEigen};
 use rayon::prelude::*;
 
 use crate::Resampled;
-use crate::resampled::jackknife;
 
 /// Of a pose: a small rotation about the camera's axes, a shift along them.
 const POSE: usize = 6;
@@ -105,7 +104,7 @@ impl<'s, 'n> Moving<'s, 'n> {
         let normal = self.images.iter().fold(self.prior.0.clone(), |sum, image| sum + &image.normal);
         let cofactors = normal.cholesky()?.inverse();
         let formal = (0..self.unknowns.len()).map(|k| (cofactors[(k, k)] * self.cost / redundancy).sqrt());
-        Resampled { groups, sigmas: jackknife(&found) }.ratio(formal)
+        Resampled::from_groups(found).ratio(formal)
     }
 }
 

@@ -9,13 +9,12 @@ use nalgebra::{DMatrix, Point3};
 use rayon::prelude::*;
 
 use crate::Calibration;
+use crate::over_frame::GRID;
 use candidates::{Candidate, candidates};
 use field::Field;
 
 /// Photographs that are proposed, each given the ones before.
 const PROPOSED: usize = 3;
-/// Places of the grid over the frame.
-const GRID: (usize, usize) = (15, 11);
 
 /// What further photographs would do to the uncertainty of a camera: its root mean square over the frame (2D, px), of points far away, after the rotation that
 /// makes up for most.

@@ -19,7 +19,7 @@ const LOWER: f64 = 1e-6;
 const NOTHING: f64 = 1e-10;
 /// A minimum is a rival if its sum of squares is above the least by no more than this many variances of an image coordinate: the 99.9 % point of chi
 /// squared with one degree of freedom.
-const WITHIN: f64 = 10.83;
+pub(crate) const WITHIN: f64 = 10.83;
 /// Cameras that are closer than this over the frame after the best rotation are one, px (RMS).
 const SAME: f64 = 0.1;
 
@@ -98,7 +98,8 @@ fn lowest(costs: &[f64], redundancy: f64) -> Option<usize> {
     Some(if costs[0] <= costs[least] * (1.0 + LOWER) + NOTHING * redundancy { 0 } else { least })
 }
 
-fn distance(a: &Camera, b: &Camera) -> Option<f64> {
+/// RMS over the frame after the best rotation, px; `None` where they cannot be compared.
+pub(crate) fn distance(a: &Camera, b: &Camera) -> Option<f64> {
     difference(a, b, &DifferenceOptions::default()).ok().map(|found| found.spread.rms_px)
 }
 

@@ -1,6 +1,7 @@
 //! Calibrations of networks with a known truth.
 
 mod doubts;
+mod known;
 mod network;
 mod next;
 mod orientations;

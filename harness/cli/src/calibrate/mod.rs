@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use calibench_calibrate::{BoardShape, Calibration, DatumChoice, Discs, Settings, calibrate, prepare};
+use calibench_calibrate::{
+    BoardShape, Calibration, CalibrationError, DatumChoice, Discs, MOST_TRIED, Settings, Suspected, calibrate, prepare, suspected,
+};
 use calibench_exchange::{ControlRow, Inputs, LostRows, OutputFile, OutputFolder, PointFile, Points, read_control, read_observed_stations};
 use calibench_model::boards::Board;
 use calibench_photographs::{Chessboard, Corners, Photo, board_of};
@@ -53,6 +55,9 @@ pub struct Calibrate {
     /// A-priori standard deviation of an image coordinate, px [default: 0.1, and the estimated one in tests]
     #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
     sigma: Option<f64>,
+    /// How well a camera must be known over its frame, px: the standard deviation of the image of a point far away, RMS; beyond it the exit code is 3 [default: 1 % of the longer side, 5 px at most]
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
+    limit: Option<f64>,
     /// Weigh image points by the covariances of the point file
     #[arg(long)]
     covariances: bool,
@@ -118,18 +123,31 @@ impl Calibrate {
         // A board of discs says how large they are: the centre of a disc's picture is not the picture of its centre.
         let of_discs = !photos.is_empty() && control.iter().any(|row| row.disc.is_some());
         let settings = self.settings(&photos, self.eccentricity.or(of_discs.then_some(Discs::Control)))?;
-        let mut prepared = prepare(points, &control, &settings)?;
+        let sets = sets(&self.compare)?;
+        // What the inputs may be in truth is asked of few enough points.
+        let given = (points.len() <= MOST_TRIED).then(|| points.clone());
+        let suspects = |found: Result<&Calibration<'_>, &CalibrationError>| {
+            given.as_ref().map_or_else(Vec::new, |points| suspected(points, &control, &settings, found))
+        };
+        let explained = |error: CalibrationError| {
+            let lines = suspects(Err(&error)).iter().map(|found| format!("\nsuspected: {}", found.words())).collect::<String>();
+            Failure::input(format!("{error}{lines}"))
+        };
+        let mut prepared = prepare(points, &control, &settings).map_err(explained)?;
         prepared.unmeasured = lost;
-        drop(control);
-        calibrate(&prepared, &sets(&self.compare)?, |calibration| {
-            self.deliver(calibration, (&photos, &doubts), &outputs)?;
+        calibrate(&prepared, &sets, |calibration| {
+            let in_doubt = !(calibration.doubts().is_empty() && doubts.is_empty());
+            let suspects = if in_doubt { suspects(Ok(calibration)) } else { Vec::new() };
+            self.deliver(calibration, (&photos, &doubts), &suspects, &outputs)?;
             if self.answered.json {
-                answer(&CalibrationAnswer::new(calibration, &doubts).map_err(Failure::Input)?)?;
+                answer(&CalibrationAnswer::new(calibration, &doubts, &suspects).map_err(Failure::Input)?)?;
             } else {
-                print(&summary(calibration))?;
+                let lines = suspects.iter().map(|found| format!("suspected: {}\n", found.words())).collect::<String>();
+                print(&(summary(calibration) + &lines))?;
             }
-            if calibration.doubts().is_empty() && doubts.is_empty() { Ok(()) } else { Err(Failure::Doubt) }
-        })?
+            if in_doubt { Err(Failure::Doubt) } else { Ok(()) }
+        })
+        .map_err(explained)?
     }
 
     fn input(&self, context: &Context<'_>) -> Result<Input, Failure> {
@@ -156,6 +174,7 @@ impl Calibrate {
             huber: self.huber,
             snoop: self.snoop,
             sigma_px: self.sigma,
+            limit_px: self.limit,
             covariances: self.covariances,
             discs,
             stations: self.poses.as_deref().map(read_observed_stations).transpose()?.unwrap_or_default(),
@@ -163,7 +182,14 @@ impl Calibrate {
         })
     }
 
-    fn deliver(&self, calibration: &Calibration<'_>, (photos, doubts): (&[Photo], &[String]), outputs: &Outputs) -> Result<(), Failure> {
+    fn deliver(
+        &self,
+        calibration: &Calibration<'_>,
+        (photos, doubts): (&[Photo], &[String]),
+        suspects: &[Suspected],
+        outputs: &Outputs,
+    ) -> Result<(), Failure> {
+        let doubts: Vec<String> = doubts.iter().cloned().chain(suspects.iter().map(Suspected::words)).collect();
         let photos: Vec<Pictured<'_>> = photos.iter().map(|(name, path, _)| (name.as_str(), path.as_path())).collect();
         if let Some(output) = &outputs.camera {
             camera_file::write(output, calibration, self.to.as_deref())?;
@@ -171,7 +197,7 @@ impl Calibrate {
         if let Some(output) = &outputs.scene {
             output.write(|file| file.write_all(scene_ply(calibration).as_bytes()))?;
         }
-        Ok(outputs.report.as_ref().map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, doubts, folder)))?)
+        Ok(outputs.report.as_ref().map_or(Ok(()), |folder| folder.replace(|folder| write_report(calibration, &photos, &doubts, folder)))?)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use calibench_calibrate::choice::ModelChoice;
+use calibench_calibrate::usual_limit_px;
 use calibench_exchange::{Inputs, read_control};
 use calibench_judge::{BENT, CornerFile, Field, Material, Options, field_of as field, judge, published_camera, stated_sigma, usual_models};
 use calibench_model::boards::Board;
@@ -49,7 +50,7 @@ pub struct Judge {
     /// Methods to compare, as in forstner:window=15 [default: all that make sense on chess corners; with --camera parametric_corner:window=15]
     #[arg(short, long = "method", value_name = "METHOD", conflicts_with = "points")]
     methods: Vec<String>,
-    /// Camera models to compare, as in opencv5, opencv4:fx,fy,cx,cy with some of its parameters only, or opencv5+bent on a board that may be bent [default: thirteen
+    /// Camera models to compare, as in opencv5, opencv4:fx,fy,cx,cy with some of its parameters only, or opencv5+bent on a board that may be bent [default: fourteen
     /// from too poor to too rich]
     #[arg(long = "model", value_name = "MODEL")]
     models: Vec<String>,
@@ -65,6 +66,9 @@ pub struct Judge {
     /// Difference over the frame, px RMS, up to which --camera holds
     #[arg(long, value_name = "PX", default_value_t = 1.0, requires = "camera", value_parser = positive, allow_negative_numbers = true)]
     margin: f64,
+    /// How well the camera must be known over the frame, px: the standard deviation of the image of a point far away, RMS; beyond it the exit code is 3 [default: 1 % of the longer side, 5 px at most]
+    #[arg(long, value_name = "PX", value_parser = positive, allow_negative_numbers = true)]
+    limit: Option<f64>,
     /// How often the photographs are split into halves
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
     splits: u64,
@@ -99,7 +103,8 @@ impl Judge {
             published_sigma: published.as_ref().and_then(stated_sigma),
         };
         let rows = judge(&material, &options)?;
-        let summary = Summary::new(&rows, self.seed);
+        let limit_px = Some(self.limit.unwrap_or_else(|| usual_limit_px(size)));
+        let summary = Summary { limit_px, ..Summary::new(&rows, self.seed) };
         if let Some(folder) = folder {
             folder.replace(|folder| self.write(folder, (&material, &options, &doubts), &rows, &summary))?;
         }

@@ -45,7 +45,7 @@ pub(crate) fn images_of(calibration: &Calibration<'_>, camera: usize) -> impl It
 
 /// Whose something is, where there are several cameras.
 fn of(calibration: &Calibration<'_>, camera: usize) -> String {
-    if calibration.cameras() > 1 { format!(" of {}", calibration.name_of(camera)) } else { String::new() }
+    calibration.of(camera)
 }
 
 #[cfg(test)]

@@ -123,7 +123,7 @@ fn facts(calibration: &Calibration<'_>) -> String {
         let images = if name.is_empty() { String::new() } else { format!(", {} images", images_of(calibration, camera).count()) };
         format!("camera model{name}: {model}{images}")
     });
-    let mut lines: Vec<String> = models.collect();
+    let mut lines: Vec<String> = (0..calibration.cameras()).filter_map(|camera| over_frame(calibration, camera)).chain(models).collect();
     lines.extend([
         format!(
             "{} images, {} image points, {control} of {} targets are control points",
@@ -152,6 +152,18 @@ fn facts(calibration: &Calibration<'_>) -> String {
     }
     lines.extend(checks::fact(calibration));
     lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+/// How well a camera is known, which is what decides whether it may be used.
+fn over_frame(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+    let known = calibration.over_frame(camera)?;
+    let by_images = known.by_images_px.map_or_else(String::new, |px| format!(", by leaving images out {} px", plain(px)));
+    Some(format!(
+        "known{} to {} px over the frame (standard deviation, RMS{by_images}; in doubt beyond {} px)",
+        of(calibration, camera),
+        plain(known.formal_px),
+        plain(known.limit_px)
+    ))
 }
 
 /// What sigma0 says of the precision of image coordinates.

@@ -1,11 +1,10 @@
 //! What a user must know of a calibration.
 
 use calibench_adjust::{Significance, Use};
-use calibench_calibrate::{Calibration, Rival};
-use calibench_model::camera::CameraModel;
+use calibench_calibrate::Calibration;
 
 use super::limits::{BASIC, CORRELATED, DOUBTFUL};
-use super::{board, checks, discs, of, scale};
+use super::{board, checks, discs, scale};
 use crate::plain;
 
 /// Times that the images may disagree with the standard deviations: from twenty groups a ratio is known to a sixth.
@@ -27,7 +26,10 @@ pub(crate) fn warnings(calibration: &Calibration<'_>) -> Vec<String> {
         let name = calibration.parameter_name(&(test.camera, test.parameter));
         warnings.push(format!("{name} is not told from zero (t {:.1}); a set without it may do", test.t));
     }
-    warnings.extend(calibration.prepared.rivals.iter().map(|rival| another(calibration, rival)));
+    let doubts = calibration.doubts();
+    let rivals = calibration.prepared.rivals.iter().map(|rival| rival.words(&calibration.of(rival.camera)));
+    warnings.extend(rivals.filter(|words| !doubts.contains(&words.as_str())));
+    warnings.extend((0..calibration.cameras()).filter_map(|camera| calibration.fold_words(camera)));
     warnings.extend(board::warning(calibration));
     warnings.extend(discs::warnings(calibration));
     warnings.extend(held(calibration));
@@ -102,19 +104,4 @@ fn weights(calibration: &Calibration<'_>) -> Option<String> {
     let sigma = settings.sigma();
     (weighted && settings.sigma_px.is_none())
         .then(|| format!("control is weighted against an assumed {sigma} px for image coordinates; try --sigma {}", plain(sigma * sigma0)))
-}
-
-/// A minimum that noise does not tell from the one found.
-fn another(calibration: &Calibration<'_>, rival: &Rival) -> String {
-    let [found, other] = [&rival.found, &rival.other].map(|camera| camera.parameters().first().map_or(0.0, |first| first.value));
-    let apart =
-        rival.distance_px.map_or_else(|| "too far to compare".to_owned(), |px| format!("{} px apart (RMS over the frame)", plain(px)));
-    format!(
-        "another camera{} fits as well, as far as the noise tells: {} of {} in place of {}, {apart}; reached from {}. More images from other directions decide",
-        of(calibration, rival.camera),
-        rival.found.parameters().first().map_or("", |first| first.name),
-        plain(other),
-        plain(found),
-        rival.origin
-    )
 }

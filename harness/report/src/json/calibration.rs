@@ -1,7 +1,7 @@
 //! A calibration as JSON.
 
 use calibench_adjust::{Significance, Use};
-use calibench_calibrate::{Calibration, Checked, ComparedSet, Finding, SetResult, Shape, Verdict};
+use calibench_calibrate::{Calibration, Checked, ComparedSet, Finding, SetResult, Shape, Suspected, Verdict};
 use calibench_exchange::camera::NamedCamera;
 use calibench_exchange::station_numbers;
 use schemars::JsonSchema;
@@ -16,6 +16,8 @@ use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, war
 pub struct CalibrationAnswer {
     /// Why the calibration is in doubt, and the exit code 3; empty where no doubt was found.
     doubts: Vec<String>,
+    /// What the inputs may be in truth, first what explains them best; empty where nothing is in doubt, or nothing explains it.
+    suspected: Vec<Suspect>,
     /// What was not looked for, and why: no doubt was found there because none could be.
     untested: Vec<String>,
     /// What is to be known and is no doubt.
@@ -55,6 +57,18 @@ impl Answer for CalibrationAnswer {
     const SCHEMA: u32 = 1;
 }
 
+/// What an input may be in truth.
+#[derive(Serialize, JsonSchema)]
+struct Suspect {
+    /// `lens` (a fisheye), `raster` (columns and rows of the board), `axes` (x and y of image points), `up` (y upwards), `spacing` (of the tags of a board), `stretch`
+    /// (of a board) or `size` (of the images).
+    kind: &'static str,
+    /// In words, with the estimate where there is one.
+    what: String,
+    /// What is left of the points then, px RMS; null where another sign tells.
+    rms_px: Option<f64>,
+}
+
 #[derive(Serialize, JsonSchema)]
 struct Counts {
     /// Images that were oriented.
@@ -91,12 +105,25 @@ struct CalibratedCamera {
     images: usize,
     /// The camera, with the covariance of what was solved for.
     camera: CameraAnswer,
+    /// How well it is known over its frame; null where it was not adjusted.
+    over_frame: Option<OverFrame>,
     /// The parameters that were solved for.
     solved: Vec<Solved>,
     /// What to photograph next; null where nothing is proposed, for the reason that `why_no_next` tells.
     next: Option<NextAnswer>,
     /// Why nothing is proposed, in words; null where something is.
     why_no_next: Option<String>,
+}
+
+/// The standard deviation (2D) of the image of a point far away, root mean square over the whole frame after the best rotation.
+#[derive(Serialize, JsonSchema)]
+struct OverFrame {
+    /// As the covariance of the adjustment has it, px; null where that cannot be said.
+    formal_px: Option<f64>,
+    /// From leaving groups of images out (the jackknife), px; null where that could not be done.
+    by_images_px: Option<f64>,
+    /// If the larger of the two is beyond this, the camera is in doubt, px.
+    limit_px: f64,
 }
 
 #[derive(Serialize, JsonSchema)]
@@ -220,11 +247,11 @@ struct Set {
 }
 
 impl CalibrationAnswer {
-    /// Of a calibration, with doubts about its photographs that others had before.
+    /// Of a calibration, with doubts about its photographs that others had before, and what its inputs are suspected to be.
     ///
     /// # Errors
     /// A covariance that is none, in words.
-    pub fn new(calibration: &Calibration<'_>, before: &[String]) -> Result<Self, String> {
+    pub fn new(calibration: &Calibration<'_>, before: &[String], suspected: &[Suspected]) -> Result<Self, String> {
         let (prepared, solution) = (calibration.prepared, &calibration.solution);
         let doubts: Vec<String> = before.iter().cloned().chain(calibration.doubts().into_iter().map(str::to_owned)).collect();
         let name = |index: usize| calibration.parameter_name(&calibration.covariances.parameters[index]);
@@ -232,6 +259,7 @@ impl CalibrationAnswer {
         let tests = solution.significance().unwrap_or_default();
         Ok(Self {
             doubts,
+            suspected: suspected.iter().map(|one| Suspect { kind: one.kind, what: one.what.clone(), rms_px: one.rms_px }).collect(),
             untested: calibration.checked.iter().filter_map(Checked::untested).collect(),
             warnings: warnings(calibration),
             datum: prepared.settings.datum.words(),
@@ -294,6 +322,11 @@ fn camera(calibration: &Calibration<'_>, index: usize, tests: &[Significance]) -
         name: calibration.name_of(index).to_owned(),
         start: prepared.origins.get(index).cloned().unwrap_or_default(),
         images: images_of(calibration, index).count(),
+        over_frame: calibration.over_frame(index).map(|known| OverFrame {
+            formal_px: Some(known.formal_px).filter(|px| px.is_finite()),
+            by_images_px: known.by_images_px.filter(|px| px.is_finite()),
+            limit_px: known.limit_px,
+        }),
         camera: CameraAnswer::new(&calibration.named_camera(index)?),
         solved: names.iter().enumerate().map(solved).collect(),
         next,

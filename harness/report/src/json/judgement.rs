@@ -177,7 +177,7 @@ impl JudgementAnswer {
         Self {
             operator: cell.method.to_string(),
             model: cell.model.to_string(),
-            doubts: before.iter().cloned().chain(trusted.doubt().map(str::to_owned)).collect(),
+            doubts: before.iter().cloned().chain(trusted.doubt()).collect(),
             words: words.lines().map(|line| line.trim_start_matches("- ").to_owned()).collect(),
             holdout: cell.holdout.map(Figure::from),
             limit_px: trusted.limit,

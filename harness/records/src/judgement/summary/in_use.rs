@@ -4,6 +4,8 @@ use super::Trusted;
 
 /// The chance (0 to 1) that a difference of the camera in use is within what is stated of its error.
 const SURE: f64 = 0.99;
+/// Cameras that differ by no more over the frame, px, are one and the same calibration: no second one comes as near.
+const SAME_PX: f64 = 1e-3;
 
 /// What photographs say of a camera in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +51,7 @@ impl Trusted<'_> {
             .and_then(|(doubt, predicted)| predicted.within(SURE, doubt.hypot(published.stated.unwrap_or(0.0))));
         let error = error.filter(|_| self.doubt().is_none()).unwrap_or(f64::INFINITY);
         let verdict = match () {
-            () if apart + error <= margin => StillHolds::Holds,
+            () if apart + error <= margin || apart <= SAME_PX.min(margin) => StillHolds::Holds,
             () if apart - error > margin => StillHolds::Moved,
             () => StillHolds::CannotTell,
         };
@@ -90,6 +92,13 @@ mod tests {
         assert_eq!(verdicts, [StillHolds::Holds, StillHolds::CannotTell, StillHolds::CannotTell, StillHolds::Moved]);
         let stated = found(&rows(0.28, 0.06, Some(0.08)), 0.5);
         assert!((stated.error - of(0.28).error).abs() < 1e-9, "what the file says of itself counts too: {stated:?}");
+    }
+
+    /// Photographs that hardly determine a camera give the one that was calibrated from them.
+    #[test]
+    fn the_calibration_of_the_photographs_themselves_holds() {
+        let of = |apart: f64| found(&rows(apart, 9.0, None), 0.5).verdict;
+        assert_eq!([1e-8, 0.9e-3, 1.1e-3].map(of), [StillHolds::Holds, StillHolds::Holds, StillHolds::CannotTell]);
     }
 
     #[test]

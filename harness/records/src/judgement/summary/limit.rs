@@ -17,6 +17,11 @@ pub struct Predicted {
 }
 
 impl Predicted {
+    /// The larger of the two standard deviations, px.
+    pub fn px(&self) -> f64 {
+        self.by_views.map_or(self.formal, |own| own.max(self.formal))
+    }
+
     /// The RMS over the frame below which the camera's error is in 95 of 100 cases, px: the quantile of chi-square with as many degrees of freedom as there are
     /// modes, of the formal variance and of the squared `doubt` (px) for want of knowing the right model.
     ///

@@ -164,6 +164,8 @@ pub struct Summary {
     pub unavailable: Option<Arc<str>>,
     /// The seed with which photographs are drawn again.
     pub seed: u64,
+    /// How well the camera must be known over the frame, px: beyond it the verdict is in doubt. `None` where nothing is asked.
+    pub limit_px: Option<f64>,
 }
 
 impl Summary {
@@ -205,7 +207,7 @@ impl Summary {
         }
         let unavailable = rows.iter().find(|row| row.method.is_empty() && &*row.status == "unavailable").map(|row| row.reason.clone());
         let cells = by_cell(rows).into_iter().map(|rows| cell(&rows, seed)).collect();
-        Self { methods, models, views, missed, common, cells, unavailable, seed }
+        Self { methods, models, views, missed, common, cells, unavailable, seed, limit_px: None }
     }
 
     /// The cell of an operator and a model.

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use calibench_diagnostics::plain;
+
 use super::models::{Standing, standings, trusted};
 use super::{Cell, Summary};
 use crate::statistics::holm;
@@ -30,6 +32,8 @@ pub struct Trusted<'a> {
     pub left_out: Vec<&'a Cell>,
     /// Below which the error of the camera over the whole frame, RMS after the best rotation, is in 95 of 100 cases, px; `None` where its corners are not pictured.
     pub limit: Option<f64>,
+    /// How well the camera must be known, px, as in [`Summary::limit_px`].
+    pub limit_px: Option<f64>,
 }
 
 impl Summary {
@@ -49,7 +53,7 @@ impl Summary {
         let (models, left_out) = standings(self, &least.method, self.seed);
         let chosen = trusted(self, &models)?;
         let limit = chosen.cell.predicted.and_then(|predicted| predicted.limit(chosen.doubt?));
-        Some(Trusted { cell: chosen.cell, least, operators, unjudged, models, left_out, limit })
+        Some(Trusted { cell: chosen.cell, least, operators, unjudged, models, left_out, limit, limit_px: self.limit_px })
     }
 
     /// Whether the operator measured enough to be compared.
@@ -85,11 +89,22 @@ impl Trusted<'_> {
     }
 
     /// Why the verdict is in doubt, in words.
-    pub fn doubt(&self) -> Option<&'static str> {
+    pub fn doubt(&self) -> Option<String> {
         if self.cell.split.is_some_and(|split| split.p < HONEST) {
-            return Some("halves of the photographs differ by more than its standard deviations say");
+            return Some("halves of the photographs differ by more than its standard deviations say".into());
         }
-        self.limit.is_none().then_some("its camera has no rays for parts of the frame")
+        if self.limit.is_none() {
+            return Some("its camera has no rays for parts of the frame".into());
+        }
+        let (known, limit) = (self.cell.predicted?.px(), self.limit_px?);
+        (known > limit).then(|| {
+            format!(
+                "its camera is known to {} px over the frame (standard deviation, RMS), beyond the limit of {} px: photographs from other directions, tilted and with \
+                 points near the borders, would tell more",
+                plain(known),
+                plain(limit)
+            )
+        })
     }
 
     /// The other models with which the predictions of some draws are best.
@@ -188,6 +203,18 @@ mod tests {
         for (p, expected) in [(0.009, true), (HONEST, false)] {
             cell.split = Some(Split { difference: 0.3, predicted: 0.2, modes: 1.5, p, count: 9 });
             assert_eq!(doubt(&cell, Some(0.1)).is_some(), expected);
+        }
+    }
+
+    #[test]
+    fn a_verdict_is_in_doubt_where_the_camera_is_hardly_known() {
+        let summary = judged();
+        let mut cell = summary.cell("m", "b").unwrap().clone();
+        let doubt = |cell: &Cell, limit_px| Trusted { cell, limit: Some(0.1), limit_px, ..summary.trusted().unwrap() }.doubt();
+        for (formal, by_views, expected) in [(4.9, Some(5.1), true), (5.1, Some(1.0), true), (5.1, None, true), (4.9, Some(4.9), false)] {
+            cell.predicted = Some(super::super::Predicted { formal, by_views, modes: 2.0 });
+            assert_eq!(doubt(&cell, Some(5.0)).is_some(), expected, "{formal} {by_views:?}");
+            assert_eq!(doubt(&cell, None), None);
         }
     }
 

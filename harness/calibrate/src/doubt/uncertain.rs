@@ -1,0 +1,50 @@
+//! Cameras that are hardly known: over their frame, or beside another one that fits as well.
+
+use calibench_adjust::adjust;
+use calibench_diagnostics::plain;
+
+use crate::search::{WITHIN, distance};
+use crate::{Calibration, Rival, network, optics, start};
+
+/// What is not known well enough, in words.
+pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
+    let cameras = (0..calibration.cameras()).filter_map(|camera| little(calibration, camera));
+    let rivals = calibration
+        .prepared
+        .rivals
+        .iter()
+        .filter(|rival| rival.is_beyond(calibration.limit_px(rival.camera)) && stands(calibration, rival) == Some(true));
+    cameras.chain(rivals.map(|rival| rival.words(&calibration.of(rival.camera)))).collect()
+}
+
+fn little(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+    let known = calibration.over_frame(camera).filter(|known| !known.is_within())?;
+    let whose = calibration.of(camera);
+    let sigma = if known.px().is_finite() { format!("to {} px", plain(known.px())) } else { "to nothing that could be said".into() };
+    Some(format!(
+        "the camera{whose} is known {sigma} over the frame (standard deviation, RMS), beyond the limit of {} px: photographs from other directions, tilted and with points near the borders, or fewer parameters (--solve, --model); --limit sets another one",
+        plain(known.limit_px)
+    ))
+}
+
+/// Whether a minimum that a sample of the images did not tell from the one found is as low with all of them, and still as far; `None` where it leads nowhere.
+fn stands(calibration: &Calibration<'_>, rival: &Rival) -> Option<bool> {
+    let prepared = calibration.prepared;
+    let mut settings = prepared.settings.clone();
+    settings.cameras[rival.camera].start = Some(rival.other);
+    let owners = optics::owners(&settings.cameras, &prepared.survey.images).ok()?;
+    let starts = start::starts(&prepared.survey, &owners, &settings).ok()?;
+    let (mut other, ..) = network::network(&prepared.survey, &owners, &starts, &settings).ok()?;
+    // The same observations of the same unknowns.
+    let ended = calibration.ended();
+    if other.observations.len() != ended.observations.len() {
+        return None;
+    }
+    other.observations.clone_from(&ended.observations);
+    (other.points, other.surfaces, other.datum) = (ended.points, ended.surfaces, ended.datum);
+    let found = adjust(&other, &calibration.options()).ok()?;
+    let variance = calibration.covariances.variance_factor;
+    let is_low = found.cost() - calibration.solution.cost() < WITHIN * variance;
+    let apart = distance(calibration.camera(rival.camera), &found.cameras()[rival.camera]);
+    Some(is_low && apart.is_none_or(|px| px > calibration.limit_px(rival.camera)))
+}
