@@ -372,8 +372,12 @@ fn photographs_of_a_rendered_board_give_its_camera_back() {
     let photos: Vec<String> = stations.iter().map(|row| format!("board/{}.png", row["image"])).collect();
     let mut arguments = vec!["calibrate", "--chessboard", "9x6:25", "-m", "forstner:window=9", "-o", "found.yaml", "-q"];
     arguments.extend(photos.iter().map(String::as_str));
+    // With k3 the distortion turns back before the corners of the frame, where no point was measured.
     let output = run(folder.path(), &arguments);
-    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(output.status.code() == Some(3) && stdout(&output).starts_with("doubtful: the camera folds over "), "{}", stdout(&output));
+    let own = [&arguments[..5], &["--model", "photogrammetric", "--pitch", "7"], &arguments[7..]].concat();
+    let sound = run(folder.path(), &own);
+    assert!(sound.status.success() && stdout(&sound).starts_with("known to 0.0"), "{}{}", stdout(&sound), stderr(&sound));
     assert!(stdout(&output).contains("Zhang's closed form"), "{}", stdout(&output));
     // The file has a place for standard deviations; what it has none for is said.
     let spreads = one(&folder.path().join("found.yaml")).covariance.expect("standard deviations");

@@ -7,7 +7,6 @@ use calibench_exchange::NamedCamera;
 use calibench_exchange::camera::ParameterCovariance;
 use calibench_model::camera::Camera;
 
-use crate::doubt::impossible::{fold_of, folds};
 use crate::ended::{ITERATIONS, ended};
 use crate::{CalibrationError, Checked, Compared, Prepared, Resampled};
 
@@ -149,12 +148,6 @@ impl Calibration<'_> {
         } else {
             Resampled::of(&self.ended(), &self.options(), &self.covariances.parameters)
         });
-    }
-
-    /// A fold inside the frame of a camera, in words, where it is no doubt: where a fisheye sees nothing more.
-    pub fn fold_words(&self, camera: usize) -> Option<String> {
-        let (fold, angle) = fold_of(self.camera(camera))?;
-        Some(folds(fold, angle, &self.of(camera))).filter(|words| !self.impossible.contains(words))
     }
 
     /// The same network with the end of the adjustment as its start.

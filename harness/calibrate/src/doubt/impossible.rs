@@ -32,7 +32,7 @@ fn folded(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
 }
 
 /// The fold of a camera and the angle from its axis at which it is, radians.
-pub(crate) fn fold_of(camera: &Camera) -> Option<(Fold, f64)> {
+fn fold_of(camera: &Camera) -> Option<(Fold, f64)> {
     let (found, axis) = (fold(camera)?, camera.project(Ray::from_tangent(0.0, 0.0)).ok()?);
     let angle = |k: u32| {
         let (sin, cos) = (f64::from(k) * TAU / f64::from(DIRECTIONS)).sin_cos();
@@ -44,13 +44,21 @@ pub(crate) fn fold_of(camera: &Camera) -> Option<(Fold, f64)> {
 }
 
 /// A fold in words.
-pub(crate) fn folds(fold: Fold, angle: f64, of: &str) -> String {
+fn folds(fold: Fold, angle: f64, of: &str) -> String {
     format!(
         "the camera{of} folds over {:.0} px from the image of its axis ({:.0} degrees): {:.1} % of the frame have no ray; fewer parameters, or points near the borders, decide",
         fold.radius_px,
         angle.to_degrees(),
         100.0 * fold.share
     )
+}
+
+impl Calibration<'_> {
+    /// A fold inside the frame of a camera, in words, where it is no doubt: where a fisheye sees nothing more.
+    pub fn fold_words(&self, camera: usize) -> Option<String> {
+        let (fold, angle) = fold_of(self.camera(camera))?;
+        Some(folds(fold, angle, &self.of(camera))).filter(|words| !self.impossible.contains(words))
+    }
 }
 
 /// A principal point outside the frame.

@@ -4,11 +4,14 @@ use calibench_adjust::adjust;
 use calibench_diagnostics::plain;
 
 use crate::search::{WITHIN, distance};
-use crate::{Calibration, Rival, network, optics, start};
+use crate::{Calibration, Rival, SHARE, network, optics, start};
+
+/// A standard deviation over the frame below which nothing is asked, px.
+const LEAST_PX: f64 = 0.01;
 
 /// What is not known well enough, in words.
 pub(super) fn found(calibration: &Calibration<'_>) -> Vec<String> {
-    let cameras = (0..calibration.cameras()).filter_map(|camera| little(calibration, camera));
+    let cameras = (0..calibration.cameras()).flat_map(|camera| [little(calibration, camera), together(calibration, camera)]).flatten();
     let rivals = calibration
         .prepared
         .rivals
@@ -25,6 +28,18 @@ fn little(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
         "the camera{whose} is known {sigma} over the frame (standard deviation, RMS), beyond the limit of {} px: photographs from other directions, tilted and with points near the borders, or fewer parameters (--solve, --model); --limit sets another one",
         plain(known.limit_px)
     ))
+}
+
+/// Errors that belong together in an image: leaving images out moves the camera by far more than its covariance says.
+fn together(calibration: &Calibration<'_>, camera: usize) -> Option<String> {
+    let known = calibration.over_frame(camera)?;
+    let times = known.by_images_px.filter(|px| *px > LEAST_PX)? / known.formal_px;
+    (times > SHARE).then(|| {
+        format!(
+            "leaving images out moves the camera{} {times:.1} times as much as its standard deviations say: points of an image are off together, as where the board or the focus changes",
+            calibration.of(camera)
+        )
+    })
 }
 
 /// Whether a minimum that a sample of the images did not tell from the one found is as low with all of them, and still as far; `None` where it leads nowhere.

@@ -7,7 +7,10 @@ mod shape;
 
 use calibench_diagnostics::plain;
 use calibench_exchange::{ControlRow, Points};
+use calibench_model::PixelPoint;
+use calibench_model::camera::{CameraModel, Ray};
 
+use crate::doubt::impossible::is_outside;
 use crate::{Calibration, CalibrationError, Settings, prepare};
 use alternatives::Alternative;
 
@@ -52,23 +55,37 @@ pub fn suspected(
     }
     let mut all = found.map_or_else(|_| Vec::new(), frame::suspected);
     let bound = found.map_or(MOST_PX, |calibration| EXPLAINS * calibration.rms_px());
-    let mut explained: Vec<Suspected> =
+    let mut explained: Vec<Explained> =
         alternatives::all(points, control, settings, found.ok()).into_iter().filter_map(|other| other.tried(bound)).collect();
-    explained.sort_by(|a, b| rms(a).total_cmp(&rms(b)));
-    let most = explained.first().map_or(0.0, |best| AS_WELL * rms(best));
-    all.extend(explained.into_iter().filter(|other| rms(other) <= most));
+    let most = AS_WELL * explained.iter().map(|other| other.rms_px).fold(f64::INFINITY, f64::min);
+    explained.retain(|other| other.rms_px <= most);
+    // Of what explains as well, what lies in the image and has its axis near the middle: a mirror image may be turned by a right angle.
+    explained.sort_by(|a, b| a.outside.cmp(&b.outside).then(a.off.total_cmp(&b.off)));
+    all.extend(explained.into_iter().map(|other| other.suspected));
     all
 }
 
-fn rms(suspected: &Suspected) -> f64 {
-    suspected.rms_px.unwrap_or(0.0)
+/// An input that explains the points.
+struct Explained {
+    suspected: Suspected,
+    rms_px: f64,
+    /// Image points outside of their images.
+    outside: usize,
+    /// How far the principal point is off the middle of the frame, px.
+    off: f64,
 }
 
 impl Alternative<'_> {
     /// What it leaves of the points, if that is below `bound`, px RMS.
-    fn tried(self, bound: f64) -> Option<Suspected> {
+    fn tried(self, bound: f64) -> Option<Explained> {
         let prepared = prepare(self.points.into_owned(), &self.control, &self.settings).ok()?;
-        let rms = prepared.adjust().ok()?.rms_px();
-        (rms < bound).then_some(Suspected { kind: self.kind, what: self.what, rms_px: Some(rms) })
+        let calibration = prepared.adjust().ok()?;
+        let (rms_px, camera) = (calibration.rms_px(), calibration.camera(0));
+        let size = |image: usize| calibration.camera(calibration.owner(image)).size();
+        let outside = prepared.network.observations.iter().filter(|o| is_outside(size(o.image), o.position)).count();
+        let middle = PixelPoint::new(f64::from(camera.size().width - 1) / 2.0, f64::from(camera.size().height - 1) / 2.0);
+        let off = camera.project(Ray::from_tangent(0.0, 0.0)).map_or(f64::INFINITY, |at| at.distance(middle));
+        let suspected = Suspected { kind: self.kind, what: self.what, rms_px: Some(rms_px) };
+        (rms_px < bound).then_some(Explained { suspected, rms_px, outside, off })
     }
 }

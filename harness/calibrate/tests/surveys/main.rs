@@ -11,3 +11,4 @@ mod resampled;
 mod shapes;
 mod starts;
 mod surveys;
+mod suspects;

@@ -1,12 +1,13 @@
 //! A calibration as JSON.
 
 use calibench_adjust::{Significance, Use};
-use calibench_calibrate::{Calibration, Checked, ComparedSet, Finding, SetResult, Shape, Suspected, Verdict};
+use calibench_calibrate::{Calibration, Checked, Finding, Shape, Suspected, Verdict};
 use calibench_exchange::camera::NamedCamera;
 use calibench_exchange::station_numbers;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::compared::Set;
 use super::next::NextAnswer;
 use super::{Answer, CameraAnswer};
 use crate::calibration::{CORRELATED, board_bend, images_of, points_by_image, warnings};
@@ -224,28 +225,6 @@ struct Rejected {
     left_out: bool,
 }
 
-#[derive(Serialize, JsonSchema)]
-struct Set {
-    /// The parameters that are solved for.
-    parameters: Vec<String>,
-    /// Why there is no result, if so.
-    undetermined: Option<String>,
-    /// Estimated standard deviation of an image coordinate, px.
-    sigma0_px: Option<f64>,
-    /// Observations less unknowns.
-    redundancy: Option<i64>,
-    /// Akaike's criterion, corrected for few observations: differences count, less is better.
-    aicc: Option<f64>,
-    /// Number (from 1) of the largest other set that is a part of this one.
-    against: Option<usize>,
-    /// The test of what this set has more than that one.
-    f: Option<f64>,
-    /// Probability of such an F if the additional parameters are zero.
-    f_p: Option<f64>,
-    /// How far its camera is from the calibration's over the frame after the best rotation, px: RMS and most.
-    change_px: Option<[f64; 2]>,
-}
-
 impl CalibrationAnswer {
     /// Of a calibration, with doubts about its photographs that others had before, and what its inputs are suspected to be.
     ///
@@ -275,7 +254,7 @@ impl CalibrationAnswer {
             board: board(calibration),
             images: images(calibration),
             rejected: rejected(calibration),
-            sets: calibration.compared.iter().flat_map(|compared| &compared.sets).map(set).collect(),
+            sets: calibration.compared.iter().flat_map(|compared| &compared.sets).map(Set::new).collect(),
         })
     }
 }
@@ -403,19 +382,4 @@ fn rejected(calibration: &Calibration<'_>) -> Vec<Rejected> {
         }
     };
     calibration.found.iter().map(one).collect()
-}
-
-fn set(set: &ComparedSet) -> Set {
-    let result: Option<&SetResult> = set.result.as_ref().ok();
-    Set {
-        parameters: set.names.clone(),
-        undetermined: set.result.as_ref().err().cloned(),
-        sigma0_px: result.map(|result| result.sigma0_px),
-        redundancy: result.map(|result| result.counts.0 as i64 - result.counts.1 as i64),
-        aicc: result.map(|result| result.aicc),
-        against: set.against.map(|(other, _)| other + 1),
-        f: set.against.map(|(_, test)| test.f),
-        f_p: set.against.map(|(_, test)| test.p),
-        change_px: result.and_then(|result| result.change_px),
-    }
 }

@@ -2,6 +2,7 @@
 
 mod calibration;
 mod camera;
+mod compared;
 mod conversion;
 mod difference;
 mod judgement;

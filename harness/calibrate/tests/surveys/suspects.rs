@@ -1,0 +1,146 @@
+//! Inputs that are something else than they say, and whether what they are is named.
+
+use calibench_calibrate::{Settings, Suspected, calibrate, prepare, suspected};
+use calibench_exchange::{ControlRow, Points};
+use calibench_model::camera::{Camera, ImageSize, OpenCvFisheye};
+use calibench_model::{PixelPoint, Pose};
+use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
+
+use crate::network::{SIZE, Scene, board, lens, optics, settings, wall};
+
+/// Draws of each.
+const DRAWS: u64 = 20;
+
+fn noisy(scene: Scene, seed: u64) -> Scene {
+    Scene { sigma: 0.1, seed: 1 + 1_000_003 * seed, ..scene }
+}
+
+/// What is suspected of inputs whose calibration is in doubt or fails, as `calibrate` asks; nothing where it is not.
+fn suspects(points: &Points, control: &[ControlRow], settings: &Settings) -> Vec<Suspected> {
+    let of_error = |error| suspected(points, control, settings, Err(&error));
+    let prepared = match prepare(points.clone(), control, settings) {
+        Ok(prepared) => prepared,
+        Err(error) => return of_error(error),
+    };
+    let found = calibrate(&prepared, &[], |calibration| {
+        if calibration.doubts().is_empty() { Vec::new() } else { suspected(points, control, settings, Ok(calibration)) }
+    });
+    found.unwrap_or_else(of_error)
+}
+
+fn moved(points: &Points, to: impl Fn(PixelPoint) -> PixelPoint) -> Points {
+    let mut moved = Points::default();
+    for mut row in points.rows() {
+        row.start.position = to(row.start.position);
+        moved.push(row.image, row.target, row.start);
+    }
+    moved
+}
+
+/// In how many of the draws that kind is named first.
+fn named(kind: &str, planted: impl Fn(u64) -> (Points, Vec<ControlRow>, Settings) + Sync) {
+    let found: Vec<Vec<Suspected>> = (0..DRAWS)
+        .into_par_iter()
+        .map(|seed| {
+            let (points, control, settings) = planted(seed);
+            suspects(&points, &control, &settings)
+        })
+        .collect();
+    let first = found.iter().filter(|found| found.first().is_some_and(|first| first.kind == kind)).count();
+    assert!(
+        first as u64 * 20 >= DRAWS * 19,
+        "{kind}: {first} of {DRAWS}; {:?}",
+        found.iter().find(|found| found.first().is_none_or(|first| first.kind != kind))
+    );
+}
+
+/// Tags of 60, gaps of `gap`, four by three, each with its four corners.
+fn tags(gap: f64) -> Vec<Point3<f64>> {
+    let along = |k: usize| (k / 2) as f64 * (60.0 + gap) + (k % 2) as f64 * 60.0;
+    (0..48).map(|k| Point3::new(along(k % 8), along(k / 8), 0.0)).collect()
+}
+
+#[test]
+fn a_fisheye_taken_for_a_pinhole_is_named() {
+    let k = [0.02, -0.01, 0.0, 0.0];
+    let truth: Camera = OpenCvFisheye { size: SIZE, fx: 520.0, fy: 520.0, cx: 790.0, cy: 610.0, skew: 0.0, k }.into();
+    let middle = Point3::new(120.0, 90.0, 0.0);
+    let station = |i: i32| {
+        let (sin, cos) = (0.9 * f64::from(i)).sin_cos();
+        let at = middle + Vector3::new(70.0 * cos, 60.0 * sin, 90.0 + 6.0 * f64::from(i));
+        Pose::looking_at(at, middle + Vector3::new(30.0 * sin, 20.0 * cos, 0.0), Vector3::y(), 0.7 * f64::from(i)).unwrap()
+    };
+    named("lens", |seed| {
+        let scene = noisy(Scene { poses: (0..8).map(station).collect(), ..board(truth) }, seed);
+        (scene.points(), scene.known(), settings("opencv5"))
+    });
+}
+
+#[test]
+fn columns_and_rows_that_are_exchanged_are_named() {
+    named("raster", |seed| {
+        let scene = noisy(board(lens()), seed);
+        let turned = |(k, row): (usize, ControlRow)| ControlRow { position: [30.0 * (k % 7) as f64, 30.0 * (k / 7) as f64, 0.0], ..row };
+        (scene.points(), scene.known().into_iter().enumerate().map(turned).collect(), settings("opencv5"))
+    });
+}
+
+#[test]
+fn image_points_that_are_mirrored_are_named() {
+    named("axes", |seed| {
+        let scene = noisy(wall(lens()), seed);
+        (moved(&scene.points(), |at| PixelPoint::new(at.y, at.x)), scene.known(), settings("opencv5"))
+    });
+    named("up", |seed| {
+        let scene = noisy(wall(lens()), seed);
+        let upwards = |at: PixelPoint| PixelPoint::new(at.x, f64::from(SIZE.height) - 1.0 - at.y);
+        (moved(&scene.points(), upwards), scene.known(), settings("opencv5"))
+    });
+}
+
+#[test]
+fn another_spacing_and_a_stretch_are_named_with_their_estimates() {
+    let of = |targets: Vec<Point3<f64>>, seed: u64| {
+        let count = targets.len();
+        noisy(Scene { targets, control: count, ..board(lens()) }, seed)
+    };
+    named("spacing", |seed| {
+        let stated = of(tags(15.0), seed).known();
+        (of(tags(18.0), seed).points(), stated, settings("opencv5"))
+    });
+    named("stretch", |seed| {
+        let stated = noisy(board(lens()), seed);
+        let stretched = stated.targets.iter().map(|at| Point3::new(1.03 * at.x, at.y, 0.0)).collect();
+        (Scene { targets: stretched, ..noisy(board(lens()), seed) }.points(), stated.known(), settings("opencv5"))
+    });
+    let scene = of(tags(18.0), 3);
+    let found = suspects(&scene.points(), &of(tags(15.0), 3).known(), &settings("opencv5"));
+    assert!(found[0].what.contains("is 0.300 of a tag's side, and 0.250 is stated"), "{found:?}");
+    assert!(found[0].rms_px.unwrap() < 0.2 && found[0].words().contains("px RMS then"), "{found:?}");
+}
+
+#[test]
+fn images_of_another_size_are_named() {
+    for stated in [ImageSize { width: 3200, height: 2400 }, ImageSize { width: 800, height: 600 }] {
+        named("size", |seed| {
+            let scene = noisy(board(lens()), seed);
+            let mut optics = optics("opencv5");
+            optics.size = stated;
+            (scene.points(), scene.known(), Settings::new(vec![optics]))
+        });
+    }
+}
+
+#[test]
+fn of_what_is_as_it_says_nothing_is_suspected() {
+    let found: Vec<Vec<Suspected>> = (0..100_u64)
+        .into_par_iter()
+        .map(|seed| {
+            let scene = noisy(if seed % 2 == 0 { board(lens()) } else { wall(lens()) }, seed);
+            suspects(&scene.points(), &scene.known(), &settings("opencv5"))
+        })
+        .collect();
+    let some: Vec<&Vec<Suspected>> = found.iter().filter(|found| !found.is_empty()).collect();
+    assert!(some.len() <= 1, "{some:?}");
+}
