@@ -164,6 +164,36 @@ fn the_limit_over_the_frame_is_told_and_a_doubt_heads_it() {
 }
 
 #[test]
+fn corners_that_a_method_lost_are_said_to_be_compared_by_none() {
+    let mut summary = judged();
+    summary.methods.iter_mut().for_each(|method| (method.found, method.of) = (100, 100));
+    for (found, common) in [(100, 100), (98, 98)] {
+        (summary.methods[0].found, summary.common) = (found, common);
+        is_silent(&summary, "Compared on");
+    }
+    (summary.methods[0].found, summary.common) = (90, 90);
+    let lost = format!("Not measured were: `{}` 10;", summary.methods[0].method);
+    says(&summary, &format!("**Compared on** 90 of 100 corners, which all of them measured. {lost}"));
+    // One that is not compared narrows nothing.
+    (summary.methods[0].found, summary.common) = (10, 100);
+    is_silent(&summary, "Compared on");
+}
+
+#[test]
+fn a_camera_that_is_hardly_known_is_in_doubt() {
+    let mut summary = judged();
+    summary.cells.retain(|cell| &*cell.model == "b");
+    cell(&mut summary, "m", "b").predicted = Some(Predicted { formal: 0.5, by_views: Some(0.625), modes: 1.0 });
+    summary.limit_px = Some(0.6);
+    says(
+        &summary,
+        "- **In doubt**: its camera is known to 0.625 px over the frame (standard deviation, RMS), beyond the limit of 0.600 px",
+    );
+    summary.limit_px = Some(0.7);
+    is_silent(&summary, "In doubt");
+}
+
+#[test]
 fn sigmas_are_enlarged_where_halves_contradict_them() {
     let mut summary = judged();
     says(

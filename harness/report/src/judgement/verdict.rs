@@ -8,6 +8,9 @@ use calibench_records::judgement::{
 use crate::markdown::fixed;
 use crate::plain;
 
+/// Share of the corners below which it is said on how many operators are compared.
+const ALL_BUT: f64 = 0.98;
+
 /// Which operator and which model, and how far.
 pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     let (cell, least) = (trusted.cell, trusted.least);
@@ -24,6 +27,7 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
         ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout)),
         without(" Not judged with it: ", &trusted.unjudged, |cell| &cell.method)
     ));
+    lines.extend(compared_on(summary));
     lines.push(models(trusted));
     lines.extend(how_far(trusted));
     lines.extend(beyond(summary, trusted));
@@ -60,6 +64,22 @@ pub fn in_use(found: &InUse) -> String {
 fn interval(estimate: &Estimate) -> String {
     let (low, high) = estimate.interval;
     format!("{} px RMS (95 % over views {} to {})", plain(estimate.value), plain(low), plain(high))
+}
+
+/// Corners that some operator lost decide what the others are compared on: what is hard to measure is hard for all.
+fn compared_on(summary: &Summary) -> Option<String> {
+    let compared = || summary.methods.iter().filter(|method| summary.is_compared(&method.method));
+    let of = compared().map(|method| method.of).max()?;
+    if summary.common as f64 >= ALL_BUT * of as f64 {
+        return None;
+    }
+    let lost = compared().filter(|method| method.found < method.of);
+    let lost: Vec<String> = lost.map(|method| format!("`{}` {}", method.method, method.of - method.found)).collect();
+    Some(format!(
+        "**Compared on** {} of {of} corners, which all of them measured. Not measured were: {}; the figures of the others do not hold for these.",
+        summary.common,
+        listed(&lost)
+    ))
 }
 
 fn chance(p: f64) -> String {
