@@ -67,7 +67,7 @@ pub(crate) fn arrange(marks: &[Mark], size: f64) -> Result<Arranged, NotFound> {
     let strays: Vec<usize> = (0..marks.len()).filter(|index| kept.binary_search(index).is_err()).collect();
     let rivals = largest(&groups, &strays).len();
     if !strays.is_empty() && (kept.len() < LEAST || (rivals > 1 && RIVALS * rivals > kept.len())) {
-        return Err(NotFound::OtherArrangement { marks: marks.len(), together: kept.len() });
+        return Err(NotFound::OtherArrangement { marks: marks.len(), together: kept.len(), instead: None });
     }
     Ok(Arranged { kept, strays })
 }

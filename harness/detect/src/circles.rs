@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use calibench_model::Image;
-use calibench_model::boards::{BoardPoint, Circles, Layout};
+use calibench_model::boards::{Board, BoardPoint, Circles, Layout};
 
 use crate::corners::found;
 use crate::lattice::{Grid, Grids, bases, limited};
@@ -18,21 +18,23 @@ const SIZES: f64 = 1.8;
 /// The circles of a grid, dark on light or, where no such grid is seen, light on dark.
 pub(crate) fn detect(image: &Image, circles: &Circles, layout: &Layout) -> Result<Found, NotFound> {
     let expected = layout.points.len();
-    let mut best = [0, 0];
+    let (mut best, mut instead) = ([0, 0], None);
     for light in [false, true] {
         let seen = if light { Cow::Owned(negative(image)) } else { Cow::Borrowed(image) };
         let rounds = limited(rounds(&seen));
         for grid in Grids::new(&rounds) {
-            if grid.len() > best[1] || best[0] == 0 {
-                best = [rounds.len(), grid.len()];
-            }
+            let largest = (grid.len() > best[1] || best[0] == 0).then(|| grid.clone());
             let whole = trimmed(grid, expected).into_iter().find_map(|grid| numbered(&grid, &rounds, circles, layout));
             if let Some(found) = whole {
                 return Ok(found);
             }
+            if let Some(grid) = largest {
+                best = [rounds.len(), grid.len()];
+                instead = other(&grid, &rounds, circles);
+            }
         }
     }
-    Err(NotFound::NoGrid { round: best[0], largest: best[1], expected })
+    Err(NotFound::NoGrid { round: best[0], largest: best[1], expected, instead })
 }
 
 /// The grid if it has as many as expected. If it has one more: what is left without one of those at its border, something beside the board.
@@ -45,6 +47,26 @@ fn trimmed(grid: Grid, expected: usize) -> Vec<Grid> {
     let loose = grid.keys().filter(|place| grid.len() == expected + 1 && neighbours(**place) < 3);
     let without = |place: &[i32; 2]| grid.iter().filter(|(other, _)| *other != place).map(|(place, index)| (*place, *index)).collect();
     loose.map(without).collect()
+}
+
+/// Kind and counts of the grid of circles that a grid is, the larger number of a symmetric one first; `None` if it is no whole one.
+fn other(grid: &Grid, rounds: &[Round], circles: &Circles) -> Option<String> {
+    let counts = |asymmetric: bool| {
+        let rows = 2..=grid.len() / 2;
+        let all = rows.filter(|rows| grid.len().is_multiple_of(*rows)).map(move |rows| (grid.len() / rows, rows));
+        all.filter(move |(columns, rows)| asymmetric || columns >= rows).map(move |(columns, rows)| Circles {
+            columns,
+            rows,
+            asymmetric,
+            ..*circles
+        })
+    };
+    let is_whole = |one: &Circles| {
+        let layout = Board::Circles(*one).layout();
+        layout.is_ok_and(|layout| numbered(grid, rounds, one, &layout).is_some())
+    };
+    let whole = counts(false).chain(counts(true)).find(is_whole)?;
+    Some(format!("{}:{}x{}", Board::Circles(whole).kind(), whole.columns, whole.rows))
 }
 
 fn negative(image: &Image) -> Image<'static> {

@@ -111,7 +111,7 @@ impl<'b> Placed<'b> {
             return Err(NotFound::NoDots { corners: sheet.corners.len(), dots: dots.len() });
         };
         if all.next().is_some() || dots.len() - 3 > squares.len() / STRAY {
-            return Err(NotFound::OtherArrangement { marks: dots.len(), together: 3 });
+            return Err(NotFound::OtherArrangement { marks: dots.len(), together: 3, instead: None });
         }
         let [column, row] = board.place;
         let exchanged = (sheet.light(first) < 0.0) != (column + row).is_multiple_of(2);

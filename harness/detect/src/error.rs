@@ -10,12 +10,14 @@ pub enum NotFound {
     #[error(transparent)]
     Board(#[from] BoardError),
     /// No chessboard of these counts that is seen whole.
-    #[error("no board of {columns} x {rows} inner corners found")]
+    #[error("no board of {columns} x {rows} inner corners found{}", seen(*other))]
     NoChessboard {
         /// Inner corners in a row.
         columns: usize,
         /// Rows of them.
         rows: usize,
+        /// The inner corners along both sides of a board that is seen whole instead, the larger number first.
+        other: Option<[usize; 2]>,
     },
     /// An image of no use for its size.
     #[error("the image has {width} x {height} px: expected at least {least} px a side")]
@@ -60,7 +62,7 @@ pub enum NotFound {
         expected: usize,
     },
     /// Markers of the board's dictionary that the board does not have.
-    #[error("markers {seen:?} of {dictionary} are seen: the board has {first} to {last}")]
+    #[error("markers {seen:?} of {dictionary} are seen: the board has {first} to {last}{}", as_on(instead.as_deref()))]
     OtherIds {
         /// The dictionary.
         dictionary: &'static str,
@@ -70,6 +72,8 @@ pub enum NotFound {
         first: u32,
         /// The board's highest id.
         last: u32,
+        /// The board of such markers that is there, in words; its rows as far as they are seen.
+        instead: Option<String>,
     },
     /// The board's mirror image.
     #[error("the image is mirrored: {markers} marks are those of the board when read in a mirror")]
@@ -86,13 +90,16 @@ pub enum NotFound {
     /// Marks in another order than the board's.
     #[error(
         "another board: of {marks} marks that were read {together} stand to each other as the board has them; the image is of a board with other rows and \
-         columns, in another order (legacy or not), or of several boards"
+         columns, in another order (legacy or not), or of several boards{}",
+        as_on(instead.as_deref())
     )]
     OtherArrangement {
         /// Marks of the board's ids.
         marks: usize,
         /// The most of them that agree with each other.
         together: usize,
+        /// The board of such marks that is there, in words; its rows as far as they are seen.
+        instead: Option<String>,
     },
     /// Markers without the chessboard.
     #[error(
@@ -107,7 +114,10 @@ pub enum NotFound {
         expected: usize,
     },
     /// No grid of circles of the board's rows and columns.
-    #[error("{round} round areas are seen, and the largest grid of them has {largest}: expected a whole grid of {expected}")]
+    #[error(
+        "{round} round areas are seen, and the largest grid of them has {largest}: expected a whole grid of {expected}{}",
+        instead.as_deref().map_or_else(String::new, |board| format!("; the grid is whole as one of {board}"))
+    )]
     NoGrid {
         /// Round areas.
         round: usize,
@@ -115,6 +125,8 @@ pub enum NotFound {
         largest: usize,
         /// The board's.
         expected: usize,
+        /// The kind and counts that the grid has if it is whole.
+        instead: Option<String>,
     },
     /// No ring code of the board.
     #[error(
@@ -196,6 +208,16 @@ pub enum NotFound {
         /// Those of the board: columns, rows.
         asked: [[usize; 2]; 2],
     },
+}
+
+/// The board on which marks stand as they do.
+fn as_on(board: Option<&str>) -> String {
+    board.map_or_else(String::new, |board| format!(": they stand as on {board}"))
+}
+
+/// What is seen in place of the board.
+fn seen(other: Option<[usize; 2]>) -> String {
+    other.map_or_else(String::new, |[long, short]| format!(": one of {long} x {short} is seen"))
 }
 
 impl NotFound {

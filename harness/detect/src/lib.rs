@@ -16,6 +16,7 @@ mod dotted;
 mod error;
 mod found;
 mod ground;
+mod instead;
 mod lattice;
 mod markers;
 mod meeting;

@@ -7,6 +7,7 @@ use crate::arrange::{Arranged, Mark, arrange};
 use crate::cells::{Form, Sight, read};
 use crate::corners;
 use crate::ground::Ground;
+use crate::instead;
 use crate::patches::Patches;
 use crate::plane::{Homography, Point, distance, mean, minus, plus, times};
 use crate::quads::{adjusted, quad};
@@ -48,7 +49,7 @@ pub(crate) struct Markers<'a> {
 }
 
 impl<'a> Markers<'a> {
-    fn new(board: &Board, layout: &'a Layout) -> Option<Self> {
+    pub(crate) fn new(board: &Board, layout: &'a Layout) -> Option<Self> {
         let (dictionary, border) = board.dictionary()?;
         Some(Self { layout, dictionary, form: Form { side: dictionary.side, border } })
     }
@@ -138,7 +139,8 @@ pub(crate) fn detect(image: &Image, board: &Board, layout: &Layout) -> Result<Fo
     let quadrangles = quadrangles(image, of.form);
     let sights = frames(image, &quadrangles, of.form);
     let (seen, foreign) = identified(&sights, &of);
-    let arranged = reasons::checked(image, &quadrangles, &sights, &seen, &foreign, &of)?;
+    let arranged = reasons::checked(image, &quadrangles, &sights, &seen, &foreign, &of);
+    let arranged = arranged.map_err(|why| instead::named(why, board, &sights))?;
     let mut doubts: Vec<Doubt> = arranged.strays.iter().map(|index| Doubt::Stray { id: seen[*index].id }).collect();
     doubts.extend(foreign.iter().map(|id| Doubt::Foreign { id: *id }));
     let kept: Vec<Seen> = arranged.kept.iter().map(|index| seen[*index]).collect();

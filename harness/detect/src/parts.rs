@@ -54,7 +54,7 @@ pub(crate) fn detect(
         let together = seen.iter().map(|sight| sight.marks).max();
         let found = merged(seen, layout);
         if let Some(together) = together.filter(|_| found.points.is_empty()) {
-            why = Some((usize::MAX, NotFound::OtherArrangement { marks: found.markers, together }));
+            why = Some((usize::MAX, NotFound::OtherArrangement { marks: found.markers, together, instead: None }));
         }
         if found.points.len() > best.as_ref().map_or(0, |best| best.points.len()) {
             best = Some(found);

@@ -55,7 +55,7 @@ fn mirrored(sights: &[Sight], kept: usize, of: &Markers) -> Result<(), NotFound>
 fn other_ids(seen: &[u32], of: &Markers) -> NotFound {
     let ids = || of.layout.markers.iter().map(|marker| marker.id);
     let (first, last) = (ids().min().unwrap_or(0), ids().max().unwrap_or(0));
-    NotFound::OtherIds { dictionary: of.dictionary.name, seen: seen.to_vec(), first, last }
+    NotFound::OtherIds { dictionary: of.dictionary.name, seen: seen.to_vec(), first, last, instead: None }
 }
 
 /// Whether more of the quadrangles are markers of another dictionary, or have other frames.

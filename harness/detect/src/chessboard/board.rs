@@ -71,6 +71,24 @@ impl Board {
         (column < self.columns && row < self.rows).then(|| self.corners[row * self.columns + column])
     }
 
+    /// Its columns and rows, the larger first: which of them are columns nobody said.
+    pub(super) fn counts(&self) -> [usize; 2] {
+        [self.columns.max(self.rows), self.columns.min(self.rows)]
+    }
+
+    /// Whether the squares around its outermost corners are in the image: a board that goes on beyond its border has unknown counts.
+    pub(super) fn is_inside(&self, image: &Image) -> bool {
+        let [right, bottom] = [self.columns - 1, self.rows - 1];
+        let outer = |[column, row]: [usize; 2]| {
+            let index = row * self.columns + column;
+            let Some(Steps([u, v])) = self.steps(index) else { return false };
+            let [u, v] = [times(u, if column == 0 { -1.0 } else { 1.0 }), times(v, if row == 0 { -1.0 } else { 1.0 })];
+            let [x, y] = plus(self.corners[index], plus(u, v));
+            image.holds(x.round() as i64, y.round() as i64, 0)
+        };
+        [[0, 0], [right, 0], [right, bottom], [0, bottom]].into_iter().all(outer)
+    }
+
     /// The steps to the neighbours of a corner.
     pub(super) fn steps(&self, index: usize) -> Option<Steps> {
         Steps::at(self.corners[index], |by| self.beside(index, by))

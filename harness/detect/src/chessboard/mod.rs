@@ -19,7 +19,7 @@ use calibench_model::boards::{BoardPoint, Chessboard, Layout};
 use board::Board;
 use candidates::Saddles;
 use complete::complete;
-use grow::Grids;
+use grow::{Grid, Grids};
 use level::{Level, Pyramid};
 use refine::{Around, refined};
 use side::Sides;
@@ -30,6 +30,8 @@ use crate::{Found, NotFound, corners};
 pub(crate) const AROUND: Around = Around { share: 0.4, resolved: 0.0, smooth: 0.0 };
 /// No larger board is looked for beside one that takes this share of the image.
 const LARGE: f64 = 0.03;
+/// A board of other counts than those asked for is named if it has so many corners.
+const FEWEST: usize = 12;
 
 /// The inner corners of a chessboard that is seen whole, to about 0.3 px.
 ///
@@ -46,8 +48,9 @@ pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) ->
     let Chessboard { columns, rows, square } = *chessboard;
     let image = sound(image);
     let pyramid = Pyramid::new(&image, Sides::PLAIN);
-    let seen = pyramid.levels().find_map(|level| largest(&pyramid, &level, columns, rows));
-    let board = seen.ok_or(NotFound::NoChessboard { columns, rows })?;
+    let mut other = None;
+    let seen = pyramid.levels().find_map(|level| largest(&pyramid, &level, [columns, rows], &mut other));
+    let board = seen.ok_or_else(|| NotFound::NoChessboard { columns, rows, other: other.map(|other| other.counts()) })?;
     // Printed the other way round, light where the layout is dark, every corner is turned by a quarter.
     let turned = u32::from(!board.starts_dark(&image));
     let point = |(index, own): (usize, &BoardPoint)| {
@@ -58,24 +61,24 @@ pub(crate) fn detect(image: &Image, chessboard: &Chessboard, layout: &Layout) ->
     Ok(Found { points, markers: 0, doubts: Vec::new() })
 }
 
-/// The largest such board at one level: pictures of boards may be in the picture, too.
-fn largest(pyramid: &Pyramid, level: &Level, columns: usize, rows: usize) -> Option<Board> {
+/// The largest such board at one level: pictures of boards may be in the picture, too. Where there is none, `other` becomes the board of other counts that the
+/// largest grid of the level is, if it has more corners than what it was.
+fn largest(pyramid: &Pyramid, level: &Level, [columns, rows]: [usize; 2], other: &mut Option<Board>) -> Option<Board> {
     let image = pyramid.image();
     let saddles = Saddles::of(level);
     let counts = |board: &Board| [(columns, rows), (rows, columns)].contains(&(board.columns, board.rows));
     let mut largest: Option<Board> = None;
+    let mut most = Grid::new();
     for grid in Grids::new(level, &saddles) {
+        if grid.len() > most.len() {
+            most.clone_from(&grid);
+        }
         if 2 * grid.len() < columns * rows {
             continue;
         }
         let whole = complete(level, grid, columns.max(rows) + 1);
         let Some(mut board) = whole.and_then(|grid| Board::new(level, &grid)).filter(counts) else { continue };
-        board.refine(pyramid, level.factor);
-        // What was far off may be met from where it is now.
-        if board.straighten() {
-            board.refine(pyramid, level.factor);
-            board.straighten();
-        }
+        board.settle(pyramid, level.factor);
         if largest.as_ref().is_none_or(|other| other.area() < board.area()) && board.stands(image) {
             largest = board.ordered(image, columns, rows);
         }
@@ -83,10 +86,30 @@ fn largest(pyramid: &Pyramid, level: &Level, columns: usize, rows: usize) -> Opt
             break;
         }
     }
+    if largest.is_none() && most.len() >= FEWEST.max(other.as_ref().map_or(0, |other| other.corners.len() + 1)) {
+        *other = whole(pyramid, level, most).or_else(|| other.take());
+    }
     largest
 }
 
+/// The board of any counts that a grid is, if it is seen with all of its squares.
+fn whole(pyramid: &Pyramid, level: &Level, grid: Grid) -> Option<Board> {
+    let mut board = Board::new(level, &complete(level, grid, usize::MAX)?)?;
+    board.settle(pyramid, level.factor);
+    (board.corners.len() >= FEWEST && board.stands(pyramid.image()) && board.is_inside(pyramid.image())).then_some(board)
+}
+
 impl Board {
+    /// Its corners to where the image has them.
+    fn settle(&mut self, pyramid: &Pyramid, factor: f64) {
+        self.refine(pyramid, factor);
+        // What was far off may be met from where it is now.
+        if self.straighten() {
+            self.refine(pyramid, factor);
+            self.straighten();
+        }
+    }
+
     fn refine(&mut self, pyramid: &Pyramid, factor: f64) {
         let steps: Vec<f64> = (0..self.corners.len()).map(|index| self.step(index)).collect();
         self.corners = refined(pyramid, &self.corners, &steps, AROUND, factor);

@@ -55,6 +55,32 @@ fn other_boards_are_named() {
     }
 }
 
+/// What was asked for is wrong in its counts or its order: what is there is named, whole, so that it can be asked for.
+#[test]
+fn the_board_that_is_there_is_named() {
+    for (pictured, asked) in [
+        (
+            "charuco:8x6:30:21:DICT_4X4_50",
+            &["charuco:8x6:30:21:DICT_4X4_50:legacy", "charuco:7x6:30:21:DICT_4X4_50", "charuco:6x8:30:21:DICT_4X4_50"][..],
+        ),
+        (
+            "charuco:8x6:30:21:DICT_4X4_50:legacy",
+            &["charuco:8x6:30:21:DICT_4X4_50", "charuco:9x6:30:21:DICT_4X4_50", "charuco:5x4:30:21:DICT_4X4_50"],
+        ),
+        ("charuco:5x7:30:21:DICT_4X4_50", &["charuco:7x5:30:21:DICT_4X4_50", "charuco:4x7:30:21:DICT_4X4_50"]),
+        ("aprilgrid:6x5:0.088:0.3", &["aprilgrid:5x6:0.088:0.3", "aprilgrid:7x5:0.088:0.3", "aprilgrid:5x5:0.088:0.3"]),
+        ("circles:7x5:20", &["circles:8x5:20", "circles:6x5:20", "acircles:4x11:20"]),
+        ("acircles:4x11:20", &["acircles:5x11:20", "circles:7x5:20", "acircles:11x4:20"]),
+    ] {
+        for asked in asked {
+            let error = reason(pictured, asked, |view| view);
+            let text = error.to_string();
+            let named = if pictured.contains("circles") { pictured.trim_end_matches(":20") } else { pictured };
+            assert!(text.ends_with(named), "{pictured} as {asked}: {text}");
+        }
+    }
+}
+
 #[test]
 fn a_grid_of_circles_that_is_cut_off_is_refused() {
     let error = reason("circles:7x5:20", "circles:7x5:20", |view| View { middle: [0.2 * view.middle[0], view.middle[1]], ..view });

@@ -1,10 +1,20 @@
 //! What is no such board is not found, and nothing panics.
 
+use calibench_detect::{NotFound, detect};
 use calibench_model::Image;
+use calibench_model::boards::{Board, Chessboard};
 
 use super::chessboard;
 use super::drawn::layout;
 use crate::picture::{View, noisy};
+
+/// The counts of the board that is seen in place of the one asked for.
+fn instead(image: &Image, columns: usize, rows: usize) -> Option<[usize; 2]> {
+    match detect(image, &Board::Chessboard(Chessboard { columns, rows, square: 1.0 })) {
+        Err(NotFound::NoChessboard { other, .. }) => other,
+        found => panic!("{columns} x {rows}: {found:?}"),
+    }
+}
 
 #[test]
 fn boards_with_other_counts_are_refused() {
@@ -14,6 +24,22 @@ fn boards_with_other_counts_are_refused() {
         assert!(chessboard(&image, 8, 6).is_some(), "tilted by {tilt}");
         for (columns, rows) in [(7, 6), (9, 6), (8, 5), (8, 7), (7, 5), (9, 7), (8, 8), (6, 6), (3, 3), (40, 30), (4, 3)] {
             assert_eq!(chessboard(&image, columns, rows), None, "{columns} x {rows}, tilted by {tilt}");
+        }
+    }
+}
+
+#[test]
+fn the_board_that_is_there_is_named() {
+    for (size, asked) in [
+        ((9, 6), [(9, 7), (10, 7), (8, 6), (8, 5), (10, 6), (7, 7), (20, 20), (3, 3)]),
+        ((5, 4), [(4, 4), (5, 5), (6, 5), (4, 3), (5, 3), (6, 4), (9, 6), (3, 3)]),
+    ] {
+        let layout = layout(size.0, size.1);
+        for tilt in [0.0, 40.0, 60.0] {
+            let image = View { turn: 25.0, tilt: [tilt, 50.0], ..View::whole(&layout, 24.0) }.draw(&layout);
+            for (columns, rows) in asked {
+                assert_eq!(instead(&image, columns, rows), Some([size.0, size.1]), "{columns} x {rows} of {size:?}, tilted by {tilt}");
+            }
         }
     }
 }
@@ -33,11 +59,11 @@ fn boards_that_are_hidden_in_part_are_refused() {
                     if (x as f64 - at.x).hypot(y as f64 - at.y) < 14.0 { 0.6 } else { image.at(x, y) }
                 },
             );
-        assert_eq!(chessboard(&covered, 8, 6), None, "hidden at {hidden:?}");
+        assert_eq!(instead(&covered, 8, 6), None, "hidden at {hidden:?}");
     }
     // Two columns are beyond the border.
     let out = View { middle: [view.middle[0] - 0.42 * view.width as f64, view.middle[1]], ..view };
-    assert_eq!(chessboard(&out.draw(&layout), 8, 6), None);
+    assert_eq!(instead(&out.draw(&layout), 8, 6), None);
 }
 
 #[test]
@@ -49,7 +75,7 @@ fn noise_and_nothing_are_no_board() {
     let [weak, strong] = noise;
     for image in [flat, stripes, weak, strong, ramp] {
         for (columns, rows) in [(3, 3), (4, 3), (9, 6)] {
-            assert_eq!(chessboard(&image, columns, rows), None);
+            assert_eq!(instead(&image, columns, rows), None);
         }
     }
 }
