@@ -112,6 +112,20 @@ fn operators_and_models_are_ranked_in_words() {
 }
 
 #[test]
+fn operators_that_measured_nothing_are_named() {
+    let mut rows = rows();
+    rows.push(by("s", "", Row::plain(measure::CORNERS, "v1", 0.0).of(10)));
+    rows.extend(["flat", "border", "border"].map(|why| by("s", "", Row::without(measure::REJECTED, "v1", "rejected", why))));
+    rows.push(by("t", "", Row::plain(measure::CORNERS, "v1", 0.0).of(10)));
+    says(
+        &Summary::new(&rows, 1),
+        "**Measured nothing**: `u` (unavailable: not built), `s` (2 of 10 points rejected, border) and `t` (none of 10 points).\n",
+    );
+    rows.retain(|row| !["s", "t", "u"].contains(&&*row.method));
+    is_silent(&Summary::new(&rows, 1), "Measured nothing");
+}
+
+#[test]
 fn chances_are_told_by_three_digits_and_the_level_itself_is_worse() {
     let summary = judged();
     let mut trusted = summary.trusted().unwrap();
@@ -123,7 +137,7 @@ fn chances_are_told_by_three_digits_and_the_level_itself_is_worse() {
     assert!(text.contains(" px, p = 0.001) and `n` (") && text.contains(" px, p < 0.001)."), "{text}");
     trusted.operators.clear();
     let text = verdict(&summary, &trusted);
-    assert!(text.contains("`m` has no other beside it.\n"), "{text}");
+    assert!(text.contains("`m` has no other beside it. **Measured nothing**: "), "{text}");
     assert_eq!(text.matches("Worse").count(), 0, "{text}");
 }
 

@@ -2,7 +2,7 @@
 
 use calibench_model::escape;
 use calibench_records::judgement::{
-    ALPHA, Beside, Cell, Estimate, HONEST, InUse, MARGIN_PX, OUTLIER_ALPHA, Published, Standing, StillHolds, Summary, Trusted,
+    ALPHA, Beside, Cell, Estimate, HONEST, InUse, MARGIN_PX, Measured, OUTLIER_ALPHA, Published, Standing, StillHolds, Summary, Trusted,
 };
 
 use crate::markdown::fixed;
@@ -22,10 +22,11 @@ pub fn verdict(summary: &Summary, trusted: &Trusted<'_>) -> String {
     )];
     lines.extend(trusted.doubt().map(|why| format!("**In doubt**: {why}. Its limits do not hold.")));
     lines.push(format!(
-        "**Operators**, with `{}`: {}{}",
+        "**Operators**, with `{}`: {}{}{}",
         least.model,
         ranking(&trusted.operators, &least.method, |cell| (&cell.method, cell.holdout)),
-        without(" Not judged with it: ", &trusted.unjudged, |cell| &cell.method)
+        without(" Not judged with it: ", &trusted.unjudged, |cell| &cell.method),
+        silent(summary)
     ));
     lines.extend(compared_on(summary));
     lines.push(models(trusted));
@@ -152,6 +153,18 @@ fn without(before: &str, cells: &[&Cell], name: impl Fn(&Cell) -> &str) -> Strin
     let why = |cell: &Cell| cell.trouble.as_deref().unwrap_or("not all photographs are predicted").to_owned();
     let each: Vec<String> = cells.iter().map(|cell| format!("`{}` ({})", name(cell), escape::markdown(&why(cell)))).collect();
     if each.is_empty() { String::new() } else { format!("{before}{}.", listed(&each)) }
+}
+
+/// Operators that measured nothing: they are missing above.
+fn silent(summary: &Summary) -> String {
+    let why = |method: &Measured| match (&method.unavailable, method.rejected.iter().max_by_key(|(_, count)| **count)) {
+        (Some(why), _) => format!("unavailable: {}", escape::markdown(why)),
+        (None, Some((reason, count))) => format!("{count} of {} points rejected, {}", method.of, escape::markdown(reason)),
+        (None, None) => format!("none of {} points", method.of),
+    };
+    let nothing = summary.methods.iter().filter(|method| method.found == 0);
+    let each: Vec<String> = nothing.map(|method| format!("`{}` ({})", method.method, why(method))).collect();
+    if each.is_empty() { String::new() } else { format!(" **Measured nothing**: {}.", listed(&each)) }
 }
 
 fn how_far(trusted: &Trusted<'_>) -> Option<String> {
